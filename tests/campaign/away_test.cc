@@ -10,7 +10,8 @@
 namespace fogline::test {
 namespace {
 
-// As an absence is announced that is longer than a run waits for a role.
+// The user announces an absence with this option if it is longer than a run waits for a role by
+// default.
 const std::vector<std::string> kWaitLonger{"--stall-timeout", "60"};
 
 const Absence kRunner = Stopped(

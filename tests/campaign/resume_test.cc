@@ -1,5 +1,5 @@
-// A hundred runners are killed at random steps, and so are a hundred runs in one process for each
-// of two transports.
+// A hundred runners are killed at random steps. For each of two transports a hundred runs in one
+// process are killed, too.
 #include <gtest/gtest.h>
 
 #include "tests/integration/faults/resume_fixture.h"

@@ -1,7 +1,7 @@
 // The parts of every fuzz target. A target is one file, NAME_fuzz.cc. It defines Seeds() and the
-// function that libFuzzer calls again and again with different bytes. That function ends the
-// program if an invariant does not hold. fuzz_NAME_replay calls it with the same bytes in each
-// execution (replay.cc).
+// function that libFuzzer calls again and again with different bytes. This function ends the
+// program if an invariant does not hold. fuzz_NAME_replay calls the function with the same bytes in
+// each execution (replay.cc).
 #pragma once
 
 #include <cstddef>
@@ -26,8 +26,8 @@ std::vector<Input> Seeds();
 /// Ends the program with the text `what` if `holds` is false.
 void Demand(bool holds, const char* what);
 
-/// A target calls it for each input that it does not refuse. A target that refuses all inputs, or
-/// takes all of them, tests nothing.
+/// A target calls Took() for each input that it does not refuse. A target that refuses all inputs,
+/// or takes all of them, tests nothing.
 void Took();
 /// The number of calls of Took() so far.
 long Taken();
@@ -55,8 +55,8 @@ class Cutter {
 
   bool empty() const { return rest_.empty(); }
   std::uint8_t Byte();
-  /// A datagram: its length in two bytes, big endian, then its bytes. It is shorter than that
-  /// length if the input ends, or if the length is above the limit for messages.
+  /// A datagram: its length in two bytes, big endian, then its bytes. The datagram is shorter than
+  /// this length if the input ends, or if the length is above the limit for messages.
   runtime::Bytes Datagram();
 
  private:

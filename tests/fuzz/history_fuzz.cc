@@ -1,4 +1,5 @@
-// What a restarted recorder, or a runner that resumes a run, reads from a log. Input: the file.
+// The reader of a log for a restarted recorder, and for a runner that resumes a run. Input: the
+// file.
 #include <algorithm>
 #include <stdexcept>
 
@@ -42,7 +43,7 @@ void DemandWholeRun(const log::Remains& remains, const std::filesystem::path& fi
   try {
     while (run.Next() != nullptr) ++steps;
   } catch (const InputError&) {
-    return;  // its scenario is not valid
+    return;  // the scenario in the log is not valid
   }
   Demand(steps == remains.steps, "the kept part has all complete steps");
 }
@@ -65,8 +66,8 @@ void DemandAllMessages(const log::LogFront& front, const log::Remains& remains,
   }
 }
 
-/// If only the end of the log was read, the part before it may hold anything: messages or a
-/// refusal.
+/// If only the end of the log was read, the part before it may have any bytes. So the answer for a
+/// step there is its messages or a refusal.
 void DemandMessagesOrRefusal(const log::LogFront& front, const log::Remains& remains,
                              const std::filesystem::path& file) {
   const std::int64_t first = std::max<std::int64_t>(0, remains.steps - 10);
@@ -111,7 +112,8 @@ void DemandUsefulRemains(runtime::Bytes bytes) {
     DemandWholeRun(all, kept.path());
     DemandAllMessages(front, all, file.path(), 0);
     DemandMessagesOrRefusal(front, end, file.path());
-    // If the end alone gave the right number of steps, it must also do so after the log has grown.
+    // If the end alone gave the right number of steps, the end must also give it after the log has
+    // grown.
     DemandGoesOn(front, all, file.path(), end.steps == all.steps ? kShortTail : size);
     if (all.steps > 0) Took();
   } catch (const InputError&) {

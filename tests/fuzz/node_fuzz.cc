@@ -38,7 +38,7 @@ class Listener {
     bus.Subscribe(ChannelOf<status_t>().name, [this](runtime::Bytes bytes) { OnStatus(bytes); });
   }
 
-  /// The listener does not judge messages with these bytes: the fuzzer has sent them.
+  /// Tells the listener not to judge messages with these bytes, because the fuzzer has sent them.
   void Ignore(runtime::Bytes bytes) { foreign_.assign(bytes.begin(), bytes.end()); }
   std::size_t steps() const { return said_.size(); }
 

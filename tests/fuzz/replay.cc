@@ -2,7 +2,7 @@
 // execution uses the same mutations.
 //   fuzz_NAME_replay COUNT [FILE | FOLDER]...
 //   fuzz_NAME_replay --seeds FOLDER     writes the seeds there, for libFuzzer
-// If an input breaks something, the program leaves the input in the file fuzz_NAME_replay.finding
+// If an input shows a mistake, the program writes the input into the file fuzz_NAME_replay.finding
 // beside itself.
 #include <sanitizer/common_interface_defs.h>
 
@@ -146,8 +146,8 @@ class Mutator {
     input.insert(At(input, begin), token.begin(), token.end());
   }
 
-  /// A string in quotation marks, a word of the characters of a number, or up to 64 bytes of
-  /// anything.
+  /// A string in quotation marks, a word of characters that numbers have, or up to 64 bytes of any
+  /// kind.
   std::pair<std::size_t, std::size_t> Token(Input& input) {
     std::size_t begin = Below(input.size());
     const auto in_word = [&input](std::size_t at) {

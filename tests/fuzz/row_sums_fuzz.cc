@@ -39,7 +39,7 @@ class SumsOnDisk {
   std::filesystem::path csv_;
 };
 
-/// Whether these are lines of eight hexadecimal digits. The last one may be torn, with zeros behind
+/// Whether these are lines of eight hexadecimal digits. The last line may be torn, with zeros after
 /// it.
 bool LooksLikeSums(std::string content) {
   const std::size_t last_line = content.rfind('\n') + 1;  // npos + 1 is 0
@@ -54,7 +54,7 @@ bool LooksLikeSums(std::string content) {
   return true;
 }
 
-/// The lines of a text that have a line feed, without it.
+/// The lines of a text that end with a line feed, without the line feed.
 std::vector<std::string> WholeLines(std::string_view text) {
   std::vector<std::string> lines;
   for (std::size_t end = 0; (end = text.find('\n')) != std::string_view::npos;) {

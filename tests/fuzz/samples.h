@@ -16,7 +16,7 @@ inline constexpr std::int64_t kRunId = 7;
 inline constexpr std::string_view kScenarioText = R"({"version":1,"steps":3})";
 inline constexpr std::int64_t kSteps = 3;
 
-/// A valid message of a step. Every field that has a length has something in it.
+/// A valid message of a step. No list and no text in it is empty.
 template <class M>
 M Sample(std::int64_t step) {
   M message{};

@@ -1,5 +1,5 @@
-// What the runner does with arbitrary STATUS and RESEND messages. Input: for each message a byte,
-// odd for RESEND, and a datagram.
+// The runner among arbitrary STATUS and RESEND messages. Input: for each message a byte, odd for
+// RESEND, and a datagram.
 #include <algorithm>
 
 #include "services/runtime/coordination/run_coordinator.h"

@@ -1,6 +1,6 @@
-// What `fogline top` makes of arbitrary traffic. Input: for each message a byte and a datagram. The
-// byte is an index into kChannels, or beyond it for a foreign channel; then the channel's name
-// comes first.
+// `fogline top` among arbitrary traffic. Input: for each message a byte and a datagram. The byte is
+// an index into kChannels. A byte beyond kChannels means a foreign channel, whose name comes before
+// the datagram.
 #include <nlohmann/json.hpp>
 
 #include <limits>

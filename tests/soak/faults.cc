@@ -42,13 +42,13 @@ bool LoseInput(SoakedRun& run, Random& random, const Limits&) {
   return true;
 }
 
-/// Makes a machine lack something for this time, and then until a message was lost because of it:
-/// on a busy machine no message may be sent for a moment. `felt` is a command of the shell that
-/// succeeds if a message was lost.
+/// Makes a machine lack something for this time. Then waits until a message was lost because of the
+/// lack: on a busy machine it may take a moment until a message is sent. `felt` is a command of the
+/// shell that succeeds if a message was lost.
 /// @return whether a message was lost
 bool Lack(const Machine& machine, const std::string& begin, const std::string& end, double seconds,
           const std::string& felt) {
-  constexpr int kTenths = 50;  // limit of that wait; a role says something five times a second
+  constexpr int kTenths = 50;  // limit of that wait; a role sends STATUS five times a second
   return machine.Do(fmt::format("{}; sleep {:.3f}; hit=no;"
                                 "for i in $(seq {}); do if {}; then hit=yes; break; fi; sleep 0.1;"
                                 "done; {}; echo $hit",
@@ -78,7 +78,7 @@ bool ReloadFirewall(SoakedRun& run, Random& random, const Limits&) {
 }
 
 /// Takes away something without which a machine has no route for multicast. The kernel counts the
-/// datagrams for which there is none (OutNoRoutes).
+/// datagrams for which there is no route (OutNoRoutes).
 bool TakeTheWay(const Machine& machine, const std::string& begin, const std::string& end,
                 double seconds) {
   const std::string unrouted = "$(awk '/^Ip: [0-9]/ { print $13 }' /proc/net/snmp)";

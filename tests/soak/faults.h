@@ -21,9 +21,9 @@ struct Limits {
 struct FaultKind {
   std::string_view name;
   std::string_view what;
-  bool three_machines;  // some runs are on three machines; all of them if `alone` is empty
+  bool three_machines;  // some runs are on three machines; all runs if `alone` is empty
   std::optional<SoakedRun::Place> alone;  // place of the other runs
-  /// Options of `fogline run` that make it; empty if Strike does.
+  /// Options of `fogline run` that make the fault; empty if `strike` makes it.
   std::vector<std::string> (*options)(std::mt19937_64& random);
   /// Strikes once. @return whether it has hit the run @pre the run goes on
   bool (*strike)(SoakedRun& run, std::mt19937_64& random, const Limits& limits);

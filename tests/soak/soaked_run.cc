@@ -15,9 +15,10 @@
 namespace fogline::test {
 namespace {
 
-// Ten times what a run takes here; `fogline run` gives up no earlier than after its stall timeout.
+// Ten times the duration of a run here; `fogline run` gives up after its stall timeout at the
+// earliest.
 constexpr std::chrono::seconds kPatience(60);
-// What Background::Wait() returns of a process that SIGKILL has ended.
+// The value of Background::Wait() for a process that SIGKILL has ended.
 constexpr int kKilled = 128 + SIGKILL;
 // Over the interface to which the route leads. The default, ttl=0, is loopback.
 constexpr const char* kUrl = "udpm://239.255.76.67:7700?ttl=1";

@@ -33,9 +33,9 @@ struct Undisturbed {
 /// @throws std::runtime_error if the program fails
 Undisturbed RunUndisturbed(const Experiment& experiment);
 
-/// A run that is under way: on one machine that has a default route to elsewhere, as most have, or
-/// with its roles on three machines of one network. On one machine its messages go over loopback,
-/// as they do by default, or over the interface to elsewhere.
+/// A run that is under way, on one machine or with its roles on three machines of one network. One
+/// machine has a default route to elsewhere, as most machines have. There the messages go over
+/// loopback, as they do by default, or over the interface to elsewhere.
 class SoakedRun {
  public:
   enum class Place { kLoopback, kInterface, kThreeMachines };
@@ -54,7 +54,8 @@ class SoakedRun {
   /// The ids of the runner and of all processes of the run on all machines. The runner is first.
   std::vector<pid_t> Processes() const;
 
-  // Each of these strikes. @return whether there was such a process that had not ended by itself
+  // Each of these functions strikes once. @return whether there was such a process, and it had not
+  // ended by itself
 
   /// Ends a role's process, drawn at random, by SIGKILL; starts it again if the runner does not.
   bool KillARole(std::mt19937_64& random);

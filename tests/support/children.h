@@ -13,8 +13,8 @@
 
 namespace fogline::test {
 
-/// The children of `parent` that have not ended. It finds only those that the main thread has
-/// started. In Fogline this thread starts all of them.
+/// The children of `parent` that have not ended, and that its main thread has started. In Fogline
+/// this thread starts all children.
 inline std::vector<pid_t> ChildrenOf(pid_t parent) {
   const std::string id = std::to_string(parent);
   std::ifstream in("/proc/" + id + "/task/" + id + "/children");

@@ -17,8 +17,8 @@ namespace {
 
 using SteadyClock = std::chrono::steady_clock;
 
-// A run of a test has a port of its own, whatever the shell that starts the tests has set. A test
-// that needs the variable sets it.
+// A run of a test has a port of its own, also if the shell that starts the tests has set the
+// variable. A test that needs the variable sets it.
 [[maybe_unused]] const int kWithoutDefaultUrl = unsetenv("LCM_DEFAULT_URL");
 
 /// A new folder below the build's, so that tools/test finds and removes the files of a killed test.

@@ -38,7 +38,7 @@ class Background {
   std::string Out() const;
   std::string Err() const;
   /// Waits until stderr (or stdout) contains `text`. @return false after the time limit, or if the
-  /// program ends without it
+  /// program ends without this text
   bool WaitForErr(const std::string& text, std::chrono::seconds limit = std::chrono::seconds(20));
   bool WaitForOut(const std::string& text, std::chrono::seconds limit = std::chrono::seconds(20));
 
@@ -75,8 +75,8 @@ bool IsAlive(pid_t pid);
 /// The process id after "NAME " in "processes: world 4711, radar 4712". 0 if the name is missing.
 pid_t PidOf(const std::string& err, const std::string& role);
 
-/// An empty folder below the build's Testing/tmp. The destructor removes it; tools/test removes
-/// those of killed tests.
+/// An empty folder below the build's Testing/tmp. The destructor removes the folder; tools/test
+/// removes the folders of killed tests.
 class ScratchFolder {
  public:
   ScratchFolder();

@@ -1,4 +1,4 @@
-// Copies of logs that differ from the log.
+// Copies of logs with changes.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,8 @@
 
 namespace fogline::test {
 
-/// Copies a log event by event. `change` may alter an event, add others, and end the copy by false.
+/// Copies a log event by event. `change` may alter an event, add other events, and return false to
+/// end the copy.
 template <class Change>
 void Copy(const std::string& from, const std::string& to, const Change& change) {
   log::EventLogReader reader(from);

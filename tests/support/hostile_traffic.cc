@@ -1,7 +1,7 @@
-// Sends datagrams to a multicast group that no process there should accept: noise, and datagrams
-// that resemble the messages of a run. It listens to the genuine messages of this run. It never
-// sends a message that only a signature could tell from a genuine one (right type, run and step,
-// finite values).
+// Sends datagrams to a multicast group: noise, and datagrams that resemble the messages of a run.
+// No process there should accept them. The program listens to the genuine messages of this run. It
+// never sends a message that only a signature could tell from a genuine one (right type, run and
+// step, finite values).
 #include <arpa/inet.h>
 #include <linux/filter.h>
 #include <netinet/in.h>
@@ -202,7 +202,8 @@ class Attacker {
   }
 
   void Noise() {
-    // Some of it looks like a datagram of LCM with a channel name that is too long or has no end.
+    // Half of the noise looks like a datagram of LCM with a channel name that is too long or has no
+    // end.
     if (Below(2) == 0) Append(datagram_, OneOf(std::array{kWholeMagic, kFragmentMagic}));
     AppendNoise(datagram_, Below(kFrame));
   }
@@ -215,7 +216,7 @@ class Attacker {
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
     const double value =
         OneOf(std::array{kInfinity, -kInfinity, std::numeric_limits<double>::quiet_NaN()});
-    // It is of the current step or of the next one.
+    // The message is of the current step or of the next one.
     const auto later = static_cast<std::int64_t>(Below(2));
     const Buffer genuine = payload_;
     const std::uint64_t which = random_();

@@ -55,8 +55,8 @@ std::string WhyNoMachines() {
 }
 
 Machine::Machine(const std::string& name) : name_(name) {
-  // A thread may leave the namespaces of its process for new ones. These exist as long as a file of
-  // them is open.
+  // A thread may leave the namespaces of its process for new ones. The new namespaces exist as long
+  // as one of their files is open.
   std::exception_ptr failed;
   std::thread([this, &failed] {
     try {

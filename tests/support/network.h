@@ -1,7 +1,7 @@
 // Several machines within this one: network namespaces with their own addresses and host names,
 // joined by veth pairs and a bridge. The kernel handles their packets like those of real machines,
-// and can lose some on request. They change nothing outside. They have no name that could remain:
-// the kernel removes them when this process and its children have ended.
+// and can lose some on request. They change nothing outside. They have no names that could be left
+// behind: the kernel removes them when this process and its children have ended.
 #pragma once
 
 #include <cstdint>
@@ -30,8 +30,8 @@ class Machine {
   /// The command line that runs a command on this machine, for Background and RunCommand(). The
   /// process id is that of the command itself.
   std::vector<std::string> On(const std::vector<std::string>& command) const;
-  /// Runs lines of sh on this machine. @return their output @throws std::runtime_error with their
-  /// error text if one of them fails
+  /// Runs lines of sh on this machine. @return their output @throws std::runtime_error with the
+  /// error text if a line fails
   std::string Do(const std::string& script) const;
   /// The path of the network namespace, as `ip link` expects it.
   std::string network() const;

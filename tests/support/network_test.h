@@ -12,7 +12,7 @@
 
 namespace fogline::test {
 
-/// It is skipped, with the reason, if machines cannot be made.
+/// Tests with this fixture are skipped, with the reason, if machines cannot be made.
 class NetworkTest : public testing::Test {
  protected:
   void SetUp() override {

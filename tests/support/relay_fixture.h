@@ -43,8 +43,8 @@ class Relay {
   std::string url_;
 };
 
-/// Publishes a message that this bus hears itself, and waits for it. When it comes, it and all
-/// earlier messages of this bus have passed the relay. @return false after kPatience
+/// Publishes a message that this bus hears itself, and waits for it. When the message comes, all
+/// earlier messages of this bus have passed the relay, too. @return false after kPatience
 [[nodiscard]] inline bool RoundTrip(runtime::Bus& bus) {
   static int trips = 0;
   const std::string channel = "ROUND_TRIP_" + std::to_string(trips++);

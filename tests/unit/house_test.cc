@@ -30,11 +30,11 @@ using ::testing::UnorderedElementsAre;
 struct Room {
   std::string_view folder;  // with its subfolders, unless they are rooms of their own; see kAlone
   std::string_view space;   // its types lie in fogline::SPACE; "": in fogline, for all to use
-  std::string_view why;     // why it stands behind those before it
+  std::string_view why;     // why it stands after those before it
 };
 
 /// A file may include files of its own room and of rooms before it, and a library may link
-/// libraries of rooms before it. NAME_main.cc is a program, so it may include all.
+/// libraries of rooms before it. NAME_main.cc is a program, so it may include files of all rooms.
 constexpr std::array kRooms = std::to_array<Room>({
     {"common", "", "knows nothing of Fogline"},
     {"common/process", "", "this process: its console, what it waits for, what it takes"},
@@ -92,7 +92,8 @@ constexpr std::array kRooms = std::to_array<Room>({
 /// This room has no subfolders: a new folder in it needs a line of its own.
 constexpr std::string_view kAlone = "services";
 
-/// The table of all measures of conflict, which may include them. No measure includes its header.
+/// The table of all measures of conflict. It may include all measures; no measure includes its
+/// header.
 constexpr std::string_view kTableOfMeasures = "services/decision/conflict/conflict_measures.cc";
 
 /// The room of a file; nullopt if it is in none.
@@ -203,7 +204,7 @@ std::set<std::size_t> PlacesOf(const std::string& folders) {
   return places;
 }
 
-/// The libraries that each library links, and the places of all.
+/// The libraries that each library links, and the place of each library.
 struct Links {
   std::map<std::string, std::vector<std::string>> linked;
   std::map<std::string, std::set<std::size_t>> places{{"fogline_lcmtypes", PlacesOf("fogline")}};
@@ -283,7 +284,7 @@ TEST(HouseTest, TestsOfAFolderLieInTheSameFolderAgain) {
     for (const auto& entry : std::filesystem::recursive_directory_iterator(tests / kind)) {
       if (!entry.is_directory()) continue;
       const auto folder = std::filesystem::relative(entry.path(), tests / kind);
-      if (folder == "fallback") continue;  // what all roles of a run do without one of them
+      if (folder == "fallback") continue;  // tests of whole runs in which a role falls silent
       EXPECT_TRUE(std::filesystem::is_directory(SourceDirectory() / folder)) << entry.path();
       ++folders;
     }

@@ -1,4 +1,4 @@
-// Code of other projects is not in the tree. What comes from npm is the same on every machine.
+// Code of other projects is not in the tree. Packages of npm are the same on every machine.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -46,7 +46,7 @@ TEST(ThirdPartyTest, IsKnownByItsNameOrNotice) {
   EXPECT_FALSE(IsOfAnotherProject("tools/report/chart.js", "// One panel of a figure.\n"));
 }
 
-/// Whether a version is one version: no range, tag or address.
+/// Whether a version is exact: no range, tag or address.
 bool IsExact(const std::string& version) {
   static const std::regex exact(R"(\d+\.\d+\.\d+(-[0-9A-Za-z.-]+)?)");
   return std::regex_match(version, exact);

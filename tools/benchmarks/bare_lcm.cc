@@ -30,8 +30,8 @@ using Payload = std::array<std::uint8_t, kPayloadBytes>;
 
 // Steps before the measurement starts: after them every process has joined the network.
 constexpr int kWarmUpSteps = 200;
-// A bare network repairs no loss. The first process repeats a step's message after this time
-// without any message.
+// A bare network repairs no loss. So the first process sends a step's message again if no message
+// has come for this time.
 constexpr int kRepeatAfter_ms = 100;
 
 /// One process of a bare network.
@@ -60,7 +60,7 @@ class BareProcess {
     return std::ranges::all_of(inputs_, [step](const auto& input) { return input->step == step; });
   }
 
-  /// Begins a step and waits until all inputs of this process have it.
+  /// Begins a step, and waits until its messages have come on all inputs of this process.
   void Lead(std::int64_t step) {
     answers_ = false;
     Publish(step);

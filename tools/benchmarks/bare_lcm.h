@@ -1,5 +1,5 @@
-// The cost of LCM itself: processes and programs that use only LCM's own library, and only receive
-// and send. They are the references for Fogline's lockstep and log reading.
+// The cost of LCM itself: processes that only receive and send, and a reader of logs, all with
+// LCM's own library alone. They are the references for Fogline's lockstep and log reading.
 #pragma once
 
 #include <filesystem>
@@ -18,7 +18,7 @@ struct BareRole {
 /// The roles of a ring of `hops` processes, this process among them. A message goes round the ring.
 std::vector<BareRole> BareRing(int hops);
 
-/// The roles of Fogline's graph, wired as there, recorder included.
+/// The roles of Fogline's graph with the same channels, recorder included.
 std::vector<BareRole> BareGraph();
 
 /// Seconds per step of a network of bare processes over udpm. This process is the first role. It

@@ -13,7 +13,7 @@ enum class Effort { kQuick, kFull };
 /// The lockstep over udpm and memq, compared with bare LCM processes and hops.
 std::vector<Comparison> LockstepComparisons(Effort effort);
 
-/// Runs in one process, compared with programs that others use for the same purpose.
+/// Runs in one process, compared with other programs for the same purpose.
 std::vector<Comparison> PeerComparisons(Effort effort);
 
 /// Sweeps and logs: cores, memory, reading speed.

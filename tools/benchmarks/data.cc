@@ -18,7 +18,7 @@ ProgramResult Sweep(int rows, int jobs) {
                      ScratchFolder() / ("sweep-" + std::to_string(rows) + ".csv")});
 }
 
-/// Rows (a run and its pair without traded control) per second. It first removes old sweep files,
+/// Rows (a run and its pair without traded control) per second. Removes old sweep files first,
 /// because a sweep would resume them.
 double SweepRowsPerSecond(int rows, int jobs) {
   for (const auto& entry : std::filesystem::directory_iterator(ScratchFolder())) {

@@ -4,13 +4,14 @@
 // follow one another: TRUTH, RADAR (or LIDAR), TRACK, ACC_COMMAND, HOST_COMMAND. So the shortest
 // possible step is a message that goes round a ring of five processes. The goal refers to this
 // ring. It is a hard reference, because it sends four messages less and wakes five processes
-// instead of nine. On a machine with few cores that is most of the work: LCM's multicast wakes
-// every process for every message on the network, whether the process has subscribed or not.
+// instead of nine. On a machine with few cores, waking processes is most of the work: LCM's
+// multicast wakes every process for every message on the network, whether the process has
+// subscribed or not.
 //
 // Two more references show where the time goes. The ring of nine hops sends as many messages as a
 // step, but all one after another. The bare graph has Fogline's own wiring, recorder included, with
-// processes that only count steps. The difference to it is the lockstep's own work (decoding,
-// checking, remembering, computing, logging).
+// processes that only count steps. The difference between Fogline and this graph is the lockstep's
+// own work (decoding, checking, remembering, computing, logging).
 //
 // memq has one process and no parallel work. It handles all nine messages one after another, so
 // nine bare hops are the cost of a step in LCM.

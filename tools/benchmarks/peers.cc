@@ -1,5 +1,5 @@
-// Runs in one process, compared with programs that others would use: a GNU Octave script of the
-// paper, and SUMO with three cars. tests/campaign/peers makes both peers.
+// Runs in one process, compared with other programs for the same purpose: a GNU Octave script of
+// the paper, and SUMO with three cars. tests/campaign/peers makes both peers.
 #include <cstdint>
 #include <fstream>
 #include <stdexcept>

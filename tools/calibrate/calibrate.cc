@@ -24,8 +24,8 @@ constexpr double kSmallestStep = 1e-6;
 // A sensitivity varies a field by this share of its range to either side.
 constexpr double kHalfStep = 0.005;
 
-/// One search. It evaluates points, which give each field as its share of the range, and keeps the
-/// best point.
+/// One search. It evaluates points and keeps the best one. A point gives each field as a share of
+/// the field's range.
 class Search {
  public:
   Search(const Objective& objective, const GoOn& go_on, const SearchProgress& progress)

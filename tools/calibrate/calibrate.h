@@ -1,5 +1,5 @@
-// Finds the values of a scenario's free fields with which its table comes nearest to a target, and
-// the influence of each field on the table.
+// Finds those values of a scenario's free fields with which the scenario's table is nearest to a
+// target. Also finds the influence of each field on the table.
 #pragma once
 
 #include <functional>

@@ -1,5 +1,5 @@
-// fogline calibrate, a program of its own: finds values of fields with which a scenario's table
-// comes nearest to a target table.
+// fogline calibrate, a program of its own: finds those values of fields with which a scenario's
+// table is nearest to a target table.
 #include <memory>
 #include <optional>
 #include <system_error>

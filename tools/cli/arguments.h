@@ -92,7 +92,7 @@ void PrintJson(const std::string& text);
 /// @throws InputError
 void RefuseJsonBeside(const std::filesystem::path& document, std::string_view option, bool json);
 
-/// Prints what a verb says about its result: on stdout, or on stderr if its document goes to
+/// Prints a verb's text about its result: on stdout, or on stderr if the verb's document goes to
 /// stdout.
 void PrintBeside(const std::filesystem::path& document, std::string_view text);
 

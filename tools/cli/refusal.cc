@@ -47,8 +47,8 @@ std::string ValueFor(const Field& field, const std::vector<std::string>& words) 
   return "VALUE";
 }
 
-/// A hint for an unknown option that resembles fields of the scenario: how to set them. "" if there
-/// is no such field.
+/// A hint for an unknown option that resembles fields of the scenario: it says how to set these
+/// fields. "" if there is no such field.
 std::string FieldHint(const std::string& option, const std::vector<std::string>& words) {
   std::string word = option.substr(std::min(option.find_first_not_of('-'), option.size()));
   std::ranges::replace(word, '-', '_');

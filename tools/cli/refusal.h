@@ -10,7 +10,8 @@ namespace fogline::cli {
 /// "fogline", or "fogline VERB" once the verb is known: the beginning of every message.
 std::string CommandName(const CLI::App& app);
 
-/// The error for `fogline levitate --help`, which names no verb; "" for any other command line.
+/// The error for a command line that has words but no verb, such as `fogline levitate --help`; ""
+/// for any other command line.
 std::string UnknownVerb(const CLI::App& app);
 
 /// `no verb "tabel"; did you mean "table"?`

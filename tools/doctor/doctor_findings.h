@@ -42,7 +42,7 @@ void ExamineTools(const std::filesystem::path& programs, Findings& findings);
 /// Whether fogline-ROLE programs exist beside this program and are of the same build.
 void ExaminePrograms(const std::filesystem::path& programs, Findings& findings);
 
-/// Processes of Fogline that run on this machine. It does not touch them.
+/// Processes of Fogline that run on this machine. The function does not disturb them.
 void ExamineProcesses(Findings& findings);
 
 }  // namespace fogline::doctor

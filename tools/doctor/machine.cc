@@ -47,7 +47,7 @@ void ExamineClock(Findings& findings) {
 void ExamineWakeUp(Findings& findings) {
   constexpr int kSleeps = 200;
   constexpr Duration kSleep = milliseconds(1);
-  constexpr double kTooLateMs = 5;  // a real-time run counts such a tick as late
+  constexpr double kTooLateMs = 5;  // a run in real time counts such a tick as late
   std::vector<double> late_ms;
   TimePoint due = Clock::now();
   for (int i = 0; i < kSleeps; ++i) {
@@ -73,8 +73,8 @@ void ExamineTimeSynchronisation(Findings& findings) {
   const bool synchronised = adjtimex(&state) >= 0 && (state.status & STA_UNSYNC) == 0;
   findings.push_back({"time_sync", Level::kOk,
                       synchronised ? "the wall clock is synchronised"
-                                   : "the wall clock is not synchronised. Runs do not need that; "
-                                     "comparing times of several machines does (chrony, ptp4l)",
+                                   : "the wall clock is not synchronised. Runs do not need this; a "
+                                     "comparison of times of several machines does (chrony, ptp4l)",
                       ""});
 }
 

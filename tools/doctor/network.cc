@@ -168,8 +168,8 @@ void ExamineReceiveBuffer(int wanted, Findings& findings) {
                    wanted)});
 }
 
-/// Sends a fragment and then a message to a socket that has the filter of a Bus. @return the first
-/// bytes of the datagram that it receives first; "" if it receives none
+/// Sends a fragment and then a message to a socket that has the filter of a Bus. @return the
+/// beginning of the first datagram that the socket receives; "" if it receives none
 std::string FilteredFirst() {
   constexpr std::string_view kFragment("LC03\0\0\0\1\0\0\0\0\0\0\0\0\0\0\0\1A\0", 22);
   constexpr std::string_view kMessage("LC02\0\0\0\1A\0", 10);
@@ -183,7 +183,7 @@ std::string FilteredFirst() {
   ssize_t received = 0;
   if (bind(receiver, here, size) == 0 && getsockname(receiver, here, &size) == 0 &&
       runtime::AttachFilter(receiver, runtime::AnyChannelFilter())) {
-    // It sends to itself; on one machine a datagram arrives at once.
+    // The socket sends to itself; on one machine a datagram arrives at once.
     sendto(receiver, kFragment.data(), kFragment.size(), 0, here, size);
     sendto(receiver, kMessage.data(), kMessage.size(), 0, here, size);
     received = recv(receiver, magic.data(), magic.size(), 0);
@@ -253,7 +253,7 @@ void ExamineNetwork(const std::string& url, Findings& findings) {
   const auto group = runtime::GroupOf(url);
   if (group && ExamineGroup(url, *group, findings)) {
     const int ttl = UrlOption(url, "ttl", 0);
-    // mpudpm follows the route, whatever the ttl is.
+    // mpudpm uses the route with any ttl.
     const bool here = ttl == 0 && url.starts_with("udpm://");
     if (here ? ExamineOwnMachine(url, *group, findings) : ExamineRoute(*group, ttl, findings)) {
       ExamineLoopback(*group, std::min(ttl, 1), findings);

@@ -71,8 +71,8 @@ bool BeginsWith(const std::filesystem::path& file, std::string_view text) {
   return in.gcount() == std::ssize(text) && head == text;
 }
 
-/// Whether an export has written a channel there, into a file or a pipe. Its columns begin with
-/// those of its messages' header.
+/// Whether an export of a channel may go there: into a pipe or device, or in place of an older
+/// export. The columns of an export begin with those of the messages' header.
 bool IsChannel(const std::filesystem::path& file) {
   std::error_code ignored;
   return !IsReplaceable(file) || (std::filesystem::is_regular_file(file, ignored) &&

@@ -36,7 +36,8 @@ struct RunTables {
   std::string scenario;                // JSON, ASCII only
   std::int64_t steps = 0;
   bool complete = false;
-  std::string note;  // why the log is not complete, or what the reader ignored; "" if nothing
+  std::string note;  // why the log is not complete, or which bytes the reader ignored; "" if
+                     // neither
 };
 
 /// Reads a whole log into memory: 0.8 kB for each step with one following car.

@@ -43,8 +43,8 @@ struct Recording {
   std::vector<CsvNumber> leader_mps;
 };
 
-// Limits for a car on a road. A value beyond them is another quantity or unit, or marks a missing
-// value.
+// Limits for a car on a road. A value beyond these limits is another quantity or unit, or marks a
+// missing value.
 constexpr double kFastest_mps = 150;
 constexpr double kFarthest_m = 10'000;
 // The run's leader counts as the recorded one if their speeds never differ by more than this.

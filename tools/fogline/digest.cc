@@ -64,9 +64,9 @@ nlohmann::ordered_json BuildsJson(const log::RunLog& run) {
   return json;
 }
 
-/// What the seal says about the bytes of a log. A copy was played and recorded again: its events
-/// have other times, and STATUS messages may be missing. So the seal covers only the scenario and
-/// the steps of a copy.
+/// What the seal says about the bytes of a log. A copy is a log that was played and recorded again:
+/// its events have other times, and STATUS messages may be missing. So the seal covers only the
+/// scenario and the steps of a copy.
 std::string_view SealState(const log::RunLog& run) {
   if (!run.seal) return "none";
   if (run.altered) return "broken";
@@ -123,9 +123,9 @@ void AddDigest(CLI::App& app, cli::Action& action) {
   cli::ShowExitCodes(*verb, {.check_failed = "a log is not whole or not signed"});
   verb->footer(
       "A run ends its log with a seal (channel FOGLINE_SEAL): its digest, a hash of the file,\n"
-      "and the build of each role. With --key the run signs the seal. A later change of the log\n"
-      "is named. The log of a killed run has no seal. If lcm-logplayer has played a log and\n"
-      "lcm-logger has recorded it, the seal covers only scenario and steps\n"
+      "and the build of each role. With --key the run signs the seal. This verb reports a later\n"
+      "change of the log. The log of a killed run has no seal. If lcm-logplayer has played a\n"
+      "log and lcm-logger has recorded it, the seal covers only scenario and steps\n"
       "(\"seal\": \"copy\").\n\n"
       "Examples:\n"
       "  fogline digest logs/*.lcm\n"

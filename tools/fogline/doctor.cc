@@ -40,7 +40,7 @@ struct DoctorArguments {
   bool json = false;
 };
 
-/// Runs an examination. If it throws, that is a finding too.
+/// Runs an examination. An exception becomes a finding, too.
 void Attempt(const char* check, doctor::Findings& findings, const std::function<void()>& examine) {
   try {
     examine();
@@ -81,7 +81,7 @@ void PrintAsJson(const std::string& url, const doctor::Findings& findings) {
 
 void PrintAsText(const doctor::Findings& findings) {
   for (const doctor::Finding& finding : findings) {
-    // Users can choose names of processes too, so they are escaped.
+    // Texts contain names of processes, which any user can choose. So they are escaped.
     fmt::print("{:<9}{}{}{}\n", NameOf(finding.level), EscapeControls(finding.what),
                finding.remedy.empty() ? "" : "  -> ", EscapeControls(finding.remedy));
   }

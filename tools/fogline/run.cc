@@ -30,11 +30,11 @@ namespace {
 
 constexpr const char* kExamples =
     R"(Every run writes an LCM event log, logs/SCENARIO-N.lcm unless --log names
-another; with --transport direct it writes one only with --log. Ctrl-C ends a
-run cleanly, keeps its log, and gives exit code 130. A process that is killed or
-hangs is started again and catches up; the result is the same. A process hangs
-if it is silent for 2 s (1 s with --realtime), or for half of --stall-timeout if
-that is less.
+another file. With --transport direct a run writes a log only if --log is given.
+Ctrl-C ends a run cleanly, keeps its log, and gives exit code 130. A process that
+is killed or hangs is started again and catches up; the result is the same. A
+process hangs if it is silent for 2 s (1 s with --realtime), or for half of
+--stall-timeout if that is less.
 
 --resume LOG goes on with a run that has ended early, for whatever reason. The
 result is the same. Scenario and seed are those of the log. Give transport, pace,
@@ -103,7 +103,7 @@ struct RunArguments {
   bool quiet = false;
 };
 
-/// @throws InputError if real time cannot go together with the other options
+/// @throws InputError if the other options do not allow real time
 void ApplyRealtime(RunArguments& arguments) {
   runner::ExperimentOptions& options = arguments.options;
   if (options.transport == "direct" || options.transport.starts_with("memq")) {
@@ -189,8 +189,9 @@ runtime::RoleBuilds BuildsOf(const replay::Verification& verification) {
   return builds;
 }
 
-/// Continues the run of a log to its end. If the log has the whole run, no step is added. If it has
-/// no seal either, it is verified, and sealed if the verification holds; --no-verify omits both.
+/// Continues the run of a log to its end. If the log already has the whole run, no step is added.
+/// If such a log has no seal, it is verified, and sealed if the verification holds; --no-verify
+/// omits both.
 int Resume(RunArguments& arguments) {
   runner::ExperimentOptions& options = arguments.options;
   const auto key = runtime::KeyOf(options.traffic);
@@ -215,7 +216,7 @@ int Resume(RunArguments& arguments) {
     throw InputError(fmt::format("{}: error: --resume: {}", PathText(options.log), run.note));
   }
   outcome.result = std::move(run.result);
-  // Its runner ended after the last step and before it sealed the log.
+  // Without a seal: the runner of that run ended after the last step and before it sealed the log.
   const bool to_seal = !run.seal;
   auto& verification = outcome.result.verification;
   if (options.verify.value_or(to_seal)) {

@@ -33,8 +33,8 @@ constexpr const char* kSpyExplanation =
     R"(Opens a window with a table of every channel: type, rate, jitter, undecodable messages. A double
 click shows a channel's fields. A click on a number's sparkline shows its chart. lcm-spy cannot
 change its network: without --lcm-url it waits until a run is announced, or until there is traffic
-where runs are announced. It starts on that network, for several runs on that of the newest. Uses
-JAVA_HOME if it is set.
+where runs are announced. Then it starts on the network of this run (of the newest one if there are
+several) or of this traffic. Uses JAVA_HOME if it is set.
 
 Examples:
   fogline run scenario/paper.json --pace 1 & fogline spy
@@ -101,7 +101,7 @@ std::vector<std::string> SpyCommand(const SpyArguments& arguments) {
           fmt::format("{}:{}:{}", lcm.string(), charts.string(), types.string()), "lcm.spy.Spy"};
 }
 
-/// Waits until there is traffic to show. @return its network
+/// Waits until there is traffic to show. @return the network of this traffic
 /// @throws Interrupted; std::runtime_error if no traffic came
 std::string FindNetwork(const SpyArguments& arguments) {
   // An announced run is found within this time, and takes precedence over other traffic.

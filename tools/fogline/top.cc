@@ -30,12 +30,12 @@ namespace {
 constexpr const char* kTopExplanation =
     R"(Per channel and run: messages since top listens; rate and bandwidth (payload) of the last
 interval; jitter, the standard deviation of the times between messages in it; age of the last
-message; steps that were missing when a step 64 newer came (lost), came after a newer one (late),
-or came again (twice); undecodable messages, by apparent type. Per role, from its STATUS: state,
-step, repairs asked for and served, processor time, memory, refusals; a role is silent after 1 s
-without STATUS. Without --lcm-url top follows the newest run that is announced on this machine, and
-names it and the others. It sees only messages that reach this machine; a message that is lost on
-the way here may have arrived elsewhere. q or Ctrl-C quits.
+message; steps that were still missing when a step came that is newer by 64 (lost), came after a
+newer one (late), or came again (twice); undecodable messages, by apparent type. Per role, from its
+STATUS: state, step, repairs asked for and served, processor time, memory, refusals; a role is
+silent after 1 s without STATUS. Without --lcm-url top follows the newest run that is announced on
+this machine, and names all announced runs. Top sees only messages that reach this machine; a
+message that is lost on the way here may have arrived elsewhere. q or Ctrl-C quits.
 
 Examples:
   fogline run scenario/paper.json --pace 1 & fogline top
@@ -65,10 +65,11 @@ struct TopArguments {
   bool json = false;
 };
 
-// Interval for events that poll() does not report: messages that a flood has left undrained.
+// A flood may leave messages that poll() does not report. So top looks for such messages at this
+// interval.
 constexpr Duration kLookEvery = milliseconds(50);
-// Interval for a check whether another run should be followed, because opening a network takes
-// time.
+// Interval at which top checks whether another run should be followed. It is not shorter, because
+// opening a network takes time.
 constexpr Duration kFollowEvery = milliseconds(100);
 // Every run of this machine announces itself within this time.
 constexpr Duration kDiscovery = 2 * runtime::kBeaconEvery;

@@ -20,8 +20,8 @@
 namespace fogline::processes {
 namespace {
 
-/// Runs in the child between fork and exec, so it makes only async-signal-safe calls. If the
-/// program cannot be started, it writes errno to `failure`.
+/// Turns the child into the program. It runs between fork and exec, so it makes only
+/// async-signal-safe calls. If the program cannot be started, it writes errno to `failure`.
 [[noreturn]] void Become(const char* program, char* const* arguments, int output, int error_output,
                          int failure, pid_t parent) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);

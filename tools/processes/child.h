@@ -12,10 +12,11 @@
 
 namespace fogline::processes {
 
-/// Starts a program of Fogline. The kernel kills it when the runner dies. The terminal's Ctrl-C
-/// does not reach it; the runner turns Ctrl-C into an orderly end. Its stdin is /dev/null, its
-/// stdout is `output`, and it inherits no other file of the runner but stderr.
-/// @param error_output its stderr; -1: the runner's
+/// Starts a program of Fogline as a child. The kernel kills the child when the runner dies. The
+/// terminal's Ctrl-C does not reach the child; the runner turns Ctrl-C into an orderly end. The
+/// child's stdin is /dev/null, and its stdout is `output`. Of the runner's files it inherits only
+/// stderr.
+/// @param error_output the child's stderr; -1: the runner's stderr
 /// @return its process id @throws std::runtime_error if the system cannot start it. This may be
 ///     temporary: the system is short of processes, or the program is being replaced
 pid_t StartChild(const std::filesystem::path& program, const std::vector<std::string>& arguments,

@@ -66,8 +66,8 @@ void ProcessGroup::Signal(int signal) {
 }
 
 void ProcessGroup::ReadOutput(Process& process) {
-  // Capacity of a pipe (see pipe(7)). The limit keeps a process that prints without end from
-  // blocking the runner.
+  // So many reads take the capacity of a pipe (see pipe(7)). Without this limit a process that
+  // prints without end would keep the runner here for ever.
   constexpr int kReads = 16;
   std::array<char, 4096> buffer{};
   for (int i = 0; i < kReads; ++i) {

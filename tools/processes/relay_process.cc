@@ -79,7 +79,7 @@ std::string RelayProcess::Look(const runtime::RunCoordinator& run, TimePoint now
   }
   if (!start_at_ || now < *start_at_) return "";
   try {
-    Start(url_.substr(url_.find("//") + 2));  // the address at which its clients look for it
+    Start(url_.substr(url_.find("//") + 2));  // the address at which clients look for the relay
   } catch (const std::runtime_error&) {
     start_at_ = now + policy_.OnFailedStart();
     return "";

@@ -1,8 +1,9 @@
 // The relay takes messages from its clients. It gives each message to the clients that subscribed
 // to its channel, in the order of arrival. The sender is included, as with LCM's own relay.
 //
-// One thread, and nothing blocks. Each client has its own queue for bytes that it has not taken
-// yet. A client whose queue is full is disconnected. So clients cannot hold each other up.
+// The relay has one thread, and nothing blocks it. Each client has its own queue for bytes that it
+// has not taken yet. A client whose queue is full is disconnected. So clients cannot hold each
+// other up.
 #pragma once
 
 #include <cstddef>

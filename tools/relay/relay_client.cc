@@ -30,8 +30,8 @@ std::string AddressOf(const boost::asio::ip::tcp::socket& socket) {
 }
 
 /// Acknowledges received data at once. LCM's client sends a message in five pieces, and waits for
-/// the acknowledgement of the first before it sends the second. The kernel delays it by up to 40 ms
-/// unless this option is set again after each read.
+/// the acknowledgement of the first piece before it sends the second. The kernel delays an
+/// acknowledgement by up to 40 ms unless this option is set again after each read.
 void AcknowledgeAtOnce(boost::asio::ip::tcp::socket& socket) {
   const int on = 1;
   setsockopt(socket.native_handle(), IPPROTO_TCP, TCP_QUICKACK, &on, sizeof(on));

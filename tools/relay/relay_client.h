@@ -19,7 +19,7 @@ namespace fogline::relay {
 
 class Relay;
 
-/// Lives until its last operation has ended. The relay forgets it as soon as it has left.
+/// A client lives until its last operation has ended. The relay forgets it as soon as it has left.
 class RelayClient : public std::enable_shared_from_this<RelayClient> {
  public:
   using tcp = boost::asio::ip::tcp;
@@ -52,7 +52,7 @@ class RelayClient : public std::enable_shared_from_this<RelayClient> {
   std::vector<std::uint8_t> sending_;  // the socket is sending these bytes
   std::vector<std::uint8_t> waiting_;  // the bytes to send next
   bool greeted_ = false;
-  bool deaf_ = false;  // writing to it failed; messages from it are still read
+  bool deaf_ = false;  // writing to the client failed; its messages are still read
   bool gone_ = false;
 };
 

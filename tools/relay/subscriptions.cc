@@ -24,7 +24,8 @@ constexpr std::size_t kSpareBytes = 256;
 constexpr double kBudgetS = 0.1;
 constexpr double kRefillPerS = kBudgetS / 10;
 // Time that is free for each name. Tens of simple expressions take no longer, so a flood of names
-// does not cut off a client that has them. Receiving the name took about as much time.
+// does not disconnect a client with such expressions. The relay has spent about as much time on
+// receiving the name.
 constexpr double kFreeS = 50e-6;
 
 double ProcessorTimeS() {
@@ -43,7 +44,7 @@ std::string Subscriptions::Add(std::string_view pattern) {
   if (bytes_ + pattern.size() > most)
     return fmt::format("more than {} bytes of subscriptions", most);
   try {
-    // A copy with a zero behind it, because Boost 1.81 reads one character beyond the end of "["
+    // A copy that ends with a zero, because Boost 1.81 reads one character beyond the end of "["
     // and the like.
     std::string text(pattern);
     boost::regex expression(text, boost::regex::perl);

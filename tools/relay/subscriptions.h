@@ -14,23 +14,23 @@
 
 namespace fogline::relay {
 
-/// Expressions in Perl's syntax (as in LCM). Each must match a whole channel name.
+/// Expressions in Perl's syntax (as in LCM). An expression must match a whole channel name.
 class Subscriptions {
  public:
   explicit Subscriptions(std::size_t limit);
 
-  /// Adds an expression; the same one may be added several times. Their number and their total
-  /// length are limited. @return "", or what is wrong with the expression
+  /// Adds an expression; the same one may be added several times. The number and the total length
+  /// of the expressions are limited. @return "", or what is wrong with this expression
   std::string Add(std::string_view pattern);
 
   /// Removes one copy of an expression; does nothing if it was not added.
   void Remove(std::string_view pattern);
 
-  /// Whether one of the expressions matches this channel. Matching a new name is charged to a
-  /// budget of processor time, beyond a free share that a few simple expressions stay within. The
-  /// budget fills again slowly (a token bucket). Without it a client that keeps publishing new
-  /// names could make the slow expressions of another client hold up the relay.
-  /// @throws std::runtime_error if the budget is spent
+  /// Whether one of the expressions matches this channel. The time to match a new name is charged
+  /// to a budget of processor time; a short time for each name is free, and a few simple
+  /// expressions take no longer. The budget fills again slowly (a token bucket). Without a budget a
+  /// client that keeps publishing new names could make the slow expressions of another client hold
+  /// up the relay. @throws std::runtime_error if the budget is spent
   bool Match(std::string_view channel, TimePoint now);
 
  private:

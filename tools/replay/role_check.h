@@ -44,7 +44,7 @@ struct Verification {
   std::string broken;              // why a step could not be computed; "" if all steps could
 
   bool Holds() const { return !failure && broken.empty(); }
-  /// The difference, in one line; "" if there is none.
+  /// The difference or the broken step, in one line; "" if the verification holds.
   std::string Trouble() const;
 };
 

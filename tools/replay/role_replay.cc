@@ -73,8 +73,10 @@ class ReplayOf final : public RoleReplay {
     constexpr std::int64_t kLag = LagOf(ChannelOf<M>().from, Traits::kRole);
     const runtime::Bytes bytes = (kLag == 0 ? messages : before)[IndexOf<M>()];
     if (runtime::Examine(bytes, std::get<I>(inputs_)) == nullptr) return;
-    throw InputError(fmt::format("step {}: {} is no such message with finite values", step - kLag,
-                                 ChannelOf<M>().name));
+    throw InputError(
+        fmt::format("step {}: the {} in the log is not a message of its type, or has a value that "
+                    "is not finite",
+                    step - kLag, ChannelOf<M>().name));
   }
 
   void PassOnDemandInput(std::int64_t step, const log::StepMessages& messages,

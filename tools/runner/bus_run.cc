@@ -51,8 +51,8 @@ constexpr Duration kLookEvery = milliseconds(20);
 constexpr Duration kLookForExternal = milliseconds(100);
 // A process that is silent for this long hangs: ten of its signs of life.
 constexpr Duration kHangLimit = milliseconds(2000);
-// In real time half of that, because by then the readers of the process have long worked without
-// it. It still covers five signs of life, because no repair brings back a lost one.
+// In real time the limit is half of that, because by then the readers of the process have long
+// worked without it. The limit still covers five signs of life, because a lost one is not repaired.
 constexpr Duration kRealtimeHangLimit = milliseconds(1000);
 
 /// The builds of the runner's own programs; a role that is started elsewhere may have another one.
@@ -67,7 +67,7 @@ runtime::RoleBuilds OwnBuilds(bool in_memory) {
 
 /// First sequence number of a runner that replaces another one. Roles of the old runner may still
 /// be alive, and they obey the newest runner. A runner sends less than one message per microsecond,
-/// so the time in microseconds exceeds every number of the old runner.
+/// so the present time in microseconds exceeds every number of the old runner.
 std::int64_t NewerThanEveryRunner() {
   using std::chrono::microseconds;
   const auto now = std::chrono::system_clock::now().time_since_epoch();
@@ -77,7 +77,7 @@ std::int64_t NewerThanEveryRunner() {
 runtime::RunCoordinatorOptions MakeCoordinatorOptions(const Scenario& scenario,
                                                       const ExperimentOptions& options,
                                                       bool in_memory) {
-  // A slow pace is no stall: a step may take this time.
+  // A slow pace is not a stall: at this pace a step takes this time.
   const std::chrono::duration<double> step(options.pace > 0 ? scenario.step_s / options.pace : 0.0);
   const auto& resume = options.resume;
   return {.run_id = resume ? resume->front.run_id : DrawRunId(),
@@ -119,7 +119,7 @@ void RunInMemory(runtime::Bus& bus, runtime::RunCoordinator& coordinator, std::i
     const TimePoint now = Clock::now();
     TimePoint next = coordinator.Poll(now);
     for (const auto& role : roles) next = std::min(next, role->node().Poll(now));
-    // Messages come first: nothing is due by the clock while there are any.
+    // Messages come first: while there are messages, nothing is due by the clock.
     if (bus.Wait(next - Clock::now())) bus.Drain();
     progress.Show(coordinator.step());
     if (WasInterrupted()) break;
@@ -157,7 +157,7 @@ void AnnounceProcesses(const runtime::Bus& bus, std::int64_t run_id,
   if (!external.empty()) Notice(external);
 }
 
-/// Reports, once each, the processes that have an awaited role but belong to another run.
+/// Reports the processes that have an awaited role but belong to another run, each process once.
 class BusyElsewhere {
  public:
   explicit BusyElsewhere(std::function<void(const std::string&)> say) : say_(std::move(say)) {}
@@ -276,8 +276,8 @@ std::vector<Restarts> RunAsProcesses(runtime::Bus& bus, runtime::RunCoordinator&
   return supervisor.restarts();
 }
 
-/// What the recorders of a run have reported about the log. All but the last recorder are dead. In
-/// real time a recorder drops the part that its predecessor wrote, so only the last report counts.
+/// The reports of a run's recorders about the log. All recorders but the last one are dead. In real
+/// time a recorder drops the part that its predecessor wrote, so only the last report counts.
 std::vector<log::WrittenLog> WrittenBy(const runtime::RunCoordinator& coordinator, bool realtime) {
   std::vector<log::WrittenLog> written;
   for (const status_t& status : LastWords(coordinator, Role::kRecorder)) {

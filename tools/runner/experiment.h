@@ -32,20 +32,20 @@ struct Resumption {
 
 struct ExperimentOptions {
   /// direct (one process, no messages), memq (one process, LCM messages in memory), udpm (a process
-  /// for each role, a multicast port of its own), tcpq (the same, a TCP relay of its own), or an
-  /// LCM URL (a process for each role there).
+  /// for each role, a multicast port for this run), tcpq (a process for each role, a TCP relay for
+  /// this run), or an LCM URL (a process for each role on that network).
   std::string transport = "udpm";
   /// Event log to write. If empty: a temporary log, or no log with direct.
   std::filesystem::path log;
   /// The part of the run that the log already has, if the run is resumed.
   std::optional<Resumption> resume;
   double pace = 0;                       // simulated seconds per second; 0: no limit
-  bool realtime = false;                 // at that pace by the wall clock, without waiting for slow
+  bool realtime = false;                 // at this pace by the wall clock, without waiting for slow
                                          // roles
   std::vector<Role> external;            // roles that are started elsewhere
   Duration wait = milliseconds(60'000);  // for these roles to be ready; 0: forever
   Duration stall_limit = milliseconds(4000);
-  int restarts = 10;  // of each role that is killed or hangs; 0: that ends the run
+  int restarts = 10;  // of each role that is killed or hangs; 0: its end also ends the run
   /// Whether to compute the roles' steps again from the log, and compare. By default this is done
   /// if roles are started elsewhere or the run is resumed.
   std::optional<bool> verify;
@@ -53,7 +53,7 @@ struct ExperimentOptions {
   runtime::TrafficOptions traffic;
   bool announce = false;         // print on stderr the network of the run and its processes
   bool samples = false;          // keep the samples of every step in the result
-  std::string command_to_go_on;  // that resumes the run, for the user if the run ends early
+  std::string command_to_go_on;  // resumes the run; shown to the user if the run ends early
 };
 
 /// How often a process was restarted.
@@ -84,9 +84,9 @@ struct ExperimentResult {
   std::optional<log::RealtimeFigures> realtime;     // only for a run in real time
 };
 
-/// Constructs every part of a run once, without running it. Fields whose values are valid one by
-/// one may be invalid together. The user should learn that before any process starts.
-/// @param file name of the scenario for the user
+/// Constructs every part of a run once, without a step. Fields whose values are valid one by one
+/// may be invalid together. The user should learn this before any process starts. @param file name
+/// of the scenario for the user
 /// @throws ScenarioError with the rule "impossible"
 void CheckPossible(const Scenario& scenario, const std::filesystem::path& file);
 

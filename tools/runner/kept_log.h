@@ -12,7 +12,7 @@ namespace fogline::runner {
 /// was to write no log.
 std::string KeptLog(std::int64_t run_id, const ExperimentOptions& options);
 
-/// The command that resumes the log of a run. It has the options of the run that the log does not
+/// The command that resumes the log of a run. It has those options of the run that the log does not
 /// contain. It is "" for a run in real time, or without a log.
 std::string CommandToGoOn(const ExperimentOptions& options);
 

@@ -20,9 +20,9 @@ constexpr Duration kLookEvery = milliseconds(20);
 constexpr int kStopRepeats = 5;
 // A process hangs if it has sent nothing for this long after its start.
 constexpr Duration kStartLimit = milliseconds(5000);
-// A silent process that still runs counts as alive unless the probability of losing all its
-// messages is below this. With this value a process is killed by mistake only in one of some
-// thousand runs on a network that loses many messages.
+// A silent process that still runs is killed only if the probability that all its messages were
+// lost is below this. With this value a process is killed by mistake in one of some thousand runs
+// on a network that loses many messages.
 constexpr double kUnlikely = 1e-6;
 
 /// Number of context switches of a process, voluntary or not; nullopt if unknown. A live process
@@ -58,8 +58,8 @@ void Supervisor::Start(Child& child, TimePoint now) {
   arguments.insert(arguments.end(), options_.arguments.begin(), options_.arguments.end());
   if (child.role == Role::kRecorder) {
     arguments.insert(arguments.end(), {"--log", options_.log.string(), "--shared-log"});
-    // Only if the log is that of this run. Earlier the file may be an old log that is to be
-    // replaced.
+    // Only if the log is that of this run. Before the recorder was met, the file may be an old log
+    // that is to be replaced.
     if (options_.resume || coordinator_.Met(Role::kRecorder)) arguments.emplace_back("--resume");
   }
   child.pid = group_.Start(child.role, processes::ProgramOf(child.role), arguments);
@@ -203,7 +203,8 @@ std::vector<Restarts> Supervisor::restarts() const {
                           .count = child->policy.restarts(),
                           .last = child->death});
     } else if (const int elsewhere = member.replaced + (member.rival ? 1 : 0); elsewhere > 0) {
-      // The newest process may have come too late in the run to prove that its predecessor is dead.
+      // The newest process may have come so late in the run that the predecessor's death was not
+      // proven before the end.
       const status_t& dead = member.rival ? *member.status : member.dead.back();
       restarts.push_back({.role = std::string(info.name),
                           .count = elsewhere,

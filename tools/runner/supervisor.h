@@ -51,12 +51,12 @@ class Supervisor {
     runtime::RestartPolicy policy;
     pid_t pid = 0;
     TimePoint started{};
-    std::optional<std::int64_t> activity{};  // measured in the middle of its silence
+    std::optional<std::int64_t> activity{};  // measured in the middle of the process's silence
     std::string killed_for{};                // the reason why the supervisor killed it
     bool deaf = false;                       // whether that reason was deafness
     std::string death{};                     // how its last process ended
     std::optional<TimePoint> start_at{};
-    bool gone = false;  // ended for good, while the run continues
+    bool gone = false;  // ended and is not started again, while the run continues
   };
   void Start(Child& child, TimePoint now);
   /// Restarts the process; if that fails, a later call tries again.

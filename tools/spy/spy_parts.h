@@ -13,7 +13,7 @@ bool IsExecutable(const std::filesystem::path& file);
 /// Path of a program as the shell finds it; "" if it is not in PATH.
 std::filesystem::path InPath(const std::string& program);
 
-/// Java of JAVA_HOME, or the shell's if JAVA_HOME is not set; "" if there is none.
+/// The Java of JAVA_HOME, or the shell's Java if JAVA_HOME is not set; "" if there is none.
 std::filesystem::path JavaProgram();
 
 /// Whether a Java can open windows. The headless package cannot.

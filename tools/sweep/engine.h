@@ -42,7 +42,8 @@ class SweepWorker {
   void Compute(std::int64_t unit, std::vector<SweepRow>& rows);
 
  private:
-  /// The row of scenario_. Before the first row of a unit it runs the pair without traded control.
+  /// The row of scenario_. Before the first row of a unit it runs the paired run without traded
+  /// control.
   SweepRow ComputeRow();
 
   const SweepPlan& plan_;

@@ -60,7 +60,8 @@ std::map<std::int64_t, ShardFile> Ordered(const std::vector<std::filesystem::pat
   return ordered;
 }
 
-/// @throws InputError for a row that has another checksum than `line`, or none beside rows that do
+/// @throws InputError if the row's checksum is not that of `line`, or if only rows before it have
+/// one
 void RequireSum(RowChecker& checker, const std::string& line, const std::filesystem::path& shard,
                 std::int64_t row) {
   if (!checker.has_sums()) return;
@@ -130,7 +131,7 @@ std::int64_t MergeShards(const std::vector<std::filesystem::path>& shards,
   std::string header;
   for (const auto& [index, shard] : ordered) Copy(shard, header, out, sums ? &*sums : nullptr);
   if (replaceable) {
-    // At no time does a file have the description of another one.
+    // There is never a file beside the description of another file.
     out.RemoveOld();
     WriteDescription(merged, whole);
     sums->Finish();

@@ -39,7 +39,7 @@ std::vector<std::string_view> Split(std::string_view text, char separator) {
 }
 
 /// The values of "first:last:count"; empty if the text has another form. A double keeps fifteen
-/// decimal digits, so with fifteen digits 0.3 reads 0.3.
+/// decimal digits, so 0.3 is printed as 0.3 and not as 0.30000000000000004.
 std::vector<std::string> Spaced(std::string_view text) {
   const std::vector<std::string_view> parts = Split(text, ':');
   double first = 0;

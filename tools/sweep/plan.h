@@ -50,8 +50,8 @@ Shard ParseShard(const std::string& text);
 
 /// The rows of a sweep. Axes of the arbitrator do not change a run without traded control. So rows
 /// that differ only in these axes share their paired run; they are next to each other and form one
-/// unit of work. Rows are ordered by the other axes as given, then by seed, then by the
-/// arbitrator's axes.
+/// unit of work. Rows are ordered by the other axes (in the order in which they were given), then
+/// by seed, then by the arbitrator's axes.
 class SweepPlan {
  public:
   /// @param file source of the scenario, for messages

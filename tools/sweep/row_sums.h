@@ -21,8 +21,8 @@ std::string SumLine(std::string_view row);
 /// Bytes of such a line.
 inline constexpr std::int64_t kSumLineBytes = 9;
 
-/// Whether a file has the lines of rows and nothing else. The part of the last line that a kill or
-/// a power cut may leave counts as a line.
+/// Whether a file has the checksums of rows and nothing else. A kill or a power cut may leave a
+/// part of the last line; this part counts as a line.
 bool IsSums(const std::filesystem::path& file);
 
 /// Checks the rows of a file in their order.

@@ -107,9 +107,9 @@ SweepFile::Handle::~Handle() {
   if (fd >= 0) close(fd);
 }
 
-// Only one writer at a time: two writers would mix their rows. The lock catches a job that a
-// cluster starts a second time although its first process, only cut off from the network, still
-// writes.
+// The lock admits only one writer at a time: two writers would mix their rows. An example: a
+// cluster starts a job a second time, while the first process of the job still writes and was only
+// cut off from the network.
 void SweepFile::Open() {
   file_.fd = open(path_.c_str(), kFlags, 0666);
   if (file_.fd < 0) ThrowCannotWrite(path_, errno);

@@ -6,8 +6,8 @@
 namespace fogline::watch {
 namespace {
 
-// Most of the window is for the traffic. If there are more runs than these, they are not on one
-// machine, or they are forged.
+// Most of the window is for the traffic. One machine hardly has more runs than this; further
+// announcements may be forged.
 constexpr std::size_t kMaxLines = 8;
 
 }  // namespace

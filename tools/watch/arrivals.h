@@ -1,4 +1,5 @@
-// Arrivals of messages of one kind: count, rate, jitter, bandwidth. It is fed with times and sizes.
+// Arrivals of messages of one kind: count, rate, jitter, bandwidth. The caller passes times and
+// sizes in.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +14,7 @@ struct ArrivalView {
   std::int64_t messages = 0;            // since the first message
   double rate_hz = 0;                   // messages of the interval / its length
   double bandwidth_bytes_per_s = 0;     // payload only: without the bytes that LCM, UDP and IP add
-  std::optional<double> jitter_s;       // of the gaps that end in the interval; none below two gaps
+  std::optional<double> jitter_s;       // of the gaps that end in the interval; needs two gaps
   std::optional<double> longest_gap_s;  // of the gaps that end in the interval; none without a gap
   double age_s = 0;                     // since the last message
 };

@@ -1,5 +1,5 @@
-// Counts which steps of a channel were seen, lost, late or repeated. It receives no messages: its
-// user gives it steps and times.
+// Counts which steps of a channel were seen, lost, late or repeated. The caller passes steps and
+// times in.
 #pragma once
 
 #include <bitset>
@@ -30,10 +30,10 @@ class StepSequence {
   static constexpr std::int64_t kWindow = runtime::kRingSteps;
   /// No run has this many steps. The limit keeps the arithmetic below from overflowing.
   static constexpr std::int64_t kMaxStep = std::int64_t{1} << 62;
-  /// A step that is further ahead is believed only when its successor follows at once. The rule and
-  /// the number (MAX_DROPOUT) are from the algorithm for sequence numbers of RTP (RFC 3550,
-  /// appendix A.1). The steps between are not counted as lost, because it is unknown whether they
-  /// were ever sent.
+  /// A step that is further ahead counts only when its successor follows at once. The rule and the
+  /// number (MAX_DROPOUT) are from the algorithm for sequence numbers of RTP (RFC 3550, appendix
+  /// A.1). The steps between are not counted as lost, because it is unknown whether they were ever
+  /// sent.
   static constexpr std::int64_t kMaxJump = 3000;
   /// Old steps restart the sequence if no new step has come for this long. This happens when a log
   /// is played twice.

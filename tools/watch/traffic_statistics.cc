@@ -115,7 +115,7 @@ void TrafficStatistics::AddStatus(RunRecord& run, runtime::Bytes bytes, TimePoin
   if (!runtime::Decode(bytes, status)) return;
   for (RoleRecord& role : run.roles) {
     if (role.status.instance != status.instance || role.status.role != status.role) continue;
-    if (status.sequence <= role.status.sequence) return;  // a copy, or a newer one has overtaken it
+    if (status.sequence <= role.status.sequence) return;  // a copy, or overtaken by a newer one
     role.status = std::move(status);
     role.heard = now;
     return;

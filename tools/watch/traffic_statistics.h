@@ -1,6 +1,6 @@
-// Statistics of the traffic on an LCM network, by run, channel and role. It neither subscribes nor
-// reads a clock: its user feeds it with messages and times. traffic_text and traffic_json show the
-// result.
+// Statistics of the traffic on an LCM network, by run, channel and role. The caller passes messages
+// and times in: nothing here subscribes to a channel or reads a clock. traffic_text and
+// traffic_json show the result.
 #pragma once
 
 #include <array>

@@ -1,5 +1,5 @@
 // The report of runs in a real browser: it draws its figures, stays within the width of a phone,
-// and does what the reader asks.
+// and responds to the reader.
 #include <limits>
 #include <span>
 #include <string>

@@ -1,5 +1,5 @@
-// The page of studies in a real browser: it has every study, draws its figures, and does what the
-// reader asks.
+// The page of studies in a real browser: it has every study, draws its figures, and responds to the
+// reader.
 #include <string>
 #include <vector>
 

@@ -144,7 +144,7 @@ end
 function [mpc, command] = acc_step(mpc, distance, relative_speed, speed, acceleration)
   acc = mpc.acc;
   N = mpc.N;
-  % The change of u counts from the car's real acceleration, in case the driver controlled it.
+  % The change of u counts from the car's real acceleration, because the driver may have driven.
   if abs(acceleration - mpc.command) <= 1e-6
     u_before = mpc.u;
   else
@@ -154,7 +154,7 @@ function [mpc, command] = acc_step(mpc, distance, relative_speed, speed, acceler
 
   x = [distance - (acc.headway_s * speed + acc.standstill_m); relative_speed; acceleration];
   w = speed + acc.engine_time_constant_s * acceleration;
-  w_limit = zeros(N, 1);                     % the speed limit, or what the fall-back plan reaches
+  w_limit = zeros(N, 1);                     % the speed limit, or the fall-back plan's speed
   w_fallback = w;
   u_fallback = u_before;
   for j = 1:N

@@ -29,7 +29,7 @@ study::StudyResult Make(std::string_view name) {
                      .progress = {}});
 }
 
-/// How many lines have each value of a column.
+/// For each value of a column, the number of lines that have it.
 std::map<std::string, int> Column(const std::string& csv, const std::string& name) {
   std::istringstream lines(csv);
   std::string line;

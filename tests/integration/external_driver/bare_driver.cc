@@ -1,4 +1,4 @@
-// A human driver that uses only Fogline's message types. It shows what a role must do in any
+// A human driver that uses only Fogline's message types. It shows the duties of a role in any
 // language. (In C++ there is a shorter way: my_driver.cc.)
 //
 //   c++ -O2 -ffp-contract=off bare_driver.cc -I PREFIX/include -llcm -o bare_driver

@@ -22,7 +22,7 @@ class CrashOfARoleTest : public testing::TestWithParam<std::string> {};
 
 TEST_P(CrashOfARoleTest, ChangesNoResultAndIsReported) {
   const std::string& role = GetParam();
-  // A step of its own for each role, the same every time.
+  // Each role has a step of its own, the same in every execution.
   std::mt19937 random(static_cast<unsigned>(role.size() * 256 + static_cast<unsigned>(role[0])));
   const int step = std::uniform_int_distribution(80, 200)(random);
   WatchedRun watched;
@@ -67,8 +67,7 @@ TEST(CrashTest, OfRolesThatReadEachOtherChangesNoResult) {
 TEST(CrashTest, OfARoleThatCatchesUpChangesNoResult) {
   WatchedRun watched;
   watched.WaitForStep(100);
-  // The next process is killed as soon as anything is heard of it: before, while or after it
-  // catches up.
+  // The next process is killed as soon as it is heard: before, while or after it catches up.
   for (int i = 0; i < 5; ++i) {
     for (const char* role : {"fusion", "recorder", "world"}) watched.Signal(role, SIGKILL);
   }
@@ -82,12 +81,12 @@ TEST(CrashTest, WhileTheRunIsJoinedIsRepairedToo) {
   // GIVEN a run that waits for a driver
   WatchedRun watched({"--external", "driver"});
   watched.WaitForState("radar", status_t::READY);
-  // WHEN others are killed before it comes
+  // WHEN other processes are killed before the driver comes
   for (const char* role : {"radar", "world", "recorder"}) watched.Signal(role, SIGKILL);
   for (const char* role : {"radar", "world", "recorder"}) {
     watched.WaitForState(role, status_t::READY);
   }
-  // THEN the run is as always
+  // THEN the result is that of an undisturbed run
   const Background driver({Program("fogline-driver"), "--lcm-url", watched.url()});
   const auto result = watched.ExpectSameResult();
   EXPECT_EQ(result["restarts"].size(), 3U);
@@ -98,13 +97,14 @@ TEST(CrashTest, ProcessesThatHangAreKilledAndStartedAgain) {
 }
 
 TEST(CrashTest, ARunnerThatWasHeldUpItselfTakesNoRoleForHung) {
-  // GIVEN a runner that stands still for longer than a role may be silent (3 s, half the timeout,
-  // which is longer than a busy machine holds up a role), but not to the end of the run (8 s)
+  // GIVEN a runner that stands still for longer than a role may be silent, but not to the end of
+  // the run (8 s). A role may be silent for half of the timeout, 3 s; a busy machine holds up no
+  // role for so long
   WatchedRun watched({"--stall-timeout", "6"}, 8000);
   watched.WaitForStep(100);
   kill(watched.run().pid(), SIGSTOP);
-  std::this_thread::sleep_for(milliseconds(3500));  // the pause is what is tested
-  // WHEN it goes on, THEN the run does, too
+  std::this_thread::sleep_for(milliseconds(3500));  // the test is about this pause
+  // WHEN the runner goes on, THEN the run goes on, too
   kill(watched.run().pid(), SIGCONT);
   const auto result = watched.ExpectSameResult();
   EXPECT_TRUE(result["restarts"].empty()) << result["restarts"];
@@ -129,7 +129,7 @@ TEST(CrashTest, OfARoleFromElsewhereIsOverWhenItIsStartedAgain) {
   const Background first(command);
   watched.WaitForStep(100);
   watched.Signal("driver", SIGKILL);
-  // This process knows nothing of the run except what it hears.
+  // This process knows only those things of the run that it hears.
   const Background second(command);
   const auto result = watched.ExpectSameResult();
   ASSERT_EQ(WatchedRun::RestartsOf(result, "driver"), 1);
@@ -167,7 +167,7 @@ TEST(CrashTest, ARoleFromElsewhereThatGoesOnAfterItWasReplacedLeavesTheRun) {
   Background second(command);
   watched.WaitUntil([&] { return watched.StateOf("driver", second.pid()) == status_t::RUNNING; },
                     "the other driver");
-  // WHEN it goes on, THEN it leaves the run to the other
+  // WHEN the first driver goes on, THEN it leaves the run to the other driver
   first.Signal(SIGCONT);
   EXPECT_TRUE(first.WaitForErr("another process is the driver of run ")) << first.Err();
   EXPECT_EQ(WatchedRun::RestartsOf(watched.ExpectSameResult(), "driver"), 1);

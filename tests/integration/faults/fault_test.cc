@@ -26,7 +26,7 @@ class PacedRun {
       : run_({Program("fogline"), "run", "scenario/paper.json", "--pace", "1", "--restarts", "0",
               "--log", folder_.File("run.lcm")}) {
     EXPECT_TRUE(run_.WaitForErr("processes: "));
-    // The run is under way when this many steps are on disk. No event tells that.
+    // The run is under way when this many steps are on disk. No event shows this.
     const auto end = SteadyClock::now() + std::chrono::seconds(20);
     while (StepsOnDisk() < kUnderWay && SteadyClock::now() < end) {
       std::this_thread::sleep_for(kLookEvery);
@@ -42,7 +42,7 @@ class PacedRun {
   pid_t Pid(const std::string& role) const { return PidOf(run_.Err(), role); }
   Background& run() { return run_; }
 
-  /// Complete steps in the log as it is now.
+  /// The number of complete steps in the log at this moment.
   int StepsOnDisk() const {
     const Outcome digest =
         RunCommand({Program("fogline"), "digest", "--json", folder_.File("run.lcm")});
@@ -127,7 +127,7 @@ TEST(FaultTest, LeavesNoProcessWhenTheRunnerItselfIsKilled) {
   paced.run().Signal(SIGKILL);
   EXPECT_EQ(paced.run().Wait(), 128 + SIGKILL);
   const auto end = SteadyClock::now() + std::chrono::seconds(5);
-  // The roles are no children of this test, so that it cannot wait for their ends.
+  // The roles are not children of this test, so it cannot wait for their ends.
   for (const pid_t pid : pids) {
     while (IsAlive(pid) && SteadyClock::now() < end) std::this_thread::sleep_for(kLookEvery);
     EXPECT_FALSE(IsAlive(pid)) << pid;

@@ -36,7 +36,7 @@ inline void ExpectHangersAreStartedAgain(const std::vector<std::string>& roles) 
               testing::MatchesRegex("was silent for 1\\.[0-9] s and was killed at step [0-9]+"));
 }
 
-/// Kills so many processes at random steps, at most ten in each run.
+/// Kills `wanted` processes at random steps, at most ten in each run.
 inline void ExpectKillsAtRandomStepsChangeNoResult(int wanted) {
   constexpr int kKillsPerRun = 10;
   std::mt19937 random(2024);

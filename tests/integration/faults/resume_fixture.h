@@ -26,8 +26,8 @@ inline Words operator+(Words words, const Words& more) {
   return words;
 }
 
-// Steps of a run. Runs over the network take 3 ms for each, so that a test on a busy machine can
-// still kill one in the middle.
+// Steps of a run. A run over the network takes 3 ms for each step, so a test on a busy machine can
+// still kill the run in its middle.
 inline constexpr int kResumeSteps = 300;
 
 class ResumeTest : public testing::Test {
@@ -63,7 +63,7 @@ class ResumeTest : public testing::Test {
     return result;
   }
   /// Kills the runner, not its roles, as soon as the log has `bytes` bytes.
-  /// @return whether it had not ended by itself
+  /// @return whether the runner had not ended by itself
   bool KillAt(std::uintmax_t bytes, const Words& command) const {
     Background run(command + Words{"--log", log_});
     EXPECT_TRUE(GrowsTo(bytes, log_)) << run.Err();
@@ -137,17 +137,19 @@ class ResumeAfterKillTest : public ResumeTest {
       std::filesystem::remove(log_);
       const int step = std::uniform_int_distribution(0, kResumeSteps - 2)(random);
       SeenRun(Paper(kResumeSteps) + kPaced, log_).KillAtStep(step);
-      // The world is at most 32 steps ahead of what is on disk.
+      // The world is at most 32 steps ahead of the log on disk.
       const auto result = ExpectSameEnd(whole);
       EXPECT_GE(result["resumed_steps"], step - 32);
       EXPECT_EQ(result["restarts"].size(), 0U);
     }
   }
 
-  /// Runs in one process die with their runner. So many die for each of two transports.
+  /// Kills runs in one process, which die with their runner: `kills` runs for each of two
+  /// transports.
   void ExpectKilledProcessesGoOnToTheSameResult(int kills) const {
     std::mt19937 random(2026);
-    // The quicker one takes 0.2 s for so many, and is killed in the first half of that.
+    // The faster transport takes 0.2 s for so many steps, and the run is killed in the first half
+    // of this time.
     constexpr int kMany = 20'000;
     // A busy machine may let the test look too late.
     constexpr int kTries = 10;

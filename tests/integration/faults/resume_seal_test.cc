@@ -1,4 +1,4 @@
-// `fogline run --resume` of a log that has the whole run: what it verifies, and what it seals.
+// `fogline run --resume` verifies and seals a log that has the whole run.
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -37,7 +37,7 @@ class ResumeOfCompleteLogTest : public ResumeTest {
            return event.channel != "FOGLINE_SEAL";
          });
   }
-  /// What `fogline digest` says of the log.
+  /// The JSON result of `fogline digest` for the log.
   nlohmann::json Digest(const Words& more = {}) const {
     const Outcome outcome = RunCommand(Words{Program("fogline"), "digest", "--json", log_} + more);
     const auto json = nlohmann::json::parse(outcome.out, nullptr, false);
@@ -87,7 +87,7 @@ TEST_F(ResumeOfCompleteLogTest, VerifiesAndSealsTheLogOfARunnerThatDiedBeforeItS
   LeaveUnsealed();
   EXPECT_EQ(ExpectSameEnd(whole)["verified"]["roles"].size(), 8U);
   EXPECT_EQ(Digest()["seal"], "holds");
-  // AND the seal states which builds computed the roles, so that they can be verified again
+  // AND the seal names the builds that computed the roles, so that the roles can be verified again
   const auto again = ExpectSameEnd(whole, {"--verify"})["verified"];
   EXPECT_EQ(again["roles"].size(), 8U) << again;
   EXPECT_TRUE(again["left_out"].empty()) << again;

@@ -51,9 +51,9 @@ class StartAgainTest : public testing::Test {
                 HasSubstr("was killed by signal 9 (Killed) at step "));
     EXPECT_THAT(run.Err(), HasSubstr(role + " (pid "));
   }
-  /// Waits for longer than the first five tries to start the process again take: 10 ms after its
-  /// death and then after 20, 40, 80 and 160 ms (RestartPolicy). The test waits for a fixed time
-  /// because the runner does not report a failed try.
+  /// Waits for longer than the first five tries to start the process again. They come 10 ms after
+  /// its death and then after 20, 40, 80 and 160 ms (RestartPolicy). The test waits for a fixed
+  /// time because the runner does not report a failed try.
   static void StayAway() { std::this_thread::sleep_for(milliseconds(500)); }
 
   ScratchFolder folder_;

@@ -19,7 +19,7 @@ namespace fogline::test {
 
 // Far longer than anything here takes on a busy machine.
 inline constexpr Duration kRunPatience = std::chrono::seconds(30);
-// Steps of a run that is watched, and its pace: a millisecond a step.
+// Steps of a watched run, and its pace: a millisecond for each step.
 inline constexpr int kSteps = 300;
 inline constexpr int kPace = 100;
 
@@ -44,7 +44,7 @@ inline std::string UndisturbedDigest(int steps, const std::vector<std::string>& 
   return digest;
 }
 
-/// A run over the network whose STATUS messages tell this test which process has which role.
+/// A run over the network. Its STATUS messages tell this test the process of each role.
 class WatchedRun {
  public:
   /// @param changes of the scenario, as "--set", "/steps=10"

@@ -1,4 +1,4 @@
-// A log to export, and every number of it.
+// A log to export, and every number in it.
 #pragma once
 
 #include <cstddef>

@@ -256,7 +256,7 @@ TEST_F(ExportTest, LeavesEveryFileAsItWasWhenOneOfThemCannotBeWritten) {
   const std::string last = out_ + "/scenario.json";
   std::filesystem::remove(last);
   std::filesystem::create_directory(last);
-  // GIVEN another log: the same one cut in half
+  // GIVEN another log: the first half of the same log
   std::filesystem::resize_file(log_, std::filesystem::file_size(log_) / 2);
   const Outcome outcome = Export({"--out", out_, "--force"});
   EXPECT_EQ(outcome.code, 2);

@@ -32,7 +32,7 @@ TEST_F(LogIntegrityTest, ALogThatAnotherTakesThePlaceOfEndsTheRunAlthoughItHasIt
   Background run(Run());
   ASSERT_TRUE(run.WaitForErr("waiting for the driver"));
   ASSERT_TRUE(GrowsTo(1, log_));
-  // WHEN the log of another run that carries this run's id replaces its log
+  // WHEN the log of another run replaces the log of this run, and has this run's id
   const std::int64_t run_id = RunIdIn(run.Err());
   const std::string forged = folder_.File("forged.lcm");
   Rewrite(other, forged, [run_id](std::string_view, Payload& bytes) { PutRunId(run_id, bytes); });

@@ -170,7 +170,8 @@ TEST_F(LogLockTest, ASecondTableIntoOneFolderIsRefusedByName) {
     EXPECT_EQ(second.err, logs + ": error: --logs: is being written by another table (pid " +
                               std::to_string(first.pid()) + ")\n");
   }
-  // Another run may not replace a log of the table either, but it may write a log of its own there.
+  // Another run may not replace a log of the table either, but it may write its own log in this
+  // folder.
   const std::vector<std::string> run{
       Program("fogline"), "run",  "scenario/paper.json", "--transport", "direct",
       "--force",          "--log"};
@@ -225,7 +226,7 @@ TEST_F(LogLockTest, AnOlderLogIsThereAgainWhenTheRunThatReplacesItNeverBegins) {
       With(WaitingForADriver(run_), {"--wait", "0.5", "--force"});
   EXPECT_EQ(RunCommand(replace).code, 3);
   EXPECT_EQ(Content(log_), older);
-  // AND it is gone when the run has begun, with nothing beside the new one
+  // AND the older log is gone when the run has begun, and no other file lies beside the new one
   EXPECT_EQ(RunCommand(With(run_, {"--force", "--seed", "2"})).code, 0);
   EXPECT_NE(Content(log_), older);
   const std::filesystem::directory_iterator files(std::filesystem::path(log_).parent_path());

@@ -17,7 +17,7 @@ namespace {
 using ::testing::HasSubstr;
 using Words = std::vector<std::string>;
 
-// All features with which roles read inputs on demand, remember or draw.
+// All features with which roles read inputs on demand, have a memory, or draw random numbers.
 const Words kEverything{"--set", "/human/loses_awareness=true",
                         "--set", "/human/misjudges=true",
                         "--set", "/human/sight=fog",
@@ -95,7 +95,7 @@ TEST_F(ReplayTest, ComputesALogWithEverythingSwitchedOnAgainWhateverThePolicyDem
   for (const char* policy : {"bayes", "oracle"}) {
     SCOPED_TRACE(policy);
     Words more = kEverything;
-    // With one of these policies the cars collide later, so the runs end here.
+    // The runs end here, because with one of these policies the cars collide later.
     more.insert(more.end(), {"--transport", "direct", "--force", "--set", "/steps=500", "--set",
                              std::string("/arbitrator/policy=") + policy});
     ExpectSame(Log("scenario/dense_fog.json", more), 500);
@@ -105,7 +105,7 @@ TEST_F(ReplayTest, ComputesALogWithEverythingSwitchedOnAgainWhateverThePolicyDem
 TEST_F(ReplayTest, NamesTheStepAndFieldOfAnOutputThatIsNotTheLogs) {
   const std::string log =
       Altered(Log("scenario/paper.json", {"--transport", "direct", "--set", "/steps=250"}), 200);
-  // In this step the log differs from what the fusion computes. The next steps agree, because the
+  // In this step the log differs from the output of the fusion. The next steps agree, because the
   // replay takes its inputs from the log.
   const Outcome fusion = Replay({log, "--role", "fusion", "--json"});
   EXPECT_EQ(fusion.code, 1);
@@ -153,7 +153,7 @@ TEST_F(ReplayTest, SaysWhatIsWrongWithItsArguments) {
 
 TEST_F(ReplayTest, RefusesALogOfARunInRealtime) {
   const std::string log =
-      Log("scenario/paper.json", {"--realtime", "--speed", "10", "--set", "/steps=20"});
+      Log("scenario/paper.json", {"--realtime", "--set", "/steps=20"});
   const Outcome replay = Replay({log, "--all"});
   EXPECT_EQ(replay.code, 2);
   EXPECT_THAT(replay.err, HasSubstr(log + ": error: a run in real time"));

@@ -16,7 +16,8 @@ using testing::HasSubstr;
 using Words = std::vector<std::string>;
 using Payload = std::vector<std::uint8_t>;
 
-/// Carries messages between a run and a role of it on another network, and alters one of them.
+/// Carries messages between a run and one of its roles, which is on another network. Alters one
+/// message.
 class Bridge {
  public:
   Bridge(const std::string& run, const std::string& role) : run_(run), role_(role) {

@@ -33,7 +33,8 @@ class Top {
       : process_(meeting.Command("fogline", {"top", "--json", "--interval", "0.1"})) {}
 
   /// Waits for a document that `good` accepts. It reads the output file every few milliseconds,
-  /// because no event tells that the file has grown. @return that document, or the last one
+  /// because no event shows that the file has grown. @return this document, or the last one if none
+  /// is accepted
   json WaitFor(const std::function<bool(const json&)>& good) {
     const TimePoint end = Clock::now() + kPatience;
     json document;
@@ -234,14 +235,14 @@ TEST(AnnounceTest, OfTwoProcessesOfOneRoleTheOtherTakesOverWhenTheFirstIsKilled)
            said.find(" again\n") != std::string::npos;
   };
   const TimePoint end = Clock::now() + kPatience;
-  // No event tells that a program has written to its stderr, which is a file.
+  // No event shows that a program has written to its stderr, which is a file.
   while (std::ranges::none_of(drivers, is_other) && Clock::now() < end) {
     std::this_thread::sleep_for(kLookEvery);
   }
   ASSERT_EQ(std::ranges::count_if(drivers, is_other), 1);
   Background& first = drivers[is_other(drivers[0]) ? 1 : 0];
   Background& other = drivers[is_other(drivers[0]) ? 0 : 1];
-  // WHEN the first is killed THEN the other is there before the run gives up
+  // WHEN the first driver is killed THEN the other one takes its place before the run gives up
   first.Signal(SIGKILL);
   ASSERT_EQ(run.Wait(), 0) << run.Err() << other.Err();
   EXPECT_EQ(json::parse(run.Out())["digest"], DirectDigest());
@@ -332,7 +333,7 @@ TEST(AnnounceTest, WhatIsForgedIsRefusedAndCountedAndDisturbsNoRun) {
   ASSERT_EQ(run.Wait(), 0) << run.Err();
   EXPECT_EQ(json::parse(run.Out())["digest"], DirectDigest());
   EXPECT_EQ(driver.Wait(), 0) << driver.Err();
-  // AND doctor tells that it refused such announcements
+  // AND doctor says that it refused such announcements
   Background doctor(meeting.Command("fogline", {"doctor"}));
   const TimePoint end = Clock::now() + kPatience;
   while (IsAlive(doctor.pid()) && Clock::now() < end) {

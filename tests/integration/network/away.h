@@ -1,4 +1,4 @@
-// Processes of a run that are away for longer than any of them waits for another by default.
+// Parts of a run that are away for longer than a process waits for another one by default.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -28,7 +28,8 @@ struct RunOnTwoMachines {
   const Background& driver;
 };
 
-/// What is away meanwhile, and how the run is told of it.
+/// The processes or the machine that are away, and the options with which the user announces this
+/// to the run.
 struct Absence {
   std::string name;
   std::vector<std::string> options;
@@ -57,7 +58,7 @@ class AwayTest : public NetworkTest, public testing::WithParamInterface<Absence>
   void ExpectAbsenceCostsNoRun(const Absence& absence) {
     const Lab lab(2);
     Background driver(lab[1].On({Program("fogline-driver"), "--lcm-url", kAwayUrl}));
-    // Five seconds, of which the first are over when something goes away.
+    // A run of five seconds. The first seconds are over when the absence begins.
     const ScratchFolder folder;
     const std::string log = folder.File("run.lcm");
     std::vector<std::string> command{Program("fogline"),
@@ -78,7 +79,7 @@ class AwayTest : public NetworkTest, public testing::WithParamInterface<Absence>
     ASSERT_TRUE(GrowsTo(20'000, log)) << run.Err();
     const RunOnTwoMachines both{.lab = lab, .run = run, .driver = driver};
     absence.begin(both);
-    std::this_thread::sleep_for(kAway);  // longer than a role waits: what is tested
+    std::this_thread::sleep_for(kAway);  // longer than a role waits; the test is about this pause
     absence.end(both);
     const auto result = ResultOf(run);
     EXPECT_EQ(result["digest"], Undisturbed());

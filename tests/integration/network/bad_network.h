@@ -1,5 +1,5 @@
-// The lockstep on networks that lose, repeat, reorder, delay and damage messages. It gets slower;
-// its result stays the same.
+// The lockstep on networks that lose, repeat, reorder, delay and damage messages. The run gets
+// slower; its result stays the same.
 #pragma once
 
 #include <gtest/gtest.h>

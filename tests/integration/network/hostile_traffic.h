@@ -1,4 +1,4 @@
-// A run under datagrams that are none of its messages.
+// A run among datagrams that are not its messages.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -17,11 +17,11 @@ inline constexpr double kScenarioS = 50;
 
 /// How much hostile traffic a run has, and for how long.
 struct Hostility {
-  double seconds;       // that the run takes
+  double seconds;       // duration of the run
   double rate_hz;       // datagrams per second
-  double least_sent;    // of them
-  int least_of_a_kind;  // that are sent, and refused
-  bool alone = false;   // on the machine, so that times can be judged
+  double least_sent;    // of these datagrams
+  int least_of_a_kind;  // datagrams that are sent, and that are refused
+  bool alone = false;   // whether the test is alone on the machine, so that times can be judged
 };
 
 class HostileTrafficTest : public NetworkTest {
@@ -31,8 +31,8 @@ class HostileTrafficTest : public NetworkTest {
     nlohmann::json sent;    // the hostile program's counts of sent datagrams
   };
 
-  /// A run whose machine has a network full of hostile traffic from before the start. The run must
-  /// succeed.
+  /// A run on a machine whose network is full of hostile traffic, already before the start. The run
+  /// must succeed.
   /// @param more arguments of the hostile program
   Ended RunUnder(std::vector<std::string> more, const Hostility& hostility) {
     const Machine machine("target");
@@ -60,7 +60,7 @@ class HostileTrafficTest : public NetworkTest {
     }
     // THEN the result is that of the undisturbed run
     EXPECT_EQ(result["digest"], Undisturbed());
-    // AND it took little longer than its pace asks
+    // AND it took not much longer than its pace demands
     if (hostility.alone) {
       EXPECT_LT(result["wall_s"], 2 * hostility.seconds);
     }

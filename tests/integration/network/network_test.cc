@@ -109,7 +109,7 @@ TEST_P(TwoRunsTest, OnOneGroupAndPortDoNotMix) {
   EXPECT_EQ(other["digest"], Undisturbed({"--seed", "7"}));
   const auto first = ResultOf(paced);
   EXPECT_EQ(first["digest"], Undisturbed({"--set", "/steps=150"}));
-  // AND each has refused the other's messages, and knows which run sent them
+  // AND each run has refused the other's messages, and names the run that sent them
   EXPECT_GT(first["refused"]["foreign"], 500);
   EXPECT_GT(other["refused"]["foreign"], 0);
   EXPECT_EQ(first["strangers"].size(), kRoles.size());
@@ -184,7 +184,8 @@ TEST_F(NetworkTest, OfTwoProcessesOfOneRoleOneTakesPartAndTheOtherWaits) {
     return std::ranges::count_if(drivers,
                                  [](const Background& one) { return !IsAlive(one.pid()); });
   };
-  // The runner does not wait for its end. A busy machine takes less than this for it.
+  // The runner does not wait for the end of this driver. On a busy machine the driver ends within
+  // this time.
   constexpr auto kPatience = std::chrono::seconds(20);
   const TimePoint end = Clock::now() + kPatience;
   while (ended() == 0 && Clock::now() < end) std::this_thread::sleep_for(kLookEvery);

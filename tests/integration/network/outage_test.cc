@@ -25,7 +25,7 @@ using testing::HasSubstr;
 
 constexpr const char* kUrl = "udpm://239.255.76.67:7700?ttl=1";
 
-/// Something that goes away and comes back. Both are lines of sh.
+/// A part of the network that goes away and comes back, by lines of sh.
 struct Outage {
   std::string name;
   std::string begin;
@@ -49,11 +49,11 @@ class OutageTest : public NetworkTest {
     more.insert(more.end(), {"--pace", "20"});
     return Run(more);
   }
-  /// Waits until some fifty more steps are in the log of the run.
+  /// Waits until the log of the run has some fifty steps more.
   void LastForSteps() const {
     ASSERT_TRUE(GrowsTo(std::filesystem::file_size(Log()) + 50'000, Log()));
   }
-  /// No event tells when a process has noticed an outage.
+  /// No event shows when a process has noticed an outage.
   static void LastFor(Duration time) { std::this_thread::sleep_for(time); }
 };
 
@@ -93,8 +93,8 @@ TEST_P(SeveralMachinesOutageTest, IsRepairedAndTold) {
   ASSERT_TRUE(GrowsTo(20'000, Log()));
   // WHEN a part of the network fails there and comes back
   lab[1].Do(GetParam().begin);
-  // The run stands still, and nothing tells from outside that a message of the driver was lost. It
-  // says something every 200 ms.
+  // The run stands still, and no event shows from outside that a message of the driver was lost.
+  // The driver sends a message every 200 ms.
   std::this_thread::sleep_for(milliseconds(300));
   lab[1].Do(GetParam().end);
   // THEN the result is the same
@@ -147,7 +147,7 @@ TEST_F(OutageTest, AFirewallThatDropsWhatIsSentChangesNoResultAndIsTold) {
     EXPECT_EQ(one["error"], "Operation not permitted");
   }
   EXPECT_GT(failed, 50) << "of 4500 messages and more";
-  // AND the printed text tells it, too
+  // AND the printed text says this, too
   const Outcome text = RunCommand(
       machine.On({Program("fogline"), "run", "scenario/paper.json", "--log", Log() + ".text"}));
   EXPECT_THAT(text.out, ContainsRegex("\nmessages that could not be sent: .*world [0-9]+.* "
@@ -180,7 +180,8 @@ TEST_F(OutageTest, ARoleInRealTimeThatCouldSendNothingForLongGoesOn) {
   lab[1].Do(kFirewall);
   LastFor(milliseconds(1800));
   lab[1].Do("nft delete table inet reload");
-  // THEN the driver takes part to the end, and the run reports what the driver could not send
+  // THEN the driver takes part to the end, and the run reports the messages that the driver could
+  // not send
   run.Wait();
   EXPECT_EQ(driver.Wait(), 0) << driver.Err();
   const auto result = nlohmann::json::parse(run.Out(), nullptr, false);
@@ -198,11 +199,11 @@ TEST_F(OutageTest, ARoleThatWasToldNoNetworkOutlivesThatOfItsRun) {
   Background run(
       machine.On(PacedRun({"--lcm-url", kUrl, "--external", "driver", "--restarts", "0"})));
   ASSERT_TRUE(GrowsTo(20'000, Log()));
-  // WHEN it hears nothing of its runner for long enough to look for another run
+  // WHEN the driver hears nothing of its runner for so long that it looks for another run
   machine.Do("ip addr flush dev eth0");
   LastFor(runtime::RunnerWatch::kSilent + milliseconds(1000));
   machine.Do("ip addr add 192.0.2.1/24 dev eth0; ip route add default via 192.0.2.2");
-  // THEN it goes on with its own
+  // THEN it goes on with its own run
   EXPECT_EQ(ResultOf(run)["digest"], Undisturbed());
   EXPECT_EQ(driver.Wait(), 0) << driver.Err();
 }
@@ -243,7 +244,7 @@ std::int64_t LastStepIn(const std::string& log) {
 }
 
 TEST_F(OutageTest, LeavesStockProgramsThatHearARunAndAreHeard) {
-  // GIVEN Debian's lcm-logger, which joins the group where the default route leads
+  // GIVEN Debian's lcm-logger, which joins the group on the interface of the default route
   const Machine machine("lab");
   SetUpInterface(machine);
   const std::string url = "udpm://239.255.76.67:7700?ttl=0";
@@ -259,7 +260,8 @@ TEST_F(OutageTest, LeavesStockProgramsThatHearARunAndAreHeard) {
   LastForSteps();
   machine.Do("ip link set eth0 up; ip route add default via 192.0.2.2");
   EXPECT_EQ(ResultOf(run)["digest"], Undisturbed());
-  // lcm-logger writes later than the run sends, and drops at its end what it has not written.
+  // lcm-logger writes messages later than they are sent. When it ends, it drops messages that it
+  // has not written.
   const TimePoint end = Clock::now() + std::chrono::seconds(20);
   while (LastStepIn(stock) < 400 && Clock::now() < end) {
     LastFor(milliseconds(50));
@@ -273,7 +275,7 @@ TEST_F(OutageTest, LeavesStockProgramsThatHearARunAndAreHeard) {
   for (std::int64_t step = 0; step < 500; step += 100) {
     EXPECT_NE(steps.lower_bound(step), steps.lower_bound(step + 100)) << step;
   }
-  // AND top hears lcm-logplayer, which sends where the route leads
+  // AND top hears lcm-logplayer, which sends over the interface of the route
   Background top(machine.On(
       {Program("fogline"), "top", "--json", "--once", "--interval", "3", "--lcm-url", url}));
   machine.Do("until grep -q :1E14 /proc/net/udp; do sleep 0.01; done");

@@ -37,7 +37,7 @@ class RawSocket {
   RawSocket(const RawSocket&) = delete;
   RawSocket& operator=(const RawSocket&) = delete;
 
-  /// Sends all bytes; the test fails if that blocks. @return false if the other side has closed
+  /// Sends all bytes; the test fails if a call blocks. @return false if the other side has closed
   bool Send(runtime::Bytes bytes) const {
     while (!bytes.empty()) {
       const ssize_t size = send(fd_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
@@ -94,7 +94,7 @@ TEST(HostileRelayClientTest, DisconnectsAndNamesAClientThatNeverReadsAndServesTh
   runtime::Bus bus(relay.url());
   int heard = 0;
   bus.Subscribe("DATA", [&heard](runtime::Bytes) { ++heard; });
-  // WHEN more messages are published than the client's socket and its queue hold
+  // WHEN more messages are published than the client's socket and queue can hold
   const Payload payload(runtime::kMaxMessageBytes, 1);
   constexpr int kMessages = 17'000;
   for (int i = 0; i < kMessages; ++i) {
@@ -174,8 +174,9 @@ TEST(HostileRelayClientTest, TakesNoMoreClientsThanItMay) {
 
 TEST(HostileRelayClientTest, IsCutOffWhenItsExpressionsAreSlowOnEverNewNames) {
   Relay relay;
-  // GIVEN a client with an expression that is slow on some names, but not slow enough that the
-  // relay gives it up (long expressions may visit more), and a client that wants everything
+  // GIVEN a client with an expression that is slow on some names, but not so slow that the relay
+  // gives up the search (it allows more visits for long expressions). Another client wants
+  // everything
   const RawSocket slow(relay.port());
   ASSERT_TRUE(slow.Send(SubscriptionTo("(a|aa)+b" + std::string(240, 'c'))));
   runtime::Bus bus(relay.url());
@@ -183,7 +184,7 @@ TEST(HostileRelayClientTest, IsCutOffWhenItsExpressionsAreSlowOnEverNewNames) {
   bus.Subscribe("LAST", [&heard](runtime::Bytes) { ++heard; });
   const RawSocket sleeper(relay.port());
   ASSERT_TRUE(sleeper.Send(SubscriptionTo(".*")));
-  // WHEN another client publishes more and more new names of that kind
+  // WHEN a third client publishes more and more new names of that kind
   constexpr int kNames = 5000;
   for (int i = 0; i < kNames; ++i)
     bus.Publish(std::string(20, 'a') + std::to_string(i), Payload(1));

@@ -269,7 +269,8 @@ TEST(RelayTest, LetsLcmLoggerRecordEveryMessageOfARunInRealSpeed) {
   };
   const auto logged = payloads(stock);
   for (const auto& [channel, payload] : payloads(folder.File("own.lcm"))) {
-    // These differ: our log keeps one RUN, in another phase, and a seal, which no process sends.
+    // These channels differ: our log has one RUN, in another phase, and a seal, which no process
+    // sends.
     if (channel == ChannelOf<run_t>().name || channel == log::kLogSealChannel) continue;
     const auto [first, last] = logged.equal_range(channel);
     EXPECT_TRUE(std::any_of(first, last, [&](const auto& it) { return it.second == payload; }))

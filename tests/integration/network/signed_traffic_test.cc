@@ -31,8 +31,8 @@ class Intruder {
     }
   }
 
-  /// Called with every message of a run, see AccompanyUntilTheEnd(), which listens until the run
-  /// has ended. It skips repeated messages, messages of `other_runs`, and the intruder's own
+  /// AccompanyUntilTheEnd() listens until the run has ended, and calls this function with every
+  /// message. It skips repeated messages, messages of `other_runs`, and the intruder's own
   /// messages.
   using Answer = std::function<void(const std::string& channel, const Message& message)>;
   void AccompanyUntilTheEnd(const Background& run, const std::set<std::int64_t>& other_runs,
@@ -76,7 +76,7 @@ class Intruder {
   int count_ = 0;
 };
 
-/// A message with a later step number, for which its receivers still wait, and with other contents.
+/// A message with other contents and a later step, for which the receivers still wait.
 Message Forged(Message payload) {
   constexpr std::uint8_t kStepsAhead = 3;
   payload[runtime::kStepOffset + 7] =
@@ -219,7 +219,7 @@ TEST_F(SignedTrafficTest, UnsoundMessagesHaveNoEffectOnAnUnsignedRunEither) {
       Message nan;
       runtime::Encode(command, nan);
       intruder.Say(channel, nan);
-      // It comes in fragments, which the kernel's filter keeps from LCM's parser.
+      // This message comes in fragments, which the kernel's filter keeps from LCM's parser.
       const Message huge(300'000, 1);
       lcm_publish(lcm, channel.c_str(), huge.data(), static_cast<unsigned>(huge.size()));
     }

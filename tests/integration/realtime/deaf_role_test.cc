@@ -1,5 +1,6 @@
-// Real time on networks that lose one channel for good. The run names a role that does not hear it,
-// and starts the role again if the runner owns it. A run with a deaf role fails.
+// Real time on networks that lose one channel for good. The run names a role that does not hear
+// this channel, and starts the role again if the runner has started it. A run with a deaf role
+// fails.
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 
@@ -88,7 +89,8 @@ TEST_F(DeafRoleTest, AtTheEndIsAFailureOfTheRun) {
 TEST_F(DeafRoleTest, FromElsewhereIsNamed) {
   const Lab lab(2);
   Background driver(lab[1].On({Program("fogline-driver"), "--lcm-url", kUrl}));
-  // It is deaf after some 3 s and hears again; on a busy machine both may take a second more.
+  // The driver is deaf after some 3 s, and then hears again; on a busy machine both may take a
+  // second more.
   constexpr int kSeconds = 8;
   Background run(lab[0].On(RealtimeRun(kSeconds, {"--external", "driver"})));
   ASSERT_TRUE(run.WaitForErr("processes: "));

@@ -1,5 +1,5 @@
 // Real time on networks that lose many messages for a while. When the network is clean again, every
-// role computes again, whatever was lost. A run that succeeds has a whole log.
+// role computes again, whichever messages were lost. A run that succeeds has a whole log.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -38,9 +38,9 @@ struct BurstPlan {
   double clean_s;  // the time after each burst, without loss
 };
 
-/// What became of a role after a burst: from when the network was clean until it computed in time,
-/// which is within a period after the world began the step; the world itself, within two periods
-/// after it began the step before.
+/// The time that a role needed after a burst: from the moment at which the network was clean until
+/// the role computed in time. A role computes in time within a period after the world began the
+/// step. The world is in time within two periods after it began the step before.
 struct BackAfterBurst {
   Role role;
   std::optional<double> after_s;
@@ -83,7 +83,7 @@ class BurstMachines {
   std::vector<const Machine*> all_;
 };
 
-/// Hears, on the runner's machine, when the roles of a run publish which steps.
+/// Hears, on the runner's machine, the times at which the roles of a run publish steps.
 class BurstListener {
  public:
   BurstListener(const Machine& machine, Duration period) : period_(period) {
@@ -98,8 +98,8 @@ class BurstListener {
       bus_->Subscribe(ChannelOf<status_t>().name, [this](runtime::Arrival& arrival) {
         const auto* status = arrival.As<status_t>();
         if (status == nullptr || status->role != NameOf(Role::kRecorder)) return;
-        // The recorder sends STATUS only now and then, so its period does not count: it is back if
-        // its last written step began after the burst.
+        // The recorder does not send STATUS in every period. So it counts as back if its last
+        // written step began after the burst.
         if (began_.contains(status->header.step)) back_.try_emplace(Role::kRecorder, Clock::now());
       });
     });
@@ -184,7 +184,7 @@ class BurstRun {
 
  private:
   static constexpr double kRest_s = 2;  // seconds without bursts, at both ends of the run
-  // For the commands that begin and end a burst on each machine, beside other runs.
+  // Time for the commands that begin and end a burst on each machine, while other runs go on.
   static constexpr double kCommands_s = 1;
 
   std::vector<std::string> Command() const {
@@ -294,7 +294,7 @@ class LossBurstInRealtimeTest : public NetworkTest {
                                std::to_string(result.plan.machines) + " machines";
       EXPECT_EQ(result.trouble, "") << what;
       EXPECT_EQ(result.back.size(), result.plan.bursts.size()) << what;
-      // A burst is no reason to start a role again: none hangs, and none is deaf for long.
+      // A burst is no reason to start a role again: no role hangs, and no role is deaf for long.
       EXPECT_EQ(result.restarts, 0) << what;
       restarts_ += result.restarts;
       for (std::size_t i = 0; i < result.back.size(); ++i) {

@@ -1,5 +1,5 @@
-// Real time on a network that loses much: how long the recorder stays, what its log has, and what
-// the run says of messages that are lost for good.
+// Real time on a network that loses much: the stay of the recorder, the steps in its log, and the
+// text about messages that are lost for good.
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 
@@ -27,8 +27,8 @@ constexpr int kRate_hz = 50;
 // Far longer than any wait here, even on a busy machine.
 constexpr Duration kPatience = std::chrono::seconds(30);
 
-/// Hears, on the machine of a run, which step its world has begun, and whether its runner has said
-/// that it is over.
+/// Hears, on the machine of a run, the step that the world has begun, and whether the runner has
+/// said STOP.
 class Listener {
  public:
   explicit Listener(const Machine& machine) {
@@ -50,7 +50,7 @@ class Listener {
   bool LivesUntilStop(pid_t process) {
     const TimePoint end = Clock::now() + kPatience;
     while (!stopped_ && IsAlive(process) && Clock::now() < end) bus_->Wait(milliseconds(5));
-    // The process may have heard STOP a moment before this one.
+    // The process may have heard STOP a moment before this listener.
     const TimePoint grace = Clock::now() + milliseconds(200);
     for (TimePoint now = Clock::now(); !stopped_ && now < grace; now = Clock::now()) {
       bus_->Wait(grace - now);
@@ -77,7 +77,7 @@ class LossyNetworkInRealtimeTest : public NetworkTest {
     return machine_->On(Run({"--realtime", "--set", "/step_s=" + std::to_string(1.0 / kRate_hz),
                              "--set", "/steps=" + std::to_string(steps), "--lcm-url", kUrl}));
   }
-  /// Makes the network lose everything for this time. The tests are about this time.
+  /// Makes the network lose everything for this time. The tests are about the length of this pause.
   void LoseEverythingFor(Duration time) const {
     machine_->LoseUdp(100);
     std::this_thread::sleep_for(time);
@@ -112,7 +112,8 @@ TEST_F(LossyNetworkInRealtimeTest, ThatLosesAThirdAllTheTimeLeavesNoRoleDeaf) {
     EXPECT_EQ(outcome.code, kFailed);
     EXPECT_THAT(outcome.err, HasSubstr(kNotWhole));
   }
-  // Every role and the recorder hear and speak to the end, except for what is lost there.
+  // Every role and the recorder hear and send until the end, except for messages that are lost at
+  // the end.
   const auto newest = NewestSteps();
   for (std::size_t i = 0; i < kNumChannels; ++i) {
     if (kChannels[i].pace != Pace::kStep) continue;

@@ -3,8 +3,8 @@
 
 namespace fogline::test {
 
-/// Exit code of `fogline run` where a run failed. On a network that loses messages there is one
-/// allowed reason for it: the recorder cannot have everything again.
+/// Exit code of `fogline run` for a run that failed. On a network that loses messages it has one
+/// allowed reason: the recorder cannot get all messages again.
 inline constexpr int kFailed = 3;
 inline constexpr const char* kNotWhole =
     "fogline run: error: the log is not complete: it lacks at least ";

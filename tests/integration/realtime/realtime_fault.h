@@ -1,5 +1,5 @@
-// Runs in real time: a role is killed or stopped while the automation drives. What the cars do is
-// judged from the log.
+// Runs in real time: a role is killed or stopped while the automation drives. The tests judge the
+// motion of the cars from the log.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -20,8 +20,8 @@
 namespace fogline::test {
 
 inline constexpr double kPeriodS = kStepS / kSpeed;
-// From a role's last message until a reader calls it lost. kInForce: from then until the fallback
-// acts.
+// kDetection: from a role's last message until a reader reports the loss. kInForce: from the loss
+// until the fallback acts.
 inline constexpr std::int64_t kDetection = 3;  // periods
 inline constexpr std::int64_t kInForce = 1;
 // A role hears the runner's news within 100 ms: 5 periods.
@@ -74,8 +74,8 @@ inline FaultPlan PlanOf(const Fault& fault) {
     plan.settings = {dense ? "/fog/start_s=0" : "/fog/start_s=6.7"};
     plan.steps = plan.fault_step + 40 + kManoeuvre;
   } else if (fault.role == "recorder") {
-    // A second passes until the recorder's silence counts as a hang. At this speed it has no more
-    // periods than the other roles keep their messages for the recorder.
+    // A second passes until the recorder's silence counts as a hang. At this speed a second has no
+    // more steps than the other roles keep for the recorder.
     plan.speed = 2;
   }
   return plan;
@@ -93,7 +93,7 @@ inline void JudgeWithoutArbitrator(const Log& log, std::int64_t lost) {
       [](std::int8_t mode) { return mode == arbitration_t::MINIMAL_RISK; }, "the vehicle stops");
 }
 
-// The host goes on as it did; the following car stops.
+// The host drives as without the fault; the following car stops.
 inline void JudgeWithoutFollower(const Log& log, std::int64_t lost) {
   ExpectCommandsAreCarriedOut(log, 1, log.last());
   ExpectFollowerObeys(log, 1, lost);
@@ -166,8 +166,8 @@ inline void ExpectFaultLeavesNoCarUndecided(const Fault& fault) {
   run.WaitForStep(plan.fault_step);
   const std::int64_t step = run.Signal(fault.role, fault.signal);
   if (fault.role == "world") {
-    // Steps cannot tell how long the world was silent. This process may hear of it one period
-    // later.
+    // The steps do not show how long the world was silent. This process may hear of the loss one
+    // period later.
     const auto missed = run.WaitForTheWorldToBeMissed();
     EXPECT_TRUE(missed || fault.signal == SIGKILL) << "no role missed it";
     if (missed) {

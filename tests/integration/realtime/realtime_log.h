@@ -1,4 +1,4 @@
-// What the log of a run in real time says, and what must be true of the cars in it.
+// The contents of the log of a run in real time, and the rules for the cars in it.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -140,9 +140,9 @@ inline Car Follower(const truth_t& truth) {
   return {truth.follower_speed_mps.at(0), truth.follower_acceleration_mps2.at(0)};
 }
 
-/// In each step a process carries out the message that came for the step, or keeps to the one
-/// before, because no message came or it came too late. The log says which messages came. The
-/// process says how many of them came too late.
+/// In each step a process carries out the message that came for the step. If no message came, or it
+/// came too late, the process keeps to the message before. The log shows which messages came. The
+/// process reports how many of them came too late.
 class Obedience {
  public:
   /// @param role that obeys
@@ -205,7 +205,7 @@ inline void ExpectStandstillWithinLimits(const Log& log, std::int64_t step,
     const Car after = car(log.truth.at(k + 1));
     const double jerk = (after.acceleration_mps2 - before.acceleration_mps2) / kStepS;
     EXPECT_LE(std::abs(jerk), kJerkMps3 + kRounding) << "step " << k;
-    // A car that braked harder when it began releases the brake.
+    // A car that braked harder at the beginning releases the brake.
     EXPECT_GE(after.acceleration_mps2,
               std::min(-kDecelerationMps2, before.acceleration_mps2) - kRounding)
         << "step " << k;

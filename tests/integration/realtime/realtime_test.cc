@@ -37,8 +37,9 @@ TEST(RealtimeTest, UndisturbedItIsTheRunInLockstep) {
   const Outcome lockstep = RunCommand({Program("fogline"), "run", "scenario/paper.json", "--json",
                                        "--set", "/steps=60", "--transport", "direct"});
   std::int64_t misses = 0;
-  // If the machine stands still for half a period, it disturbs a run, and that run proves nothing.
-  // This does not happen in every run. A period of 50 ms outlasts most such moments.
+  // If the machine stands still for half a period, this disturbs the run, and the run proves
+  // nothing. So the test tries several runs. With a period of 50 ms most such moments are shorter
+  // than half a period.
   constexpr int kTries = 5;
   constexpr double kSlowly = 2;
   for (int i = 0; i < kTries; ++i) {
@@ -57,11 +58,12 @@ TEST(RealtimeTest, UndisturbedItIsTheRunInLockstep) {
          << " steps had to do without an input";
 }
 
-// A column of ACCs and people follows the driver. None of them may miss a step.
+// A column of ACCs and people follows the driver. Every step must have commands for
+// all of them.
 TEST(RealtimeTest, ADriverWhoIsLateEndsTheManoeuvreAndTheLogTellsHisTimes) {
   constexpr int kSteps = 140;
   constexpr int kColumn = 5;
-  // Times are compared to the step here, so a period is longer than a moment in which a busy
+  // The test compares times step by step. So a period is longer than the moments in which a busy
   // machine stands still.
   RealtimeRun run(
       "scenario/dense_fog.json", kSteps, kSpeed / 2,
@@ -79,7 +81,7 @@ TEST(RealtimeTest, ADriverWhoIsLateEndsTheManoeuvreAndTheLogTellsHisTimes) {
   const auto after_s = [&](const char* what) {
     return requests.at(0)[what].get<double>() - requests.at(0)["requested_s"].get<double>();
   };
-  // A decision is a step late if its inputs are.
+  // A decision is a step late if its inputs are late.
   EXPECT_NEAR(after_s("manoeuvre_s"), 10, kStepS + kRounding);
   EXPECT_GE(after_s("manoeuvre_s"), 10 - kRounding);
   EXPECT_NEAR(after_s("acknowledged_s"), 10.6, kStepS + kRounding);

@@ -49,7 +49,7 @@ inline std::map<std::string, std::vector<std::int64_t>> MemoryIn(const std::stri
   return memory;
 }
 
-/// Milliseconds that the hypervisor has given to other machines since this one started.
+/// Milliseconds of this machine that the hypervisor has given to other machines since the start.
 inline std::int64_t StolenMs() {
   std::ifstream stat("/proc/stat");
   std::string cpu;

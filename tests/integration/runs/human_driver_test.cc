@@ -1,5 +1,5 @@
-// A driver with human weaknesses: the digest is the same on every transport, whichever roles read
-// each other.
+// A driver with human weaknesses: the digest is the same on every transport, also if driver and
+// arbitrator read each other's messages.
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>

@@ -13,7 +13,7 @@
 namespace fogline::test {
 namespace {
 
-/// The LiDAR loses the car in about step 15. Transfers of the wheel are smooth.
+/// The LiDAR loses the car at about step 15. Transfers of the wheel are smooth.
 const std::vector<std::string> kFoggy{"/steps=60",
                                       "/fog/start_s=1",
                                       "/fog/duration_s=4",

@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
-# run_memory.sh FOGLINE TRANSPORT: the peak memory of no process of a run grows by more than a tenth
-# from a run of 5,000 steps to one of 50,000.
+# run_memory.sh FOGLINE TRANSPORT: the peak memory of each process in a run of 50,000 steps is at
+# most a tenth above that in a run of 5,000 steps.
 set -euo pipefail
 cd "$(dirname "$0")/../../.."
 fogline=$1
 transport=$2
-# tools/test removes what killed tests have left in this folder.
+# tools/test removes the files of killed tests in this folder.
 scratch="$(dirname "$fogline")/../Testing/tmp"
 mkdir -p "$scratch"
 folder=$(mktemp -d "$scratch/memory-XXXXXX")

@@ -76,7 +76,8 @@ TEST(RunTest, PrintsDigitsThatMeanSomethingAndHasAllOfThemInJson) {
   const auto json = RunPaper(folder.File("run.lcm"), more)["metrics"];
   const Outcome text = RunCommand({Program("fogline"), "metrics", folder.File("run.lcm")});
   ASSERT_EQ(text.code, 0) << text.err;
-  // THEN the text has no time to collision of a year, and no long row of decimals for almost 0
+  // THEN the text does not print a time to collision of a year, nor a number near 0 with many
+  // decimals
   EXPECT_GT(json["min_follower_ttc_s"], 1e6);
   EXPECT_THAT(text.out, ContainsRegex("min_follower_ttc_s +> 1000 s\n"));
   EXPECT_GT(json["max_compromised_safety_m"], 0);
@@ -202,7 +203,7 @@ TEST(RunTest, SpeaksOfNoStepBeforeTheFirst) {
       << run.Err();
   run.Signal(SIGKILL);
   run.Wait();
-  // THEN neither the run's text nor that about its log mentions a step -1
+  // THEN neither the text of the run nor the text about its log mentions a step -1
   const Outcome metrics = RunCommand({Program("fogline"), "metrics", log});
   EXPECT_EQ(metrics.code, 1);
   EXPECT_EQ(metrics.err, log + ": no step of 500 is complete\n");

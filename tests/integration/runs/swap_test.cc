@@ -322,7 +322,7 @@ TEST(SwapTest, TwoProcessesOfOneRoleAreRefusedByName) {
   const std::string url = runtime::FreshMulticastUrl();
   ListeningDriver one(bare, url);
   ListeningDriver two(bare, url);
-  // In real speed, so that the run still goes on when a busy machine starts one of them late
+  // The run has real speed, so it still goes on when a busy machine starts one of the drivers late
   auto command = RunWithExternalDriver(Program("fogline"), url, elsewhere.File("run.lcm"));
   command.insert(command.end(), {"--pace", "1"});
   const Outcome run = RunCommand(command);

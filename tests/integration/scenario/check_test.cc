@@ -44,8 +44,7 @@ std::vector<std::string> BadNames(const std::string& extension) {
   return names;
 }
 
-// It runs in the repository's folder, so that error texts have the file names that the tests
-// expect.
+// The test runs in the repository's folder, so that error texts have the expected file names.
 class BadScenarioTest : public testing::TestWithParam<std::string> {
  protected:
   BadScenarioTest() { fs::current_path(SourceDirectory()); }

@@ -1,5 +1,5 @@
-// The benchmarks measure: they start what they compare, and print figures. Whether a goal is met
-// depends on the machine, so it is not tested.
+// The benchmarks start the programs that they compare, and print figures. Whether a goal is met
+// depends on the machine, so the tests do not examine this.
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// The README and the pages in docs/ say what the code says, and what their commands print.
+// The README and the pages in docs/ agree with the code, and with the output of their commands.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -48,7 +48,7 @@ class Clone {
     return RunCommand(command, std::chrono::seconds(250));
   }
 
-  /// Executes a command that must succeed. @return what it prints
+  /// Executes a command that must succeed. @return its output
   std::string Must(const std::string& command) const {
     const Outcome outcome = Run(command);
     EXPECT_EQ(outcome.code, 0) << command << "\n" << outcome.out << outcome.err;
@@ -75,9 +75,9 @@ std::string ScriptOf(const std::vector<Block>& blocks) {
   return script;
 }
 
-/// Expects that each block "text" shows lines of what the commands above it print, in their order.
-/// A line "..." stands for other lines. What follows a time, such as " in 0.62 s", may differ.
-/// @return the number of lines that were compared
+/// Expects that each block "text" shows lines of the output of the commands above it, in their
+/// order. A line "..." stands for other lines. The rest of a line after a time, such as " in 0.62
+/// s", may differ. @return the number of lines that were compared
 int ExpectShows(const std::vector<Block>& blocks, const std::string& out) {
   static const std::regex kTime(" in [0-9.]+ s.*");
   int compared = 0;

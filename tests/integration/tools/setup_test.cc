@@ -1,4 +1,4 @@
-// tools/setup installs what package-lock.json names once, and again if it is not whole.
+// tools/setup installs the packages of package-lock.json once, and again if they are not whole.
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -18,11 +18,11 @@ using ::testing::HasSubstr;
 using ::testing::MatchesRegex;
 using ::testing::Not;
 
-/// What npm installs.
+/// The file that npm installs.
 constexpr const char* kFile = "node_modules/chart/chart.js";
 
 /// A clone of a user without root. The machine has all Debian packages but npm, an npm of its own,
-/// and only the programs below. `$user` is who calls a program.
+/// and only the programs below. `$user` is the user who calls a program.
 class SetupTest : public testing::Test {
  protected:
   SetupTest() {
@@ -105,7 +105,7 @@ TEST_F(SetupTest, InstallsAgainWhatIsNotWhole) {
 }
 
 TEST_F(SetupTest, InstallsAgainAfterAnInterrupt) {
-  // GIVEN an installation that ends in its middle, with setup
+  // GIVEN an installation that is killed in its middle, together with setup
   std::filesystem::copy_file(File("bin/npm"), File("tmp/npm"));
   Write("npm", "[ $1 = ci ] || exit 0; mkdir -p node_modules/chart; kill -KILL $PPID");
   EXPECT_EQ(Setup().code, 128 + 9);

@@ -28,8 +28,8 @@ public final class SpyProbe {
         System.out.flush();
         rowsShown = rows;
       } catch (IndexOutOfBoundsException error) {
-        // lcm-spy adds rows on its LCM thread and was just about to add this one. The next look
-        // finds it.
+        // lcm-spy adds rows on its LCM thread, and was just adding this row. The next look finds
+        // the row.
       }
     }
   }

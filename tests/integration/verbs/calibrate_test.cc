@@ -109,7 +109,7 @@ TEST_F(CalibrateTest, RecoversHeadwayAndWeightOfTheFollower) {
   const json found = Calibrate(
       {"/follower/headway_s=1.2:2", "/follower/weight_control=0.1:100:log"}, {"--seeds", "1"});
   EXPECT_NEAR(found["fields"][0]["value"], 1.43, kShareOfRange * 0.8);
-  // The range is three decades on a logarithmic scale, so that share is a factor of 1.035.
+  // The range is three decades on a logarithmic scale, so kShareOfRange of it is a factor of 1.035.
   EXPECT_NEAR(found["fields"][1]["value"], 3, 0.035 * 3);
 }
 
@@ -136,7 +136,7 @@ TEST_F(CalibrateTest, WritesTheScenarioWithWhatItFound) {
   expected.replace(expected.find("Without noise"), 13, "Found");
   EXPECT_EQ(TextOf(out_), expected);
   EXPECT_EQ(RunFogline({"check", out_}).code, 0);
-  // AND its table is the one that calibrate reported
+  // AND the table of this file is the one that calibrate reported
   const Outcome table =
       RunFogline({"table", out_, "--thresholds", "0.3,0.4,0.5,0.6,0.7", "--seeds", "1", "--json"});
   const json rows = json::parse(table.out)["rows"];

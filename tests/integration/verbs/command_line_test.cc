@@ -219,7 +219,7 @@ TEST(CommandLineTest, ARunThatLacksDescriptorsFailsAndItsInputIsNotCalledBad) {
   const ScratchFolder folder;
   int failed = 0;
   for (const char* transport : {"udpm", "memq", "tcpq", "direct"}) {
-    for (int limit = 12; limit <= 28; limit += 4) {  // fewer do not suffice to load libraries
+    for (int limit = 12; limit <= 28; limit += 4) {  // fewer do not suffice for the libraries
       const Outcome outcome =
           RunCommand({"sh", "-c", fmt::format("ulimit -n {}; exec \"$@\"", limit), "sh",
                       Program("fogline"), "run", "scenario/paper.json", "--set", "/steps=5",
@@ -241,8 +241,7 @@ TEST(CommandLineTest, ARunThatLacksDescriptorsFailsAndItsInputIsNotCalledBad) {
 
 TEST(CommandLineTest, PrintsNoNameThatATerminalWouldObey) {
   const ScratchFolder folder;
-  // This name changes the colour, breaks the line, and reverses the direction of the text behind
-  // it.
+  // This name changes the colour, breaks the line, and reverses the direction of the text after it.
   const std::string log = folder.File("a\x1b[31m\nb\xe2\x80\xae.lcm");
   const std::string shown = folder.File("a\\u001b[31m\\u000ab\\u202e.lcm");
   const auto expect_shown = [&](std::vector<std::string> arguments) {

@@ -1,5 +1,5 @@
-// What a program does if it cannot write to stderr, or if no process reads its stderr; and which
-// signals end it.
+// Programs that cannot write to stderr, or whose stderr no process reads; and the signals that end
+// a program.
 #include <fcntl.h>
 #include <sys/ioctl.h>
 #include <sys/stat.h>
@@ -75,7 +75,7 @@ pid_t WaitForRole(pid_t run, const std::string& program) {
     for (const pid_t child : ChildrenOf(run)) {
       if (Content("/proc/" + std::to_string(child) + "/comm").starts_with(program)) return child;
     }
-    std::this_thread::sleep_for(kLookEvery);  // no event tells that a process was started
+    std::this_thread::sleep_for(kLookEvery);  // no event shows that a process was started
   }
   return 0;
 }

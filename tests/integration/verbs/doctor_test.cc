@@ -57,7 +57,7 @@ TEST(DoctorTest, NamesTheRoleThatRunsByItselfAndLeavesItAlone) {
   const std::string name = "fogline-radar (pid " + std::to_string(role.pid()) + ")";
   const TimePoint end = Clock::now() + kPatience;
   Outcome doctor{};
-  do {  // until exec() has made it the program that it is to be
+  do {  // until exec() has replaced the child by the program
     doctor = RunCommand({Program("fogline"), "doctor"});
   } while (doctor.out.find(name) == std::string::npos && Clock::now() < end);
   EXPECT_THAT(doctor.out, HasSubstr("warning  " + name + " on " + url +
@@ -167,7 +167,7 @@ TEST_F(DoctorOnMachineTest, HearsTheRunOfAnotherMachine) {
   const json document = json::parse(doctor.out);
   const std::string heard = Find(document["findings"], "check", "other_runs")["what"];
   EXPECT_THAT(heard, HasSubstr("run " + run.Err().substr(4, run.Err().find(" on ") - 4)));
-  // Processes are those of this computer, whatever network they are on.
+  // The doctor names the processes of this computer on all networks.
   EXPECT_THAT(doctor.out, HasSubstr("fogline (pid " + std::to_string(run.pid()) +
                                     ") has a run with 9 processes on " + kEverywhere));
   for (const RoleInfo& info : kRoles) {

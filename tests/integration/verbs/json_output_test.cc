@@ -17,7 +17,8 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-/// A log behind a recorded leader (for `compare`). The verbs that read a log read this one.
+/// A log of a run behind a recorded leader, as `compare` needs it. All verbs that read a log read
+/// this log.
 class JsonOutputTest : public testing::Test {
  protected:
   JsonOutputTest() : log_(folder_.File("run.lcm")) {

@@ -63,8 +63,8 @@ std::map<std::int64_t, std::string> ScenarioTexts(const std::vector<Payload>& pa
   return parts;
 }
 
-/// Publishes on a channel of no role until `seen` is true. The program that has seen the mark
-/// listens and has got everything that was sent before it. @return false after kPatience
+/// Publishes a mark, on a channel of no role, until `seen` is true. A program that has seen the
+/// mark listens, and has got all messages before the mark. @return false after kPatience
 bool Mark(runtime::Bus& bus, const std::string& channel, const std::function<bool()>& seen) {
   const auto end = Clock::now() + kPatience;
   while (!seen()) {
@@ -76,7 +76,7 @@ bool Mark(runtime::Bus& bus, const std::string& channel, const std::function<boo
 }
 
 /// The command, with real-time priority if that is permitted. lcm-logger queues 30 messages and
-/// loses the ones beyond that: on a busy machine, those of a few milliseconds.
+/// loses further ones. On a busy machine it would lose the messages of some milliseconds.
 std::vector<std::string> BeforeOtherWork(std::vector<std::string> command) {
   const std::vector<std::string> first{"chrt", "--rr", "1"};
   std::vector<std::string> probe = first;
@@ -224,9 +224,10 @@ std::size_t PlayedAndVerified(const std::string& log, const std::string& key) {
 // may lose later messages of this interval if it gets no processor time.
 constexpr std::int64_t kStepsOfSpy = 10;
 
-/// The driver of a run. It answers for a step only after lcm-logger has written everything that was
-/// sent before. lcm-logger queues 30 messages, and lcm-spy as many as its socket holds. Neither can
-/// promise more on a busy machine. A run that waits for its driver sends fewer messages at a time.
+/// The driver of a run. It answers for a step only after lcm-logger has written all messages
+/// before. lcm-logger queues 30 messages, and lcm-spy as many as its socket holds; on a busy
+/// machine both lose further messages. A run that waits for its driver sends fewer messages at a
+/// time.
 class DriverThatWaits {
  public:
   DriverThatWaits(const std::string& url, const std::string& key, Logger& logger, Spy& spy)

@@ -84,7 +84,7 @@ TEST_F(OutputFilesTest, TwoReportsAtOnceOnOneFileEachWriteAWholePage) {
     pages.push_back(Content(page_));
   }
   ASSERT_NE(pages[0], pages[1]);
-  // WHEN both are reported at once, so often that two reports meet, THEN the page is one of the two
+  // WHEN both are reported at the same time, many times, THEN the page is always one of the two
   // pages
   constexpr int kPairs = 20;
   for (int pair = 0; pair < kPairs; ++pair) {

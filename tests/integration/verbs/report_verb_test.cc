@@ -60,7 +60,7 @@ TEST(ReportVerbTest, DrawsTheValuesOfTheTable) {
   const Outcome table = RunCommand({Program("fogline"), "table", "scenario/paper.json",
                                     "--thresholds", "0.2:0.8:7", "--seeds", "3:12", "--json"});
   ASSERT_EQ(table.code, 0) << table.err;
-  // THEN they agree to the last bit
+  // THEN curves and table agree to the last bit
   const nlohmann::json curves = DataOf(Read(file))["curves"];
   const nlohmann::json rows = nlohmann::json::parse(table.out)["rows"];
   ASSERT_EQ(rows.size(), 7U);
@@ -120,10 +120,10 @@ TEST(ReportVerbTest, WritesThePageOfALogThatIsCutOffMarksItThereAndExitsWith1) {
   // THEN the page is written, and the exit code says that a check failed
   EXPECT_EQ(report.code, 1);
   EXPECT_EQ(report.out, page + "\n");
-  // AND stderr says what the log lacks
+  // AND stderr names the missing part of the log
   EXPECT_THAT(report.err, ContainsRegex(cut + ": cut off after event [^;]*; .*; ends after step "
                                               "[0-9]+ of 220"));
-  // AND the page says so at that run only
+  // AND the page says so for this run only
   const nlohmann::json runs = DataOf(Read(page))["runs"];
   EXPECT_EQ(runs[0]["badge"], "");
   const std::string badge = runs[1]["badge"];

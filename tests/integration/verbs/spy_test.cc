@@ -1,5 +1,5 @@
 // `fogline spy` starts LCM's lcm-spy with all files that it needs, on the network of the run.
-// lcm_tools_test.cc tests what lcm-spy then shows.
+// lcm_tools_test.cc tests the contents of its window.
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 

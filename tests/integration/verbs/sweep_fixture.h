@@ -68,8 +68,8 @@ class SweepFixture : public testing::Test {
     }
     return names;
   }
-  /// Waits until a sweep in the background has written `lines` lines. It looks at the file, because
-  /// the sweep reports to no other process. @return false after a minute
+  /// Waits until a sweep in the background has written `lines` lines. The test looks at the file,
+  /// because the sweep reports to no other process. @return false after a minute
   bool WaitForLines(const std::string& name, std::int64_t lines) const {
     const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(60);
     while (Lines(Content(File(name))) < lines) {

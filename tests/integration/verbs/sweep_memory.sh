@@ -6,7 +6,7 @@ cd "$(dirname "$0")/../../.."
 fogline=$1
 runs=$2
 shift 2
-# tools/test removes what killed tests have left in this folder.
+# tools/test removes the files of killed tests in this folder.
 scratch="$(dirname "$fogline")/../Testing/tmp"
 mkdir -p "$scratch"
 folder=$(mktemp -d "$scratch/memory-XXXXXX")

@@ -110,7 +110,7 @@ TEST_F(SweepMergeTest, DoesNotMergeOverAFileThatIsThere) {
 TEST_F(SweepMergeTest, DoesNotBelieveARowWithoutAChecksum) {
   const Words sweep = kShort + Words{"--seeds", "1:8"};
   const Words shards = Shards(2, sweep);
-  // GIVEN checksums that end early, and another digit in the row behind them
+  // GIVEN checksums that end early, and a changed digit in the row after them
   std::filesystem::resize_file(File(shards[1] + ".sums"), 3 * 9);
   std::string text = Content(File(shards[1]));
   const std::string whole = text;

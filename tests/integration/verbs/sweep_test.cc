@@ -1,5 +1,5 @@
 // `fogline sweep` as a person uses it: the real program, which the tests kill, resume, and call
-// with bad arguments. They judge the bytes of its file.
+// with bad arguments. The tests compare the bytes of its file.
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -58,7 +58,8 @@ TEST_F(SweepTest, GoesOnAfterAKillWithoutLosingOrRepeatingARow) {
     ASSERT_LT(Lines(Content(File(name))), Lines(whole));
     // WHEN the same command is called again
     const Outcome resumed = Sweep(name, sweep);
-    // THEN it reports how many rows the file had, and the file equals that of an undisturbed sweep
+    // THEN the sweep reports how many rows the file had, and the file equals that of an undisturbed
+    // sweep
     EXPECT_EQ(resumed.code, 0) << resumed.err;
     EXPECT_THAT(resumed.err, HasSubstr("of 4500 rows are there\n"));
     EXPECT_TRUE(Content(File(name)) == whole) << lines;
@@ -70,8 +71,8 @@ TEST_F(SweepTest, GoesOnWhereverAKillHasTornTheFile) {
   const std::string whole = Made("torn.csv", sweep);
   const std::size_t header = whole.find('\n') + 1;
   const std::size_t second_row = whole.find('\n', header) + 1;
-  // In the header, behind it, in the first row, behind that row (its unit has three rows), and
-  // anywhere.
+  // The file is cut in the header, after it, in the first row, after that row (in the middle of a
+  // unit, which has three rows), and at regular distances.
   std::vector<std::size_t> cuts{0,          1,          header - 1,       header,
                                 header + 1, second_row, whole.size() - 1, whole.size()};
   for (std::size_t cut = 0; cut < whole.size(); cut += whole.size() / 13) cuts.push_back(cut);
@@ -173,8 +174,8 @@ TEST_F(SweepTest, NoticesADigitThatItHasNotWritten) {
                              ": error: --out: the line differs from the one that this sweep has "
                              "written there; --force starts over\n");
   EXPECT_EQ(Content(File("file.csv")), text);
-  // AND without the checksum file the sweep accepts the rows as they are, and checks them from then
-  // on
+  // AND without the checksum file the sweep accepts the rows as they are, and makes checksums for
+  // later checks
   std::filesystem::remove(File("file.csv.sums"));
   EXPECT_EQ(Sweep("file.csv", sweep).code, 0);
   std::filesystem::resize_file(File("file.csv"), text.size());
@@ -277,8 +278,7 @@ TEST_F(SweepTest, VariesTheFieldsOfAListsItems) {
   const Words cars{"--set", R"(/followers/cars=[{"driver":"human"},{"driver":"acc"}])"};
   const Words axis{"--grid", "/followers/cars/0/style=normal,aggressive", "--seeds", "1:1"};
   const std::string rows = Made("rows.csv", kShort + cars + axis);
-  // The row of the sweep equals the row of the same cars without a grid, after the grid's own
-  // value.
+  // After the value of the grid, the row equals that of a sweep of the same cars without a grid.
   const Words aggressive{
       "--set", R"(/followers/cars=[{"driver":"human","style":"aggressive"},{"driver":"acc"}])",
       "--seeds", "1:1"};

@@ -166,7 +166,7 @@ TEST(TableOfRunsTest, IsTheSameWithADriverFromElsewhereThatIsStartedForEveryRun)
   // GIVEN a driver that a shell starts again each time it has exited
   Background drivers(
       {"bash", "-c", "while \"$@\"; do :; done", "-", Program("fogline-driver"), "--lcm-url", url});
-  // THEN it takes part in both runs of the table
+  // THEN the driver takes part in both runs of the table
   std::vector<std::string> external = what;
   external.insert(external.end(), {"--external", "driver", "--lcm-url", url});
   EXPECT_EQ(TableRows(external), TableRows(what));

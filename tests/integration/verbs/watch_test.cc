@@ -29,7 +29,7 @@ using testing::HasSubstr;
 
 // Programs start and messages arrive within this time, even when every processor is busy.
 constexpr seconds kPatience(30);
-// Longer than any test needs top.
+// Longer than the duration of any test with top.
 constexpr seconds kTopFor(240);
 
 /// `fogline top --json`, which prints a document for each interval until the test ends.
@@ -99,8 +99,8 @@ TEST(TopTest, ShowsEveryRoleAndChannelOfARunAtItsPace) {
   const TimePoint end = Clock::now() + kPatience;
   while (step < 5 && Clock::now() < end) bus.Wait(milliseconds(100));
   ASSERT_GE(step, 5) << run.Err();
-  // WHEN top watches it for two seconds in which this machine disturbs neither the run's pace nor
-  // top itself, which counts a message when it gets to it
+  // WHEN top watches the run for two seconds in which this machine disturbs neither the run's pace
+  // nor top, which counts a message when it handles the message
   std::string shown;
   for (int tries = 0; !ShowsPace(shown) && tries < 15; ++tries) {
     uneven = 0;

@@ -1,6 +1,6 @@
-// A run in real time with a counted clock: all roles are in one process. Each role can fall silent
-// at a step. A role that lacks an input then falls silent too, as its process would. The arbitrator
-// and the world go on with the inputs that they have.
+// A run in real time in one process with all roles. Its clock is a number that the loop increases.
+// Each role can fall silent at a step. A role that then lacks an input falls silent, too, as its
+// process would. The arbitrator and the world go on with the inputs that they have.
 #pragma once
 
 #include <array>
@@ -44,8 +44,8 @@ class Line {
   std::optional<M> newest_;
 };
 
-/// The visible data of a step: the truth, the offers, the arbitrator's command (all nullptr if
-/// their role is silent), and the command that the vehicle carries out in this step.
+/// The visible data of a step: the truth, the offers and the arbitrator's command (nullptr if the
+/// role is silent), and the command that the vehicle carries out in this step.
 struct Moment {
   const truth_t& truth;
   const accel_command_t* automation;

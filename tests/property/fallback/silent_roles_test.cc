@@ -1,5 +1,5 @@
-// Each role falls silent at many steps of the shipped scenarios. The tests check what the vehicle
-// does.
+// Each role falls silent at many steps of the shipped scenarios. The tests check the motion of the
+// vehicle.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>

@@ -24,8 +24,8 @@ class ValueDraw {
   /// Uniform in 0 to n - 1 (with a bias below 2^-40 for small n). @pre n > 0
   std::size_t Below(std::size_t n) { return static_cast<std::size_t>(engine_() % n); }
 
-  /// A number in [min, max] of any magnitude: an end, a round number, zero of either sign, a tiny
-  /// number, or any other.
+  /// A number in [min, max] of any magnitude: an end of the range, a round number, zero of either
+  /// sign, a tiny number, or another number.
   double Number(double min, double max) {
     const double share = static_cast<double>(engine_() >> 11U) * 0x1p-53;
     double value = min + (max - min) * share;

@@ -1,4 +1,4 @@
-// Short runs in the process of a test, and what their logs say.
+// Short runs in the process of a test, and the contents of their logs.
 #pragma once
 
 #include <cstdint>
@@ -26,7 +26,7 @@ inline runner::ExperimentOptions Direct(const std::filesystem::path& log) {
   return options;
 }
 
-/// Everything that a log says besides its steps.
+/// The contents of a log except its steps.
 inline log::RunLog ReadToTheEnd(const std::filesystem::path& file) {
   log::RunLogReader reader(file);
   while (reader.Next() != nullptr) {

@@ -138,7 +138,8 @@ TEST(AccControllerPropertyTest, PlansOfAFasterCarLoseSpeedAsInAFallback) {
   EXPECT_GT(faster, 100);
 }
 
-// The controller takes the precomputed gain only if the plan also keeps the soft limits.
+// The controller uses the plan of the precomputed gain only if this plan also keeps the soft
+// limits.
 TEST(AccControllerPropertyTest, UnconstrainedPlansKeepTheMinimumGapAndDoNotReverse) {
   int close = 0;
   ForRandomSituations(5, [&](const AccSection& section, double step_s, const auto& input,
@@ -172,7 +173,7 @@ TEST(AccControllerPropertyTest, TheCommandGoesOnFromTheRealAcceleration) {
   });
 }
 
-// The leader drives at any time as the automation itself may drive.
+// The leader always keeps the limits of the automation.
 TEST(AccControllerPropertyTest, NeverHitsALeaderThatBrakesNoHarderThanItself) {
   Draw draw(7);
   const AccSection section;

@@ -3,9 +3,10 @@
 
 usage: qp_against_cvxopt.py QP_PROBLEMS
 
-Runs the program QP_PROBLEMS, whose source says what it writes, and solves each of its problems
-again. Fails if a solution breaks a limit or costs more than 1e-6 more (relative), if one is so
-cheap that CVXOPT must be wrong, or if fewer than 900 of 1,000 problems have active limits.
+Runs the program QP_PROBLEMS, whose source describes its output, and solves each of its problems
+again. Fails if a solution breaks a limit, or if its cost is more than 1e-6 (relative) above that of
+CVXOPT. Also fails if a cost is so low that CVXOPT must be wrong, or if fewer than 900 of 1,000
+problems have active limits.
 """
 import array
 import subprocess

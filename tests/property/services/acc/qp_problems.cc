@@ -33,7 +33,7 @@ void Write(const QuadraticProgram& program, const Eigen::VectorXd& x) {
 // written
 bool SolveAndWrite(acc::QpSolver& solver, const QuadraticProgram& program) {
   const acc::QpSolver::Result result = solver.Solve(program.linear, program.lower, program.upper);
-  // It also writes an unsolved program, so that the comparison fails.
+  // An unsolved program is written, too, so that the comparison fails.
   if (result.status == acc::QpSolver::Status::kOptimal && solver.multipliers().isZero(0))
     return false;
   Write(program, solver.solution());

@@ -37,7 +37,8 @@ TEST(DegreeOfConflictPropertyTest, GrowsWithTheConflictAndIsSymmetricAboutTheCen
   }
 }
 
-// A simple window with deque and loops must agree exactly: no drift, and no old value.
+// The window must agree exactly with a simple one made of a deque and loops: its sums do not drift,
+// and it contains no old value.
 TEST(ConflictWindowPropertyTest, AveragesTheLastStepsAndNothingElse) {
   for (const std::size_t length : {1, 2, 7, 8, 50}) {
     conflict::ConflictWindow window(static_cast<int>(length));
@@ -84,7 +85,7 @@ TEST(ConflictWindowPropertyTest, MeanOfAbsoluteIsNeverBelowTheOtherReading) {
   for (int k = 0; k < 2000; ++k) {
     window.Push(AnyDifference(random, k));
     const double absolute = window.Conflict(kAbsolute);
-    ASSERT_GE(absolute * (1 + 1e-15), window.Conflict(kSigned));  // another order of rounding
+    ASSERT_GE(absolute * (1 + 1e-15), window.Conflict(kSigned));  // rounding
     ASSERT_GE(window.Conflict(kSigned), 0);
   }
 }

@@ -50,8 +50,8 @@ extern "C" void* aligned_alloc(std::size_t align, std::size_t size) {
 namespace fogline::test {
 namespace {
 
-// Allocations during random steps of the ACC with and without a target, calm and hopeless. It
-// counts the steps in which the solver ran.
+// Allocations during random steps of the ACC, with and without a target, from calm to hopeless.
+// Counts the steps in which the solver ran.
 long ControllerAllocations(int& solver_steps) {
   Draw draw(1);
   acc::AccController acc(AccSection{}, 0.1);

@@ -28,8 +28,7 @@ void ChangeTraffic(Draw& draw, Scenario& scenario) {
   scenario.road.grade = {{0, draw.Uniform(-0.05, 0.05)}, {500, draw.Uniform(-0.05, 0.05)}};
 }
 
-/// Changes a scenario so that it shares some parts with the one before and differs in others, as in
-/// a sweep.
+/// Changes some parts of a scenario and keeps others, as between two rows of a sweep.
 void Change(Draw& draw, Scenario& scenario) {
   scenario.seed = draw.Integer(0, 1000);
   scenario.steps = draw.Integer(1, 300);

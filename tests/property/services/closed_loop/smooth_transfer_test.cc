@@ -1,4 +1,4 @@
-// Transfers in the whole loop: the benefit and the cost of smooth ones, and the automation's return
+// Transfers in the whole loop: benefit and cost of smooth transfers, and the automation's return
 // without a bump.
 #include <algorithm>
 #include <cmath>
@@ -80,7 +80,8 @@ TEST(SmoothTransferProperty, EveryProfileIsSmoothInThePapersExperimentForThreePo
   }
 }
 
-// If the fog makes the automation brake, the paper's abrupt transfer jumps by more than 1 m/s2.
+// If the fog makes the automation brake, the command jumps by more than 1 m/s2 at the paper's
+// abrupt transfer.
 TEST(SmoothTransferProperty, ALimitedCommandTakesTheJerkOutOfHandOversInDenseFogForNothing) {
   Scenario scenario = DenseFog();
   const Outcome abrupt = OutcomeOf(scenario, 20);
@@ -162,7 +163,7 @@ class Ramp {
 };
 
 /// The command by definition, from the mixed offers. Each change of the request starts the limit;
-/// it ends when the command has caught up with the offers.
+/// the limit ends when the command has caught up with the offers.
 class Limit {
  public:
   explicit Limit(const Scenario& scenario)
@@ -264,8 +265,8 @@ TEST(SmoothTransferProperty, EveryCommandOfARunIsTheOneThatItsProfileDefines) {
 }
 
 // The ACC plans from the real acceleration of the host. So in every step of a return (a jump or a
-// ramp) its offer differs from the last command by at most the engine's share of one change of u,
-// whichever side gave that command. The ACC's own share of the new command makes no bump.
+// ramp) its offer differs from the last command by at most (1 - exp(-step/T_e)) times one change of
+// u, whichever side gave that command. The ACC's own share of the new command makes no bump.
 TEST(BumplessTransferProperty, TheAutomationReturnsFromTheAccelerationThatTheHostHas) {
   constexpr double kRounding = 1e-9;
   for (const TransferProfile profile : kAllProfiles) {

@@ -1,5 +1,4 @@
-// The fallback in the closed loop of the shipped scenarios, with drivers who come and drivers who
-// do not.
+// The fallback in the closed loop of the shipped scenarios. Some drivers come, others do not.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -127,9 +126,9 @@ double LeftInTheFirstStep(const Scenario& scenario) {
 }
 
 // In the step in which the driver takes over, or the automation gets control back, the command
-// contains the new side's offer: all of it, or on a ramp the share of the ramp's first step. So the
-// command differs from what the old side would have commanded by that share of the difference
-// between both offers. A driver who ends a manoeuvre has full authority at once.
+// contains a share of the new side's offer: all of it, or on a ramp the share of the ramp's first
+// step. So the command differs from the old side's offer by this share of the difference between
+// both offers. A driver who ends a manoeuvre has full authority at once.
 TEST_F(TakeOverLoopTest, ATransferIsFeltInItsStepWhateverTheProfile) {
   for (const TransferProfile profile : {TransferProfile::kStep, TransferProfile::kLinear,
                                         TransferProfile::kSigmoid, TransferProfile::kJerkLimited}) {

@@ -54,7 +54,7 @@ TEST(DriverProperty, StaysWithinTheLimitsOfTheCarAndOfAwarenessWhateverIsHumanAb
       ASSERT_GE(command.acceleration_mps2, -scenario.driver.max_deceleration_mps2);
       ASSERT_LE(command.acceleration_mps2, scenario.driver.max_acceleration_mps2);
       ASSERT_LE(command.readiness, 1);
-      // Rounding may put his readiness a few ulp below the value to which it fades.
+      // Rounding may put the readiness a few ulp below the value to which it fades.
       ASSERT_GE(command.readiness, least - 1e-12);
     });
   }

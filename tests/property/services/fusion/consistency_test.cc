@@ -1,6 +1,6 @@
-// The filter must be as good as it says. Over many runs of exactly the model that it assumes, its
-// errors and innovations must have the covariances that it reports (Bar-Shalom, Li & Kirubarajan
-// 2001, section 5.4).
+// The filter must be as accurate as it reports. Over many runs of exactly the model that it
+// assumes, its errors and innovations must have the covariances that it reports (Bar-Shalom, Li &
+// Kirubarajan 2001, section 5.4).
 #include <array>
 #include <vector>
 
@@ -91,7 +91,7 @@ int MostOutside() {
 }
 
 // Errors of neighbouring steps are correlated, so one unlucky period counts several times. Twice as
-// many are allowed: a quarter of the steps.
+// many steps are allowed: a quarter of all.
 int MostNeesOutside() { return 2 * MostOutside(); }
 
 double Mean(const std::vector<double>& sums) {
@@ -120,8 +120,8 @@ class ConsistencyTest : public ::testing::TestWithParam<Case> {
 TEST_P(ConsistencyTest, ErrorsHaveTheReportedCovariance) {
   const Ensemble sums = Simulate(World(), World(), GetParam().dropout);
   EXPECT_LE(NeesOutside(sums), MostNeesOutside());
-  // 3 is the dimension of the state. The means of other hundreds of seeds scatter by 0.06 (0.025 if
-  // the values were independent). The tolerance is about three times 0.06.
+  // 3 is the dimension of the state. The means over other groups of a hundred seeds scatter by 0.06
+  // (0.025 if the values were independent). The tolerance is about three times 0.06.
   EXPECT_NEAR(Mean(sums.nees), 3.0, 0.2);
 }
 

@@ -109,7 +109,7 @@ TEST(EkfPropertyTest, SequentialCorrectionsEqualAJointOne) {
     const Eigen::Matrix3d gain = p * h.transpose() * (h * p * h.transpose() + r).inverse();
     const Eigen::Vector3d x = joint.state() + gain * (z - h * joint.state());
     joint.Start(x, (Eigen::Matrix3d::Identity() - gain * h) * p);
-    // The same numbers come from other operations. 1e-10 is about 1000 roundings of 33 m.
+    // Both compute the same numbers by different operations. 1e-10 is about 1000 roundings of 33 m.
     ASSERT_LT((own - x).cwiseAbs().maxCoeff(), 1e-10) << "step " << k;
     ASSERT_LT((CovarianceOf(track) - joint.covariance()).cwiseAbs().maxCoeff(), 1e-12);
   }

@@ -192,7 +192,8 @@ TEST(LidarProperty, NothingIsEverSeenBehindTheTarget) {
 }
 
 TEST(LidarProperty, DenserFogNeverBringsTheTargetBack) {
-  // With the same draws in the same step, more fog never lets the target win again.
+  // With the same draws in a step: once the echo of the fog wins, the target does not win in denser
+  // fog.
   lidar::Lidar lidar(Beam());
   for (std::int64_t step = 0; step < 100; ++step) {
     bool sees_target = true;

@@ -51,8 +51,8 @@ TEST(RadarProperty, NoiseHasTheStatedMomentsAroundTheBias) {
   }
   ExpectStandardNormalMoments(range);
   ExpectStandardNormalMoments(rate);
-  // They are independent of each other and from step to step: the correlation is 0, with deviation
-  // 1 / sqrt(n).
+  // The noises are independent of each other and from step to step: the correlation is 0, with
+  // deviation 1 / sqrt(n).
   double cross = 0.0;
   double lag = 0.0;
   for (std::size_t i = 0; i < range.size(); ++i) cross += range[i] * rate[i];
@@ -84,7 +84,7 @@ TEST(RadarProperty, DropsOutAtItsRate) {
 }
 
 TEST(RadarProperty, NoStepDependsOnAnother) {
-  // A step has its own draws, whatever the order of the steps and whatever was asked before.
+  // A step has its own draws, which do not depend on the steps that were computed before it.
   Scenario scenario;
   scenario.radar.dropout_probability = 0.2;
   radar::Radar forwards(scenario);

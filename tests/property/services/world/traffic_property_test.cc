@@ -121,7 +121,7 @@ TEST(TrafficProperty, ObeysFrictionAndEngineAndNeverRollsBackwards) {
       for (double& one : followers) one = draw.Chance(0.1) ? draw.Uniform(-12, 6) : one;
       const truth_t now =
           std::get<truth_t>(world.Step(HostCommand(host), FollowerCommands(followers)));
-      // THEN each moves forwards within the limits of its tyres and its engine
+      // THEN each sedan moves forwards within the limits of its tyres and its engine
       const Limits limits = LimitsOf(scenario.road.surface, kSteepest, before.host_speed_mps);
       ASSERT_GE(now.host_speed_mps, 0);
       ASSERT_GE(now.host_position_m, before.host_position_m);

@@ -101,7 +101,7 @@ TEST_P(ConsoleTest, AComplaintWaitsForAReaderThatIsSlow) {
     text.append(buffer.data(), static_cast<std::size_t>(size));
   }
   waitpid(writer, nullptr, 0);
-  // THEN it gets every line completely
+  // THEN the reader gets every line completely
   EXPECT_EQ(text.size(), kLines * (line.size() + 1));
   EXPECT_THAT(text, Not(HasSubstr("missing")));
 }
@@ -113,14 +113,14 @@ TEST_P(ConsoleTest, AComplaintWaitsForAReaderAlsoWhenNoticesWereDropped) {
   if (writer == 0) {
     dup2(ends.in, STDERR_FILENO);
     const std::string long_line(1000, 'x');
-    for (int i = 0; i < 1000; ++i) Notice(long_line);  // more than it holds
+    for (int i = 0; i < 1000; ++i) Notice(long_line);  // more than the pipe holds
     const char byte = 0;
     if (write(told.in, &byte, 1) != 1) _exit(1);
     Complain(long_line + " the error");
     _exit(0);
   }
   close(ends.in);
-  // GIVEN a reader that begins a moment after there was no room for the error
+  // GIVEN a reader that begins a moment after the error found no room
   char byte = 0;
   ASSERT_EQ(read(told.out, &byte, 1), 1);
   usleep(200'000);
@@ -160,8 +160,8 @@ TEST_P(ConsoleTest, ALineWithoutAReaderEndsNoProcess) {
 INSTANTIATE_TEST_SUITE_P(To, ConsoleTest, testing::Values(Pipe, Sockets),
                          [](const auto& ends) { return ends.index == 0 ? "Pipe" : "Socket"; });
 
-/// Prints a line in the background of a terminal that stops background processes that write (stty
-/// tostop).
+/// Prints a line from a background process of a terminal, which stops background processes that
+/// write (stty tostop).
 /// @return the status of the process that prints it, as waitpid() gives it
 int StatusInBackground(const char* terminal) {
   setsid();

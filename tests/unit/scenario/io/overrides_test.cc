@@ -89,7 +89,7 @@ TEST(OverrideTest, RefusesAnItemThatIsNotThere) {
   EXPECT_THAT(ErrorOf("/published/99999999999999999999/threshold=1"),
               testing::HasSubstr("/published has 0 items"));
   EXPECT_THAT(ErrorOf("/lead/breakpoints/*/speed_mps=1"), testing::HasSubstr("no such item"));
-  // This is not another name of item 0.
+  // "00" is not another name of item 0.
   EXPECT_NE(ErrorOf("/lead/breakpoints/00/speed_mps=1"), "");
 }
 

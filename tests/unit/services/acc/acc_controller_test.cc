@@ -150,8 +150,8 @@ TEST(AccControllerTest, HoldsTheBrakeAtAStandstillTooCloseToTheNextCar) {
 TEST(AccControllerTest, ApproachesItsMaximumSpeedFromBelow) {
   const AccSection section;
   const Trip trip = Drive(section, {200, 45, 30}, 600);
-  // The plan keeps the limit exactly. But the car holds a command for a whole step, which the
-  // engine of the model reaches only gradually.
+  // The plan keeps the limit exactly. But the car holds a command for a whole step, whereas the
+  // engine of the model reaches it gradually.
   EXPECT_LE(trip.fastest_mps, section.max_speed_mps + 1e-3);
   EXPECT_NEAR(trip.cars.speed_mps, section.max_speed_mps, 1e-3);
   EXPECT_EQ(trip.fallbacks, 0);
@@ -159,9 +159,9 @@ TEST(AccControllerTest, ApproachesItsMaximumSpeedFromBelow) {
 
 TEST(AccControllerTest, BringsACarThatIsTooFastBackToItsMaximumSpeed) {
   const AccSection section;
-  // GIVEN a car that its driver has made 4 m/s too fast, and that still accelerates
+  // GIVEN a driver who leaves the car 4 m/s too fast, and still accelerating
   const Trip trip = Drive(section, {200, 45, 44, 1.0}, 100);
-  // THEN it brakes back to the limit as in a fallback, but without one
+  // THEN the automation brakes back to the limit without a fallback
   EXPECT_LE(trip.cars.speed_mps, section.max_speed_mps + 1e-3);
   EXPECT_EQ(trip.fallbacks, 0);
 }
@@ -213,8 +213,8 @@ TEST(AccControllerTest, FallsBackAtTheIterationLimit) {
 }
 
 // The car may have any acceleration a when the automation takes over from a driver. Within the step
-// the engine goes (1 - e^(-h/T_e)) of its way towards -K_e u. And -K_e u differs from a by one
-// change of u, and by the part of a that is outside of the automation's limits.
+// the engine goes (1 - e^(-h/T_e)) of its way towards -K_e u. And -K_e u differs from a by at most
+// one change of u, plus the part of a that is outside of the automation's limits.
 TEST(AccControllerTest, TakesOverWithoutABump) {
   const AccSection section;
   const double share = -std::expm1(-kStep / section.engine_time_constant_s);

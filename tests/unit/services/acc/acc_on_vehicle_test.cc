@@ -57,8 +57,8 @@ TEST(AccOnVehicleTest, KeepsItsDistanceAlmostAsWellAsInAPointMass) {
     for (const models::VehicleParameters& car :
          {models::kCompact, models::kSedan, models::kTruck}) {
       const Drive real = FollowABrakingCar(section, VehicleModel::kLongitudinal, car);
-      // Delay and lag are half a second. In this time 2 m/s2 make 0.25 m, and more while both add
-      // up.
+      // Delay and lag are half a second. In this time 2 m/s2 move the car by 0.25 m, and by more
+      // while delay and lag add up.
       EXPECT_GT(real.least_gap_m, ideal.least_gap_m - 2) << "headway " << headway_s;
       EXPECT_LT(real.largest_acceleration_mps2, 3.5) << "headway " << headway_s;
       // In the end speed and gap are right, except for the dead band of the pedals.

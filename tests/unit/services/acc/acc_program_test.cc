@@ -67,7 +67,8 @@ TEST(AccProgramTest, CostIsTheSumOverTheHorizon) {
   }
 }
 
-// The test compares limits through the distance to them, limit - C z, which has a physical meaning.
+// The test compares the distances to the limits, limit - C z, because these have a physical
+// meaning.
 TEST(AccProgramTest, LimitsAreThoseOfThePredictedCar) {
   AccSection section = ShortSection();
   section.max_speed_mps = 21.5;

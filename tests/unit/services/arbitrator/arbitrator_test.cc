@@ -322,7 +322,7 @@ TEST_F(SharedWithTheAskedTest, HeIsAskedForAnyShareAndHasThatOnceHeHasCome) {
     EXPECT_NEAR(out.acceleration_mps2, share * kHuman_mps2 + (1 - share) * kAutomation_mps2, 1e-12);
     EXPECT_FALSE(arbitrator_.must_ask());
   }
-  // While he recovers he is there, so he gets the requested share at once: here nothing.
+  // A driver who recovers is available, so he gets the requested share at once: here it is 0.
   EXPECT_EQ(RequestingNothing().lambda_human, 0);
   EXPECT_NEAR(Requesting(0.6).lambda_human, 0.6, 1e-12) << "without being asked again";
 }

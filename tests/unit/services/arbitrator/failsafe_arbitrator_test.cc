@@ -90,8 +90,7 @@ InputState StateOf(arbitrator::Offer offer) {
                                         : InputState::kLost;
 }
 
-// For every row of the table, with every combination that the row covers, the decision is that of
-// the row.
+// For every combination of inputs that a row of the table covers, the decision is that of the row.
 TEST_F(FailsafeArbitratorTest, DoesWhatEachRowOfTheTableSays) {
   int cases = 0;
   for (const arbitrator::FailsafeRow& row : arbitrator::kFailsafeTable) {

@@ -37,8 +37,8 @@ TEST(RequestDebouncerTest, SprtWaitsForEnoughEvidenceInEitherDirection) {
   arbitrator::RequestDebouncer debouncer(
       {.hysteresis = Hysteresis::kSprt, .sprt_alpha = 0.01, .sprt_beta = 0.01}, 0.1);
   for (const double expected : {0.0, 0.0, 1.0, 1.0}) EXPECT_EQ(Step(debouncer, 0.9), expected);
-  // The last step above already belongs to the next test. Three times -ln 9 leaves -4.39, so a
-  // fourth is needed.
+  // After the decision Wald's test starts again, so the fourth step above left L = ln 9. Three
+  // times -ln 9 leave -4.39, so a fourth step is needed.
   for (const double expected : {1.0, 1.0, 1.0, 0.0}) EXPECT_EQ(Step(debouncer, 0.1), expected);
 }
 
@@ -82,7 +82,7 @@ TEST(RequestDebouncerTest, LetsAFirmRequestPass) {
   EXPECT_EQ(debouncer.Step({.lambda_human = 0.25, .threshold = 0.5, .firm = true}, 1), 0.25);
 }
 
-// Otherwise no DoC would be low enough for a band as wide as the threshold.
+// The band ends at half of the threshold. Otherwise no DoC would be low enough for a wide band.
 TEST(RequestDebouncerTest, ABandOfWhateverWidthGivesTheWheelBack) {
   for (const double threshold : {1e-6, 0.1, 0.2, 0.5, 1.0}) {
     for (const double band : {0.0, 0.2, 0.5, 1.0}) {

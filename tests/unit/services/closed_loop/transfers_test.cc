@@ -68,7 +68,8 @@ TEST(TransfersTest, AreCountedAlikeByMeasuresAndEventsUnderEveryPolicyProfileAnd
                "/arbitrator/transfer/duration_s=1.3", "/arbitrator/take_over/mode=" + mode});
           const Counted counted = CountTransfers(scenario);
           EXPECT_EQ(counted.by_measures, std::ssize(counted.by_events));
-          // They are in the same steps, as far as the measures show this.
+          // The transfers of measures and events are also in the same steps. The measures show this
+          // only by the shortest time between two transfers.
           const std::optional<double> dwell_s = MinDwell_s(counted, scenario.step_s);
           ASSERT_EQ(counted.min_dwell_s.has_value(), dwell_s.has_value());
           EXPECT_NEAR(counted.min_dwell_s.value_or(0), dwell_s.value_or(0), 1e-6)

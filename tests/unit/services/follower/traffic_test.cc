@@ -14,7 +14,8 @@
 namespace fogline {
 namespace {
 
-// Cars behind a host of 20 m/s. All have its speed, and each is 33 m behind the one before.
+// Cars behind a host of 20 m/s. All cars have this speed, and each is 33 m behind the car ahead of
+// it.
 truth_t Platoon(std::size_t cars) {
   truth_t truth{};
   truth.host_speed_mps = 20;
@@ -49,7 +50,7 @@ TEST(TrafficTest, LetsEachCarFollowTheOneBeforeIt) {
     follower::Follower undisturbed(WithFollowers(3, driver));
     truth_t truth = Platoon(3);
     truth.follower_speed_mps[1] = 17;
-    // WHEN the other cars have had time to see this
+    // WHEN the other cars have had time to react
     std::vector<double> now;
     std::vector<double> otherwise;
     for (int k = 0; k < 20; ++k) {
@@ -57,7 +58,7 @@ TEST(TrafficTest, LetsEachCarFollowTheOneBeforeIt) {
       otherwise = undisturbed.Step(Platoon(3)).acceleration_mps2;
       ++truth.header.step;
     }
-    // THEN the third car brakes for it, and the first does not notice it
+    // THEN the third car brakes for the slower car, and the first car does not notice it
     EXPECT_LT(now[2], otherwise[2] - 0.05);
     if (driver == FollowerDriver::kAcc) {
       EXPECT_EQ(now[0], otherwise[0]);
@@ -118,7 +119,8 @@ TEST(PersonTest, BrakesAsHardAsHisSafetyModelAsksInDanger) {
     }
     return least;
   };
-  // THEN the reference human brakes with 0.774 g, and every model at least as hard as no model
+  // THEN the reference human brakes with 0.774 g, and with every model the car brakes at least as
+  // hard as without a model
   EXPECT_LE(hardest(SafetyModelChoice::kReferenceHuman), -7.59);
   EXPECT_LE(hardest(SafetyModelChoice::kRss), hardest(SafetyModelChoice::kNone));
   EXPECT_LE(hardest(SafetyModelChoice::kFuzzy), hardest(SafetyModelChoice::kNone));
@@ -165,7 +167,7 @@ TEST(DriverAssignmentTest, DrawsInProportionToTheShares) {
       aggressive += assignment.style == models::Style::kAggressive ? 1 : 0;
     }
   }
-  // Of 6,400 cars a quarter and three fifths. Four standard deviations are 139 and 157.
+  // A quarter and three fifths of 6,400 cars. Four standard deviations are 139 and 157.
   EXPECT_NEAR(acc, 1600, 139);
   EXPECT_NEAR(aggressive, 3840, 157);
 }
@@ -220,7 +222,7 @@ TEST_F(FogSightOfPeopleTest, IsThatOfTheHostsDriver) {
                           Random(scenario.seed, FollowerErrors(0)), scenario.step_s);
   // WHEN the first of the two cars follows the host through fog of 40 m
   const std::vector<double> driven = Drive(scenario, 40);
-  // THEN its driver reacts to what the sight shows him
+  // THEN its driver reacts to the situation that his sight shows
   for (std::int64_t k = 0; k < 30; ++k) {
     const models::Situation truth{
         .speed_mps = 20,

@@ -215,7 +215,7 @@ TEST(FusionTest, RefusedValueLeavesTheEstimateAsIfItWereMissing) {
   // WHEN the value reaches the gate
   const track_t& a = Step(gated, deceived);
   const track_t& b = Step(blind, missing);
-  // THEN the track marks and measures it, but does not use it
+  // THEN the track marks the value and has its innovation, but does not use it
   EXPECT_EQ(a.usage[2], track_t::GATED);
   EXPECT_NEAR(a.innovation[2], -26, 1e-9);
   EXPECT_GT(a.innovation_variance[2], 0);
@@ -228,7 +228,7 @@ TEST(FusionTest, FollowsAnotherCarThatCutsInOnceTheGateReopens) {
   int k = 0;
   for (; k < 30; ++k) Step(fusion, At(k, 40));
   // GIVEN a car that cuts in, 15 m nearer and with the same speed
-  // WHEN the gate has refused it for as many steps as the scenario says
+  // WHEN the gate has refused the new distance for as many steps as the scenario says
   for (int i = 0; i < scenario.fusion.gate_reopen_after; ++i, ++k) {
     const track_t& track = Step(fusion, At(k, 25));
     EXPECT_EQ(track.usage[0], track_t::GATED);
@@ -237,7 +237,7 @@ TEST(FusionTest, FollowsAnotherCarThatCutsInOnceTheGateReopens) {
     EXPECT_NEAR(track.state[0], 40, 1e-9);
   }
   EXPECT_EQ(Step(fusion, At(k, 25)).usage[0], track_t::USED);
-  // THEN the estimate converges to it
+  // THEN the estimate converges to this distance
   for (int i = 0; i < 60; ++i) Step(fusion, At(++k, 25));
   const track_t& settled = Step(fusion, At(++k, 25));
   EXPECT_NEAR(settled.state[0], 25, 0.05);  // one standard deviation of a range

@@ -117,7 +117,7 @@ TEST_F(LogSealTest, HoldsForTheLogThatWasSealedAndChangesNoDigest) {
 TEST_F(LogSealTest, ShowsABitThatIsFlippedInAnyByteOfTheFile) {
   SealIt();
   const std::string sealed = Content(log_);
-  // One bit of each byte, another one than in the bytes beside it.
+  // Flips one bit of each byte, not the same bit as in the bytes beside it.
   for (std::size_t at = 0; at < sealed.size(); ++at) {
     std::string altered = sealed;
     altered[at] = static_cast<char>(altered[at] ^ (1 << (at % 8)));
@@ -251,12 +251,12 @@ TEST(WhyNotWrittenTest, SaysWhenTheBytesAreNotWhatWasTold) {
   EXPECT_EQ(why({}), "");
   EXPECT_EQ(why({first, last}), "");
   EXPECT_EQ(why({last, first}), "") << "in whatever order";
-  // A change before the end that the first writer has reported. The second writer has relied on
-  // that part.
+  // A change in the part that the first writer has reported, and on which the second writer has
+  // relied.
   content[50] ^= 1;
   EXPECT_THAT(why({first}),
               HasSubstr("the log on disk is not what the recorder wrote: it wrote 133 bytes"));
-  // A change behind that end.
+  // A change after this part.
   content[50] ^= 1;
   content[200] ^= 1;
   EXPECT_EQ(why({first}), "");

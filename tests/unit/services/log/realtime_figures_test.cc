@@ -19,7 +19,7 @@ status_t Said(const std::string& role, std::int64_t instance, std::int64_t seque
 
 TEST(RealtimeFiguresTest, AddsUpTheLastStatusOfEachProcess) {
   log::RealtimeAccumulator figures(1, kStep_us, 1000);
-  for (const std::int64_t sequence : {1, 3, 2}) {  // the second message has overtaken the last one
+  for (const std::int64_t sequence : {1, 3, 2}) {  // message 3 has overtaken message 2
     status_t world = Said("world", 1, sequence);
     world.ticks = 10 * sequence;
     figures.Add(world);

@@ -8,7 +8,8 @@
 namespace fogline {
 namespace {
 
-// Two cars 30 and 20 m behind the car before, no faster than it, at exactly their safe distances.
+// Two cars, 30 and 20 m behind the car ahead of them and not faster, at exactly their safe
+// distances.
 truth_t TwoFollowers() {
   truth_t truth{};
   truth.host_speed_mps = 20;

@@ -105,7 +105,7 @@ TEST_F(HistoryTest, FindsTheSameFromTheEndAsFromTheFrontWhereverTheLogIsCut) {
 
 TEST_F(HistoryTest, ReadsOfALongLogOnlyItsEndAndWhatItIsAskedFor) {
   // GIVEN a log of a hundred gigabytes that has only its front and its last steps. A reader of the
-  // rest would find no event there, and would take minutes.
+  // part between them would find no event there, and would take minutes.
   constexpr std::int64_t kPeriod = 7;  // the period of the steps' sizes
   constexpr std::int64_t kSteps = 14'000'000 * kPeriod;
   Write(kPeriod);

@@ -58,7 +58,7 @@ class RecorderTest : public testing::Test {
   static const std::string& ErrorOf(recorder::Recorder& recorder) {
     return recorder.node().parts().own.message().error;
   }
-  /// Lets it answer all requests, a part of them in each turn.
+  /// Lets the recorder answer all requests, a part of them in each turn.
   void AnswerAll(recorder::Recorder& recorder) {
     constexpr int kTurns = 100;
     for (int i = 0; i < kTurns; ++i) {
@@ -102,7 +102,8 @@ class RecorderTest : public testing::Test {
 TEST_F(RecorderTest, GoesOnWithALogThatIsCutAnywhereAndCompletesItByteByByte) {
   const std::string whole = WholeLog();
   ASSERT_GT(whole.size(), 100'000U);
-  // In the scenario, in its last part, in the first step, between and within events and steps.
+  // The log is cut in the scenario, in its last part, in the first step, between and within events
+  // and steps.
   for (const std::size_t size :
        {std::size_t{0}, std::size_t{40}, std::size_t{3000}, std::size_t{8000}, std::size_t{20'000},
         whole.size() / 2, whole.size() / 2 + 1, whole.size() / 2 + 100, whole.size() - 1,
@@ -120,8 +121,8 @@ TEST_F(RecorderTest, AnswersForWhatItsProducersMayHaveForgotten) {
   truths_.clear();
   script_.AskFor("TRUTH", 10, 63);
   AnswerAll(*recorder);
-  // The request is for 10 to 72. The recorder answers for 0 to 67, which are older than kMaxAhead
-  // steps.
+  // The request is for steps 10 to 72. The recorder answers only up to step 67, because newer steps
+  // are less than kMaxAhead old.
   ASSERT_EQ(truths_.size(), 58U);
   for (std::size_t i = 0; i < truths_.size(); ++i) {
     EXPECT_EQ(truths_[i].header.step, static_cast<std::int64_t>(10 + i));
@@ -144,7 +145,7 @@ TEST_F(RecorderTest, AnswersAFloodOfRequestsWithABoundedNumberOfMessages) {
   for (int i = 0; i < kRequests; ++i) script_.AskFor("TRUTH", 0, 1'000'000'000);
   AnswerAll(*recorder);
   const std::chrono::duration<double> took = Clock::now() - began;
-  // Of the 32,000 requested messages it sends each step once, and again after 2 ms.
+  // Of the 32,000 requested messages the recorder sends each step once, and again after 2 ms.
   EXPECT_GE(truths_.size(), static_cast<std::size_t>(runtime::kRingSteps));
   EXPECT_LE(static_cast<double>(truths_.size()), runtime::kRingSteps * (1 + 500 * took.count()));
 }

@@ -85,13 +85,13 @@ class Script {
     Say(resend);
   }
 
-  /// Lets the role do once what is due at this time, however much time has passed since the last
-  /// call.
+  /// Calls the role once, for the work that is due at this time. It does not matter how much time
+  /// has passed since the last call.
   void Poll(runtime::Work& role, TimePoint now = Clock::now()) {
     wakes_[&role] = std::max(role.node().Poll(now), now + milliseconds(1));
     bus_.Drain();
   }
-  /// Calls the role up to this time, each time that it has asked for, as its process would.
+  /// Calls the role at each time for which it has asked, up to this time, as its process would.
   void PollUpTo(runtime::Work& role, TimePoint now = Clock::now()) {
     TimePoint& wake = wakes_.try_emplace(&role, TimePoint::max()).first->second;
     while (wake < now) Poll(role, wake);

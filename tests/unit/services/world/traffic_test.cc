@@ -177,7 +177,8 @@ TEST(WorldVehicleTest, ResumesAsIfItHadKeptItsAccelerationForLong) {
   after.Resume(truth);
   const truth_t& here = Truth(after.Step(HostCommand(-2), FollowerCommand(-2)));
   const truth_t& there = Truth(before.Step(HostCommand(-2), FollowerCommand(-2)));
-  // Both are settled, except that drag changes them within some tenths of a second.
+  // In both worlds engine and brakes have settled. The accelerations still differ a little, because
+  // drag changes while the actuators lag by some tenths of a second.
   EXPECT_NEAR(here.host_acceleration_mps2, there.host_acceleration_mps2, 0.02);
 }
 

@@ -169,8 +169,8 @@ TEST(SensitivityTest, IsTheSlopeOfTheTable) {
   const auto changes = calibrate::Sensitivities(calibrate::Objective(problem), {0.4}, Always);
   ASSERT_TRUE(changes);
   for (std::size_t row = 0; row < 2; ++row) {
-    // THEN the change for 1 % is the difference of the tables; values are rounded to 1e-6 m of the
-    // 4e-3 m
+    // THEN the change for 1 % is the difference of the tables. The values, 4e-3 m apart, are
+    // rounded to 1e-6 m
     const double slope = *above.rows[row].si_pct.mean() - *below.rows[row].si_pct.mean();
     EXPECT_NE(slope, 0);
     EXPECT_NEAR(*(*changes)[0][row].si_pct, slope, 1e-3 * std::abs(slope));

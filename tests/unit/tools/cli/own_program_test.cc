@@ -16,7 +16,7 @@ namespace {
 
 using testing::HasSubstr;
 
-/// What a process prints that becomes the program of a verb; "itself" if it does not become one.
+/// The output of a process that becomes the program of a verb; "itself" if it does not become one.
 std::string Become(std::vector<std::string> words) {
   processes::Pipe pipe;
   const pid_t pid = fork();

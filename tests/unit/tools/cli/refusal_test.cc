@@ -8,7 +8,7 @@
 namespace fogline::cli {
 namespace {
 
-/// A program with two verbs, and what it says of a command line.
+/// A program with two verbs, and its text about a command line.
 class RefusalTest : public testing::Test {
  protected:
   RefusalTest() {

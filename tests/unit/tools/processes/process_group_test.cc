@@ -20,7 +20,7 @@ using processes::ProcessGroup;
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-/// The processes of a group that end, until there are so many.
+/// The processes of a group that have ended, as soon as there are `count` of them.
 std::vector<ProcessGroup::Exit> CollectUntil(ProcessGroup& group, std::size_t count) {
   std::vector<ProcessGroup::Exit> exits;
   const TimePoint end = Clock::now() + std::chrono::seconds(20);

@@ -50,7 +50,7 @@ class RelayProcessTest : public testing::Test {
     there.Subscribe("TEST", [&heard](runtime::Bytes) { heard = true; });
     const std::vector<std::uint8_t> message{1, 2, 3};
     const TimePoint end = Clock::now() + kPatience;
-    while (!heard && Clock::now() < end) {  // the subscription takes the relay a moment
+    while (!heard && Clock::now() < end) {  // the relay needs a moment for the subscription
       here.Publish("TEST", message);
       if (there.Wait(milliseconds(20))) there.Drain();
     }

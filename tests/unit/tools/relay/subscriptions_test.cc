@@ -128,8 +128,8 @@ TEST(SubscriptionsTest, GiveUpExpressionsThatTakeExponentialTime) {
 }
 
 TEST(SubscriptionsTest, GiveUpManySlowExpressionsAsOne) {
-  // GIVEN slow expressions, none of them slow enough that Boost gives it up (long ones may visit
-  // more)
+  // GIVEN slow expressions, none of them so slow that Boost gives up the search (it allows more
+  // visits for long expressions)
   relay::Subscriptions wanted(1000);
   for (int i = 0; i < 100; ++i) wanted.Add("(a|aa)+b" + std::string(240, 'c'));
   // WHEN a name is matched with all of them, THEN the search ends before the last expression
@@ -156,7 +156,7 @@ int NamesUntilTheEnd(relay::Subscriptions& wanted, int first, TimePoint now) {
 TEST(SubscriptionsTest, SpendABudgetOnNewNamesThatFillsAgain) {
   relay::Subscriptions wanted(kLimit);
   ASSERT_EQ(wanted.Add(kSlow), "");
-  // GIVEN more and more new names, none of them slow enough that Boost gives up
+  // GIVEN more and more new names, none of them so slow that Boost gives up the search
   const int stood = NamesUntilTheEnd(wanted, 0, TimePoint{});
   EXPECT_GT(stood, 1);
   EXPECT_LT(stood, 1000) << "all of them together are";

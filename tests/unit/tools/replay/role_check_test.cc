@@ -82,7 +82,7 @@ TEST_F(RoleCheckTest, ComputesEveryStepOfEveryRoleAgain) {
 TEST_F(RoleCheckTest, FindsTheStepInWhichARoleDiffersAndNoOther) {
   Alter<driver_command_t>([](driver_command_t& command) { command.acceleration_mps2 = 9; });
   for (const RoleCheck& one : Check(altered_)) {
-    if (one.role == Role::kArbitrator) continue;  // reads what was altered
+    if (one.role == Role::kArbitrator) continue;  // reads the altered message
     EXPECT_EQ(one.steps_that_differ, one.role == Role::kDriver ? 1 : 0) << NameOf(one.role);
     if (one.role != Role::kDriver) continue;
     ASSERT_TRUE(one.first);
@@ -97,7 +97,8 @@ TEST_F(RoleCheckTest, FindsTheStepInWhichARoleDiffersAndNoOther) {
 TEST_F(RoleCheckTest, RefusesAMessageThatARoleCannotRead) {
   Alter<radar_t>([](radar_t& radar) { radar.range_m = std::numeric_limits<double>::quiet_NaN(); });
   EXPECT_EQ(ErrorOf([&] { Check(altered_); }),
-            "step 23: RADAR is no such message with finite values");
+            "step 23: the RADAR in the log is not a message of its type, or has a value that "
+            "is not finite");
 }
 
 TEST_F(RoleCheckTest, HasNoReplayOfARoleThatComputesNothing) {
@@ -152,7 +153,9 @@ TEST_F(RoleCheckTest, AVerificationEndsAtAStepThatCannotBeComputed) {
   const Verification verification =
       Verify(altered_, {{.role = Role::kRadar, .pid = 1, .host = "", .build = 4, .ours = 5}});
   EXPECT_FALSE(verification.Holds());
-  EXPECT_EQ(verification.Trouble(), "step 23: RADAR is no such message with finite values");
+  EXPECT_EQ(verification.Trouble(),
+            "step 23: the RADAR in the log is not a message of its type, or has a value that is "
+            "not finite");
 }
 
 TEST_F(RoleCheckTest, AVerificationLeavesOutRolesOfOtherBuilds) {

@@ -1,6 +1,6 @@
 // Runs that look like the experiment, for tests of the report: three cars at 20 m/s, 33 m apart,
 // fog from 19 s to 30 s, thresholds of 0.2, 0.5 and 0.8, and a run without traded control. They are
-// a plain sketch without simulation: the source of the samples does not matter to the report.
+// a rough sketch without simulation: the report does not depend on the source of the samples.
 #pragma once
 
 #include <algorithm>

@@ -16,7 +16,7 @@ using runner::CommandToGoOn;
 using runner::ExperimentOptions;
 using runner::KeptLog;
 
-/// The options of a run whose only one is its log.
+/// The options of a run for which only the log is given.
 ExperimentOptions OnlyLog() {
   ExperimentOptions options;
   options.log = "run.lcm";

@@ -41,7 +41,7 @@ class LogKeeperTest : public testing::Test {
   void Append(const std::string& bytes) const {
     std::ofstream(log_, std::ios::app | std::ios::binary) << bytes;
   }
-  /// What Check() complains about; "" if it does not.
+  /// The error text of Check(); "" if there is none.
   std::string Trouble(const LogKeeper& keeper) const {
     try {
       keeper.Check(written_);

@@ -62,7 +62,7 @@ TEST(FromReplicatesTest, HasNoIntervalOfOneRunOrWhereAReplicateHasNoValue) {
   EXPECT_EQ(study::VerdictOf(study::FromReplicates(1, 2, {1, 2, 3})), study::Verdict::kTooFew);
 }
 
-// The purpose of the interval: it covers the mean of normal values as often as it says.
+// The purpose of the interval: it covers the mean of normal values as often as its level promises.
 TEST(FromReplicatesTest, CoversAMeanInNearlyNineteenOfTwentyExperiments) {
   constexpr std::size_t kRuns = 40;
   constexpr int kExperiments = 200;
@@ -84,7 +84,7 @@ TEST(FromReplicatesTest, CoversAMeanInNearlyNineteenOfTwentyExperiments) {
     covered += estimate.low <= 0 && 0 <= estimate.high ? 1 : 0;
   }
   // Of 200 experiments at 0.93 (a bootstrap of 40 runs is a little narrow): 186 +- 3.6, three
-  // deviations either way.
+  // deviations on either side.
   EXPECT_GE(covered, 175);
   EXPECT_LE(covered, 197);
 }

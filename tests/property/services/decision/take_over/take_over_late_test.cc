@@ -1,4 +1,4 @@
-// How often drivers are late, and how often they never come: both as often as the scenario says,
+// The shares of drivers that are late and that never come. Both must be those of the scenario,
 // within the exact confidence interval of a binomial count.
 #include <cstdint>
 #include <utility>

@@ -1,5 +1,5 @@
 // The fallback under random sequences of events. The tests compare it with its table, and with an
-// independent computation of everything that the table does not say.
+// independent computation of everything else.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -41,13 +41,13 @@ void ExpectTheTable(const take_over::TakeOverRow* row, take_over::TakeOverState 
 }
 
 /// Expects that a change of state has its effect in its own step: the applied command is that of
-/// the new state's controller, and differs from what the old state's controller would have
-/// commanded with the same inputs. If both states have the same controller, the command is that
-/// controller's.
+/// the new state's controller, and differs from the command that the old state's controller would
+/// have given with the same inputs. If both states have the same controller, the command is that of
+/// this controller.
 ///
-/// One change may have its effect later: that to the harder stage of the manoeuvre. While the jerk
-/// limit, or the near stop, allows less deceleration than even the softer stage wants, both stages
-/// command that same limit.
+/// One change may have its effect later: that to the harder stage of the manoeuvre. The jerk limit,
+/// or the limit shortly before standstill, may allow less deceleration than the softer stage wants.
+/// Then both stages command this limit.
 /// @return whether the command changed
 bool ExpectTheChangeIsFelt(const take_over::TakeOverRow& row, const Witness& witness,
                            const take_over::TakeOverInputs& inputs, double applied_mps2) {
@@ -89,8 +89,8 @@ void ExpectTheLimits(const take_over::TakeOverOutcome& out, const take_over::Tak
               std::max(0.0, inputs.applied_mps2 - section.jerk_mps3 * step_s) + kTolerance);
   }
   if (out.authority < take_over::Authority::kComfort) return;
-  // A car that brakes harder at the beginning than the manoeuvre may releases the brake within the
-  // jerk limit.
+  // A car may brake harder at the beginning than the manoeuvre is allowed to. It then releases the
+  // brake within the jerk limit.
   EXPECT_GE(out.acceleration_mps2,
             std::min(-section.emergency_deceleration_mps2, inputs.applied_mps2) - kTolerance);
   const bool standing = inputs.speed_mps == 0 && out.acceleration_mps2 == 0;
@@ -149,8 +149,8 @@ class Sequence {
   }
 
   /// Draws other offers until the controllers of the old and of the new state want different
-  /// commands. If they want the same, a change has no effect. Both stages of the manoeuvre may be
-  /// at the jerk limit, whatever the offers are.
+  /// commands, because a change has no effect if both want the same. But both stages of the
+  /// manoeuvre may be at the jerk limit, whatever the offers are.
   void LetTheControllersDiffer(const take_over::TakeOverRow& row) {
     constexpr double kPlain_mps2 = 0.01;
     const take_over::Authority old_authority = take_over::AuthorityOf(row.state);
@@ -172,7 +172,7 @@ class Sequence {
     EXPECT_EQ(take_over_.outcome().state, kMrmDone);
   }
 
-  // The offers of a side without authority must have no effect, whatever they are.
+  // An offer of a side without authority must have no effect.
   void ExpectNothingLingers(const header_t& header, take_over::TakeOverInputs inputs,
                             const take_over::TakeOverOutcome& out) {
     constexpr double kNonsense = 1e9;

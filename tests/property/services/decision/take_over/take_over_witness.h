@@ -1,6 +1,6 @@
-// Random events for the fallback, and an independent computation of what the fallback must do. It
-// uses the inputs alone, not services/decision/take_over/take_over.cc. Both share the drawn
-// take-over time and the course of a manoeuvre, which have tests of their own.
+// Random events for the fallback, and an independent computation of its states and commands. It
+// uses the inputs alone, not services/decision/take_over/take_over.cc. Both use the same code for
+// the drawn take-over time and the course of a manoeuvre, which has tests of its own.
 #pragma once
 
 #include <algorithm>
@@ -103,8 +103,8 @@ class Events {
   take_over::TakeOverInputs inputs_;
 };
 
-/// The independent computation: it finds from the inputs alone which events hold, and which command
-/// each source would give.
+/// The independent computation: from the inputs alone it finds the events that hold, and the
+/// command of each source.
 class Witness {
  public:
   explicit Witness(const Scenario& scenario)
@@ -186,8 +186,8 @@ class Witness {
     if (authority >= take_over::Authority::kComfort) other.manoeuvre_.Begin(inputs.applied_mps2);
     return other.Source(authority, inputs);
   }
-  /// The command of a manoeuvre without a limit of deceleration: only the jerk or the stop limits
-  /// it.
+  /// The command of a manoeuvre without a limit of deceleration: the only limits are those on the
+  /// jerk and shortly before standstill.
   double WouldAtMost(const take_over::TakeOverInputs& inputs) const {
     Witness other = *this;
     other.manoeuvre_.Begin(inputs.applied_mps2);

@@ -126,9 +126,9 @@ TEST(LongitudinalVehicleProperty, HalvingTheStepQuartersTheError) {
   }
 }
 
-// If a limit begins to hold, or the pedal changes, within a step, the error depends on the place
-// within the step. So the test compares only the ends: a step sixteen times smaller must have an
-// error at least sixteen times smaller.
+// If a limit begins to hold or the pedal changes within a step, the error depends on the moment
+// within the step. So the test compares only the coarsest and the finest step: a step sixteen times
+// smaller must have an error at least sixteen times smaller.
 TEST(LongitudinalVehicleProperty, ConvergesThroughPowerLimitAndPedalChanges) {
   const Commands hard{0.4, 3.5, 3.5, -2.0, 0.2, -0.5};
   const Error coarse = ErrorOf(hard, 0.4);

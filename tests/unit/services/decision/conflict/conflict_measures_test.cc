@@ -42,7 +42,7 @@ Claims ClaimsOf(std::string_view name) {
 
 constexpr int kSteps = 3;           // too few to reach any ceiling
 constexpr double kRounding = 1e-7;  // square roots of differences of squares
-constexpr double kBin_m = 0.5;      // binned measures promise nothing between multiples of it
+constexpr double kBin_m = 0.5;      // binned measures need not grow within a bin
 
 // The score after `steps` steps with this evidence.
 double After(const conflict::ConflictMeasureRow& row, int steps,
@@ -138,7 +138,7 @@ TEST(EveryMeasureTest, HoldsWhatItHadWhenAValueIsMissing) {
   for (const conflict::ConflictMeasureRow& row : conflict::ConflictMeasures()) {
     SCOPED_TRACE(row.name);
     if (row.name == "lidar_modes") {
-      // Only this measure treats a missing value as evidence, whatever the rule.
+      // Only this measure treats a missing value as evidence, under every rule.
       const auto measure = row.make({});
       measure->Step(LidarShortBy(0));
       EXPECT_GT(measure->Step(WithoutLidar(LidarShortBy(0))), 0.1);

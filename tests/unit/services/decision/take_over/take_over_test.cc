@@ -274,8 +274,9 @@ TEST_F(TakeOverTest, BrakesHarderAndAtLastReportsFailureOfABrakeThatDoesNotStopT
   Begin(Absent());
   brakes_ = false;
   while (state() != kMrmComfort) Step();
-  // A stage is overdue after twice its longest stop. Without the jerk's part this is 2 * 13.3 s (20
-  // m/s at 1.5 m/s2) for the comfortable stage, and 2 * 5 s (at 4 m/s2) for the hard one.
+  // A stage is overdue after twice the longest time that it needs to stop the car. Without the time
+  // that the jerk limit adds, this is 2 * 13.3 s (20 m/s at 1.5 m/s2) for the comfortable stage,
+  // and 2 * 5 s (at 4 m/s2) for the hard one.
   EXPECT_GT(StepWhile(kMrmComfort), 10 + 2 * 13.3);
   EXPECT_EQ(state(), kMrmEmergency);
   EXPECT_GT(StepWhile(kMrmEmergency), 10 + 2 * (13.3 + 5));

@@ -49,7 +49,7 @@ class RunCoordinatorTest : public testing::Test {
     coordinator_.Poll(now);
     script_.bus().Drain();
   }
-  /// Looks at the clock until then as often as a runner does.
+  /// Looks at the clock until `end`, as often as a runner does.
   static void PollUntil(runtime::RunCoordinator& coordinator, TimePoint end) {
     for (TimePoint now = Clock::now(); now < end; now += milliseconds(20)) coordinator.Poll(now);
     coordinator.Poll(end);

@@ -16,7 +16,7 @@ class DeafRolesTest : public testing::Test {
     std::int64_t age_ms;
     std::int8_t state = status_t::INPUT_LOST;
     std::int64_t late = 0;
-    std::int64_t step = 17;  // that it has computed last
+    std::int64_t step = 17;  // the last one that the radar has computed
   };
   void SayWorld() {
     status_t status{};
@@ -82,7 +82,7 @@ TEST_F(DeafRolesTest, AtTheEndASecondIsEnough) {
 
 TEST_F(DeafRolesTest, ARoleThatWasStartedAgainAndHeardNothingYetIsDeafToo) {
   for (int i = 0; i < 11; ++i) {
-    age_ms_ = -200;  // the age that it reports for an input that never came
+    age_ms_ = -200;  // Pass() makes it 0, the age of an input that never came
     Pass(1, status_t::INPUT_AWAITED);
   }
   EXPECT_TRUE(IsDeaf());

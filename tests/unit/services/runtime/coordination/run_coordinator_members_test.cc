@@ -38,7 +38,7 @@ TEST_F(RunCoordinatorTest, AwaitsRolesFromElsewhereUntilTheyAreThereAndWhenTheyF
   EXPECT_THAT(coordinator.Awaited(now), ElementsAre(Role::kDriver)) << "it has no scenario yet";
   BeAtStep(-1);
   EXPECT_THAT(coordinator.Awaited(now), IsEmpty());
-  // WHEN none of them is heard for more than a second of the run
+  // WHEN no role is heard for more than a second of the run
   const TimePoint later = Clock::now() + milliseconds(1200);
   PollUntil(coordinator, later);
   EXPECT_THAT(coordinator.Awaited(later), ElementsAre(Role::kAcc, Role::kDriver));
@@ -51,7 +51,7 @@ TEST_F(RunCoordinatorTest, EndsTheRunWhenTwoLivingProcessesAreOneRole) {
   SayStatus(Role::kAcc);
   EXPECT_EQ(coordinator_.phase(), runtime::RunCoordinator::Phase::kRunning)
       << "the first may be dead";
-  // WHEN the first speaks long after the second has come
+  // WHEN the first process speaks long after the second has come
   const TimePoint end = Clock::now() + milliseconds(120);
   while (Clock::now() < end) Poll(Clock::now());
   role(Role::kAcc) = first;
@@ -66,7 +66,7 @@ class ExternalDriverTest : public RunCoordinatorTest {
  protected:
   /// The instance that the run names as its driver.
   std::int64_t Holder() {
-    PassTime(milliseconds(300));  // it repeats itself in less
+    PassTime(milliseconds(300));  // the runner repeats RUN sooner than that
     script_.bus().Drain();
     EXPECT_EQ(said_.back().external, std::vector<std::string>{"driver"});
     return said_.back().holder.at(0);
@@ -127,11 +127,12 @@ TEST_F(ExternalDriverTest, IsFreeAtOnceWhenItLeaves) {
   EXPECT_EQ(Holder(), OtherDriver().instance);
 }
 
-/// The same with real time, because the coordinator takes the time of each message from the clock.
+/// The same fixture with the real clock, because the coordinator takes the time of each message
+/// from the clock.
 class StrayWordTest : public ExternalDriverTest {
  protected:
-  /// Publishes a STATUS of this process every 100 ms. It is the driver, or a process that has the
-  /// driver's place.
+  /// Publishes a STATUS of this process every 100 ms. The process is the driver, or another process
+  /// that takes the driver's place.
   void SpeakFor(milliseconds time, status_t& who) {
     for (const TimePoint end = Clock::now() + time; Clock::now() < end;) {
       Say(who);

@@ -6,14 +6,14 @@ namespace fogline {
 namespace {
 
 constexpr Duration kEvery = milliseconds(200);
-// One in a million processes that live is wrongly taken to hang.
+// Of a million living processes one is wrongly taken for hanging.
 constexpr double kUnlikely = 1e-6;
 
 TimePoint At(std::int64_t ms) { return TimePoint(std::chrono::hours(5)) + milliseconds(ms); }
 
 class SignsOfLifeTest : public testing::Test {
  protected:
-  /// All roles except one speak regularly. Of each role, one of `one_of` signs is heard.
+  /// All roles except one speak regularly. Of `one_of` signs of a role, one is heard.
   void Speak(Role silent, std::int64_t from_ms, std::int64_t to_ms, std::int64_t one_of = 1) {
     for (std::int64_t ms = from_ms; ms < to_ms; ms += 200) {
       for (const RoleInfo& info : kRoles) {

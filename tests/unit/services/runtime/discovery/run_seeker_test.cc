@@ -47,7 +47,8 @@ class RunSeekerTest : public testing::Test {
   TimePoint begin_ = Clock::now();
 };
 
-// The times that this test gives are in steps of 0.4 s: a longer one is a pause of the seeker.
+// The test passes times in steps of 0.4 s: the seeker would take a longer step for a pause of its
+// own.
 TEST_F(RunSeekerTest, TriesARunAgainSomeSecondsAfterItWasInVain) {
   // GIVEN a seeker that has tried a run in vain
   ASSERT_TRUE(Finds(begin_));
@@ -63,7 +64,7 @@ TEST_F(RunSeekerTest, TriesARunAgainSomeSecondsAfterItWasInVain) {
 }
 
 TEST_F(RunSeekerTest, TriesARunAgainAtOnceWhenItsPlaceWasTakenAndLeft) {
-  // GIVEN a seeker that has tried a run in vain at this time
+  // GIVEN a seeker that has tried a run in vain at `begin_`
   ASSERT_TRUE(Finds(begin_));
   driver_.GiveUp(begin_);
   // WHEN the run waits for another role alone, and then for the driver again
@@ -73,7 +74,7 @@ TEST_F(RunSeekerTest, TriesARunAgainAtOnceWhenItsPlaceWasTakenAndLeft) {
     runner_.Wait(milliseconds(10));
     found = driver_.Look(begin_).has_value();
   }
-  // THEN the seeker goes there at this time
+  // THEN the seeker goes there at `begin_`, without a pause
   EXPECT_TRUE(found);
 }
 

@@ -1,4 +1,4 @@
-// When a role computes in lockstep, and what it asks for.
+// When a role computes in lockstep, and the requests that it sends.
 #include "services/runtime/lockstep/lockstep_rule.h"
 
 #include <gmock/gmock-more-matchers.h>
@@ -77,7 +77,7 @@ TEST_F(LockstepRuleTest, CountsNoStepAsImpossibleThatIsUnderWayWhileItCatchesUp)
 TEST_F(LockstepRuleTest, AsksAgainForWhatIsLostOnTheWay) {
   script_.SayRun(run_t::GO, 30);
   script_.Poll(node_);
-  const TimePoint before = Clock::now();  // not later than the next lines, on any machine
+  const TimePoint before = Clock::now();  // before the messages come, however slow the machine is
   for (std::int64_t k = 0; k <= 30; ++k) {
     if (k != 5 && k != 9) script_.Say(Truth(k));
   }

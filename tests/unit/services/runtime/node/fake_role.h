@@ -1,5 +1,5 @@
-// A role whose algorithm and rule do nothing: they note what they are called for. The test
-// publishes the messages of all other processes (script.h).
+// A role whose algorithm and rule do nothing but note their calls. The test publishes the messages
+// of all other processes (script.h).
 #pragma once
 
 #include <gtest/gtest.h>
@@ -23,7 +23,8 @@ class FakeRole final : public runtime::Work {
  public:
   static constexpr const char* kWaitingFor = "the test";
 
-  /// It lets in what fits into the rings, unless the test gives another verdict.
+  /// A rule that accepts the messages that fit into the rings, unless the test gives another
+  /// verdict.
   class Rule final : public runtime::FireRule {
    public:
     explicit Rule(runtime::Parts& parts) : parts_(parts) {}

@@ -1,4 +1,4 @@
-// What a role's inputs refuse, and what they keep.
+// The messages that a role's inputs refuse, and those that they keep.
 #include "services/runtime/node/inputs.h"
 
 #include <gmock/gmock-more-matchers.h>
@@ -142,7 +142,7 @@ using InputsOfADriverTest = test::DriverInRun;
 
 TEST_F(InputsOfADriverTest, CountsUnsoundMessagesByKindAndGivesThemNoPlace) {
   script_.SayRun(run_t::GO, -1);
-  // WHEN they come before the valid message of their step
+  // WHEN invalid messages come before the valid message of their step
   SayUnsound(0);
   SayBytes("TRUTH", std::vector<std::uint8_t>(runtime::kHeaderEnd - 1));
   truth_t infinite = Truth(0);

@@ -1,4 +1,4 @@
-// What a role publishes, keeps and answers.
+// The messages that a role publishes and keeps, and its answers to requests.
 #include "services/runtime/node/outputs.h"
 
 #include <gmock/gmock-more-matchers.h>
@@ -133,7 +133,7 @@ TEST_F(OutputsOfADriverTest, AnswersAFloodOfRequestsWithAFewMessages) {
   const TimePoint began = Clock::now();
   for (int i = 0; i < kRequests; ++i) script_.AskFor("DRIVER_COMMAND", 0, 1'000'000'000);
   const std::chrono::duration<double> took = Clock::now() - began;
-  // Each step at most once per millisecond, of 12,800 requested messages.
+  // Of 12,800 requested messages the role sends each step at most once per millisecond.
   EXPECT_GE(commands_.size(), static_cast<std::size_t>(runtime::kRingSteps));
   EXPECT_LE(static_cast<double>(commands_.size()), runtime::kRingSteps * (1 + 1000 * took.count()));
 }

@@ -1,4 +1,4 @@
-// How a role stands in its run, and what its STATUS says.
+// The state of a role in its run, and its STATUS.
 #include "services/runtime/node/own_status.h"
 
 #include <gmock/gmock-more-matchers.h>

@@ -109,7 +109,7 @@ TEST_F(OnDemandTest, IsWaitedForAndAskedForLikeAnyOther) {
   EXPECT_EQ(requests_[0].channel, "HOST_COMMAND");
   EXPECT_EQ(requests_[0].header.step, 0);
   EXPECT_EQ(requests_[0].count, 1);
-  // AND its STATUS tells this
+  // AND its STATUS says for which input it waits
   script_.Poll(node_, Clock::now() + milliseconds(500));
   EXPECT_EQ(status_.back().waiting_for, "HOST_COMMAND");
   EXPECT_EQ(status_.back().last_heard_step, -1);

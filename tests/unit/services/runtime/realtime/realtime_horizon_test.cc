@@ -106,7 +106,7 @@ TEST_F(RealtimeHorizonTest, NorIsItTakenByARoleThatHasHeardNothingForLong) {
   Join(200);
   ASSERT_TRUE(IsComputed());
   Pass(20);
-  // This is beyond the runner's last reported progress plus the second that this report may be old.
+  // This step is more than a second ahead of the progress that the runner last reported.
   Say(Now() + 1000);
   EXPECT_EQ(Refused(), 3);
   EXPECT_TRUE(IsComputed());

@@ -83,7 +83,7 @@ TEST_F(RealtimeRuleTest, LeavesOutAStepThatLacksAnInputAndAsksForNothing) {
 }
 
 TEST_F(RealtimeRuleTest, ComputesInOrderEveryStepThatIsThereWhenItWasHeldUp) {
-  script_.SayRun(run_t::GO, 3, kSpeed);  // so far is the run
+  script_.SayRun(run_t::GO, 3, kSpeed);  // the run has reached step 3
   for (std::int64_t step = 0; step < 4; ++step) Say<ego_t, radar_t, lidar_t>(step);
   script_.PollUpTo(node_);
   EXPECT_THAT(StepsOf(tracks_), ElementsAre(0, 1, 2, 3));
@@ -243,8 +243,8 @@ TEST_F(TickRuleTest, LetsTheOthersFinishTheStepInWhichTheMachineStoodStill) {
   // GIVEN a world that wakes just before a tick, and no answers yet
   script_.Poll(node_, At(2.999));
   EXPECT_THAT(StepsOf(truths_), ElementsAre(0));
-  // WHEN the other roles answer THEN the step begins at once; its tick is not too close to the next
-  // one
+  // WHEN the other roles answer THEN the step begins at once, and tick 3 begins no step, because it
+  // is too close
   Say<arbitration_t, follower_command_t>(0);
   script_.PollUpTo(node_, At(2.9995));
   EXPECT_THAT(StepsOf(truths_), ElementsAre(0, 1));

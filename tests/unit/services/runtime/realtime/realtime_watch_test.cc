@@ -1,4 +1,4 @@
-// What every rule in real time does with messages, inputs and steps that are due.
+// The common part of the rules in real time: messages, inputs, and steps that are due.
 #include "services/runtime/realtime/realtime_watch.h"
 
 #include <gmock/gmock-more-matchers.h>

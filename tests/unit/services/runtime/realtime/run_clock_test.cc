@@ -63,7 +63,7 @@ TEST_F(RunClockTest, TakesAMessageThatComesLateForNoPause) {
   // GIVEN a second in which nothing is heard, and then at first repeated messages
   clock_.Heard(9, At(2391));
   clock_.Heard(11, At(2392));
-  // THEN with the current step the clock is as late as if the repeated ones had not come
+  // THEN the current step sets the clock as if the repeated messages had not come
   clock_.Heard(14, At(2400));
   EXPECT_EQ(clock_.At(At(2400)), At(1400));
   EXPECT_EQ(clock_.At(At(2450)), At(1450));

@@ -56,8 +56,8 @@ TEST_F(StepHorizonTest, ForgetsThePausesOfTheWorldAndAStepThatNeverWas) {
   Hear(0, 10);
   horizon_.Heard(40, At(1000));
   EXPECT_EQ(horizon_.Newest(At(1000)), 40 + kSlack);
-  // It does not forget the step at once: the message could be the only one in time among many late
-  // ones.
+  // The horizon does not forget the step at once: among many late messages this one could be the
+  // only one in time.
   Hear(10, kRemembered - 4, 5);
   EXPECT_GT(horizon_.Newest(At(7000)), 90 + kSlack);
   Hear(10 + kRemembered, kRemembered + 20, 5);
@@ -80,7 +80,7 @@ TEST_F(StepHorizonTest, FollowsAWorldWhoseClockIsFaster) {
 
 // ---- of a run ----------------------------------------------------------------------------------
 
-constexpr Duration kLong = 10 * kPeriod;  // a silence in which only the runner's word counts
+constexpr Duration kLong = 10 * kPeriod;  // a silence after which only the runner's report counts
 
 TEST(RunHorizonTest, IsLimitedByTheRunnerUntilAStepIsHeard) {
   runtime::RunHorizon horizon(kPeriod);

@@ -111,7 +111,8 @@ TEST(BusTest, KeepsUdpmOnThisMachineUnlessToldOtherwise) {
 }
 
 TEST(BusTest, DrawsAPortOnWhichNoSocketReceives) {
-  // GIVEN sockets on 600 of the 12,000 ports, which other sockets may share, as LCM's may
+  // GIVEN sockets on 600 of the 12,000 ports. Like LCM's sockets, they let other sockets share the
+  // port.
   std::set<std::uint16_t> taken;
   std::vector<int> sockets;
   for (int i = 0; i < 600; ++i) {
@@ -128,7 +129,7 @@ TEST(BusTest, DrawsAPortOnWhichNoSocketReceives) {
     }
   }
   EXPECT_GT(taken.size(), 500);
-  // WHEN 1,000 URLs are made, THEN none has one of these ports
+  // WHEN 1,000 URLs are made, THEN none of them has one of these 600 ports
   for (int i = 0; i < 1000; ++i) {
     const auto drawn = runtime::ParseMulticastUrl(runtime::FreshMulticastUrl());
     ASSERT_TRUE(drawn);

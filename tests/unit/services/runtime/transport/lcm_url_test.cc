@@ -95,7 +95,7 @@ TEST(LcmUrlTest, ARelayOfThisMachineHasAnAddressOfOneOfItsInterfaces) {
   EXPECT_GT(tried, 0);
 }
 
-// A part that was built without beacon_t can take part in a run.
+// A program that was built without beacon_t can take part in a run.
 TEST(TypeFingerprintTest, IsOfTheTypesOfARunWithoutItsBeacon) {
   std::uint64_t fingerprint = 0;
   for (const std::int64_t hash :

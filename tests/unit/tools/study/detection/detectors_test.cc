@@ -116,8 +116,8 @@ TEST(TruePositivesTest, TakesTheThresholdFromTheQuantileOfClearAir) {
 }
 
 TEST(TruePositivesTest, EqualScoresInClearAirDoNotHideFalsePositives) {
-  // Half of the clear air scores 1. No threshold up to 1 gives 10 % of false positives, so it is
-  // above 1.
+  // Half of the clear air scores 1. With a threshold up to 1, more than 10 % are false positives.
+  // So the threshold is above 1.
   const std::array clear{0.0, 0.0, 1.0, 1.0};
   EXPECT_EQ(study::TruePositives(std::array{1.0, 2.0}, clear, 0.1), 0.5);
 }

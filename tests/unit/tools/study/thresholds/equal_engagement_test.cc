@@ -67,7 +67,7 @@ TEST(BestOfAtMostTest, FindsTheThresholdThatGivesMoreForLess) {
 }
 
 /// Situations with a difficulty of their own, which all rules share. The gain of a rule is this
-/// difficulty, the cost of its engagement, and `more`.
+/// difficulty, minus the cost of its engagement, plus `more`.
 struct Rule {
   std::vector<double> rhe_pct;
   std::vector<double> gain;
@@ -95,7 +95,8 @@ TEST(AgainstFixedTest, FindsASmallDifferenceUnderTheLargeOneOfTheSituations) {
   const Rule beyond = MakeRule(5, 9);
   const std::vector rules{ValuesOf(better), ValuesOf(worse), ValuesOf(beyond)};
   const std::vector<study::AtEqualEngagement> all = study::AgainstFixed(values, rules);
-  // The deviation over the situations is 30 points. Without pairs, 200 of them could not show 0.5.
+  // The deviation over the situations is 30 points. Without pairs, 200 situations could not show a
+  // difference of 0.5.
   EXPECT_NEAR(all[0].difference.mean, 0.5, 1e-9);
   EXPECT_EQ(study::VerdictOf(all[0].difference), study::Verdict::kMore);
   EXPECT_EQ(all[0].place->below, 1U);

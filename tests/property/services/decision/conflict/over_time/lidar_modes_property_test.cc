@@ -69,7 +69,8 @@ class Lidar {
   conflict::LidarMode mode_ = conflict::LidarMode::kClean;
 };
 
-/// Posteriors and deceived steps of one class. The difference of their sums has mean 0.
+/// All steps with a posterior in one interval: the sum of the posteriors, and the number of steps
+/// in which the LiDAR is deceived. The difference of both has mean 0.
 struct Claims {
   double said = 0;
   double variance = 0;  // variance of the number of deceived steps
@@ -95,7 +96,7 @@ TEST(LidarModesPropertyTest, SayTheShareOfStepsInWhichTheLidarIsDeceived) {
     claim.were_so += lidar.deceived() ? 1 : 0;
     ++claim.count;
   }
-  // THEN in each class the number of deceived steps is the sum of the posteriors
+  // THEN in each interval the number of deceived steps is the sum of the posteriors
   for (const Claims& claim : claims) {
     EXPECT_GT(claim.count, 100) << claim.said;
     EXPECT_NEAR(claim.were_so, claim.said, 4 * std::sqrt(claim.variance)) << claim.count;

@@ -83,8 +83,9 @@ TEST(BinnedBeliefTest, MassAddsUpToTheReliabilityHoweverWideTheBelief) {
 TEST(BinnedBeliefTest, UnequalReliabilityIsADifferenceOfPignisticProbability) {
   conflict::ConflictParameters parameters;
   parameters.lidar_reliability = 0.55;
-  // GIVEN: the same reading, WHEN: one is discounted by 0.4 more, THEN: that part of it is spread
-  // over all 500 bins, and 24 or so of them have some of it anyway.
+  // GIVEN: two equal readings, WHEN: one is discounted by 0.4 more, THEN: 0.4 of its belief is
+  // spread over all 500 bins. The readings have belief in some 24 of these bins, so the distance is
+  // a little less than 0.4.
   const conflict::BinnedPair pair = conflict::PairOnBins(Differing(0, 0.2, 0.2), parameters);
   EXPECT_NEAR(conflict::PignisticDistance(pair), 0.4, 0.02);
   EXPECT_GT(conflict::JousselmeDistance(pair), 0.2);
