@@ -65,11 +65,12 @@ struct TakeOverSection {
                 "Time from the transfer until the driver counts as recovered. Then the automation "
                 "may get authority back.",
                 "SUMO's ToC device: 5 s from awareness 0.5");
-  FOGLINE_FIELD(double, slow_down_mps2, 0.0, {0, 4, "m/s2"},
-                "Deceleration of the automation from the request until the driver takes over. 0: it "
-                "only stops accelerating.",
-                "our choice, because UN R157 demands no braking before the manoeuvre; up to 4 m/s2 "
-                "are allowed in it");
+  FOGLINE_FIELD(
+      double, slow_down_mps2, 0.0, {0, 4, "m/s2"},
+      "Deceleration of the automation from the request until the driver takes over. 0: it "
+      "only stops accelerating.",
+      "our choice, because UN R157 demands no braking before the manoeuvre; up to 4 m/s2 "
+      "are allowed in it");
   FOGLINE_FIELD(double, severe_ttc_s, 1.5, {0, 10, "s"},
                 "Time to collision with the preceding car below which the manoeuvre begins at "
                 "once, as an emergency.",

@@ -73,8 +73,7 @@ void MetricsAccumulator::AddPairs(const Sample& sample) {
 }
 
 void MetricsAccumulator::AddAuthority(const Sample& sample) {
-  if (!sample.fog_present)
-    human_in_clear_air_.Add(HumanIsEngaged(sample.lambda_human) ? 1 : 0);
+  if (!sample.fog_present) human_in_clear_air_.Add(HumanIsEngaged(sample.lambda_human) ? 1 : 0);
   if (!previous_) return;
   if (previous_->lambda_automation == 0 && previous_->lambda_human == 0) {
     metrics_.minimal_risk_s += sample.time_s - previous_->time_s;

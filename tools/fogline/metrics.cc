@@ -41,10 +41,9 @@ int RunMetrics(const MetricsArguments& arguments) {
                                  {"seed", run.result.seed},        {"steps", run.result.steps},
                                  {"complete", run.complete},       {"digest", run.result.digest}};
       metrics::VisitPairedMetrics(
-          pairs[i].measures, [&row](std::string_view name, const std::optional<double>& value,
-                                    std::string_view, std::string_view) {
-            row[std::string(name)] = OrNull(value);
-          });
+          pairs[i].measures,
+          [&row](std::string_view name, const std::optional<double>& value, std::string_view,
+                 std::string_view) { row[std::string(name)] = OrNull(value); });
       if (run.result.realtime) row["realtime"] = cli::RealtimeJson(*run.result.realtime);
       row["metrics"] = nlohmann::ordered_json::parse(cli::MetricsJson(run.result));
       rows.push_back(std::move(row));

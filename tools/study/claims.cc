@@ -7,8 +7,8 @@
 
 #include <fmt/format.h>
 
-#include "tools/stats/holm.h"
 #include <boost/math/distributions/binomial.hpp>
+#include "tools/stats/holm.h"
 
 namespace fogline::study {
 namespace {

@@ -192,9 +192,8 @@ std::vector<Estimate> Comparison::Differences(std::size_t reference) const {
   for (std::size_t c = 0; c < cases_.size(); ++c) {
     for (std::size_t v = 0; v < variants_.size(); ++v) {
       for (const ComparedMetric& measure : ComparedMetrics()) {
-        differences.push_back(v == reference
-                                  ? Estimate{}
-                                  : Difference({c, v}, {c, reference}, measure.name));
+        differences.push_back(v == reference ? Estimate{}
+                                             : Difference({c, v}, {c, reference}, measure.name));
       }
     }
   }

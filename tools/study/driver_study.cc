@@ -52,18 +52,18 @@ std::vector<StudyCase> Densities() {
 }
 
 constexpr std::array<std::string_view, 8> kDriverTable{"si_pct",
-                                                         "mean_compromised_safety_fog_m",
-                                                         "collided",
-                                                         "min_host_gap_m",
-                                                         "min_host_ttc_s",
-                                                         "max_host_drac_mps2",
-                                                         "max_abs_jerk_mps3",
-                                                         "min_follower_ttc_s"};
+                                                       "mean_compromised_safety_fog_m",
+                                                       "collided",
+                                                       "min_host_gap_m",
+                                                       "min_host_ttc_s",
+                                                       "max_host_drac_mps2",
+                                                       "max_abs_jerk_mps3",
+                                                       "min_follower_ttc_s"};
 
 /// A measure as a function of the visibility: without traded control, and with each of the two
 /// drivers.
 report::StudyFigure OverDensity(const Comparison& comparison, std::string_view measure,
-                                   std::string id, std::string title) {
+                                std::string id, std::string title) {
   report::StudyFigure figure{
       .id = std::move(id),
       .title = std::move(title),
@@ -143,19 +143,18 @@ StudyResult RunDriverStudy(const StudyContext& context) {
   result.claims = DriverClaims(comparison);
   section.figures = {
       OverDensity(comparison, "mean_compromised_safety_fog_m", "driver-cs-visibility",
-                     "Compromised safety over the density of the fog (m)"),
+                  "Compromised safety over the density of the fog (m)"),
       OverDensity(comparison, "collided", "driver-collisions-visibility",
-                     "Collisions over the density of the fog"),
+                  "Collisions over the density of the fog"),
       OverDensity(comparison, "min_host_ttc_s", "driver-ttc-visibility",
-                     "The host's smallest time to collision over the density of the fog (s)"),
+                  "The host's smallest time to collision over the density of the fog (s)"),
       OverDensity(comparison, "max_abs_jerk_mps3", "driver-jerk-visibility",
-                     "Largest jerk over the density of the fog (m/s3)")};
+                  "Largest jerk over the density of the fog (m/s3)")};
   std::vector<NamedCell> rows{{"without traded control", {0, 0}}};
   for (std::size_t c = 0; c < HumanKinds().size(); ++c) rows.push_back({cases[c].name, {c, 1}});
-  section.tables = {comparison.TableOf("Drivers in dense fog with traded control", "driver", rows,
-                                       kDriverTable),
-                    comparison.TableOfVariant(0, kDriverTable),
-                    comparison.TableOfVariant(1, kDriverTable)};
+  section.tables = {
+      comparison.TableOf("Drivers in dense fog with traded control", "driver", rows, kDriverTable),
+      comparison.TableOfVariant(0, kDriverTable), comparison.TableOfVariant(1, kDriverTable)};
   section.method = fmt::format(
       "{} seeds of dense_fog.json, and of paper.json, with other human drivers of the host, "
       "without "

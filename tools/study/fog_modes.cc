@@ -13,9 +13,9 @@ StudyCase FogMode::Case(std::string_view with, const std::vector<std::string>& m
   return one;
 }
 
-// Missing echoes are those of a beam whose own fog echo is too weak to be seen, in fog so dense that
-// the car ahead is not seen either. Real data show this mode (RADIATE, Sheeny et al. 2021): beyond
-// 35 m no echo of 65 cars, and none of the fog.
+// Missing echoes are those of a beam whose own fog echo is too weak to be seen, in fog so dense
+// that the car ahead is not seen either. Real data show this mode (RADIATE, Sheeny et al. 2021):
+// beyond 35 m no echo of 65 cars, and none of the fog.
 const std::vector<FogMode>& FogModes() {
   static const std::vector<FogMode> kModes{
       {"bias fog", "paper.json", {}},
@@ -33,8 +33,8 @@ std::string_view FogModesText() {
 }
 
 const std::vector<std::string>& FallibleHuman() {
-  static const std::vector<std::string> kOverrides{
-      "/human/sight=fog", "/human/misjudges=true", "/human/loses_awareness=true"};
+  static const std::vector<std::string> kOverrides{"/human/sight=fog", "/human/misjudges=true",
+                                                   "/human/loses_awareness=true"};
   return kOverrides;
 }
 

@@ -13,7 +13,6 @@
 namespace fogline::study {
 namespace {
 
-
 /// Every policy of the table, and rivals: fusion that helps itself, and a driver who must be asked.
 std::vector<StudyVariant> EveryRule() {
   std::vector<StudyVariant> variants;
@@ -42,9 +41,8 @@ constexpr double kRealisticNoise_m = 0.25;
 std::vector<StudyCase> PolicyFogs() {
   std::vector<StudyCase> cases;
   for (const FogMode& fog : FogModes()) {
-    for (const auto& [human, overrides] :
-         {std::pair(kPerfectHuman, std::vector<std::string>{}),
-          std::pair(kFallibleHuman, FallibleHuman())}) {
+    for (const auto& [human, overrides] : {std::pair(kPerfectHuman, std::vector<std::string>{}),
+                                           std::pair(kFallibleHuman, FallibleHuman())}) {
       cases.push_back(fog.Case(human, overrides));
       std::vector<std::string> noisy = overrides;
       noisy.push_back(fmt::format("/radar/range_std_m={}", kRealisticNoise_m));
@@ -52,32 +50,31 @@ std::vector<StudyCase> PolicyFogs() {
       cases.push_back(fog.Case(fmt::format("{}, {}", human, kRealistic), noisy));
     }
   }
-  cases.push_back({std::string(kCalibratedRadar),
-                   "paper.json",
-                   {"/radar/bias_m=0", "/arbitrator/doc_centre_m=0.054", "/acc/standstill_m=4.4445"}});
+  cases.push_back(
+      {std::string(kCalibratedRadar),
+       "paper.json",
+       {"/radar/bias_m=0", "/arbitrator/doc_centre_m=0.054", "/acc/standstill_m=4.4445"}});
   return cases;
 }
 
-constexpr std::array<std::string_view, 14> kPolicyTable{
-    "si_pct",
-    "si_until_recovery_pct",
-    "rhe_pct",
-    "collided",
-    "mean_compromised_safety_fog_m",
-    "mean_compromised_safety_until_recovery_m",
-    "min_host_gap_m",
-    "min_host_ttc_s",
-    "min_follower_ttc_s",
-    "max_follower_drac_mps2",
-    "max_abs_jerk_1s_mps3",
-    "transfers_pmin",
-    "wrong_human_s",
-    "wrong_automation_s"};
+constexpr std::array<std::string_view, 14> kPolicyTable{"si_pct",
+                                                        "si_until_recovery_pct",
+                                                        "rhe_pct",
+                                                        "collided",
+                                                        "mean_compromised_safety_fog_m",
+                                                        "mean_compromised_safety_until_recovery_m",
+                                                        "min_host_gap_m",
+                                                        "min_host_ttc_s",
+                                                        "min_follower_ttc_s",
+                                                        "max_follower_drac_mps2",
+                                                        "max_abs_jerk_1s_mps3",
+                                                        "transfers_pmin",
+                                                        "wrong_human_s",
+                                                        "wrong_automation_s"};
 
 /// The rules of the first table.
-constexpr std::array<std::string_view, 8> kMain{
-    "none",  "none + gate",       "isolate", "traded",
-    "blend", "request + isolate", "adaptive", "oracle"};
+constexpr std::array<std::string_view, 8> kMain{"none",  "none + gate",       "isolate",  "traded",
+                                                "blend", "request + isolate", "adaptive", "oracle"};
 
 /// Mean compromised safety of the main rules in each fog with each human.
 report::StudyTable PolicyMainTable(const Comparison& comparison) {
@@ -105,11 +102,13 @@ report::StudyTable PolicyMainTable(const Comparison& comparison) {
 }
 
 constexpr std::string_view kPolicyAnswer =
-    "It depends on how the LiDAR fails. If fog biases its range a little, handing over to a perfect "
+    "It depends on how the LiDAR fails. If fog biases its range a little, handing over to a "
+    "perfect "
     "human is safer than any automation that does not know the bias. If fog makes a false echo or "
     "none, an automation that ignores outliers or the deceived sensor is safer than handing over.";
 constexpr std::string_view kPolicyWouldChange =
-    "A driver who needs time (study takeover), a filter that knows the fog, or a LiDAR that fails in "
+    "A driver who needs time (study takeover), a filter that knows the fog, or a LiDAR that fails "
+    "in "
     "another way.";
 
 std::vector<Claim> PolicyClaims(const Comparison& comparison) {
@@ -165,7 +164,8 @@ StudyResult RunPolicyStudy(const StudyContext& context) {
   section.method = fmt::format(
       "{} seeds of {}, each with every policy at its defaults and with rivals: a filter that "
       "refuses outliers, with and without a gate that reopens after five refusals; and a driver "
-      "who must be asked, while the automation leaves out the sensor that is to blame. {} Realistic "
+      "who must be asked, while the automation leaves out the sensor that is to blame. {} "
+      "Realistic "
       "noise: a radar with a range noise of {} m. Calibrated radar: without its mounting offset, "
       "which is subtracted from the centre of the DoC. SI is the paper's, against the run without "
       "traded control of the same seed. It is a mean of ratios of small numbers, so compromised "

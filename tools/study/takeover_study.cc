@@ -33,8 +33,7 @@ std::vector<Meanwhile> Meanwhiles() {
           {"isolate", {"/arbitrator/policy=traded_isolating"}},
           {"gate",
            {"/arbitrator/policy=traded", "/fusion/gating=true", "/fusion/gate_reopen_after=1000"}},
-          {"slow down",
-           {"/arbitrator/policy=traded", "/arbitrator/take_over/slow_down_mps2=0.5"}}};
+          {"slow down", {"/arbitrator/policy=traded", "/arbitrator/take_over/slow_down_mps2=0.5"}}};
 }
 
 std::string LatencyName(std::string_view meanwhile, int latency_s, bool absent) {
@@ -47,8 +46,8 @@ std::vector<StudyVariant> TakeOverVariants() {
     for (const int latency_s : kLatencies_s) {
       for (const bool absent : {false, true}) {
         if (latency_s == 0 && (absent || meanwhile.name == "slow down")) continue;
-        StudyVariant& one =
-            variants.emplace_back(LatencyName(meanwhile.name, latency_s, absent), meanwhile.overrides);
+        StudyVariant& one = variants.emplace_back(LatencyName(meanwhile.name, latency_s, absent),
+                                                  meanwhile.overrides);
         if (latency_s == 0) continue;
         one.overrides.insert(one.overrides.end(),
                              {"/arbitrator/take_over/mode=requested",
@@ -167,8 +166,8 @@ std::vector<Claim> TakeOverClaims(const Comparison& comparison) {
   std::vector<Claim> claims;
   const auto add = [&](std::string says, std::string_view test_case, std::string_view a,
                        std::string_view b, std::string_view measure, Sign sign) {
-    claims.push_back(ClaimOf(comparison, std::move(says), {test_case, a}, {test_case, b}, measure,
-                             sign));
+    claims.push_back(
+        ClaimOf(comparison, std::move(says), {test_case, a}, {test_case, b}, measure, sign));
   };
   const std::string bias = FogModes()[0].Case(kPerfectHuman).name;
   add("In bias fog each second of waiting costs safety.", bias, LatencyName("stay", 1, false),

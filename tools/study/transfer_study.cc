@@ -59,16 +59,16 @@ std::vector<Claim> TransferClaims(const Comparison& comparison) {
   const CellName step_in_dense_fog{kDenseFog, "step"};
   const CellName gate_in_dense_fog{kDenseFog, "gate"};
   return {
-      LevelClaim(comparison, "In the paper's scenario the step is comfortable.", step, kTransferJerk,
-                 Sign::kLess, kComfortableJerk_mps3),
-      ClaimOf(comparison, "A linear ramp costs safety there.", {kPaperFog, "linear"}, step, "si_pct",
-              Sign::kLess),
+      LevelClaim(comparison, "In the paper's scenario the step is comfortable.", step,
+                 kTransferJerk, Sign::kLess, kComfortableJerk_mps3),
+      ClaimOf(comparison, "A linear ramp costs safety there.", {kPaperFog, "linear"}, step,
+              "si_pct", Sign::kLess),
       ClaimOf(comparison, "So does a sigmoid ramp.", {kPaperFog, "sigmoid"}, step, "si_pct",
               Sign::kLess),
       ClaimOf(comparison, "A jerk limit costs no safety there.", {kPaperFog, "jerk_limited"}, step,
               "si_pct", Sign::kEqual, kTolerableLoss),
-      LevelClaim(comparison, "In dense fog the step is not comfortable.", step_in_dense_fog, kTransferJerk,
-                 Sign::kMore, kComfortableJerk_mps3),
+      LevelClaim(comparison, "In dense fog the step is not comfortable.", step_in_dense_fog,
+                 kTransferJerk, Sign::kMore, kComfortableJerk_mps3),
       LevelClaim(comparison, "The gate is comfortable there.", gate_in_dense_fog, kTransferJerk,
                  Sign::kLess, kComfortableJerk_mps3),
       ClaimOf(comparison, "The gate costs no safety there.", gate_in_dense_fog, step_in_dense_fog,

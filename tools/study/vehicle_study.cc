@@ -52,8 +52,8 @@ std::vector<Ground> Grounds() {
            true}};
 }
 
-/// VehicleCases in which the limit that their name mentions takes effect. Cars of a kind whose limits are
-/// never reached give equal runs, so they are left out; VehicleMethod() names them.
+/// VehicleCases in which the limit that their name mentions takes effect. Cars of a kind whose
+/// limits are never reached give equal runs, so they are left out; VehicleMethod() names them.
 std::vector<StudyCase> VehicleCases() {
   std::vector<StudyCase> cases;
   for (const Ground& ground : Grounds()) {
@@ -78,13 +78,13 @@ std::vector<StudyCase> VehicleCases() {
 }
 
 constexpr std::array<std::string_view, 8> kVehicleTable{"si_pct",
-                                                         "mean_compromised_safety_fog_m",
-                                                         "collided",
-                                                         "min_host_gap_m",
-                                                         "min_follower_gap_m",
-                                                         "max_follower_drac_mps2",
-                                                         "max_handover_jerk_mps3",
-                                                         "rms_jerk_mps3"};
+                                                        "mean_compromised_safety_fog_m",
+                                                        "collided",
+                                                        "min_host_gap_m",
+                                                        "min_follower_gap_m",
+                                                        "max_follower_drac_mps2",
+                                                        "max_handover_jerk_mps3",
+                                                        "rms_jerk_mps3"};
 
 constexpr std::string_view kVehicleAnswer =
     "Yes, but less than for a point mass, and least for a truck. Behind a leader that brakes hard "

@@ -52,10 +52,10 @@ enum class TakeOverGuard : std::uint8_t {
 /// Which side has authority. This determines the acceleration that is applied.
 enum class Authority : std::uint8_t {
   kAutomation,  // the automation's offer
-  kEasing,      // the automation's offer, but it does not accelerate; it slows down by slow_down_mps2
-  kHuman,       // the human's offer
-  kComfort,     // neither side: the manoeuvre with comfort_deceleration_mps2
-  kHard,        // neither side: the manoeuvre with emergency_deceleration_mps2
+  kEasing,   // the automation's offer, but it does not accelerate; it slows down by slow_down_mps2
+  kHuman,    // the human's offer
+  kComfort,  // neither side: the manoeuvre with comfort_deceleration_mps2
+  kHard,     // neither side: the manoeuvre with emergency_deceleration_mps2
 };
 
 struct TakeOverRow {

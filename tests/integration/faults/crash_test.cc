@@ -219,9 +219,7 @@ TEST(CrashTest, TheLimitForTheSizeOfFilesEndsTheRunByNameAndStartsNoRecorderAgai
   }
 }
 
-TEST(CrashTest, AtRandomStepsChangesNoResult) {
-  ExpectKillsAtRandomStepsChangeNoResult(6);
-}
+TEST(CrashTest, AtRandomStepsChangesNoResult) { ExpectKillsAtRandomStepsChangeNoResult(6); }
 
 }  // namespace
 }  // namespace fogline::test

@@ -37,8 +37,8 @@ TEST_F(SealedLogTest, ARunSealsItsLogOnEveryTransport) {
 }
 
 TEST_F(SealedLogTest, ARunInRealtimeSealsItsLogWithTheStatusOfItsRoles) {
-  const Outcome run =
-      RunCommand({Program("fogline"), "run", "scenario/paper.json", "--realtime", "--set", "/steps=20", "--json", "--verify", "--log", log_});
+  const Outcome run = RunCommand({Program("fogline"), "run", "scenario/paper.json", "--realtime",
+                                  "--set", "/steps=20", "--json", "--verify", "--log", log_});
   ASSERT_EQ(run.code, 0) << run.err;
   const auto json = nlohmann::json::parse(run.out);
   EXPECT_EQ(json["log_checked"], true);

@@ -152,8 +152,7 @@ TEST_F(ReplayTest, SaysWhatIsWrongWithItsArguments) {
 }
 
 TEST_F(ReplayTest, RefusesALogOfARunInRealtime) {
-  const std::string log =
-      Log("scenario/paper.json", {"--realtime", "--set", "/steps=20"});
+  const std::string log = Log("scenario/paper.json", {"--realtime", "--set", "/steps=20"});
   const Outcome replay = Replay({log, "--all"});
   EXPECT_EQ(replay.code, 2);
   EXPECT_THAT(replay.err, HasSubstr(log + ": error: a run in real time"));

@@ -93,7 +93,6 @@ constexpr std::string_view kFollowersAnswer =
 constexpr std::string_view kFollowersWouldChange =
     "Followers with automatic emergency braking, or a host that brakes harder.";
 
-
 std::vector<Claim> ClaimsOnFirst(const Comparison& comparison) {
   const auto claim = [&](std::string says, std::string_view name, Sign sign, double margin = 0) {
     return ClaimOf(comparison, std::move(says), {name, "traded"}, {name, "none"}, kShortfall, sign,

@@ -219,7 +219,7 @@ constexpr std::array<std::string_view, 9> kTelling{
     "adaptive 0.7", "bayes 1",   "availability 0.5", "availability 0.98"};
 
 report::StudyTable TableOfRules(const MixedRuns& mixed, const Beside& beside, std::string_view name,
-                           std::span<const std::size_t> rules) {
+                                std::span<const std::size_t> rules) {
   report::StudyTable table{
       .caption = fmt::format("{}: means over the situations [95 % confidence intervals]", name),
       .columns = {"rule", "RHE (%)", "SI (%)", "fixed threshold of equal RHE",

@@ -15,8 +15,8 @@ using ::testing::ElementsAre;
 TEST(HolmTest, AdjustsForTheNumberOfTestsStepByStep) {
   constexpr double kSame = 1e-12;
   EXPECT_THAT(stats::Holm(std::array{0.01, 0.04, 0.03, 0.005}),
-              ElementsAre(DoubleNear(0.03, kSame), DoubleNear(0.06, kSame),
-                          DoubleNear(0.06, kSame), DoubleNear(0.02, kSame)));
+              ElementsAre(DoubleNear(0.03, kSame), DoubleNear(0.06, kSame), DoubleNear(0.06, kSame),
+                          DoubleNear(0.02, kSame)));
 }
 
 TEST(HolmTest, HasNoProbabilityAboveOne) {

@@ -96,9 +96,8 @@ TEST(PoliciesTest, AMisspeltNameIsAnsweredWithTheNearestOfTheTable) {
 
 TEST(PoliciesTest, KnowsTheTraitsOfEachPolicy) {
   // Only the policies that this file tests. Another policy has tests of its own.
-  for (const std::string_view name :
-       {"none", "traded", "isolate", "oracle", "blend", "adaptive", "bayes", "availability",
-        "traded_isolating"}) {
+  for (const std::string_view name : {"none", "traded", "isolate", "oracle", "blend", "adaptive",
+                                      "bayes", "availability", "traded_isolating"}) {
     const policies::PolicyRow& row = policies::RowOf(test::FindPolicy(name).value());
     const auto is = [&](std::initializer_list<std::string_view> names) {
       return std::ranges::find(names, row.name) != names.end();
