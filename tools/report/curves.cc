@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "tools/report/html.h"
 #include "tools/report/tables.h"
 #include "tools/stats/pareto.h"
 

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <iterator>
 #include <map>
+#include <set>
 #include <sstream>
 #include <string>
 #include <system_error>
@@ -159,6 +160,31 @@ TEST(StudyVerbTest, AnswersInAtMostThreeSentencesWithoutNumbers) {
     EXPECT_TRUE(std::ranges::none_of(answer, [](unsigned char c) { return std::isdigit(c); }))
         << answer;
   }
+}
+
+TEST(StudyVerbTest, EveryFindingRestsOnClaimsOfItsStudies) {
+  const ScratchFolder folder;
+  const Outcome made = Study({"all", "--seeds", "1", "--out", folder.path(), "--json"});
+  ASSERT_EQ(made.code, 0) << made.err;
+  std::set<std::string> claims;
+  for (const auto& study : nlohmann::json::parse(made.out)["studies"]) {
+    for (const auto& claim : study["claims"]) {
+      claims.insert(study["name"].get<std::string>() + ": \"" + claim["says"].get<std::string>() + '"');
+    }
+  }
+  std::istringstream page(Read(SourceDirectory() / "docs/findings.md"));
+  int findings = 0;
+  int of_finding = 1;
+  for (std::string line; std::getline(page, line);) {
+    if (line.starts_with("## ") && std::isdigit(static_cast<unsigned char>(line[3]))) {
+      ++findings;
+      EXPECT_GE(std::exchange(of_finding, 0), 1) << "before " << line;
+    }
+    if (!line.starts_with("- ")) continue;
+    ++of_finding;
+    EXPECT_TRUE(claims.contains(line.substr(2))) << line;
+  }
+  EXPECT_EQ(findings, 10);
 }
 
 TEST(StudyVerbTest, TriesItsFolderBeforeItComputes) {
