@@ -1,7 +1,8 @@
-# fogline_add_library(NAME [SUBFOLDER...]): builds *.cc of this folder and of these subfolders as the
-# static library fogline_NAME. The caller states what it links.
+# fogline_add_library(NAME [SUBFOLDER...]): builds *.cc of this folder and of these subfolders as
+# the static library fogline_NAME. The caller adds the libraries that this library links.
 function(fogline_add_library name)
-  # Paths without "/./": the properties of a source file belong to its path as it is written here.
+  # No path has "/./" in it: CMake finds the properties of a source file only by the same spelling
+  # of its path.
   list(TRANSFORM ARGN PREPEND "${CMAKE_CURRENT_SOURCE_DIR}/" OUTPUT_VARIABLE subfolders)
   set(sources)
   set(folders)
@@ -54,7 +55,7 @@ function(fogline_add_test_program name)
   add_executable(${name}_tests ${sources})
   # Strips the symbols, which are a quarter of a program.
   target_link_options(${name}_tests PRIVATE $<$<CONFIG:Release>:-s>)
-  # All test programs share one precompiled header: it has 100 MB.
+  # All test programs share one precompiled header, because it takes 100 MB.
   get_property(precompiled GLOBAL PROPERTY FOGLINE_PRECOMPILED_TESTS)
   if(precompiled)
     target_precompile_headers(${name}_tests REUSE_FROM ${precompiled})
@@ -68,8 +69,8 @@ function(fogline_add_test_program name)
   target_link_libraries(${name}_tests PRIVATE ${ARGN} GTest::gtest GTest::gmock GTest::gtest_main)
 endfunction()
 
-# fogline_add_tests(NAME LIBS...): builds such a program; each TEST is one test of ctest. The names of the
-# tests begin with NAME: "unit.RadarTest.Name".
+# fogline_add_tests(NAME LIBS...): builds the program of fogline_add_test_program(); each TEST is
+# one test of ctest. The names of the tests begin with NAME: "unit.RadarTest.Name".
 function(fogline_add_tests name)
   fogline_add_test_program(${name} ${ARGN})
   # Tests of runs in real time run alone, without other tests beside them.

@@ -5,16 +5,16 @@
 #
 # 1. An array is allocated before its length is checked: a message of 100 bytes can claim 16 GB. The check
 #    refuses a length below 0 or above the number of bytes left in the message.
-# 2. A string may lack its terminator, have the length 0 or less, or have a zero before its end. Such a
-#    message, encoded again, would be another message. The check refuses all three.
-# 3. An array of numbers that has no elements is not touched: the object would keep the elements of an earlier
-#    message. The array is cleared first.
+# 2. A string may lack its terminator, have the length 0 or less, or have a zero before its end. If
+#    such a message were encoded again, its bytes would differ. The check refuses all three.
+# 3. If an array of numbers is empty in the message, the decoder does not touch it: the object would
+#    keep the elements of an earlier message. The array is cleared first.
 #
-# Each place must get its check; otherwise this lcm-gen writes other code than Debian 12's, and the script
-# fails. No message type needs to be known here.
+# The script fails if a place gets no check, because this lcm-gen then writes other code than Debian
+# 12's. It works for any message type.
 set -eu
 
-# count PATTERN FILE: in how many lines of FILE is PATTERN?
+# count PATTERN FILE: prints how many lines of FILE match PATTERN
 count() { grep -cE -- "$1" "$2" || true; }
 fail() {
   echo "harden_decoders.sh: error: $1: $2: this lcm-gen writes code that the script does not know" >&2

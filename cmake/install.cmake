@@ -1,6 +1,6 @@
-# `cmake --install build --prefix DIR` installs into DIR: the programs, the message types (C++ headers, and
-# the jar if there is one), and the package for C++ roles of other projects. find_package(fogline) gives them
-# the target fogline::runtime.
+# `cmake --install build --prefix DIR` installs into DIR: the programs, the message types (C++
+# headers, and the jar if there is one), and the package for C++ roles of other projects.
+# find_package(fogline) gives these projects the target fogline::runtime.
 include(CMakePackageConfigHelpers)
 
 set(programs fogline fogline-calibrate fogline-study fogline-recorder fogline-relay)

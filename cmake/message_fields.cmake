@@ -1,6 +1,7 @@
 # cmake -DOUT=FILE -DLCM_FILES="a.lcm;b.lcm" -P message_fields.cmake
-# Writes a header with VisitFields(message, visit) for every message type. Comparing, checking and exporting
-# messages needs the names of the fields, which the generated C++ types do not contain.
+# Writes a header with VisitFields(message, visit) for every message type. Code that compares,
+# checks or exports messages needs the names of the fields. The generated C++ types do not contain
+# these names.
 set(text "// Made from lcmtypes/*.lcm; do not edit.\n#pragma once\n\n#include <span>\n\n")
 set(body "")
 foreach(file IN LISTS LCM_FILES)

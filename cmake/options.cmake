@@ -22,9 +22,9 @@ if(CCACHE_PROGRAM AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
   set(CMAKE_CXX_COMPILER_LAUNCHER "${CCACHE_PROGRAM}")
 endif()
 
-# Debug, release and -march=native builds give the same results: the compiler does not contract into fused
-# multiply-add (which rounds once instead of twice), and Eigen does not vectorise (which adds in another
-# order).
+# Debug, release and -march=native builds give the same results: the compiler uses no fused
+# multiply-add (it would round once instead of twice), and Eigen does not vectorise (it would add in
+# another order).
 add_compile_options(-ffp-contract=off)
 add_compile_definitions(EIGEN_DONT_VECTORIZE)
 add_compile_options(-Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-missing-field-initializers)
@@ -36,7 +36,7 @@ if(PROJECT_IS_TOP_LEVEL AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND
    CMAKE_CXX_COMPILER_VERSION VERSION_GREATER_EQUAL 12 AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
   set(werror_default ON)
 endif()
-option(FOGLINE_WERROR "Take warnings for errors" ${werror_default})
+option(FOGLINE_WERROR "Treat warnings as errors" ${werror_default})
 if(FOGLINE_WERROR)
   add_compile_options(-Werror)
 endif()

@@ -128,7 +128,7 @@ int Open(const Target& target) {
     }
     return fcntl(*target.descriptor, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
   }
-  // O_NONBLOCK makes open() fail, instead of wait, if no process reads the pipe.
+  // If no process reads the pipe, open() would wait. With O_NONBLOCK it fails.
   const int fd = open(target.path.c_str(), O_WRONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
   if (fd >= 0) fcntl(fd, F_SETFL, fcntl(fd, F_GETFL) & ~O_NONBLOCK);
   return fd;

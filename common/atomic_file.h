@@ -9,8 +9,8 @@
 namespace fogline {
 
 /// Writes a file under a random name in the folder of the target file, and renames it at the end.
-/// So several processes can write the same file at a time: each writes a complete file, and the
-/// last one remains. A link to a file stays a link, and its target is replaced. A terminal,
+/// So several processes can write the same file at the same time: each writes a complete file, and
+/// the last one remains. A link to a file stays a link, and its target is replaced. A terminal,
 /// /dev/null, a pipe and /dev/stdout cannot be replaced; they get the content at the end.
 ///
 /// A process that must leave nothing behind after an interrupt watches interrupts (interrupt.h).
@@ -36,7 +36,8 @@ class AtomicFile {
   /// the final name. @throws std::runtime_error when the disk is full
   void Close();
 
-  /// Removes the old file of this name, for files that replace others together.
+  /// Removes the old file of this name. It serves files that belong together, so that no new file
+  /// stands beside an old one.
   /// @throws std::runtime_error
   void RemoveOld();
 
@@ -60,16 +61,16 @@ class AtomicFile {
 /// Folder of files without a given place, such as the log of a run.
 inline constexpr const char* kDefaultFolder = "logs";
 
-/// Whether a file of this name can be replaced. A pipe or device cannot: the bytes are written into
-/// it. A name that stands for an open descriptor of this process, such as /dev/stdout, cannot
-/// either.
+/// Whether a file of this name can be replaced. It cannot if it is a pipe or device, into which the
+/// bytes are written, or if the name stands for an open descriptor of this process, such as
+/// /dev/stdout.
 bool IsReplaceable(const std::filesystem::path& file);
 
 /// Opens a file that is not replaceable, for writing. @return a descriptor
 /// @throws InputError "FILE: error: --out: cannot write: no process reads this pipe"
 int OpenStream(const std::filesystem::path& file, std::string_view option);
 
-/// Whether the file is stdout, so that nothing else should go to stdout.
+/// Whether the file is stdout. Then nothing else should go to stdout.
 bool IsStdout(const std::filesystem::path& file);
 
 /// Requires the folder in which a file or folder is to be made. A missing folder is probably a
@@ -88,8 +89,8 @@ void RequireWritable(const std::filesystem::path& file, std::string_view option)
 void RequireWritableFolder(const std::filesystem::path& folder, std::string_view option);
 
 /// Refuses to replace an existing file unless `force` is true. Even with `force` it refuses a file
-/// of another kind, so that a mistyped name does not destroy it. An empty file is accepted with
-/// `force`, a pipe and a device are always accepted.
+/// of another kind: the name may be mistyped. An empty file is accepted with `force`, a pipe and a
+/// device are always accepted.
 /// @param kind such as "sweep"
 /// @throws InputError "FILE: error: --out: the file is no sweep and is not replaced, even with
 /// --force"

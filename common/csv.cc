@@ -18,7 +18,7 @@ struct Cell {
   std::uint32_t offset;
 };
 
-// Cuts a text into lines; offsets count from the text's begin.
+// Cuts a text into lines; offsets count from the beginning of the text.
 class Lines {
  public:
   explicit Lines(std::string_view text) : text_(text), at_(SkipByteOrderMark(text)) {}

@@ -10,12 +10,12 @@
 namespace fogline {
 
 /// Linear interpolation between rows, at times that grow from call to call.
-/// @pre times ascend and span every time asked for; the columns outlive this object
+/// @pre the times of the rows ascend and span all times of At(); the columns outlive this object
 class CsvSeries {
  public:
-  /// Times in files are rounded decimals. A time that differs from a row's time by no more than
-  /// this has exactly the row's value. The time of a message has the same resolution of one
-  /// microsecond.
+  /// Times in files are rounded decimals. If a time differs from a row's time by no more than this,
+  /// the series has exactly the row's value there. The time of a message has the same resolution of
+  /// one microsecond.
   static constexpr double kSameTime_s = 1e-6;
 
   CsvSeries(const std::vector<CsvNumber>& times_s, const std::vector<CsvNumber>& values)

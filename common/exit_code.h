@@ -5,7 +5,7 @@ namespace fogline {
 
 enum ExitCode : int {
   kDone = 0,
-  kCheckFailed = 1,   // what was to be checked is not so
+  kCheckFailed = 1,   // a check has found a fault or a difference
   kBadInput = 2,      // in the arguments or in a file (InputError)
   kRunFailed = 3,     // a failure at run time
   kInterrupted = 130  // by a signal that asks a process to end (Interrupted)

@@ -29,8 +29,8 @@ constexpr std::size_t kMostEntries = 10'000;
 // Longest wait for data from a pipe; long enough for a remote shell to answer.
 constexpr int kPipeLimit_ms = 5000;
 
-// Time between two checks whether to go on waiting for room in a pipe. A person does not notice a
-// delay of this length.
+// While a pipe has no room, WriteAll() asks at this interval whether to go on. A person does not
+// notice a delay of this length.
 constexpr int kRoomPause_ms = 100;
 
 std::string Message(int error) { return std::generic_category().message(error); }
@@ -56,7 +56,7 @@ bool HasMore(int fd) {
   return ready > 0;
 }
 
-// Waits a moment until a pipe or terminal takes something. @return false if it does not yet
+// Waits for kRoomPause_ms at most until a pipe or terminal has room. @return false if it has none
 bool HasRoom(int fd) {
   pollfd waited{.fd = fd, .events = POLLOUT, .revents = 0};
   const int ready = poll(&waited, 1, kRoomPause_ms);

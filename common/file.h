@@ -24,18 +24,18 @@ struct FileText {
 std::string DidYouMeanFile(const std::filesystem::path& file, std::string_view ending = "");
 
 /// The bytes of a file or pipe of at most `max_bytes`. A shell's `<(command)` is such a pipe. Reads
-/// a pipe up to its end, but fails if no process writes into it for 5 s. The error of a file that
-/// does not exist has a suggestion of a file with this ending.
+/// a pipe up to its end, but fails if no process writes into it for 5 s. If the file does not
+/// exist, the error suggests a file with this ending.
 /// @throws std::runtime_error as ThrowIfExhausted()
 FileText ReadFile(const std::filesystem::path& file, std::size_t max_bytes,
                   std::string_view ending = "");
 
-/// The reason why a program cannot map the file or seek in it, because it is not a regular file; ""
-/// if it is one or does not exist.
+/// Why the file is not a regular one, so that a program cannot map it or seek in it; "" if it is a
+/// regular file or does not exist.
 std::string WhyNoRegularFile(const std::filesystem::path& file);
 
-/// A file opened for reading, closed at the end. Opening waits for no process at the other end of a
-/// pipe.
+/// A file opened for reading, closed at the end. Opening a pipe does not wait for a process at its
+/// other end.
 class OpenFile {
  public:
   explicit OpenFile(const std::filesystem::path& file);
@@ -50,8 +50,8 @@ class OpenFile {
 };
 
 /// Writes all bytes to an open file. @return 0, or errno
-/// @param stop called while a pipe or terminal has no room; if it returns true, WriteAll() returns
-///     EINTR
+/// @param stop called while a pipe or terminal has no room; if `stop` returns true, WriteAll()
+///     returns EINTR
 int WriteAll(int fd, std::string_view bytes, bool (*stop)() = nullptr);
 
 /// Throws if a call failed because the process or the machine has used up descriptors, memory or

@@ -50,7 +50,7 @@ bool IsFileOf(const std::filesystem::path& path, int fd) {
          named.st_dev == opened.st_dev && named.st_ino == opened.st_ino;
 }
 
-/// @return whether no other lock is in the way
+/// @return false if another lock is in the way
 bool Lock(int fd, FileLock::Kind kind) {
   const auto take = [fd](int how) { return flock(fd, how | LOCK_NB) == 0 || errno != EWOULDBLOCK; };
   // An owner makes sure that it is alone. Then it keeps a shared lock, so that processes that work
@@ -58,7 +58,7 @@ bool Lock(int fd, FileLock::Kind kind) {
   return (kind == FileLock::Kind::kShared || take(LOCK_EX)) && take(LOCK_SH);
 }
 
-/// The parent of a process, 0 if it has ended. /proc/PID/stat is "4711 (name) S 4710 ...".
+/// The parent of a process, 0 if the process has ended. /proc/PID/stat is "4711 (name) S 4710 ...".
 pid_t ParentOf(pid_t pid) {
   std::ifstream stat(fmt::format("/proc/{}/stat", pid));
   std::string text;
@@ -71,10 +71,9 @@ pid_t ParentOf(pid_t pid) {
 }
 
 /// The process that has locked an open file. Several processes can hold one lock: an owner, and
-/// processes that the owner has started. This function returns the owner, the holder whose parent
-/// holds no lock.
-/// /proc/locks has lines "1: FLOCK ADVISORY READ 4711 08:01:1234 0 EOF", with the device in
-/// hexadecimal and the inode.
+/// processes that the owner has started. This function returns the owner: the holder whose parent
+/// does not hold the lock. /proc/locks has lines "1: FLOCK ADVISORY READ 4711 08:01:1234 0 EOF",
+/// with the device in hexadecimal and the inode.
 std::optional<pid_t> HolderOf(int fd) {
   struct stat file {};
   if (fstat(fd, &file) != 0) return std::nullopt;

@@ -8,9 +8,9 @@
 
 namespace fogline {
 
-/// A lock on a file or folder (flock(2)). The kernel removes the lock when the process ends in any
-/// way, and nothing is left on the disk. The lock stops only processes that ask for it. On a file
-/// system without locks every process gets it.
+/// A lock on a file or folder (flock(2)). The kernel removes the lock when the process ends, in
+/// whatever way. Nothing is left on the disk. The lock stops only processes that ask for it. On a
+/// file system without locks every process gets it.
 class FileLock {
  public:
   enum class Kind {
@@ -19,7 +19,7 @@ class FileLock {
   };
 
   /// Opens a file or folder and locks it. A file that is missing is created.
-  /// @param option the command line option that names it, such as "--log"
+  /// @param option the command line option that names the file, such as "--log"
   /// @param owner the kind of process that has such locks, for the message: "run"
   /// @param patience how long to wait until other processes give up their locks
   /// @throws InputError "FILE: error: --log: is being written by another run (pid 4711)", without

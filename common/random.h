@@ -11,8 +11,8 @@
 
 namespace fogline {
 
-/// The user of the random numbers. The random numbers of a stream depend on its number: never reuse
-/// or change a number.
+/// The purpose of random numbers. The random numbers depend on the number of their stream: never
+/// reuse or change such a number.
 enum class Stream : std::uint32_t {
   kRadar = 1,
   kLidar = 2,

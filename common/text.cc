@@ -21,9 +21,9 @@ constexpr std::size_t kMaxExcerpt = 100;
 // the lengths.
 constexpr std::size_t kMaxCompared = 64;
 
-// A suggestion may differ by one edit for each three characters, and by one in a shorter word. A
-// word that is the beginning of a name (for example a name without its unit) counts as one edit if
-// it is long enough.
+// A suggestion may differ by one edit for each three characters, and by one in a shorter word. If a
+// word of at least kMinBeginning bytes is the beginning of a name (for example the name without its
+// unit), the name counts as one edit away.
 constexpr std::size_t kCharactersPerEdit = 3;
 constexpr std::size_t kMinBeginning = 2;
 
@@ -61,7 +61,7 @@ Character FirstCharacter(std::string_view text) {
   return {.bytes = bytes, .code_point = code_point};
 }
 
-// Whether it is a control character (Unicode's general category Cc), an invisible character of
+// Whether `c` is a control character (Unicode's general category Cc), an invisible character of
 // category Cf, or a separator of lines or paragraphs.
 bool IsUnseen(char32_t c) {
   struct Block {

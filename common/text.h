@@ -10,7 +10,7 @@
 
 namespace fogline {
 
-/// The shortest text that reads back as the same number, sign of zero included.
+/// The shortest text from which the same number is read, with the sign of a zero.
 std::string NumberText(double value);
 
 /// A time in s, rounded to microseconds, the resolution of a run: "899.9" for 899.9000000000001.

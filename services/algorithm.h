@@ -4,7 +4,7 @@
 // An algorithm may have one more input, on demand. It uses this input only in some scenarios.
 //
 //     static bool UsesOnDemandInput(const Scenario& scenario);  // whether it uses the input
-//     void SetOnDemandInput(const M& message);                  // called before each Step then
+//     void SetOnDemandInput(const M& message);                  // then called before each Step
 //
 // M is of the same step if its producer comes before this role in the order of evaluation. If its
 // producer comes after this role, M is of the step before; at step 0 it is all zero. In real time

@@ -1,5 +1,5 @@
-// The table of every role and every channel of Fogline. The wiring of the nodes, the recorder, the
-// digest, the monitors, the tests and the README's tables use it.
+// The table of every role and every channel of Fogline. It is used by the wiring of the nodes, by
+// recorder, digest, monitors and tests, and for the tables in the README.
 #pragma once
 
 #include <array>
@@ -157,7 +157,7 @@ inline constexpr std::tuple kGraph{
 
 inline constexpr std::size_t kNumChannels = std::tuple_size_v<decltype(kGraph)>;
 
-/// A channel without its type, for code that works on all of them.
+/// A channel without its type, for code that works on all channels.
 struct ChannelInfo {
   std::string_view name;
   Pace pace;

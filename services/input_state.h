@@ -9,7 +9,7 @@ namespace fogline {
 enum class InputState : std::uint8_t {
   kAwaited,  // has not come yet, and is not overdue
   kOk,
-  kStale,  // overdue: the last value holds
+  kStale,  // overdue: the last value is still used
   kLost,   // overdue for so long that another agent must drive
 };
 

@@ -40,7 +40,7 @@ class WithoutSignals {
     sigpending(&pending);
     was_pending_ = sigismember(&pending, SIGPIPE) == 1;
     sigset_t both = sigpipe_;
-    sigaddset(&both, SIGTTOU);  // the terminal sends none to a process that blocks it
+    sigaddset(&both, SIGTTOU);  // a process that blocks it gets none
     pthread_sigmask(SIG_BLOCK, &both, &before_);
   }
   ~WithoutSignals() {
@@ -60,10 +60,10 @@ class WithoutSignals {
 /// Stderr, written without waiting.
 ///
 /// A pipe or terminal is opened a second time, by its name in /proc, so that writes to it do not
-/// wait. O_NONBLOCK on descriptor 2 itself would affect every process that shares it with the same
-/// shell. If the second open fails (a terminal of another user), poll() asks for room before each
-/// piece. A thread with a queue would need neither the second open nor poll(), but then each
-/// process would have to wait at its end until its last lines are written.
+/// wait. O_NONBLOCK on descriptor 2 itself would affect all processes to which the shell has given
+/// this descriptor. If the second open fails (a terminal of another user), poll() asks for room
+/// before each piece. A thread with a queue would need neither the second open nor poll(), but then
+/// each process would have to wait at its end until its last lines are written.
 class Stderr {
  public:
   /// The only object. It is never destroyed, because destructors of other objects may write.
@@ -149,10 +149,10 @@ class Stderr {
   std::mutex mutex_;
   int fd_ = STDERR_FILENO;
   bool is_socket_ = false;
-  bool asks_first_ = false;      // poll(), since a write might wait
-  std::string rest_;             // of what was written in part
-  std::int64_t dropped_ = 0;     // lines since the last one that was written
-  bool waited_in_vain_ = false;  // for the reader, since then
+  bool asks_first_ = false;      // calls poll() first, because a write might wait
+  std::string rest_;             // of a text of which only a part was written
+  std::int64_t dropped_ = 0;     // lines after the last one that was written
+  bool waited_in_vain_ = false;  // for a reader, after that line
 };
 
 void WriteLine(std::string_view line, Duration limit) noexcept {

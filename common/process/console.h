@@ -23,7 +23,7 @@ void Draw(std::string_view text) noexcept;
 
 /// Makes sure that descriptors 0 to 2 are taken. Call it first in a program. Otherwise, if the
 /// program was started without stderr (2>&-), its log would become descriptor 2, and messages would
-/// be written into it. A write to a stdout or stderr that was missing fails.
+/// be written into it. If stdout or stderr was missing, a write to it fails.
 void TakeStandardDescriptors();
 
 }  // namespace fogline

@@ -13,9 +13,9 @@ struct ProcessUse {
 ProcessUse MeasureThisProcess();
 
 /// Asks the kernel for two things: to run every thread of this process before all ordinary threads
-/// (SCHED_FIFO), so that its steps begin on time on a busy machine, too; and to lock the process's
-/// pages in memory. SCHED_FIFO needs CAP_SYS_NICE or RLIMIT_RTPRIO.
-/// @return whether both were granted, SCHED_FIFO to all threads
+/// (SCHED_FIFO), and to lock the process's pages in memory. So steps begin on time on a busy
+/// machine, too. SCHED_FIFO needs CAP_SYS_NICE or RLIMIT_RTPRIO.
+/// @return whether the kernel granted both, and SCHED_FIFO to all threads
 bool RunBeforeOthers(int priority);
 
 /// Makes a write beyond the limit for the size of files (ulimit -f) fail like one on a full disk,

@@ -10,12 +10,12 @@
 namespace fogline {
 
 /// All fields, sections, lists and items of a scenario, with default values. Each list has one
-/// item, with the segment * in its pointer. The contents of a section follow the section. The
-/// values are shared by all callers: read them only.
+/// item, with the segment * in its pointer. The contents of a section follow the section. All
+/// callers share the values, so they must not change them.
 const FieldList& Catalogue();
 
-/// Finds the field with this pointer, or returns null. Any index finds the item of a list. "/" and
-/// "" find the whole scenario, which is not in Catalogue().
+/// Finds the field with this pointer, or returns null. Any index in the pointer finds the one item
+/// of its list. "/" and "" find the whole scenario, which is not in Catalogue().
 const Field* FindField(std::string_view pointer);
 
 /// The longest beginning of `pointer` that names a field or section; at least "/".

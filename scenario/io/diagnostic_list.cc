@@ -33,7 +33,7 @@ class LineCounter {
   int column() const { return column_; }
 
  private:
-  // Whether it is a byte of a UTF-8 character other than its first.
+  // Whether the byte continues a UTF-8 character.
   static bool IsContinuation(char byte) { return (static_cast<unsigned char>(byte) >> 6U) == 2; }
 
   std::string_view text_;

@@ -49,8 +49,9 @@ class CountingIterator {
   std::size_t* consumed_;
 };
 
-// The message of nlohmann in a form for a person, without its excerpts of the text. It has the form
-// "... syntax error while parsing value - invalid literal; last read: '"a":N'; expected '['".
+// The message of nlohmann in a form for a person, without its excerpts of the text. nlohmann's
+// message has the form "... syntax error while parsing value - invalid literal; last read: '"a":N';
+// expected '['".
 std::string SyntaxDetail(std::string_view what) {
   if (what.find("number overflow") != std::string_view::npos) return "a number beyond 1.8e308";
   std::string_view expected;
@@ -142,8 +143,8 @@ class TreeBuilder final : public nlohmann::json_sax<nlohmann::json> {
 
   bool parse_error(std::size_t position, const std::string&,
                    const nlohmann::detail::exception& error) override {
-    // The parser's position is behind the byte at which the parser stopped. The start of the token
-    // is a better place for the mistake, except within a string, which may be long.
+    // `position` is behind the byte at which the parser stopped. The start of the token is a better
+    // place for the mistake, except within a string, which may be long.
     const std::string detail = EscapeControls(SyntaxDetail(error.what()));
     const std::size_t last = std::max<std::size_t>(position, 1) - 1;
     const std::size_t offset =
@@ -153,7 +154,7 @@ class TreeBuilder final : public nlohmann::json_sax<nlohmann::json> {
 
  private:
   // First byte of the token that was just read. Only space and punctuation lie between the end of
-  // the token before and this one.
+  // the token before and this token.
   std::size_t TokenStart() const {
     const std::size_t start = text_.find_first_not_of(" \t\r\n,:", end_);
     return start == std::string_view::npos ? text_.size() : start;

@@ -1,4 +1,4 @@
-// Scenario files: reading with every mistake reported at once, overriding, writing, explaining.
+// Scenario files: reads them, reports all mistakes at once, applies overrides, writes, explains.
 #pragma once
 
 #include <filesystem>
@@ -24,8 +24,8 @@ struct Diagnostic {
 
 /// A scenario that breaks rules. what() has one line for each mistake (20 at most), as
 /// `file:line:column: error: /pointer: message`: first those of the file in its order, then those
-/// of the overrides, then the number of mistakes. diagnostics() has one for each, at least 1 and at
-/// most 1000.
+/// of the overrides, then the number of mistakes. diagnostics() has an entry for each mistake, at
+/// least 1 and at most 1000.
 class ScenarioError : public InputError {
  public:
   ScenarioError(const std::string& text, std::vector<Diagnostic> diagnostics)

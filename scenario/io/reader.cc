@@ -67,9 +67,9 @@ class Reader {
  public:
   explicit Reader(DiagnosticList& mistakes) : mistakes_(mistakes) {}
 
-  // Reads the members of an object that are fields.
+  // Reads those members of an object that are fields.
   void ReadFields(const JsonObject& object, const FieldList& fields);
-  // Refuses the other members. `known` are the names of the fields.
+  // Refuses members that are no fields. `known` has the names of the fields.
   void RefuseUnknownKeys(const JsonObject& object, const std::string& pointer,
                          const std::vector<std::string_view>& known);
 

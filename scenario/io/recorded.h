@@ -12,8 +12,8 @@ namespace fogline {
 
 /// Fills lead.recorded.speeds_mps with the speeds at start_s + k step_s, k = 0 to steps - 1, by
 /// linear interpolation between the file's rows. A relative file name is relative to `folder`.
-/// `root` is the tree of the scenario's text, in which mistakes are placed; `sources` are its
-/// sources.
+/// `root` is the tree of the scenario's text, in which mistakes are placed; `sources` are the
+/// sources of this text.
 /// @throws ScenarioError if the file cannot be read, lacks a column, has a cell that is not a
 ///     number, a time that does not ascend or a speed out of range, or does not span the run
 void ResolveRecorded(const std::filesystem::path& folder, const JsonValue& root,

@@ -18,8 +18,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Control characters: C0, DEL and C1. The schema uses this pattern under `not`: with a pattern that
-// a whole text must match, `$` would accept a line feed at the end in some engines.
+// Control characters: C0, DEL and C1. The schema uses this pattern under `not`. A pattern that a
+// whole text must match would need `$`, which in some engines also accepts a line feed at the end.
 constexpr std::string_view kControlCharacter = R"([\u0000-\u001f\u007f-\u009f])";
 
 // Integers without ".0", so that a person reads the bounds easily.
@@ -131,7 +131,7 @@ Json::json_pointer PlaceOf(std::string_view pointer) {
   return Json::json_pointer(place);
 }
 
-// Adds to the schema of an object what one of its sections needs.
+// Adds the need of one section to the schema of the object around this section.
 void AddNeed(Json& object, std::string_view section, const NeedSpec& need) {
   Json any_of = Json::array();
   for (const std::string_view field : need.fields) {

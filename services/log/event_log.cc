@@ -26,8 +26,8 @@ namespace fogline::log {
 namespace {
 
 constexpr std::uint32_t kSyncWord = 0xEDA1DA01;
-// The bytes of a mapped log that stay in memory. That is little memory for a process, but enough
-// for each call to release many pages.
+// At most this many bytes of a mapped log stay in memory. That is little for a process, but enough
+// that each call releases many pages.
 constexpr std::size_t kMostMapped = 4 << 20;
 
 std::uint32_t ReadUint32(runtime::Bytes bytes, std::size_t offset) {

@@ -1,8 +1,8 @@
-// Reads and writes LCM event logs; it reads them by mapping the file. A log of Fogline is a
-// standard LCM event log whose event times are simulated times. LCM's own library is not used: it
-// needs seven calls and a copy of all data for each event, and the format is simple (LCM,
-// eventlog.c). All numbers of an event are big endian, in this order: sync word 0xEDA1DA01, int64
-// event number, int64 timestamp in us, int32 channel length, int32 data length, channel, data.
+// Reads LCM event logs by mapping the file, and writes them. A log of Fogline is a standard LCM
+// event log whose event times are simulated times. LCM's own library is not used, because it needs
+// seven calls and a copy of all data for each event. The format is simple (LCM, eventlog.c). All
+// numbers of an event are big endian, in this order: sync word 0xEDA1DA01, int64 event number,
+// int64 timestamp in us, int32 channel length, int32 data length, channel, data.
 #pragma once
 
 #include <cstdint>
@@ -32,7 +32,7 @@ struct LogHead {
   std::int64_t events = 0;
 };
 
-/// The contents of a log by the report of one of its writers: the bytes from `begin` up to `bytes`,
+/// The part of a log that one of its writers has reported: the bytes from `begin` up to `bytes`,
 /// and their CRC-32 (as zlib computes it).
 struct WrittenLog {
   std::int64_t begin = 0;
@@ -40,17 +40,17 @@ struct WrittenLog {
   std::uint32_t checksum = 0;
 };
 
-/// A recorder that is killed leaves, behind the last complete step, at most a ring of incomplete
-/// steps and a torn event, which it has not reported. All of that fits into this many bytes at the
-/// end of the log.
+/// Behind the last complete step, a killed recorder leaves at most a ring of incomplete steps and a
+/// torn event. It has reported neither. Both together fit into this many bytes at the end of the
+/// log.
 inline constexpr std::int64_t kTailBytes = 1 << 20;
 
 /// Appends events to a new file, or to the head of an old one.
 class EventLogWriter {
  public:
-  /// Opens the file for writing and replaces an existing one. @throws InputError if it cannot
+  /// Opens the file for writing and replaces an existing one. @throws InputError if that fails
   explicit EventLogWriter(const std::filesystem::path& file);
-  /// Cuts an existing file behind `head` and continues it there. @throws InputError if it cannot
+  /// Cuts an existing file behind `head` and continues it there. @throws InputError if that fails
   EventLogWriter(const std::filesystem::path& file, const LogHead& head);
   ~EventLogWriter();
   EventLogWriter(const EventLogWriter&) = delete;
@@ -66,14 +66,14 @@ class EventLogWriter {
   std::int64_t size() const { return size_; }
   /// The same bytes, with the number of events in them.
   LogHead head() const { return {.bytes = size_, .events = events_}; }
-  /// The part of the log that the operating system has. In a continued log it begins with the last
-  /// kTailBytes of the old head, as they were found in the file. The earlier writer has reported
-  /// the bytes before them.
+  /// The part of the log that the operating system has. In a continued log this part begins with
+  /// the last kTailBytes of the old head, as they were found in the file. The earlier writer has
+  /// reported the bytes before this part.
   const WrittenLog& written() const { return written_; }
 
  private:
   bool WriteOut();
-  /// Adds bytes, which the operating system has, to written_.
+  /// Adds bytes to written_. The operating system has these bytes.
   void CountWritten(runtime::Bytes bytes);
   /// Reads the last kTailBytes of the head and adds them to written_.
   /// @return false and errno if they cannot be read
@@ -128,7 +128,7 @@ class EventLogReader {
   std::optional<Event> Next();
   /// Continues to read behind `head`.
   void GoTo(const LogHead& head);
-  /// What is wrong with the end of the file; "" if nothing is. It is known once Next() has reached
+  /// What is wrong with the end of the file; "" if nothing is wrong. Known once Next() has reached
   /// the end.
   const std::string& torn() const { return torn_; }
   /// Whether the file has no bytes.
@@ -139,8 +139,8 @@ class EventLogReader {
   LogHead head() const { return {.bytes = static_cast<std::int64_t>(offset_), .events = events_}; }
   /// All bytes of the file.
   runtime::Bytes content() const { return content_; }
-  /// Passes the bytes of the file from `from` to `to` to `use` in pieces, and releases the memory
-  /// of each piece.
+  /// Calls `use` with the bytes of the file from `from` up to `to`, in pieces, and releases the
+  /// memory of each piece.
   void ReadThrough(std::size_t from, std::size_t to,
                    const std::function<void(runtime::Bytes)>& use) const;
 

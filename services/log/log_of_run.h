@@ -8,8 +8,9 @@
 
 namespace fogline::log {
 
-/// Keeps a log locked against other runs until the end of this object. A log without a step is then
-/// removed, because its run never began. An older log that it has replaced comes back.
+/// Keeps a log locked against other runs until the end of this object. At this end a log without a
+/// step is removed, because its run never began. If the log has replaced an older one, that one
+/// comes back.
 class LogOfRun {
  public:
   /// A run without a log.

@@ -37,14 +37,14 @@ LogSeal ReadLogSeal(const Event& event, const LogHead& before);
 
 /// Fills in `check`, and appends the seal to a log.
 /// @param before all events that the log is known to have
-/// @param key signs it; nullptr: no signature
-/// @throws std::runtime_error if it cannot be written; the log is then as it was
+/// @param key signs the seal; nullptr: no signature
+/// @throws std::runtime_error if the seal cannot be written; the log is then as it was
 void SealLog(const std::filesystem::path& log, const LogHead& before, log_seal_t seal,
              const runtime::SigningKey* key);
 
-/// Why a file is not the one that was sealed; "" if it is. The events of a copy have other times
-/// than those of the sealed file, so the bytes of a copy must differ: for a copy the result is ""
-/// if they do.
+/// Why a file is not the one that was sealed; "" if it is. A copy has other event times than the
+/// sealed file, so its bytes must differ from the sealed bytes: for a copy the result is "" if they
+/// differ.
 std::string WhyNotSealedFile(const LogSeal& seal, const EventLogReader& file);
 
 /// The result of verifying a seal's signature.

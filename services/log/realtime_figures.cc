@@ -51,7 +51,7 @@ RealtimeFigures RealtimeAccumulator::Result() const {
     figures.unlogged_messages += Unlogged(i);
   }
   for (const auto& [process, status] : last_) {
-    if (process.first == NameOf(Role::kRecorder)) continue;  // no role depends on it
+    if (process.first == NameOf(Role::kRecorder)) continue;  // no role depends on the recorder
     figures.deadline_misses += status.deadline_misses;
     for (const std::int64_t late : status.input_late) figures.late_messages += late;
     if (process.first != NameOf(Role::kWorld)) continue;

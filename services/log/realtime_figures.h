@@ -28,8 +28,8 @@ struct RealtimeFigures {
   // Steps that a role left out, or computed without an input that was due.
   std::int64_t deadline_misses = 0;
   // In this order: messages that came too late to be used; messages that are not in the log,
-  // published or not; the least number of missing messages that were published and did not come too
-  // late at the recorder.
+  // published or not; of the latter, at least this many were published and did not come too late at
+  // the recorder.
   std::int64_t late_messages = 0;
   std::int64_t missed_messages = 0;
   std::int64_t unlogged_messages = 0;
@@ -68,7 +68,8 @@ class RealtimeAccumulator {
   RealtimeFigures Result() const;
 
  private:
-  /// Messages of a channel that are not in the log although its producer has published them.
+  /// The number of messages of a channel that are not in the log although the producer has
+  /// published them.
   std::int64_t Unlogged(std::size_t channel) const;
 
   double speed_;

@@ -14,7 +14,7 @@ namespace {
 
 static_assert(kTailBytes > (runtime::kRingSteps + 3) * kMostStepBytes);
 // While a log is read from front to back, STATUS is sent each time that this many bytes have been
-// read. A slow disk reads them in less than one or two heartbeats.
+// read. Even a slow disk reads them in less than two heartbeats.
 constexpr std::int64_t kAliveEvery = 8 << 20;
 // More steps than a run can lose in a row before it ends for another reason.
 constexpr std::int64_t kLongestGap = 1'000'000;
@@ -52,8 +52,8 @@ class Follower {
     return true;
   }
 
-  /// In real time steps may lack messages, and STATUS stands between them. A step ends when it has
-  /// all its messages, or where a later step begins.
+  /// In real time steps may lack messages, and STATUS stands between the steps. A step ends when it
+  /// has all its messages, or where a later step begins.
   bool TakeRealtime(const Event& event, std::int64_t step, const LogHead& head) {
     if (event.channel == ChannelOf<status_t>().name) return true;
     if (!IsStepChannel(event.channel)) return false;
@@ -78,7 +78,7 @@ class Follower {
 
   const LogFront& front_;
   Remains remains_;
-  // The channel of kStepNames that comes next; in real time the number of messages of the step.
+  // The channel of kStepNames that comes next; in real time the number of messages so far.
   std::size_t next_ = 0;
   truth_t truth_{};
   bool last_ = false;
@@ -126,8 +126,8 @@ std::optional<Start> StartIn(runtime::Bytes content, std::int64_t from, const Lo
   return Start{.step = step, .head = {.bytes = static_cast<std::int64_t>(*at), .events = number}};
 }
 
-/// The contents of the log by its last `tail` bytes; nullopt if they do not show where the last
-/// complete step lies.
+/// What the log contains, as its last `tail` bytes show it; nullopt if these bytes do not show
+/// where the last complete step lies.
 std::optional<Remains> ReadTail(EventLogReader& reader, const LogFront& front, std::int64_t tail) {
   const std::int64_t from = std::ssize(reader.content()) - tail;
   if (from <= front.head.bytes) return std::nullopt;

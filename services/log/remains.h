@@ -1,5 +1,5 @@
-// Finds what the log of an unfinished run contains, in a time that does not depend on the length of
-// the log.
+// Finds the steps that the log of an unfinished run contains, in a time that does not depend on the
+// length of the log.
 #pragma once
 
 #include <cstdint>
@@ -25,7 +25,7 @@ struct LogFront {
 /// @throws InputError if the file is no event log
 LogFront ReadFront(const std::filesystem::path& file);
 
-/// What a log contains of its run besides the scenario.
+/// The steps of the run that a log contains.
 struct Remains {
   LogHead head;            // up to the end of the last complete step
   std::int64_t steps = 0;  // complete steps; in real time, steps that have ended
@@ -33,20 +33,21 @@ struct Remains {
   bool final = false;      // the last of these steps is the last one of the run
 };
 
-/// Looks for the last complete step of a log that a recorder was writing, at the end of the file.
-/// If a recorder does not leave such an end, the function reads the log from front to back, and
-/// stops at the first event that does not continue the log.
+/// Looks at the end of the file for the last complete step of a log that a recorder was writing. If
+/// a recorder cannot have left this end, the function reads the log from front to back, and stops
+/// at the first event that does not continue the log.
 /// @param front of the log, with its whole scenario
-/// @param alive is called from time to time while it reads the whole log, with the number of steps
-///     so far
+/// @param alive is called with the number of steps so far, from time to time while the function
+///     reads the whole log
 /// @param tail bytes at the end to look at
 /// @throws InputError if it is no event log
 Remains ReadRemains(const std::filesystem::path& file, const LogFront& front,
                     const std::function<void(std::int64_t steps)>& alive = {},
                     std::int64_t tail = kTailBytes);
 
-/// Describes the bytes behind the complete steps of a log in lockstep if they are not what an
-/// interrupted run leaves: some incomplete steps, a torn event, a seal. "" if they are.
+/// An interrupted run leaves some incomplete steps, a torn event or a seal behind the complete
+/// steps of its log. For a log in lockstep this describes other bytes that stand there; "" if there
+/// are none.
 /// @throws InputError if it is no event log
 std::string OddEnd(const std::filesystem::path& file, const LogFront& front,
                    const Remains& remains);

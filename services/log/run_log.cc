@@ -46,7 +46,8 @@ class RunLogReader::Assembler {
   const RunLog& run() const { return run_; }
 
  private:
-  // In real time, the largest number of steps by which a message may stand too late in the log.
+  // In real time, a message may stand in the log behind messages of steps that are newer by this
+  // number at most.
   static constexpr std::int64_t kLongestOverdue = 64;
 
   struct Pending {
@@ -145,7 +146,7 @@ class RunLogReader::Assembler {
     if (foreign_ > 0) note(fmt::format("{} messages of other runs ignored", foreign_));
   }
 
-  /// How the log differs from its seal; "" if it does not or has no seal.
+  /// How the log differs from its seal; "" if it does not differ or has no seal.
   std::string Alteration() const {
     if (!run_.seal) return "";
     const LogSeal& seal = *run_.seal;

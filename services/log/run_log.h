@@ -26,8 +26,8 @@ struct RunLog {
   std::string scenario_hash;
   std::int64_t steps = 0;  // number of complete steps
   std::string digest;      // digest of these steps
-  // True if the last step is marked as the last of the run, nothing is missing in lockstep, and
-  // nothing was changed since the log was sealed.
+  // True if the last step is marked as the last of the run, nothing was changed since the log was
+  // sealed, and (in lockstep) nothing is missing.
   bool complete = false;
   std::string note;  // why it is not complete, or what was ignored; "" if there is nothing to say
   LogHead events{};  // all whole events of the file
@@ -42,7 +42,7 @@ class RunLogReader {
  public:
   /// The part of a log that is compared with its seal.
   enum class Compared {
-    kRun,   // scenario and steps; in real time the file, because it includes STATUS
+    kRun,   // scenario and steps; in real time the whole file, because STATUS counts
     kFile,  // all bytes of the file, which are read once more at the end
   };
 
@@ -55,7 +55,7 @@ class RunLogReader {
   /// @throws InputError at the end, when the log has no scenario of a run
   const StepMessages* Next();
 
-  /// The contents of the whole log. Known once Next() has reached its end.
+  /// The contents of the whole log. Known once Next() has reached the end of the log.
   const RunLog& run() const;
 
  private:

@@ -1,6 +1,6 @@
 // The order of the steps in a log of the recorder. In lockstep the messages of a step stand
 // together, in the order of the graph table, and none is missing. So the number of an event gives
-// its step and channel. In real time messages may be missing, and STATUS stands between them.
+// its step and channel. In real time messages may be missing, and STATUS stands between the steps.
 #pragma once
 
 #include <algorithm>

@@ -16,9 +16,9 @@
 namespace fogline::recorder {
 
 /// Finds the steps in the recorder's own log, in which the messages of a step stand together. It
-/// reads the bytes on request, as they were written, and decodes nothing. There is no index, which
-/// would grow with the run: a search reads the event numbers in the file. In real time, where
-/// messages may be missing, only the last step is known.
+/// reads the bytes on request, as they were written, and decodes nothing. There is no index,
+/// because an index would grow with the run: a search reads the event numbers in the file. In real
+/// time, where messages may be missing, only the last step is known.
 class History {
  public:
   /// @param front of the log
@@ -47,10 +47,10 @@ class History {
   /// The byte at which a step begins. @throws std::runtime_error
   std::int64_t Find(std::int64_t step);
   /// Looks at the steps that begin between this byte and `limit`, up to `step`.
-  /// @return the last of them; the first one if it is later than `step`; nullopt if none begins
-  ///     here
+  /// @return the last of these steps; the first one if even this is later than `step`; nullopt if
+  ///     no step begins here
   std::optional<Place> Look(std::int64_t from, std::int64_t limit, std::int64_t step);
-  /// Bytes of the file, fewer if it ends before; valid until the next call.
+  /// Bytes of the file, fewer if the file ends before; valid until the next call.
   /// @throws std::runtime_error
   runtime::Bytes Read(std::int64_t from, std::int64_t size);
 
@@ -61,7 +61,7 @@ class History {
   log::LogHead front_;
   std::int64_t steps_;
   std::int64_t last_;  // byte at which the last step begins
-  std::int64_t end_;   // byte at which it ends
+  std::int64_t end_;   // byte at which the last step ends
   // Steps that were found lately and the steps behind them, which are usually asked for next.
   std::array<Place, runtime::kRingSteps> found_{};
   std::vector<std::uint8_t> chunk_;

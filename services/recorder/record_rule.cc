@@ -11,10 +11,10 @@ namespace {
 constexpr double kOverduePeriods = 1.5;
 constexpr int kAsks = 4;
 constexpr Duration kAskEvery = milliseconds(20);
-// The most incomplete steps: half of the steps that producers keep. The other half leaves time for
-// their answers.
+// At most this many steps may be incomplete: half of the steps that producers keep. The other half
+// leaves time for the producers' answers.
 constexpr std::int64_t kMaxOpen = runtime::kRingSteps / 2;
-// The most STATUS messages that wait to be written: several of each role in each open step.
+// At most this many STATUS messages may wait to be written: several of each role in each open step.
 constexpr std::size_t kMaxHeard = 4096;
 
 }  // namespace
@@ -57,7 +57,8 @@ void RecordRule::OnInput(std::size_t input, std::int64_t step, runtime::Arrival&
 
 void RecordRule::CountRefused(std::size_t input, std::int64_t step) {
   const runtime::StepRing& ring = parts_.inputs.all()[input].ring;
-  // A message of the step that stands in the ring is in the log; of an older one it is not known.
+  // If the ring has this step of the input, the log has it, too. Whether the log has a step that is
+  // older than the ring is not known.
   if (ring.Has(step) || step <= ring.newest() - runtime::kRingSteps) return;
   Refused& refused = refused_[input];
   if (std::exchange(refused.steps[runtime::RingSlot(step)], step + 1) != step + 1) ++refused.count;

@@ -1,8 +1,8 @@
 // Recording in real time: the world does not wait for the recorder. The recorder writes steps in
 // order as soon as they are complete. It asks for a missing message as long as its producer can
-// still have it. A step that stays incomplete is written as it is. The runner tells that a step is
-// under way even if none of its messages has come. Each STATUS goes into the log as well, behind
-// the step in which it came, because the states of the roles are part of the record.
+// still have it. A step that stays incomplete is written as it is. RUN tells the recorder that a
+// step is under way, even if none of its messages has come. Each STATUS goes into the log as well,
+// behind the step in which it came, because the states of the roles are part of the record.
 #pragma once
 
 #include <array>
@@ -26,7 +26,7 @@ class RecordRule final : public runtime::FireRule {
   /// this count.
   void WriteStatus(TimePoint now) override;
 
-  /// Passes the STATUS messages that came in this step or before to `use`, each once.
+  /// Calls `use` once for each STATUS that came in this step or before.
   void TakeStatus(std::int64_t step, const std::function<void(runtime::Bytes)>& use);
 
  private:
@@ -46,16 +46,16 @@ class RecordRule final : public runtime::FireRule {
   struct Refused {
     std::int64_t count = 0;
     std::array<std::int64_t, runtime::kRingSteps>
-        steps{};  // plus one: the steps that were counted last
+        steps{};  // the steps that were counted last, each plus one
   };
 
-  /// Writes the steps that are due, and asks for what they lack.
+  /// Writes the steps that are due, and asks for the messages that other steps lack.
   /// @return the latest time for the next call
   TimePoint Fire(TimePoint now);
   /// Counts a late message that is not in the log.
   void CountRefused(std::size_t input, std::int64_t step);
-  /// Steps up to this one are under way. From now on a message of them that has not come is
-  /// overdue.
+  /// Notes that the steps up to this one are under way. A message of them is asked for if it has
+  /// not come after overdue_.
   void OpenUpTo(std::int64_t step, TimePoint now);
   Open& OpenAt(std::int64_t step, TimePoint now);
   bool Complete(std::int64_t step) const;

@@ -12,11 +12,11 @@
 namespace fogline::recorder {
 namespace {
 
-// Steps between two acknowledgements; a few of them fit into the world's kMaxAhead.
+// Steps between two acknowledgements. The world's kMaxAhead is four times as many.
 constexpr std::int64_t kAcknowledgeEvery = runtime::kMaxAhead / 4;
-// The limits for repeated messages, per second and at once: about a fifth of a processor. Every
-// role that starts again asks for its inputs of 63 steps at a time; a role with six inputs asks for
-// 378 messages.
+// The limits for repeated messages, per second and at once. They take about a fifth of a processor.
+// Every role that starts again asks for its inputs of 63 steps at a time; a role with six inputs
+// asks for 378 messages.
 constexpr double kAnswersPerSecond = 30'000;
 constexpr double kAnswersAtOnce = 3'000;
 constexpr double kNoLimit = 1e9;
@@ -24,7 +24,7 @@ constexpr double kNoLimit = 1e9;
 // first one.
 constexpr Duration kAnswerHolds = milliseconds(2);
 // How often the last STATUS is sent: the runner cannot ask a recorder that has left. If a third of
-// all messages is lost, all of them are lost in only one of 700 cases.
+// all messages is lost, all six are lost in only one of 700 cases.
 constexpr int kLastWords = 6;
 // The most old steps that are sent between two reads of new messages.
 constexpr int kStepsAtOnce = 4;
@@ -84,8 +84,8 @@ log::Remains Recorder::ReadOwnRemains(const log::LogFront& front) {
   };
   log::Remains remains;
   if (front.parts.Complete()) remains = log::ReadRemains(file_, front, say_so_far);
-  // The world begins a step only after the step kMaxAhead before it is on disk. In real time it
-  // does not wait, and a missing step is a hole.
+  // The world begins a step only after the step kMaxAhead before it is on disk. In real time the
+  // world does not wait, and a missing step is a gap in the log.
   const std::int64_t written = parts_.run.progress - runtime::kMaxAhead + 1;
   if (!parts_.run.realtime && remains.steps < written) {
     throw InputError(fmt::format("{}: the log has {} steps, but the recorder had written {}",
@@ -98,7 +98,7 @@ void Recorder::RememberLastSteps() {
   const std::int64_t steps = history_->steps();
   for (std::int64_t step = std::max<std::int64_t>(0, steps - runtime::kRingSteps); step < steps;
        ++step) {
-    std::size_t input = 0;  // the inputs stand in the order of the log, too
+    std::size_t input = 0;  // the inputs are in the same order as the messages in the log
     history_->ForEachMessage(step, [&](std::string_view /*channel*/, runtime::Bytes bytes) {
       parts_.inputs.Remember(input++, step, bytes);
     });
@@ -146,8 +146,8 @@ void Recorder::Compute(std::int64_t step) {
   Write(step);
   if (recording_ != nullptr) WriteStatus(step);
   history_->Add(log_->size());
-  // In real time there is time for a flush, and no role sends again the steps that a killed process
-  // had not flushed.
+  // In real time there is time to flush each step. It is necessary, because no role sends a step
+  // again that a killed recorder had not flushed.
   if (recording_ != nullptr) log_->Flush();
   const bool last = step == final_;
   if (last || (step + 1) % kAcknowledgeEvery == 0) {
@@ -184,8 +184,8 @@ void Recorder::OnAsked(std::string_view channel, runtime::StepRange steps, TimeP
 
 TimePoint Recorder::AnswerSome(TimePoint now) {
   if (asked_.empty()) return TimePoint::max();
-  // New messages are read first. A role repeats a request that waits behind old answers, and if
-  // repetitions were not read together, each would get its own answer.
+  // New messages are read first. While a request waits behind old answers, the role repeats it. If
+  // the repetitions were not read together, each would get its own answer.
   parts_.bus.Drain();
   runtime::RateLimiter& limiter = node_.outputs().limiter();
   for (int i = 0; i < kStepsAtOnce && limiter.Has(now); ++i) {
@@ -193,7 +193,7 @@ TimePoint Recorder::AnswerSome(TimePoint now) {
     if (!asked) return TimePoint::max();
     AnswerStep(*asked, now);
   }
-  // Returns so that new messages are read. The next call is when the rate limiter allows it.
+  // Returns so that new messages are read. The next call is due when the rate limiter allows it.
   return asked_.empty() ? TimePoint::max() : limiter.Has(now) ? now : now + kLimiterRetry;
 }
 
@@ -209,7 +209,7 @@ void Recorder::AnswerStep(const AskedSteps::Asked& asked, TimePoint now) {
 }
 
 // In real time no role computes old steps again. A restarted world needs the positions of the cars:
-// it is the only role that asks for TRUTH, and the process that produced it is dead.
+// it is the only role that asks for TRUTH, and the process that published this TRUTH is dead.
 void Recorder::AnswerRecent(std::string_view channel, runtime::StepRange steps, TimePoint now) {
   if (channel != ChannelOf<truth_t>().name || !node_.outputs().limiter().Has(now)) return;
   const runtime::StepRing& truths = parts_.inputs.Of(IndexOf<truth_t>()).ring;
@@ -235,8 +235,8 @@ void Recorder::Answer(std::string_view channel, runtime::Bytes bytes, TimePoint 
 }
 
 void Recorder::BeforeStatus() {
-  // STATUS acknowledges every step up to its own, so they must be handed to the operating system
-  // before.
+  // STATUS acknowledges every step up to header.step. So these steps must be handed to the
+  // operating system first.
   if (!log_ || parts_.own.message().state == status_t::FAILED) return;
   try {
     log_->Flush();

@@ -1,6 +1,6 @@
 // The recorder: writes every per-step message of a run, and its scenario, into an LCM event log. It
-// takes part in the lockstep: the world runs only a few steps ahead of the log on disk, so a fast
-// run loses nothing. Events stand in the order of step and graph table, whatever the order of
+// takes part in the lockstep: the world runs at most kMaxAhead steps ahead of the log on disk, so a
+// fast run loses nothing. Events stand in the order of step and graph table, whatever the order of
 // arrival. So equal runs have equal logs except for the run id. The recorder also answers requests
 // for recorded steps, from roles that have been started again. If the recorder itself is killed,
 // another one continues its log.
@@ -22,8 +22,8 @@ class Recorder final : public runtime::Work {
   /// What to do with an existing file.
   enum class Existing { kReplace, kResume };
 
-  /// With a run id an existing file is replaced at once. Without a run id it is replaced as soon as
-  /// a run has been found.
+  /// With a run id, an existing file is replaced at once. Without one, the file is replaced as soon
+  /// as a run has been found.
   /// @throws InputError if the file cannot be written
   Recorder(runtime::Bus& bus, std::optional<std::int64_t> run_id, const std::filesystem::path& file,
            Existing existing = Existing::kReplace);
@@ -42,7 +42,7 @@ class Recorder final : public runtime::Work {
   /// Continues the log in the file. @return false if the file has no complete scenario
   bool Resume();
   /// The steps of this run in the file.
-  /// @throws InputError if it has fewer steps than were acknowledged
+  /// @throws InputError if the file has fewer steps than were acknowledged
   log::Remains ReadOwnRemains(const log::LogFront& front);
   /// Stores the last steps of the log as inputs, so that a role that computes them again must come
   /// to the same bytes.

@@ -10,15 +10,15 @@
 namespace fogline::runtime {
 namespace {
 
-// A role that lost its inputs to the network recovers within a second. Twice that is long enough.
-// With a long period it is kDeafPeriods periods, if they last longer.
+// If the network loses the inputs of a role, the role recovers within a second. The limit is twice
+// that, or kDeafPeriods periods if these last longer.
 constexpr Duration kDeaf = milliseconds(2000);
 constexpr int kDeafPeriods = 5;
 // Three signs of life. A longer pause between two STATUS messages of a role says nothing about the
 // time in between.
 constexpr Duration kSteady = milliseconds(600);
-// The number of steps by which a role may be ahead of the last known step of its producer. A STATUS
-// is on its way for less than 100 ms, which are five steps at 50 Hz.
+// A role may be ahead of the last known step of its producer by this many steps. A STATUS is on its
+// way for less than 100 ms, which is five steps at 50 Hz.
 constexpr std::int64_t kAhead = 5;
 
 }  // namespace

@@ -1,7 +1,7 @@
 // Which roles of a run in real time are deaf, by their STATUS. A deaf process is alive and reports
-// its state, but for long it has not heard a channel that another role publishes all the time. A
-// role that is deaf for long does not recover by itself. A network that loses many messages for a
-// while makes no role deaf.
+// its state. But on a channel that another role publishes all the time, it has heard nothing for a
+// long time. Such a role does not recover by itself. A network that loses many messages for a while
+// makes no role deaf.
 #pragma once
 
 #include <array>
@@ -20,7 +20,7 @@ namespace fogline::runtime {
 
 struct Deafness {
   std::size_t channel;  // what the role does not hear, a place in kChannels
-  Duration missed;      // for how long; time counts only while its producer is known to publish it
+  Duration missed;      // for how long; time counts only while the producer is known to publish
 };
 
 /// "has heard no TRUTH for 2.1 s, although the world has published it".
@@ -37,7 +37,8 @@ class DeafRoles {
   /// Forgets what is known of the role, because its process is dead.
   void Forget(Role role) { speakers_[static_cast<std::size_t>(role)] = {}; }
 
-  /// The input that the role has missed for longest, if the time is long enough to be sure.
+  /// The input that the role has missed for the longest time; nullopt if this time is not yet long
+  /// enough to be sure.
   std::optional<Deafness> Of(Role role) const { return Missing(role, limit_); }
   /// The same for a run that is over; half the time is enough, because no further message will
   /// come.
@@ -49,7 +50,7 @@ class DeafRoles {
     Duration age{};
     std::int64_t late = 0;
     Duration missed{};
-    Duration unsure{};  // time to add to `missed` when its producer reports a further step
+    Duration unsure{};  // time to add to `missed` when the producer reports a further step
   };
   struct Speaker {
     TimePoint heard{};

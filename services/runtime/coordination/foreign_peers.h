@@ -1,6 +1,6 @@
-// Processes that speak on a run's network but are not part of the run (foreign peers): roles of
-// another run there, or left over from an earlier one. Their messages are refused. This class only
-// records which processes they are.
+// Processes that speak on a run's network but are not part of the run (foreign peers). They are
+// roles of another run, or processes that an earlier run has left there. Their messages are
+// refused. This class only records which processes they are.
 #pragma once
 
 #include <cstdint>
@@ -39,8 +39,8 @@ class ForeignPeers {
   /// The processes that were heard most often, at most kMax, in the order in which they were first
   /// heard.
   std::vector<ForeignPeer> known() const;
-  /// One line each, "ignored: ...", and one more if there were more than kMax; "" if there are
-  /// none.
+  /// A line "ignored: ..." for each process, and one more if there were more than kMax; "" if there
+  /// are none.
   std::string Text() const;
 
  private:

@@ -1,5 +1,5 @@
-// When a role that has died is started again: soon, later and later while restarts do not help, and
-// at most a limited number of times in a run.
+// When a role that has died is started again. The first restart comes soon. While restarts do not
+// help, each further one comes later. Their number in a run is limited.
 #pragma once
 
 #include <algorithm>

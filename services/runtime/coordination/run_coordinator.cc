@@ -23,9 +23,9 @@ constexpr Duration kPartsEvery = milliseconds(10);
 // If the recorder's report of the last step was lost, the recorder is asked for it at this
 // interval.
 constexpr Duration kAskRecorderEvery = milliseconds(5);
-// In real time, the number of steps by which a role may be ahead of the runner's clock. The first
-// step: a tick may be early by the delay of an earlier tick, which is less than a period. The
-// second step: the world begins with a step.
+// In real time a role may be ahead of the runner's clock by two steps. The first: a tick may be
+// early by the delay of an earlier tick, which is less than a period. The second: the world takes a
+// step at the start.
 constexpr std::int64_t kEarly = 2;
 
 std::optional<Role> RoleNamed(std::string_view name) {
@@ -114,8 +114,8 @@ void RunCoordinator::FinishWhenRecorded(TimePoint now) {
 
 void RunCoordinator::AnnounceWhenDue(TimePoint now) {
   if (now < announce_at_) return;
-  // The message is PREPARE until every role is ready, at the beginning and after each restart. Then
-  // it is GO, at the shorter interval until the world has started.
+  // At the beginning and after each restart, the message is PREPARE until every role is ready. Then
+  // it is GO, which comes at the shorter interval until the world has started.
   const auto& world = member(Role::kWorld).status;
   const bool going = ready_ && world && world->state != status_t::READY;
   Announce(0);
@@ -289,8 +289,7 @@ void RunCoordinator::OnResend(Bytes bytes) {
   if (const RefusalCounter wrong = Examine(bytes, resend)) return Refuse(wrong);
   if (resend.header.run_id != options_.run_id) return Refuse(&status_t::foreign);
   if (resend.channel != ChannelOf<run_t>().name) return;
-  // A role that misses one part usually misses most of them, so all parts from this one on are
-  // sent.
+  // A role that misses one part usually misses most parts, so all parts from this one on are sent.
   const TimePoint now = Clock::now();
   if (now < parts_at_ || resend.header.step < 0) return;
   parts_at_ = now + kPartsEvery;
@@ -300,7 +299,7 @@ void RunCoordinator::OnResend(Bytes bytes) {
 }
 
 void RunCoordinator::Announce(std::size_t part, std::int64_t answer_to) {
-  // A run in real time that has started does not wait for a role: a role that joins late joins at
+  // A run in real time that has started does not wait for all roles: with GO a late role joins at
   // once.
   const bool go = ready_ || (options_.realtime && phase_ == Phase::kRunning);
   Announce(go ? run_t::GO : run_t::PREPARE, part, answer_to);
@@ -363,8 +362,8 @@ std::string RunCoordinator::Culprit(TimePoint now) const {
       waiting = producer;
       continue;
     }
-    // The consumer's STATUS says when it last heard the channel. For the log the recorder's own
-    // STATUS says it.
+    // The consumer's STATUS says when the consumer last heard the channel. For the log, the last
+    // STATUS of the recorder counts.
     using Known = std::tuple<std::string_view, std::int64_t, Duration>;
     const auto [what, last, age] =
         channel != nullptr

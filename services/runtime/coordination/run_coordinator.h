@@ -40,7 +40,7 @@ struct RunCoordinatorOptions {
   Duration join_limit{};                      // until all roles are ready; 0: no limit
   Duration stall_limit = milliseconds(4000);  // longest time without a completed step of any role
   std::vector<Role> external;                 // roles that the runner neither starts nor restarts
-  int restarts = 0;                           // how often each of these may be started again
+  int restarts = 0;                           // how often each of them may be started again
   RoleBuilds builds{};                        // expected builds of the roles
   bool same_build = false;                    // whether a role of another build ends the run
 };
@@ -62,8 +62,8 @@ class RunCoordinator {
   Duration HeldAgainst(TimePoint since, TimePoint now) const {
     return pauses_.HeldAgainst(since, now);
   }
-  /// The probability that a role with this silence is alive, and the network has lost all messages
-  /// that it sent in this time.
+  /// The probability that a role with this silence is alive: that the network has lost all messages
+  /// which the role sent in this time.
   double ChanceOfLife(Role role, Duration silence) const {
     return signs_of_life_.ChanceOfLife(role, silence);
   }
@@ -97,7 +97,7 @@ class RunCoordinator {
   const ForeignPeers& foreign_peers() const { return foreign_peers_; }
   /// The expected builds of the roles.
   const RoleBuilds& builds() const { return options_.builds; }
-  /// Whether the run goes on after the final loss of this role. In real time it does, except
+  /// Whether the run goes on after the final loss of this role. In real time it goes on, except
   /// without the world (the road) or the recorder (the log).
   bool GoesOnWithout(Role role) const {
     return options_.realtime && phase_ == Phase::kRunning && role != Role::kWorld &&
@@ -148,8 +148,8 @@ class RunCoordinator {
   void OnStatus(const status_t& heard);
   /// The newest step that a role can have computed by now.
   std::int64_t NewestPossible(TimePoint now) const;
-  /// Ends the run when the world is done and, in lockstep, the recorder has reported what it has
-  /// written of the last step. The caller compares the log with that report.
+  /// Ends the run when the world is done and, in lockstep, the recorder's report includes the last
+  /// step. The caller compares the log with that report.
   void FinishWhenRecorded(TimePoint now);
   /// Ends the run after its last step is recorded. The run fails if a role is deaf at its end.
   void OnDone();
@@ -186,7 +186,7 @@ class RunCoordinator {
   SignsOfLife signs_of_life_;
   DeafRoles deaf_;
   ForeignPeers foreign_peers_;
-  status_t own_{};  // counts what the runner itself has refused and could not send
+  status_t own_{};  // counts messages that the runner itself has refused or could not send
   std::string host_;
   Phase phase_ = Phase::kJoining;
   TimePoint going_since_{};       // the first GO

@@ -61,7 +61,8 @@ bool RunCoordinator::Admit(Role role, const status_t& status, TimePoint now) {
 
 void RunCoordinator::OnUndead(Role role, const status_t& status, TimePoint now) {
   Member& member = members_[static_cast<std::size_t>(role)];
-  // Messages from before its death may come late. If the process sends more, it is not dead.
+  // Messages that the process sent before its death may come late. If it sends more, it is not
+  // dead.
   if (!IsExternal(role) || !member.status || status.state == status_t::LEFT ||
       HeldAgainst(member.replaced_at, now) <= kOnItsWay) {
     return;

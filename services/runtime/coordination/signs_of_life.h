@@ -1,6 +1,7 @@
-// Judges whether a process that is not heard is silent, or the network loses its messages. All
-// processes speak in the same rhythm over the same network. So the share of the other processes'
-// messages that arrives gives the probability that a living process is not heard.
+// If a process is not heard, either it is silent, or the network loses its messages. This class
+// judges which is the case. All processes speak in the same rhythm over the same network. So the
+// share of the other processes' messages that arrives gives the probability that a living process
+// is not heard.
 #pragma once
 
 #include <algorithm>
@@ -18,8 +19,8 @@ class SignsOfLife {
   /// @param every the longest interval between two messages of a living process
   explicit SignsOfLife(Duration every) : every_(every) {}
 
-  /// Takes note of a message of a role. @param lost how many messages of the role before it were
-  /// lost
+  /// Takes note of a message of a role. @param lost how many messages of the role were lost just
+  /// before this one
   void Heard(Role role, std::int64_t lost, TimePoint now) {
     ++heard_;
     lost_ += std::max<std::int64_t>(0, lost);
@@ -32,7 +33,8 @@ class SignsOfLife {
 
   /// The probability that the network lost all messages of a living role in the time in which it
   /// was not heard; 1 if no other role was heard since.
-  /// @param silence time since its last message in which it could have been heard
+  /// @param silence the part of the time since the role's last message in which this process could
+  ///     hear
   double ChanceOfLife(Role role, Duration silence) const {
     const Mark& last = since_[static_cast<std::size_t>(role)];
     const auto others =

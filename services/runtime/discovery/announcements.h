@@ -1,5 +1,5 @@
-// The runs that announce themselves at the meeting address, where programs listen that were given
-// no URL. This class has no subscription and no clock: its caller passes messages and times to it.
+// The runs that announce themselves at the meeting address. Programs that were given no URL listen
+// there. This class has no subscription and no clock: its caller passes messages and times to it.
 #pragma once
 
 #include <cstdint>
@@ -15,8 +15,8 @@ namespace fogline::runtime {
 
 /// The channel of beacon_t. It is no part of kGraph, because no run uses it.
 inline constexpr std::string_view kBeaconChannel = "FOGLINE_BEACON";
-/// The interval at which a run announces itself. It is so short that a person who looks for the run
-/// need not wait.
+/// The interval at which a run announces itself. It is short, so that a person who looks for the
+/// run need not wait.
 inline constexpr Duration kBeaconEvery = milliseconds(500);
 
 /// A run as its beacon describes it. Its texts are safe to print.

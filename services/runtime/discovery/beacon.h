@@ -1,5 +1,5 @@
-// How a run and the programs that were given no URL find each other: the runner announces the run
-// at the address where such programs listen (lcm_url.h, MeetingUrl()).
+// Lets programs that were given no URL find a run: the runner announces the run at the address
+// where such programs listen (lcm_url.h, MeetingUrl()).
 #pragma once
 
 #include <optional>
@@ -23,7 +23,7 @@ class Beacon {
  public:
   /// Announces nothing if the run is at the meeting address itself, if programs may not follow a
   /// beacon to the run's URL (MayBeAnnounced()), or if the meeting address is no multicast group.
-  /// @param run the constructor fills in its host, process and time of beginning
+  /// @param run without host, process and time of beginning, which the constructor fills in
   explicit Beacon(Announcement run);
   /// Says that the run is over.
   ~Beacon();
@@ -39,7 +39,7 @@ class Beacon {
   void Publish();
 
   beacon_t beacon_{};
-  // LCM directly, not Bus: LCM starts no thread and no self-test for sending alone.
+  // LCM itself, not a Bus: for sending alone, LCM starts no thread and no self-test.
   _lcm_t* lcm_ = nullptr;
   TimePoint due_{};
   std::vector<std::uint8_t> buffer_;
@@ -56,7 +56,7 @@ class BeaconListener {
   /// The runs that have not ended, the newest first.
   std::vector<Announcement> Runs() const { return announcements_.Current(Clock::now()); }
   std::int64_t refused() const { return announcements_.refused(); }
-  /// Readable when Look() has something to read; -1 if there never is.
+  /// Readable when Look() has something to read; -1 if there will never be anything.
   int fd() const { return bus_ ? bus_->fd() : -1; }
 
  private:

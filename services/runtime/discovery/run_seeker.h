@@ -30,8 +30,8 @@ class RunSeeker {
   /// to the meeting address.
   bool InVain(TimePoint now);
   /// Excludes the run that was tried last from Look() for kTryAgain, so that a run at the meeting
-  /// address comes first. The run returns sooner when an announcement has said that it does not
-  /// wait for the role: another process has had the place then, and the place has become free.
+  /// address comes first. The exclusion ends earlier if an announcement says that the run does not
+  /// wait for the role: if the run waits for the role after that, the place has become free.
   void GiveUp(TimePoint now);
   /// Excludes this run from Look(), because the role already takes part in it.
   void Ignore(std::int64_t run_id) { own_ = run_id; }
@@ -39,8 +39,8 @@ class RunSeeker {
   void Stay(std::int64_t run_id, TimePoint now) { tried_ = {.run_id = run_id, .at = now}; }
 
  private:
-  // A runner that waits speaks 20 times a second. A busy machine or a bad network delays messages
-  // by less than this.
+  // A runner that waits speaks 20 times a second. A busy machine or a bad network delays its
+  // messages by less than kSilentLimit.
   static constexpr Duration kSilentLimit = milliseconds(5000);
   // A run that was tried in vain may only be slow: a busy machine held it up, or the port of its
   // network was taken for a moment.

@@ -119,7 +119,8 @@ TimePoint LockstepRule::Repair(TimePoint now) {
 
 void LockstepRule::AskForMissing(TimePoint now) {
   retry_.Asked(now);
-  // Up to the newest step that is known to be under way, but no more steps than the rings can hold.
+  // Asks up to the newest step that is known to be under way, but for no more steps than the rings
+  // can hold.
   asked_ = std::clamp(expected_, next(), next() + kRingSteps - 2);
   for (const Input& input : parts_.inputs.all()) {
     const StepRange steps = Lacking(input, FirstNeeded(input), asked_ - input.lag);

@@ -6,7 +6,7 @@
 //
 // Catching up. RUN says how far the world is. A node that joins late (its predecessor was killed)
 // computes all steps from step 0 on, and asks for the inputs of many steps at a time. The recorder
-// sends old inputs, their producers send the last ones. The node does not publish old outputs,
+// sends old inputs, and their producers send the newest. The node does not publish old outputs,
 // because the recorder has them.
 //
 // The role that begins the steps (the world) also waits for GO, keeps to the pace, and stays near
@@ -53,7 +53,7 @@ class LockstepRule final : public FireRule {
   void AskForMissing(TimePoint now);
   /// The steps from `first` to `last` that an input lacks and that one request should ask for.
   StepRange Lacking(const Input& input, std::int64_t first, std::int64_t last) const;
-  /// Whether the next step is older than the steps that were under way when this role joined.
+  /// Whether the next step is one of those with which this role has to catch up.
   bool CatchingUp() const { return next() <= late_; }
 
   Parts& parts_;

@@ -1,5 +1,5 @@
 // The retry timer of a node that lacks an input. It waits while the input may still be on its way.
-// Then it asks again and again while the input does not come, at growing intervals up to a limit.
+// Then, while the input does not come, it asks again and again, at growing intervals up to a limit.
 #pragma once
 
 #include <algorithm>
@@ -28,7 +28,8 @@ class RetryTimer {
     wait_ = std::min(wait_ + wait_ / 4, kLongest);
     ask_at_ = now + wait_;
   }
-  /// The node has asked for many steps at once. As long as they come in, it need not ask again.
+  /// The node has asked for many steps at once. As long as such steps come in, it need not ask
+  /// again.
   void AskedForMany(TimePoint now) {
     wait_ = kShortest;
     ask_at_ = now + wait_;
@@ -46,7 +47,8 @@ class RetryTimer {
     since_.reset();
   }
 
-  /// Since when the next step is known to lack an input.
+  /// The time from which on the next step has been known to lack an input; nullopt if it lacks
+  /// none.
   const std::optional<TimePoint>& since() const { return since_; }
   TimePoint asked() const { return asked_; }
 

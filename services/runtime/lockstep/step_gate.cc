@@ -7,7 +7,7 @@ namespace {
 
 constexpr Duration kFirstRetryInterval = milliseconds(20);
 constexpr Duration kMaxRetryInterval = milliseconds(500);
-// Three years: an upper limit for the time when a step is due, at any pace.
+// Three years: a step is due after this time at the latest, even at the slowest pace.
 constexpr double kLongest_s = 1e8;
 
 }  // namespace
@@ -20,7 +20,7 @@ StepGate::StepGate(Bus& bus, status_t& own) {
       ++(own.*(status == nullptr ? arrival.Wrong<status_t>() : &status_t::foreign));
       return;
     }
-    // A recorder that has failed may not have on disk the step that it reports.
+    // If the recorder has failed, the step that it reports may not be on disk.
     if (status->role != NameOf(Role::kRecorder) || status->state == status_t::FAILED) return;
     // The recorder cannot have a step that neither this world nor an earlier one has begun.
     if (status->header.step > std::max(own.header.step, begun_before_)) {

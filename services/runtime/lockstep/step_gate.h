@@ -1,6 +1,6 @@
-// When the role that begins the steps (the world) may begin one (a step gate). It may not begin a
-// step before the runner's GO, faster than the pace, more than kMaxAhead steps ahead of the
-// recorder's log on disk, or after the end.
+// A step gate says when the role that begins the steps (the world) may begin the next one. The
+// world may not begin a step before the runner's GO, faster than the pace, more than kMaxAhead
+// steps ahead of the recorder's log on disk, or after the end.
 #pragma once
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace fogline::runtime {
 
 class StepGate {
  public:
-  /// Listens to the recorder's STATUS on `bus`. Messages that it refuses are counted in `own`.
+  /// Listens to the recorder's STATUS on `bus`. Counts the messages that it refuses in `own`.
   StepGate(Bus& bus, status_t& own);
 
   void Configure(const Scenario& scenario, std::int64_t run_id);
@@ -33,10 +33,10 @@ class StepGate {
   bool Finished(std::int64_t next) const {
     return final_ && next > *final_ && recorded_ >= *final_;
   }
-  /// The step that the recorder should be asked for; nullopt unless it is time to ask because the
-  /// recorder holds up step `next`.
+  /// If the recorder holds up step `next`, and it is time to ask the recorder: the step to ask for.
+  /// Otherwise nullopt.
   std::optional<std::int64_t> WantsRecorded(std::int64_t next, TimePoint now);
-  /// When the answer of Open() or WantsRecorded() may change without a message.
+  /// When the answer of Open() or WantsRecorded() may next change without a message.
   TimePoint NextPoll(std::int64_t next, TimePoint now) const;
 
  private:

@@ -10,8 +10,8 @@
 
 namespace fogline::runtime {
 
-/// The rule of one role, from when the role has joined a run. It works with the parts that it is
-/// handed (parts.h).
+/// The rule of one role, made when the role joins a run. It works with the parts that its
+/// constructor gets (parts.h).
 class FireRule {
  public:
   virtual ~FireRule() = default;
@@ -20,8 +20,8 @@ class FireRule {
 
   /// The runner says GO. May be called repeatedly.
   virtual void OnGo(const run_t& /*run*/, TimePoint /*now*/) {}
-  /// A message of an input has come (its place in Inputs::all()). It is of this run and of a step
-  /// of the scenario. The rule judges it and passes it to Inputs::Keep().
+  /// A message of `input`, a place in Inputs::all(), has come. The message is of this run and of a
+  /// step of the scenario. The rule judges it and passes it to Inputs::Keep().
   virtual void OnInput(std::size_t input, std::int64_t step, Arrival& arrival) = 0;
   /// Does what is due. @return the latest time for the next call
   virtual TimePoint Poll(TimePoint now) = 0;
@@ -31,7 +31,7 @@ class FireRule {
   virtual void Expect(std::int64_t /*step*/) {}
   /// Another process asks for the output of a step that this role has not computed yet.
   virtual void OnAskedAhead(std::int64_t /*step*/, TimePoint /*now*/) {}
-  /// Called before every STATUS: adds what the rule knows.
+  /// Called before every STATUS: adds to it what the rule knows.
   virtual void WriteStatus(TimePoint /*now*/) {}
   /// This step is the last one of the run.
   virtual void SetFinal(std::int64_t /*step*/) {}

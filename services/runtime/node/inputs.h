@@ -1,5 +1,5 @@
-// The inputs of a role: the channels that it reads, and the last steps of each. They refuse what is
-// of another run or cannot be of this one. The rule decides about the rest.
+// The inputs of a role: the channels that it reads, and the last steps of each. Messages that are
+// of another run, or cannot be of this run, are refused. The rule decides about all others.
 #pragma once
 
 #include <cstdint>
@@ -23,20 +23,20 @@ struct Input {
   std::size_t channel;       // in kChannels
   std::int64_t fingerprint;  // of its type
   std::int64_t lag;          // step k uses this input's step k - lag
-  bool on_demand;            // (algorithm.h) in real time the role does not wait for it
+  bool on_demand;            // algorithm.h; in real time the role does not wait for it
   StepRing ring;
   TimePoint heard{};
-  // Takes a sound message that is new; may be empty.
+  // Called with each message that is new and sound; may be empty.
   std::function<void(std::int64_t step, Arrival& arrival)> keep{};
 
-  /// Whether this input has the message that a step uses. A step whose message would be from before
-  /// step 0 uses none.
+  /// Whether this input has the message that a step uses. A step uses no message if this would be
+  /// from before step 0.
   bool ReadyFor(std::int64_t step) const { return step < lag || ring.Has(step - lag); }
 };
 
 class Inputs {
  public:
-  Inputs(const Inputs&) = delete;  // the bus refers to it
+  Inputs(const Inputs&) = delete;  // the bus refers to this object
   Inputs& operator=(const Inputs&) = delete;
   /// Reads the role's inputs except those on demand. The recorder reads every channel of steps.
   /// @param rule the role's rule, null until the role has joined
@@ -52,11 +52,12 @@ class Inputs {
   /// Reads this channel, too. Call it in Work::Join().
   Input& ReadOnDemand(std::size_t channel);
 
-  /// Does with a message of an input what the rule has decided, and counts what it refuses. In
-  /// lockstep, a second message of a step with other bytes ends the role's part in the run.
-  /// @return whether it is new and sound: the input now has it
+  /// Carries out the rule's verdict on a message of an input, and counts the message if it is
+  /// refused. In lockstep, a second message of a step with other bytes ends the role's part in the
+  /// run.
+  /// @return true if the message is new and sound; the input then has it
   bool Keep(std::size_t input, std::int64_t step, Arrival& arrival, StepRing::Verdict verdict);
-  /// An input's message of a step is known from the log of a predecessor.
+  /// Stores a message that is known from the log of a predecessor.
   void Remember(std::size_t input, std::int64_t step, Bytes bytes);
 
  private:

@@ -14,8 +14,8 @@ namespace {
 constexpr Duration kPartRetry = milliseconds(20);
 // Repeated announcements are answered at most at this interval.
 constexpr Duration kAnnouncedRetry = milliseconds(20);
-// A role that has not received the whole scenario yet leaves a run after this long a silence of its
-// runner, and looks for another run.
+// If the runner is silent for this time, a role that has not received the whole scenario yet leaves
+// the run and looks for another one.
 constexpr Duration kAnnouncerSilence = milliseconds(5'000);
 
 }  // namespace
@@ -52,7 +52,8 @@ TimePoint Membership::Poll(TimePoint now) {
 
 void Membership::CheckSends(TimePoint now) {
   const Bus::FailedSends& failed = parts_.bus.failed_sends();
-  // In real time the other roles go on without it, and the runner judges how long it may be silent.
+  // In real time the other roles go on without this role, and the runner judges how long its
+  // silence may last.
   if (own_.left() || run_.realtime || !failed.since || !runner_.Stalled(*failed.since, now)) return;
   own_.Fail(fmt::format("nothing could be sent for {:.1f} s: {}", Seconds(now - *failed.since),
                         failed.error));

@@ -18,22 +18,22 @@ namespace fogline::runtime {
 class Membership {
  public:
   /// @param run_id take part only in this run; nullopt: in the first run that waits for the role
-  /// @param rule where the rule of the run goes when the role joins
+  /// @param rule gets the rule of the run when the role joins
   Membership(Parts& parts, std::optional<std::int64_t> run_id, Work& work,
              std::unique_ptr<FireRule>& rule);
 
   /// Does what is due: asks for the scenario, leaves a runner that is gone.
   /// @return the latest time for the next call
   TimePoint Poll(TimePoint now);
-  /// Whether its runner has been silent for so long that the role may join another run.
+  /// Whether the role's runner has been silent for so long that the role may join another run.
   bool RunnerSilent(TimePoint now) { return runner_.Silent(runner_.Attend(now)); }
 
  private:
   void OnRun(Bytes bytes);
   /// Handles a RUN of another run.
   void OnOtherRun(const run_t& run, TimePoint now);
-  /// Whether the runner has sent this RUN now, not in an old run. If that is not known, asks the
-  /// runner.
+  /// Whether the runner has sent this RUN now, and not in an old run. If that is not known, asks
+  /// the runner.
   bool IsFresh(const run_t& run, TimePoint now);
   /// Asks a runner for a RUN that answers this process.
   void AskWhetherThere(const run_t& run, TimePoint now);
@@ -51,7 +51,7 @@ class Membership {
   Work& work_;
   std::unique_ptr<FireRule>& rule_;
   const bool chosen_;  // whether an option names the run: then the role looks for no other run
-  bool fresh_;         // the runner has answered this process, or there is no key and it need not
+  bool fresh_;         // the runner has answered this process, or need not: there is no key
   RateLimiter questions_{200, 20};  // limits the requests that ask runners for an answer
   TimePoint part_at_{};             // when to ask for the next part of the scenario
   TimePoint announced_at_{};        // when a repeated announcement was last answered

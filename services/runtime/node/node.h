@@ -22,7 +22,7 @@ namespace fogline::runtime {
 class Node {
  public:
   /// @param run_id take part only in this run; nullopt: in the first run that waits for the role
-  /// @param work what the role does, which owns this node
+  /// @param work the role's work, which owns this node
   Node(Bus& bus, Role role, std::optional<std::int64_t> run_id, Work& work);
   Node(const Node&) = delete;
   Node& operator=(const Node&) = delete;

@@ -8,8 +8,8 @@
 namespace fogline::runtime {
 namespace {
 
-// Every role receives an answer. A role that asks for the same step within this time has the
-// answer, or will ask again.
+// All roles receive each answer. If another role asks for the same step within this time, it has
+// the answer, or will ask again.
 constexpr Duration kAnswerHolds = milliseconds(1);
 // A run waits for its newest steps. Requests for this many of them are always answered.
 constexpr std::int64_t kNewest = 2;
@@ -49,7 +49,7 @@ void Outputs::Publish(std::size_t channel, std::int64_t step, Bytes bytes) {
     if (output.channel != channel) continue;
     output.ring.Store(step, bytes);
     output.answered[RingSlot(step)] = {};
-    // A step that is so old that it is on disk is not published: the recorder answers for it. In
+    // A step that is old enough to be on disk is not published: the recorder answers for it. In
     // real time every output is published.
     if (parts_.run.realtime || step > parts_.run.progress - 2 * kMaxAhead) {
       parts_.bus.Publish(output.topic, bytes);

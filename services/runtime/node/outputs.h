@@ -1,5 +1,5 @@
-// The outputs of a role: it publishes each step of them once (unless the recorder answers for the
-// step), keeps the last steps, and answers requests for them.
+// The outputs of a role. They publish each step once (unless the recorder answers for the step),
+// keep the last steps, and answer requests for these.
 #pragma once
 
 #include <array>
@@ -20,14 +20,14 @@ namespace fogline::runtime {
 
 class Outputs {
  public:
-  Outputs(const Outputs&) = delete;  // the bus refers to it
+  Outputs(const Outputs&) = delete;  // the bus refers to this object
   Outputs& operator=(const Outputs&) = delete;
   /// @param rule the role's rule, null until the role has joined
   Outputs(Parts& parts, Role role, Work& work, const std::unique_ptr<FireRule>& rule);
 
   /// Publishes the output of a step on one of the role's channels (its place in kChannels) and
   /// keeps it. A step that the recorder answers for is only kept.
-  /// @throws std::runtime_error if it is too large
+  /// @throws std::runtime_error if the output is too large
   void Publish(std::size_t channel, std::int64_t step, Bytes bytes);
   /// The limit for answers about older steps.
   RateLimiter& limiter() { return limiter_; }
@@ -37,7 +37,7 @@ class Outputs {
     std::size_t channel;
     Bus::Topic& topic;
     StepRing ring;
-    std::array<TimePoint, kRingSteps> answered{};  // when its steps were last published again
+    std::array<TimePoint, kRingSteps> answered{};  // when each step was last published again
   };
 
   void OnResend(Bytes bytes);

@@ -14,8 +14,8 @@ namespace {
 
 // The longest error text: it must fit into a STATUS with everything else.
 constexpr std::size_t kMaxErrorBytes = 700;
-// A failed send is reported within this time after the last STATUS, because a run may be over
-// before the next heartbeat.
+// A STATUS about a failed send need not wait for the next heartbeat, because the run may be over by
+// then. It comes as soon as this time has passed since the last STATUS.
 constexpr Duration kTellSends = milliseconds(20);
 
 }  // namespace

@@ -24,21 +24,21 @@ class OwnStatus {
   OwnStatus(Bus& bus, Role role, const RunNews& run, Work& work,
             const std::unique_ptr<FireRule>& rule);
 
-  /// The next STATUS. All parts of the role write into it what they count.
+  /// The next STATUS. All parts of the role write their counts into it.
   status_t& message() { return message_; }
   const status_t& message() const { return message_; }
   /// Counts a message that is refused.
   void Refuse(RefusalCounter kind) { ++(message_.*kind); }
 
-  /// Whether it has not received the whole scenario of a run yet.
+  /// Whether the role waits: it has not received the whole scenario of a run yet.
   bool Waits() const { return message_.state == status_t::WAITING; }
-  /// Whether it may compute.
+  /// Whether the role may compute.
   bool Running() const {
     return !left_ && (message_.state == status_t::READY || message_.state == status_t::RUNNING);
   }
-  /// Whether its part in the run is over: STOP, a signal, or a failure that it has reported.
+  /// Whether the role's part in the run is over: STOP, a signal, or a failure that it has reported.
   bool left() const { return left_; }
-  /// Whether it has left its run, so that this process may take part in another run.
+  /// Whether the role has left its run, so that this process may take part in another run.
   bool released() const { return message_.state == status_t::LEFT; }
 
   void SetState(std::int8_t state);
@@ -47,14 +47,15 @@ class OwnStatus {
   /// Ends the role's part in the run for an outside reason: STOP, or a signal. Existing results are
   /// kept.
   void Leave();
-  /// Gives up its place in the run. @param why the reason, which STATUS reports
+  /// Gives up the role's place in the run. @param why the reason, which STATUS reports
   void Release(const std::string& why);
 
   /// Publishes a STATUS now. Without a run id it publishes none.
   void Publish();
   /// Publishes a STATUS if one is due. @return when the next one is due
   TimePoint Poll(TimePoint now);
-  /// A STATUS is due soon if it has failed sends to report. @return whether it has
+  /// If there are failed sends to report, makes the next STATUS due soon. @return whether there are
+  /// any
   bool HastensForFailedSends();
 
  private:

@@ -1,5 +1,6 @@
 // A rate limiter (token bucket) for the requests that a process answers: it allows a burst and then
-// a fixed number per second. A flood of RESEND gets no more answers than that, and the run goes on.
+// a fixed number per second. So a flood of RESEND gets a limited number of answers, and the run
+// goes on.
 #pragma once
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// What a role knows about its run: the runner's RUN says it, or the option --run-id.
+// What a role knows about its run, from the runner's RUN or from the option --run-id.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@ namespace fogline::runtime {
 struct RunNews {
   std::optional<std::int64_t> id;  // nullopt: none heard, none chosen
   std::int64_t sequence = 0;       // of the newest RUN
-  std::int64_t progress = -1;      // last step that the runner knows to be begun; -1: none
+  std::int64_t progress = -1;      // last step that is known to have begun; -1: none
   std::int8_t minimal_risk = 0;    // in real time: the cars in a minimal risk manoeuvre; status_t
   ScenarioParts parts;
   // Known once the scenario is complete:

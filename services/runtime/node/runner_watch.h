@@ -29,11 +29,12 @@ inline Seat SeatIn(const run_t& run, std::string_view role, std::int64_t instanc
 class RunnerWatch {
  public:
   /// A runner speaks five times a second. After this silence (ten missing messages) a role joins
-  /// another run that waits for it. A runner on a fit machine is never held up for so long. A
-  /// runner that a person has stopped may come back too late.
+  /// another run that waits for it. On a machine that is not overloaded, a runner is never held up
+  /// for so long. A runner that a person has stopped may come back too late.
   static constexpr Duration kSilent = milliseconds(2000);
   /// If no other run waits, a role waits this much longer than the runner waits for a step. By then
-  /// the run is lost, unless its runner itself is paused (Ctrl-Z), for which this time is left.
+  /// the run is lost, unless its runner itself is paused (Ctrl-Z). This time is meant for such a
+  /// pause.
   static constexpr Duration kGone = milliseconds(15'000);
   /// The stall limit if the runner does not give one: the default of `fogline run`.
   static constexpr Duration kStallLimit = milliseconds(4000);

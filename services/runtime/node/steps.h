@@ -15,13 +15,13 @@ class Steps {
 
   /// The step to compute next. It uses each input's message of step next() - lag.
   std::int64_t next() const { return next_; }
-  /// A predecessor has done the steps before this one.
+  /// Notes that a predecessor has computed the steps before this one.
   void StartAt(std::int64_t step) {
     next_ = step;
     own_.message().header.step = step - 1;
   }
   /// Computes a step now. The next step is then the one after it.
-  /// @return false if the computation failed; the role has then said so
+  /// @return false if the computation failed; the role has then reported this
   bool Compute(std::int64_t step) {
     try {
       work_.Compute(step);

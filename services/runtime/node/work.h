@@ -31,10 +31,10 @@ class Work {
   /// there.
   /// @throws std::exception that says what is wrong
   virtual void Compute(std::int64_t step) = 0;
-  /// Does what is due beside the steps, before the rule's Poll(), while the role is READY or
-  /// RUNNING. @return the latest time for the next call
+  /// Does the work that is due beside the steps. Called before the rule's Poll(), while the role is
+  /// READY or RUNNING. @return the latest time for the next call
   virtual TimePoint Poll(TimePoint /*now*/) { return TimePoint::max(); }
-  /// Called before every STATUS, to make sure that its claims are true.
+  /// Called before every STATUS, to make the claims of the STATUS true.
   virtual void BeforeStatus() {}
   /// Called once when the role's part in its run ends (OwnStatus::left()), not at Release().
   virtual void OnLeave() {}

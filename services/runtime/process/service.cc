@@ -97,7 +97,7 @@ class Service {
   /// What the role knows of its run.
   const RunNews& news() { return work_->node().parts().run; }
 
-  /// If it cannot, it stays where it is. @throws as Bus()
+  /// Joins a network. If that fails, the process stays on its present network. @throws as Bus()
   void Join(const std::string& url, std::optional<std::int64_t> run_id) {
     auto bus = std::make_unique<Bus>(url);
     Apply(arguments_.traffic, arguments_.role, *bus);
@@ -121,7 +121,7 @@ class Service {
       bus_->Wait(work_->node().Poll(now) - now);
     } catch (const std::exception& error) {
       if (!seeker_ || !seeker_->Tries()) throw;
-      GoBack(error.what());  // the relay that a message named has ended
+      GoBack(error.what());  // the relay that an announcement named has ended
     }
   }
 
@@ -136,10 +136,10 @@ class Service {
                     arguments_.wait_s, bus_->url(), HowToStartOne()));
   }
 
-  /// Whether it was told neither a network nor a run.
+  /// Whether the command line names neither a network nor a run.
   bool MaySeek() const { return arguments_.url.empty() && !arguments_.run_id; }
 
-  /// Opens the seeker if its network is there. @return whether there is one
+  /// Opens the seeker if the network is there. @return whether there is a seeker
   bool OpenSeeker(TimePoint now) {
     if (seeker_) return true;
     if (now < try_at_) return false;
@@ -152,7 +152,8 @@ class Service {
     return true;
   }
 
-  /// Goes where a run waits for the role, and back if it does not.
+  /// Goes to the network of a run that waits for the role, and back if it hears nothing of that
+  /// run.
   /// @throws std::runtime_error after --wait
   void Seek(TimePoint now) {
     LimitWait(now);
@@ -173,7 +174,7 @@ class Service {
   }
 
   /// Called while the runner is silent. If another run waits for the role, the process goes there.
-  /// (The node itself hears runs on its present network.)
+  /// (Runs on the present network are heard by the node itself.)
   void SeekAnother(TimePoint now) {
     if (!MaySeek() || !OpenSeeker(now)) return;
     seeker_->Ignore(*news().id);
@@ -184,8 +185,8 @@ class Service {
     GoTo(*run);
   }
 
-  /// The node has given up its place. It waits for a run where it is, as soon as that network is
-  /// there. @throws std::runtime_error after --wait
+  /// Called after the node has given up its place. Joins the present network again, as soon as it
+  /// is there, and waits for a run on it. @throws std::runtime_error after --wait
   void StartOver(TimePoint now) {
     if (!std::exchange(starts_over_, true)) {
       Say(own().message().error);
@@ -209,7 +210,7 @@ class Service {
     seeker_->GiveUp(Clock::now());
     try {
       Join(MeetingUrl(), std::nullopt);
-    } catch (const std::exception&) {  // it stays where it is
+    } catch (const std::exception&) {  // stays on the present network
     }
     Say(fmt::format("{}; waiting for a run on {} again", why, bus_->url()));
   }
@@ -234,7 +235,7 @@ class Service {
   std::unique_ptr<Bus> bus_;
   std::unique_ptr<Work> work_;
   std::optional<RunSeeker> seeker_;  // while there is no run yet
-  TimePoint try_at_{};               // when to try again what a network that is away has prevented
+  TimePoint try_at_{};               // when to try again to join a network
   bool starts_over_ = false;
   bool warned_ = false;
   bool preferred_ = false;

@@ -1,9 +1,10 @@
 // An algorithm as the work of a node: it connects the typed inputs and outputs of the algorithm
 // with the bytes of Inputs and Outputs.
 //
-// Two roles go on in real time when inputs fail: the role that begins the steps (the world) and one
-// that decides in every step (the arbitrator). They have an algorithm for that, Failsafe, which
-// takes each input as a Heard<M>. The other roles leave out a step that lacks an input.
+// In real time two roles go on when inputs fail: the role that begins the steps (the world), and
+// the one that decides in every step (the arbitrator). Each has a second algorithm for this,
+// Failsafe, which takes each input as a Heard<M>. The other roles leave out a step that lacks an
+// input.
 #pragma once
 
 #include <algorithm>
@@ -64,7 +65,7 @@ class StepNode final : public Work {
       !kFailsafe || Traits::kHasOnDemand == requires { &InRealtime::SetOnDemandInput; },
       "an algorithm and its failsafe have the same input on demand");
 
-  /// The input puts its messages into the ring of decoded messages.
+  /// Makes an input put its messages into the ring of decoded messages.
   template <std::size_t I>
   void KeepMessagesOf(Input& input) {
     input.keep = [this](std::int64_t step, Arrival& arrival) {
@@ -102,7 +103,7 @@ class StepNode final : public Work {
     }
   }
 
-  /// Remembers how the rule judges the inputs.
+  /// Keeps access to the rule's judgement of the inputs.
   template <class Rule>
   std::unique_ptr<Rule> Watched(std::unique_ptr<Rule> rule) {
     watch_ = &rule->watch();
@@ -181,11 +182,11 @@ class StepNode final : public Work {
     return {.state = watch_->StateFor(static_cast<std::size_t>(input), step), .newest = newest};
   }
 
-  /// The header of the first input, which brings the step.
+  /// The header of the first input, which is the world's tick.
   header_t HeaderOf(std::int64_t step) { return std::get<0>(rings_)[RingSlot(step)].header; }
 
-  /// Takes over from a world that was killed. It computes the steps after the last recorded one up
-  /// to the known progress again without publishing them, so that no step is published twice.
+  /// Takes over from a world that was killed. Computes again the steps after the last recorded one,
+  /// up to the known progress. Does not publish them, so no step is published twice.
   void Resume(const truth_t& truth) {
     if constexpr (kFailsafe && Traits::kStarts) {
       failsafe_->Resume(truth, parts_.run.minimal_risk);

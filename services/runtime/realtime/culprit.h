@@ -26,9 +26,10 @@ struct Culprit {
   bool operator==(const Culprit&) const = default;
 };
 
-/// The most upstream of the lost inputs: the first one in the order of the graph table, in which a
-/// step can be evaluated. If its producer has reported lost inputs itself, the blame passes to the
-/// first one of these, and so on. In a circle it stays at the role where the circle closes.
+/// First the blame is on the producer of the first lost input in the order of the graph table,
+/// which is an order of evaluation. If this producer has reported lost inputs itself, the blame
+/// passes to the producer of the first of these, and so on. In a circle the blame stays at the role
+/// where the circle closes.
 /// @return nullopt if `lost` is empty
 std::optional<Culprit> FindCulprit(const ChannelSet& lost, const LostByRole& reported);
 

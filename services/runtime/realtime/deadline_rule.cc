@@ -32,9 +32,8 @@ TimePoint DeadlineRule::Fire(TimePoint now) {
   TimePoint due = tick.heard;
   for (std::size_t i = 0; i < watch_.awaited().size(); ++i) {
     const bool there = inputs[i].ring.Has(step);
-    // The role does not wait for a lost input, but it waits for a lost input that comes again.
-    // Without this wait it would decide before that input comes: the input would be late in every
-    // step and stay lost.
+    // The role waits for a lost input only if messages of this input come again. Without this wait,
+    // the role would decide before they come: the input would be late in every step and stay lost.
     if (!there && (watch_.StateOf(i) != InputState::kLost || watch_.Speaks(i, now)))
       complete = false;
     if (there) due = std::max(due, inputs[i].heard);

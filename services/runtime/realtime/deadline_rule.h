@@ -1,7 +1,7 @@
 // The real-time rule for the role that must decide in every step (the arbitrator). It decides as
 // soon as it has all inputs that are not lost. It also waits for a lost input that comes again. At
-// a fixed time after the world's tick it decides with the inputs that it has. This time is early
-// enough for the command to reach the world in time. If the next step has already begun, it decides
+// a fixed time after the world's tick it decides with the inputs that it has. This time is so early
+// that the command still reaches the world in time. If the next step has already begun, it decides
 // at once.
 #pragma once
 

@@ -12,11 +12,11 @@ namespace fogline::runtime {
 
 /// Counts in cells whose width grows with the duration, as in G. Tene's HdrHistogram: below 128 us
 /// each microsecond has its cell, above that each power of two is divided into 64. A quantile is
-/// therefore too large by at most 1/64 (1.6 %) and never too small. Maximum and count are exact. It
-/// takes 14 kB, allocates nothing, and adds a duration in constant time.
+/// therefore too large by at most 1/64 (1.6 %) and never too small. Maximum and count are exact.
+/// The histogram takes 14 kB, allocates nothing, and adds a duration in constant time.
 ///
-/// (Boost.Accumulators has the P2 estimator, without a bound on its error in the tail; HdrHistogram
-/// in C is no Debian package.)
+/// (The P2 estimator of Boost.Accumulators has no bound on its error in the tail. HdrHistogram in C
+/// is no Debian package.)
 class DurationHistogram {
  public:
   /// Counts a duration, in whole microseconds, rounded up. A negative one counts as 0, one above

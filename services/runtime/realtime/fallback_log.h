@@ -14,8 +14,8 @@
 
 namespace fogline::runtime {
 
-/// A change in how a role reacts to its inputs, or an input that is lost or there again. (An input
-/// that is only stale is reported if the role reacts to it.)
+/// A change: a role reacts to its inputs in another way, or an input is lost or there again. (An
+/// input that is only stale is reported if the role reacts to it.)
 struct Fallback {
   std::int64_t step = 0;  // step that was under way then
   std::string role;
@@ -32,7 +32,7 @@ struct Fallback {
 
 class FallbackLog {
  public:
-  /// The most changes that are kept. Further ones add little for a reader, and must not fill the
+  /// At most this many changes are kept. More would tell a reader little, and must not fill the
   /// memory.
   static constexpr std::size_t kMaxKept = 1000;
 

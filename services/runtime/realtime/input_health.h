@@ -1,4 +1,4 @@
-// The health of one input in real time, by the times when its steps arrive on the receiver's own
+// The health of one input in real time, by the arrival times of its steps on the receiver's own
 // clock. Callers pass the time in: nothing here reads a clock, and senders' clocks do not matter.
 #pragma once
 
@@ -66,7 +66,7 @@ class InputHealth {
   std::int64_t newest_ = -1;
   TimePoint heard_;
   std::int64_t late_ = 0;
-  // Steps in time without interruption, and when the first of them came.
+  // How many steps have come in time in a row, and when the first of them came.
   std::int64_t streak_ = 0;
   TimePoint streak_began_;
   // The last arrivals: a ring.

@@ -9,8 +9,8 @@ namespace {
 
 // The part of a period by which a call may be late, as for the world's ticks (RunClock).
 constexpr double kLateCall = 0.25;
-// The longest interval, in periods, between two steps of an input that comes again. An input that
-// is lost has by default been silent for longer.
+// The longest interval, in periods, between two messages of an input that comes again. By default
+// an input counts as lost only after a longer silence.
 constexpr int kSpeaks = 2;
 
 /// The input that brings the world's ticks; the number of inputs if there is none.
@@ -64,7 +64,7 @@ void RealtimeWatch::Heard(std::size_t input, std::int64_t step, TimePoint time) 
   NoticeOwnPause(time);  // first, because the pause stops the clock that judges inputs
   const auto inputs = parts_.inputs.all();
   if (inputs[input].on_demand) return horizon_.KnowOf(step);
-  // each role but the world has an input that begins its steps
+  // every role except the world has an input that begins its steps
   if (tick_input_ < inputs.size()) {
     if (!clock_.started()) health_[tick_input_] = InputHealth(limits_, period_, time - pause_.sum);
     Begun(step, time);

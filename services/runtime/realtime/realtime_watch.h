@@ -37,7 +37,7 @@ class RealtimeWatch {
   StepRing::Verdict Judge(std::size_t input, std::int64_t step, Bytes bytes);
   /// An input has a new message of a step (Inputs::Keep()).
   void Heard(std::size_t input, std::int64_t step, TimePoint time);
-  /// Both at once, for a rule that adds nothing to them.
+  /// Judge(), Inputs::Keep() and Heard() in one, for a rule that adds nothing to them.
   void Take(std::size_t input, std::int64_t step, Arrival& arrival) {
     const auto verdict = Judge(input, step, arrival.bytes());
     if (parts_.inputs.Keep(input, step, arrival, verdict)) Heard(input, step, arrival.time());
@@ -48,12 +48,13 @@ class RealtimeWatch {
   TimePoint Poll(TimePoint now, const std::function<TimePoint(TimePoint now)>& fire);
   /// A RUN has told how far the run is.
   void OnProgress() { horizon_.Told(parts_.run.progress, Clock::now()); }
-  /// Adds to a STATUS what is known of inputs and time.
+  /// Adds the figures of inputs and time to a STATUS.
   void WriteStatus(TimePoint now);
 
   InputState StateOf(std::size_t input) const { return health_[input].state(); }
   /// The state of an input for an algorithm that computes a step without some of its inputs. The
-  /// world's tick of this step counts as OK if it is there, however long it was silent before.
+  /// world's tick of this step counts as OK if it is there, however long the world was silent
+  /// before.
   InputState StateFor(std::size_t input, std::int64_t step) const;
   /// Whether a message of the input has come lately, in time or too late to be used.
   bool Speaks(std::size_t input, TimePoint now) const;
@@ -85,9 +86,9 @@ class RealtimeWatch {
     std::int64_t count = 0;
     TimePoint at{};  // when the last one came
   };
-  /// The times at which this process was held up: a call came much later than it was asked for.
+  /// The pauses of this process: it was held up if a call came much later than was asked for.
   struct OwnPause {
-    TimePoint wake = TimePoint::max();  // the latest time for which the next call was asked
+    TimePoint wake = TimePoint::max();  // the latest time that was asked for the next call
     Duration sum{};
   };
 

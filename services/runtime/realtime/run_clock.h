@@ -12,10 +12,10 @@ namespace fogline::runtime {
 
 /// The clock runs with the wall clock while the run goes on. It stands still when the next step is
 /// overdue by more than kGrace periods, and goes on with the next step that is heard of. If steps
-/// were skipped in between, the clock advances by their periods as well. A message that comes late
-/// (a TRUTH that was lost and sent again) shows a step, not a pause: the next message that is in
-/// time sets the clock right. The clock never goes backwards, nor ahead of the wall clock. Before
-/// the first step it stands at its beginning.
+/// were skipped in between, the clock advances by their periods as well. A message may come late
+/// without a pause of the world (a TRUTH that was lost and sent again). The clock then stands
+/// still, too, until the next message that is in time sets it right. The clock never goes
+/// backwards, nor ahead of the wall clock. Before the first step it stands at its beginning.
 class RunClock {
  public:
   RunClock(Duration period, TimePoint began)

@@ -3,9 +3,9 @@
 //
 // The world never runs faster than its clock. So each message that proves that the world had begun
 // a step by some time gives an upper bound for all later times. A proof that comes late (a TRUTH
-// that was lost and sent again) gives a bound that is too low, so the loosest bound counts: that of
-// the message that was on its way for the shortest time. If the world stands still, the bound only
-// becomes looser. If two clocks drift apart, newer proofs are better, so old ones are forgotten.
+// that was lost and sent again) gives a bound that is too low. So the loosest bound counts, which
+// is that of the message with the shortest way. If the world stands still, the bound only becomes
+// looser. If two clocks drift apart, newer proofs are better, so old ones are forgotten.
 #pragma once
 
 #include <algorithm>
@@ -21,8 +21,8 @@ class StepHorizon {
  public:
   /// @param period of the steps on the wall clock, above 0
   /// @param slack steps by which the world can be further than the best proof says
-  /// @param remembered least time for which a proof counts; the longest is twice that. At least one
-  ///     of the proofs of such a time must come without delay.
+  /// @param remembered least time for which a proof counts; the longest is twice that. In any such
+  ///     time at least one proof must come without delay.
   StepHorizon(Duration period, std::int64_t slack, Duration remembered)
       : period_(period), slack_(slack), remembered_(remembered) {}
 
@@ -51,7 +51,7 @@ class StepHorizon {
     TimePoint time{};
   };
 
-  /// Whether the newer of two proofs gives a bound that is at least as loose as that of the older.
+  /// Whether the bound of the newer proof is at least as loose as that of the older.
   bool Allows(const Proof& newer, const Proof& older) const {
     const double periods = static_cast<double>((newer.time - older.time).count()) /
                            static_cast<double>(period_.count());
@@ -63,14 +63,14 @@ class StepHorizon {
   Duration remembered_;
   bool known_ = false;
   Proof loosest_;
-  Proof recent_;  // loosest of the last ones
+  Proof recent_;  // loosest since recent_since_
   TimePoint recent_since_{};
 };
 
 /// The newest step of a run, by its messages and by what the runner reports.
 ///
-/// The progress that the runner reports always limits the steps. The steps that were heard limit
-/// them, too, unless no new step was heard for some periods. So a role that is wrong about the
+/// The progress that the runner reports always limits the steps. The steps that were heard give a
+/// second limit, which counts only while new steps are heard. So a role that is wrong about the
 /// progress corrects itself soon (for example a role that was started in the middle of the run and
 /// heard an old message first). One false message can mislead a role by the slack of two steps.
 /// Many false messages can mislead it by no more than the runner's report allows, which is one
@@ -104,11 +104,11 @@ class RunHorizon {
   }
 
  private:
-  /// The steps by which the world may be ahead of the estimate: one because a tick may be early by
-  /// the delay of an earlier one, which is less than a period, and one because a message was on its
-  /// way for a moment.
+  /// The world may be ahead of the estimate by two steps. The first: a tick may be early by the
+  /// delay of an earlier tick, which is less than a period. The second: a message is on its way for
+  /// a moment.
   static constexpr std::int64_t kSlack = 2;
-  /// The greatest age of the progress that the runner reports: five signs of life of the roles,
+  /// The progress that the runner reports is at most this old: five signs of life of the roles,
   /// some of which may be lost.
   static constexpr Duration kHearsay = milliseconds(1000);
   /// How long a proof of the run's progress counts. A message that is sent again comes late, but a

@@ -13,12 +13,12 @@ constexpr Duration kEndLimit = milliseconds(3000);
 // comes within kAnswersLast after the first.
 constexpr Duration kAskEvery = milliseconds(20);
 constexpr Duration kAnswersLast = milliseconds(5);
-// A world that is started again asks for steps from this many before the known progress on.
+// The first step that a restarted world asks for is this many steps before the known progress.
 constexpr std::int64_t kProgressAge = 8;
 // A tick that is later than this, in periods, was held up by more than the usual jitter.
 constexpr double kHeldUp = 0.05;
-// After such a tick the other roles get at most this long to finish the step before, which is
-// several times what they need. The next tick is at least kApart periods away.
+// After such a tick the other roles get at most this long to finish the step before: several times
+// the time that they need. The next tick is at least kApart periods away.
 constexpr Duration kFinish = milliseconds(3);
 constexpr double kApart = 0.25;
 

@@ -2,11 +2,11 @@
 // wall clock, even if roles have not answered.
 //
 // Step k is due k periods after the start, on a grid that does not drift. While the process or its
-// machine is stopped, ticks pass without a step. They are not made up for: only the last of them
-// begins a step. After a stop of the machine the step before may not be finished. The other roles
-// then get a moment for it, and the next tick keeps a distance from the late one. Simulated time is
-// the number of steps. So it stands still with the world's process, and no step is ever left out.
-// Missed ticks are counted.
+// machine is stopped, ticks pass without a step. The world does not make up for them: only the last
+// of them begins a step. After a stop of the machine the step before may not be finished. The other
+// roles then get a moment for it, and the next tick keeps a distance from the late one. Simulated
+// time is the number of steps. So it stands still with the world's process, and no step is ever
+// left out. Missed ticks are counted.
 //
 // A world that is started again continues after the last TRUTH that the recorder has.
 #pragma once
@@ -23,8 +23,8 @@ namespace fogline::runtime {
 
 class TickRule final : public FireRule {
  public:
-  /// Takes over after the step of `truth`, and computes the steps that are known to be under way
-  /// without publishing them.
+  /// Takes over after the step of `truth`. Computes the steps that are known to be under way, but
+  /// does not publish them.
   using TakeOver = std::function<void(const truth_t& truth)>;
 
   TickRule(Parts& parts, const Scenario& scenario, StepGate& gate, TakeOver take_over);
@@ -44,7 +44,7 @@ class TickRule final : public FireRule {
   /// Does what is due in this phase. @return the latest time for the next call
   TimePoint Fire(TimePoint now);
   TimePoint LookForTruth(TimePoint now);
-  /// Asks the recorder for TRUTH, and the producers of the commands for theirs.
+  /// Asks the recorder for TRUTH, and the producers for the commands.
   void AskForTruth();
   /// The first of the steps that a restarted world asks for.
   std::int64_t FirstAsked() const;
@@ -53,9 +53,10 @@ class TickRule final : public FireRule {
   TimePoint Resume(TimePoint now);
   TimePoint Tick(TimePoint now);
   TimePoint End(TimePoint now);
-  /// Takes the latency of a step's command, which has come in time or late. Each step counts once.
+  /// Measures the latency of a step's command, which may come in time or late. Each step counts
+  /// once.
   void TakeLatency(std::size_t input, std::int64_t step, TimePoint time);
-  /// Whether the commands for the next step are there, or it needs none.
+  /// Whether the commands for the next step are there, or this step needs none.
   bool Answered() const;
   /// When tick `n` of the grid is due.
   TimePoint Due(std::int64_t n) const;

@@ -33,7 +33,7 @@ namespace {
 /// multicast message to every socket on its port, whichever group the socket has joined.
 bool IsTaken(std::uint16_t port) {
   const int probe = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-  if (probe < 0) return false;  // the caller's own socket fails, and it says why
+  if (probe < 0) return false;  // the caller's own socket will fail and say why
   sockaddr_in address{};
   address.sin_family = AF_INET;
   address.sin_port = htons(port);
@@ -92,7 +92,7 @@ int LackOfDescriptors() {
   return error;
 }
 
-// A bus that hears nothing for this long (five signs of life of a run) joins its group again.
+// A bus that hears nothing for this long (five signs of life of a run) renews its membership.
 constexpr Duration kJoinAgainEvery = milliseconds(1000);
 
 }  // namespace
@@ -183,7 +183,7 @@ void Bus::Subscribe(std::string_view channel, Handler handler, const Contents& c
   lcm_subscription_t* handle =
       lcm_subscribe(lcm_, Escaped(channel).c_str(), &Bus::OnMessage, &topic);
   if (handle == nullptr) throw std::runtime_error(fmt::format("cannot subscribe to {}", channel));
-  lcm_subscription_set_queue_capacity(handle, 0);  // 0: no limit; LCM's 30 drops the newest
+  lcm_subscription_set_queue_capacity(handle, 0);  // 0: no limit (LCM's: 30, drops the newest)
   FilterSockets();
 }
 
@@ -378,11 +378,11 @@ std::string SignatureTrouble(const Bus::Unverified& unverified) {
 }
 
 std::string FreshMulticastUrl() {
-  // Registered ports above LCM's own 7667 and below 32768, where the ports begin that Linux gives
-  // to sockets that ask for none (ip(7)). The group is LCM's.
+  // The ports lie above LCM's own 7667 and below 32768. From there on, Linux gives ports to sockets
+  // that ask for none (ip(7)). The group is LCM's.
   constexpr std::uint32_t kFirstPort = 20000;
   constexpr std::uint32_t kPorts = 12000;
-  constexpr int kTries = 20;  // where all of them find a taken port, the last one has to do
+  constexpr int kTries = 20;  // if all find a taken port, the last one is used
   std::uint32_t port = 0;
   for (int i = 0; i < kTries; ++i) {
     port = kFirstPort + randombytes_uniform(kPorts);

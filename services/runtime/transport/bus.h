@@ -70,8 +70,8 @@ class Bus {
   using Watcher = std::function<void(std::string_view channel, Bytes)>;
   void SubscribeAll(Watcher watcher);
 
-  /// Sends bytes; they are copied before it returns. A message that cannot be sent is lost, as on a
-  /// bad network, and counted.
+  /// Sends bytes, which are copied before the call returns. A message that cannot be sent is lost,
+  /// as on a bad network, and counted.
   /// @throws std::runtime_error if there are more than kMaxMessageBytes
   void Publish(std::string_view channel, Bytes bytes) { Publish(TopicOf(channel), bytes); }
 
@@ -83,7 +83,7 @@ class Bus {
   /// Messages that could not be sent.
   struct FailedSends {
     std::int64_t count = 0;  // since the beginning
-    std::string error;       // why the last one could not
+    std::string error;       // why the last one could not be sent
     // Since then nothing could be sent; nullopt if the last message was sent.
     std::optional<TimePoint> since;
   };
@@ -92,15 +92,15 @@ class Bus {
   /// Handles one message, waiting for it up to `timeout`. @return whether there was one.
   bool Wait(Duration timeout);
 
-  /// Handles the messages that are there, but at most kDrained. The limit is for memq: the messages
-  /// that its handlers publish are there at once, so without it a run in memory would never let its
-  /// caller look at the clock.
+  /// Handles the messages that are there, but at most kDrained. The limit is for memq, where the
+  /// messages that handlers publish are there at once. Without the limit, a run in memory would
+  /// never let its caller look at the clock.
   void Drain();
   static constexpr int kDrained = 1000;
 
   /// Messages whose signature was not verified.
   struct Unverified {
-    std::int64_t not_signed = 0;    // refused: there is a key here
+    std::int64_t not_signed = 0;    // refused, because there is a key here
     std::int64_t badly_signed = 0;  // refused
     std::int64_t no_key = 0;        // signed, but this process has no key: the decoder refuses them
   };
@@ -109,8 +109,8 @@ class Bus {
   /// The counts since the last call, for several users of a bus whose counts are added up.
   Unverified TakeUnverified() { return std::exchange(not_taken_, {}); }
 
-  /// Readable when Wait(0) would handle a message; with tcpq only once all earlier messages are
-  /// handled.
+  /// Readable when Wait(0) would handle a message. With tcpq this holds only once all earlier
+  /// messages are handled.
   int fd() const { return fd_; }
   const std::string& url() const { return url_; }
 
@@ -137,7 +137,7 @@ class Bus {
   _lcm_t* lcm_ = nullptr;               // nullptr with tcpq
   std::unique_ptr<tcpq::Client> tcpq_;  // instead of lcm_, with tcpq
   int fd_ = -1;
-  std::vector<int> sockets_;  // LCM's UDP sockets; it owns them
+  std::vector<int> sockets_;  // UDP sockets, which LCM owns
   bool filtered_ = true;      // the kernel filters what reaches LCM's parser
   // Set if messages of the group come over the route, which may change.
   std::optional<GroupMembership> membership_;
@@ -171,7 +171,7 @@ struct Bus::Topic {
 };
 
 /// A multicast URL of this machine only, on a port drawn at random, so that two runs hardly ever
-/// share one.
+/// share a port.
 std::string FreshMulticastUrl();
 
 }  // namespace fogline::runtime

@@ -15,7 +15,7 @@ namespace {
 
 /// The delay of a message that is overtaken: a few steps of a run over udpm.
 constexpr Duration kOvertaken = milliseconds(2);
-/// A longer delay leads to stalls, which is another test.
+/// A longer delay leads to stalls, which other tests cause.
 constexpr double kMaxDelayMs = 1000;
 
 struct ChanceField {

@@ -1,6 +1,6 @@
 // A bad network on request. Messages that a process receives are lost, doubled, delayed, overtaken
-// or damaged before the process reads them. It works on any bus, in memory too. It is seeded: the
-// fate of the n-th message that a role receives depends only on the seed, the role and n.
+// or damaged before the process reads them. This works on any bus, in memory too. The fate of the
+// n-th message that a role receives depends only on the seed, the role and n.
 #pragma once
 
 #include <array>

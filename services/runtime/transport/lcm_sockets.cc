@@ -34,7 +34,7 @@ int SetOption(int socket, int level, int name, const void* value, socklen_t size
 
 in_addr Loopback() { return {.s_addr = htonl(INADDR_LOOPBACK)}; }
 
-/// Of an interface; 0 if there is none.
+/// The index of an interface; 0 if there is no such interface.
 int InterfaceIndex(const std::string& interface) {
   return static_cast<int>(if_nametoindex(interface.c_str()));
 }
@@ -120,7 +120,7 @@ void GroupMembership::Renew() {
 }  // namespace fogline::runtime
 
 // These functions replace the C library's, in LCM's code too. So a filter is attached before
-// bind(), and no datagram arrives before it.
+// bind(), and no datagram arrives before the filter.
 extern "C" int bind(int socket, const sockaddr* address, socklen_t size) noexcept {
   return fogline::runtime::in_charge != nullptr
              ? fogline::runtime::in_charge->OnBind(socket, address, size)

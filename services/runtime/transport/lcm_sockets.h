@@ -3,7 +3,7 @@
 //
 // LCM uses the interface of the route to the group, even if no message is to leave the machine
 // (ttl=0). Such traffic ends when that interface, its address or its route goes away, for example
-// with a cable, a Wi-Fi or a lease. Loopback depends on none of them.
+// when a cable is pulled, a Wi-Fi is lost or a lease ends. Loopback depends on none of them.
 #pragma once
 
 #include <linux/filter.h>
@@ -32,13 +32,13 @@ class LcmSockets {
 
   /// The sockets that receive.
   const std::vector<int>& receiving() const { return receiving_; }
-  /// The sockets that have joined a group: LCM's sending socket does so, too.
+  /// The sockets that have joined a group, including LCM's sending socket.
   const std::vector<int>& members() const { return members_; }
   /// Whether there are sockets that receive, and the kernel has accepted the filter for each of
   /// them.
   bool filtered() const { return !receiving_.empty() && !refused_; }
 
-  // These replace the C library's functions and return what those would return.
+  // These replace bind(), connect() and setsockopt() of the C library, and return the same.
   int OnBind(int socket, const sockaddr* address, socklen_t size);
   int OnConnect(int socket, const sockaddr* address, socklen_t size) const;
   int OnOption(int socket, int level, int name, const void* value, socklen_t size);
@@ -54,7 +54,7 @@ class LcmSockets {
 /// Whether loopback is up. Some containers have none.
 bool LoopbackIsUp();
 
-/// How far a udpm:// URL reaches: only loopback with ttl=0 and loopback up, otherwise the route.
+/// How far a udpm:// URL reaches: kLoopback if ttl is 0 and loopback is up, otherwise kRoute.
 LcmSockets::Reach ReachOf(const std::string& url);
 
 /// Keeps sockets in the group of a udpm:// URL, on the interface to which the route to the group

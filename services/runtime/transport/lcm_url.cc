@@ -29,7 +29,7 @@ std::optional<in_addr> ParseAddress(std::string_view text) {
 }
 
 /// Removes the text before `separator`, and the separator, from the front of `text`.
-/// @return that text
+/// @return the text before `separator`
 std::string_view TakeUntil(char separator, std::string_view& text) {
   const std::string_view part = text.substr(0, text.find(separator));
   text.remove_prefix(std::min(text.size(), part.size() + 1));

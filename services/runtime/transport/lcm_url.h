@@ -1,4 +1,4 @@
-// Which LCM network a program uses: one rule for every program. It also reads the URLs of networks.
+// Which LCM network a program uses: one rule for every program. Also reads the URLs of networks.
 #pragma once
 
 #include <cstdint>
@@ -44,7 +44,7 @@ bool SameNetwork(std::string_view a, std::string_view b);
 
 /// Whether a program may go to this network because a message names it. It may if the URL is a
 /// multicast group whose traffic gets no further than the next router (ttl 0 or 1), or a relay of
-/// this machine with its address in numbers. It may not for mpudpm, where nothing filters the
+/// this machine with its address in numbers. With mpudpm it may not, because nothing filters the
 /// messages that reach LCM's parser.
 bool MayBeAnnounced(std::string_view url);
 

@@ -1,5 +1,5 @@
 // A limit for floods of messages: a process lets in as many messages as it can handle. The kernel
-// drops the rest, which costs nothing, before they fill the receive buffer.
+// drops the rest before it fills the receive buffer. That costs nothing.
 #pragma once
 
 #include <algorithm>
@@ -26,7 +26,7 @@ class LoadShedder {
     since_ = now;
     count_ = 0;
     const double share = std::clamp(per_second_ / sent, kLeast, 1.0);
-    // A change costs a system call, so a share within a fifth of the wanted one is left.
+    // A change costs a system call, so a share within a fifth of the wanted one is kept.
     if (share > 0.8 * share_ && share < 1.2 * share_ && !(share == 1 && share_ < 1)) {
       return std::nullopt;
     }

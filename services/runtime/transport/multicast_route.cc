@@ -123,7 +123,7 @@ bool HasGroup(std::string_view table, std::string_view interface, const std::str
     if (!line.starts_with('\t')) {  // "2	eth0      :     3      V3", and then its groups
       std::string name;
       fields >> name >> name;
-      here = name.substr(0, name.find(':')) == interface;  // attached if the name is long
+      here = name.substr(0, name.find(':')) == interface;  // a long name has the colon attached
       continue;
     }
     std::uint32_t address =

@@ -9,7 +9,7 @@
 
 namespace fogline::runtime {
 
-/// Lets LCM work on a machine without a network. Needs root.
+/// A command that lets LCM work on a machine without a network. Needs root.
 inline constexpr std::string_view kLoopbackRoute = "ip route add 239.0.0.0/8 dev lo";
 
 /// The multicast group of a udpm:// or mpudpm:// URL, LCM's own if the URL names none; nullopt for

@@ -21,13 +21,13 @@
 namespace fogline::runtime::tcpq {
 namespace {
 
-// How long a relay may take to answer, and how long it may accept no byte.
+// A relay must answer within the first limit, and accept a byte within the second.
 constexpr Duration kAnswerLimit = milliseconds(5000);
 constexpr Duration kStallLimit = milliseconds(5000);
 // The limit in place of kAnswerLimit when the client connects to a relay again. It is short,
 // because the process does nothing else in this time.
 constexpr Duration kSecondAnswerLimit = milliseconds(200);
-// The most bytes from the relay that are kept while the relay takes nothing.
+// At most this many bytes from the relay are kept while the relay takes nothing.
 constexpr std::size_t kMaxReceived = 64 << 20;
 // After publishing this many bytes without reading, the client reads: a relay disconnects clients
 // that read nothing.

@@ -1,7 +1,7 @@
 // A client of a tcpq relay, in place of LCM's own client. LCM's client aborts when the relay ends,
 // waits without limit for a server that says nothing, takes five system calls and packets for a
-// message, and loses its connection to a signal. This one speaks the same protocol with the same
-// relays.
+// message, and loses its connection when a signal comes. This client speaks the same protocol with
+// the same relays.
 #pragma once
 
 #include <cstdint>
@@ -36,9 +36,9 @@ class Client {
  public:
   using Handler = std::function<void(Bytes)>;
 
-  /// How often, and how many times, a lost connection is tried again: 10 s in all. A killed relay
-  /// of a run is started again within a second, unless the machine is short of processes. A person
-  /// who restarts a relay takes longer than any role waits.
+  /// The interval and the number of tries to make a lost connection again: 10 s in all. A killed
+  /// relay of a run is started again within a second, unless the machine has no room for a process.
+  /// A person who restarts a relay takes longer than any role waits.
   static constexpr Duration kTryEvery = milliseconds(50);
   static constexpr int kTries = 200;
 
@@ -101,7 +101,7 @@ class Client {
   FrameParser parser_;
   std::optional<Frame> next_;        // the frame to be handled next
   std::vector<std::uint8_t> chunk_;  // buffer for a read from the kernel
-  // Not yet parsed, because a handler may still use the last frame.
+  // Received but not yet parsed, because a handler may still use the last frame.
   std::vector<std::uint8_t> received_;
   std::vector<std::uint8_t> frame_;    // being sent
   std::size_t sent_unread_ = 0;        // bytes sent since the last read

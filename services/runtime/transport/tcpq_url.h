@@ -1,6 +1,6 @@
-// The address of a tcpq relay. LCM resolves no host names: its inet_aton() test cannot fail, and a
-// name silently becomes 0.0.0.0, this machine. So Fogline resolves names before LCM's programs see
-// them.
+// The address of a tcpq relay. LCM resolves no host names: its test of what inet_aton() returns
+// cannot fail, so a name silently becomes 0.0.0.0, this machine. So Fogline resolves names before
+// LCM's programs see them.
 #pragma once
 
 #include <cstdint>
@@ -25,7 +25,7 @@ struct Endpoint {
 /// @throws InputError that begins with `what` if there is no such host or port
 Endpoint Resolve(std::string_view host_and_port, std::string_view what);
 
-/// The same after "tcpq://".
+/// The same for a URL: such a text after "tcpq://".
 Endpoint ResolveUrl(std::string_view url);
 
 }  // namespace fogline::runtime::tcpq

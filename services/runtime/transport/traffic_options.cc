@@ -28,8 +28,8 @@ void AddTrafficOptions(CLI::App& app, TrafficOptions& options) {
 
 std::optional<SigningKey> KeyOf(const TrafficOptions& options) {
   if (!options.key_file.empty()) return SigningKey::Load(options.key_file);
-  // A user who sets the variable wants signatures. It may be empty because a script has not found
-  // the key's file.
+  // A user who sets the variable wants signatures. An empty variable may come from a script that
+  // has not found the key's file.
   if (const char* variable = std::getenv(kKeyVariable); variable != nullptr && *variable == '\0') {
     throw InputError(fmt::format(
         "error: {} is empty: name the key's file, or unset it to run unsigned", kKeyVariable));

@@ -1,7 +1,7 @@
-// Which build of a program a process is. The linker writes a hash of everything that it links into
-// the program (its GNU build id). So two programs of one name have the same build id only if their
-// code is the same. The build id distinguishes builds but proves nothing: a process may report any
-// number.
+// The build of the program that a process runs. The linker writes a hash of everything that it
+// links into the program (its GNU build id). So two programs of one name have the same build id
+// only if their code is the same. The build id distinguishes builds but proves nothing: a process
+// may report any number.
 #pragma once
 
 #include <cstdint>

@@ -63,8 +63,8 @@ std::uint32_t BigEndian(std::string_view bytes) {
   return value;
 }
 
-/// Appends instructions that compare the datagram with `text` at offset `at`. If it differs, they
-/// skip the `then` instructions after them.
+/// Appends instructions that compare the datagram with `text` at offset `at`. If the datagram
+/// differs, as many instructions after these are skipped as `then` says.
 void AppendText(std::string_view text, std::size_t at, std::size_t then,
                 std::vector<sock_filter>& program) {
   struct Piece {
@@ -86,8 +86,8 @@ void AppendText(std::string_view text, std::size_t at, std::size_t then,
   }
 }
 
-/// Appends instructions for one wanted channel: they take or drop a datagram of this channel. For
-/// another channel the program goes on behind them.
+/// Appends instructions for one wanted channel: they take or drop a datagram of this channel. For a
+/// datagram of another channel, the program goes on behind these instructions.
 void AppendWanted(const Wanted& wanted, std::vector<sock_filter>& program) {
   const std::string_view name(wanted.channel.c_str(), wanted.channel.size() + 1);  // with its 0
   std::vector<sock_filter> contents;

@@ -1,14 +1,14 @@
 // Lets the kernel drop LCM messages that this process has not subscribed to.
 //
-// Every process of an LCM network receives every message, and LCM's receiving thread wakes up for
-// each, only to throw most of them away. With ten processes and nine messages a step, two thirds of
-// a machine's work for a step goes into waking threads that then have nothing to do. The kernel can
+// Every process of an LCM network receives every message. LCM's receiving thread wakes up for each,
+// and throws most of them away. With ten processes and nine messages a step, two thirds of a
+// machine's work for a step goes into waking threads that then have nothing to do. The kernel can
 // read the channel's name when the datagram arrives, and wake no thread (a socket filter, see
 // socket(7)). Nothing else changes: subscribed messages arrive in the same order.
 //
-// The filter also keeps from LCM's parser datagrams that no Fogline process sends: fragments, whose
-// bounds LCM does not check properly (lcm-proj/lcm#628: a remote heap write), and datagrams that
-// are no LCM message at all.
+// Datagrams that no Fogline process sends do not reach LCM's parser either. These are fragments,
+// whose bounds LCM does not check properly (lcm-proj/lcm#628: a remote heap write), and datagrams
+// that are no LCM message at all.
 #pragma once
 
 #include <linux/filter.h>
@@ -33,15 +33,15 @@ struct Wanted {
   double share = 1;
 };
 
-/// A filter program that takes LCM datagrams ("LC02": int32 sequence number, channel, 0, data) on
-/// these channels, of up to kMaxMessageBytes of data and a signature, and nothing else. It drops
-/// fragments of large messages ("LC03").
+/// A filter program that takes only LCM datagrams ("LC02": int32 sequence number, channel, 0, data)
+/// on these channels, with at most kMaxMessageBytes of data and a signature. It drops fragments of
+/// large messages ("LC03").
 /// @throws std::logic_error if the contents of a channel need more instructions than a jump can
 ///     skip
 std::vector<sock_filter> ChannelFilter(std::vector<Wanted> wanted);
 
-/// The same for all channels: takes every whole LCM message of that size whose channel name ends
-/// with a 0.
+/// The same for all channels: takes every whole LCM message of at most that size whose channel name
+/// ends with a 0.
 std::vector<sock_filter> AnyChannelFilter();
 
 /// Attaches a filter to the socket, in place of an earlier one.

@@ -146,7 +146,8 @@ SigningKey SigningKey::Load(const std::filesystem::path& file) {
                    "not a key, which is 64 hexadecimal digits and nothing else; `fogline keygen "
                    "FILE` makes one");
   }
-  // A script that finds no randomness makes such a key, and an attacker tries it first.
+  // A script without a source of randomness may make a key of zeros, and an attacker tries this key
+  // first.
   if (sodium_is_zero(key.secret_.data(), key.secret_.size()) == 1) {
     throw KeyError(file, "a key of zeros is no secret; `fogline keygen FILE` makes one");
   }
@@ -195,7 +196,7 @@ MessageSigner::Tag MessageSigner::TagOf(std::string_view channel, const Sender& 
   crypto_generichash_update(&state, payload.data(), payload.size());
   Tag tag{};
   crypto_generichash_final(&state, tag.data(), tag.size());
-  sodium_memzero(&state, sizeof(state));  // it begins with the key
+  sodium_memzero(&state, sizeof(state));  // the state begins with the key
   return tag;
 }
 

@@ -24,7 +24,7 @@
 
 namespace fogline::runtime {
 
-/// 32 secret bytes. A key file has them as 64 hexadecimal digits, and a line end or none.
+/// 32 secret bytes. A key file has them as 64 hexadecimal digits. A line end may follow.
 class SigningKey {
  public:
   using Secret = std::array<std::uint8_t, 32>;

@@ -24,8 +24,8 @@ struct OtherBuild {
   BuildId build;  // the build that it reports
   BuildId ours;   // build of the role's program in the runner's folder
 
-  /// "driver (pid 4711 on lab2) is of build 1f..., but the runner is of build 2e...", or
-  /// which of the two is not known.
+  /// "driver (pid 4711 on lab2) is of build 1f..., but the runner is of build 2e...". If one of the
+  /// builds is not known, says which.
   std::string Text() const;
 };
 

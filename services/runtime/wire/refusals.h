@@ -30,7 +30,7 @@ inline constexpr std::array kRefusals{
 using RefusalCounter = std::int64_t status_t::*;
 
 /// Decodes a message.
-/// @return why it is to be refused, whatever its run and step; nullptr if it is sound
+/// @return why it must be refused, apart from its run and step; nullptr if it is sound
 template <class M>
 [[nodiscard]] RefusalCounter Examine(Bytes bytes, M& message) {
   if (bytes.size() < kHeaderEnd) return &status_t::malformed;

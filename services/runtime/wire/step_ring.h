@@ -11,8 +11,8 @@
 namespace fogline::runtime {
 
 /// How many steps a ring remembers. The world runs at most kMaxAhead steps ahead of the recorder.
-/// So a step that a role may still ask for is in the ring of its producer, or it is older than
-/// kRingSteps. An older step is on disk, and the recorder answers for it.
+/// So any step that a role asks for is either in the ring of its producer, or older than a ring. An
+/// older step is on disk, and the recorder answers for it.
 inline constexpr std::int64_t kRingSteps = 64;
 inline constexpr std::int64_t kMaxAhead = 32;
 static_assert(2 * kMaxAhead <= kRingSteps, "some steps would be neither in a ring nor on disk");

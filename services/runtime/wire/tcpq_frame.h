@@ -49,7 +49,7 @@ class FrameParser {
   /// @param magic the word that the other side must begin with
   FrameParser(std::uint32_t magic, const Limits& limits) : magic_(magic), limits_(limits) {}
 
-  /// Adds what was received, in pieces of any size.
+  /// Adds received bytes, in pieces of any size.
   void Append(Bytes bytes);
 
   /// Whether the other side has sent its first two words.
