@@ -169,7 +169,8 @@ TEST(StudyVerbTest, EveryFindingRestsOnClaimsOfItsStudies) {
   std::set<std::string> claims;
   for (const auto& study : nlohmann::json::parse(made.out)["studies"]) {
     for (const auto& claim : study["claims"]) {
-      claims.insert(study["name"].get<std::string>() + ": \"" + claim["says"].get<std::string>() + '"');
+      claims.insert(study["name"].get<std::string>() + ": \"" + claim["says"].get<std::string>() +
+                    '"');
     }
   }
   std::istringstream page(Read(SourceDirectory() / "docs/findings.md"));
