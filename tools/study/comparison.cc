@@ -39,6 +39,16 @@ std::size_t PlaceOf(const std::vector<Named>& all, std::string_view name, std::s
   return static_cast<std::size_t>(found - all.begin());
 }
 
+/// @throws std::invalid_argument
+template <class Named>
+void RequireNamesWithoutCommas(const std::vector<Named>& all) {
+  for (const Named& one : all) {
+    if (one.name.find(',') != one.name.npos) {
+      throw std::invalid_argument("a comma in the name " + one.name);
+    }
+  }
+}
+
 /// The scenario of every cell, case by case. Each case begins with its run without traded control.
 std::vector<Scenario> ScenariosOf(const StudyContext& context, const std::vector<StudyCase>& cases,
                                   const std::vector<StudyVariant>& variants) {
@@ -71,6 +81,8 @@ std::size_t PlaceOfMetric(std::string_view name) {
 Comparison::Comparison(const StudyContext& context, std::vector<StudyCase> cases,
                        std::vector<StudyVariant> variants)
     : cases_(std::move(cases)), variants_(std::move(variants)), seeds_(context.seeds.count()) {
+  RequireNamesWithoutCommas(cases_);
+  RequireNamesWithoutCommas(variants_);
   const std::vector<Scenario> scenarios = ScenariosOf(context, cases_, variants_);
   const std::size_t measures = ComparedMetrics().size();
   const auto seeds = static_cast<std::size_t>(seeds_);

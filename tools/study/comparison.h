@@ -63,7 +63,8 @@ struct NamedCell {
 
 class Comparison {
  public:
-  /// Runs all cells. @throws InputError, StudyStopped
+  /// Runs all cells. @throws InputError, StudyStopped; std::invalid_argument if a name has a comma,
+  /// which separates the cells of a CSV file
   Comparison(const StudyContext& context, std::vector<StudyCase> cases,
              std::vector<StudyVariant> variants);
   /// Uses finished runs. @param values by case, variant, measure and seed

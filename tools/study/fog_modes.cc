@@ -5,7 +5,7 @@
 namespace fogline::study {
 
 StudyCase FogMode::Case(std::string_view with, const std::vector<std::string>& more) const {
-  StudyCase one{.name = fmt::format("{}, {}", name, with),
+  StudyCase one{.name = fmt::format("{}: {}", name, with),
                 .file = std::string(file),
                 .overrides = overrides,
                 .group = std::string(name)};

@@ -19,7 +19,7 @@ struct FogMode {
   std::string_view file;
   std::vector<std::string> overrides;
 
-  /// The case of this fog with something more, such as a human: "bias fog, perfect human".
+  /// The case of this fog with something more, such as a human: "bias fog: perfect human".
   StudyCase Case(std::string_view with, const std::vector<std::string>& more = {}) const;
 };
 

@@ -30,7 +30,7 @@ std::vector<StudyVariant> EveryRule() {
   return variants;
 }
 
-constexpr std::string_view kCalibratedRadar = "bias fog, calibrated radar";
+constexpr std::string_view kCalibratedRadar = "bias fog: calibrated radar";
 constexpr std::string_view kRealistic = "realistic noise";
 
 /// Standard deviation of a real radar's range, m (data sheet of a Continental ARS408: 0.1 to 0.4).
@@ -47,7 +47,7 @@ std::vector<StudyCase> PolicyFogs() {
       std::vector<std::string> noisy = overrides;
       noisy.push_back(fmt::format("/radar/range_std_m={}", kRealisticNoise_m));
       noisy.push_back(fmt::format("/fusion/radar_range_std_m={}", kRealisticNoise_m));
-      cases.push_back(fog.Case(fmt::format("{}, {}", human, kRealistic), noisy));
+      cases.push_back(fog.Case(fmt::format("{} with {}", human, kRealistic), noisy));
     }
   }
   cases.push_back(

@@ -27,7 +27,7 @@ constexpr Study kStudies[] = {
      RunTakeOverStudy},
     {"transfer",
      "How to hand over",
-     "How much safety does a smooth transfer cost, and how much jerk does it avoid?",
+     "Is a smooth transfer worth its cost in safety?",
      {1, 1000},
      RunTransferStudy},
     {"threshold",

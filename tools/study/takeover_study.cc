@@ -37,7 +37,7 @@ std::vector<Meanwhile> Meanwhiles() {
 }
 
 std::string LatencyName(std::string_view meanwhile, int latency_s, bool absent) {
-  return fmt::format("{}, {} s{}", meanwhile, latency_s, absent ? ", 1 of 10 absent" : "");
+  return fmt::format("{} {} s{}", meanwhile, latency_s, absent ? " with absent drivers" : "");
 }
 
 std::vector<StudyVariant> TakeOverVariants() {
@@ -77,7 +77,7 @@ std::vector<StudyCase> TakeOverCases() {
     slow.push_back(fmt::format("/arbitrator/take_over/required_readiness={}", kReady));
     add(kPerfectHuman, {});
     add(kFallibleHuman, FallibleHuman());
-    add("fallible human, must be aware", slow);
+    add("fallible human who must be aware", slow);
   }
   return cases;
 }
@@ -156,25 +156,47 @@ report::StudyTable TakeOverMainTable(const Comparison& comparison) {
 }
 
 constexpr std::string_view kTakeOverAnswer =
-    "Yes. A driver who needs some seconds undoes most of the gain in the fog of the paper, and a "
-    "driver who errs undoes it all. What the automation does until the driver is there matters "
-    "more than the driver.";
+    "In the paper's fog a perfect driver who needs a few seconds gains nothing, and a slower one "
+    "does "
+    "harm. With a false echo the wait does harm only if the automation goes on as it is; if it "
+    "leaves "
+    "out the deceived sensor meanwhile, the wait costs nothing. If there is no echo at all, no "
+    "driver "
+    "is needed.";
 constexpr std::string_view kTakeOverWouldChange =
     "A warning before the fog begins, or fog that lasts much longer than a request.";
 
 std::vector<Claim> TakeOverClaims(const Comparison& comparison) {
-  std::vector<Claim> claims;
-  const auto add = [&](std::string says, std::string_view test_case, std::string_view a,
-                       std::string_view b, std::string_view measure, Sign sign) {
-    claims.push_back(
-        ClaimOf(comparison, std::move(says), {test_case, a}, {test_case, b}, measure, sign));
-  };
+  // A fifth of the smallest effect of fog in paper.json without traded control.
+  constexpr double kNothing_m = 0.002;
+  const auto stay = [](int latency_s) { return LatencyName("stay", latency_s, false); };
+  const auto isolate = [](int latency_s) { return LatencyName("isolate", latency_s, false); };
+  const std::string none(kNoTradedControl);
   const std::string bias = FogModes()[0].Case(kPerfectHuman).name;
-  add("In bias fog each second of waiting costs safety.", bias, LatencyName("stay", 1, false),
-      LatencyName("stay", 0, false), kShortfall, Sign::kMore);
-  add("After three seconds there is less than after one.", bias, LatencyName("stay", 3, false),
-      LatencyName("stay", 1, false), kShortfall, Sign::kMore);
-  return claims;
+  const std::string fallible = FogModes()[0].Case(kFallibleHuman).name;
+  const std::string near = FogModes()[1].Case(kPerfectHuman).name;
+  const std::string missing = FogModes()[2].Case(kPerfectHuman).name;
+  const auto claim = [&](std::string says, std::string_view test_case, std::string_view a,
+                         std::string_view b, Sign sign, double margin = 0) {
+    return ClaimOf(comparison, std::move(says), {test_case, a}, {test_case, b}, kShortfall, sign,
+                   margin);
+  };
+  return {
+      claim("In bias fog a wait of one second costs safety.", bias, stay(1), stay(0), Sign::kMore),
+      claim("A wait of three seconds leaves nothing of the gain.", bias, stay(3), none,
+            Sign::kEqual, kNothing_m),
+      claim("A wait of five seconds does harm.", bias, stay(5), none, Sign::kMore),
+      claim("A fallible human does harm there without any wait.", fallible, stay(0), none,
+            Sign::kMore),
+      claim("With a false echo a wait of five seconds does harm.", near, stay(5), none,
+            Sign::kMore),
+      claim("It costs nothing if the deceived sensor is left out meanwhile.", near, isolate(5),
+            isolate(0), Sign::kEqual, kNothing_m),
+      claim("That is safer than a driver without any wait.", near, isolate(5), stay(0),
+            Sign::kLess),
+      claim("Without an echo no traded control is safer than any.", missing, none, stay(0),
+            Sign::kLess),
+  };
 }
 
 }  // namespace
