@@ -45,7 +45,7 @@ void DetectorBench::Prepare(const Scenario& scenario, std::int64_t seed) {
   } else {
     loop_.emplace(scenario_);
   }
-  witness_.emplace(scenario_.fusion);
+  witness_.emplace(scenario_);
   const conflict::ConflictParameters parameters = DetectorParameters(scenario_);
   measures_.clear();
   for (const conflict::ConflictMeasureRow& row : conflict::ConflictMeasures()) {
