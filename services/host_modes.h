@@ -10,7 +10,13 @@ namespace fogline {
 /// Whether the host is in a minimal risk manoeuvre, or stands after it. The cause is failed inputs
 /// of a run in real time, or a request that the driver did not answer in time.
 constexpr bool InMinimalRisk(std::int8_t mode) {
-  return mode == arbitration_t::MINIMAL_RISK || mode >= arbitration_t::MRM_COMFORT;
+  return mode == arbitration_t::MINIMAL_RISK ||
+         (mode >= arbitration_t::MRM_COMFORT && mode <= arbitration_t::MRM_FAILED);
+}
+
+/// Whether emergency braking warns or brakes. The mode then does not say which side drives.
+constexpr bool InEmergency(std::int8_t mode) {
+  return mode == arbitration_t::COLLISION_WARNING || mode == arbitration_t::EMERGENCY_BRAKING;
 }
 
 /// Whether the mode lasts until the end of the run.
@@ -28,7 +34,7 @@ constexpr bool HumanDrives(double lambda_human) { return lambda_human >= kMainAu
 constexpr bool HumanIsEngaged(double lambda_human) { return lambda_human > 0; }
 /// Whether the human drives, by the mode. A human who need not be asked then has half of the
 /// authority or more. A human who must be asked has a share of it; under a policy that shares, or
-/// on a ramp, the mode does not say how large the share is.
+/// on a ramp, the mode does not say how large the share is. False InEmergency().
 constexpr bool HumanDrives(std::int8_t mode) {
   return mode == arbitration_t::HUMAN || mode == arbitration_t::RECOVERING;
 }

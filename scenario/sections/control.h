@@ -55,7 +55,8 @@ struct AccSection {
                 "ISO 15622: at most 5.0 m/s3 below 5 m/s, 2.5 above 20 m/s, averaged over 1 s; "
                 "here the larger limit");
   FOGLINE_FIELD(double, max_speed_mps, 40.0, {1, 70, "m/s"},
-                "Largest planned speed. A faster car brakes at least as hard as in a fallback.",
+                "Set speed of the ACC: the largest speed that it plans, also on a free road. A "
+                "faster car brakes at least as hard as in a fallback.",
                 "public implementations of Takahama & Akasaka 2018: 15 to 40 m/s");
   FOGLINE_FIELD(double, min_gap_m, 2.0, {0, 50, "m"},
                 "Soft lower limit of the planned gap. A smaller gap costs min_gap_weight.",

@@ -111,14 +111,22 @@ struct LeadSection {
                 {.choice = "profile", .value = "recorded", .fields = {"file", "speeds_mps"}});
 };
 
-enum class FogModel { kNone, kBias, kBeam };
+enum class FogModel { kNone, kBias, kBeam, kModes };
 constexpr auto ChoicesOf(FogModel) {
   return std::to_array<Choice>(
       {{"none", "no fog"},
        {"bias", "the paper's: the LiDAR's range is too short by a bias that follows the profile"},
        {"beam",
         "the physical one: attenuation, dropouts, and backscatter that can be stronger than the "
-        "target's echo"}});
+        "target's echo"},
+       {"modes",
+        "a mixture by shares: in each step the LiDAR's value is right, too short by bias_m, a near "
+        "echo of the fog, or missing"}});
+}
+
+/// Whether the fog of a model has a visibility; otherwise that of clear air stays.
+constexpr bool HasVisibility(FogModel model) {
+  return model == FogModel::kBeam || model == FogModel::kModes;
 }
 
 enum class FogProfile { kBox, kHalfSine, kRaisedCosine, kTriangle };
@@ -129,8 +137,35 @@ constexpr auto ChoicesOf(FogProfile) {
                                 {"triangle", "1 - |2 x - 1|"}});
 }
 
+/// Fog model `modes`: how often the LiDAR fails in which way. The fog's level scales the shares. In
+/// the remaining steps the value is right.
+struct FogModesSection {
+  FOGLINE_FIELD(double, biased_share, 0.0, {0, 1},
+                "Share of steps in which the range is too short by fog.bias_m, at level 1.",
+                "our choice, because no measurement is known");
+  FOGLINE_FIELD(double, near_echo_share, 0.0, {0, 1},
+                "Share of steps in which the range is that of a near echo of the fog, as in model "
+                "beam, at level 1.",
+                "our choice, because the drive in fog of RADIATE has none; others document such "
+                "echoes, without a share (Hahner et al. 2021; Rasshofer et al. 2011)");
+  FOGLINE_FIELD(double, missing_share, 1.0, {0, 1},
+                "Share of steps in which a value beyond missing_beyond_m is missing, at level 1. "
+                "The three shares together are at most 1.",
+                "RADIATE (Sheeny et al. 2021), drive fog_6_0: beyond 35 m no car of 65 is seen");
+  FOGLINE_FIELD(
+      double, missing_from_m, 25.0, {0, 1000, "m"},
+      "Range up to which no value is missing. From here on the share grows linearly.",
+      "RADIATE (Sheeny et al. 2021), drive fog_6_0: every car up to 25 m is seen, 0.67 of "
+      "those at 25 to 30 m, 0.12 of those at 30 to 35 m");
+  FOGLINE_FIELD(double, missing_beyond_m, 35.0, {0, 1000, "m"},
+                "Range beyond which the share is missing_share; below missing_from_m it counts as "
+                "missing_from_m.",
+                "RADIATE (Sheeny et al. 2021), drive fog_6_0: beyond 35 m no car of 65 is seen");
+};
+
 /// Fog over time. Its level in [0, 1] follows `profile` over the window; the level scales the bias
-/// (model bias) or the extinction coefficient between clear air and `visibility_m` (model beam).
+/// (model bias), the extinction coefficient between clear air and `visibility_m` (models beam and
+/// modes), or the shares of the modes (model modes).
 struct FogSection {
   FOGLINE_FIELD(FogModel, model, FogModel::kNone, "How fog acts on the sensors.");
   FOGLINE_FIELD(FogProfile, profile, FogProfile::kRaisedCosine,
@@ -141,12 +176,13 @@ struct FogSection {
                 "Length of the fog window, which excludes its end.",
                 "Sourav & Cheng 2024: steps 190 to 300");
   FOGLINE_FIELD(double, bias_m, 0.34, {0, 100, "m"},
-                "Model bias: how much too short the LiDAR's range is at level 1.",
+                "How much too short the LiDAR's range is: model bias, at level 1; model modes, in "
+                "a biased step.",
                 "our choice, because the paper prints none, and 0.2 to 0.4 m meet its table; "
                 "paper.json has a calibrated value");
   FOGLINE_FIELD(
       double, visibility_m, 60.0, {5, 1e5, "m"},
-      "Model beam: meteorological optical range (5 % contrast) at level 1.",
+      "Models beam and modes: meteorological optical range (5 % contrast) at level 1.",
       "our choice, because at 60 m the fog's echo is stronger than that of a car 33 m ahead: they "
       "are equal at 23 m for a visibility of 50 m, at 31 m for 75 m (services/lidar)");
   FOGLINE_FIELD(double, clear_visibility_m, 20000.0, {5, 1e5, "m"},
@@ -154,6 +190,7 @@ struct FogSection {
   FOGLINE_FIELD(double, rain_mmph, 0.0, {0, 200, "mm/h"},
                 "Rain rate during the whole run. Rain attenuates the radar (ITU-R P.838-3).",
                 "our choice, because the paper's weather is only fog");
+  FOGLINE_FIELD(FogModesSection, modes, {}, "Parameters of model modes.");
 };
 
 }  // namespace fogline

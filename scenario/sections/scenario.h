@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "scenario/sections/aeb.h"
 #include "scenario/sections/control.h"
 #include "scenario/sections/field.h"
 #include "scenario/sections/human.h"
@@ -106,6 +107,8 @@ struct Scenario {
   FOGLINE_FIELD(HumanSection, human, {},
                 "Human weaknesses of the driver, which the paper's driver lacks.");
   FOGLINE_FIELD(ArbitratorSection, arbitrator, {}, "Who drives the host.");
+  FOGLINE_FIELD(AebSection, aeb, {},
+                "Emergency braking of the host, on the fused track, whichever side drives.");
   FOGLINE_FIELD(AccSection, follower, {}, "ACC of the following car.");
   FOGLINE_FIELD(FollowersSection, followers, {}, "The cars behind the host, and who drives them.");
   FOGLINE_FIELD(HealthSection, health, {}, "Real time: when an input counts as stale or lost.");

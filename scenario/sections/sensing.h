@@ -1,6 +1,8 @@
 // Sections of a scenario for the sensors and for the weights of their fusion.
 #pragma once
 
+#include <array>
+
 #include "scenario/sections/field.h"
 
 namespace fogline {
@@ -35,7 +37,8 @@ struct RadarSection {
                 "3.54, 3.15 and 2.71 dB/km per g/m3 at 77 GHz");
 };
 
-/// Properties of a LiDAR beam, for fog model `beam` (Rasshofer et al. 2011; Hahner et al. 2021).
+/// Properties of a LiDAR beam, for fog model `beam` and the near echoes of fog model `modes`
+/// (Rasshofer et al. 2011; Hahner et al. 2021).
 struct LidarBeamSection {
   FOGLINE_FIELD(
       std::int64_t, beams, 15, {1, 101},
@@ -89,8 +92,17 @@ struct LidarSection {
                 "Echoes from beyond this range are ignored.", "Ouster OS1: 120 m");
   FOGLINE_FIELD(double, dropout_probability, 0.0, {0, 1}, "Probability that a step has no echo.",
                 "our choice, because the paper has no dropouts");
-  FOGLINE_FIELD(LidarBeamSection, beam, {}, "Parameters of fog model beam.");
+  FOGLINE_FIELD(LidarBeamSection, beam, {},
+                "Parameters of fog model beam, and of the near echoes of fog model modes.");
 };
+
+enum class NoiseAdaptation { kNone, kInnovation, kResidual };
+constexpr auto ChoicesOf(NoiseAdaptation) {
+  return std::to_array<Choice>(
+      {{"none", "the paper's: the assumed noise throughout"},
+       {"innovation", "by the squared innovation, less the variance of the prediction"},
+       {"residual", "by the squared residual, plus the variance of the estimate"}});
+}
 
 /// Extended Kalman filter.
 struct FusionSection {
@@ -108,6 +120,12 @@ struct FusionSection {
   FOGLINE_FIELD(double, lidar_range_std_m, 0.05, {1e-4, 10, "m"},
                 "LiDAR range noise that the filter assumes.",
                 "our choice, because LiDARs are accurate to 3 to 5 cm (Velodyne VLP-16: 3 cm)");
+  FOGLINE_FIELD(NoiseAdaptation, adaptive_noise, NoiseAdaptation::kNone,
+                "Whether the filter estimates the noise of each value while it runs. The estimate "
+                "is never below the noise that the filter assumes.");
+  FOGLINE_FIELD(double, noise_forgetting, 0.3, {0, 1},
+                "For adaptive_noise: weight of the estimate so far; the last value has the rest.",
+                "Akhlaghi, Zhou & Huang 2017: 0.3");
   FOGLINE_FIELD(
       bool, gating, false,
       "Whether measurements outside the gate are refused; off in the paper's experiment.");
@@ -115,9 +133,9 @@ struct FusionSection {
                 "Probability mass inside the gate (chi-square, 1 degree of freedom).",
                 "our choice, because it refuses one good value in 1000");
   FOGLINE_FIELD(
-      std::int64_t, gate_reopen_after, 5, {1, 1000, "steps"},
+      std::int64_t, gate_reopen_after, 5, {0, 1000, "steps"},
       "Number of refusals in a row after which the gate opens, until a measurement is inside it "
-      "again.",
+      "again. 0: it never opens.",
       "our choice, because a deviation of half a second (5 steps of 0.1 s) is no outlier");
   FOGLINE_FIELD(double, initial_speed_std_mps, 1.0, {1e-3, 100, "m/s"},
                 "Initial uncertainty of the relative speed, if the LiDAR starts the filter.",

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "scenario/sections/aeb.h"
 #include "scenario/sections/field.h"
 #include "scenario/sections/human.h"
 
@@ -68,6 +69,8 @@ struct FollowersSection {
       "For human drivers: what they see. Sight fog has the parameters of human.fog_sight.");
   FOGLINE_FIELD(SafetyModelChoice, safety_model, SafetyModelChoice::kNone,
                 "For human drivers: how they react to danger, in addition to following.");
+  FOGLINE_FIELD(AebSection, aeb, {},
+                "Emergency braking of the following cars, on what their drivers see.");
   FOGLINE_FIELD(std::vector<FollowerCar>, cars, {}, {0, kMaxFollowers},
                 "Drivers of single cars, nearest to the host first. The other cars follow the "
                 "fields above. Entries beyond count have no effect.");

@@ -40,10 +40,12 @@ struct GradePoint {
                 "our choice, because a road is level unless the experiment says otherwise");
 };
 
-/// The road under all cars. It has no effect on a point mass.
+/// The road under all cars. It has no effect on a point mass. If host or following cars have tyres
+/// (model longitudinal), it also limits the braking of the preceding car (services/world).
 struct RoadSection {
   FOGLINE_FIELD(Surface, surface, Surface::kDry,
-                "Surface of the road, which sets the friction of the tyres.");
+                "Surface of the road, which sets the friction of the tyres. It also limits the "
+                "braking of the preceding car, unless all other cars are point masses.");
   FOGLINE_FIELD(std::vector<GradePoint>, grade, {}, {0, 10'000},
                 "Slope, linear between places. Without places the road is level.");
 };

@@ -13,11 +13,14 @@ Arbitrator::Arbitrator(const Scenario& scenario)
       shares_(policies::RowOf(scenario.arbitrator.policy).shares),
       debouncer_(scenario.arbitrator.transfer, scenario.step_s, meter_.is_posterior()),
       transfer_(scenario.arbitrator.transfer, scenario.step_s),
+      max_track_variance_m2_(scenario.acc.max_track_std_m * scenario.acc.max_track_std_m),
       easing_per_step_(scenario.arbitrator.take_over.jerk_mps3 * scenario.step_s) {
   out_.threshold = threshold_;
   if (rule_ == policies::Rule::kOwn)
     policy_ = policies::RowOf(scenario.arbitrator.policy).make(scenario);
+  if (scenario.arbitrator.transfer.hand_back == HandBack::kFusion) recovery_.emplace(scenario);
   if (scenario.arbitrator.take_over.mode == TakeOverMode::kRequested) take_over_.emplace(scenario);
+  if (scenario.aeb.enabled) aeb_.emplace(scenario.aeb);
 }
 
 bool Arbitrator::UsesOnDemandInput(const Scenario& scenario) {
@@ -36,7 +39,9 @@ const arbitration_t& Arbitrator::Step(const ego_t& ego, const radar_t& radar, co
                                       const track_t& track, const accel_command_t& automation,
                                       const driver_command_t& driver) {
   Observe(radar, lidar, track);
-  return Choose(ego, track, automation, driver);
+  Choose(ego, track, automation, driver);
+  Guard(ego, track, out_);
+  return out_;
 }
 
 const arbitration_t& Arbitrator::Choose(const ego_t& ego, const track_t& track,
@@ -50,7 +55,7 @@ const arbitration_t& Arbitrator::Choose(const ego_t& ego, const track_t& track,
       : rule_ == policies::Rule::kNever   ? policies::StayAutomated(threshold_)
                                           : OwnRequest(ego, track, automation, driver);
   out_.threshold = request.threshold;
-  const double wanted = debouncer_.Step(request, out_.doc);
+  const double wanted = debouncer_.Step(request, out_.doc, !recovery_ || recovery_->recovered());
   Transfer::Offers offers{automation.acceleration_mps2, driver.acceleration_mps2};
   // The paper's driver is always ready: he gets the wanted authority at once.
   granted_ = wanted;
@@ -119,6 +124,32 @@ bool Arbitrator::Ask(double wanted, const ego_t& ego, const track_t& track,
   // A driver who ends a manoeuvre has the whole authority at once, because the automation is off.
   if (manoeuvre_ran) transfer_.Overrule({.lambda_human = 1, .acceleration_mps2 = *sent_mps2_});
   return true;
+}
+
+void Arbitrator::Guard(const ego_t& ego, const track_t& track, arbitration_t& command) {
+  if (!aeb_) return;
+  models::Situation seen{.speed_mps = ego.speed_mps,
+                         .acceleration_mps2 = ego.acceleration_mps2,
+                         .ahead = std::nullopt};
+  if (track.valid && track.covariance[0][0] <= max_track_variance_m2_) {
+    seen.ahead = models::CarAhead{.gap_m = track.state[0],
+                                  .speed_mps = ego.speed_mps + track.state[1],
+                                  .acceleration_mps2 = ego.acceleration_mps2 + track.state[2]};
+  }
+  switch (aeb_->Step(seen)) {
+    case models::AebState::kReady:
+      return;
+    case models::AebState::kWarning:
+      if (command.mode == arbitration_t::AUTOMATION || command.mode == arbitration_t::HUMAN) {
+        command.mode = arbitration_t::COLLISION_WARNING;
+      }
+      return;
+    case models::AebState::kBraking:
+      command.acceleration_mps2 = aeb_->Applied(command.acceleration_mps2);
+      if (!InMinimalRisk(command.mode)) command.mode = arbitration_t::EMERGENCY_BRAKING;
+      if (take_over_) sent_mps2_ = command.acceleration_mps2;
+      return;
+  }
 }
 
 void Arbitrator::Overrule(const arbitration_t& sent) {

@@ -1,11 +1,13 @@
-// Decides in every step which side drives the host. Except in a manoeuvre, the command follows from
-// the two offers alone; the arbitrator does not judge them.
+// Decides in every step which side drives the host. Except in a manoeuvre and in emergency braking,
+// the command follows from the two offers alone; the arbitrator does not judge them.
 //
 //     radar, LiDAR -> ConflictMeter -> DoC                        conflict_meter.h
 //     DoC, situation -> policy -> engagement request              services/decision/policies
 //     engagement request -> RequestDebouncer -> wanted authority  request_debouncer.h
+//     track, radar, LiDAR -> FusionRecovery -> RequestDebouncer   fusion_recovery.h
 //     wanted -> TakeOver, if the driver must be asked -> granted  take_over.h
 //     granted, offers -> Transfer -> authority, command           transfer.h
+//     track, command -> emergency braking -> command that is sent services/models/aeb
 #pragma once
 
 #include <memory>
@@ -13,12 +15,14 @@
 
 #include "scenario/sections/scenario.h"
 #include "services/arbitrator/conflict_meter.h"
+#include "services/arbitrator/fusion_recovery.h"
 #include "services/arbitrator/request_debouncer.h"
 #include "services/arbitrator/transfer.h"
 #include "services/decision/policies/policy.h"
 #include "services/decision/take_over/take_over.h"
 #include "services/graph.h"
 #include "services/host_modes.h"
+#include "services/models/aeb/aeb.h"
 
 namespace fogline::arbitrator {
 
@@ -43,14 +47,20 @@ class Arbitrator {
                             const track_t& track, const accel_command_t& automation,
                             const driver_command_t& driver);
 
-  /// First half of a Step(): adds the sensors' values to the conflict.
+  /// First part of a Step(): adds the sensors' values to the conflict.
   void Observe(const radar_t& radar, const lidar_t& lidar, const track_t& track) {
     meter_.Observe(radar, lidar, track);
+    if (recovery_) recovery_->Observe(radar, lidar, track);
   }
-  /// Second half of a Step(): decides. In real time a step may be decided without new values of the
+  /// Second part of a Step(): decides. In real time a step may be decided without new values of the
   /// sensors.
   const arbitration_t& Choose(const ego_t& ego, const track_t& track,
                               const accel_command_t& automation, const driver_command_t& driver);
+
+  /// Emergency braking: may replace acceleration and mode of the command that is sent, whichever
+  /// side has decided it. The mode of a manoeuvre stays. Call it once per decision, after Choose();
+  /// Step() does.
+  void Guard(const ego_t& ego, const track_t& track, arbitration_t& command);
 
   /// Whether the last decision wants the human to drive, also while the transfer is still under
   /// way. If the driver must be asked: whether he has taken over and has at least half of the
@@ -87,12 +97,15 @@ class Arbitrator {
   policies::Rule rule_;
   bool shares_;
   std::unique_ptr<policies::EngagementPolicy> policy_;  // none for a simple rule
+  std::optional<FusionRecovery> recovery_;              // only with hand_back fusion
   RequestDebouncer debouncer_;
   Transfer transfer_;
   policies::Surroundings surroundings_;
   std::optional<take_over::TakeOver> take_over_;  // only of a driver who must be asked
-  double easing_per_step_;  // m/s2; decrease of an acceleration per step after a request
-  double eased_mps2_ = 0;   // upper limit of the automation's acceleration then
+  std::optional<models::Aeb> aeb_;                // only of a host that has it
+  double max_track_variance_m2_;  // a track that is more uncertain starts no emergency braking
+  double easing_per_step_;        // m/s2; decrease of an acceleration per step after a request
+  double eased_mps2_ = 0;         // upper limit of the automation's acceleration then
   bool automation_there_ = true;
   double granted_ = 0;               // lambda_H at the end of the transfer
   std::optional<double> sent_mps2_;  // command of the step before

@@ -10,7 +10,7 @@ ConflictMeter::ConflictMeter(const Scenario& scenario)
     : slope_(scenario.arbitrator.doc_slope_per_m),
       centre_(scenario.arbitrator.doc_centre_m),
       doc_(policies::ConflictParametersOf(scenario.arbitrator)),
-      witness_(scenario.fusion) {
+      witness_(scenario) {
   const ArbitratorSection& section = scenario.arbitrator;
   is_posterior_ = section.measure_scale == MeasureScale::kProbability;
   if (is_posterior_ && !policies::RowOf(section.measure).posterior) {

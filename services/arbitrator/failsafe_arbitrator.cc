@@ -68,6 +68,7 @@ const arbitration_t& FailsafeArbitrator::Step(const header_t& header,
   if (decision_ != Decision::kRegular) arbitrator_.Overrule(out_);
   last_mps2_ = out_.acceleration_mps2;
   last_mode_ = out_.mode;
+  arbitrator_.Guard(*inputs.ego.newest, UsableOrNone(inputs.track), out_);
   return out_;
 }
 

@@ -66,7 +66,8 @@ class FailsafeArbitrator {
   models::MinimalRisk minimal_risk_;
   bool demanded_ = false;
   Decision decision_ = Decision::kHold;
-  std::optional<double> last_mps2_;  // commanded
+  // Of the last decision, before emergency braking.
+  std::optional<double> last_mps2_;
   std::int8_t last_mode_ = arbitration_t::AUTOMATION;
   arbitration_t out_{};
 };

@@ -22,16 +22,19 @@ double LogOdds(double probability) {
 RequestDebouncer::RequestDebouncer(const TransferSection& section, double step_s, bool posterior)
     : section_(section),
       posterior_(posterior),
-      plain_(section.hysteresis == Hysteresis::kNone && section.min_dwell_s == 0),
+      plain_(section.hysteresis == Hysteresis::kNone && section.min_dwell_s == 0 &&
+             section.hand_back == HandBack::kConflict),
       accept_human_(std::log((1 - section.sprt_beta) / section.sprt_alpha)),
       accept_automation_(std::log(section.sprt_beta / (1 - section.sprt_alpha))),
       dwell_steps_(StepsUntil(section.min_dwell_s, step_s)),
       steps_since_change_(dwell_steps_) {}
 
-double RequestDebouncer::PutOff(const policies::EngagementRequest& request, double doc) {
+double RequestDebouncer::PutOff(const policies::EngagementRequest& request, double doc,
+                                bool recovered) {
   decided_human_ = HumanByHysteresis(request, doc);
   ++steps_since_change_;
-  if (decided_human_ != wanted_human_ && steps_since_change_ >= dwell_steps_) {
+  const bool waits = !decided_human_ && section_.hand_back == HandBack::kFusion && !recovered;
+  if (decided_human_ != wanted_human_ && steps_since_change_ >= dwell_steps_ && !waits) {
     wanted_human_ = decided_human_;
     steps_since_change_ = 0;
   }

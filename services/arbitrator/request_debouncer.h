@@ -24,36 +24,40 @@ namespace fogline::arbitrator {
 /// of error are alpha and beta if the DoC is a probability and its steps are independent. A DoC of
 /// a windowed z is neither, so the test errs more often. If the DoC is a posterior, it already
 /// contains the evidence of all steps: then L = logit(DoC) - logit(threshold), so that no evidence
-/// counts twice. A firm request passes without delay.
+/// counts twice.
+///
+/// With hand_back fusion, a return to the automation also waits until the track has recovered
+/// (fusion_recovery.h). A firm request passes without delay.
 class RequestDebouncer {
  public:
   /// @param posterior whether the DoC is a posterior probability of all evidence so far
   RequestDebouncer(const TransferSection& section, double step_s, bool posterior = false);
 
   /// Wanted authority of the human in this step, in [0, 1]. Call it once per decision.
-  double Step(const policies::EngagementRequest& request, double doc) {
+  /// @param recovered whether the track has recovered; only hand_back fusion regards it
+  double Step(const policies::EngagementRequest& request, double doc, bool recovered = true) {
     if (request.firm) return request.lambda_human;
-    return plain_ ? request.lambda_human : PutOff(request, doc);
+    return plain_ ? request.lambda_human : PutOff(request, doc, recovered);
   }
 
   /// With hysteresis sprt: L of the current test; if the DoC is a posterior, L of the last step.
   double evidence() const { return evidence_; }
 
  private:
-  double PutOff(const policies::EngagementRequest& request, double doc);
+  double PutOff(const policies::EngagementRequest& request, double doc, bool recovered);
   bool HumanByHysteresis(const policies::EngagementRequest& request, double doc);
   double LowerThreshold(double threshold) const;
 
   TransferSection section_;
   bool posterior_;
-  bool plain_;  // neither hysteresis nor min_dwell_s
+  bool plain_;  // neither hysteresis nor min_dwell_s nor hand_back fusion
   double accept_human_;
   double accept_automation_;
   std::int64_t dwell_steps_;
 
   double evidence_ = 0;         // L
   bool decided_human_ = false;  // by the hysteresis
-  bool wanted_human_ = false;   // after the wait for min_dwell_s
+  bool wanted_human_ = false;   // after the wait for min_dwell_s and for the track
   std::int64_t steps_since_change_;
 };
 

@@ -47,7 +47,8 @@ Driver::Driver(const Scenario& scenario)
 }
 
 // In most modes other than AUTOMATION he drives or has been asked to drive, also while the car
-// stops because he has not taken over: he may still end this manoeuvre. In the locked modes he has
+// stops because he has not taken over: he may still end this manoeuvre. A collision warning and
+// emergency braking draw his attention to the road, too. In the locked modes he has
 // no task: the car stands until the end of the run, or is in a manoeuvre that he cannot end.
 void Driver::SetOnDemandInput(const arbitration_t& host) {
   const bool monitors = host.mode == arbitration_t::AUTOMATION || IsLocked(host.mode);

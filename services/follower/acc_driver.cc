@@ -11,7 +11,12 @@ CarDriver::Action AccDriver::Step(std::int64_t /*step*/, const models::Situation
       .acceleration_mps2 = now.acceleration_mps2,
       .has_target = true,
   });
-  return {output.acceleration_mps2, output.safe_distance_m};
+  Action action{output.acceleration_mps2, output.safe_distance_m};
+  if (aeb_) {
+    aeb_->Step(now);
+    action.acceleration_mps2 = aeb_->Applied(action.acceleration_mps2);
+  }
+  return action;
 }
 
 }  // namespace fogline::follower

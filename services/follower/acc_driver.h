@@ -1,29 +1,36 @@
 // A following car with the ACC of Sourav & Cheng 2024.
 #pragma once
 
+#include <optional>
+
 #include "scenario/sections/scenario.h"
 #include "services/acc/acc_controller.h"
 #include "services/follower/car_driver.h"
+#include "services/models/aeb/aeb.h"
 
 namespace fogline::follower {
 
-/// The same ACC as the host's (services/acc), with its own parameters and with perfect sensors.
+/// The same ACC as the host's (services/acc), with its own parameters and with perfect sensors. The
+/// car may have emergency braking, on the same sensors.
 class AccDriver final : public CarDriver {
  public:
   /// @throws InputError if the section's weights make an ill-conditioned problem.
   explicit AccDriver(const Scenario& scenario)
-      : controller_(scenario.follower, scenario.step_s, scenario.follower_vehicle.model) {}
+      : controller_(scenario.follower, scenario.step_s, scenario.follower_vehicle.model),
+        aeb_(AebOf(scenario.followers)) {}
 
   /// Resets the object to the state of a new one. Cheaper if the ACC's parameters are equal.
   /// @throws as the constructor
   void Restart(const Scenario& scenario) {
     controller_.Restart(scenario.follower, scenario.step_s, scenario.follower_vehicle.model);
+    aeb_ = AebOf(scenario.followers);
   }
 
   Action Step(std::int64_t step, const models::Situation& now, double visibility_m) override;
 
  private:
   acc::AccController controller_;
+  std::optional<models::Aeb> aeb_;
 };
 
 }  // namespace fogline::follower

@@ -2,10 +2,19 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
+#include "scenario/sections/traffic.h"
+#include "services/models/aeb/aeb.h"
 #include "services/models/driver/situation.h"
 
 namespace fogline::follower {
+
+/// The emergency braking of a following car; nullopt if the cars have none.
+inline std::optional<models::Aeb> AebOf(const FollowersSection& followers) {
+  if (!followers.aeb.enabled) return std::nullopt;
+  return models::Aeb(followers.aeb);
+}
 
 class CarDriver {
  public:

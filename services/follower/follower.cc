@@ -21,7 +21,7 @@ std::unique_ptr<CarDriver> MakePerson(const Scenario& scenario, std::size_t car,
   if (scenario.followers.sight == Sight::kFog) sight.emplace(scenario.human.fog_sight);
   try {
     return std::make_unique<Person>(style, sight, scenario.followers.safety_model, errors,
-                                    scenario.step_s);
+                                    scenario.step_s, AebOf(scenario.followers));
   } catch (const std::invalid_argument& error) {
     throw InputError(fmt::format("/step_s: {} s is too short for a person in following car {}: {}",
                                  scenario.step_s, car, error.what()));

@@ -22,12 +22,14 @@ std::optional<models::SafetyResponse> ResponseOf(SafetyModelChoice choice, doubl
 }  // namespace
 
 Person::Person(models::Style style, const std::optional<models::FogSight>& sight,
-               SafetyModelChoice safety, const Random& errors, double step_s)
+               SafetyModelChoice safety, const Random& errors, double step_s,
+               const std::optional<models::Aeb>& aeb)
     : idm_(models::ParametersOf(style).driver),
       sight_(sight),
       driver_(models::ParametersOf(style).human, models::Following(FollowingModel::kIdm, idm_),
               errors, step_s),
-      safety_(ResponseOf(safety, step_s)) {}
+      safety_(ResponseOf(safety, step_s)),
+      aeb_(aeb) {}
 
 CarDriver::Action Person::Step(std::int64_t step, const models::Situation& now,
                                double visibility_m) {
@@ -36,6 +38,10 @@ CarDriver::Action Person::Step(std::int64_t step, const models::Situation& now,
   if (safety_) {
     const double braking_mps2 = safety_->Step(seen);
     if (braking_mps2 > 0) acceleration_mps2 = std::min(acceleration_mps2, -braking_mps2);
+  }
+  if (aeb_) {
+    aeb_->Step(seen);
+    acceleration_mps2 = aeb_->Applied(acceleration_mps2);
   }
   return {acceleration_mps2, idm_.headway_s * now.speed_mps + idm_.standstill_m};
 }

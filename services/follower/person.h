@@ -5,6 +5,7 @@
 
 #include "scenario/sections/traffic.h"
 #include "services/follower/car_driver.h"
+#include "services/models/aeb/aeb.h"
 #include "services/models/driver/fog_sight.h"
 #include "services/models/driver/human_driver.h"
 #include "services/models/follower/safety_response.h"
@@ -17,14 +18,17 @@ namespace fogline::follower {
 /// safety model he applies the smaller of its acceleration and his own. The safety model has no
 /// errors, and its own reaction time (services/models/follower/safety_response.h). With sight fog
 /// both models receive only what he sees in fog, as the host's driver
-/// (services/models/driver/fog_sight.h).
+/// (services/models/driver/fog_sight.h). So does the emergency braking of his car, if it has one:
+/// it has no errors and no reaction time.
 class Person final : public CarDriver {
  public:
   /// @param sight nullopt if he sees perfectly
   /// @param errors random numbers for his errors; each person has his own stream
+  /// @param aeb the emergency braking of his car
   /// @throw std::invalid_argument if his reaction time has too many steps (HumanDriver)
   Person(models::Style style, const std::optional<models::FogSight>& sight,
-         SafetyModelChoice safety, const Random& errors, double step_s);
+         SafetyModelChoice safety, const Random& errors, double step_s,
+         const std::optional<models::Aeb>& aeb = std::nullopt);
 
   Action Step(std::int64_t step, const models::Situation& now, double visibility_m) override;
 
@@ -33,6 +37,7 @@ class Person final : public CarDriver {
   std::optional<models::FogSight> sight_;
   models::HumanDriver driver_;
   std::optional<models::SafetyResponse> safety_;
+  std::optional<models::Aeb> aeb_;
 };
 
 }  // namespace fogline::follower

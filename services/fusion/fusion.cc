@@ -31,13 +31,20 @@ std::array<Gate, Fusion::kNumValues> Fusion::MakeGates(const FusionSection& sect
   return {gate, gate, gate};
 }
 
+std::array<AdaptiveNoise, Fusion::kNumValues> Fusion::MakeNoises(const FusionSection& section) {
+  const auto noise = [&section](double assumed_std) {
+    return AdaptiveNoise(section.adaptive_noise, Square(assumed_std), section.noise_forgetting);
+  };
+  return {noise(section.radar_range_std_m), noise(section.radar_range_rate_std_mps),
+          noise(section.lidar_range_std_m)};
+}
+
 Fusion::Fusion(const Scenario& scenario)
     : ekf_(scenario.step_s, scenario.fusion.jerk_density_m2ps5),
       gating_(scenario.fusion.gating),
       gates_(MakeGates(scenario.fusion)),
-      noise_variance_{Square(scenario.fusion.radar_range_std_m),
-                      Square(scenario.fusion.radar_range_rate_std_mps),
-                      Square(scenario.fusion.lidar_range_std_m)},
+      adapts_(scenario.fusion.adaptive_noise != NoiseAdaptation::kNone),
+      noises_(MakeNoises(scenario.fusion)),
       radar_offset_m_(scenario.radar.lateral_offset_m),
       lidar_offset_m_(scenario.lidar.lateral_offset_m),
       initial_speed_variance_(Square(scenario.fusion.initial_speed_std_mps)),
@@ -75,15 +82,15 @@ const track_t& Fusion::Step(const ego_t& ego, const radar_t& radar, const lidar_
 bool Fusion::StartFromRadar(const radar_t& radar) {
   const std::optional<double> distance = StartDistance(radar.range_m, radar_offset_m_);
   const std::int8_t usage = distance ? track_t::USED : track_t::GATED;
-  Record(kRadarRange, 0, noise_variance_[kRadarRange], usage);
-  Record(kRadarRangeRate, 0, noise_variance_[kRadarRangeRate], usage);
+  Record(kRadarRange, 0, noises_[kRadarRange].variance(), usage);
+  Record(kRadarRangeRate, 0, noises_[kRadarRangeRate].variance(), usage);
   if (!distance) return false;
   const LineOfSight sight(*distance, radar_offset_m_);
   const double relative_speed = radar.range_rate_mps / sight.cosine();
   Eigen::Matrix2d jacobian;
   jacobian << sight.RangeJacobian().head<2>(), sight.RangeRateJacobian(relative_speed).head<2>();
   const Eigen::Matrix2d inverse = jacobian.inverse();
-  const Eigen::Vector2d noise(noise_variance_[kRadarRange], noise_variance_[kRadarRangeRate]);
+  const Eigen::Vector2d noise(noises_[kRadarRange].variance(), noises_[kRadarRangeRate].variance());
   Ekf::Covariance covariance = Ekf::Covariance::Zero();
   covariance.topLeftCorner<2, 2>() = inverse * noise.asDiagonal() * inverse.transpose();
   covariance(2, 2) = initial_acceleration_variance_;
@@ -93,10 +100,11 @@ bool Fusion::StartFromRadar(const radar_t& radar) {
 
 bool Fusion::StartFromLidar(const lidar_t& lidar) {
   const std::optional<double> distance = StartDistance(lidar.range_m, lidar_offset_m_);
-  Record(kLidarRange, 0, noise_variance_[kLidarRange], distance ? track_t::USED : track_t::GATED);
+  Record(kLidarRange, 0, noises_[kLidarRange].variance(),
+         distance ? track_t::USED : track_t::GATED);
   if (!distance) return false;
   const LineOfSight sight(*distance, lidar_offset_m_);
-  const Eigen::Vector3d variances(noise_variance_[kLidarRange] / Square(sight.cosine()),
+  const Eigen::Vector3d variances(noises_[kLidarRange].variance() / Square(sight.cosine()),
                                   initial_speed_variance_, initial_acceleration_variance_);
   ekf_.Start({*distance, 0, 0}, variances.asDiagonal());
   return started_ = true;
@@ -116,27 +124,39 @@ policies::SensorSelection Fusion::Judge(const radar_t& radar, const lidar_t& lid
 }
 
 void Fusion::CorrectByRadar(const radar_t& radar) {
-  const LineOfSight before(ekf_.state()[0], radar_offset_m_);
-  Correct(kRadarRange, {radar.range_m, before.range_m(), before.RangeJacobian()});
-  const LineOfSight after(ekf_.state()[0], radar_offset_m_);
+  Correct(kRadarRange, radar.range_m);
+  Correct(kRadarRangeRate, radar.range_rate_mps);
+}
+
+void Fusion::CorrectByLidar(const lidar_t& lidar) { Correct(kLidarRange, lidar.range_m); }
+
+Fusion::Expectation Fusion::Expect(Value value) const {
+  const LineOfSight sight(ekf_.state()[0],
+                          value == kLidarRange ? lidar_offset_m_ : radar_offset_m_);
+  if (value != kRadarRangeRate) return {sight.range_m(), sight.RangeJacobian()};
   const double relative_speed = ekf_.state()[1];
-  Correct(kRadarRangeRate, {radar.range_rate_mps, after.RangeRate(relative_speed),
-                            after.RangeRateJacobian(relative_speed)});
+  return {sight.RangeRate(relative_speed), sight.RangeRateJacobian(relative_speed)};
 }
 
-void Fusion::CorrectByLidar(const lidar_t& lidar) {
-  const LineOfSight sight(ekf_.state()[0], lidar_offset_m_);
-  Correct(kLidarRange, {lidar.range_m, sight.range_m(), sight.RangeJacobian()});
-}
-
-void Fusion::Correct(Value value, const Comparison& comparison) {
-  const double noise = noise_variance_[value];
-  const double innovation = comparison.measured - comparison.predicted;
-  const double variance = ekf_.InnovationVariance(comparison.jacobian, noise);
+void Fusion::Correct(Value value, double measured) {
+  const Expectation before = Expect(value);
+  const double noise = noises_[value].variance();
+  const double innovation = measured - before.value;
+  const double variance = ekf_.InnovationVariance(before.jacobian, noise);
   const std::int8_t usage =
       selects_ ? UsageOf(value, Square(innovation) / variance) : track_t::USED;
   Record(value, innovation, variance, usage);
-  if (usage == track_t::USED) ekf_.Correct(comparison.jacobian, innovation, noise);
+  if (usage != track_t::USED) return;
+  const double predicted_variance =
+      adapts_ ? ekf_.InnovationVariance(before.jacobian, /*noise_variance=*/0) : 0;
+  ekf_.Correct(before.jacobian, innovation, noise);
+  if (!adapts_) return;
+  const Expectation after = Expect(value);
+  noises_[value].Learn(
+      {.innovation = innovation,
+       .predicted_variance = predicted_variance,
+       .residual = measured - after.value,
+       .corrected_variance = ekf_.InnovationVariance(after.jacobian, /*noise_variance=*/0)});
 }
 
 std::int8_t Fusion::UsageOf(Value value, double normalised_innovation_squared) {

@@ -10,6 +10,7 @@
 
 #include "scenario/sections/scenario.h"
 #include "services/decision/policies/policy.h"
+#include "services/fusion/adaptive_noise.h"
 #include "services/fusion/ekf.h"
 #include "services/fusion/gate.h"
 #include "services/graph.h"
@@ -24,7 +25,8 @@ namespace fogline::fusion {
 ///
 /// The assumed noise is that of the scenario's section `fusion`. The filter does not use the
 /// standard deviations that the sensors state (range_std_m and the like): a sensor does not know
-/// when fog deceives it.
+/// when fog deceives it. If the scenario says so, the filter estimates the noise of each value by
+/// itself (adaptive_noise.h), from the values that have corrected it.
 ///
 /// A policy that selects sensors (services/decision/policies) first judges each step's values
 /// against the prediction. The values of a sensor that it does not select are compared with the
@@ -48,14 +50,14 @@ class Fusion {
   /// Values in order of use; index of track_t's innovation, innovation_variance and usage.
   enum Value : std::size_t { kRadarRange, kRadarRangeRate, kLidarRange, kNumValues };
 
-  /// One measured value, and the value that the estimate predicts.
-  struct Comparison {
-    double measured;
-    double predicted;
+  /// A measured value as the present estimate predicts it.
+  struct Expectation {
+    double value;
     Ekf::Jacobian jacobian;
   };
 
   static std::array<Gate, kNumValues> MakeGates(const FusionSection& section);
+  static std::array<AdaptiveNoise, kNumValues> MakeNoises(const FusionSection& section);
 
   /// Begin the track with this measurement; return false if the target is too far to the side.
   bool StartFromRadar(const radar_t& radar);
@@ -64,7 +66,8 @@ class Fusion {
   policies::SensorSelection Judge(const radar_t& radar, const lidar_t& lidar);
   void CorrectByRadar(const radar_t& radar);
   void CorrectByLidar(const lidar_t& lidar);
-  void Correct(Value value, const Comparison& comparison);
+  Expectation Expect(Value value) const;
+  void Correct(Value value, double measured);
   /// Whether a value is used, if gate or policy may refuse values.
   std::int8_t UsageOf(Value value, double normalised_innovation_squared);
   void Record(Value value, double innovation, double variance, std::int8_t usage);
@@ -73,7 +76,8 @@ class Fusion {
   Ekf ekf_;
   bool gating_;
   std::array<Gate, kNumValues> gates_;
-  std::array<double, kNumValues> noise_variance_;
+  bool adapts_;  // whether the filter estimates the noise
+  std::array<AdaptiveNoise, kNumValues> noises_;
   double radar_offset_m_;
   double lidar_offset_m_;
   double initial_speed_variance_;

@@ -13,6 +13,7 @@ bool Gate::Admits(double normalised_innovation_squared) {
     refusals_ = 0;
     return true;
   }
+  if (reopen_after_ == 0) return false;
   if (refusals_ >= reopen_after_) return true;
   ++refusals_;
   return false;

@@ -8,10 +8,12 @@ namespace fogline::fusion {
 /// Gate on the normalised innovation squared of one measured value, nu^2 / S, which is chi-square
 /// distributed with one degree of freedom while the filter's model holds (Bar-Shalom, Li &
 /// Kirubarajan 2001, section 5.4). After `reopen_after` refusals in a row a change of the scene is
-/// more likely than failed measurements: the gate stays open until a value is inside it again.
+/// more likely than failed measurements: the gate stays open until a value is inside it again. A
+/// gate that never reopens refuses every value outside of it, however many there are.
 class Gate {
  public:
   /// @param probability probability that a good value is inside the gate, in (0, 1)
+  /// @param reopen_after at least 0; 0: the gate never reopens
   Gate(double probability, std::int64_t reopen_after);
 
   /// Whether to use a value with this normalised innovation squared. Call it once per value.
@@ -23,7 +25,8 @@ class Gate {
  private:
   double limit_;
   std::int64_t reopen_after_;
-  std::int64_t refusals_ = 0;  // in a row; stays at reopen_after_ while the gate is open
+  // In a row; stays at reopen_after_ while the gate is open. Not counted if it never reopens.
+  std::int64_t refusals_ = 0;
 };
 
 }  // namespace fogline::fusion

@@ -7,15 +7,25 @@
 #include "services/visibility.h"
 
 namespace fogline::lidar {
+namespace {
+
+constexpr bool HasBias(FogModel model) {
+  return model == FogModel::kBias || model == FogModel::kModes;
+}
+
+}  // namespace
 
 Lidar::Lidar(const Scenario& scenario)
     : lidar_(scenario.lidar),
-      fog_bias_m_(scenario.fog.model == FogModel::kBias ? scenario.fog.bias_m : 0.0),
+      fog_bias_m_(HasBias(scenario.fog.model) ? scenario.fog.bias_m : 0.0),
       random_(scenario.seed, Stream::kLidar),
       beam_random_(scenario.seed, Stream::kLidarBeam) {
-  if (scenario.fog.model == FogModel::kBeam) {
-    model_.emplace(lidar_.beam, ExtinctionOf(scenario.fog.clear_visibility_m),
-                   ExtinctionOf(scenario.fog.visibility_m));
+  if (!HasVisibility(scenario.fog.model)) return;
+  model_.emplace(lidar_.beam, ExtinctionOf(scenario.fog.clear_visibility_m),
+                 ExtinctionOf(scenario.fog.visibility_m));
+  if (scenario.fog.model == FogModel::kModes) {
+    modes_.emplace(scenario.fog.modes);
+  } else {
     echoes_.reserve(static_cast<std::size_t>(lidar_.beam.beams));
   }
 }
@@ -27,8 +37,9 @@ const lidar_t& Lidar::Step(const truth_t& truth) {
   // The gap is negative if the cars have collided; their bumpers then count as touching.
   const double x = std::max(truth.host_gap_m, 0.0);
   const double target_m = std::sqrt(x * x + lidar_.lateral_offset_m * lidar_.lateral_offset_m);
-  const std::optional<Echo> echo =
-      model_ ? MedianEcho(truth, target_m) : PlainEcho(truth, target_m);
+  const std::optional<Echo> echo = modes_   ? ModalEcho(truth, target_m)
+                                   : model_ ? MedianEcho(truth, target_m)
+                                            : PlainEcho(truth, target_m);
   if (!echo) return output_;
 
   const double noise = random_.Normal2(truth.header.step, kNoiseDraw)[0];
@@ -45,10 +56,42 @@ bool Lidar::DropsOut(std::int64_t step) const {
 }
 
 std::optional<Lidar::Echo> Lidar::PlainEcho(const truth_t& truth, double target_m) const {
+  return PlainEchoAt(target_m, fog_bias_m_ * truth.fog_level);
+}
+
+std::optional<Lidar::Echo> Lidar::PlainEchoAt(double target_m, double bias_m) const {
   if (target_m > lidar_.max_range_m) return std::nullopt;
-  return Echo{.range_m = target_m - fog_bias_m_ * truth.fog_level,
-              .range_std_m = lidar_.range_std_m,
-              .intensity = 1.0};
+  return Echo{.range_m = target_m - bias_m, .range_std_m = lidar_.range_std_m, .intensity = 1.0};
+}
+
+std::optional<Lidar::Echo> Lidar::ModalEcho(const truth_t& truth, double target_m) const {
+  const double u = random_.Uniform2(truth.header.step, kModeDraw)[0];
+  switch (modes_->ModeOf(u, truth.fog_level, target_m)) {
+    case FogMode::kRight:
+      break;
+    case FogMode::kBiased:
+      return PlainEchoAt(target_m, fog_bias_m_);
+    case FogMode::kNearEcho:
+      return NearEcho(truth, target_m);
+    case FogMode::kMissing:
+      return std::nullopt;
+  }
+  return PlainEchoAt(target_m, 0.0);
+}
+
+// The place of the echo is that of model beam. A car so near that the beam is blind hides the fog.
+Lidar::Echo Lidar::NearEcho(const truth_t& truth, double target_m) const {
+  const LidarBeamSection& beam = lidar_.beam;
+  if (target_m <= beam.overlap_start_m) {
+    return {.range_m = target_m, .range_std_m = lidar_.range_std_m, .intensity = 1.0};
+  }
+  const EchoPowers expected = model_->At(target_m, truth.fog_visibility_m);
+  const auto [u, v] = random_.Uniform2(truth.header.step, kModeScatterDraw);
+  const double scattered_m = expected.fog_range_m + beam.fog_range_scale_m * Beta2And20(u, v);
+  const double range_m = std::min(scattered_m, target_m);
+  return {.range_m = range_m,
+          .range_std_m = lidar_.range_std_m,
+          .intensity = model_->Intensity(expected.fog, range_m)};
 }
 
 std::optional<Lidar::Echo> Lidar::MedianEcho(const truth_t& truth, double target_m) {

@@ -12,6 +12,7 @@
 #include "fogline/truth_t.hpp"
 #include "scenario/sections/scenario.h"
 #include "services/lidar/echo_model.h"
+#include "services/lidar/fog_modes.h"
 
 namespace fogline::lidar {
 
@@ -20,6 +21,8 @@ namespace fogline::lidar {
 ///     none   d = r
 ///     bias   d = r - fog.bias_m * fog level              (Sourav & Cheng 2024)
 ///     beam   d = median over the beams' echoes           (services/lidar/fog_beam.h)
+///     modes  d = r, or r - fog.bias_m, or an echo of the fog, or none, each in a share of the
+///            steps                                       (services/lidar/fog_modes.h)
 /// On each beam the echo powers of target and fog are lognormal and independent; the stronger one
 /// is the beam's echo if it exceeds the detection threshold. The fog's echo lies at r* plus a
 /// Beta(2, 20) distributed scatter, never behind the target. At least half of the beams must have
@@ -28,12 +31,15 @@ namespace fogline::lidar {
 class Lidar {
  public:
   /// Indices of the draws of stream kLidar within a step.
-  static constexpr std::uint32_t kNoiseDraw = 0;    // Normal2: range, second unused
-  static constexpr std::uint32_t kDropoutDraw = 1;  // Uniform2: first number, second unused
+  static constexpr std::uint32_t kNoiseDraw = 0;        // Normal2: range, second unused
+  static constexpr std::uint32_t kDropoutDraw = 1;      // Uniform2: first number, second unused
+  static constexpr std::uint32_t kModeDraw = 2;         // Uniform2: first number, second unused
+  static constexpr std::uint32_t kModeScatterDraw = 3;  // Uniform2: of a near echo
   /// Indices of the draws of stream kLidarBeam within a step, for beam n from 0.
   static constexpr std::uint32_t PowerDraw(std::uint32_t n) { return 2 * n; }  // target, fog
   static constexpr std::uint32_t ScatterDraw(std::uint32_t n) { return 2 * n + 1; }
 
+  /// @throw InputError if the shares of fog model modes add up to more than 1
   explicit Lidar(const Scenario& scenario);
 
   /// The measurement in the step of `truth`. It depends on scenario and truth alone, not on the
@@ -56,14 +62,18 @@ class Lidar {
 
   bool DropsOut(std::int64_t step) const;
   std::optional<Echo> PlainEcho(const truth_t& truth, double target_m) const;
+  std::optional<Echo> PlainEchoAt(double target_m, double bias_m) const;
   std::optional<Echo> MedianEcho(const truth_t& truth, double target_m);
+  std::optional<Echo> ModalEcho(const truth_t& truth, double target_m) const;
+  Echo NearEcho(const truth_t& truth, double target_m) const;
   void CollectEchoes(const truth_t& truth, double target_m);
 
   LidarSection lidar_;
-  double fog_bias_m_;  // at level 1; 0 unless the fog model is bias
+  double fog_bias_m_;  // at level 1, or in a biased step; 0 unless the fog model is bias or modes
   Random random_;
   Random beam_random_;
-  std::optional<EchoModel> model_;  // of fog model beam
+  std::optional<EchoModel> model_;  // of the fog models beam and modes
+  std::optional<FogModes> modes_;   // of fog model modes
   std::vector<BeamEcho> echoes_;
   lidar_t output_{};
 };

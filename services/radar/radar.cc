@@ -16,7 +16,7 @@ constexpr Polarization kPolarization = Polarization::kHorizontal;
 Radar::Radar(const Scenario& scenario)
     : radar_(scenario.radar),
       random_(scenario.seed, Stream::kRadar),
-      fog_attenuates_(scenario.fog.model == FogModel::kBeam),
+      fog_attenuates_(HasVisibility(scenario.fog.model)),
       fog_coefficient_(FogCoefficient(radar_.frequency_ghz, radar_.temperature_c)),
       rain_dbpkm_(RainAttenuation_dbpkm(scenario.fog.rain_mmph,
                                         RainCoefficientsOf(radar_.frequency_ghz, kPolarization))),

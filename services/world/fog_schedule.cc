@@ -35,7 +35,7 @@ Fog FogSchedule::At(std::int64_t utime) const {
   const double x = static_cast<double>(since_us) / static_cast<double>(duration_us_);
   Fog fog{
       .present = true, .level = FogLevel(fog_.profile, x), .visibility_m = fog_.clear_visibility_m};
-  if (fog_.model == FogModel::kBeam) {
+  if (HasVisibility(fog_.model)) {
     const double clear_pm = ExtinctionOf(fog_.clear_visibility_m);
     const double dense_pm = ExtinctionOf(fog_.visibility_m);
     fog.visibility_m = VisibilityOf(clear_pm + fog.level * (dense_pm - clear_pm));

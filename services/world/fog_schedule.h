@@ -23,8 +23,9 @@ class FogSchedule {
  public:
   explicit FogSchedule(const FogSection& fog);
 
-  /// Fog `utime` microseconds after the start of the run. Model beam blends the extinction of
-  /// clear air and of fog linearly by the level; otherwise the visibility is that of clear air.
+  /// Fog `utime` microseconds after the start of the run. The models beam and modes blend the
+  /// extinction of clear air and of fog linearly by the level; otherwise the visibility is that of
+  /// clear air.
   Fog At(std::int64_t utime) const;
 
  private:

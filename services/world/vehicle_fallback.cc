@@ -3,6 +3,15 @@
 #include <algorithm>
 
 namespace fogline::world {
+namespace {
+
+// Emergency braking may hide the mode RECOVERING in the step in which a driver ends a manoeuvre.
+bool DriverHasTakenOver(const arbitration_t& command) {
+  return command.mode == arbitration_t::RECOVERING ||
+         (command.mode == arbitration_t::EMERGENCY_BRAKING && HumanIsEngaged(command.lambda_human));
+}
+
+}  // namespace
 
 double CarFallback::Step(InputState state, std::optional<double> command_mps2, double speed_mps,
                          double applied_mps2) {
@@ -47,7 +56,7 @@ void VehicleFallback::StepHost(const truth_t& now, const Heard<arbitration_t>& h
   if (Usable(host.state)) {
     const std::int8_t mode = host.newest->mode;
     const bool stops = InMinimalRisk(mode);
-    if (mode == arbitration_t::RECOVERING && !IsLocked(host_out_.mode)) commanded_ = false;
+    if (DriverHasTakenOver(*host.newest) && !IsLocked(host_out_.mode)) commanded_ = false;
     if (commanded_ && !stops) host_.BeginMinimalRisk(now.host_acceleration_mps2);
     if (stops) commanded_ = true;
     host_out_ = *host.newest;

@@ -50,7 +50,8 @@ class CarFallback {
 /// Once the arbitrator has commanded the host's minimal risk manoeuvre, the vehicle remembers it.
 /// It follows the arbitrator's commands as long as they continue the manoeuvre. If they stop
 /// coming, or if another arbitrator commands something else, the vehicle makes the manoeuvre by
-/// itself. Only a driver who was asked and has taken over (mode RECOVERING) ends it.
+/// itself. Only a driver who was asked and has taken over ends it (mode RECOVERING, or
+/// EMERGENCY_BRAKING with authority of the human).
 class VehicleFallback {
  public:
   explicit VehicleFallback(const Scenario& scenario);

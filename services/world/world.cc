@@ -50,6 +50,7 @@ World::World(const Scenario& scenario)
       step_us_(std::llround(scenario.step_s * kMicrosPerSecond)),
       step_s_(static_cast<double>(step_us_) / kMicrosPerSecond),
       leader_(scenario.lead),
+      friction_(scenario, RoadOf(scenario)),
       fog_(scenario.fog),
       cars_(kFirstFollower + static_cast<std::size_t>(scenario.followers.count)),
       vehicles_(cars_.size()) {
@@ -134,12 +135,21 @@ void World::Command(const arbitration_t& host, const follower_command_t& followe
                                 " accelerations for " + std::to_string(num_followers()) +
                                 " following cars");
   }
-  const double next_mps = leader_.SpeedAt(step_ + 1, TimeOf(step_ + 1));
-  Obey(kPreceding, (next_mps - cars_[kPreceding].motion.speed_mps) / step_s_);
+  Lead();
   Obey(kHost, Finite(host.acceleration_mps2, "HOST_COMMAND"));
   for (std::size_t i = 0; i < num_followers(); ++i) {
     Obey(kFirstFollower + i, Finite(followers.acceleration_mps2[i], "FOLLOWER_COMMAND"));
   }
+}
+
+void World::Lead() {
+  const models::Motion& now = cars_[kPreceding].motion;
+  const double next_mps = leader_.SpeedAt(step_ + 1, TimeOf(step_ + 1));
+  const double profile_mps2 = (next_mps - now.speed_mps) / step_s_;
+  const double possible_mps2 = friction_.Limited(profile_mps2, now.position_m);
+  profile_mps_.reset();
+  if (possible_mps2 == profile_mps2) profile_mps_ = next_mps;
+  Obey(kPreceding, possible_mps2);
 }
 
 void World::Obey(std::size_t car, double command_mps2) {
@@ -159,7 +169,7 @@ void World::Integrate() {
       car.motion = models::Advance(car.motion, car.acceleration_mps2, substep_s);
   }
   // The exact speed of the profile, without the rounding of v + a t.
-  cars_[kPreceding].motion.speed_mps = leader_.SpeedAt(step_ + 1, TimeOf(step_ + 1));
+  if (profile_mps_) cars_[kPreceding].motion.speed_mps = *profile_mps_;
 
   for (Car& car : cars_) {
     const bool rested = car.acceleration_mps2 < 0.0 && car.motion.speed_mps == 0.0;

@@ -17,11 +17,13 @@
 #include "services/models/vehicle/motion.h"
 #include "services/world/fog_schedule.h"
 #include "services/world/leader.h"
+#include "services/world/leader_friction.h"
 
 namespace fogline::world {
 
 /// The preceding car, the host and the cars that follow it, in one lane. The preceding car has the
-/// speed of its profile. Each other car is a point mass, which has exactly the commanded
+/// speed of its profile; while the profile brakes harder than friction allows, it is faster
+/// (leader_friction.h). Each other car is a point mass, which has exactly the commanded
 /// acceleration, or a vehicle that follows the command as far as it can (services/models/vehicle).
 /// The acceleration of every car is constant within a step (services/models/vehicle/motion.h). Cars
 /// that have collided do not push each other: unless the run ends, they follow their commands
@@ -31,8 +33,8 @@ class World {
   using Output = std::tuple<truth_t, ego_t>;
 
   /// @throw std::invalid_argument if the scenario's recorded leader has no speeds
-  /// @throw InputError if the places of its hills do not increase, or a step is too short for the
-  ///     delays of a vehicle
+  /// @throw InputError if the places of its hills do not increase, a step is too short for the
+  ///     delays of a vehicle, or the leader's profile states a braking that friction does not allow
   explicit World(const Scenario& scenario);
 
   /// Step 0: the state that the scenario describes. Begins a new run.
@@ -73,6 +75,7 @@ class World {
   // Puts a car on the road as if it had had this acceleration for a long time.
   void Place(std::size_t car, const models::Motion& motion, double acceleration_mps2);
   void Command(const arbitration_t& host, const follower_command_t& followers);
+  void Lead();
   void Obey(std::size_t car, double command_mps2);
   void Integrate();
   void RecordCollision(double begin_s, double duration_s);
@@ -83,11 +86,13 @@ class World {
   std::int64_t step_us_;
   double step_s_;
   Leader leader_;
+  LeaderFriction friction_;
   FogSchedule fog_;
 
   std::int64_t run_id_ = 0;
   std::int64_t step_ = 0;
   std::vector<Car> cars_;
+  std::optional<double> profile_mps_;  // the leader's speed at the end of the step, if it is exact
   std::vector<std::optional<models::LongitudinalVehicle>>
       vehicles_;  // of each car; none of a point mass
   std::int8_t collision_ = truth_t::COLLISION_NONE;

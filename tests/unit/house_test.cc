@@ -46,6 +46,7 @@ constexpr std::array kRooms = std::to_array<Room>({
     {"services/models/driver", "models", "a person who drives"},
     {"services/models/follower", "models", "a following car; a person may drive it"},
     {"services/models/minimal_risk", "models", "how a car stops, and who drives it"},
+    {"services/models/aeb", "models", "how a car brakes in an emergency, by what its driver sees"},
     {"services/decision/conflict", "conflict", "what a measure of conflict is"},
     {"services/decision/conflict/one_step", "conflict", "measures of the readings of a step"},
     {"services/decision/conflict/over_time", "conflict", "measures that may use those of a step"},

@@ -1,5 +1,5 @@
-// fogline events: when which side drove, and the outcome of every request to take over, from logs
-// alone.
+// fogline events: when which side drove, the outcome of every request to take over, and every
+// emergency braking, from logs alone.
 #include <array>
 #include <memory>
 #include <optional>
@@ -140,9 +140,10 @@ void AddEvents(CLI::App& app, cli::Action& action) {
   cli::ShowExitCodes(*verb, {.check_failed = "a log is not complete"});
   verb->footer(
       "Lists the events that a data recorder stores: changes of state, requests to take over\n"
-      "and their escalation, acknowledgements, transfers, first effective inputs, manoeuvres.\n"
+      "and their escalation, acknowledgements, transfers, first effective inputs, manoeuvres,\n"
+      "collision warnings and emergency braking.\n"
       "Then lists the times of each request, from the start of the run. If the driver need not\n"
-      "be asked (take_over with mode instant), the only events are transfers.\n\n"
+      "be asked (take_over with mode instant), the other events are transfers only.\n\n"
       "Examples:\n"
       "  fogline run scenario/paper.json --set /arbitrator/take_over/mode=requested --log "
       "logs/asked.lcm\n"

@@ -24,6 +24,13 @@ std::vector<std::string> Uphill(std::vector<std::string> overrides) {
   return overrides;
 }
 
+/// The leader is on the same ice, which holds 1.47 m/s2.
+std::vector<std::string> SedanOnIce() {
+  std::vector<std::string> overrides = Cars("sedan", "ice");
+  overrides.emplace_back("/lead/emergency_brake/deceleration_mps2=1.4");
+  return overrides;
+}
+
 std::vector<std::string> TruckBehindSedan() {
   std::vector<std::string> overrides = Cars("sedan", "dry");
   overrides.emplace_back("/follower_vehicle/car=truck");
@@ -72,7 +79,7 @@ std::vector<StudyCase> VehicleCases() {
     if (ground.is_dense) add("truck uphill 2 %", Uphill(Cars("truck", "dry")));
     if (!ground.brakes) continue;
     add("compact", Cars("compact", "dry"));
-    add("sedan on ice", Cars("sedan", "ice"));
+    add("sedan on ice", SedanOnIce());
   }
   return cases;
 }
@@ -152,7 +159,9 @@ std::string VehicleMethod(const Comparison& comparison) {
   const double wet = models::FrictionOf(Surface::kWet) * kGravity_mps2;
   return fmt::format(
       "{} seeds of paper.json, of dense_fog.json, and of dense_fog.json with a leader that brakes "
-      "with 6 m/s2 from 20 to 7 m/s in the middle of the fog. Host and follower are cars of that "
+      "with 6 m/s2 (on ice with 1.4, because it holds no more) from 20 to 7 m/s in the middle of "
+      "the "
+      "fog. Host and follower are cars of that "
       "kind, without traded control, with the paper's step, and with a jerk-limited transfer. ACC "
       "and driver are tuned for the point mass. In each case the limit takes effect after which "
       "the case is named: delay and lag in every car, the little power that a truck has left on a "

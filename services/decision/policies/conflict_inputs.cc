@@ -1,5 +1,7 @@
 #include "services/decision/policies/conflict_inputs.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 
@@ -10,14 +12,20 @@ namespace {
 constexpr std::size_t kRadarRange = 0;
 constexpr std::size_t kLidarRange = 2;
 
-conflict::StatedRange Predicted(const track_t& track, std::size_t value, double measured_m,
-                                double noise_m2) {
-  if (track.usage[value] == track_t::ABSENT) return {};
-  const double variance_m2 = track.innovation_variance[value] - noise_m2;
-  if (variance_m2 <= 0) return {};  // the value started the track
-  return {.valid = true,
-          .range_m = measured_m - track.innovation[value],
-          .std_m = std::sqrt(variance_m2)};
+double Square(double x) { return x * x; }
+
+// Variance in m2 of the distance that the filter predicts for the next step, from its covariance
+// P. It is element (0, 0) of F P F' + Q (services/fusion/ekf.h).
+double NextDistanceVariance(const double (&covariance)[3][3], double step_s,
+                            double jerk_density_m2ps5) {
+  const std::array<double, 3> row{1, step_s, step_s * step_s / 2};  // of F
+  double variance_m2 = jerk_density_m2ps5 * Square(step_s * step_s) * step_s / 20;
+  for (std::size_t i = 0; i < row.size(); ++i) {
+    for (std::size_t j = 0; j < row.size(); ++j) {
+      variance_m2 += row[i] * covariance[i][j] * row[j];
+    }
+  }
+  return variance_m2;
 }
 
 }  // namespace
@@ -44,15 +52,45 @@ const conflict::BlameMeasureRow& RowOf(BlameChoice choice) {
   return conflict::BlameMeasures()[static_cast<std::size_t>(choice)];
 }
 
-Witness::Witness(const FusionSection& section)
-    : radar_variance_m2_(section.radar_range_std_m * section.radar_range_std_m),
-      lidar_variance_m2_(section.lidar_range_std_m * section.lidar_range_std_m) {}
+Witness::Witness(const Scenario& scenario)
+    : radar_{.value = kRadarRange,
+             .noise_m2 = Square(scenario.fusion.radar_range_std_m),
+             .lateral_offset_m = scenario.radar.lateral_offset_m},
+      lidar_{.value = kLidarRange,
+             .noise_m2 = Square(scenario.fusion.lidar_range_std_m),
+             .lateral_offset_m = scenario.lidar.lateral_offset_m},
+      adapts_(scenario.fusion.adaptive_noise != NoiseAdaptation::kNone),
+      step_s_(scenario.step_s),
+      jerk_density_m2ps5_(scenario.fusion.jerk_density_m2ps5) {}
 
 conflict::StatedRange Witness::Prediction(const track_t& track, const radar_t& radar,
-                                          const lidar_t& lidar) const {
-  if (radar.valid) return Predicted(track, kRadarRange, radar.range_m, radar_variance_m2_);
-  if (lidar.valid) return Predicted(track, kLidarRange, lidar.range_m, lidar_variance_m2_);
-  return {};
+                                          const lidar_t& lidar) {
+  conflict::StatedRange prediction;
+  if (radar.valid) {
+    prediction = Predicted(track, radar_, radar.range_m);
+  } else if (lidar.valid) {
+    prediction = Predicted(track, lidar_, lidar.range_m);
+  }
+  if (adapts_) last_ = track;
+  return prediction;
+}
+
+conflict::StatedRange Witness::Predicted(const track_t& track, const Sensor& sensor,
+                                         double measured_m) const {
+  if (track.usage[sensor.value] == track_t::ABSENT) return {};
+  const double range_m = measured_m - track.innovation[sensor.value];
+  const double variance_m2 = VarianceOf(track, sensor, range_m);
+  if (variance_m2 <= 0) return {};  // the value started the track
+  return {.valid = true, .range_m = range_m, .std_m = std::sqrt(variance_m2)};
+}
+
+double Witness::VarianceOf(const track_t& track, const Sensor& sensor, double range_m) const {
+  if (!adapts_) return track.innovation_variance[sensor.value] - sensor.noise_m2;
+  if (!last_.valid || last_.header.step + 1 != track.header.step) return 0;
+  const double variance_m2 = NextDistanceVariance(last_.covariance, step_s_, jerk_density_m2ps5_);
+  if (sensor.lateral_offset_m == 0) return variance_m2;
+  // The range of a target at distance d and offset y is sqrt(d^2 + y^2), its slope d / range.
+  return variance_m2 * std::max(0.0, 1 - Square(sensor.lateral_offset_m / range_m));
 }
 
 }  // namespace fogline::policies

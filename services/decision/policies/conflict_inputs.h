@@ -2,6 +2,8 @@
 // the conflict measures.
 #pragma once
 
+#include <cstddef>
+
 #include "scenario/sections/scenario.h"
 #include "services/decision/conflict/conflict_measures.h"
 #include "services/graph.h"
@@ -25,19 +27,40 @@ inline conflict::StatedRange StatedBy(const lidar_t& lidar) {
 }
 
 /// The filter's prediction before it used the values of the step. Its range is the measured value
-/// minus the innovation; its variance is the innovation's variance minus the sensor noise that the
+/// minus the innovation. Its variance is the innovation's variance minus the sensor noise that the
 /// filter assumes. It is computed from the radar, or from the LiDAR in a step without radar value.
 /// It is not valid in the step that starts a track, nor in a step without any value.
+///
+/// If the filter estimates the noise by itself (fusion.adaptive_noise), TRACK does not say which
+/// noise it has used. The variance is then computed from the covariance of the step before, as the
+/// filter predicts it. So there is no prediction in a step whose predecessor was not heard.
 class Witness {
  public:
-  explicit Witness(const FusionSection& section);
+  explicit Witness(const Scenario& scenario);
 
+  /// Call it in the order of steps; steps may be missing.
   conflict::StatedRange Prediction(const track_t& track, const radar_t& radar,
-                                   const lidar_t& lidar) const;
+                                   const lidar_t& lidar);
 
  private:
-  double radar_variance_m2_;
-  double lidar_variance_m2_;
+  /// The range of a sensor, as the filter sees it.
+  struct Sensor {
+    std::size_t value;  // index in track_t's arrays
+    double noise_m2;    // assumed
+    double lateral_offset_m;
+  };
+
+  conflict::StatedRange Predicted(const track_t& track, const Sensor& sensor,
+                                  double measured_m) const;
+  /// Variance in m2 of a prediction of this range; 0 if it is not known.
+  double VarianceOf(const track_t& track, const Sensor& sensor, double range_m) const;
+
+  Sensor radar_;
+  Sensor lidar_;
+  bool adapts_;
+  double step_s_;
+  double jerk_density_m2ps5_;
+  track_t last_{};  // the last track, if the filter estimates the noise
 };
 
 }  // namespace fogline::policies

@@ -36,11 +36,47 @@ std::string_view LoggedOf(std::int8_t from, std::int8_t to) {
 
 std::string_view NameOfMode(std::int8_t mode) {
   if (mode == arbitration_t::MINIMAL_RISK) return "MINIMAL_RISK";
+  if (mode == arbitration_t::COLLISION_WARNING) return "COLLISION_WARNING";
+  if (mode == arbitration_t::EMERGENCY_BRAKING) return "EMERGENCY_BRAKING";
   const TakeOverStateInfo* info = StateOf(mode);
   return info == nullptr ? "UNKNOWN" : info->name;
 }
 
 void TakeOverLog::Add(const arbitration_t& command, std::optional<double> human_mps2) {
+  arbitration_t decided = command;
+  decided.mode = DecidedMode(command);
+  AddDecided(decided, human_mps2);
+  AddEmergency(command);
+  last_sent_ = command.mode;
+}
+
+std::int8_t TakeOverLog::DecidedMode(const arbitration_t& command) const {
+  if (!models::InEmergency(command.mode)) return command.mode;
+  if (last_ && !requests_.empty()) return last_->mode;
+  return HumanDrives(command.lambda_human) ? arbitration_t::HUMAN : arbitration_t::AUTOMATION;
+}
+
+void TakeOverLog::AddEmergency(const arbitration_t& command) {
+  if (command.mode == last_sent_) return;
+  const auto add = [&](std::string_view logged) {
+    entries_.push_back({.step = command.header.step,
+                        .utime = command.header.utime,
+                        .from = last_sent_,
+                        .to = command.mode,
+                        .logged = logged});
+  };
+  if (last_sent_ == arbitration_t::EMERGENCY_BRAKING) add("emergency braking ends");
+  const bool warned = last_sent_ == arbitration_t::COLLISION_WARNING;
+  if (command.mode == arbitration_t::EMERGENCY_BRAKING) {
+    add("emergency braking begins");
+  } else if (command.mode == arbitration_t::COLLISION_WARNING) {
+    add("collision warning begins");
+  } else if (warned) {
+    add("collision warning ends");
+  }
+}
+
+void TakeOverLog::AddDecided(const arbitration_t& command, std::optional<double> human_mps2) {
   if (!last_) {
     entries_.push_back({.step = command.header.step,
                         .utime = command.header.utime,

@@ -17,7 +17,8 @@ namespace fogline::take_over {
 std::string_view NameOfMode(std::int8_t mode);
 
 /// An event of a step. If a driver's input became effective, or lambda_H passed one half on a ramp,
-/// `from` and `to` are the same mode.
+/// `from` and `to` are the same mode. If emergency braking or its warning begins or ends, they are
+/// the modes of the commands; otherwise the modes that these would be without it.
 struct TakeOverEntry {
   std::int64_t step = 0;
   std::int64_t utime = 0;
@@ -35,6 +36,9 @@ struct TakeOverEntry {
 /// one entry covers both. The driver's input is effective if it changes the command enough: the
 /// measure is lambda_H (a_H - a), with a the command before he got his share. The automation's part
 /// of the command does not count.
+///
+/// The modes of emergency braking hide the state. Until they end, the state counts as the last one
+/// that was seen; in a run without requests it is that of the side with more authority.
 class TakeOverLog {
  public:
   /// @param human_mps2 a_H, the driver's offer; nullopt if that is not known
@@ -44,11 +48,15 @@ class TakeOverLog {
   const std::vector<TakeOverRequest>& requests() const { return requests_; }
 
  private:
+  std::int8_t DecidedMode(const arbitration_t& command) const;
+  void AddDecided(const arbitration_t& command, std::optional<double> human_mps2);
+  void AddEmergency(const arbitration_t& command);
   void Change(const arbitration_t& command, std::int8_t from, bool transfer);
   void Transfer(const arbitration_t& command);
   void Drive(const arbitration_t& command, double human_mps2);
 
-  std::optional<arbitration_t> last_;
+  std::optional<arbitration_t> last_;                  // with the mode without emergency braking
+  std::int8_t last_sent_ = arbitration_t::AUTOMATION;  // mode of the last command
   // If the driver has a share of the authority: the command before he got it (empty after his first
   // effective input), and whether he was asked.
   std::optional<double> before_share_mps2_;

@@ -57,6 +57,11 @@ TEST(PolicyThatSharesTest, HasOneDigestAlsoWithADriverWhoMustBeAsked) {
                    "/arbitrator/take_over/time/std_s=0.01"});
 }
 
+TEST(HandBackByTheFusionTest, HasTheSameDigestInOneProcessInMemoryAndOverTheNetwork) {
+  ExpectOneDigest(
+      "traded", {"/arbitrator/transfer/hand_back=fusion", "/arbitrator/transfer/hand_back_s=0.5"});
+}
+
 TEST(PolicyOnAPosteriorTest, IsRefusedBeforeTheRunForAMeasureThatIsNone) {
   for (const char* transport : {"direct", "udpm"}) {
     const Outcome outcome =

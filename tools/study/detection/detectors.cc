@@ -35,7 +35,7 @@ std::optional<double> FirstAlarm(const ScoreRecords& records, double threshold) 
 }
 
 void DetectorBench::Prepare(const Scenario& scenario) {
-  witness_.emplace(scenario.fusion);
+  witness_.emplace(scenario);
   const conflict::ConflictParameters parameters = DetectorParameters(scenario);
   measures_.clear();
   for (const conflict::ConflictMeasureRow& row : conflict::ConflictMeasures()) {

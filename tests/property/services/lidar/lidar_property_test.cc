@@ -207,25 +207,98 @@ TEST(LidarProperty, DenserFogNeverBringsTheTargetBack) {
   }
 }
 
-TEST(LidarProperty, NoStepDependsOnAnother) {
-  Scenario scenario = Beam();
+// ---- fog model modes ----------------------------------------------------------------------------
+
+Scenario Modes() {
+  Scenario scenario;
+  scenario.fog.model = FogModel::kModes;
+  scenario.fog.visibility_m = 60.0;
+  scenario.fog.bias_m = 2.0;
+  scenario.fog.modes = {.biased_share = 0.1, .near_echo_share = 0.2, .missing_share = 0.5};
+  scenario.lidar.range_std_m = 0.0;
+  return scenario;
+}
+
+truth_t InModes(std::int64_t step, double gap_m, double level) {
+  truth_t truth = Target(step, gap_m, 60.0);
+  truth.fog_present = true;
+  truth.fog_level = level;
+  return truth;
+}
+
+TEST(LidarProperty, EachModeHasItsShare) {
+  for (const double level : {0.3, 1.0}) {
+    for (const double gap_m : {20.0, 28.0, 60.0}) {
+      int missing = 0;
+      int near_echo = 0;
+      int biased = 0;
+      for (int seed = 0; seed < kSeeds; ++seed) {
+        Scenario scenario = Modes();
+        scenario.seed = seed;
+        lidar::Lidar lidar(scenario);
+        for (int step = 0; step < kSteps; ++step) {
+          const lidar_t& out = lidar.Step(InModes(step, gap_m, level));
+          missing += !out.valid;
+          near_echo += out.valid && out.range_m < 12.0;
+          biased += out.valid && out.range_m == gap_m - 2.0;
+        }
+      }
+      const double misses = std::clamp((gap_m - 25.0) / 10.0, 0.0, 1.0);
+      if (misses > 0) {
+        ExpectShare(missing, level * 0.5 * misses, "missing");
+      } else {
+        EXPECT_EQ(missing, 0);
+      }
+      ExpectShare(near_echo, level * 0.2, "near echo");
+      ExpectShare(biased, level * 0.1, "biased");
+    }
+  }
+}
+
+TEST(LidarProperty, ANearEchoScattersAsUnderModelBeam) {
+  Scenario scenario = Modes();
+  scenario.fog.modes = {.near_echo_share = 1, .missing_share = 0};
+  const lidar::EchoModel model(scenario.lidar.beam, ExtinctionOf(20000.0), ExtinctionOf(60.0));
+  const double peak_m = model.At(60.0, 60.0).fog_range_m;
+  EXPECT_GT(peak_m, 3.0);
+  EXPECT_LT(peak_m, 4.0);
+  const boost::math::beta_distribution beta(2.0, 20.0);
+  std::vector<double> shares;
+  for (int seed = 0; seed < kSeeds; ++seed) {
+    scenario.seed = seed;
+    lidar::Lidar lidar(scenario);
+    for (int step = 0; step < kSteps; ++step) {
+      shares.push_back(cdf(beta, (lidar.Step(InModes(step, 60.0, 1.0)).range_m - peak_m) / 10.0));
+    }
+  }
+  ExpectUniform(shares);
+}
+
+// ---- all models ---------------------------------------------------------------------------------
+
+void ExpectThatNoStepDependsOnAnother(Scenario scenario) {
   scenario.lidar.range_std_m = 0.02;
   scenario.lidar.dropout_probability = 0.1;
   lidar::Lidar forwards(scenario);
   std::vector<lidar_t> expected;
   for (int step = 0; step < kSteps; ++step) {
-    expected.push_back(forwards.Step(Target(step, 33.0, 80.0)));
+    expected.push_back(forwards.Step(InModes(step, 33.0, 0.8)));
   }
   lidar::Lidar backwards(scenario);
   for (int step = kSteps - 1; step >= 0; --step) {
-    backwards.Step(Target(step * 7, 20.0, 30.0));
-    const lidar_t& lidar = backwards.Step(Target(step, 33.0, 80.0));
+    backwards.Step(InModes(step * 7, 20.0, 1.0));
+    const lidar_t& lidar = backwards.Step(InModes(step, 33.0, 0.8));
     const lidar_t& same = expected[static_cast<std::size_t>(step)];
     EXPECT_EQ(lidar.valid, same.valid);
     EXPECT_EQ(lidar.range_m, same.range_m);
     EXPECT_EQ(lidar.range_std_m, same.range_std_m);
     EXPECT_EQ(lidar.intensity, same.intensity);
   }
+}
+
+TEST(LidarProperty, NoStepDependsOnAnother) {
+  ExpectThatNoStepDependsOnAnother(Beam());
+  ExpectThatNoStepDependsOnAnother(Modes());
 }
 
 }  // namespace

@@ -235,5 +235,78 @@ TEST_F(FailsafeArbitratorTest, HandsBackOnceTheAutomationIsThereAgain) {
   EXPECT_EQ(arbitrator::FallbackText(arbitrator_.decision()), "");
 }
 
+Scenario Guarded() {
+  Scenario scenario = SomeScenario();
+  scenario.aeb.enabled = true;
+  return scenario;
+}
+
+class GuardedFailsafeTest : public FailsafeArbitratorTest {
+ protected:
+  GuardedFailsafeTest() {
+    arbitrator_ = arbitrator::FailsafeArbitrator(Guarded());
+    track_.valid = 1;
+    track_.state[0] = 10;
+    track_.state[1] = -10;
+  }
+  void ExpectEmergencyBraking(const arbitration_t& out) {
+    EXPECT_EQ(out.mode, arbitration_t::EMERGENCY_BRAKING);
+    EXPECT_EQ(out.acceleration_mps2, -9);
+  }
+};
+
+TEST_F(GuardedFailsafeTest, BrakesInEveryDecisionThatHasATrack) {
+  ExpectEmergencyBraking(Step());
+  Set(inputs_.automation, InputState::kLost, automation_);
+  ExpectEmergencyBraking(Step());
+  EXPECT_EQ(arbitrator_.decision(), arbitrator::Decision::kHuman);
+  Set(inputs_.automation, InputState::kOk, automation_);
+  Set(inputs_.driver, InputState::kLost, driver_);
+  ExpectEmergencyBraking(Step());
+  EXPECT_EQ(arbitrator_.decision(), arbitrator::Decision::kAutomation);
+  Set(inputs_.track, InputState::kStale, track_);
+  ExpectEmergencyBraking(Step());
+}
+
+TEST_F(GuardedFailsafeTest, BrakesForNoTrackThatIsLost) {
+  Step();
+  Set(inputs_.track, InputState::kLost, track_);
+  ExpectHuman(Step());
+}
+
+TEST_F(GuardedFailsafeTest, BrakesInTheMinimalRiskManoeuvreUnderItsMode) {
+  Set(inputs_.automation, InputState::kLost, automation_);
+  Set(inputs_.driver, InputState::kLost, driver_);
+  ExpectMinimalRisk(Step(), -9);
+  track_.state[1] = 1;
+  ExpectMinimalRisk(Step(), kApplied_mps2 - 0.4);
+}
+
+// The command that holds is that of a side, not that of the emergency.
+TEST_F(GuardedFailsafeTest, HoldsTheCommandBeforeTheBraking) {
+  ExpectEmergencyBraking(Step());
+  track_.state[1] = 1;
+  Disagree();
+  Set(inputs_.driver, InputState::kAwaited, driver_);
+  const arbitration_t& out = Step();
+  EXPECT_EQ(arbitrator_.decision(), arbitrator::Decision::kHold);
+  EXPECT_EQ(out.acceleration_mps2, kAutomation_mps2);
+  EXPECT_EQ(out.mode, arbitration_t::AUTOMATION);
+}
+
+TEST_F(GuardedFailsafeTest, EqualsTheArbitratorInLockstepIfAllInputsAreThere) {
+  arbitrator::Arbitrator lockstep(Guarded());
+  for (int k = 0; k < 60; ++k) {
+    track_.state[0] = 30 - 0.5 * k;
+    track_.state[1] = k < 45 ? -10 : 0.5;
+    radar_.range_m = lidar_.range_m + (k % 20 < 10 ? 0 : 2);
+    const arbitration_t out = Step();
+    const arbitration_t& same = lockstep.Step(ego_, radar_, lidar_, track_, automation_, driver_);
+    EXPECT_EQ(out.mode, same.mode) << k;
+    EXPECT_EQ(out.acceleration_mps2, same.acceleration_mps2) << k;
+    EXPECT_EQ(out.lambda_human, same.lambda_human) << k;
+  }
+}
+
 }  // namespace
 }  // namespace fogline

@@ -82,6 +82,47 @@ TEST(RequestDebouncerTest, LetsAFirmRequestPass) {
   EXPECT_EQ(debouncer.Step({.lambda_human = 0.25, .threshold = 0.5, .firm = true}, 1), 0.25);
 }
 
+double StepOf(arbitrator::RequestDebouncer& debouncer, double doc, bool recovered) {
+  return debouncer.Step(policies::Compare(doc, kThreshold), doc, recovered);
+}
+
+TEST(RequestDebouncerTest, ReturnsToTheAutomationOnlyOnARecoveredTrack) {
+  arbitrator::RequestDebouncer debouncer({.hand_back = HandBack::kFusion}, 0.1);
+  EXPECT_EQ(StepOf(debouncer, 0, false), 0) << "it drives already";
+  EXPECT_EQ(StepOf(debouncer, 1, true), 1) << "the way to the human does not wait";
+  EXPECT_EQ(StepOf(debouncer, 0, false), 1);
+  EXPECT_EQ(StepOf(debouncer, 0, true), 0);
+  EXPECT_EQ(StepOf(debouncer, 0, false), 0) << "nothing is taken back";
+}
+
+TEST(RequestDebouncerTest, DoesNotAskForTheTrackByDefault) {
+  arbitrator::RequestDebouncer plain(TransferSection{}, 0.1);
+  arbitrator::RequestDebouncer banded({.hysteresis = Hysteresis::kBand}, 0.1);
+  for (auto* debouncer : {&plain, &banded}) {
+    EXPECT_EQ(StepOf(*debouncer, 1, false), 1);
+    EXPECT_EQ(StepOf(*debouncer, 0, false), 0);
+  }
+}
+
+TEST(RequestDebouncerTest, WaitsForTheTrackAfterEveryOtherDelay) {
+  arbitrator::RequestDebouncer debouncer({.hysteresis = Hysteresis::kBand,
+                                          .band = 0.2,
+                                          .min_dwell_s = 0.3,
+                                          .hand_back = HandBack::kFusion},
+                                         0.1);
+  EXPECT_EQ(StepOf(debouncer, 1, true), 1);
+  EXPECT_EQ(StepOf(debouncer, 0.1, true), 1) << "the dwell";
+  EXPECT_EQ(StepOf(debouncer, 0.4, true), 1) << "the band: the hysteresis has decided, but waits";
+  EXPECT_EQ(StepOf(debouncer, 0.1, false), 1) << "the track";
+  EXPECT_EQ(StepOf(debouncer, 0.1, true), 0);
+}
+
+TEST(RequestDebouncerTest, LetsAFirmRequestPassWhateverTheTrack) {
+  arbitrator::RequestDebouncer debouncer({.hand_back = HandBack::kFusion}, 0.1);
+  StepOf(debouncer, 1, false);
+  EXPECT_EQ(debouncer.Step(policies::StayAutomated(kThreshold), 1, false), 0);
+}
+
 // The band ends at half of the threshold. Otherwise no DoC would be low enough for a wide band.
 TEST(RequestDebouncerTest, ABandOfWhateverWidthGivesTheWheelBack) {
   for (const double threshold : {1e-6, 0.1, 0.2, 0.5, 1.0}) {

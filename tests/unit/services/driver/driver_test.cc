@@ -231,6 +231,17 @@ TEST_F(AwarenessOfTheDriverTest, ReturnsAlsoWhileHeIsOnlyAsked) {
   EXPECT_GT(ReadinessAfter(request), before);
 }
 
+TEST_F(AwarenessOfTheDriverTest, ReturnsUnderACollisionWarningAndEmergencyBraking) {
+  for (const std::int8_t mode :
+       {arbitration_t::COLLISION_WARNING, arbitration_t::EMERGENCY_BRAKING}) {
+    for (int k = 0; k < 50; ++k) ReadinessAfter(Host(arbitration_t::AUTOMATION));
+    const double before = ReadinessAfter(Host(arbitration_t::AUTOMATION));
+    arbitration_t emergency = Host(arbitration_t::AUTOMATION);
+    emergency.mode = mode;
+    EXPECT_GT(ReadinessAfter(emergency), before);
+  }
+}
+
 TEST_F(AwarenessOfTheDriverTest, FadesWhileTheCarStopsByItself) {
   ReadinessAfter(arbitration_t{});
   EXPECT_LT(ReadinessAfter(Stopping()), 1);

@@ -63,5 +63,47 @@ TEST(FollowerTest, KeepsItsMessagesMemory) {
   EXPECT_EQ(command.acceleration_mps2.data(), data);
 }
 
+Scenario Braking(FollowerDriver driver) {
+  Scenario scenario;
+  scenario.followers.driver = driver;
+  scenario.followers.aeb.enabled = true;
+  return scenario;
+}
+
+TEST(FollowerTest, BrakesInAnEmergencyUnderEitherDriver) {
+  for (const FollowerDriver driver : {FollowerDriver::kAcc, FollowerDriver::kHuman}) {
+    follower::Follower follower(Braking(driver));
+    EXPECT_GT(follower.Step(Truth(40, 20, 20)).acceleration_mps2[0], -9);
+    EXPECT_LE(follower.Step(Truth(9, 10, 20)).acceleration_mps2[0], -9);
+    EXPECT_GT(follower.Step(Truth(9, 20, 20)).acceleration_mps2[0], -9) << "and releases the brake";
+  }
+}
+
+TEST(FollowerTest, DoesNotBrakeInAnEmergencyByDefault) {
+  follower::Follower follower(Scenario{});
+  EXPECT_GE(follower.Step(Truth(9, 10, 20)).acceleration_mps2[0], -3);
+}
+
+TEST(FollowerTest, BrakesForNoCarThatAPersonDoesNotSeeInFog) {
+  Scenario scenario = Braking(FollowerDriver::kHuman);
+  scenario.followers.sight = Sight::kFog;
+  follower::Follower follower(scenario);
+  truth_t truth = Truth(9, 10, 20);
+  truth.fog_visibility_m = 0.5;
+  EXPECT_GT(follower.Step(truth).acceleration_mps2[0], -9);
+  truth.fog_visibility_m = 20'000;
+  EXPECT_LE(follower.Step(truth).acceleration_mps2[0], -9);
+}
+
+TEST(FollowerTest, ForgetsAnEmergencyWhenItStartsAgain) {
+  const Scenario scenario = Braking(FollowerDriver::kAcc);
+  follower::Follower follower(scenario);
+  follower.Step(Truth(9, 10, 20));
+  follower.Restart(scenario);
+  EXPECT_GT(follower.Step(Truth(60, 18, 20)).acceleration_mps2[0], -9) << "braking would go on";
+  follower.Restart(Scenario{});
+  EXPECT_GE(follower.Step(Truth(9, 10, 20)).acceleration_mps2[0], -3) << "the system is gone";
+}
+
 }  // namespace
 }  // namespace fogline

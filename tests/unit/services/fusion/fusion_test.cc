@@ -244,6 +244,23 @@ TEST(FusionTest, FollowsAnotherCarThatCutsInOnceTheGateReopens) {
   for (int i = 0; i < 3; ++i) EXPECT_EQ(settled.usage[i], track_t::USED);
 }
 
+TEST(FusionTest, KeepsItsCarForeverBehindAGateThatNeverReopens) {
+  Scenario scenario = Gated();
+  scenario.fusion.gate_reopen_after = 0;
+  fusion::Fusion fusion(scenario);
+  int k = 0;
+  for (; k < 30; ++k) Step(fusion, At(k, 40));
+  // GIVEN a LiDAR that ranges the fog for good WHEN it measures 4 m for a minute
+  for (int i = 0; i < 600; ++i) {
+    Messages m = At(k++, 40);
+    m.lidar.range_m = 4;
+    const track_t& track = Step(fusion, m);
+    // THEN the track follows the radar alone
+    ASSERT_EQ(track.usage[2], track_t::GATED) << i;
+    ASSERT_NEAR(track.state[0], 40, 1e-9) << i;
+  }
+}
+
 TEST(FusionTest, ComesBackFromAnEstimateBehindTheSensor) {
   Scenario scenario;
   scenario.radar.lateral_offset_m = 1.0;
@@ -262,6 +279,77 @@ TEST(FusionTest, ComesBackFromAnEstimateBehindTheSensor) {
   for (int i = 0; i < 50; ++i) Step(fusion, At(k++, range, 0));
   // THEN the estimate is in front of the host again
   EXPECT_NEAR(Step(fusion, At(k, range, 0)).state[0], 15, 0.05);
+}
+
+// ---- adaptive noise -----------------------------------------------------------------------------
+
+Scenario Adapting(NoiseAdaptation rule) {
+  Scenario scenario;
+  scenario.fusion.adaptive_noise = rule;
+  return scenario;
+}
+
+constexpr NoiseAdaptation kAdapting[]{NoiseAdaptation::kInnovation, NoiseAdaptation::kResidual};
+
+// The variance of an innovation contains the noise of the values before, not that of its own.
+TEST(FusionTest, UsesAnAdaptedNoiseFromTheNextStepOn) {
+  for (const NoiseAdaptation rule : kAdapting) {
+    fusion::Fusion plain{Scenario()};
+    fusion::Fusion adapting(Adapting(rule));
+    for (int k = 0; k < 20; ++k) ExpectSameEstimate(Step(plain, At(k)), Step(adapting, At(k)));
+    Messages m = At(20);
+    m.lidar.range_m = 4;
+    const track_t first = Step(adapting, m);
+    ExpectSameEstimate(Step(plain, m), first);
+    m = At(21);
+    m.lidar.range_m = 4;
+    EXPECT_GT(Step(adapting, m).innovation_variance[2], 100) << "0.7 times 26 m squared";
+    EXPECT_LT(first.innovation_variance[2], 0.1);
+  }
+}
+
+TEST(FusionTest, SoonDisbelievesADeceivedLidarIfItsNoiseAdapts) {
+  for (const NoiseAdaptation rule : kAdapting) {
+    fusion::Fusion plain{Scenario()};
+    fusion::Fusion adapting(Adapting(rule));
+    int k = 0;
+    for (; k < 20; ++k) {
+      Step(plain, At(k));
+      Step(adapting, At(k));
+    }
+    double plain_error_m = 0;
+    double error_m = 0;
+    for (int i = 0; i < 50; ++i, ++k) {
+      Messages m = At(k);
+      m.lidar.range_m = 4;
+      plain_error_m = std::abs(Step(plain, m).state[0] - 30);
+      error_m = std::abs(Step(adapting, m).state[0] - 30);
+    }
+    EXPECT_GT(plain_error_m, 10) << "equal noises: in the middle of the two sensors";
+    EXPECT_LT(error_m, 1);
+  }
+}
+
+TEST(FusionTest, AValueThatCorrectsNothingAdaptsNoNoise) {
+  for (const NoiseAdaptation rule : kAdapting) {
+    Scenario gated = Adapting(rule);
+    gated.fusion.gating = true;
+    gated.fusion.gate_reopen_after = 0;
+    Scenario isolating = Adapting(rule);
+    isolating.arbitrator.policy = policies::FindPolicy("isolate").value();
+    for (const Scenario& scenario : {gated, isolating}) {
+      fusion::Fusion fusion(scenario);
+      int k = 0;
+      for (; k < 30; ++k) Step(fusion, At(k));
+      for (int i = 0; i < 20; ++i, ++k) {
+        Messages m = At(k);
+        m.lidar.range_m = 4;
+        const track_t& track = Step(fusion, m);
+        ASSERT_NE(track.usage[2], track_t::USED);
+        ASSERT_LT(track.innovation_variance[2], 0.1) << "the noise is the assumed one";
+      }
+    }
+  }
 }
 
 // ---- policies that influence the fusion ---------------------------------------------------------

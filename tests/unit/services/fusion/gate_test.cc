@@ -42,5 +42,12 @@ TEST(GateTest, StaysShutWhileOutliersComeOneByOne) {
   }
 }
 
+TEST(GateTest, NeverOpensIfItIsToldSo) {
+  fusion::Gate gate(0.95, 0);
+  for (int i = 0; i < 5000; ++i) ASSERT_FALSE(gate.Admits(kOutside)) << i;
+  EXPECT_TRUE(gate.Admits(kInside)) << "a value inside is used as ever";
+  EXPECT_FALSE(gate.Admits(kOutside));
+}
+
 }  // namespace
 }  // namespace fogline

@@ -1,5 +1,6 @@
 #include "services/lidar/lidar.h"
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -149,9 +150,84 @@ TEST(LidarTest, ReportsATouchForCarsThatOverlap) {
   EXPECT_EQ(out.range_m, 0.0);
 }
 
+Scenario Modes(const FogModesSection& modes) {
+  Scenario scenario = Exact(FogModel::kModes);
+  scenario.fog.modes = modes;
+  return scenario;
+}
+
+TEST(LidarTest, OfPureModesIsBiasedANearEchoOrSilent) {
+  lidar::Lidar biased(Modes({.biased_share = 1, .missing_share = 0}));
+  lidar::Lidar near_echo(Modes({.near_echo_share = 1, .missing_share = 0}));
+  lidar::Lidar missing(Modes({}));
+  for (std::int64_t step = 0; step < 100; ++step) {
+    truth_t truth = InFog(40.0, 1.0);
+    truth.header.step = step;
+    truth.fog_visibility_m = 60.0;
+    EXPECT_DOUBLE_EQ(biased.Step(truth).range_m, 40.0 - FogSection().bias_m);
+    const lidar_t& echo = near_echo.Step(truth);
+    ASSERT_TRUE(echo.valid);
+    EXPECT_GT(echo.range_m, 3.0);
+    EXPECT_LT(echo.range_m, 9.0);
+    EXPECT_GT(echo.intensity, 0.0);
+    EXPECT_LT(echo.intensity, 0.05);
+    EXPECT_FALSE(missing.Step(truth).valid);
+  }
+}
+
+TEST(LidarTest, MissesNoNearCarAndEveryFarOne) {
+  lidar::Lidar lidar(Modes({}));
+  int seen = 0;
+  for (std::int64_t step = 0; step < 1000; ++step) {
+    truth_t truth = InFog(25.0, 1.0);
+    truth.header.step = step;
+    EXPECT_EQ(lidar.Step(truth).range_m, 25.0);
+    truth.host_gap_m = 35.0;
+    EXPECT_FALSE(lidar.Step(truth).valid);
+    truth.host_gap_m = 30.0;
+    if (lidar.Step(truth).valid) ++seen;
+  }
+  EXPECT_NEAR(seen, 500, 80) << "half way: 5 standard deviations";
+}
+
+TEST(LidarTest, OfModesIsRightInClearAir) {
+  for (const FogModesSection& modes :
+       {FogModesSection{},
+        FogModesSection{.biased_share = 0.5, .near_echo_share = 0.5, .missing_share = 0}}) {
+    lidar::Lidar lidar(Modes(modes));
+    for (std::int64_t step = 0; step < 100; ++step) {
+      EXPECT_EQ(lidar.Step(Target(60.0, 20000.0, step)).range_m, 60.0);
+    }
+  }
+}
+
+TEST(LidarTest, OfModesHasNoEchoOfACarBeyondItsMaximumRange) {
+  Scenario scenario = Modes({.biased_share = 1, .missing_share = 0});
+  scenario.lidar.max_range_m = 40.0;
+  lidar::Lidar lidar(scenario);
+  EXPECT_FALSE(lidar.Step(InFog(40.001, 1.0)).valid);
+  EXPECT_FALSE(lidar.Step(InFog(40.001, 0.0)).valid);
+}
+
+TEST(LidarTest, OfANearEchoSeesNothingBehindTheCar) {
+  lidar::Lidar lidar(Modes({.near_echo_share = 1, .missing_share = 0}));
+  for (double gap_m = -1.0; gap_m < 6.0; gap_m += 0.25) {
+    truth_t truth = InFog(gap_m, 1.0);
+    truth.fog_visibility_m = 60.0;
+    const lidar_t& out = lidar.Step(truth);
+    EXPECT_TRUE(out.valid);
+    EXPECT_LE(out.range_m, std::max(0.0, gap_m));
+    EXPECT_TRUE(std::isfinite(out.intensity)) << gap_m;
+  }
+}
+
 TEST(LidarTest, NoDrawServesTwoPurposes) {
-  EXPECT_NE(lidar::Lidar::kNoiseDraw, lidar::Lidar::kDropoutDraw);
   std::set<std::uint32_t> draws;
+  for (const std::uint32_t draw : {lidar::Lidar::kNoiseDraw, lidar::Lidar::kDropoutDraw,
+                                   lidar::Lidar::kModeDraw, lidar::Lidar::kModeScatterDraw}) {
+    EXPECT_TRUE(draws.insert(draw).second);
+  }
+  draws.clear();  // those of the other stream
   constexpr std::uint32_t kMaxBeams = 101;
   for (std::uint32_t n = 0; n < kMaxBeams; ++n) {
     EXPECT_TRUE(draws.insert(lidar::Lidar::PowerDraw(n)).second);

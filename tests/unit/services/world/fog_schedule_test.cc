@@ -57,18 +57,20 @@ TEST(FogScheduleTest, ModelBiasLeavesTheVisibilityClear) {
   EXPECT_EQ(fog.At(20'000'000).visibility_m, 20000.0);
 }
 
-TEST(FogScheduleTest, ModelBeamBlendsTheExtinctionsOfClearAirAndFog) {
-  const world::FogSchedule fog(FogSection{.model = FogModel::kBeam,
-                                          .profile = FogProfile::kTriangle,
-                                          .start_s = 0.0,
-                                          .duration_s = 4.0,
-                                          .visibility_m = 50.0,
-                                          .clear_visibility_m = 1000.0});
-  EXPECT_DOUBLE_EQ(fog.At(0).visibility_m, 1000.0);
-  // Half way: extinction 3/1000 and 3/50 per metre have the mean 3 * 21/2000.
-  EXPECT_DOUBLE_EQ(fog.At(1'000'000).visibility_m, 2000.0 / 21.0);
-  EXPECT_DOUBLE_EQ(fog.At(2'000'000).visibility_m, 50.0);
-  EXPECT_EQ(fog.At(4'000'000).visibility_m, 1000.0);
+TEST(FogScheduleTest, ModelsBeamAndModesBlendTheExtinctionsOfClearAirAndFog) {
+  for (const FogModel model : {FogModel::kBeam, FogModel::kModes}) {
+    const world::FogSchedule fog(FogSection{.model = model,
+                                            .profile = FogProfile::kTriangle,
+                                            .start_s = 0.0,
+                                            .duration_s = 4.0,
+                                            .visibility_m = 50.0,
+                                            .clear_visibility_m = 1000.0});
+    EXPECT_DOUBLE_EQ(fog.At(0).visibility_m, 1000.0);
+    // Half way: extinction 3/1000 and 3/50 per metre have the mean 3 * 21/2000.
+    EXPECT_DOUBLE_EQ(fog.At(1'000'000).visibility_m, 2000.0 / 21.0);
+    EXPECT_DOUBLE_EQ(fog.At(2'000'000).visibility_m, 50.0);
+    EXPECT_EQ(fog.At(4'000'000).visibility_m, 1000.0);
+  }
 }
 
 }  // namespace

@@ -164,6 +164,24 @@ TEST_F(VehicleFallbackTest, ObeysADriverWhoComesDuringTheManoeuvre) {
   EXPECT_EQ(Host(kOk, &host_), 1.5);
 }
 
+// In the step in which he comes, emergency braking may hide the mode RECOVERING.
+TEST_F(VehicleFallbackTest, ObeysADriverWhoComesInTheMomentOfEmergencyBraking) {
+  for (const bool human : {false, true}) {
+    world::VehicleFallback fallback(SomeScenario());
+    arbitration_t command = MinimalRiskCommand(-1.25);
+    command.mode = arbitration_t::MRM_EMERGENCY;
+    fallback.Step(now_, {kOk, &command}, {kOk, &follower_});
+    command.mode = arbitration_t::EMERGENCY_BRAKING;
+    command.acceleration_mps2 = -9;
+    command.lambda_human = human ? 1 : 0;
+    fallback.Step(now_, {kOk, &command}, {kOk, &follower_});
+    EXPECT_EQ(fallback.host_stops_by_itself(), !human);
+    if (human) {
+      EXPECT_EQ(fallback.host().acceleration_mps2, -9);
+    }
+  }
+}
+
 TEST_F(VehicleFallbackTest, LetsNoDriverEndTheLockOrAManoeuvreAfterFailure) {
   for (const std::int8_t mode : {arbitration_t::MRM_DONE, arbitration_t::MINIMAL_RISK}) {
     world::VehicleFallback fallback(SomeScenario());

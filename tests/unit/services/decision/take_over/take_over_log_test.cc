@@ -153,5 +153,59 @@ TEST(TakeOverLogTest, GivesAModeThatIsNoneANameOfItsOwn) {
   EXPECT_EQ(take_over::NameOfMode(77), "UNKNOWN");
 }
 
+// ---- emergency braking --------------------------------------------------------------------------
+
+arbitration_t Emergency(std::int64_t step, std::int8_t mode, double lambda_human = 0) {
+  arbitration_t command = Command(step, mode, -9);
+  command.lambda_human = lambda_human;
+  return command;
+}
+
+TEST(TakeOverLogTest, NamesBeginAndEndOfEmergencyBraking) {
+  take_over::TakeOverLog log;
+  Add(log, Command(0, arbitration_t::AUTOMATION));
+  Add(log, Emergency(1, arbitration_t::COLLISION_WARNING));
+  Add(log, Emergency(2, arbitration_t::COLLISION_WARNING));
+  Add(log, Emergency(3, arbitration_t::EMERGENCY_BRAKING));
+  Add(log, Emergency(4, arbitration_t::EMERGENCY_BRAKING));
+  Add(log, Emergency(5, arbitration_t::COLLISION_WARNING));
+  Add(log, Command(6, arbitration_t::AUTOMATION));
+  EXPECT_THAT(Texts(log), ElementsAre("activation of the automation", "collision warning begins",
+                                      "emergency braking begins", "emergency braking ends",
+                                      "collision warning begins", "collision warning ends"));
+  EXPECT_EQ(log.entries()[2].step, 3);
+  EXPECT_EQ(take_over::NameOfMode(log.entries()[2].from), "COLLISION_WARNING");
+  EXPECT_EQ(take_over::NameOfMode(log.entries()[2].to), "EMERGENCY_BRAKING");
+  EXPECT_THAT(Transfers(log), IsEmpty());
+}
+
+TEST(TakeOverLogTest, TellsATransferThatEmergencyBrakingHides) {
+  take_over::TakeOverLog log;
+  Add(log, Command(0, arbitration_t::AUTOMATION));
+  Add(log, Emergency(1, arbitration_t::EMERGENCY_BRAKING));
+  Add(log, Emergency(2, arbitration_t::EMERGENCY_BRAKING, 1));
+  Add(log, Command(3, arbitration_t::HUMAN, -9));
+  EXPECT_THAT(Texts(log), ElementsAre("activation of the automation", "emergency braking begins",
+                                      "transfer to the driver", "emergency braking ends"));
+  EXPECT_THAT(Transfers(log), ElementsAre(2));
+}
+
+TEST(TakeOverLogTest, TakesARequestBehindEmergencyBrakingForTheSame) {
+  take_over::TakeOverLog log;
+  Add(log, Command(0, arbitration_t::AUTOMATION));
+  Add(log, Command(1, arbitration_t::REQUEST));
+  Add(log, Emergency(2, arbitration_t::EMERGENCY_BRAKING));
+  Add(log, Emergency(3, arbitration_t::EMERGENCY_BRAKING));
+  Add(log, Command(4, arbitration_t::REQUEST));
+  Add(log, Emergency(5, arbitration_t::EMERGENCY_BRAKING));
+  Add(log, Command(6, arbitration_t::HANDOVER));
+  EXPECT_THAT(Texts(log),
+              ElementsAre("activation of the automation", "request to take over",
+                          "emergency braking begins", "emergency braking ends",
+                          "emergency braking begins", "acknowledgement", "emergency braking ends"));
+  EXPECT_THAT(log.requests(),
+              ElementsAre(take_over::TakeOverRequest{.requested = 1, .acknowledged = 6}));
+}
+
 }  // namespace
 }  // namespace fogline

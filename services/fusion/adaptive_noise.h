@@ -1,0 +1,50 @@
+// Noise variance of one measured value, which the filter estimates while it runs.
+#pragma once
+
+#include "scenario/sections/sensing.h"
+
+namespace fogline::fusion {
+
+/// One correction of the filter by a value z with Jacobian H. P- and P+ are the covariance right
+/// before and after this correction.
+struct CorrectionTrace {
+  double innovation = 0;          // d = z - h(x-)
+  double predicted_variance = 0;  // H P- H'
+  double residual = 0;            // e = z - h(x+)
+  double corrected_variance = 0;  // H P+ H'
+};
+
+/// The variance R of the value's noise. After each correction:
+///
+///     innovation  R <- max(R_0, a R + (1 - a) (d^2 - H P- H'))       Mehra 1972
+///     residual    R <- max(R_0, a R + (1 - a) (e^2 + H P+ H'))       Mohamed & Schwarz 1999;
+///                                                                    Akhlaghi, Zhou & Huang 2017
+///
+/// In a filter whose R is right, both terms in brackets have the mean R: d has the variance
+/// S = H P- H' + R, e has R^2 / S, and H P+ H' is R - R^2 / S.
+///
+/// R never falls below the assumed variance R_0, for three reasons. The term of the innovation may
+/// be negative. A sensor that is wrong but steady pulls the estimate to its side; then its
+/// innovations are small, and without the limit the filter would trust it more and more. And the
+/// assumed variance covers errors that are not white, such as a constant offset.
+class AdaptiveNoise {
+ public:
+  /// @param assumed_variance R_0, above 0
+  /// @param forgetting a, in [0, 1]
+  AdaptiveNoise(NoiseAdaptation rule, double assumed_variance, double forgetting);
+
+  /// R for the next correction.
+  double variance() const { return variance_; }
+
+  /// Call it after each correction by the value, and only then: a value that corrects nothing says
+  /// nothing about the noise of those that do.
+  void Learn(const CorrectionTrace& correction);
+
+ private:
+  NoiseAdaptation rule_;
+  double assumed_variance_;
+  double forgetting_;
+  double variance_;
+};
+
+}  // namespace fogline::fusion

@@ -1,0 +1,32 @@
+// The limit that the tyres of the preceding car set to its braking.
+#pragma once
+
+#include "scenario/sections/scenario.h"
+#include "services/models/vehicle/grade_profile.h"
+
+namespace fogline::world {
+
+/// The preceding car brakes with at most
+///
+///     g (mu cos(theta) + sin(theta)),   at least 0,
+///
+/// on a slope of angle theta, which is mu g on a level road. mu is the friction of road.surface
+/// (services/models/vehicle). So it is bound by the same road as the vehicles behind it. A point
+/// mass has no tyres; where all other cars are point masses, the preceding car is one, too, and has
+/// no limit.
+class LeaderFriction {
+ public:
+  /// @throw InputError if the profile states a braking that is nowhere possible on this road
+  LeaderFriction(const Scenario& scenario, models::GradeProfile road);
+
+  /// The acceleration with which the car can follow its profile, at this place.
+  /// @param profile_mps2 that of the profile
+  double Limited(double profile_mps2, double position_m) const;
+
+ private:
+  bool has_tyres_;
+  double friction_;
+  models::GradeProfile road_;
+};
+
+}  // namespace fogline::world
