@@ -24,8 +24,10 @@ std::vector<StudyVariant> EveryRule() {
     overrides.push_back(fmt::format("/arbitrator/policy={}", policy));
     variants.push_back({std::string(name), std::move(overrides)});
   };
-  add("none + gate", "none", {"/fusion/gating=true", "/fusion/gate_reopen_after=1000"});
+  add("none + gate", "none", {"/fusion/gating=true", "/fusion/gate_reopen_after=0"});
   add("none + reopening gate", "none", {"/fusion/gating=true"});
+  add("none + adaptive noise", "none", {"/fusion/adaptive_noise=residual"});
+  add("traded + hand-back by fusion", "traded", {"/arbitrator/transfer/hand_back=fusion"});
   add("request + isolate", "traded_isolating", {"/arbitrator/take_over/mode=requested"});
   return variants;
 }
@@ -73,8 +75,16 @@ constexpr std::array<std::string_view, 14> kPolicyTable{"si_pct",
                                                         "wrong_automation_s"};
 
 /// The rules of the first table.
-constexpr std::array<std::string_view, 8> kMain{"none",  "none + gate",       "isolate",  "traded",
-                                                "blend", "request + isolate", "adaptive", "oracle"};
+constexpr std::array<std::string_view, 10> kMain{"none",
+                                                 "none + gate",
+                                                 "none + adaptive noise",
+                                                 "isolate",
+                                                 "traded",
+                                                 "traded + hand-back by fusion",
+                                                 "request + isolate",
+                                                 "blend",
+                                                 "adaptive",
+                                                 "oracle"};
 
 /// Mean compromised safety of the main rules in each fog with each human.
 report::StudyTable PolicyMainTable(const Comparison& comparison) {
@@ -163,8 +173,10 @@ StudyResult RunPolicyStudy(const StudyContext& context) {
                           "Driving time of the automation on a wrong track, by policy")};
   section.method = fmt::format(
       "{} seeds of {}, each with every policy at its defaults and with rivals: a filter that "
-      "refuses outliers, with and without a gate that reopens after five refusals; and a driver "
-      "who must be asked, while the automation leaves out the sensor that is to blame. {} "
+      "refuses outliers, with and without a gate that reopens after five refusals; a filter that "
+      "adapts its noise; an automation that drives again only when its track agrees with both "
+      "sensors; and a driver who must be asked, while the automation leaves out the sensor that is "
+      "to blame. {} "
       "Realistic "
       "noise: a radar with a range noise of {} m. Calibrated radar: without its mounting offset, "
       "which is subtracted from the centre of the DoC. SI is the paper's, against the run without "

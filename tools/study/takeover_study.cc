@@ -29,11 +29,11 @@ struct Meanwhile {
 };
 
 std::vector<Meanwhile> Meanwhiles() {
-  return {{"stay", {"/arbitrator/policy=traded"}},
-          {"isolate", {"/arbitrator/policy=traded_isolating"}},
-          {"gate",
-           {"/arbitrator/policy=traded", "/fusion/gating=true", "/fusion/gate_reopen_after=1000"}},
-          {"slow down", {"/arbitrator/policy=traded", "/arbitrator/take_over/slow_down_mps2=0.5"}}};
+  return {
+      {"stay", {"/arbitrator/policy=traded"}},
+      {"isolate", {"/arbitrator/policy=traded_isolating"}},
+      {"gate", {"/arbitrator/policy=traded", "/fusion/gating=true", "/fusion/gate_reopen_after=0"}},
+      {"slow down", {"/arbitrator/policy=traded", "/arbitrator/take_over/slow_down_mps2=0.5"}}};
 }
 
 std::string LatencyName(std::string_view meanwhile, int latency_s, bool absent) {

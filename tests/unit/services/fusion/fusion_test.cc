@@ -336,7 +336,7 @@ TEST(FusionTest, AValueThatCorrectsNothingAdaptsNoNoise) {
     gated.fusion.gating = true;
     gated.fusion.gate_reopen_after = 0;
     Scenario isolating = Adapting(rule);
-    isolating.arbitrator.policy = policies::FindPolicy("isolate").value();
+    isolating.arbitrator.policy = test::FindPolicy("isolate").value();
     for (const Scenario& scenario : {gated, isolating}) {
       fusion::Fusion fusion(scenario);
       int k = 0;
