@@ -6,7 +6,7 @@
 
 #include "scenario/sections/scenario.h"
 #include "services/metrics/sample.h"
-#include "services/metrics/track_judge.h"
+#include "services/metrics/track/track_judge.h"
 
 namespace fogline::metrics {
 

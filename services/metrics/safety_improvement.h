@@ -10,8 +10,8 @@
 
 #include "scenario/sections/scenario.h"
 #include "services/metrics/sample.h"
-#include "services/metrics/track_judge.h"
-#include "services/metrics/until_recovery.h"
+#include "services/metrics/track/track_judge.h"
+#include "services/metrics/track/until_recovery.h"
 
 namespace fogline::metrics {
 

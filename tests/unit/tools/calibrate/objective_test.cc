@@ -119,7 +119,7 @@ TEST(ObjectiveTest, NeedsAPolicyWithAThreshold) {
   problem.scenario.arbitrator.policy = Policy::kNone;
   EXPECT_EQ(test::ErrorOf([&] { const calibrate::Objective objective(problem); }),
             "scenario: error: /arbitrator/policy is none, which uses no threshold; these policies "
-            "do: traded, adaptive, availability");
+            "do: traded, adaptive, availability, traded_isolating");
 }
 
 TEST(CalibrateTest, IsNeverWorseThanTheStart) {

@@ -153,7 +153,7 @@ TEST(ClaimsTest, ManyClaimsNeedMoreEvidenceThanOne) {
   const std::vector<report::StudyClaim> two = study::CheckClaims(std::array{claim, claim}, false);
   EXPECT_EQ(two[0].state, report::ClaimState::kFails);
   EXPECT_EQ(study::FailedText("policy", two).substr(0, 36),
-            "study policy: 2 of 2 claims fail:\n  I");
+            "study policy: 2 of 2 claims fail:\n  ");
   EXPECT_EQ(study::FailedText("policy", std::array{CheckOne(claim)}), "");
 }
 

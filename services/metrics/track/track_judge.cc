@@ -1,4 +1,4 @@
-#include "services/metrics/track_judge.h"
+#include "services/metrics/track/track_judge.h"
 
 #include <algorithm>
 

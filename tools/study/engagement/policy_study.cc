@@ -7,7 +7,7 @@
 #include "services/decision/policies/policies.h"
 #include "tools/study/claims.h"
 #include "tools/study/comparison.h"
-#include "tools/study/fog_modes.h"
+#include "tools/study/engagement/fog_modes.h"
 #include "tools/study/study.h"
 
 namespace fogline::study {

@@ -1,4 +1,4 @@
-#include "tools/study/fog_modes.h"
+#include "tools/study/engagement/fog_modes.h"
 
 #include <fmt/format.h>
 
