@@ -51,7 +51,7 @@ void TakeOverLog::Add(const arbitration_t& command, std::optional<double> human_
 }
 
 std::int8_t TakeOverLog::DecidedMode(const arbitration_t& command) const {
-  if (!models::InEmergency(command.mode)) return command.mode;
+  if (!InEmergency(command.mode)) return command.mode;
   if (last_ && !requests_.empty()) return last_->mode;
   return HumanDrives(command.lambda_human) ? arbitration_t::HUMAN : arbitration_t::AUTOMATION;
 }

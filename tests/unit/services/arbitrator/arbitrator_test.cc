@@ -439,7 +439,7 @@ TEST(ArbitratorTest, BrakesInAManoeuvreUnderTheManoeuvresMode) {
   std::int8_t mode = arbitration_t::AUTOMATION;
   for (; mode != arbitration_t::MRM_COMFORT && m.ego.header.step < 300; ++m.ego.header.step) {
     mode = Step(arbitrator, m).mode;
-    ASSERT_FALSE(models::InEmergency(mode));
+    ASSERT_FALSE(InEmergency(mode));
   }
   ASSERT_EQ(mode, arbitration_t::MRM_COMFORT);
   m.track.state[0] = 5;
