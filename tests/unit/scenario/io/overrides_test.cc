@@ -64,7 +64,7 @@ TEST(OverrideTest, IsNamedWithFieldRangeAndSuggestion) {
             "\"fast\"");
   EXPECT_EQ(ErrorOf("/fog/model=beem"),
             "--set /fog/model=beem: error: /fog/model: \"beem\" is not one of \"none\", \"bias\", "
-            "\"beam\"; did you mean \"beam\"?");
+            "\"beam\", \"modes\"; did you mean \"beam\"?");
 }
 
 TEST(OverrideTest, SuggestsTheFieldThatIsMeant) {

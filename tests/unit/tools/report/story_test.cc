@@ -60,11 +60,14 @@ TEST(StoryTest, TellsOfFogOfItsConsequenceAndOfEveryThreshold) {
       MatchesRegex(
           "In fog from 19 s to 30 s the LiDAR read up to 0\\.[0-9]+ m short and had no echo "
           "for 0\\.2 s; without traded control the following car came [0-9.]+ [cm]?m too "
-          "close \\([0-9.]+ [cm]?m on average in the fog\\) and the host slowed down by [0-9.]+ m/s; "
+          "close \\([0-9.]+ [cm]?m on average in the fog\\) and the host slowed down by [0-9.]+ "
+          "m/s; "
           "at threshold 0\\.2 the human drove all the time and 100 % of that was avoided, which "
           "leaves [0-9a-z. ]+; at threshold 0\\.5 the human drove for [0-9.]+ s and 81 % of that "
-          "was avoided, which leaves (less than )?[0-9.]+ [cm]?m on average; at threshold 0\\.8 the human drove "
-          "for [0-9.]+ s and 10 % of that was avoided, which leaves (less than )?[0-9.]+ [cm]?m on average\\."));
+          "was avoided, which leaves (less than )?[0-9.]+ [cm]?m on average; at threshold 0\\.8 "
+          "the human drove "
+          "for [0-9.]+ s and 10 % of that was avoided, which leaves (less than )?[0-9.]+ [cm]?m on "
+          "average\\."));
 }
 
 TEST(StoryTest, HasTheNumbersOfTheSamples) {

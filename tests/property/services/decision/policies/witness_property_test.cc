@@ -1,4 +1,5 @@
 // The witness of the measures of conflict: the filter's prediction, reconstructed from messages.
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <optional>
@@ -78,8 +79,9 @@ void ExpectTheFiltersPrediction(const Scenario& scenario) {
         ++predictions;
         const double measured = step.radar.valid ? step.radar.range_m : step.lidar.range_m;
         EXPECT_DOUBLE_EQ(seen.range_m, measured - track.innovation[value]);
-        // Both subtract numbers of the size of the noise, R up to some m2.
-        ASSERT_NEAR(seen.std_m * seen.std_m, recursion.Variance(track, value), 1e-9)
+        // Both subtract numbers of the size of S.
+        const double rounding = 1e-9 * std::max(1.0, track.innovation_variance[value]);
+        ASSERT_NEAR(seen.std_m * seen.std_m, recursion.Variance(track, value), rounding)
             << "seed " << seed << ", step " << k;
       }
       recursion.Learn(track);
