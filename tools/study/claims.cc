@@ -49,21 +49,6 @@ bool HasSign(const Claim& claim) {
   return false;
 }
 
-/// Whether the interval excludes what the claim says.
-bool IsContradicted(const Claim& claim) {
-  const Estimate& difference = claim.difference;
-  if (!difference.has_interval()) return false;
-  switch (claim.sign) {
-    case Sign::kLess:
-      return difference.low >= 0;
-    case Sign::kMore:
-      return difference.high <= 0;
-    case Sign::kEqual:
-      return difference.low > claim.margin || difference.high < -claim.margin;
-  }
-  return false;
-}
-
 std::string_view ExpectedText(Sign sign) {
   switch (sign) {
     case Sign::kLess:
@@ -85,10 +70,11 @@ std::string FoundText(const Claim& claim, double p) {
 }
 
 report::ClaimState StateOf(const Claim& claim, double p, bool few_runs) {
-  if (!claim.hindrance.empty()) return report::ClaimState::kFails;
-  if (HasSign(claim) && p < kLevel) return report::ClaimState::kHolds;
-  return few_runs && !IsContradicted(claim) ? report::ClaimState::kOpen
-                                            : report::ClaimState::kFails;
+  const bool significant = claim.hindrance.empty() && p < kLevel;
+  if (significant && HasSign(claim)) return report::ClaimState::kHolds;
+  // Few runs can only show the opposite of a sign.
+  const bool opposite = significant && claim.sign != Sign::kEqual;
+  return few_runs && !opposite ? report::ClaimState::kOpen : report::ClaimState::kFails;
 }
 
 }  // namespace

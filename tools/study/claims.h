@@ -35,8 +35,8 @@ Claim LevelClaim(const Comparison& comparison, std::string says, CellName cell,
 double PValueOf(const Claim& claim);
 
 /// Checks the claims of one study together. A claim holds if the difference has its sign and the
-/// p-value adjusted by Holm is below 5 %. It fails if it does not hold. With `few_runs`, a claim
-/// that the numbers do not contradict stays open instead.
+/// p-value adjusted by Holm is below 5 %. It fails if it does not hold. With `few_runs` it fails
+/// only if the opposite sign has such a p-value, and stays open otherwise.
 std::vector<report::StudyClaim> CheckClaims(std::span<const Claim> claims, bool few_runs);
 
 /// "policy: 2 of 9 claims fail"; "" if none does.

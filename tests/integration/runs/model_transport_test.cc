@@ -84,7 +84,8 @@ TEST(EmergencyBrakingTest, IsToldByTheLogAlone) {
   const Outcome outcome = RunCommand({Program("fogline"), "events", log, "--json"});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   std::vector<std::string> events;
-  for (const auto& event : nlohmann::json::parse(outcome.out).at(0).at("events")) {
+  const nlohmann::json said = nlohmann::json::parse(outcome.out);
+  for (const auto& event : said.at(0).at("events")) {
     events.push_back(event.at("event"));
   }
   EXPECT_THAT(events, Contains("collision warning begins"));

@@ -120,8 +120,9 @@ TEST_F(SetupTest, SaysWhyNpmFailed) {
     const Outcome outcome = Setup();
     EXPECT_EQ(outcome.code, 3);
     EXPECT_EQ(outcome.out, "");
-    EXPECT_THAT(outcome.err, AllOf(HasSubstr("\nno network\ntools/setup: error: npm ci failed"),
-                                   EndsWith(" lacks what package-lock.json names\n")));
+    EXPECT_THAT(outcome.err,
+                AllOf(HasSubstr("\nno network\ntools/setup: error: npm ci failed"),
+                      EndsWith("so node_modules/ lacks packages of package-lock.json\n")));
   }
 }
 

@@ -153,7 +153,8 @@ TEST(StudyVerbTest, LeavesEachClaimOpenWithASingleRun) {
 TEST(StudyVerbTest, AnswersInAtMostThreeSentencesWithoutNumbers) {
   const ScratchFolder folder;
   const Outcome made = Study({"all", "--seeds", "1", "--out", folder.path(), "--json"});
-  for (const auto& study : nlohmann::json::parse(made.out)["studies"]) {
+  const nlohmann::json said = nlohmann::json::parse(made.out);
+  for (const auto& study : said["studies"]) {
     const std::string answer = study["answer"];
     EXPECT_LE(std::ranges::count(answer, '.'), 3) << answer;
     EXPECT_TRUE(answer.ends_with('.')) << answer;
@@ -167,7 +168,8 @@ TEST(StudyVerbTest, EveryFindingRestsOnClaimsOfItsStudies) {
   const Outcome made = Study({"all", "--seeds", "1", "--out", folder.path(), "--json"});
   ASSERT_EQ(made.code, 0) << made.err;
   std::set<std::string> claims;
-  for (const auto& study : nlohmann::json::parse(made.out)["studies"]) {
+  const nlohmann::json said = nlohmann::json::parse(made.out);
+  for (const auto& study : said["studies"]) {
     for (const auto& claim : study["claims"]) {
       claims.insert(study["name"].get<std::string>() + ": \"" + claim["says"].get<std::string>() +
                     '"');

@@ -137,7 +137,7 @@ std::string ErrorOf(const std::vector<std::string>& more) {
 TEST(TableArgumentsTest, RefuseToSetWhatTheTableVariesItself) {
   EXPECT_EQ(ErrorOf({"--set", "/arbitrator/policy=none"}),
             "scenario/paper.json: error: /arbitrator/policy is none, which uses no threshold; "
-            "these policies do: traded, adaptive, availability\n");
+            "these policies do: traded, adaptive, availability, traded_isolating\n");
   EXPECT_THAT(ErrorOf({"--set", "/arbitrator/policy=isolate"}),
               HasSubstr("/arbitrator/policy is isolate, which uses no threshold"));
   const ScratchFolder folder;
