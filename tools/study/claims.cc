@@ -70,11 +70,8 @@ std::string FoundText(const Claim& claim, double p) {
 }
 
 report::ClaimState StateOf(const Claim& claim, double p, bool few_runs) {
-  const bool significant = claim.hindrance.empty() && p < kLevel;
-  if (significant && HasSign(claim)) return report::ClaimState::kHolds;
-  // Few runs can only show the opposite of a sign.
-  const bool opposite = significant && claim.sign != Sign::kEqual;
-  return few_runs && !opposite ? report::ClaimState::kOpen : report::ClaimState::kFails;
+  if (claim.hindrance.empty() && HasSign(claim) && p < kLevel) return report::ClaimState::kHolds;
+  return few_runs ? report::ClaimState::kOpen : report::ClaimState::kFails;
 }
 
 }  // namespace

@@ -35,8 +35,7 @@ Claim LevelClaim(const Comparison& comparison, std::string says, CellName cell,
 double PValueOf(const Claim& claim);
 
 /// Checks the claims of one study together. A claim holds if the difference has its sign and the
-/// p-value adjusted by Holm is below 5 %. It fails if it does not hold. With `few_runs` it fails
-/// only if the opposite sign has such a p-value, and stays open otherwise.
+/// p-value adjusted by Holm is below 5 %. Otherwise it fails; with `few_runs` it stays open.
 std::vector<report::StudyClaim> CheckClaims(std::span<const Claim> claims, bool few_runs);
 
 /// "policy: 2 of 9 claims fail"; "" if none does.

@@ -96,7 +96,7 @@ TEST(StudyVerbTest, MakesEveryStudyOfOneSeedIntoOnePage) {
   const std::string page = Read(folder.File("studies.html"));
   EXPECT_THAT(page, StartsWith("<!DOCTYPE html>"));
   const nlohmann::json said = nlohmann::json::parse(all.out);
-  EXPECT_EQ(said["studies"].size(), 7U);
+  EXPECT_EQ(said["studies"].size(), 8U);
   for (const auto& study : said["studies"]) {
     EXPECT_THAT(page, HasSubstr("<section id=\"" + study["name"].get<std::string>() + "\""));
     EXPECT_FALSE(study["claims"].empty()) << study["name"];

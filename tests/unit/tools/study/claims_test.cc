@@ -72,8 +72,7 @@ TEST(ClaimsTest, AClaimHoldsByItsSignAndFailsWhenItIsTurnedAround) {
   EXPECT_EQ(right.expected, "less");
   EXPECT_THAT(right.found, HasSubstr("p < 0.001"));
   EXPECT_EQ(CheckOne(runs.ClaimThat(study::Sign::kMore)).state, report::ClaimState::kFails);
-  EXPECT_EQ(CheckOne(runs.ClaimThat(study::Sign::kMore), true).state, report::ClaimState::kFails)
-      << "a contradiction counts with few runs, too";
+  EXPECT_EQ(CheckOne(runs.ClaimThat(study::Sign::kMore), true).state, report::ClaimState::kOpen);
 }
 
 TEST(ClaimsTest, EqualMeansCloserThanTheMargin) {
