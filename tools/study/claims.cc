@@ -117,6 +117,7 @@ Claim LevelClaim(const Comparison& comparison, std::string says, CellName cell,
 }
 
 double PValueOf(const Claim& claim) {
+  if (!claim.hindrance.empty()) return 1;
   if (claim.sign == Sign::kEqual) return PValueOfEqual(claim.difference, claim.margin);
   return claim.p.value_or(PValueOfSign(claim.difference));
 }

@@ -13,6 +13,10 @@
 
 namespace fogline::study {
 
+/// A difference of compromised safety that does not matter, m: our choice, because it is an eighth
+/// of the effect of the fog in paper.json, 0.015 m, and far below what a driver notices.
+inline constexpr double kNoShortfall_m = 0.002;
+
 /// A variant in a case, by their names.
 struct CellName {
   std::string_view test_case;
@@ -31,7 +35,7 @@ Claim ClaimOf(const Comparison& comparison, std::string says, CellName a, CellNa
 Claim LevelClaim(const Comparison& comparison, std::string says, CellName cell,
                  std::string_view measure, Sign sign, double level, double margin = 0);
 
-/// p-value of the claim, not adjusted.
+/// p-value of the claim, not adjusted; 1 if something hinders the comparison.
 double PValueOf(const Claim& claim);
 
 /// Checks the claims of one study together. A claim holds if the difference has its sign and the

@@ -156,29 +156,6 @@ Estimate Comparison::Point(Cell cell, std::string_view measure) const {
   return mean;
 }
 
-metrics::EventShare Comparison::AtMost(Cell cell, std::string_view measure, double limit) const {
-  std::int64_t events = 0;
-  std::int64_t runs = 0;
-  for (const double value : Values(cell, measure)) {
-    if (std::isnan(value)) continue;
-    ++runs;
-    if (value <= limit) ++events;
-  }
-  return runs == 0 ? metrics::EventShare{} : metrics::ClopperPearson(events, runs);
-}
-
-std::span<const double> Comparison::AllOf(Cell cell) const {
-  const std::size_t length = ComparedMetrics().size() * static_cast<std::size_t>(seeds_);
-  const std::size_t place = cell.test_case * variants_.size() + cell.variant;
-  return std::span(values_).subspan(place * length, length);
-}
-
-bool Comparison::HasSameRuns(Cell a, Cell b) const {
-  return std::ranges::equal(AllOf(a), AllOf(b), [](double x, double y) {
-    return x == y || (std::isnan(x) && std::isnan(y));
-  });
-}
-
 std::int64_t Comparison::PairsCutShort(Cell a, Cell b) const {
   const std::span<const double> crash_a = Values(a, "collided");
   const std::span<const double> crash_b = Values(b, "collided");

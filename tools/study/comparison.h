@@ -88,11 +88,6 @@ class Comparison {
   /// A measure with its interval, for figures and files: as Mean(), but the interval of "collided"
   /// is that of Collisions().
   Estimate Point(Cell cell, std::string_view measure) const;
-  /// Share of runs in which a measure is at most `limit`, among the runs that have it. `runs` is 0
-  /// if no run has it.
-  metrics::EventShare AtMost(Cell cell, std::string_view measure, double limit) const;
-  /// Whether two cells have the same runs: every measure, seed by seed.
-  bool HasSameRuns(Cell a, Cell b) const;
   /// Number of pairs of runs in which at least one run ends early: it collides, or the two runs
   /// differ in length. Sums and means over time then lack the part after the end.
   std::int64_t PairsCutShort(Cell a, Cell b) const;
@@ -123,8 +118,6 @@ class Comparison {
   /// The differences from variant `reference`, by case, variant and measure; those of the reference
   /// itself are empty.
   std::vector<Estimate> Differences(std::size_t reference) const;
-  /// All values of a cell, measure by measure.
-  std::span<const double> AllOf(Cell cell) const;
 
   std::vector<StudyCase> cases_;
   std::vector<StudyVariant> variants_;

@@ -80,16 +80,7 @@ report::StudyFigure OverDensity(const Comparison& comparison, std::string_view m
     series.name = name;
     for (std::size_t i = kDensities_m.size(); i-- > 0;) {
       const Cell cell{first + 2 * i + driver, variant};
-      Estimate mean = comparison.Mean(cell, measure);
-      if (measure == "collided") {
-        const metrics::EventShare share = comparison.Collisions(cell);
-        mean.low = share.lower;
-        mean.high = share.upper;
-      }
-      series.x.push_back(kDensities_m[i]);
-      series.y.push_back(mean.mean);
-      series.low.push_back(mean.low);
-      series.high.push_back(mean.high);
+      AddPoint(series, kDensities_m[i], comparison.Point(cell, measure));
     }
   }
   return figure;
@@ -97,7 +88,7 @@ report::StudyFigure OverDensity(const Comparison& comparison, std::string_view m
 
 constexpr std::string_view kDriverAnswer =
     "In dense fog traded control helps with every driver of this study, but an imperfect human "
-    "leaves far more danger than the paper's driver. In thin fog it makes no difference. In the "
+    "leaves more danger than the paper's driver. In thin fog it makes no difference. In the "
     "paper's fog, whose effect is small, a human who misjudges distances does harm.";
 constexpr std::string_view kDriverWouldChange =
     "A driver who needs time to take over (study takeover), or larger errors of the human.";

@@ -18,7 +18,7 @@ constexpr Study kStudies[] = {
      "Who should drive in fog",
      "What do hand-over, isolation of the deceived sensor and shared control do to safety and "
      "comfort?",
-     {1, 1000},
+     {1, 500},
      RunPolicyStudy},
     {"takeover",
      "A driver who needs time",

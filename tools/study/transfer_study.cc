@@ -49,7 +49,7 @@ constexpr std::string_view kTransferAnswer =
     "of "
     "a plain step is comfortable in both scenarios. A ramp costs safety in the paper's scenario; "
     "in "
-    "dense fog a gate avoids most of the jerk that is left, and costs no safety.";
+    "dense fog a gate avoids jerk, and costs no safety.";
 constexpr std::string_view kTransferWouldChange =
     "A driver who needs time to take over (study takeover), a car whose engine smooths each "
     "command "
@@ -62,18 +62,18 @@ std::vector<Claim> TransferClaims(const Comparison& comparison) {
   return {
       LevelClaim(comparison, "In the paper's scenario the step is comfortable.", step,
                  kTransferJerk, Sign::kLess, kComfortableJerk_mps3),
-      LevelClaim(comparison, "In dense fog it is, too.", step_in_dense_fog, kTransferJerk,
-                 Sign::kLess, kComfortableJerk_mps3),
+      LevelClaim(comparison, "In dense fog the step is comfortable, too.", step_in_dense_fog,
+                 kTransferJerk, Sign::kLess, kComfortableJerk_mps3),
       ClaimOf(comparison, "In the paper's scenario a linear ramp costs safety.",
               {kPaperFog, "linear"}, step, "si_pct", Sign::kLess),
-      ClaimOf(comparison, "So does a sigmoid ramp.", {kPaperFog, "sigmoid"}, step, "si_pct",
-              Sign::kLess),
-      ClaimOf(comparison, "A jerk limit costs no safety there.", {kPaperFog, "jerk_limited"}, step,
-              "si_pct", Sign::kEqual, kTolerableLoss),
+      ClaimOf(comparison, "In the paper's scenario a sigmoid ramp costs safety.",
+              {kPaperFog, "sigmoid"}, step, "si_pct", Sign::kLess),
+      ClaimOf(comparison, "In the paper's scenario a jerk limit costs no safety.",
+              {kPaperFog, "jerk_limited"}, step, "si_pct", Sign::kEqual, kTolerableLoss),
       ClaimOf(comparison, "In dense fog the gate avoids jerk.", gate_in_dense_fog,
               step_in_dense_fog, kTransferJerk, Sign::kLess),
-      ClaimOf(comparison, "The gate costs no safety there.", gate_in_dense_fog, step_in_dense_fog,
-              "si_pct", Sign::kEqual, kTolerableLoss),
+      ClaimOf(comparison, "In dense fog the gate costs no safety.", gate_in_dense_fog,
+              step_in_dense_fog, "si_pct", Sign::kEqual, kTolerableLoss),
   };
 }
 

@@ -120,7 +120,8 @@ std::vector<Claim> VehicleClaims(const Comparison& comparison) {
   claims.push_back(ClaimOf(comparison, "A truck has less than a sedan.",
                            {"beam fog: truck", "traded"}, {"beam fog: sedan", "traded"}, "si_pct",
                            Sign::kLess));
-  for (const std::string_view car : {"point mass", "sedan", "truck", "compact"}) {
+  for (const std::string_view car :
+       {"point mass", "sedan", "truck", "truck behind a sedan", "truck uphill 2 %", "compact"}) {
     const std::string name = fmt::format("hard braking in beam fog: {}", car);
     add(fmt::format("It does harm: {}.", name), name, "traded", "none", kShortfall, Sign::kMore);
   }

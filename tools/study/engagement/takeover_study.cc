@@ -103,11 +103,7 @@ report::StudyFigure OverLatency(const Comparison& comparison, std::string_view t
       .y_label = NameForReaders(measure)};
   const std::size_t c = comparison.CaseNamed(test_case);
   const auto add_point = [&](report::StudySeries& series, int latency_s, std::string_view name) {
-    const Estimate mean = comparison.Mean({c, comparison.VariantNamed(name)}, measure);
-    series.x.push_back(latency_s);
-    series.y.push_back(mean.mean);
-    series.low.push_back(mean.low);
-    series.high.push_back(mean.high);
+    AddPoint(series, latency_s, comparison.Point({c, comparison.VariantNamed(name)}, measure));
   };
   report::StudySeries& none = figure.series.emplace_back();
   none.name = "without traded control";
@@ -167,8 +163,6 @@ constexpr std::string_view kTakeOverWouldChange =
     "A warning before the fog begins, or fog that lasts much longer than a request.";
 
 std::vector<Claim> TakeOverClaims(const Comparison& comparison) {
-  // A fifth of the smallest effect of fog in paper.json without traded control.
-  constexpr double kNothing_m = 0.002;
   const auto stay = [](int latency_s) { return LatencyName("stay", latency_s, false); };
   const auto isolate = [](int latency_s) { return LatencyName("isolate", latency_s, false); };
   const std::string none(kNoTradedControl);
@@ -184,14 +178,14 @@ std::vector<Claim> TakeOverClaims(const Comparison& comparison) {
   return {
       claim("In bias fog a wait of one second costs safety.", bias, stay(1), stay(0), Sign::kMore),
       claim("A wait of three seconds leaves nothing of the gain.", bias, stay(3), none,
-            Sign::kEqual, kNothing_m),
+            Sign::kEqual, kNoShortfall_m),
       claim("A wait of five seconds does harm.", bias, stay(5), none, Sign::kMore),
       claim("A fallible human does harm there without any wait.", fallible, stay(0), none,
             Sign::kMore),
       claim("With a false echo a wait of five seconds does harm.", near, stay(5), none,
             Sign::kMore),
       claim("It costs nothing if the deceived sensor is left out meanwhile.", near, isolate(5),
-            isolate(0), Sign::kEqual, kNothing_m),
+            isolate(0), Sign::kEqual, kNoShortfall_m),
       claim("That is safer than a driver without any wait.", near, isolate(5), stay(0),
             Sign::kLess),
       claim("Without an echo no traded control is safer than any.", missing, none, stay(0),

@@ -86,10 +86,11 @@ const std::vector<StudyVariant> kVariants{{"none", {"/arbitrator/policy=none"}},
                                           {"traded", {"/arbitrator/policy=traded"}}};
 
 constexpr std::string_view kFollowersAnswer =
-    "Traded control helps an ACC that follows the host. It does not help a human follower, whose "
-    "own "
-    "fluctuations are larger than the effect, and a follower with a safety model needs no help. "
-    "Behind a host in beam fog it spares every string of cars the hard braking.";
+    "It helps an ACC that follows the host. In the paper's fog it does nothing for a human "
+    "follower, "
+    "whose own fluctuations are larger than the effect; with a false echo an aggressive one comes "
+    "closer still. The last car of a string brakes less hard, whatever kind of driver the string "
+    "has.";
 constexpr std::string_view kFollowersWouldChange =
     "Followers with automatic emergency braking, or a host that brakes harder.";
 
@@ -98,18 +99,16 @@ std::vector<Claim> ClaimsOnFirst(const Comparison& comparison) {
     return ClaimOf(comparison, std::move(says), {name, "traded"}, {name, "none"}, kShortfall, sign,
                    margin);
   };
-  // A centimetre is less than any driver notices.
-  constexpr double kNothing_m = 0.01;
   return {claim("In bias fog it helps an ACC.", "bias fog: acc", Sign::kLess),
           claim("In beam fog it helps an ACC.", "beam fog: acc", Sign::kLess),
           claim("In bias fog it does nothing for a normal human.", "bias fog: normal human",
-                Sign::kEqual, kNothing_m),
+                Sign::kEqual, kNoShortfall_m),
           claim("In bias fog it does nothing for a cautious human.", "bias fog: cautious human",
-                Sign::kEqual, kNothing_m),
+                Sign::kEqual, kNoShortfall_m),
           claim("In beam fog it does harm with an aggressive human.", "beam fog: aggressive human",
                 Sign::kMore),
           claim("With RSS nothing is left to improve.", "beam fog: normal human with RSS",
-                Sign::kEqual, kNothing_m)};
+                Sign::kEqual, kNoShortfall_m)};
 }
 
 /// For each kind of string: the last car brakes less hard behind a host with traded control.
@@ -130,7 +129,8 @@ std::vector<Claim> ClaimsOnStrings(std::span<const StringOutcome> strings) {
                                         none->cars[kStringCars].max_deceleration_mps2),
          .margin = 0,
          .p = {},
-         .hindrance = {}});
+         .hindrance =
+             traded.collisions + none->collisions > 0 ? "not comparable: runs end early" : ""});
   }
   return claims;
 }

@@ -74,9 +74,8 @@ std::string ThresholdText(const MixedRuns& mixed, const CurvePlace& place) {
 constexpr std::string_view kThresholdAnswer =
     "No. In a mix of situations, whatever engages the human less in clear air is also safer, so "
     "the "
-    "best rule hardly ever hands over. At equal engagement no rule that follows the situation is "
-    "clearly better than a fixed threshold, except that dropping the deceived sensor gains a "
-    "little.";
+    "best rule hardly ever hands over. At equal engagement an adaptive threshold does not beat a "
+    "fixed one; dropping the deceived sensor gains a little.";
 constexpr std::string_view kThresholdWouldChange =
     "Situations in which the automation is deceived for longer, or humans who never err.";
 
@@ -110,7 +109,10 @@ Claim AtEqualRhe(const MixedRuns& mixed, const Beside& beside, std::string says,
           .difference = one.difference,
           .margin = margin,
           .p = {},
-          .hindrance = one.place ? "" : "its RHE is beyond that of every fixed threshold"};
+          .hindrance = !one.place ? "its RHE is beyond that of every fixed threshold"
+                       : one.verdict() == Verdict::kUndecided && sign != Sign::kEqual
+                           ? "not farther from 0 than the possible error of the curve"
+                           : ""};
 }
 
 std::vector<Claim> ThresholdClaims(const MixedRuns& mixed, const Beside& beside) {
@@ -248,12 +250,11 @@ std::string ThresholdMethod(const MixedRuns& mixed, const Beside& beside) {
       "curve of mean SI over mean RHE. The curve is straight between neighbours, which are at most "
       "{:.1f} points of RHE apart. A rule is compared with the point of the curve that has its "
       "RHE. If several thresholds have this RHE, the best of them counts (those above all conflict "
-      "in clear air have an RHE of 0). The number after ± is the possible error of the curve at "
-      "that point: the distance of the thresholds on either side from the curve of the others, "
-      "weighted less the nearer the point is to one of them. A difference is not decided if its "
-      "interval is not farther from 0 than this error. At an RHE of almost 0 the curve jumps. So a "
-      "rule is also compared with the best fixed threshold of at most its RHE. The rule is called "
-      "dominated if that threshold has more SI by its interval. Intervals: {} resamples of the "
+      "in clear air have an RHE of 0). The possible error of the curve at that point is the "
+      "distance "
+      "of the thresholds on either side from the curve of the others, weighted less the nearer the "
+      "point is to one of them. A claim whose interval is not farther from 0 than this error does "
+      "not hold. Intervals: {} resamples of the "
       "situations, each with its own curve. So they contain the noise of equal situations, the RHE "
       "of both sides and the choice of the best. SI is a mean of ratios of small numbers, so "
       "compromised safety in metres is beside it.",

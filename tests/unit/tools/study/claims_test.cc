@@ -124,8 +124,6 @@ TEST(ClaimsTest, RunsThatEndEarlyProveNothingAboutOtherMeasures) {
 }
 
 TEST(ClaimsTest, ALevelIsComparedWithTheMean) {
-  Runs runs;
-  runs.Compromise(1, 0.02);
   const study::Comparison comparison({{"fog", "paper.json", {}}}, {{"none", {}}}, 2,
                                      std::vector<double>(study::ComparedMetrics().size() * 2, 3));
   const study::Claim claim = study::LevelClaim(comparison, "It is more.", {"fog", "none"},

@@ -80,5 +80,23 @@ TEST(VerdictTest, IsUndecidedWhereTheIntervalHasZeroInIt) {
             study::Verdict::kLess);
 }
 
+// By hand, with Student's t of three degrees of freedom: mean 1, standard error 1/2, so t is 2 for
+// the sign, and (2 - 1) / (1/2) = 2 for the margin 2. P(T > 2) = 0.069663.
+TEST(PValueTest, IsThatOfStudentsT) {
+  const double root = std::sqrt(1.5);  // four values with mean 1 and standard deviation 1
+  const std::vector<double> values{1 - root, 1, 1, 1 + root};
+  const study::Estimate estimate = study::EstimateOf(values);
+  ASSERT_NEAR(estimate.deviation, 1, 1e-12);
+  constexpr double kTail = 0.069663;
+  EXPECT_NEAR(study::PValueOfSign(estimate), 2 * kTail, 1e-6);
+  EXPECT_NEAR(study::PValueOfEqual(estimate, 2), kTail, 1e-6);
+  EXPECT_NEAR(study::PValueOfEqual(estimate, 0), 1 - kTail, 1e-6);
+}
+
+TEST(PValueTest, IsOneWithoutAnInterval) {
+  EXPECT_EQ(study::PValueOfSign(study::EstimateOf(std::vector<double>{3})), 1);
+  EXPECT_EQ(study::PValueOfEqual(study::EstimateOf(std::vector<double>{3}), 10), 1);
+}
+
 }  // namespace
 }  // namespace fogline
