@@ -47,15 +47,16 @@ std::size_t CountFigures() {
   return count;
 }
 
+/// The figures in a folded part are drawn when the part is unfolded.
+constexpr std::string_view kUnfold = R"(
+    document.querySelectorAll("details.more-figures").forEach((e) => { e.open = true; });
+    await settled();)";
+
 class StudyInBrowserTest : public BrowserTest {
  protected:
   json Show(ViewSize window, std::string_view script, Scheme scheme = Scheme::kLight) {
-    // The figures in a folded part are drawn when the part is unfolded.
-    const std::string unfold =
-        "document.querySelectorAll(\"details.more-figures\").forEach((e) => { e.open = true; });\n"
-        "await settled();\n";
     return BrowserTest::Show(report::MakeStudyPage("fogline study all", Sections()), window,
-                             unfold + std::string(script), scheme);
+                             std::string(kUnfold) + std::string(script), scheme);
   }
 };
 
@@ -99,8 +100,8 @@ TEST_F(StudyInBrowserTest, SaysIfAnAxisSpansLessThanAHundredthOfTheValueAndOffer
     figure.categories = {"one", "other"};
     figure.series = {{.name = "series", .x = {0, 1}, .y = {100, 100.5}}};
   }
-  const json found =
-      BrowserTest::Show(report::MakeStudyPage("fogline study narrow", {&section, 1}), kDesktop, R"(
+  const json found = BrowserTest::Show(report::MakeStudyPage("fogline study narrow", {&section, 1}),
+                                       kDesktop, std::string(kUnfold) + R"(
     const line = (id) => document.querySelector(`#${id} .span-note`);
     const {chart} = charts[0];
     const axis = () => [chart.scales.y.min, chart.scales.y.max];
@@ -114,7 +115,7 @@ TEST_F(StudyInBrowserTest, SaysIfAnAxisSpansLessThanAHundredthOfTheValueAndOffer
     line("linear").querySelector("input").click();
     await settled();
     found.back = axis();)",
-                        Scheme::kLight);
+                                       Scheme::kLight);
   EXPECT_THAT(found["problems"], SizeIs(0)) << found;
   EXPECT_EQ(found["note"], "axis spans 0.55 % of the valuefrom zero");
   EXPECT_EQ(found["hidden"], json::parse("[false, true]"));
