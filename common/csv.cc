@@ -88,7 +88,7 @@ std::vector<std::vector<CsvNumber>> ReadCsvColumns(std::string_view text,
   Lines lines(text);
   lines.Next();  // the header
   std::vector<Cell> cells;
-  std::optional<Cell> empty;  // an empty line, which is fine if no row follows
+  std::optional<Cell> empty;  // an empty line, allowed only if no row follows
   while (const std::optional<Cell> line = lines.Next()) {
     if (Trim(*line).text.empty()) {
       if (!empty) empty = line;

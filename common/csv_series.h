@@ -13,9 +13,9 @@ namespace fogline {
 /// @pre the times of the rows ascend and span all times of At(); the columns outlive this object
 class CsvSeries {
  public:
-  /// Times in files are rounded decimals. If a time differs from a row's time by no more than this,
-  /// the series has exactly the row's value there. The time of a message has the same resolution of
-  /// one microsecond.
+  /// Times in files are rounded decimals. At a time that differs from a row's time by at most
+  /// kSameTime_s, the series has exactly the row's value. The time of a message has the same
+  /// resolution, one microsecond.
   static constexpr double kSameTime_s = 1e-6;
 
   CsvSeries(const std::vector<CsvNumber>& times_s, const std::vector<CsvNumber>& values)

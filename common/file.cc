@@ -23,10 +23,10 @@
 namespace fogline {
 namespace {
 
-// In a folder with more entries no file is suggested: it would take too long.
+// In a folder with more entries than this no file is suggested, because the search takes too long.
 constexpr std::size_t kMostEntries = 10'000;
 
-// Longest wait for data from a pipe; long enough for a remote shell to answer.
+// Longest wait for data from a pipe. A remote shell answers in this time.
 constexpr int kPipeLimit_ms = 5000;
 
 // While a pipe has no room, WriteAll() asks at this interval whether to go on. A person does not
@@ -56,14 +56,15 @@ bool HasMore(int fd) {
   return ready > 0;
 }
 
-// Waits for kRoomPause_ms at most until a pipe or terminal has room. @return false if it has none
+// Waits for kRoomPause_ms at most until a pipe or terminal has room. @return false if there is no
+// room
 bool HasRoom(int fd) {
   pollfd waited{.fd = fd, .events = POLLOUT, .revents = 0};
   const int ready = poll(&waited, 1, kRoomPause_ms);
   return ready > 0 || (ready < 0 && errno != EINTR);  // write() reports the error
 }
 
-// The names of the files of a folder, sorted; none if the folder cannot be listed or has more than
+// The names of the files of a folder, sorted; empty if the folder cannot be listed or has more than
 // kMostEntries entries.
 std::vector<std::filesystem::path> FilesOf(const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> files;
@@ -83,8 +84,8 @@ std::vector<std::filesystem::path> FilesOf(const std::filesystem::path& folder) 
 
 std::string DidYouMeanFile(const std::filesystem::path& file, std::string_view ending) {
   const std::filesystem::path folder = file.parent_path();
-  // A common ending would make all names similar. Names with the same ending are compared without
-  // it.
+  // Names with the same ending are compared without it, because a common ending makes all names
+  // similar.
   std::vector<std::string> same;
   std::vector<std::string> other;
   for (const std::filesystem::path& name : FilesOf(folder)) {
@@ -151,8 +152,8 @@ std::string WhyNoRegularFile(const std::filesystem::path& file) {
 }
 
 int WriteAll(int fd, std::string_view bytes, bool (*stop)()) {
-  // A signal interrupts one thread, which need not be this one. So WriteAll() itself waits for
-  // room, and writes no more bytes than certainly fit.
+  // A signal may interrupt another thread than this one. So with `stop`, WriteAll() waits for room
+  // and writes at most PIPE_BUF bytes at once; then write() itself does not wait.
   const std::size_t most = stop == nullptr ? bytes.size() : PIPE_BUF;
   while (!bytes.empty()) {
     if (stop != nullptr && !HasRoom(fd)) {

@@ -12,7 +12,7 @@ namespace fogline {
 /// costs as much as copying thousands of bytes.
 inline constexpr std::size_t kWorthACall = 1 << 16;
 
-/// Result of reading a file: the text, or else the error. `error` is empty if the file was read.
+/// Result of reading a file: its text or an error. `error` is empty if the file was read.
 struct FileText {
   std::string text;
   std::string error;
@@ -30,12 +30,12 @@ std::string DidYouMeanFile(const std::filesystem::path& file, std::string_view e
 FileText ReadFile(const std::filesystem::path& file, std::size_t max_bytes,
                   std::string_view ending = "");
 
-/// Why the file is not a regular one, so that a program cannot map it or seek in it; "" if it is a
-/// regular file or does not exist.
+/// The reason why a program cannot map this file or seek in this file; "" if the file is regular or
+/// does not exist.
 std::string WhyNoRegularFile(const std::filesystem::path& file);
 
-/// A file opened for reading, closed at the end. Opening a pipe does not wait for a process at its
-/// other end.
+/// A file that is opened for reading, and closed by the destructor. Opening a pipe does not wait
+/// for a process at its other end.
 class OpenFile {
  public:
   explicit OpenFile(const std::filesystem::path& file);

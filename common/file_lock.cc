@@ -25,8 +25,8 @@
 namespace fogline {
 namespace {
 
-// If a file is removed or replaced between opening and locking it, it is opened again, up to this
-// many times.
+// If a file is removed or replaced between opening and locking, it is opened again, up to this many
+// times.
 constexpr int kTries = 10;
 // A lock that another process has is tried again at this interval.
 constexpr Duration kTryEvery = milliseconds(10);
@@ -50,11 +50,11 @@ bool IsFileOf(const std::filesystem::path& path, int fd) {
          named.st_dev == opened.st_dev && named.st_ino == opened.st_ino;
 }
 
-/// @return false if another lock is in the way
+/// @return false if a lock of another process excludes this one
 bool Lock(int fd, FileLock::Kind kind) {
   const auto take = [fd](int how) { return flock(fd, how | LOCK_NB) == 0 || errno != EWOULDBLOCK; };
-  // An owner makes sure that it is alone. Then it keeps a shared lock, so that processes that work
-  // for it can lock the file, too.
+  // An owner takes an exclusive lock first, to make sure that no other lock exists. Then it keeps a
+  // shared lock, so that processes that work for the owner can lock the file, too.
   return (kind == FileLock::Kind::kShared || take(LOCK_EX)) && take(LOCK_SH);
 }
 

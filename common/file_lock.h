@@ -9,8 +9,8 @@
 namespace fogline {
 
 /// A lock on a file or folder (flock(2)). The kernel removes the lock when the process ends, in
-/// whatever way. Nothing is left on the disk. The lock stops only processes that ask for it. On a
-/// file system without locks every process gets it.
+/// whatever way. The lock leaves no trace on the disk. It stops only processes that use FileLock,
+/// too. On a file system without locks every process gets the lock.
 class FileLock {
  public:
   enum class Kind {
@@ -20,10 +20,10 @@ class FileLock {
 
   /// Opens a file or folder and locks it. A file that is missing is created.
   /// @param option the command line option that names the file, such as "--log"
-  /// @param owner the kind of process that has such locks, for the message: "run"
+  /// @param owner the kind of process that has such locks, for the message, such as "run"
   /// @param patience how long to wait until other processes give up their locks
   /// @throws InputError "FILE: error: --log: is being written by another run (pid 4711)", without
-  ///     the pid if /proc/locks does not give it; or the reason why the file cannot be written
+  ///     the pid if /proc/locks does not give it. If the file cannot be written, the text says why.
   FileLock(const std::filesystem::path& path, Kind kind, std::string_view option,
            std::string_view owner, Duration patience = Duration::zero());
   ~FileLock();

@@ -8,7 +8,7 @@
 
 namespace fogline {
 
-/// Thrown out of long work when the user wants to stop. The exit code is then 130.
+/// Thrown from long work after a signal that asks the process to end. The exit code is then 130.
 class Interrupted : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -18,8 +18,8 @@ namespace internal {
 inline volatile std::sig_atomic_t interrupts = 0;
 }
 
-/// The signals that this process obeys: those that were not ignored at its start (nohup ignores
-/// SIGHUP).
+/// The signals that this process obeys. It does not obey a signal that was ignored at its start
+/// (nohup ignores SIGHUP).
 inline std::vector<int> EndingSignals() {
   std::vector<int> obeyed;
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
@@ -30,7 +30,7 @@ inline std::vector<int> EndingSignals() {
   return obeyed;
 }
 
-/// From now on the process only notes these signals.
+/// After this call the process only notes the signals of EndingSignals().
 inline void WatchInterrupts() {
   struct sigaction action {};
   action.sa_handler = [](int) { internal::interrupts = 1; };

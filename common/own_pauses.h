@@ -1,7 +1,8 @@
 // The times in which this process itself could not run: it was stopped (Ctrl-Z), was frozen with
 // its container, or waited for a disk. The silence of another process in such a time means nothing.
 //
-// The time in which the machine was suspended is no such pause, because its Clock stood still.
+// The time in which the machine was suspended is no such pause, because Clock stands still during
+// this time.
 #pragma once
 
 #include <algorithm>
@@ -14,8 +15,8 @@ namespace fogline {
 
 class OwnPauses {
  public:
-  /// Two looks at the clock that are further apart than this are a pause. Every process looks
-  /// several times a second (OwnStatus::kHeartbeat is the longest interval).
+  /// A longer time between two looks at the clock is a pause. Every process looks several times a
+  /// second (OwnStatus::kHeartbeat is the longest interval).
   static constexpr Duration kPause = milliseconds(500);
 
   explicit OwnPauses(TimePoint now) : looked_(now) {}
@@ -31,7 +32,7 @@ class OwnPauses {
     return looked_ = now;
   }
 
-  /// The time since `since` in which this process could have heard a message.
+  /// The part of the time from `since` to `now` in which this process could have heard a message.
   Duration HeldAgainst(TimePoint since, TimePoint now) const {
     Duration held = now - since;
     for (auto pause = pauses_.rbegin(); pause != pauses_.rend() && pause->to > since; ++pause) {
@@ -49,7 +50,7 @@ class OwnPauses {
     TimePoint to;
   };
   TimePoint looked_;           // time of the latest look
-  std::vector<Pause> pauses_;  // in order
+  std::vector<Pause> pauses_;  // in the order of time
   Duration longest_{};
 };
 

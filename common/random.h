@@ -1,5 +1,5 @@
-// Counter-based random numbers. Any process can draw any number of any step alone and in any order,
-// and gets the same result (Philox4x32-10, Salmon et al. 2011, by Random123).
+// Counter-based random numbers. A process can draw each number of each step without the numbers
+// before it, with the same result (Philox4x32-10, Salmon et al. 2011, by Random123).
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@
 
 namespace fogline {
 
-/// The purpose of random numbers. The random numbers depend on the number of their stream: never
+/// The purpose of random numbers. The random numbers depend on the number of their stream, so never
 /// reuse or change such a number.
 enum class Stream : std::uint32_t {
   kRadar = 1,
@@ -21,7 +21,7 @@ enum class Stream : std::uint32_t {
   kHumanErrors = 5,
   kTakeOver = 6,
   kStyle = 7,
-  kFollowerErrors = 256,  // and the numbers after it: see FollowerErrors()
+  kFollowerErrors = 256,  // the numbers after it are in use, too: see FollowerErrors()
 };
 
 /// The stream of the errors of one following car; car 0 is nearest to the host. The cars' errors
@@ -56,7 +56,7 @@ class Random {
   }
 
  private:
-  // The centre of one of 2^52 equal cells of (0, 1): exact, never 0 or 1.
+  // The centre of one of 2^52 equal cells of (0, 1). The result is exact, and never 0 or 1.
   static double ToUnit(std::uint32_t high, std::uint32_t low) {
     const std::uint64_t cell = (static_cast<std::uint64_t>(high) << 20) ^ (low >> 12);
     return (static_cast<double>(cell) + 0.5) * 0x1p-52;

@@ -17,8 +17,8 @@ namespace {
 // Longest excerpt of a user's text in a message, in bytes.
 constexpr std::size_t kMaxExcerpt = 100;
 
-// Longest word that gets a suggestion, in bytes. The time for a distance grows with the product of
-// the lengths.
+// Longest word that gets a suggestion, in bytes. The time for computing an edit distance grows with
+// the product of the lengths.
 constexpr std::size_t kMaxCompared = 64;
 
 // A suggestion may differ by one edit for each three characters, and by one in a shorter word. If a
@@ -37,7 +37,7 @@ std::size_t ControlCharacterSize(std::string_view text) {
 }
 
 // The character at the beginning of a text; without code point if the text does not begin with
-// UTF-8.
+// valid UTF-8.
 struct Character {
   std::size_t bytes = 1;
   std::optional<char32_t> code_point;

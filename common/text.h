@@ -10,10 +10,11 @@
 
 namespace fogline {
 
-/// The shortest text from which the same number is read, with the sign of a zero.
+/// The shortest text from which the same number is read. A negative zero is "-0.0".
 std::string NumberText(double value);
 
-/// A time in s, rounded to microseconds, the resolution of a run: "899.9" for 899.9000000000001.
+/// A time in s, rounded to the resolution of a run (microseconds), such as "899.9" for
+/// 899.9000000000001.
 std::string TimeText(double time_s);
 
 /// The text in one line that any terminal can show safely. Control characters (C0, DEL, C1) and
@@ -21,23 +22,23 @@ std::string TimeText(double time_s);
 /// escaped as in JSON. A byte that is not UTF-8 is written as "\xff".
 std::string EscapeControls(std::string_view text);
 
-/// The same, but line feeds stay. JSON stays JSON with the same meaning.
+/// As EscapeControls(), but line feeds stay. A JSON text keeps its meaning.
 std::string EscapeLines(std::string_view text);
 
 /// The name of a file, escaped for a terminal.
 std::string PathText(const std::filesystem::path& file);
 
-/// `text` with '?' in place of each byte other than ASCII letters, digits, signs and spaces. For
-/// text of unknown encoding from the network.
+/// `text` with '?' in place of each byte other than ASCII letters, digits, signs and spaces. It is
+/// for text of unknown encoding from the network.
 std::string Printable(std::string_view text);
 
 /// The text as a JSON string: in double quotes, with control characters escaped.
 std::string Quote(std::string_view text);
 
-/// For a message: as Quote, but long texts are cut.
+/// The text for a message, as Quote(), but long texts are cut.
 std::string QuoteShort(std::string_view text);
 
-/// For a message: without quotes, control characters escaped, long texts cut.
+/// The text for a message, without quotes. Control characters are escaped, and long texts are cut.
 std::string Shown(std::string_view text);
 
 /// `text` and its unit, if there is one.
@@ -46,13 +47,13 @@ std::string WithUnit(std::string_view text, std::string_view unit);
 /// The names in double quotes: `"box", "half_sine", "triangle"`.
 std::string Names(std::span<const std::string_view> names);
 
-/// Least number of insertions, deletions, substitutions and swaps of neighbours that turn one word
-/// into the other (optimal string alignment: Damerau-Levenshtein without repeated edits of one
-/// place).
+/// Least number of edits that turn one word into the other: insertions, deletions, substitutions
+/// and swaps of neighbours. (It is the optimal string alignment: Damerau-Levenshtein without
+/// repeated edits of one place.)
 std::size_t EditDistance(std::string_view a, std::string_view b);
 
 /// The candidate nearest to `word`, if it is near enough for a suggestion. Of several equally near
-/// candidates it is the first.
+/// candidates the result is the first.
 std::optional<std::string_view> Nearest(std::string_view word,
                                         std::span<const std::string_view> candidates);
 

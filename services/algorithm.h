@@ -1,15 +1,16 @@
 // Finds the inputs and outputs of an algorithm from the types of its Step function. The graph table
-// then gives its channels and its role.
+// (graph.h) then gives the channels and the role of the algorithm.
 //
-// An algorithm may have one more input, on demand. It uses this input only in some scenarios.
+// An algorithm may have one more input, which it uses only in some scenarios: an input on demand.
+// An algorithm with such an input has these two functions.
 //
 //     static bool UsesOnDemandInput(const Scenario& scenario);  // whether it uses the input
 //     void SetOnDemandInput(const M& message);                  // then called before each Step
 //
-// M is of the same step if its producer comes before this role in the order of evaluation. If its
-// producer comes after this role, M is of the step before; at step 0 it is all zero. In real time
-// the role does not wait for M: SetOnDemandInput gets the newest M that has come, and there is no
-// call before the first M has come.
+// M is the message of the same step if the producer of M comes before this role in the order of
+// evaluation. If the producer comes after this role, M is the message of the previous step. At step
+// 0 all fields of this message are zero. In real time the role does not wait for M:
+// SetOnDemandInput gets the newest M that has come. Before the first M has come, it is not called.
 #pragma once
 
 #include <concepts>
@@ -86,8 +87,9 @@ constexpr bool MayReadOnDemand([[maybe_unused]] Role role, std::type_identity<st
 
 }  // namespace internal
 
-/// Traits of an algorithm: a class with a constructor from a Scenario and one function
-/// `const Output& Step(const Input&...)`, where Output is a message or a tuple of messages.
+/// Traits of an algorithm. An algorithm is a class with a constructor from a Scenario and one
+/// function `const Output& Step(const Input&...)`, where Output is a message or a tuple of
+/// messages.
 template <class A>
 struct AlgorithmTraits {
   using Signature = internal::StepSignature<decltype(&A::Step)>;
@@ -95,15 +97,15 @@ struct AlgorithmTraits {
   using Output = typename Signature::Output;
   using Outputs = typename Signature::Outputs;
 
-  /// The message that the algorithm may read on demand: a tuple of one type, or of none.
+  /// A tuple with the type of the input on demand; an empty tuple if there is no such input.
   using OnDemand = typename internal::OnDemandInputs<A>::Type;
   static constexpr bool kHasOnDemand = std::tuple_size_v<OnDemand> != 0;
   /// All messages that the algorithm can read; the input on demand comes last.
   using AllInputs = decltype(std::tuple_cat(std::declval<Inputs>(), std::declval<OnDemand>()));
 
   static constexpr Role kRole = ChannelOf<std::tuple_element_t<0, Outputs>>().from;
-  /// An algorithm with Start() makes step 0 without inputs, and each further step from the one
-  /// before.
+  /// Whether the role begins the steps. Start() then computes step 0 without inputs. Each later
+  /// step uses the inputs of the previous step.
   static constexpr bool kStarts = requires(A a) { a.Start(std::int64_t{}); };
 
   /// Whether the algorithm reads its input on demand in this scenario.
@@ -120,7 +122,7 @@ struct AlgorithmTraits {
                 "the inputs of Step are not the channels that kGraph sends to this role");
   static_assert(internal::Writes(kRole, std::type_identity<Outputs>{}),
                 "the outputs of Step are not the channels that kGraph expects from this role");
-  // kGraph may allow an input on demand that this algorithm for the role does not have.
+  // kGraph may allow the role an input on demand that this algorithm does not have.
   static_assert(internal::MayReadOnDemand(kRole, std::type_identity<OnDemand>{}),
                 "kGraph does not let this role read the message of SetOnDemandInput on demand");
   static_assert(

@@ -92,7 +92,7 @@ struct Channel {
   Role from;
   RoleSet to;  // roles that use it; the recorder receives every kStep channel, too
   std::string_view what;
-  RoleSet on_demand = {};  // roles that read it only in scenarios that use it
+  RoleSet on_demand = {};  // roles that read it only in some scenarios (algorithm.h)
 };
 
 /// Every channel. The kStep channels stand in an order in which a step can be evaluated.
@@ -166,8 +166,8 @@ struct ChannelInfo {
   std::string_view what;
   RoleSet on_demand;
 
-  /// Whether the recorder logs the channel: every kStep channel, and RUN, so that a log contains
-  /// its scenario.
+  /// Whether the recorder logs the channel. It logs every kStep channel, and RUN, so that a log
+  /// contains its scenario. In real time it also logs STATUS.
   constexpr bool Logged() const { return pace == Pace::kStep || name == "RUN"; }
 };
 
@@ -211,7 +211,7 @@ constexpr void ForEachStepChannel(Visit&& visit) {
 }
 
 /// Age, in steps, of the message of `producer` that `reader` uses in a step: 0 if the producer
-/// comes first in the order of evaluation, 1 otherwise.
+/// comes before the reader in the order of evaluation, 1 otherwise.
 constexpr std::int64_t LagOf(Role producer, Role reader) {
   for (const RoleInfo& info : kRoles) {
     if (info.role == reader) return 1;

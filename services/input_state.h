@@ -10,10 +10,10 @@ enum class InputState : std::uint8_t {
   kAwaited,  // has not come yet, and is not overdue
   kOk,
   kStale,  // overdue: the last value is still used
-  kLost,   // overdue for so long that another agent must drive
+  kLost,   // overdue for so long that the last value is not used
 };
 
-/// The name of a state in STATUS and in messages to people.
+/// The name of a state, for texts that a person reads.
 constexpr std::string_view NameOf(InputState state) {
   switch (state) {
     case InputState::kAwaited:
@@ -28,7 +28,7 @@ constexpr std::string_view NameOf(InputState state) {
   return "";
 }
 
-/// Whether there is a value that may be used.
+/// Whether an input in this state has a value that may be used.
 constexpr bool Usable(InputState state) {
   return state == InputState::kOk || state == InputState::kStale;
 }
@@ -38,7 +38,7 @@ constexpr bool Usable(InputState state) {
 template <class M>
 struct Heard {
   InputState state = InputState::kAwaited;
-  // nullptr until the first has come; never nullptr if the state is Usable().
+  // nullptr until the first message has come. If the state is Usable(), there is a message.
   const M* newest = nullptr;
 };
 

@@ -27,10 +27,10 @@ namespace {
 // limited because a process that has failed keeps its log locked until it ends.
 constexpr Duration kReaderLimit = milliseconds(5000);
 
-/// In this thread and for the length of a scope, keeps two kinds of write from ending or stopping
-/// the process: a write to a pipe without a reader (SIGPIPE), and a write from the background to a
+/// For the length of a scope, two kinds of write in this thread do not end or stop the process. One
+/// is a write to a pipe without a reader (SIGPIPE). The other is a write from the background to a
 /// terminal that stops such writers (SIGTTOU; `stty tostop`). Writes outside of such a scope behave
-/// as usual: `fogline digest *.lcm | head` ends.
+/// as usual, so `fogline digest *.lcm | head` ends.
 class WithoutSignals {
  public:
   WithoutSignals() {
@@ -40,7 +40,7 @@ class WithoutSignals {
     sigpending(&pending);
     was_pending_ = sigismember(&pending, SIGPIPE) == 1;
     sigset_t both = sigpipe_;
-    sigaddset(&both, SIGTTOU);  // a process that blocks it gets none
+    sigaddset(&both, SIGTTOU);  // a process that blocks SIGTTOU gets none
     pthread_sigmask(SIG_BLOCK, &both, &before_);
   }
   ~WithoutSignals() {
@@ -62,8 +62,8 @@ class WithoutSignals {
 /// A pipe or terminal is opened a second time, by its name in /proc, so that writes to it do not
 /// wait. O_NONBLOCK on descriptor 2 itself would affect all processes to which the shell has given
 /// this descriptor. If the second open fails (a terminal of another user), poll() asks for room
-/// before each piece. A thread with a queue would need neither the second open nor poll(), but then
-/// each process would have to wait at its end until its last lines are written.
+/// before each piece. A thread with a queue could replace the second open and poll(). But then each
+/// process would have to wait at its end until its last lines are written.
 class Stderr {
  public:
   /// The only object. It is never destroyed, because destructors of other objects may write.
@@ -93,7 +93,7 @@ class Stderr {
  private:
   Stderr() {
     struct stat info {};
-    if (fstat(STDERR_FILENO, &info) != 0 || S_ISREG(info.st_mode)) return;  // a file never waits
+    if (fstat(STDERR_FILENO, &info) != 0 || S_ISREG(info.st_mode)) return;  // a write never waits
     is_socket_ = S_ISSOCK(info.st_mode);
     const int own = is_socket_ ? -1
                                : open("/proc/self/fd/2",
@@ -102,8 +102,7 @@ class Stderr {
     asks_first_ = !is_socket_ && own < 0;
   }
 
-  /// @return whether the text was written, or the first part of it; the rest follows with the next
-  ///     write
+  /// @return whether the text or its first part was written; the next write begins with the rest
   bool Write(std::string_view text, Duration limit) {
     const WithoutSignals scope;
     const TimePoint end = Clock::now() + limit;
@@ -150,9 +149,9 @@ class Stderr {
   int fd_ = STDERR_FILENO;
   bool is_socket_ = false;
   bool asks_first_ = false;      // calls poll() first, because a write might wait
-  std::string rest_;             // of a text of which only a part was written
-  std::int64_t dropped_ = 0;     // lines after the last one that was written
-  bool waited_in_vain_ = false;  // for a reader, after that line
+  std::string rest_;             // the unwritten part of the newest text
+  std::int64_t dropped_ = 0;     // number of lines dropped since the last written line
+  bool waited_in_vain_ = false;  // whether a dropped line has waited for room
 };
 
 void WriteLine(std::string_view line, Duration limit) noexcept {

@@ -1,4 +1,5 @@
-// Waiting for a file or socket, with a limit to the nanosecond; poll() has only milliseconds.
+// Waits for a file or socket with a time limit in nanoseconds. The limit of poll() is in
+// milliseconds.
 #pragma once
 
 #include <poll.h>
@@ -9,7 +10,7 @@
 
 namespace fogline {
 
-/// Waits until the file is ready for `events`, but no longer than `timeout`. With -1 as file it
+/// Waits until the file is ready for `events`, but no longer than `timeout`. With -1 as `file` it
 /// waits for the whole time.
 /// @return as ppoll(): above 0 if the file is ready, 0 if not, -1 with errno (EINTR: a signal)
 inline int PollFor(int file, short events, Duration timeout) {

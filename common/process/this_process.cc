@@ -38,8 +38,7 @@ bool RunBeforeOthers(int priority) {
     const auto thread = static_cast<pid_t>(std::atoi(task.path().filename().c_str()));
     granted = sched_setscheduler(thread, SCHED_FIFO | SCHED_RESET_ON_FORK, &wanted) == 0 && granted;
   }
-  // Locks pages in memory: to read back a page that the kernel has dropped takes as long as a read
-  // from the disk.
+  // Locks pages in memory, because a page that the kernel has dropped must be read from the disk.
   granted = mlockall(MCL_CURRENT | MCL_FUTURE | MCL_ONFAULT) == 0 && granted;
   return granted && !unreadable;
 }

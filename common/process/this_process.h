@@ -7,20 +7,20 @@
 namespace fogline {
 
 struct ProcessUse {
-  std::int64_t cpu_ms;     // of all its threads, since its start
-  std::int64_t rss_bytes;  // resident now
+  std::int64_t cpu_ms;     // processor time of all threads since the start of the process
+  std::int64_t rss_bytes;  // resident memory
 };
 ProcessUse MeasureThisProcess();
 
 /// Asks the kernel for two things: to run every thread of this process before all ordinary threads
 /// (SCHED_FIFO), and to lock the process's pages in memory. So steps begin on time on a busy
 /// machine, too. SCHED_FIFO needs CAP_SYS_NICE or RLIMIT_RTPRIO.
-/// @return whether the kernel granted both, and SCHED_FIFO to all threads
+/// @return whether the kernel granted both requests, with SCHED_FIFO for all threads
 bool RunBeforeOthers(int priority);
 
-/// Makes a write beyond the limit for the size of files (ulimit -f) fail like one on a full disk,
-/// in this process and those that it starts. Otherwise the kernel kills the process (SIGXFSZ), and
-/// the process cannot report the reason.
+/// After this call, a write beyond the limit for the size of files (ulimit -f) fails like a write
+/// on a full disk. This holds for this process and for processes that it starts. Without this call
+/// the kernel kills the process (SIGXFSZ), and the process cannot report the reason.
 void FailWritesBeyondTheSizeLimit();
 
 /// Why a write failed, and what to do if the limit for the size of files is the reason.

@@ -15,7 +15,7 @@
 namespace fogline {
 namespace {
 
-/// A value in both forms that fields take: as text, and as number if the text is one.
+/// A value in the two forms that fields take: as a text, and as a number if it is a number.
 struct Value {
   std::optional<double> number;
   std::string_view text;

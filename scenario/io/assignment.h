@@ -1,4 +1,4 @@
-// Sets one field of a scenario repeatedly without reading JSON each time: for grids and searches.
+// Sets one field of a scenario repeatedly, for grids and searches. It does not read JSON each time.
 #pragma once
 
 #include <string>
@@ -15,10 +15,11 @@ class FieldAssignment {
   /// @throws InputError if the pointer names no such field
   explicit FieldAssignment(std::string_view pointer);
 
-  /// Sets the field. Does not check the field's range: ParseScenario() with an override does that.
+  /// Sets the field without a check of its range. ParseScenario() with an override checks the
+  /// range.
   /// @throws InputError if the field cannot have this value, or its list has no such item
   void Set(Scenario& scenario, double number) const;
-  /// The same for a value written as in a file: 0.5, true, traded.
+  /// Sets the field to a value that is written as a text, such as 0.5, true or traded.
   void Set(Scenario& scenario, std::string_view text) const;
 
   const std::string& pointer() const { return pointer_; }

@@ -11,7 +11,7 @@ namespace fogline {
 
 /// All fields, sections, lists and items of a scenario, with default values. Each list has one
 /// item, with the segment * in its pointer. The contents of a section follow the section. All
-/// callers share the values, so they must not change them.
+/// callers share the values, so a caller must not change them.
 const FieldList& Catalogue();
 
 /// Finds the field with this pointer, or returns null. Any index in the pointer finds the one item

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kMaxPrinted = 20;
 
-// Line and column of growing offsets in a text, in one pass over it.
+// Finds the lines and columns of ascending offsets in a text, in one pass.
 class LineCounter {
  public:
   explicit LineCounter(std::string_view text) : text_(text), at_(SkipByteOrderMark(text)) {}

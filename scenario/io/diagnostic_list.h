@@ -1,4 +1,4 @@
-// Collects the mistakes of a scenario while it is read, and turns them into one error.
+// Collects the mistakes of a scenario during reading, and turns them into one error.
 #pragma once
 
 #include <cstddef>
@@ -15,7 +15,7 @@ namespace fogline {
 struct Source {
   std::string name;
   std::string_view text;
-  bool has_lines = true;  // false: a mistake is located by the name alone
+  bool has_lines = true;  // false: only the name says where a mistake is
 };
 
 /// Place in a text: the index of a source, and the offset in bytes in the text of that source.
@@ -24,8 +24,8 @@ struct Place {
   std::uint32_t offset = 0;
 };
 
-/// The mistakes found so far. It keeps the first 1000 and drops further ones, so that a hostile
-/// file cannot use much memory or time.
+/// The mistakes found so far. The list keeps the first 1000 and drops further ones, so that a
+/// hostile file cannot use much memory or time.
 class DiagnosticList {
  public:
   void Add(Place place, std::string pointer, std::string_view rule, std::string message);

@@ -96,8 +96,8 @@ std::string_view SyntaxHint(std::string_view text, std::size_t offset) {
   }
 }
 
-// Builds the tree from the parser's events. The parser keeps its own stack on the heap, so depth
-// costs no call stack.
+// Builds the tree from the parser's events. The parser keeps its own stack on the heap, so deep
+// nesting needs no call stack.
 class TreeBuilder final : public nlohmann::json_sax<nlohmann::json> {
  public:
   TreeBuilder(std::string_view text, std::uint32_t source, DiagnosticList& mistakes,
@@ -153,8 +153,8 @@ class TreeBuilder final : public nlohmann::json_sax<nlohmann::json> {
   }
 
  private:
-  // First byte of the token that was just read. Only space and punctuation lie between the end of
-  // the token before and this token.
+  // First byte of the token that was just read. Only space and punctuation lie between the previous
+  // token and this token.
   std::size_t TokenStart() const {
     const std::size_t start = text_.find_first_not_of(" \t\r\n,:", end_);
     return start == std::string_view::npos ? text_.size() : start;
@@ -186,7 +186,8 @@ class TreeBuilder final : public nlohmann::json_sax<nlohmann::json> {
     return true;
   }
 
-  // Pointers to open containers stay valid: a container does not grow while one inside it is open.
+  // Pointers to open containers stay valid, because a container does not grow while a container
+  // inside it is open.
   template <class T>
   bool Open(T container) {
     JsonValue* node = Put(std::move(container));
@@ -240,7 +241,7 @@ class TreeBuilder final : public nlohmann::json_sax<nlohmann::json> {
   JsonValue root_;
   std::vector<JsonValue*> open_;
   std::size_t consumed_ = 0;  // bytes that the lexer has read
-  std::size_t end_;           // where the token before ended
+  std::size_t end_;           // where the previous token ended
   std::size_t count_ = 0;
 };
 

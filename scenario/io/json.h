@@ -50,10 +50,10 @@ std::string Describe(const JsonValue& value);
 std::string JoinPointer(std::string_view base, std::string_view key);
 
 /// Parses strict JSON (RFC 8259) in UTF-8: no comments, no NaN, no lone surrogates. Limits: 64 MiB
-/// of text, 32 levels, two million values. Scenarios stay far below these limits. The limits keep a
-/// hostile text from overflowing the stack. Reports at most one mistake of syntax or size, and then
-/// returns nothing. Reports each duplicate key, and still returns the tree. `base` is the pointer
-/// of the root.
+/// of text, 32 levels, two million values. Scenarios stay far below these limits. Because of the
+/// limits a hostile text does not overflow the stack. After a mistake of syntax or size, it reports
+/// this mistake and returns nothing. It also reports each duplicate key, but still returns the
+/// tree. `base` is the pointer of the root.
 std::optional<JsonValue> ParseJson(std::string_view text, std::uint32_t source,
                                    DiagnosticList& mistakes, std::string_view base = "");
 

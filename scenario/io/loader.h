@@ -1,4 +1,4 @@
-// Scenario files: reads them, reports all mistakes at once, applies overrides, writes, explains.
+// Reads, checks, prints and explains scenarios. All mistakes of a scenario are reported at once.
 #pragma once
 
 #include <filesystem>
@@ -14,7 +14,7 @@ namespace fogline {
 
 /// One mistake in a scenario.
 struct Diagnostic {
-  std::string file;     // where it is: the file's name, or an override such as "--set /seed=x"
+  std::string file;     // the file's name, or an override such as "--set /seed=x"
   int line = 0;         // 1-based; 0 for an override and for a file that cannot be read
   int column = 0;       // 1-based, in characters
   std::string pointer;  // JSON pointer of the field, such as /arbitrator/threshold
@@ -23,9 +23,9 @@ struct Diagnostic {
 };
 
 /// A scenario that breaks rules. what() has one line for each mistake (20 at most), as
-/// `file:line:column: error: /pointer: message`: first those of the file in its order, then those
-/// of the overrides, then the number of mistakes. diagnostics() has an entry for each mistake, at
-/// least 1 and at most 1000.
+/// `file:line:column: error: /pointer: message`. The mistakes of the file come first, in the file's
+/// order. Then come those of the overrides, and the number of mistakes. diagnostics() has an entry
+/// for each mistake, at least 1 and at most 1000.
 class ScenarioError : public InputError {
  public:
   ScenarioError(const std::string& text, std::vector<Diagnostic> diagnostics)
@@ -37,14 +37,15 @@ class ScenarioError : public InputError {
 };
 
 /// Reads a scenario file and applies `overrides` ("/arbitrator/threshold=0.8", as after --set)
-/// before it checks anything. If the leader is recorded and lead.recorded.speeds_mps is empty,
-/// reads the CSV file (relative to the scenario's folder) and fills speeds_mps with the speeds at
-/// steps 0 to steps - 1, interpolated linearly.
+/// before it checks anything. If the leader is recorded and lead.recorded.speeds_mps is empty, it
+/// reads the CSV file (relative to the scenario's folder). It then fills speeds_mps with the speeds
+/// at steps 0 to steps - 1, interpolated linearly.
 /// @throws ScenarioError
 Scenario LoadScenario(const std::filesystem::path& file,
                       const std::vector<std::string>& overrides = {});
 
-/// The same for text in memory; `name` stands for the file in messages. Never reads another file.
+/// As LoadScenario(), for a text in memory. `name` stands for the file in messages. Reads no CSV
+/// file.
 /// @throws ScenarioError
 Scenario ParseScenario(std::string_view text, std::string_view name = "scenario",
                        const std::vector<std::string>& overrides = {});
@@ -54,7 +55,7 @@ Scenario ParseScenario(std::string_view text, std::string_view name = "scenario"
 /// @pre every value of `scenario` is within the range of its field
 std::string PrintScenario(const Scenario& scenario);
 
-/// JSON schema (draft-07) of scenario files, made from the same field descriptions. It accepts
+/// JSON schema (draft-07) of scenario files, made from the descriptions of the fields. It accepts
 /// exactly the JSON documents without duplicate keys that ParseScenario accepts.
 std::string ScenarioSchema();
 

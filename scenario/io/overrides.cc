@@ -22,8 +22,8 @@ std::string FormHint(std::string_view text) {
   return FindField(pointer) == nullptr ? "" : DidYouMean(pointer);
 }
 
-// The value as JSON, or as plain text if it is not JSON. Nothing if the value is JSON that
-// ParseJson() refuses for another reason, such as its size.
+// The value as JSON, or as plain text if it is not JSON. Nothing if ParseJson() refuses the value
+// for another reason than its syntax, such as its size.
 std::optional<JsonValue> ParseValue(std::string_view text, std::uint32_t source,
                                     std::string_view pointer, DiagnosticList& mistakes) {
   DiagnosticList trial;

@@ -53,7 +53,7 @@ struct Recording {
   std::vector<CsvNumber> speeds_mps;
 };
 
-// Reads a recording in several stages. Each stage notes its mistakes; the next one runs only if
+// Reads a recording in several stages. Each stage notes its mistakes. The next stage runs only if
 // there are none.
 class RecordingReader {
  public:

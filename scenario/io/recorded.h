@@ -14,8 +14,8 @@ namespace fogline {
 /// linear interpolation between the file's rows. A relative file name is relative to `folder`.
 /// `root` is the tree of the scenario's text, in which mistakes are placed; `sources` are the
 /// sources of this text.
-/// @throws ScenarioError if the file cannot be read, lacks a column, has a cell that is not a
-///     number, a time that does not ascend or a speed out of range, or does not span the run
+/// @throws ScenarioError if the file cannot be read, lacks a column, or does not span the run, or
+///     if a cell is not a number, a time does not ascend, or a speed is out of range
 void ResolveRecorded(const std::filesystem::path& folder, const JsonValue& root,
                      std::vector<Source> sources, Scenario& scenario);
 

@@ -22,7 +22,7 @@ using Json = nlohmann::ordered_json;
 // whole text must match would need `$`, which in some engines also accepts a line feed at the end.
 constexpr std::string_view kControlCharacter = R"([\u0000-\u001f\u007f-\u009f])";
 
-// Integers without ".0", so that a person reads the bounds easily.
+// Whole numbers are written without ".0", so that a person reads the bounds easily.
 Json JsonNumber(double value) {
   constexpr double kExact = 0x1p53;
   if (std::trunc(value) == value && std::abs(value) < kExact) {

@@ -1,6 +1,6 @@
-// The policies and the measures of conflict that a scenario may choose. services/decision has a
-// table for each of the three lists. The compiler checks that list and table have the same names in
-// the same order.
+// The policies, the measures of conflict and the measures of blame that a scenario may choose.
+// services/decision has a table for each of these three lists. The compiler checks that list and
+// table have the same names in the same order.
 #pragma once
 
 #include <array>

@@ -1,6 +1,6 @@
-// The types of the choices of a scenario among policies and measures of conflict. decision.h has
+// The types with which a scenario chooses its policy and its measures of conflict. decision.h has
 // the lists of their values. An extension replaces these lists, so only the few files that need a
-// list include it; all others see the types alone.
+// list include decision.h. All other files see only the types.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 namespace fogline {
 
 /// Policy for the authority over the host: an index of the list in decision.h, and of the table in
-/// services/decision/policies/policies.cc. Only the two that other code refers to have an
+/// services/decision/policies/policies.cc. Only the two policies that other code refers to have an
 /// enumerator.
 enum class Policy : std::uint8_t { kNone, kTraded };
 
@@ -17,7 +17,7 @@ enum class Policy : std::uint8_t { kNone, kTraded };
 enum class MeasureChoice : std::uint8_t { kDoc };
 
 /// A measure of which sensor is wrong: an index of the list in decision.h, and of the second table
-/// in that file.
+/// in the same file.
 enum class BlameChoice : std::uint8_t { kNis };
 
 }  // namespace fogline

@@ -1,5 +1,5 @@
-// Sections of a scenario for the transfer of authority: how smoothly it goes, and the rules of the
-// policies that do not use the paper's fixed threshold.
+// Sections of a scenario for the transfer of authority, and for the policies that do not use the
+// paper's fixed threshold.
 #pragma once
 
 #include <array>
@@ -118,11 +118,11 @@ struct AdaptiveSection {
                 "our choice, because with a threshold near 1 the human would never drive");
 };
 
-/// Policy bayes: the human drives while P(conflict) > C_h / (C_h + C_a), with the expected costs
-/// C_h = human_cost + unready_cost (1 - A) + blind_cost min(1, near_m / MOR) of a human who drives,
-/// C_a = automation_cost + follower_cost min(1, near_ttc_s / TTC of the follower) of an automation
-/// that uses a wrong distance. P is the DoC: steep with the paper's slope; a posterior probability
-/// with measure lidar_modes and measure_scale probability.
+/// Policy bayes: the human drives while P(conflict) > C_h / (C_h + C_a). C_h = human_cost +
+/// unready_cost (1 - A) + blind_cost min(1, near_m / MOR) is the expected cost of a human who
+/// drives. C_a = automation_cost + follower_cost min(1, near_ttc_s / TTC of the follower) is that
+/// of an automation that uses a wrong distance. P is the DoC. With the paper's slope it is steep.
+/// With measure lidar_modes and measure_scale probability it is a posterior probability.
 struct BayesSection {
   FOGLINE_FIELD(
       double, human_cost, 1.0, {1e-6, 1e6}, "Cost of any human engagement.",
@@ -149,10 +149,10 @@ struct BayesSection {
 };
 
 /// Policy availability: like traded, but the driver gets authority only if he can take over in
-/// time: the time until the follower must brake harder than comfort_mps2 must be longer than his
-/// take-over time (95th percentile, longer if his readiness is below 1). Otherwise the automation
-/// keeps authority. In both cases the automation uses only the sensor that is not to blame, as with
-/// policy isolate.
+/// time. For this, the time until the follower must brake harder than comfort_mps2 must be longer
+/// than the driver's take-over time (95th percentile, longer if his readiness is below 1).
+/// Otherwise the automation keeps authority. In both cases the automation uses only the sensor that
+/// is not to blame, as with policy isolate.
 struct AvailabilitySection {
   FOGLINE_FIELD(double, comfort_mps2, 3.0, {0.5, 10, "m/s2"},
                 "Braking that a follower must not exceed (DRAC).",

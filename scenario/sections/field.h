@@ -1,4 +1,4 @@
-// How the sections of a scenario declare their fields. All that is known of a field stands in one
+// How the sections of a scenario declare their fields. Everything about a field stands in one
 // place:
 //
 //   struct RadarSection {
@@ -52,8 +52,8 @@ struct ListSpec {
 /// a control character (C0, DEL, C1), so a text can be shown on any terminal.
 inline constexpr std::int64_t kMaxTextLength = 4096;
 
-/// If the choice `choice` beside a section is `value`, the file must have the section, and at least
-/// one of the section's `fields` (texts or lists) must not be empty.
+/// If the choice `choice` beside a section is `value`, the file must have the section. At least one
+/// of the section's `fields` (texts or lists) must then not be empty.
 struct NeedSpec {
   std::string_view choice;
   std::string_view value;
@@ -66,7 +66,7 @@ struct Choice {
   std::string_view doc;
 };
 
-/// One column of the values' names and meanings.
+/// One column of `choices`: the names of the values, or their meanings.
 template <std::size_t size>
 constexpr auto ColumnOf(const std::array<Choice, size>& choices, std::string_view Choice::*column) {
   std::array<std::string_view, size> texts;
@@ -82,7 +82,7 @@ struct ChoiceNames {
   static constexpr auto kDocs = ColumnOf(ChoicesOf(Enum()), &Choice::doc);
 };
 
-/// A line of a source file. It converts to the lines above it, best to the nearest.
+/// A line of a source file. It converts to each line above it. The nearest line is the best match.
 template <int number>
 struct SourceLine : SourceLine<number - 1> {};
 template <>
@@ -92,10 +92,10 @@ struct SourceLine<0> {};
 inline constexpr int kLastFieldLine = 500;
 
 /// Declares a field of a section, as described above. Beside the member it defines an overload of
-/// VisitFieldsUpTo() for the field's line, which visits the nearest field above, and so in turn all
-/// fields above, and then this field. VisitFieldsUpTo(visitor, SourceLine<kLastFieldLine>()) thus
-/// visits all fields of the section in their order. Line numbers serve for this because they are
-/// the same wherever the header is included.
+/// VisitFieldsUpTo() for the field's line. This overload calls the overload of the nearest field
+/// above, and then visits its own field. So VisitFieldsUpTo(visitor, SourceLine<kLastFieldLine>())
+/// visits all fields of the section in their order. Line numbers are the same wherever the header
+/// is included.
 #define FOGLINE_FIELD(type, name, default_value, ...)                                         \
   static_assert(__LINE__ <= ::fogline::kLastFieldLine, "split this file or raise the limit"); \
   template <class Visitor>                                                                    \

@@ -155,7 +155,8 @@ std::optional<std::size_t> ListIndex(std::string_view segment) {
   const char* const last = segment.data() + segment.size();
   const auto [end, error] = std::from_chars(segment.data(), last, index);
   if (end != last || error == std::errc::invalid_argument) return std::nullopt;
-  // A number too large for size_t is an index, too; no list has such an item.
+  // A number too large for size_t is a valid index, too. The largest size_t stands for it, because
+  // no list has an item there.
   return error == std::errc() ? index : std::numeric_limits<std::size_t>::max();
 }
 
@@ -168,7 +169,7 @@ std::optional<Field> FieldAt(Scenario& scenario, std::string_view pointer) {
     const auto field = std::find_if(fields.begin(), fields.end(), on_the_way);
     if (field == fields.end()) return std::nullopt;
     if (field->pointer == pointer) return std::move(*field);
-    if (const auto* numbers = field->As<NumbersField>()) {  // may be a million
+    if (const auto* numbers = field->As<NumbersField>()) {  // a list may have a million numbers
       const auto index = ListIndex(pointer.substr(field->pointer.size() + 1));
       if (!index || *index >= numbers->values->size()) return std::nullopt;
       return NumberAt(*field, *index);

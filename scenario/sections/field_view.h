@@ -1,5 +1,5 @@
-// The fields of a scenario as values of one type, for code that treats all fields alike: it reads,
-// prints, sets or explains them.
+// The fields of a scenario as values of one type, for code that reads, prints, sets or explains all
+// fields in the same way.
 #pragma once
 
 #include <cstddef>
@@ -41,28 +41,28 @@ struct ChoiceField {
 struct NumbersField {
   std::vector<double>* values;
   ListSpec list;
-  NumberSpec spec;  // of each number
+  NumberSpec spec;  // range and unit of each number
 };
 
 /// A list of sections.
 struct ListField {
   ListSpec list;
-  std::function<void(std::size_t)> reset;  // makes so many items, all with their defaults
+  std::function<void(std::size_t)> reset;  // makes this number of items, with default values
   std::function<FieldList(const std::string& pointer)> items;
 };
 
 /// A section, or an item of a list of sections.
 struct SectionField {
-  NeedSpec need;  // its choice is "" if a file may always leave out the section
+  NeedSpec need;  // need.choice is "" if every file may lack the section
   std::function<FieldList(const std::string& pointer)> fields;
 };
 
-/// A field of a section, or an item of a list. It refers to the value in its scenario.
+/// A field of a section, or an item of a list. It refers to the value in the scenario.
 struct Field {
   std::string pointer;      // JSON pointer, such as /fog/bias_m
   std::string_view name;    // last segment of the pointer; "" for an item of a list
   std::string_view doc;     // meaning
-  std::string_view source;  // of the default of a number; otherwise ""
+  std::string_view source;  // source of the default of a number; otherwise ""
   std::variant<NumberField, IntegerField, bool*, std::string*, ChoiceField, NumbersField, ListField,
                SectionField>
       value;
@@ -76,8 +76,8 @@ struct Field {
   FieldList Contents() const;
 };
 
-/// The fields of the scenario itself, in their order. A view is valid as long as the scenario is
-/// and as long as its lists keep their sizes.
+/// The fields of the scenario itself, in their order. A field stays valid until the scenario is
+/// destroyed or one of its lists changes its size.
 FieldList FieldsOf(Scenario& scenario);
 /// The fields of a published row, with pointers that begin with `pointer`.
 FieldList FieldsOf(PublishedRow& row, const std::string& pointer);

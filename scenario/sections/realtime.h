@@ -1,5 +1,5 @@
 // Sections of a scenario that only a run in real time uses: when an input counts as failed, and how
-// a car stops when neither automation nor human can drive it. A period is step_s of the wall clock,
+// a car stops after both automation and human have failed. A period is step_s of the wall clock,
 // divided by the speed of the run.
 #pragma once
 

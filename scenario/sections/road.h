@@ -10,7 +10,7 @@
 
 namespace fogline {
 
-/// The three cars at step 0 and how the world integrates them.
+/// The cars at step 0, and how the world integrates their motion.
 struct WorldSection {
   FOGLINE_FIELD(std::int64_t, substeps, 1, {1, 1000},
                 "Integration steps within one simulation step.",
@@ -45,7 +45,7 @@ constexpr auto ChoicesOf(LeadProfile) {
        {"recorded", "a recorded speed from a CSV file"}});
 }
 
-/// The leader's speed changes linearly from the one before to `speed_mps` within `duration_s`.
+/// The leader's speed changes linearly from its last value to `speed_mps` within `duration_s`.
 struct SpeedBreakpoint {
   FOGLINE_FIELD(
       double, duration_s, 1.0, {1e-3, 1e5, "s"}, "Time to reach speed_mps.",
@@ -75,12 +75,12 @@ struct EmergencyBrakeSection {
                 "our choice, because an emergency stop ends at rest");
 };
 
-/// Most speeds that a recorded leader may have: 27 hours of 0.1 s steps.
+/// Largest number of speeds of a recorded leader. It is enough for 27 hours with steps of 0.1 s.
 inline constexpr std::int64_t kMaxRecordedSpeeds = 1'000'000;
 
-/// A recorded speed. LoadScenario reads the file and fills `speeds_mps` with its speed at each
-/// step, so that no other machine needs the file. If the scenario has `speeds_mps`, `file` only
-/// states the origin and is not read.
+/// A recorded speed. LoadScenario() reads the file and fills `speeds_mps` with the recorded speed
+/// at each step, so that no other machine needs the file. If the scenario has `speeds_mps`, `file`
+/// only states the origin and is not read.
 struct RecordedSection {
   FOGLINE_FIELD(std::string, file, {},
                 "CSV file with a header line, relative to the scenario's folder; without effect if "
@@ -124,7 +124,8 @@ constexpr auto ChoicesOf(FogModel) {
         "echo of the fog, or missing"}});
 }
 
-/// Whether the fog of a model has a visibility; otherwise that of clear air stays.
+/// Whether the fog of a model changes the visibility. Otherwise the visibility stays that of clear
+/// air.
 constexpr bool HasVisibility(FogModel model) {
   return model == FogModel::kBeam || model == FogModel::kModes;
 }
@@ -137,8 +138,8 @@ constexpr auto ChoicesOf(FogProfile) {
                                 {"triangle", "1 - |2 x - 1|"}});
 }
 
-/// Fog model `modes`: how often the LiDAR fails in which way. The fog's level scales the shares. In
-/// the remaining steps the value is right.
+/// Fog model `modes`: the shares of the steps in which the LiDAR fails in each way. The fog's level
+/// scales the shares. In the remaining steps the value is right.
 struct FogModesSection {
   FOGLINE_FIELD(double, biased_share, 0.0, {0, 1},
                 "Share of steps in which the range is too short by fog.bias_m, at level 1.",
@@ -163,9 +164,9 @@ struct FogModesSection {
                 "RADIATE (Sheeny et al. 2021), drive fog_6_0: beyond 35 m no car of 65 is seen");
 };
 
-/// Fog over time. Its level in [0, 1] follows `profile` over the window; the level scales the bias
+/// Fog over time. Its level in [0, 1] follows `profile` over the window. The level scales the bias
 /// (model bias), the extinction coefficient between clear air and `visibility_m` (models beam and
-/// modes), or the shares of the modes (model modes).
+/// modes), and the shares of the modes (model modes).
 struct FogSection {
   FOGLINE_FIELD(FogModel, model, FogModel::kNone, "How fog acts on the sensors.");
   FOGLINE_FIELD(FogProfile, profile, FogProfile::kRaisedCosine,

@@ -36,7 +36,7 @@ constexpr auto ChoicesOf(SafetyModelChoice) {
                                 {"fuzzy", "the fuzzy safety model of UN R157"}});
 }
 
-/// Greatest number of cars behind the host: TRUTH must fit one datagram.
+/// Greatest number of cars behind the host. It is limited because TRUTH must fit one datagram.
 inline constexpr std::int64_t kMaxFollowers = 32;
 
 /// One following car that differs from the other following cars.

@@ -17,20 +17,21 @@ namespace fogline::acc {
 /// preceding car. Uses distances and speeds, and knows nothing of sensors, messages and authority.
 ///
 /// The unconstrained optimum is linear in the situation, so its gain is computed once. If the plan
-/// of this gain meets every limit, the controller uses it; otherwise it solves the quadratic
+/// of this gain meets every limit, the controller uses this plan. Otherwise it solves the quadratic
 /// program. A point mass applies its command at once. Its command is the model's acceleration one
 /// step ahead. The command starts from the acceleration that the car really has, so it is
-/// continuous after a take-over. A vehicle has its own lag in place of the model's. Its command is
-/// -K_e u, the acceleration to which u leads in the end. This command differs from the acceleration
-/// that the vehicle has by no more than the lag of the model's engine at the jerk limit.
+/// continuous after a take-over. A longitudinal vehicle has a lag of its own, in place of the
+/// model's lag. Its command is -K_e u, the acceleration to which u leads in the end. This command
+/// and the vehicle's acceleration differ by at most the lag that the model's engine has at the jerk
+/// limit.
 class AccController {
  public:
   struct Input {
     double distance_m;          // to the preceding car
-    double relative_speed_mps;  // preceding minus own
-    double speed_mps;           // own
-    double acceleration_mps2;   // applied during the step that ended now
-    bool has_target;            // whether the first two are valid
+    double relative_speed_mps;  // speed of the preceding car minus own speed
+    double speed_mps;           // own speed
+    double acceleration_mps2;   // own, applied during the step that ended now
+    bool has_target;            // whether distance_m and relative_speed_mps are valid
   };
 
   /// How a command was computed; the numbers are those of accel_command_t.
@@ -42,10 +43,10 @@ class AccController {
 
   struct Output {
     double acceleration_mps2;  // C x(k+1) of a point mass, -K_e u(k) of a vehicle
-    double control;            // u(k); positive decelerates
+    double control;            // u(k); a positive u decelerates
     double safe_distance_m;    // d_r at the own speed
     Solver solver;
-    std::int32_t iterations;  // of the active-set solver
+    std::int32_t iterations;  // iterations of the active-set solver
   };
 
   /// @throws InputError if the section's weights make an ill-conditioned problem.
@@ -56,8 +57,8 @@ class AccController {
   Output Step(const Input& input);
 
   /// Resets the object to the state of a new AccController(section, step_s, vehicle). If section
-  /// and step_s are unchanged, the results of the construction are kept. Computing them is most of
-  /// the cost of a short run.
+  /// and step_s are unchanged, the object keeps the results of its construction. Their computation
+  /// is most of the cost of a short run.
   /// @throws InputError as the constructor; the object is then unchanged.
   void Restart(const AccSection& section, double step_s,
                VehicleModel vehicle = VehicleModel::kPointMass);
@@ -81,7 +82,7 @@ class AccController {
   Eigen::VectorXd upper_;
   Eigen::VectorXd plan_;
 
-  // Of the last step.
+  // Results of the last step.
   double control_ = 0;
   double acceleration_mps2_ = 0;
 };

@@ -31,11 +31,11 @@ struct DiscreteAccModel {
   Eigen::Vector3d gamma;
 };
 
-/// The model above with the parameters of `section`.
+/// The AccModel with the parameters of `section`.
 AccModel MakeAccModel(const AccSection& section);
 
-/// Exact for a u that is constant over each step (zero-order hold; Van Loan 1978):
-/// exp([A B; 0 0] h) = [Phi Gamma; 0 1].
+/// The discrete model, exact for a u that is constant over each step (zero-order hold; Van Loan
+/// 1978): exp([A B; 0 0] h) = [Phi Gamma; 0 1].
 DiscreteAccModel Discretise(const AccModel& model, double step_s);
 
 /// d_r = T_hw v + d_0, in m.

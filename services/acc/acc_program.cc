@@ -47,7 +47,7 @@ void AccProgram::BuildCost(const AccSection& section) {
   hessian_(kSlack, kSlack) = 2 * section.min_gap_weight;
 
   // x(j) = Phi^j x(0) + sum_i response(j-1-i) u_i. The entries of this block are sums over j of
-  // weighted products of responses: each is its lower right neighbour plus one more product.
+  // weighted products of responses. Each entry is its lower right neighbour plus one more product.
   auto controls = hessian_.bottomRightCorner(n, n);
   for (Index i = n - 1; i >= 0; --i) {
     for (Index k = i; k >= 0; --k) {
@@ -85,7 +85,7 @@ void AccProgram::BuildConstraints() {
     rows(kControl, kFirstControl + j) = 1;
     rows(kControlChange, kFirstControl + j) = 1;
     if (j > 0) rows(kControlChange, kFirstControl + j - 1) = -1;
-    for (Index i = 0; i <= j; ++i) {  // of the state at j + 1
+    for (Index i = 0; i <= j; ++i) {  // limits of the state at j + 1
       const auto response = response_.col(j - i);
       rows(kMaxSpeed, kFirstControl + i) = speed_per_control_;
       rows(kStandstill, kFirstControl + i) = speed_per_control_;
@@ -129,8 +129,8 @@ void AccProgram::Limits(const AccSituation& now, Eigen::VectorXd& lower,
   const Reach reach = ReachOf(now);
   const double settled = SettledSpeed(now);
   const double preceding_mps = now.speed_mps + now.state(kDeltaV);
-  double previous = now.previous_control;  // of u_0; later u are unknowns themselves
-  double control = now.previous_control;   // of the fall-back plan
+  double previous = now.previous_control;  // u before u_0; in later steps it is an unknown
+  double control = now.previous_control;   // u of the fall-back plan
   double fallback = settled;
   Eigen::Vector3d free = now.state;  // the state if every u were 0
   for (Index j = 0; j < horizon_; ++j) {

@@ -12,12 +12,12 @@ namespace {
 
 using Eigen::Index;
 
-// A Hessian with a smaller reciprocal condition number counts as singular: x would have fewer than
-// three correct digits.
+// A Hessian with a smaller reciprocal condition number counts as singular, because x would have
+// fewer than three correct digits.
 constexpr double kMinReciprocalCondition = 1e-13;
 
-// A normal counts as a combination of the active ones if its part orthogonal to them is no larger
-// than this share of the whole normal; rounding leaves about 1e-16.
+// A normal counts as a combination of the active ones if its part orthogonal to them is at most
+// this share of the whole normal. Rounding leaves about 1e-16.
 constexpr double kDependent = 1e-11;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -88,10 +88,10 @@ QpSolver::Result QpSolver::Solve(const Eigen::VectorXd& linear, const Eigen::Vec
   return result;
 }
 
-// Step 0 of the paper, from the last active set instead of the empty one: finds the minimum at
+// Step 0 of the paper, from the last active set instead of the empty one. It finds the minimum at
 // which the limits of this set are equalities, and drops limits with negative multipliers. Let N =
-// Q R be their normals, y = L'x, and y0 the unconstrained minimum. Then y = y0 + Q t with R't = b -
-// N'y0, and R lambda = t.
+// Q R be the normals of the limits, y = L'x, and y0 the unconstrained minimum. Then y = y0 + Q t
+// with R't = b - N'y0, and R lambda = t.
 void QpSolver::StartFromActiveSet(const Eigen::VectorXd& linear, const Eigen::VectorXd& lower,
                                   const Eigen::VectorXd& upper) {
   scaled_.noalias() = inverse_factor_.triangularView<Eigen::Lower>() * -linear;
@@ -159,7 +159,7 @@ QpSolver::StepKind QpSolver::Step(Limit& limit, double& multiplier) {
       blocking = i;
     }
   }
-  // Size at which `limit` is met; infinite if its normal depends on the active ones.
+  // Size at which `limit` is met; infinite if its normal depends on the active normals.
   const double primal_step = norm > 0 ? limit.violation / (norm * norm) : kInfinity;
   const double step = primal_step < dual_step ? primal_step : dual_step;
   if (step == kInfinity) return StepKind::kInfeasible;
@@ -191,8 +191,8 @@ double QpSolver::SplitNormal(const Limit& limit) {
   const double whole = rest_.norm();
   along.noalias() = q.transpose() * rest_;
   rest_.noalias() -= q * along;
-  // A second pass: the first one leaves a rounding error relative to the whole normal, and the rest
-  // may be much smaller than that. Two passes are enough.
+  // The first pass leaves a rounding error relative to the whole normal, and the rest may be
+  // smaller than this error. A second pass is enough.
   correction.noalias() = q.transpose() * rest_;
   rest_.noalias() -= q * correction;
   along += correction;

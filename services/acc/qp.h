@@ -1,5 +1,5 @@
 // A small dense solver for strictly convex quadratic programs that differ only in their linear term
-// and limits. It is not made for many hundreds of variables, nor for problems without curvature.
+// and limits. It is not made for problems that have many hundreds of variables or no curvature.
 #pragma once
 
 #include <cstdint>
@@ -14,8 +14,8 @@ namespace fogline::acc {
 ///
 ///     min 1/2 x'Hx + g'x   subject to   lower <= C x <= upper
 ///
-/// It adds one violated limit after the other to a set of active ones, and drops those that block a
-/// step. It needs no feasible start, and few iterations if few limits are active.
+/// It adds one violated limit after the other to a set of active limits, and drops active limits
+/// that block a step. It needs no feasible start, and few iterations if few limits are active.
 ///
 /// With the Cholesky factor H = L L', the normal of a limit is the column L^-1 c. The active
 /// normals are held as a thin QR factorisation that grows and shrinks by one column (Gram-Schmidt
@@ -23,9 +23,10 @@ namespace fogline::acc {
 /// G. W. Stewart, Mathematics of Computation 30 (1976) 772-795). An iteration costs O(n^2). Of a
 /// row of C it uses only the part between the outermost nonzeros.
 ///
-/// The factors depend on H and C alone. So every call except the first starts from the active set
-/// of the call before, which is nearly right if problems follow each other in time. The minimum is
-/// the same from any start except for rounding; equal sequences of calls give equal bits.
+/// The factors depend only on H and C. So every call except the first starts from the active set of
+/// the call before. This set is nearly right if the problems are those of successive steps. The
+/// minimum is the same from any start except for rounding; equal sequences of calls give equal
+/// bits.
 ///
 /// Only the constructor allocates memory.
 class QpSolver {
@@ -38,7 +39,7 @@ class QpSolver {
 
   struct Options {
     std::int64_t max_iterations = 1000;
-    // A limit that is broken by no more than this, in the units of its row of C, counts as met.
+    // A limit that is broken by at most this, in the units of its row of C, counts as met.
     double tolerance = 1e-10;
   };
 
@@ -56,10 +57,11 @@ class QpSolver {
   Result Solve(const Eigen::VectorXd& linear, const Eigen::VectorXd& lower,
                const Eigen::VectorXd& upper);
 
-  /// H^-1 times each column of `columns`: minus the unconstrained minimum for that linear term.
+  /// H^-1 times each column of `columns`. For a linear term g, it is minus the unconstrained
+  /// minimum.
   Eigen::MatrixXd SolveHessian(const Eigen::MatrixXd& columns) const;
 
-  /// Forgets the calls before: the next Solve() starts without active limits, as the first one did.
+  /// Forgets the calls before. The next Solve() starts without active limits, as the first one did.
   void Restart() { active_ = 0; }
 
   /// x of the last Solve().
@@ -92,7 +94,7 @@ class QpSolver {
   double SplitNormal(const Limit& limit);
   void Add(const Limit& limit, double multiplier, double norm);
   void Drop(Eigen::Index position);
-  double Value(Eigen::Index row) const;  // of c'x
+  double Value(Eigen::Index row) const;  // value of c'x
 
   Options options_;
   // The constant part of the problem; n variables, m rows.
@@ -103,15 +105,15 @@ class QpSolver {
   // The active set; the first `active_` columns and entries count.
   Eigen::Index active_ = 0;
   std::vector<Eigen::Index> set_;  // n, rows of the active limits
-  Eigen::VectorXd sides_;          // n, their sides
-  Eigen::VectorXd lambda_;         // n, their multipliers, >= 0
+  Eigen::VectorXd sides_;          // n, sides of the active limits
+  Eigen::VectorXd lambda_;         // n, multipliers of the active limits, >= 0
   Eigen::MatrixXd q_;              // n x n, orthonormal basis of the active normals
   Eigen::MatrixXd r_;              // n x n, upper triangular: active normals = Q R
 
-  // Of the limit that is being added. Its normal is Q along_ + rest_.
+  // For the limit that is being added. Its normal is Q along_ + rest_.
   Eigen::VectorXd along_;             // n, the first `active_` entries count
   Eigen::VectorXd rest_;              // n, orthogonal to Q
-  Eigen::VectorXd correction_;        // n, of `along_`
+  Eigen::VectorXd correction_;        // n, correction of `along_`
   Eigen::VectorXd dual_direction_;    // n, fall of lambda_ per unit of step
   Eigen::VectorXd primal_direction_;  // n, change of x_ per unit of step
 

@@ -1,5 +1,5 @@
 // Decides in every step which side drives the host. Except in a manoeuvre and in emergency braking,
-// the command follows from the two offers alone; the arbitrator does not judge them.
+// the command follows only from the two offers. The arbitrator does not judge the offers.
 //
 //     radar, LiDAR -> ConflictMeter -> DoC                        conflict_meter.h
 //     DoC, situation -> policy -> engagement request              services/decision/policies
@@ -26,7 +26,7 @@
 
 namespace fogline::arbitrator {
 
-/// With the defaults it is the traded control of Sourav & Cheng 2024:
+/// With the defaults the arbitrator is the traded control of Sourav & Cheng 2024:
 ///
 ///     lambda_A = 1 if 0 <= DoC < threshold, else 0        lambda_H = 1 - lambda_A
 ///     a = lambda_H a_H + lambda_A a_A
@@ -34,7 +34,7 @@ class Arbitrator {
  public:
   explicit Arbitrator(const Scenario& scenario);
 
-  /// Whether the scenario's policy uses the surroundings: SetOnDemandInput() is then called before
+  /// Whether the scenario's policy uses the surroundings. Then SetOnDemandInput() is called before
   /// every Step().
   static bool UsesOnDemandInput(const Scenario& scenario);
   /// Takes from the truth of this step only the values that a perfect rear sensor and a visibility
@@ -57,9 +57,9 @@ class Arbitrator {
   const arbitration_t& Choose(const ego_t& ego, const track_t& track,
                               const accel_command_t& automation, const driver_command_t& driver);
 
-  /// Emergency braking: may replace acceleration and mode of the command that is sent, whichever
-  /// side has decided it. The mode of a manoeuvre stays. Call it once per decision, after Choose();
-  /// Step() does.
+  /// Emergency braking: may replace acceleration and mode of the command that is sent. It does not
+  /// matter which side has decided the command. The mode of a manoeuvre stays. Call it once per
+  /// decision, after Choose(). Step() calls Guard() itself.
   void Guard(const ego_t& ego, const track_t& track, arbitration_t& command);
 
   /// Whether the last decision wants the human to drive, also while the transfer is still under
@@ -76,7 +76,8 @@ class Arbitrator {
     return must_ask() && take_over_->outcome().state != take_over::TakeOverState::kAutomated;
   }
   bool in_manoeuvre() const { return take_over_ && take_over_->in_manoeuvre(); }
-  /// An automation that is not there does not get authority back from a driver who was asked.
+  /// Says whether the automation is there. Only then it gets authority back from a driver who was
+  /// asked.
   void SetAutomationThere(bool there) { automation_there_ = there; }
   /// Call it if the command that was sent is not that of the last decision. The next command then
   /// continues from the command that was sent.
@@ -96,16 +97,16 @@ class Arbitrator {
   ConflictMeter meter_;
   policies::Rule rule_;
   bool shares_;
-  std::unique_ptr<policies::EngagementPolicy> policy_;  // none for a simple rule
+  std::unique_ptr<policies::EngagementPolicy> policy_;  // null for a simple rule
   std::optional<FusionRecovery> recovery_;              // only with hand_back fusion
   RequestDebouncer debouncer_;
   Transfer transfer_;
   policies::Surroundings surroundings_;
-  std::optional<take_over::TakeOver> take_over_;  // only of a driver who must be asked
-  std::optional<models::Aeb> aeb_;                // only of a host that has it
+  std::optional<take_over::TakeOver> take_over_;  // only for a driver who must be asked
+  std::optional<models::Aeb> aeb_;                // only for a host that has emergency braking
   double max_track_variance_m2_;  // a track that is more uncertain starts no emergency braking
   double easing_per_step_;        // m/s2; decrease of an acceleration per step after a request
-  double eased_mps2_ = 0;         // upper limit of the automation's acceleration then
+  double eased_mps2_ = 0;         // upper limit of the automation's acceleration after a request
   bool automation_there_ = true;
   double granted_ = 0;               // lambda_H at the end of the transfer
   std::optional<double> sent_mps2_;  // command of the step before

@@ -12,10 +12,10 @@
 
 namespace fogline::arbitrator {
 
-/// DoC = 1/(1 + exp(-slope (x - centre))). The scenario's measure says what x is: as in the paper
-/// it is z (services/decision/conflict/over_time/doc.h); with another measure it is the score of
-/// this measure (services/decision/conflict/conflict_measures.cc). With measure_scale probability
-/// the DoC is the score itself.
+/// DoC = 1/(1 + exp(-slope (x - centre))). x depends on the scenario's measure. With measure `doc`
+/// it is z, as in the paper (services/decision/conflict/over_time/doc.h). With another measure it
+/// is the score of this measure (services/decision/conflict/conflict_measures.cc). With
+/// measure_scale probability the DoC is the score itself.
 class ConflictMeter {
  public:
   /// @throw InputError if measure_scale is probability but the measure's score is not a probability
@@ -45,11 +45,11 @@ class ConflictMeter {
 
  private:
   bool is_posterior_ = false;
-  double slope_;  // of the DoC, over z or score
+  double slope_;  // slope of the DoC over z or over the score
   double centre_;
   conflict::Doc doc_;
   policies::Witness witness_;
-  std::unique_ptr<conflict::ConflictMeasure> measure_;  // none for doc
+  std::unique_ptr<conflict::ConflictMeasure> measure_;  // null for measure `doc`
   double score_ = 0;
 };
 

@@ -7,7 +7,7 @@ namespace {
 
 // The automation can drive if three things are there: its command, the track from which the command
 // is computed, and values of both sensors in pairs of one step. Without pairs there is no Degree of
-// Conflict, which would say whether to trust the automation. The result is the worst of the three.
+// Conflict, which says whether to trust the automation. The result is the worst of the three.
 Offer AutomationOffer(const ArbitratorInputs& inputs, InputState pairs) {
   return std::max({OfferOf(inputs.radar.state), OfferOf(inputs.lidar.state), OfferOf(pairs),
                    OfferOf(inputs.track.state), OfferOf(inputs.automation.state)});
@@ -20,8 +20,7 @@ const M& OrNone(const Heard<M>& input) {
   return input.newest != nullptr ? *input.newest : kNone;
 }
 
-// The newest message if it is usable, otherwise an empty one: for the offers of the two sides, and
-// for the driver's readiness.
+// The newest message if it is usable, otherwise an empty message.
 template <class M>
 const M& UsableOrNone(const Heard<M>& input) {
   static const M kNone{};
@@ -72,8 +71,8 @@ const arbitration_t& FailsafeArbitrator::Step(const header_t& header,
   return out_;
 }
 
-// The regular decision, from the pairs so far. It replaces an offer that is not there by 0; Judge()
-// ensures that a command with such an offer is not sent.
+// The regular decision, from the pairs so far. It uses 0 for a missing offer. Judge() ensures that
+// a command with such an offer is not sent.
 void FailsafeArbitrator::Regular(const ArbitratorInputs& inputs, Offer automation) {
   arbitrator_.SetAutomationThere(automation != kGone);
   out_ = arbitrator_.Choose(*inputs.ego.newest, OrNone(inputs.track),

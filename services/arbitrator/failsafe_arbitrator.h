@@ -39,8 +39,8 @@ class FailsafeArbitrator {
 
   /// The host's command for the step of `header`. Call it once per decision; steps may be left out.
   /// The result is valid until the next call. In the minimal risk manoeuvre mode is MINIMAL_RISK
-  /// and both authorities are 0; the conflict is that of the last pairs of sensor values, whatever
-  /// their age.
+  /// and both authorities are 0. The conflict is that of the last pairs of sensor values, of any
+  /// age.
   const arbitration_t& Step(const header_t& header, const ArbitratorInputs& inputs);
 
   /// Makes the manoeuvre begin at the next step, whatever the inputs are. Call it if the vehicle,

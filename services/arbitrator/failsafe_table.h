@@ -14,7 +14,7 @@ namespace fogline::arbitrator {
 /// Availability of the automation or of the human, from best to worst. The values are bits, so that
 /// a row of the table can name several.
 enum Offer : std::uint8_t {
-  kThere = 1,   // may be used; while it is STALE its last value holds
+  kThere = 1,   // may be used; while STALE, the last value holds
   kNotYet = 2,  // has never come, and is not overdue
   kGone = 4,    // LOST
 };
@@ -24,15 +24,15 @@ constexpr Offer OfferOf(InputState state) {
   return state == InputState::kLost ? kGone : kNotYet;
 }
 
-/// Whether in the regular decision the human would drive (kDisputed); bits as well.
+/// Whether in the regular decision the human would drive (kDisputed). The values are bits, too.
 enum Conflict : std::uint8_t { kCalm = 1, kDisputed = 2, kAnyConflict = kCalm | kDisputed };
 
 enum class Decision : std::uint8_t {
-  kRegular,      // both can drive: as in lockstep
-  kAutomation,   // the human cannot drive, and need not
+  kRegular,      // both can drive, as in lockstep
+  kAutomation,   // the human cannot drive, and there is no conflict
   kHuman,        // the automation cannot drive
-  kHold,         // an input that has not come yet may still come: the last command holds
-  kMinimalRisk,  // neither can drive
+  kHold,         // an input has not come yet, so the last command holds
+  kMinimalRisk,  // the human has failed; the automation has failed or is disputed
 };
 
 struct FailsafeRow {

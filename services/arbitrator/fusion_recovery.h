@@ -9,9 +9,9 @@
 namespace fogline::arbitrator {
 
 /// The Degree of Conflict compares the sensors with each other, over a window of less than a
-/// second. The filter has a longer memory: when the sensors agree again, its track may still be
-/// metres away from both. This class compares the track with the sensors. With d the track's
-/// distance, r_i the range of sensor i and y_i its lateral offset, a step agrees if
+/// second. The filter has a longer memory. When the sensors agree again, the filter's track may
+/// still be metres away from both sensors. This class compares the track with the sensors. With d
+/// the track's distance, r_i the range of sensor i and y_i its lateral offset, a step agrees if
 ///
 ///     |r_i - sqrt(d^2 + y_i^2)| <= hand_back_error_m     for each sensor i that has a value,
 ///

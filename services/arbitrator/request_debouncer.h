@@ -22,9 +22,9 @@ namespace fogline::arbitrator {
 ///
 /// Then a change waits until min_dwell_s since the last change has passed. The test's probabilities
 /// of error are alpha and beta if the DoC is a probability and its steps are independent. A DoC of
-/// a windowed z is neither, so the test errs more often. If the DoC is a posterior, it already
-/// contains the evidence of all steps: then L = logit(DoC) - logit(threshold), so that no evidence
-/// counts twice.
+/// a windowed z is no probability, and its steps depend on each other, so the test errs more often.
+/// If the DoC is a posterior, it already contains the evidence of all steps. Then L = logit(DoC) -
+/// logit(threshold), so that evidence does not count twice.
 ///
 /// With hand_back fusion, a return to the automation also waits until the track has recovered
 /// (fusion_recovery.h). A firm request passes without delay.
@@ -34,7 +34,7 @@ class RequestDebouncer {
   RequestDebouncer(const TransferSection& section, double step_s, bool posterior = false);
 
   /// Wanted authority of the human in this step, in [0, 1]. Call it once per decision.
-  /// @param recovered whether the track has recovered; only hand_back fusion regards it
+  /// @param recovered whether the track has recovered; has an effect only with hand_back fusion
   double Step(const policies::EngagementRequest& request, double doc, bool recovered = true) {
     if (request.firm) return request.lambda_human;
     return plain_ ? request.lambda_human : PutOff(request, doc, recovered);
@@ -50,13 +50,13 @@ class RequestDebouncer {
 
   TransferSection section_;
   bool posterior_;
-  bool plain_;  // neither hysteresis nor min_dwell_s nor hand_back fusion
+  bool plain_;  // without hysteresis, min_dwell_s and hand_back fusion
   double accept_human_;
   double accept_automation_;
   std::int64_t dwell_steps_;
 
   double evidence_ = 0;         // L
-  bool decided_human_ = false;  // by the hysteresis
+  bool decided_human_ = false;  // result of the hysteresis
   bool wanted_human_ = false;   // after the wait for min_dwell_s and for the track
   std::int64_t steps_since_change_;
 };

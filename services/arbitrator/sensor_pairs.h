@@ -1,6 +1,7 @@
-// Pairs of radar and LiDAR values of the same step, in real time, where either may come late or not
-// at all. The difference of values of two steps would count relative motion as conflict: at a
-// closing speed of 10 m/s a step of 0.1 s makes 1 m, which is the centre of the DoC.
+// Pairs of radar and LiDAR values of the same step, in real time, where one of the values may come
+// late or not at all. The difference of values of two steps would count relative motion as
+// conflict. At a closing speed of 10 m/s the range changes by 1 m in a step of 0.1 s. This 1 m is
+// the centre of the DoC.
 #pragma once
 
 #include <array>
@@ -13,7 +14,8 @@
 
 namespace fogline::arbitrator {
 
-/// The newest pair and its health. The limits are those of inputs, in steps instead of time.
+/// The newest pair and its health. The limits are those of other inputs (HealthSection), in steps
+/// instead of time.
 class SensorPairs {
  public:
   explicit SensorPairs(const HealthSection& section);
@@ -32,7 +34,8 @@ class SensorPairs {
   const lidar_t& lidar() const { return lidar_; }
 
  private:
-  // A sensor may be kDepth - 1 steps behind the other; a pair of that age is LOST by default.
+  // A sensor may be kDepth - 1 steps behind the other sensor. A pair of this age is LOST by
+  // default.
   static constexpr std::size_t kDepth = 4;
 
   void Match();
@@ -47,7 +50,7 @@ class SensorPairs {
   lidar_t lidar_{};
 
   InputState state_ = InputState::kAwaited;
-  std::int64_t began_ = -1;   // first decision
+  std::int64_t began_ = -1;   // step of the first decision
   std::int64_t in_time_ = 0;  // consecutive decisions with a pair in time
 };
 

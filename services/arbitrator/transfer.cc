@@ -11,8 +11,8 @@
 namespace fogline::arbitrator {
 namespace {
 
-// k of the sigmoid: the paper's slope of the DoC, per duration instead of per metre. The steepest
-// change of the sigmoid is 2.53 times that of the linear ramp.
+// k of the sigmoid. It is the paper's slope of the DoC, but per duration instead of per metre. The
+// steepest change of the sigmoid is 2.53 times that of the linear ramp.
 constexpr double kSteepness = 10;
 
 double Logistic(double x) { return 1 / (1 + std::exp(-x)); }
@@ -73,7 +73,7 @@ double Transfer::AuthorityTowards(double wanted) {
     return progress_ = Towards(progress_, wanted, progress_per_step_);
   }
   if (section_.profile != TransferProfile::kSigmoid) return wanted;
-  // At the ends the target is exact: the logarithm would round.
+  // At 0 and 1 the target is the wanted authority itself, because the logarithm would round.
   const double target = wanted == 0 || wanted == 1 ? wanted : InverseSigmoid(wanted);
   progress_ = Towards(progress_, target, progress_per_step_);
   if (progress_ == target) return wanted;

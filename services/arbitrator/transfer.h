@@ -17,10 +17,10 @@ namespace fogline::arbitrator {
 ///                   S(p) = (s(k (p - 1/2)) - s(-k/2))/(s(k/2) - s(-k/2)), s the logistic function
 ///     jerk_limited  as step, but the command changes by no more than jerk until it reaches a
 ///
-/// In any profile the gate limits the command itself for gate_s after the begin of a transfer, and
-/// the change of the command until it reaches a. A transfer begins when the other side is wanted to
-/// have the main authority (kMainAuthority). Braking harder than yield_mps2 is exempt from both
-/// limits and ends them.
+/// With every profile, the gate limits the command itself for gate_s after the begin of a transfer.
+/// It also limits the change of the command until the command reaches a. A transfer begins when the
+/// main authority (kMainAuthority) is wanted for the other side. A braking that is harder than
+/// yield_mps2 is exempt from both limits and ends them.
 ///
 /// If lambda_H is 0 or 1 and no limit is in force, the command is that side's offer, bit by bit. On
 /// the automation's return see services/arbitrator/README.md.
@@ -60,8 +60,8 @@ class Transfer {
 
   TransferSection section_;
   bool plain_;                // profile step, without gate
-  double progress_per_step_;  // of the ramps
-  double change_per_step_;    // m/s2; of a limited command
+  double progress_per_step_;  // change of progress_ per step
+  double change_per_step_;    // m/s2; largest change of a limited command
   std::int64_t gate_steps_;
 
   double progress_ = 0;

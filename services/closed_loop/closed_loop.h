@@ -1,6 +1,6 @@
-// The whole experiment in one process without transport of messages: the same Step functions in the
-// order of the graph table. For sweeps, calibration and tests. Its results equal those of the
-// distributed run.
+// The whole experiment in one process without transport of messages, for sweeps, calibration and
+// tests. It calls the same Step functions in the order of the graph table. Its results equal those
+// of the distributed run.
 #pragma once
 
 #include <cstdint>
@@ -122,7 +122,7 @@ class ClosedLoop {
 /// Runs one scenario after the other. For use by one thread.
 class ReusedLoop {
  public:
-  /// One run; `visit` as of ClosedLoop::Run(). @throws as the constructor of ClosedLoop
+  /// One run; `visit` as in ClosedLoop::Run(). @throws as the constructor of ClosedLoop
   template <class Visit>
   void Run(const Scenario& scenario, Visit&& visit) {
     if (loop_) {
@@ -132,7 +132,7 @@ class ReusedLoop {
     }
     loop_->Run(0, visit);
   }
-  /// The same with this seed.
+  /// One run with `seed` in place of the scenario's seed.
   template <class Visit>
   void Run(const Scenario& scenario, std::int64_t seed, Visit&& visit) {
     scenario_ = scenario;

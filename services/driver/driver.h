@@ -1,5 +1,6 @@
 // The human driver of the host. He sees the road as far as fog allows, and does not use the
-// sensors. He makes an offer in every step; the arbitrator decides whether the host follows it.
+// sensors. He makes an offer in every step. The arbitrator decides whether the host follows this
+// offer.
 #pragma once
 
 #include <cstdint>
@@ -14,10 +15,10 @@
 
 namespace fogline::driver {
 
-/// By default the driver of Sourav & Cheng 2024: the Intelligent Driver Model on the ground truth.
-/// He perceives it perfectly and without delay, in fog as in clear air; his readiness is the
-/// scenario's. Each switch of scenario section `human` replaces a part of this by a more realistic
-/// model (services/models/driver).
+/// By default he is the driver of Sourav & Cheng 2024: the Intelligent Driver Model on the ground
+/// truth. He perceives the truth perfectly and without delay, also in fog. His readiness is that of
+/// the scenario. Each switch of scenario section `human` replaces a part of this driver by a more
+/// realistic model (services/models/driver).
 class Driver {
  public:
   /// @throws InputError if a step is so short that the reaction time is more than 254 steps
@@ -25,7 +26,7 @@ class Driver {
 
   /// Whether the driver needs HOST_COMMAND, because his awareness depends on who drives.
   static bool UsesOnDemandInput(const Scenario& scenario) { return scenario.human.loses_awareness; }
-  /// Takes the command of the step that ends with the next Step(). It says which side drove.
+  /// Takes the host's command of the step before, which says which side drove.
   void SetOnDemandInput(const arbitration_t& host);
 
   /// The acceleration that the driver offers. Call it in the order of steps. The driver has a
@@ -40,7 +41,7 @@ class Driver {
   std::optional<models::FogSight> sight_;
   std::optional<models::HumanDriver> human_;
   std::optional<models::Awareness> awareness_;
-  HumanParameters errors_;  // of an aware driver
+  HumanParameters errors_;  // errors of an aware driver
   double step_s_;
   models::DriverTask task_ = models::DriverTask::kMonitors;
   std::optional<std::int64_t> last_step_;

@@ -19,7 +19,8 @@ class AccDriver final : public CarDriver {
       : controller_(scenario.follower, scenario.step_s, scenario.follower_vehicle.model),
         aeb_(AebOf(scenario.followers)) {}
 
-  /// Resets the object to the state of a new one. Cheaper if the ACC's parameters are equal.
+  /// Resets the object to the state of a new one. It is cheaper than a new object if the ACC's
+  /// parameters are equal.
   /// @throws as the constructor
   void Restart(const Scenario& scenario) {
     controller_.Restart(scenario.follower, scenario.step_s, scenario.follower_vehicle.model);

@@ -1,4 +1,4 @@
-// One driver of one car that follows another.
+// The driver of one car that follows another car.
 #pragma once
 
 #include <cstdint>

@@ -28,8 +28,8 @@ std::unique_ptr<CarDriver> MakePerson(const Scenario& scenario, std::size_t car,
   }
 }
 
-/// The driver of this car. If both `before` and this driver are an ACC, it is `before`, restarted.
-/// Otherwise it is a new object.
+/// The driver of this car. If `before` and this driver are both an ACC, the result is `before`,
+/// restarted. Otherwise the result is a new object.
 std::unique_ptr<CarDriver> MakeDriver(const Scenario& scenario, std::size_t car,
                                       std::unique_ptr<CarDriver> before) {
   const DriverAssignment assignment = AssignmentOf(scenario, car);

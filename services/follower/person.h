@@ -15,11 +15,11 @@ namespace fogline::follower {
 
 /// The IDM with the parameters of his style (services/models/follower/style.h), inside the Human
 /// Driver Model with its errors and reaction time (services/models/driver/human_driver.h). With a
-/// safety model he applies the smaller of its acceleration and his own. The safety model has no
-/// errors, and its own reaction time (services/models/follower/safety_response.h). With sight fog
-/// both models receive only what he sees in fog, as the host's driver
-/// (services/models/driver/fog_sight.h). So does the emergency braking of his car, if it has one:
-/// it has no errors and no reaction time.
+/// safety model he applies the smaller one of the model's acceleration and his own. The safety
+/// model has no errors, and has a reaction time of its own
+/// (services/models/follower/safety_response.h). With sight fog both models receive only what he
+/// sees in fog, as the host's driver (services/models/driver/fog_sight.h). So does the emergency
+/// braking of his car, if the car has it. Emergency braking has no errors and no reaction time.
 class Person final : public CarDriver {
  public:
   /// @param sight nullopt if he sees perfectly

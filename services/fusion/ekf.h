@@ -22,8 +22,8 @@ namespace fogline::fusion {
 class Ekf {
  public:
   using State = Eigen::Vector3d;
-  using Covariance = Eigen::Matrix3d;   // order of State, products of its units
-  using Jacobian = Eigen::RowVector3d;  // of one measured value with respect to State
+  using Covariance = Eigen::Matrix3d;   // order of State; units: products of those of State
+  using Jacobian = Eigen::RowVector3d;  // derivative of one measured value with respect to State
 
   /// @param step_s T.  @param jerk_density_m2ps5 q.
   Ekf(double step_s, double jerk_density_m2ps5);
@@ -49,7 +49,7 @@ class Ekf {
   void SetCovariance(const Covariance& covariance);
 
   Eigen::Matrix3d transition_;     // F
-  Eigen::Vector3d input_;          // of the host's acceleration
+  Eigen::Vector3d input_;          // effect of the host's acceleration
   Eigen::Matrix3d process_noise_;  // Q
   State state_ = State::Zero();
   Covariance covariance_ = Covariance::Zero();

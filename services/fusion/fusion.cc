@@ -12,8 +12,8 @@
 namespace fogline::fusion {
 namespace {
 
-// A range of less than this many lateral offsets is too uncertain about the distance ahead for a
-// start: at 2 the cosine is 0.87.
+// The filter does not start from a range of at most this many lateral offsets, because the distance
+// ahead is then too uncertain. At 2 the cosine is 0.87.
 constexpr double kStartRangePerOffset = 2.0;
 
 constexpr double Square(double x) { return x * x; }
@@ -77,8 +77,9 @@ const track_t& Fusion::Step(const ego_t& ego, const radar_t& radar, const lidar_
   return out_;
 }
 
-// Starts with the state that exactly explains the radar's two values. Its covariance is that of
-// their noise: P = J^-1 R J^-T, J the Jacobian of both values. The values contain no acceleration.
+// Starts with the state that exactly explains the radar's two values. The covariance is that of the
+// noise of these values: P = J^-1 R J^-T, J the Jacobian of both values. The values contain no
+// acceleration.
 bool Fusion::StartFromRadar(const radar_t& radar) {
   const std::optional<double> distance = StartDistance(radar.range_m, radar_offset_m_);
   const std::int8_t usage = distance ? track_t::USED : track_t::GATED;

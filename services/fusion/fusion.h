@@ -1,6 +1,6 @@
 // Fuses radar and LiDAR into one estimate of the car ahead. It knows the geometry of the sensors,
-// but not whether there is fog: it trusts the LiDAR in fog as much as in clear air (unless gating
-// is on). The experiment is about this weakness.
+// but not whether there is fog. So it trusts the LiDAR in fog, too (unless gating is on). The
+// experiment is about this weakness.
 #pragma once
 
 #include <array>
@@ -24,9 +24,9 @@ namespace fogline::fusion {
 /// skipped.
 ///
 /// The assumed noise is that of the scenario's section `fusion`. The filter does not use the
-/// standard deviations that the sensors state (range_std_m and the like): a sensor does not know
-/// when fog deceives it. If the scenario says so, the filter estimates the noise of each value by
-/// itself (adaptive_noise.h), from the values that have corrected it.
+/// standard deviations that the sensors state (range_std_m and the like), because a sensor does not
+/// know when fog deceives it. If the scenario says so, the filter estimates the noise of each value
+/// by itself (adaptive_noise.h), from the values that have corrected it.
 ///
 /// A policy that selects sensors (services/decision/policies) first judges each step's values
 /// against the prediction. The values of a sensor that it does not select are compared with the
@@ -35,10 +35,10 @@ class Fusion {
  public:
   explicit Fusion(const Scenario& scenario);
 
-  /// Whether the scenario's policy needs the truth: SetOnDemandInput() is then called before every
+  /// Whether the scenario's policy needs the truth. Then SetOnDemandInput() is called before every
   /// Step().
   static bool UsesOnDemandInput(const Scenario& scenario);
-  /// Takes only the gap from the truth, for the policy alone.
+  /// Takes only the gap from the truth. Only the policy uses this gap.
   void SetOnDemandInput(const truth_t& truth) { true_gap_m_ = truth.host_gap_m; }
 
   /// The track of this step. Call it once per step, in the order of steps, beginning with the
@@ -83,7 +83,7 @@ class Fusion {
   double initial_speed_variance_;
   double initial_acceleration_variance_;
   std::unique_ptr<policies::EngagementPolicy>
-      policy_;            // none if the policy does not select sensors
+      policy_;            // null if the policy does not select sensors
   bool selects_ = false;  // whether gate or policy may refuse a value
   policies::SensorSelection selection_;
   std::optional<double> true_gap_m_;

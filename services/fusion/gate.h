@@ -5,11 +5,11 @@
 
 namespace fogline::fusion {
 
-/// Gate on the normalised innovation squared of one measured value, nu^2 / S, which is chi-square
+/// Gate on the normalised innovation squared of one measured value, nu^2 / S. It is chi-square
 /// distributed with one degree of freedom while the filter's model holds (Bar-Shalom, Li &
 /// Kirubarajan 2001, section 5.4). After `reopen_after` refusals in a row a change of the scene is
-/// more likely than failed measurements: the gate stays open until a value is inside it again. A
-/// gate that never reopens refuses every value outside of it, however many there are.
+/// more likely than failed measurements. So the gate then stays open until a value is inside it
+/// again. A gate that never reopens refuses every value outside of it.
 class Gate {
  public:
   /// @param probability probability that a good value is inside the gate, in (0, 1)
@@ -25,7 +25,8 @@ class Gate {
  private:
   double limit_;
   std::int64_t reopen_after_;
-  // In a row; stays at reopen_after_ while the gate is open. Not counted if it never reopens.
+  // Number of refusals in a row. It stays at reopen_after_ while the gate is open, and at 0 if the
+  // gate never reopens.
   std::int64_t refusals_ = 0;
 };
 

@@ -13,8 +13,8 @@ namespace fogline::fusion {
 ///     range rate     = dv d / r               d/dd = dv y^2 / r^3,   d/ddv = d / r
 ///
 /// With y = 0 both are linear: r = d, and the range rate is dv. If an estimate has d < 0, the range
-/// counts as negative. Then the next measurement pulls the estimate back to the front; with a
-/// positive range it could stay at the mirror image behind the sensor.
+/// counts as negative. Then the next measurement pulls the estimate back to the front. With a
+/// positive range the estimate could stay at the mirror image behind the sensor.
 class LineOfSight {
  public:
   LineOfSight(double distance_m, double lateral_offset_m) {

@@ -1,5 +1,5 @@
 // Expected echo powers of target and fog on one beam: the formulas of services/lidar/fog_beam.h
-// with the parameters of a scenario. Their costly part is tabulated.
+// with the parameters of a scenario. The costly part of the formulas is tabulated.
 #pragma once
 
 #include <array>
@@ -10,8 +10,8 @@
 
 namespace fogline::lidar {
 
-/// Powers as ln(P / P_min), P_min being the detection threshold: an echo above 0 is detected.
-/// Minus infinity if there is no echo.
+/// Powers as ln(P / P_min), P_min being the detection threshold. An echo above 0 is detected. The
+/// value is minus infinity if there is no echo.
 struct EchoPowers {
   double target;
   double fog;
@@ -20,19 +20,19 @@ struct EchoPowers {
 
 class EchoModel {
  public:
-  /// For extinctions from `from_pm` to `to_pm` in 1/m. At an extinction outside, the shape of the
-  /// fog's echo is that at the nearer end.
+  /// For extinctions from `from_pm` to `to_pm` in 1/m. At an extinction outside of this range, the
+  /// shape of the fog's echo is that at the nearer end.
   EchoModel(const LidarBeamSection& beam, double from_pm, double to_pm);
 
   /// Echoes of a target at `range_m` in air of this visibility (both > 0 m):
   ///     P_t / P_min = (Gamma / Gamma_c) (R_c / R)^2 xi(R) exp(-2 alpha R)
   ///     P_f / P_min = (pi beta / Gamma_c) R_c^2 J
-  /// A target nearer than r* hides the fog behind it: the fog's echo then lies at R, with J scaled
+  /// A target nearer than r* hides the fog behind it. The fog's echo then lies at R, with J scaled
   /// by g(R)/g(r*). Up to R1 the beam is blind, and there is no echo.
   EchoPowers At(double range_m, double visibility_m) const;
 
-  /// Power relative to that of the target in clear air at `range_m`, the distance of the echo:
-  /// 1 for the target itself in clear air, whatever its distance; a few per mille for fog.
+  /// Power relative to that of the target in clear air at `range_m`, the distance of the echo. It
+  /// is 1 for the target itself in clear air at any distance, and a few per mille for fog.
   double Intensity(double log_power, double range_m) const;
 
  private:

@@ -8,9 +8,9 @@
 //   fog before R: P_f = K beta J                                     beta: backscatter in 1/(m sr)
 //   J = max over R' of  integral over [R' - L, R'] of  sin^2(pi (R' - r) / L) g(r) dr      in 1/m
 //
-// K is the same in both: the target's delta pulse has the factor 2/c here, which Hahner et al.
-// include in their Gamma (their 1e-6 is 150 here). The maximum of the fog's echo lies at r* = R' -
-// L / 2.
+// K is the same in both formulas, because the target's delta pulse has the factor 2/c here. Hahner
+// et al. include this factor in their Gamma (their 1e-6 is 150 here). The maximum of the fog's echo
+// lies at r* = R' - L / 2.
 #pragma once
 
 #include "scenario/sections/sensing.h"
@@ -21,7 +21,7 @@ namespace fogline::lidar {
 struct BeamOptics {
   double pulse_length_m;   // L = c tau
   double overlap_start_m;  // R1, xi = 0 up to here
-  double overlap_end_m;    // R2 >= R1, xi = 1 from here on, linear between
+  double overlap_end_m;    // R2 >= R1, xi = 1 from here on, linear between R1 and R2
 };
 
 BeamOptics OpticsOf(const LidarBeamSection& beam);
@@ -38,8 +38,8 @@ struct FogPeak {
   double range_m;      // r*
 };
 
-/// J and r* by quadrature and maximisation: some microseconds. (A short pulse has
-/// J = L g(r*) / 2 with r* where g is largest.) extinction_pm >= 0.
+/// J and r* by quadrature and maximisation, which takes some microseconds. (A short pulse has J = L
+/// g(r*) / 2 with r* where g is largest.) extinction_pm >= 0.
 FogPeak FindFogPeak(const BeamOptics& optics, double extinction_pm);
 
 /// Beta(2, 20) distributed number from two uniform ones in (0, 1): the second smallest of 21

@@ -1,4 +1,5 @@
-// The ways in which a LiDAR fails in fog, as a mixture: no physics, but shares of steps.
+// The ways in which a LiDAR fails in fog, each with its share of the steps. The shares do not come
+// from physics.
 #pragma once
 
 #include <cstdint>
@@ -17,9 +18,8 @@ enum class FogMode : std::uint8_t {
 
 /// With the fog's level l and the target's range r, the probabilities in a step are
 ///
-///     missing    l missing_share m(r)    m(r) = 0 up to missing_from_m, 1 from missing_beyond_m
-///     on,
-///                                        linear between them
+///     missing    l missing_share m(r)    m(r) = 0 up to missing_from_m,
+///                                        1 from missing_beyond_m on, linear between them
 ///     near echo  l near_echo_share
 ///     biased     l biased_share
 ///     right      the rest

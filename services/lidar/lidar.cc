@@ -79,7 +79,8 @@ std::optional<Lidar::Echo> Lidar::ModalEcho(const truth_t& truth, double target_
   return PlainEchoAt(target_m, 0.0);
 }
 
-// The place of the echo is that of model beam. A car so near that the beam is blind hides the fog.
+// The place of the echo is that of model beam. If the car is so near that the beam is blind, the
+// car hides the fog.
 Lidar::Echo Lidar::NearEcho(const truth_t& truth, double target_m) const {
   const LidarBeamSection& beam = lidar_.beam;
   if (target_m <= beam.overlap_start_m) {

@@ -1,5 +1,5 @@
-// The host's LiDAR: in each step it measures one distance of the preceding car, or none. It tracks
-// nothing, filters nothing, and cannot distinguish an echo of the fog from one of the car.
+// The host's LiDAR. In each step it measures one distance of the preceding car, or none. It tracks
+// nothing, filters nothing, and cannot distinguish an echo of the fog from an echo of the car.
 #pragma once
 
 #include <compare>
@@ -23,18 +23,18 @@ namespace fogline::lidar {
 ///     beam   d = median over the beams' echoes           (services/lidar/fog_beam.h)
 ///     modes  d = r, or r - fog.bias_m, or an echo of the fog, or none, each in a share of the
 ///            steps                                       (services/lidar/fog_modes.h)
-/// On each beam the echo powers of target and fog are lognormal and independent; the stronger one
+/// On each beam the echo powers of target and fog are lognormal and independent. The stronger one
 /// is the beam's echo if it exceeds the detection threshold. The fog's echo lies at r* plus a
 /// Beta(2, 20) distributed scatter, never behind the target. At least half of the beams must have
 /// an echo. So the range at which a single beam detects with probability 1/2 is also that of the
-/// LiDAR, for any number of beams, and a minority of the beams cannot determine the result.
+/// LiDAR, for any number of beams. A minority of the beams cannot determine the result.
 class Lidar {
  public:
   /// Indices of the draws of stream kLidar within a step.
   static constexpr std::uint32_t kNoiseDraw = 0;        // Normal2: range, second unused
   static constexpr std::uint32_t kDropoutDraw = 1;      // Uniform2: first number, second unused
   static constexpr std::uint32_t kModeDraw = 2;         // Uniform2: first number, second unused
-  static constexpr std::uint32_t kModeScatterDraw = 3;  // Uniform2: of a near echo
+  static constexpr std::uint32_t kModeScatterDraw = 3;  // Uniform2: scatter of a near echo
   /// Indices of the draws of stream kLidarBeam within a step, for beam n from 0.
   static constexpr std::uint32_t PowerDraw(std::uint32_t n) { return 2 * n; }  // target, fog
   static constexpr std::uint32_t ScatterDraw(std::uint32_t n) { return 2 * n + 1; }
@@ -42,7 +42,7 @@ class Lidar {
   /// @throw InputError if the shares of fog model modes add up to more than 1
   explicit Lidar(const Scenario& scenario);
 
-  /// The measurement in the step of `truth`. It depends on scenario and truth alone, not on the
+  /// The measurement in the step of `truth`. It depends only on scenario and truth, not on the
   /// steps before.
   const lidar_t& Step(const truth_t& truth);
 
@@ -69,11 +69,11 @@ class Lidar {
   void CollectEchoes(const truth_t& truth, double target_m);
 
   LidarSection lidar_;
-  double fog_bias_m_;  // at level 1, or in a biased step; 0 unless the fog model is bias or modes
+  double fog_bias_m_;  // bias at level 1, or in a biased step; 0 for fog models none and beam
   Random random_;
   Random beam_random_;
-  std::optional<EchoModel> model_;  // of the fog models beam and modes
-  std::optional<FogModes> modes_;   // of fog model modes
+  std::optional<EchoModel> model_;  // for the fog models beam and modes
+  std::optional<FogModes> modes_;   // for fog model modes
   std::vector<BeamEcho> echoes_;
   lidar_t output_{};
 };

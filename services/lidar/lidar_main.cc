@@ -1,6 +1,6 @@
 // The process `lidar`: measures the distance of the preceding car once per step. In fog it
-// sometimes measures that of the fog. It does not receive the radar's values.
-// services/runtime/process/service.h connects it to its channels.
+// sometimes measures the distance of the fog. It does not receive the radar's values.
+// services/runtime/process/service.h connects the process to its channels.
 #include "services/lidar/lidar.h"
 #include "services/runtime/process/service.h"
 

@@ -26,8 +26,8 @@ namespace fogline::log {
 namespace {
 
 constexpr std::uint32_t kSyncWord = 0xEDA1DA01;
-// At most this many bytes of a mapped log stay in memory. That is little for a process, but enough
-// that each call releases many pages.
+// At most this many bytes of a mapped log stay in memory. This is little memory for a process. Each
+// call of madvise() can still release many pages.
 constexpr std::size_t kMostMapped = 4 << 20;
 
 std::uint32_t ReadUint32(runtime::Bytes bytes, std::size_t offset) {
@@ -126,7 +126,7 @@ bool EventLogWriter::WriteOut() {
 }
 
 void EventLogWriter::CountWritten(runtime::Bytes bytes) {
-  if (bytes.empty()) return;  // for a null buffer the library returns the initial value
+  if (bytes.empty()) return;  // for a null buffer libdeflate_crc32() returns its initial value
   written_.bytes += std::ssize(bytes);
   written_.checksum = libdeflate_crc32(written_.checksum, bytes.data(), bytes.size());
 }

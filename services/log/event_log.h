@@ -25,49 +25,50 @@ inline constexpr std::size_t kEventHeader = 28;
 /// The most bytes that an event takes besides its data.
 inline constexpr std::size_t kMostEventOverhead = kEventHeader + runtime::kLongestChannel;
 
-/// The part of a log that is kept when a writer continues it: its first bytes, and the number of
-/// whole events in them.
+/// The beginning of a log: its first bytes, and the number of whole events in them. A writer that
+/// continues a log keeps its beginning.
 struct LogHead {
   std::int64_t bytes = 0;
   std::int64_t events = 0;
 };
 
-/// The part of a log that one of its writers has reported: the bytes from `begin` up to `bytes`,
-/// and their CRC-32 (as zlib computes it).
+/// The part of a log that one of its writers has reported: the bytes from offset `begin` up to
+/// offset `bytes`, and their CRC-32 (as zlib computes it).
 struct WrittenLog {
   std::int64_t begin = 0;
   std::int64_t bytes = 0;
   std::uint32_t checksum = 0;
 };
 
-/// Behind the last complete step, a killed recorder leaves at most a ring of incomplete steps and a
-/// torn event. It has reported neither. Both together fit into this many bytes at the end of the
-/// log.
+/// A killed recorder leaves at most kRingSteps incomplete steps and a torn event behind the last
+/// complete step. It has not reported these bytes. They fit into this number of bytes at the end of
+/// the log.
 inline constexpr std::int64_t kTailBytes = 1 << 20;
 
-/// Appends events to a new file, or to the head of an old one.
+/// Appends events to a new file, or to an old file of which only the beginning is kept.
 class EventLogWriter {
  public:
   /// Opens the file for writing and replaces an existing one. @throws InputError if that fails
   explicit EventLogWriter(const std::filesystem::path& file);
-  /// Cuts an existing file behind `head` and continues it there. @throws InputError if that fails
+  /// Cuts off an existing file behind `head`, and continues the file there. @throws InputError if
+  /// that fails
   EventLogWriter(const std::filesystem::path& file, const LogHead& head);
   ~EventLogWriter();
   EventLogWriter(const EventLogWriter&) = delete;
   EventLogWriter& operator=(const EventLogWriter&) = delete;
 
-  /// @throws std::runtime_error, such as when the disk is full
+  /// @throws std::runtime_error, for example if the disk is full
   void Write(std::string_view channel, std::int64_t utime, runtime::Bytes data);
-  /// Hands everything written so far to the operating system, so that it survives a kill -9 of this
+  /// Hands all bytes written so far to the operating system, so that they survive a kill -9 of this
   /// process.
   /// @throws std::runtime_error
   void Flush();
-  /// Bytes of all events so far, including those that Flush() has not handed over.
+  /// Bytes of all events so far, including the events that Flush() has not handed over yet.
   std::int64_t size() const { return size_; }
-  /// The same bytes, with the number of events in them.
+  /// The bytes of all events so far (size()), and the number of these events.
   LogHead head() const { return {.bytes = size_, .events = events_}; }
   /// The part of the log that the operating system has. In a continued log this part begins with
-  /// the last kTailBytes of the old head, as they were found in the file. The earlier writer has
+  /// the last kTailBytes of the old log, as they were found in the file. The earlier writer has
   /// reported the bytes before this part.
   const WrittenLog& written() const { return written_; }
 
@@ -76,12 +77,12 @@ class EventLogWriter {
   /// Adds bytes to written_. The operating system has these bytes.
   void CountWritten(runtime::Bytes bytes);
   /// Reads the last kTailBytes of the head and adds them to written_.
-  /// @return false and errno if they cannot be read
+  /// @return false, with errno, if they cannot be read
   bool CountHead(std::int64_t bytes);
   [[noreturn]] void FailToWrite() const;
 
   std::filesystem::path file_;
-  std::FILE* out_;  // without a buffer of its own
+  std::FILE* out_;  // the file, without a buffer in the C library
   std::int64_t events_ = 0;
   std::int64_t size_ = 0;
   WrittenLog written_;
@@ -92,7 +93,7 @@ class EventLogWriter {
 void AppendEvent(std::int64_t number, std::string_view channel, std::int64_t utime,
                  runtime::Bytes data, std::vector<std::uint8_t>& bytes);
 
-/// Whether a log may replace the file: it begins like an event log, or is empty.
+/// Whether the file begins like an event log or is empty, so that a log may replace it.
 bool IsEventLogOrEmpty(const std::filesystem::path& file);
 
 /// One event; views into the mapped file.
@@ -104,18 +105,19 @@ struct Event {
 };
 
 /// The event at the beginning of `bytes`; nullopt if there is none.
-/// @param why is set to the reason if there is none
+/// @param why is set to the reason if there is no event
 std::optional<Event> ParseEvent(runtime::Bytes bytes, std::string_view& why);
 /// The bytes that an event takes in a file.
 std::size_t SizeInFile(const Event& event);
 
 /// The place of the first event in `bytes`, from `offset` on, that `accept` recognises; nullopt if
-/// there is no such event. Other bytes may stand before it, such as the end of another event.
+/// there is no such event. Other bytes may stand before this event, such as the end of another
+/// event.
 std::optional<std::size_t> FindEvent(runtime::Bytes bytes, std::size_t offset,
                                      const std::function<bool(const Event&)>& accept);
 
 /// Reads a log from front to back without copying. A torn tail (an incomplete last event, which a
-/// kill or a full disk leaves) ends the log. torn() describes it.
+/// kill or a full disk leaves) ends the log. torn() describes the torn tail.
 class EventLogReader {
  public:
   /// @throws InputError if the file cannot be read or does not begin like an event log
@@ -126,7 +128,7 @@ class EventLogReader {
 
   /// The next event; nullopt at the end or at a torn tail.
   std::optional<Event> Next();
-  /// Continues to read behind `head`.
+  /// Next() then continues behind `head`.
   void GoTo(const LogHead& head);
   /// What is wrong with the end of the file; "" if nothing is wrong. Known once Next() has reached
   /// the end.
@@ -135,7 +137,7 @@ class EventLogReader {
   bool empty() const { return content_.empty(); }
   /// Bytes of the complete events read so far.
   std::size_t good_bytes() const { return offset_; }
-  /// The events read so far.
+  /// The part of the log that has been read so far.
   LogHead head() const { return {.bytes = static_cast<std::int64_t>(offset_), .events = events_}; }
   /// All bytes of the file.
   runtime::Bytes content() const { return content_; }
@@ -150,7 +152,7 @@ class EventLogReader {
   void Release();
 
   runtime::Bytes content_;
-  std::size_t released_ = 0;  // memory is released up to here
+  std::size_t released_ = 0;  // memory is released up to this offset
   std::size_t offset_ = 0;
   std::int64_t events_ = 0;
   std::string torn_;

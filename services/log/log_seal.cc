@@ -22,7 +22,7 @@ std::string HashOfBytes(runtime::Bytes bytes) {
   return runtime::HashOf({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
-/// The correct value of `check`.
+/// The correct value of log_seal_t::check.
 std::int64_t CheckOf(log_seal_t seal) {
   seal.check = 0;
   std::vector<std::uint8_t> bytes;

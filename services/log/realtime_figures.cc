@@ -9,7 +9,7 @@ namespace fogline::log {
 void RealtimeAccumulator::Add(const status_t& status) {
   if (!runtime::IsPossible(status)) return;  // a file may contain any numbers
   status_t& last = last_[{status.role, status.instance}];
-  if (status.sequence <= last.sequence) return;  // overtaken on its way
+  if (status.sequence <= last.sequence) return;  // a newer STATUS has overtaken it
   last = status;
   fallbacks_.Add(status);
 }
@@ -25,7 +25,7 @@ std::int64_t RealtimeAccumulator::Unlogged(std::size_t channel) const {
   if (from == Role::kWorld) return steps_ - logged_[channel];
   std::int64_t published = 0;
   int processes = 0;
-  std::int64_t late = 0;  // at the recorder, which wrote the step without the message
+  std::int64_t late = 0;  // messages that came after the recorder had written their step
   for (const auto& [process, status] : last_) {
     if (process.first == NameOf(from)) {
       published = status.ticks;
@@ -51,14 +51,14 @@ RealtimeFigures RealtimeAccumulator::Result() const {
     figures.unlogged_messages += Unlogged(i);
   }
   for (const auto& [process, status] : last_) {
-    if (process.first == NameOf(Role::kRecorder)) continue;  // no role depends on the recorder
+    if (process.first == NameOf(Role::kRecorder)) continue;  // no role waits for it
     figures.deadline_misses += status.deadline_misses;
     for (const std::int64_t late : status.input_late) figures.late_messages += late;
     if (process.first != NameOf(Role::kWorld)) continue;
     figures.ticks += status.ticks;
     figures.ticks_late += status.ticks_late;
     figures.ticks_missed += status.ticks_missed;
-    // Quantiles of two processes cannot be added: the worse one counts.
+    // Quantiles of several processes cannot be added, so the largest one counts.
     figures.jitter_p99_us = std::max(figures.jitter_p99_us, status.jitter_p99_us);
     figures.latency_p50_us = std::max(figures.latency_p50_us, status.latency_p50_us);
     figures.latency_p99_us = std::max(figures.latency_p99_us, status.latency_p99_us);

@@ -14,26 +14,24 @@
 namespace fogline::log {
 
 struct RealtimeFigures {
-  double speed = 1;  // simulated seconds per second
-  // The world's clock: its steps; the steps that were more than 5 ms late; ticks at which its
-  // process stood still; the time between a step's beginning and its due time.
-  std::int64_t ticks = 0;
-  std::int64_t ticks_late = 0;
-  std::int64_t ticks_missed = 0;
+  double speed = 1;               // simulated seconds per second
+  std::int64_t ticks = 0;         // steps that the world has begun
+  std::int64_t ticks_late = 0;    // steps that the world has begun more than 5 ms late
+  std::int64_t ticks_missed = 0;  // ticks at which the world's process stood still
+  // 99 % quantile of the time between a step's due time and its beginning by the world.
   std::int64_t jitter_p99_us = 0;
-  // Time, at the world, from sending TRUTH to receiving the arbitrator's HOST_COMMAND.
+  // The time from sending TRUTH to receiving HOST_COMMAND, on the world's clock.
   std::int64_t latency_p50_us = 0;
   std::int64_t latency_p99_us = 0;
   std::int64_t latency_max_us = 0;
   // Steps that a role left out, or computed without an input that was due.
   std::int64_t deadline_misses = 0;
-  // In this order: messages that came too late to be used; messages that are not in the log,
-  // published or not; of the latter, at least this many were published and did not come too late at
-  // the recorder.
-  std::int64_t late_messages = 0;
-  std::int64_t missed_messages = 0;
+  std::int64_t late_messages = 0;    // messages that came too late to be used
+  std::int64_t missed_messages = 0;  // messages that are not in the log, published or not
+  // At least this number of the missed messages was published. Messages that came too late for the
+  // recorder do not count here.
   std::int64_t unlogged_messages = 0;
-  // The first fallbacks, and the number of those after them.
+  // The first fallbacks (FallbackLog::kMaxKept at most), and the number of later ones.
   std::vector<runtime::Fallback> fallbacks;
   std::int64_t fallbacks_left_out = 0;
 };
@@ -62,21 +60,22 @@ class RealtimeAccumulator {
 
   /// Adds the next STATUS of the log.
   void Add(const status_t& status);
-  /// Adds the next step of the log, which has messages on these channels.
+  /// Adds the next step of the log. `there` has the channels of its messages.
   void AddStep(const runtime::ChannelSet& there);
 
   RealtimeFigures Result() const;
 
  private:
-  /// The number of messages of a channel that are not in the log although the producer has
-  /// published them.
+  /// At least this number of messages of a channel were published but are not in the log. Messages
+  /// that came too late for the recorder do not count here.
   std::int64_t Unlogged(std::size_t channel) const;
 
   double speed_;
   runtime::FallbackLog fallbacks_;
   std::int64_t steps_ = 0;                           // number of steps in the log
-  std::array<std::int64_t, kNumChannels> logged_{};  // messages of each channel
-  // The last STATUS of each process. Its counters are those since the start of the process.
+  std::array<std::int64_t, kNumChannels> logged_{};  // number of logged messages of each channel
+  // The last STATUS of each process, by role and instance. Its counters begin at the start of the
+  // process.
   std::map<std::pair<std::string, std::int64_t>, status_t> last_;
 };
 

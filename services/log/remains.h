@@ -21,33 +21,33 @@ struct LogFront {
   LogHead head;  // the part with the scenario; step 0 follows
 };
 
-/// Reads the scenario of a log, or as much of it as there is.
+/// Reads the scenario of a log, or the part of the scenario that is there.
 /// @throws InputError if the file is no event log
 LogFront ReadFront(const std::filesystem::path& file);
 
 /// The steps of the run that a log contains.
 struct Remains {
-  LogHead head;            // up to the end of the last complete step
+  LogHead head;            // the log up to the end of the last complete step
   std::int64_t steps = 0;  // complete steps; in real time, steps that have ended
   std::int64_t last = 0;   // byte at which the last of these steps begins
-  bool final = false;      // the last of these steps is the last one of the run
+  bool final = false;      // whether the last of these steps is the last step of the run
 };
 
-/// Looks at the end of the file for the last complete step of a log that a recorder was writing. If
-/// a recorder cannot have left this end, the function reads the log from front to back, and stops
-/// at the first event that does not continue the log.
+/// Finds the last complete step of a log that a recorder was writing. Usually the end of the file
+/// shows this step. Otherwise the function reads the log from front to back, up to the first event
+/// that does not continue the log.
 /// @param front of the log, with its whole scenario
 /// @param alive is called with the number of steps so far, from time to time while the function
 ///     reads the whole log
-/// @param tail bytes at the end to look at
+/// @param tail the function first looks at this number of bytes at the end of the file
 /// @throws InputError if it is no event log
 Remains ReadRemains(const std::filesystem::path& file, const LogFront& front,
                     const std::function<void(std::int64_t steps)>& alive = {},
                     std::int64_t tail = kTailBytes);
 
 /// An interrupted run leaves some incomplete steps, a torn event or a seal behind the complete
-/// steps of its log. For a log in lockstep this describes other bytes that stand there; "" if there
-/// are none.
+/// steps of its log. For a log in lockstep, this function describes any other bytes there; "" if
+/// there are no other bytes.
 /// @throws InputError if it is no event log
 std::string OddEnd(const std::filesystem::path& file, const LogFront& front,
                    const Remains& remains);

@@ -1,4 +1,4 @@
-// Jerk as a standard measures it: averaged over 1 s.
+// Jerk averaged over 1 s, as in ISO 15622.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@ namespace fogline::metrics {
 ///     |a(t) - a(t - 1 s)| / 1 s
 ///
 /// A change within one step, such as a hand-over, has the same value for every length of the step.
-/// (The change divided by the step has not: it grows as the step shrinks.)
+/// (The change divided by the length of the step grows as the step shrinks.)
 class AveragedJerk {
  public:
   /// Adds the acceleration that was applied from the sample before to this one. Times ascend.
@@ -27,7 +27,7 @@ class AveragedJerk {
     double acceleration_mps2;
   };
   /// A second has at most 1000 steps, because a step lasts at least 0.001 s (Scenario::step_s).
-  /// Only the points since the last second's begin are kept, in a ring.
+  /// Only the points since the last second's begin are kept, in a ring buffer.
   static constexpr std::size_t kMostPoints = 1002;
 
   const Point& Oldest() const { return points_[begin_]; }
@@ -36,7 +36,7 @@ class AveragedJerk {
   std::array<Point, kMostPoints> points_;
   std::size_t begin_ = 0;
   std::size_t count_ = 0;
-  bool dropped_ = false;  // so the points before the oldest one were known, too
+  bool dropped_ = false;  // true: accelerations before the oldest point were known, too
 };
 
 }  // namespace fogline::metrics

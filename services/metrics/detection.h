@@ -1,5 +1,5 @@
-// Compares the side that drives with the side that should drive, judged by an oracle that knows the
-// true gap.
+// Compares the side that drives with the side that should drive. An oracle that knows the true gap
+// says which side should drive.
 #pragma once
 
 #include <optional>
@@ -18,8 +18,8 @@ struct DetectionMetrics {
   /// his authority.
   double wrong_human_s = 0;
   /// Time of the automation, s, weighted by its authority, while the track is wrong (TrackJudge).
-  /// So a policy that does not use the deceived LiDAR is not blamed for it, and one that returns
-  /// the car to a filter that has not settled is.
+  /// So a policy that does not use the deceived LiDAR has no such time. A policy that returns the
+  /// car to a filter that has not settled has such time.
   double wrong_automation_s = 0;
   /// Time from the first step in which the LiDAR is deceived to the first step with an alarm from
   /// then on, s. 0 if the alarm is already there, for example if fog raises the Degree of Conflict
@@ -31,9 +31,9 @@ struct DetectionMetrics {
   std::optional<double> false_alarms_ph;
 };
 
-/// Error of the LiDAR's value, m: its difference to the value without noise and fog for the true
-/// gap, with the LiDAR's bias and lateral offset. Below 0 if the value is too short. NaN without a
-/// value.
+/// Error of the LiDAR's value, m. It is the difference to the value without noise and fog for the
+/// true gap, with the LiDAR's bias and lateral offset. Below 0 if the value is too short. NaN
+/// without a value.
 double LidarError(const Sample& sample, const LidarSection& lidar);
 
 /// Collects the measures, step by step.
@@ -54,7 +54,7 @@ class DetectionAccumulator {
   TrackJudge track_;
 
   bool begun_ = false;
-  // Of the step before.
+  // Values of the step before.
   double time_s_ = 0;
   bool alarm_ = false;
   bool quiet_ = false;  // clear air, and the LiDAR is right

@@ -1,4 +1,5 @@
-// What the fog does to the traffic, in metres and m/s. Percentages such as SI are shown beside it.
+// What the fog does to the traffic, in metres and m/s. Percentages such as SI are shown beside
+// these values.
 #pragma once
 
 #include <optional>

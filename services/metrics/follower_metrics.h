@@ -53,7 +53,7 @@ class FollowerAccumulator {
 
  private:
   struct Car {
-    FollowerMetrics measures;  // measures without a final division
+    FollowerMetrics measures;  // measures that need no division at the end
     Mean compromised_safety_fog_m;
   };
   static void AddSafety(bool fog, double compromised_m, Car& car);

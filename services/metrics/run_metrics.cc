@@ -34,8 +34,8 @@ MetricsAccumulator::MetricsAccumulator(const Scenario& scenario)
       detection_(scenario),
       track_(scenario) {}
 
-// AddMotion() comes before AddAuthority(): a jerk belongs to the transfers before its step, because
-// the command of a step is applied only in the next one.
+// AddMotion() comes before AddAuthority(), because a jerk belongs to the transfers before its step.
+// The command of a step is applied only in the next step.
 void MetricsAccumulator::Add(const Sample& sample) {
   if (!previous_) first_time_s_ = sample.time_s;
   ++metrics_.steps;

@@ -42,29 +42,29 @@ struct RunMetrics {
   std::optional<double> max_compromised_safety_m;
   /// Mean of CS over the steps in fog, m.
   std::optional<double> mean_compromised_safety_fog_m;
-  /// The largest CS and its mean, m, from the first step in fog until the track is right again for
-  /// good, or the run ends (UntilRecovery). nullopt without fog.
+  /// The largest CS and the mean CS, m. They begin with the first step in fog, and end with the
+  /// last step that is in fog or has a wrong track (UntilRecovery). nullopt without fog.
   std::optional<double> max_compromised_safety_until_recovery_m;
   std::optional<double> mean_compromised_safety_until_recovery_m;
   /// Largest drop of the host's speed in fog below its speed when the fog began, m/s.
   std::optional<double> max_slow_down_fog_mps;
   /// First collision: truth_t::COLLISION_NONE, _HOST or _FOLLOWER.
   std::int8_t collision = truth_t::COLLISION_NONE;
-  /// Its simulated time, s.
+  /// Simulated time of the first collision, s.
   std::optional<double> collision_time_s;
 
   /// Redundant human engagement: share of the steps in clear air in which the human is engaged, %.
-  /// This reinterprets Sourav & Cheng 2024: their words taken literally cannot give the 0 % that
-  /// they print beside an SI of 80.79 %.
-  /// Engaged means lambda_H > 0, as HumanIsEngaged() in services/host_modes.h. In
-  /// traded control he then drives; in shared control he may have a small part.
+  /// Sourav & Cheng 2024 define it in other words. With these words, the 0 % that they print beside
+  /// an SI of 80.79 % would be impossible. Engaged means lambda_H > 0, as HumanIsEngaged() in
+  /// services/host_modes.h. In traded control an engaged human drives. In shared control he may
+  /// have a small part of the authority.
   std::optional<double> rhe_pct;
-  /// Time during which the human is engaged, s. It ends with the last step, because the command of
-  /// that step is never carried out.
+  /// Time during which the human is engaged, s. It ends when the last step begins, because the
+  /// command of that step is never carried out.
   double human_time_s = 0;
-  /// Hand-overs in either direction: the human drives in only one of two successive steps, by
-  /// HumanDrives(lambda_H) in services/host_modes.h. `fogline events` lists the same
-  /// hand-overs, in the same steps.
+  /// Number of hand-overs in either direction. At a hand-over the human drives in only one of two
+  /// successive steps, by HumanDrives(lambda_H) in services/host_modes.h. `fogline events` lists
+  /// the same hand-overs, in the same steps.
   std::int64_t transfers = 0;
   /// Hand-overs per minute of the run, 1/min; nullopt for a run without duration.
   std::optional<double> transfers_pmin;
@@ -77,7 +77,8 @@ struct RunMetrics {
   /// nullopt without a change. For a ramp of the authorities, the interval lasts from its first
   /// step until `handover_s` after its last step.
   std::optional<double> max_handover_jerk_mps3;
-  /// The same of the jerk averaged over 1 s (AveragedJerk). Its second may begin before the change.
+  /// As max_handover_jerk_mps3, but for the jerk averaged over 1 s (AveragedJerk). The averaged
+  /// second may begin before the change.
   std::optional<double> max_handover_jerk_1s_mps3;
   /// Time under the wrong controller, time from deception to alarm, false alarms.
   DetectionMetrics detection;
@@ -92,7 +93,7 @@ struct RunMetrics {
   /// largest change of the applied acceleration within 1 s. It does not depend on the length of a
   /// step.
   std::optional<double> max_abs_jerk_1s_mps3;
-  /// Root of the mean square of that jerk, m/s3.
+  /// Root of the mean square of the jerk from one step to the next, m/s3.
   std::optional<double> rms_jerk_mps3;
 
   /// Largest Degree of Conflict, in [0, 1].
@@ -108,12 +109,12 @@ struct RunMetrics {
 };
 
 /// Calls `visit(name, value, unit, description)` for every measure in order; `name` carries the
-/// unit, `value` is std::int64_t or std::optional<double>, the others are std::string_view. JSON,
-/// tables and reports use these calls.
+/// unit. `value` is std::int64_t or std::optional<double>. The other arguments are
+/// std::string_view. JSON, tables and reports use these calls.
 template <class Visitor>
 void VisitMetrics(const RunMetrics& m, Visitor&& visit);
 
-/// The effect of the fog on a run, which its measures have, too.
+/// The effect of the fog on a run, taken from the run's measures.
 FogEffect FogEffectOf(const RunMetrics& measures);
 
 /// Compromised safety of a step, m, of the first following car behind the host (surrogate.h). NaN
@@ -151,7 +152,7 @@ class MetricsAccumulator {
   PairAccumulator host_;
   PairAccumulator follower_;
   DetectionAccumulator detection_;
-  RunMetrics metrics_;  // measures without a final division
+  RunMetrics metrics_;  // measures that need no division at the end
   TrackJudge track_;
   FogEffectAccumulator fog_effect_;
   UntilRecovery<CompromisedSafetySums> compromised_safety_until_recovery_m_;
@@ -160,8 +161,8 @@ class MetricsAccumulator {
   Mean squared_fusion_error_m2_;
   Mean human_in_clear_air_;  // 1 or 0 in each step
   double first_time_s_ = 0;
-  std::optional<double> authority_changed_s_;  // last
-  std::optional<double> transferred_s_;        // last
+  std::optional<double> authority_changed_s_;  // time of the last change
+  std::optional<double> transferred_s_;        // time of the last transfer
   std::optional<Sample> previous_;
 };
 

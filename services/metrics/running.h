@@ -1,4 +1,4 @@
-// Running extremes and means, and when two times are equal.
+// Running extremes and means, and the tolerance for equal times.
 #pragma once
 
 #include <cmath>
@@ -7,21 +7,21 @@
 
 namespace fogline::metrics {
 
-/// Times are whole microseconds: two times that differ by less count as equal.
+/// Times are whole microseconds. Two times that differ by less than this count as equal.
 inline constexpr double kSameTime_s = 0.5e-6;
 
-/// Sets `least` to `value` if that is smaller or the first one. A missing value (NaN) changes
+/// Sets `least` to `value` if `value` is smaller or is the first one. A missing value (NaN) changes
 /// nothing.
 inline void Lower(std::optional<double>& least, double value) {
   if (!std::isnan(value) && (!least || value < *least)) least = value;
 }
 
-/// The same for the largest value.
+/// As Lower(), for the largest value.
 inline void Raise(std::optional<double>& most, double value) {
   if (!std::isnan(value) && (!most || value > *most)) most = value;
 }
 
-/// Mean of the values added; missing values (NaN) do not count.
+/// Mean of the added values; missing values (NaN) do not count.
 class Mean {
  public:
   void Add(double value) {

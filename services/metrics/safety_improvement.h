@@ -16,7 +16,7 @@
 namespace fogline::metrics {
 
 /// The mean of (without - with)/without over steps, in %. The ratio of one step can be far below 0,
-/// never above 1.
+/// but never above 1.
 class MeanImprovement {
  public:
   void Add(double without, double with) {
@@ -50,16 +50,17 @@ class CompromisedSafetyOfRun {
 
  private:
   SafetyReading reading_;
-  std::optional<double> at_begin_m_;  // of the fog
+  std::optional<double> at_begin_m_;  // value at the beginning of the fog
 };
 
-/// Safety improvement SI of a run with traded control over its baseline, a run without traded
-/// control (same scenario, same seed, lambda_A = 1 throughout), in % (Sourav & Cheng 2024):
+/// Safety improvement SI of a run with traded control over its baseline, in % (Sourav & Cheng
+/// 2024). The baseline is a run without traded control (same scenario, same seed, lambda_A = 1
+/// throughout).
 ///
 ///     SI = 100/n sum (CS_baseline - CS_traded) / CS_baseline
 ///
-/// over the n relevant steps, those in fog with CS_baseline > floor. The floor is a free parameter:
-/// the paper has none, and SI depends on it.
+/// over the n relevant steps, those in fog with CS_baseline > floor. The floor is a free parameter
+/// of SI, because the paper has none.
 class SafetyImprovement {
  public:
   /// @param floor_m at least 0; avoids the ratio 0/0
@@ -83,10 +84,10 @@ class SafetyImprovement {
 
 /// A choice with which SI has another value.
 struct SafetyChoice {
-  std::string_view name;  // in JSON
-  std::string_view text;  // for readers
+  std::string_view name;  // name in JSON
+  std::string_view text;  // text for readers
   SafetyReading reading;
-  std::optional<double> floor_m;  // nullopt: the scenario's
+  std::optional<double> floor_m;  // nullopt: the floor of the scenario
 };
 inline constexpr std::array<SafetyChoice, 7> kSafetyChoices{{
     {"floor_20mm", "20 mm", SafetyReading::kBelowSafeDistance, 0.02},
@@ -100,7 +101,8 @@ inline constexpr std::array<SafetyChoice, 7> kSafetyChoices{{
 
 /// SI of two whole runs. If one of them ended early (a collision), SI counts only the steps that
 /// both runs have.
-/// @throws std::invalid_argument if they do not begin at the same step, or skip steps differently.
+/// @throws std::invalid_argument if the runs do not begin at the same step, or skip different
+/// steps.
 std::optional<double> SafetyImprovementPct(std::span<const Sample> baseline,
                                            std::span<const Sample> traded, double floor_m);
 
@@ -108,9 +110,10 @@ std::optional<double> SafetyImprovementPct(std::span<const Sample> baseline,
 struct PairedMetrics {
   /// SI, %.
   std::optional<double> si_pct;
-  /// The same over more steps, %: from the first step in fog until the tracks of both runs are
-  /// right again for good (UntilRecovery), as far as CS_baseline > floor. SI looks only at the fog,
-  /// but the automation returns at its end, to a filter that may not have settled.
+  /// SI over more steps with CS_baseline > floor, %. They begin with the first step in fog, and end
+  /// with the last step in which one of the runs is in fog or has a wrong track (UntilRecovery). SI
+  /// uses only steps in fog. But the automation returns at the end of the fog, to a filter that may
+  /// not have settled.
   std::optional<double> si_until_recovery_pct;
   /// SI with other choices, %, in the order of kSafetyChoices. `fogline table` shows them.
   std::array<std::optional<double>, kSafetyChoices.size()> other_si_pct;

@@ -9,7 +9,7 @@
 
 namespace fogline::metrics {
 
-/// Values of one step in SI units. NaN if a sensor gave no value.
+/// Values of one step in SI units. A field is NaN if it has no value.
 struct Sample {
   std::int64_t step = 0;
   double time_s = 0;
@@ -17,18 +17,18 @@ struct Sample {
   double preceding_acceleration_mps2 = 0;
   double host_speed_mps = 0;
   double host_acceleration_mps2 = 0;  // applied during the step that ended here
-  double host_gap_m = 0;              // true
+  double host_gap_m = 0;              // true gap
   double host_safe_distance_m = 0;    // d_r of the host's ACC
   double radar_range_m = 0;
   double lidar_range_m = 0;
   double fused_distance_m = 0;
   double follower_speed_mps = 0;
   double follower_acceleration_mps2 = 0;
-  double follower_gap_m = 0;            // to the host
+  double follower_gap_m = 0;            // gap to the host
   double follower_safe_distance_m = 0;  // d_r,f
-  double acc_acceleration_mps2 = 0;     // a_A offered
-  double driver_acceleration_mps2 = 0;  // a_H offered
-  double command_mps2 = 0;              // a commanded for the step that begins here
+  double acc_acceleration_mps2 = 0;     // offered a_A
+  double driver_acceleration_mps2 = 0;  // offered a_H
+  double command_mps2 = 0;              // commanded a for the step that begins here
   double lambda_automation = 1;
   double lambda_human = 0;
   double conflict_m = 0;
@@ -42,8 +42,8 @@ struct Sample {
   bool last = false;
 };
 
-/// The sample of a step from its messages. Of the following cars it has only the first one; without
-/// a following car these values are NaN.
+/// The sample of a step from its messages. Of the following cars, the sample has only the first
+/// one. Without a following car the values of this car are NaN.
 inline Sample MakeSample(const truth_t& truth, const radar_t& radar, const lidar_t& lidar,
                          const track_t& track, const accel_command_t& acc,
                          const driver_command_t& driver, const arbitration_t& host,

@@ -1,5 +1,5 @@
 // Decodes the messages of a step into its Sample. In a log of a run in real time messages may be
-// missing: their values are then NaN.
+// missing. Their values are then NaN.
 #pragma once
 
 #include "services/metrics/sample.h"
@@ -18,7 +18,8 @@ class SampleDecoder {
     });
   }
 
-  /// The same for a step in which messages may be missing; also nullptr if TRUTH is missing.
+  /// As Decode(), for a step in which messages may be missing. The result is also nullptr if TRUTH
+  /// is missing.
   template <class Messages>
   const Sample* DecodeWithHoles(const Messages& messages) {
     if (messages[IndexOf<truth_t>()].empty()) return nullptr;

@@ -10,8 +10,8 @@ namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
-// A slower car counts as standing and has no time gap. A wheel speed sensor detects only ten times
-// this speed.
+// A slower car counts as standing and has no time gap. The least speed that a wheel speed sensor
+// detects is ten times this speed.
 constexpr double kStanding_mps = 0.01;
 
 double NormalShare(double z) { return 0.5 * std::erfc(-z / std::numbers::sqrt2); }
@@ -48,7 +48,7 @@ double CrashProbability(const MeasuresSection& section, double drac_mps2) {
   };
   const double least = share(section.madr_least_mps2);
   const double mass = share(section.madr_most_mps2) - least;
-  // The limits are so far from the mean that the probability between them rounds to 0: all cars
+  // If the limits are so far from the mean that the probability between them rounds to 0, all cars
   // count as being at the nearer limit.
   if (mass <= 0) return section.madr_mean_mps2 < section.madr_least_mps2 ? 1 : 0;
   return (share(drac_mps2) - least) / mass;

@@ -1,4 +1,4 @@
-// Surrogate measures of safety between a car and the one ahead of it: they say how near a collision
+// Surrogate measures of safety between a car and the car ahead of it. They say how near a collision
 // is. Gaps are bumper to bumper, speeds along the lane. The car ahead is assumed to keep its speed
 // unless a measure says otherwise.
 #pragma once
@@ -13,8 +13,8 @@ namespace fogline::metrics {
 /// A car and the car ahead of it at one moment.
 struct CarPair {
   double gap_m;
-  double speed_mps;       // of the car behind
-  double lead_speed_mps;  // of the car ahead
+  double speed_mps;       // speed of the car behind
+  double lead_speed_mps;  // speed of the car ahead
 
   double closing_mps() const { return speed_mps - lead_speed_mps; }
 };
@@ -27,9 +27,9 @@ double TimeToCollision(const CarPair& pair);
 /// the gap does not close, infinite at contact.
 double DecelerationToAvoidCrash(const CarPair& pair);
 
-/// Possibility index for collision with urgent deceleration in m, d + (v_l^2 - v^2)/(2 b) - v t_r:
-/// the gap that remains if both cars brake now, the car behind after its reaction time (Uno et al.
-/// 2002). A value below 0 is dangerous.
+/// Possibility index for collision with urgent deceleration in m, d + (v_l^2 - v^2)/(2 b) - v t_r.
+/// It is the gap that remains if both cars brake now, the car behind after its reaction time (Uno
+/// et al. 2002). A value below 0 is dangerous.
 double UrgentDecelerationGap(const MeasuresSection& section, const CarPair& pair);
 
 /// Probability that a car's maximum available deceleration is below `drac_mps2`. This deceleration
@@ -48,7 +48,8 @@ struct PairMetrics {
   /// Time exposed: time during which the time to collision is at most TTC*, s (Minderhoud & Bovy
   /// 2001).
   std::optional<double> tet_s;
-  /// Time integrated: the integral of TTC* - TTC over that time, s2 (Minderhoud & Bovy 2001).
+  /// Time integrated: the integral of TTC* - TTC over the time exposed, s2 (Minderhoud & Bovy
+  /// 2001).
   std::optional<double> tit_s2;
   /// Least time gap d/v, s, while the car moves: from the rear bumper of the car ahead to the front
   /// bumper. A headway is from front to front and also contains a car length (SAE J2944).
@@ -60,7 +61,8 @@ struct PairMetrics {
   /// Least gap minus RSS safe distance, m (Shalev-Shwartz, Shammah & Shashua 2017), with the
   /// parameters of the scenario.
   std::optional<double> min_rss_margin_m;
-  /// The same with the parameters that ad-rss-lib suggests: the defaults of models::RssParameters.
+  /// As min_rss_margin_m, with the parameters that ad-rss-lib suggests (the defaults of
+  /// models::RssParameters).
   std::optional<double> min_rss_margin_ad_rss_m;
   /// Crash potential index: mean over time of the probability that the deceleration rate to avoid a
   /// crash exceeds the car's maximum, in [0, 1] (Cunto & Saccomanno 2008).
@@ -84,7 +86,7 @@ class PairAccumulator {
 
   MeasuresSection section_;
   models::RssParameters rss_;
-  std::optional<double> ttc_s_;  // of the step before; nullopt if it had no pair
+  std::optional<double> ttc_s_;  // TTC in the step before; nullopt if that step had no pair
   double crash_probability_ = 0;
   bool met_ = false;
 

@@ -1,4 +1,4 @@
-// The host's radar: in each step it measures distance and rate of distance of the preceding car. It
+// The host's radar. In each step it measures distance and rate of distance of the preceding car. It
 // tracks nothing, filters nothing and measures one target only.
 #pragma once
 
@@ -14,9 +14,9 @@ namespace fogline::radar {
 /// With x the gap and y the lateral offset, a target at r = sqrt(x^2 + y^2) is measured as
 ///     range = r + bias + noise,   range rate = x x' / r + noise
 /// where noise is Gaussian and white. There is no detection beyond the maximum range, and none in
-/// steps that drop out. Rain shortens the maximum range, and with fog model beam fog does, too.
-/// With fog models none and bias fog has no effect on the radar, as in the paper (Sourav & Cheng
-/// 2024).
+/// steps that drop out. Rain shortens the maximum range. With fog models beam and modes, fog
+/// shortens it, too. With fog models none and bias, fog has no effect on the radar, as in the paper
+/// (Sourav & Cheng 2024).
 class Radar {
  public:
   /// Indices of the draws of stream kRadar within a step.
@@ -25,7 +25,7 @@ class Radar {
 
   explicit Radar(const Scenario& scenario);
 
-  /// The measurement in the step of `truth`. It depends on scenario and truth alone, not on the
+  /// The measurement in the step of `truth`. It depends only on scenario and truth, not on the
   /// steps before.
   const radar_t& Step(const truth_t& truth);
 

@@ -1,6 +1,6 @@
 // The process `radar`: measures the preceding car once per step. It does not receive the LiDAR's
 // values, and uses the truth only to add errors to it. services/runtime/process/service.h connects
-// it to its channels.
+// the process to its channels.
 #include "services/radar/radar.h"
 #include "services/runtime/process/service.h"
 

@@ -9,10 +9,10 @@
 
 namespace fogline::recorder {
 
-/// A set of steps, with the requested channels of each. A repeated request adds nothing, so many
-/// roles that repeat their requests get only one answer. The answers come in the order of the
-/// steps, as roles that catch up need them. After the last step the first one is next, so every
-/// request is answered.
+/// A set of steps, and for each step the requested channels. A repeated request adds nothing, so
+/// many repetitions get only one answer. Take() goes through the steps in their order, because
+/// roles that catch up need the steps in this order. After the last step it begins again at the
+/// first one, so every request is answered.
 class AskedSteps {
  public:
   /// A bit for each channel, by place in kChannels.

@@ -78,10 +78,10 @@ void History::ForEachMessage(
 std::int64_t History::Find(std::int64_t step) {
   if (step == steps_ - 1) return last_;
   if (const Place& known = found_[runtime::RingSlot(step)]; known.step == step) return known.begin;
-  Place low{.step = 0, .begin = front_.bytes};  // the step is this one or a later one
-  std::int64_t high = end_;                     // and begins before this byte
-  // Steps have nearly the same size. The guess aims at the step before, so that a search from there
-  // finds the step.
+  Place low{.step = 0, .begin = front_.bytes};  // the wanted step is this one or a later one
+  std::int64_t high = end_;                     // the wanted step begins before this byte
+  // Steps have nearly the same size, so the step's number gives a guess of its byte. The guess aims
+  // at the step before, because Look() searches forwards.
   const double share = static_cast<double>(std::max<std::int64_t>(0, step - 1)) /
                        static_cast<double>(std::max<std::int64_t>(1, steps_ - 1));
   std::int64_t guess =

@@ -17,8 +17,8 @@ namespace fogline::recorder {
 
 /// Finds the steps in the recorder's own log, in which the messages of a step stand together. It
 /// reads the bytes on request, as they were written, and decodes nothing. There is no index,
-/// because an index would grow with the run: a search reads the event numbers in the file. In real
-/// time, where messages may be missing, only the last step is known.
+/// because an index would grow with the run. A search reads the event numbers in the file instead.
+/// In real time messages may be missing, so only the last step can be found.
 class History {
  public:
   /// @param front of the log
@@ -42,15 +42,15 @@ class History {
  private:
   struct Place {
     std::int64_t step = -1;
-    std::int64_t begin = 0;  // byte
+    std::int64_t begin = 0;  // byte at which the step begins
   };
   /// The byte at which a step begins. @throws std::runtime_error
   std::int64_t Find(std::int64_t step);
-  /// Looks at the steps that begin between this byte and `limit`, up to `step`.
-  /// @return the last of these steps; the first one if even this is later than `step`; nullopt if
-  ///     no step begins here
+  /// Looks at the steps that begin in the next kLook bytes from `from` on, but before `limit`.
+  /// @return the last of these steps that is not later than `step`; if all are later, the first of
+  ///     them; nullopt if no step begins there
   std::optional<Place> Look(std::int64_t from, std::int64_t limit, std::int64_t step);
-  /// Bytes of the file, fewer if the file ends before; valid until the next call.
+  /// Reads bytes of the file, fewer if the file ends before. They are valid until the next call.
   /// @throws std::runtime_error
   runtime::Bytes Read(std::int64_t from, std::int64_t size);
 

@@ -6,8 +6,8 @@
 namespace fogline::recorder {
 namespace {
 
-// A message is asked for when it is kOverduePeriods periods late: kAsks times, at intervals of
-// kAskEvery.
+// The recorder asks for a message that is kOverduePeriods periods late. It asks kAsks times at
+// most, at intervals of kAskEvery.
 constexpr double kOverduePeriods = 1.5;
 constexpr int kAsks = 4;
 constexpr Duration kAskEvery = milliseconds(20);
@@ -57,8 +57,8 @@ void RecordRule::OnInput(std::size_t input, std::int64_t step, runtime::Arrival&
 
 void RecordRule::CountRefused(std::size_t input, std::int64_t step) {
   const runtime::StepRing& ring = parts_.inputs.all()[input].ring;
-  // If the ring has this step of the input, the log has it, too. Whether the log has a step that is
-  // older than the ring is not known.
+  // If the ring has this step of the input, the log has it, too. For a step that is older than the
+  // ring, this is not known.
   if (ring.Has(step) || step <= ring.newest() - runtime::kRingSteps) return;
   Refused& refused = refused_[input];
   if (std::exchange(refused.steps[runtime::RingSlot(step)], step + 1) != step + 1) ++refused.count;
@@ -128,7 +128,7 @@ bool RecordRule::GivenUp(std::int64_t step, TimePoint now) {
 void RecordRule::AskForHoles(TimePoint now) {
   ask_at_ = now + kAskEvery;
   const std::int64_t newest = watch_.horizon().newest();
-  std::int64_t end = parts_.steps.next();  // end of the steps to be asked for
+  std::int64_t end = parts_.steps.next();  // the step after the last one to ask for
   while (end <= newest && now >= OpenAt(end, now).seen + overdue_) ++end;
   std::int64_t first = parts_.steps.next();
   while (first < end && OpenAt(first, now).asked >= kAsks) ++first;

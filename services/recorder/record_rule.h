@@ -1,8 +1,9 @@
-// Recording in real time: the world does not wait for the recorder. The recorder writes steps in
-// order as soon as they are complete. It asks for a missing message as long as its producer can
-// still have it. A step that stays incomplete is written as it is. RUN tells the recorder that a
-// step is under way, even if none of its messages has come. Each STATUS goes into the log as well,
-// behind the step in which it came, because the states of the roles are part of the record.
+// The recorder's rule in real time: the world does not wait for the recorder. The recorder writes
+// steps in order as soon as they are complete. It asks for a missing message as long as the
+// producer can still have the message. A step that stays incomplete is written without the missing
+// messages. RUN tells the recorder that a step is under way, even if none of its messages has come.
+// Each STATUS goes into the log as well, behind the step in which it came, because the states of
+// the roles are part of the record.
 #pragma once
 
 #include <array>
@@ -38,7 +39,7 @@ class RecordRule final : public runtime::FireRule {
     TimePoint asked_at{};
   };
   struct Heard {
-    std::int64_t step;  // the newest step when it came
+    std::int64_t step;  // the newest step when the STATUS came
     std::vector<std::uint8_t> bytes;
   };
 
@@ -46,7 +47,7 @@ class RecordRule final : public runtime::FireRule {
   struct Refused {
     std::int64_t count = 0;
     std::array<std::int64_t, runtime::kRingSteps>
-        steps{};  // the steps that were counted last, each plus one
+        steps{};  // by slot: the step that was counted last, plus one; 0: none
   };
 
   /// Writes the steps that are due, and asks for the messages that other steps lack.
@@ -54,8 +55,8 @@ class RecordRule final : public runtime::FireRule {
   TimePoint Fire(TimePoint now);
   /// Counts a late message that is not in the log.
   void CountRefused(std::size_t input, std::int64_t step);
-  /// Notes that the steps up to this one are under way. A message of them is asked for if it has
-  /// not come after overdue_.
+  /// Notes that the steps up to this one are under way. If a message of these steps has not come
+  /// after the time overdue_, the recorder asks for it.
   void OpenUpTo(std::int64_t step, TimePoint now);
   Open& OpenAt(std::int64_t step, TimePoint now);
   bool Complete(std::int64_t step) const;
@@ -66,9 +67,9 @@ class RecordRule final : public runtime::FireRule {
 
   runtime::Parts& parts_;
   runtime::RealtimeWatch watch_;
-  Duration overdue_;  // after this time a message is asked for
+  Duration overdue_;  // how long the recorder waits before it asks for a message
   std::array<Open, runtime::kRingSteps> open_{};
-  std::array<Refused, kNumChannels> refused_{};  // by input
+  std::array<Refused, kNumChannels> refused_{};  // by place in Inputs::all()
   std::deque<Heard> heard_;
   TimePoint ask_at_{};
   bool listening_ = false;

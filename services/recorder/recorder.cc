@@ -12,21 +12,21 @@
 namespace fogline::recorder {
 namespace {
 
-// Steps between two acknowledgements. The world's kMaxAhead is four times as many.
+// Number of steps between two acknowledgements: a quarter of the world's kMaxAhead.
 constexpr std::int64_t kAcknowledgeEvery = runtime::kMaxAhead / 4;
-// The limits for repeated messages, per second and at once. They take about a fifth of a processor.
-// Every role that starts again asks for its inputs of 63 steps at a time; a role with six inputs
-// asks for 378 messages.
+// The limits for messages that are sent again, per second and in one burst. At these limits the
+// answers take about a fifth of a processor. Every role that starts again asks for its inputs of 63
+// steps at a time. A role with six inputs asks for 378 messages.
 constexpr double kAnswersPerSecond = 30'000;
 constexpr double kAnswersAtOnce = 3'000;
 constexpr double kNoLimit = 1e9;
 // A request within this time after an answer gets no second answer, because the role receives the
-// first one.
+// first answer.
 constexpr Duration kAnswerHolds = milliseconds(2);
-// How often the last STATUS is sent: the runner cannot ask a recorder that has left. If a third of
-// all messages is lost, all six are lost in only one of 700 cases.
+// The last STATUS is sent this number of times, because the runner cannot ask a recorder that has
+// left. If a third of all messages is lost, all six messages are lost in only one of 700 cases.
 constexpr int kLastWords = 6;
-// The most old steps that are sent between two reads of new messages.
+// The largest number of old steps that are sent between two reads of new messages.
 constexpr int kStepsAtOnce = 4;
 // In this time the rate limiter allows another 30 answers.
 constexpr Duration kLimiterRetry = milliseconds(1);
@@ -84,8 +84,8 @@ log::Remains Recorder::ReadOwnRemains(const log::LogFront& front) {
   };
   log::Remains remains;
   if (front.parts.Complete()) remains = log::ReadRemains(file_, front, say_so_far);
-  // The world begins a step only after the step kMaxAhead before it is on disk. In real time the
-  // world does not wait, and a missing step is a gap in the log.
+  // The world begins a step only when the step that is kMaxAhead steps earlier is on disk. In real
+  // time the world does not wait, and a missing step is a gap in the log.
   const std::int64_t written = parts_.run.progress - runtime::kMaxAhead + 1;
   if (!parts_.run.realtime && remains.steps < written) {
     throw InputError(fmt::format("{}: the log has {} steps, but the recorder had written {}",
@@ -146,8 +146,8 @@ void Recorder::Compute(std::int64_t step) {
   Write(step);
   if (recording_ != nullptr) WriteStatus(step);
   history_->Add(log_->size());
-  // In real time there is time to flush each step. It is necessary, because no role sends a step
-  // again that a killed recorder had not flushed.
+  // In real time each step is flushed, and there is enough time for it. A recorder that is started
+  // again can ask the roles for the newest 32 steps only.
   if (recording_ != nullptr) log_->Flush();
   const bool last = step == final_;
   if (last || (step + 1) % kAcknowledgeEvery == 0) {
@@ -168,8 +168,8 @@ void Recorder::OnStatusAsked(std::int64_t step) {
 
 void Recorder::OnAsked(std::string_view channel, runtime::StepRange steps, TimePoint now) {
   if (recording_ != nullptr) return AnswerRecent(channel, steps, now);
-  // Newer steps are in the rings of their producers. Steps that are kMaxAhead old are acknowledged,
-  // so they can be read from the file.
+  // Answers only for steps that are at least kMaxAhead old. These steps are acknowledged, so they
+  // can be read from the file. Newer steps are in the rings of their producers.
   static_assert(kAcknowledgeEvery <= runtime::kMaxAhead);
   steps.count = std::min(steps.count, parts_.steps.next() - runtime::kMaxAhead - steps.first);
   const std::size_t place = ChannelNamed(channel);
@@ -184,8 +184,8 @@ void Recorder::OnAsked(std::string_view channel, runtime::StepRange steps, TimeP
 
 TimePoint Recorder::AnswerSome(TimePoint now) {
   if (asked_.empty()) return TimePoint::max();
-  // New messages are read first. While a request waits behind old answers, the role repeats it. If
-  // the repetitions were not read together, each would get its own answer.
+  // New messages are read first. Roles repeat their requests while the recorder sends other
+  // answers. If these repetitions were not read together, each of them would get its own answer.
   parts_.bus.Drain();
   runtime::RateLimiter& limiter = node_.outputs().limiter();
   for (int i = 0; i < kStepsAtOnce && limiter.Has(now); ++i) {
@@ -193,7 +193,8 @@ TimePoint Recorder::AnswerSome(TimePoint now) {
     if (!asked) return TimePoint::max();
     AnswerStep(*asked, now);
   }
-  // Returns so that new messages are read. The next call is due when the rate limiter allows it.
+  // The function returns, so that new messages are read. The next call is due when the rate limiter
+  // allows it.
   return asked_.empty() ? TimePoint::max() : limiter.Has(now) ? now : now + kLimiterRetry;
 }
 
@@ -208,8 +209,9 @@ void Recorder::AnswerStep(const AskedSteps::Asked& asked, TimePoint now) {
   });
 }
 
-// In real time no role computes old steps again. A restarted world needs the positions of the cars:
-// it is the only role that asks for TRUTH, and the process that published this TRUTH is dead.
+// In real time no role computes old steps again. Only a restarted world needs an old message: the
+// TRUTH with the positions of the cars. The process that published this TRUTH is dead, so the
+// recorder sends it.
 void Recorder::AnswerRecent(std::string_view channel, runtime::StepRange steps, TimePoint now) {
   if (channel != ChannelOf<truth_t>().name || !node_.outputs().limiter().Has(now)) return;
   const runtime::StepRing& truths = parts_.inputs.Of(IndexOf<truth_t>()).ring;
@@ -219,8 +221,8 @@ void Recorder::AnswerRecent(std::string_view channel, runtime::StepRange steps, 
     Answer(channel, truths.Get(step), now);
     answered = true;
   }
-  // The recorder may have been restarted itself: then its ring is empty, and the answer comes from
-  // the file.
+  // If the recorder has been restarted itself, its ring is empty. The answer then comes from the
+  // file.
   if (answered || history_->steps() == 0) return;
   log_->Flush();
   AnswerStep(
@@ -255,7 +257,7 @@ void Recorder::TellWritten() {
 }
 
 void Recorder::OnLeave() {
-  // A run that ends early leaves incomplete steps. The messages that are there are kept.
+  // A run that ends early leaves incomplete steps. The messages that have come are written.
   if (!log_) return;
   std::int64_t newest = -1;
   for (const runtime::Input& input : parts_.inputs.all()) {
@@ -267,7 +269,7 @@ void Recorder::OnLeave() {
     if (recording_ != nullptr) WriteStatus(std::max(newest, next - 1));
     log_->Flush();
   } catch (const std::runtime_error&) {
-    // The disk is full. If the run needs the space, an earlier write has reported it. These
+    // The disk is full. If complete steps did not fit, an earlier write has reported this. These
     // incomplete steps do not matter.
   }
   TellWritten();

@@ -1,9 +1,9 @@
 // The recorder: writes every per-step message of a run, and its scenario, into an LCM event log. It
 // takes part in the lockstep: the world runs at most kMaxAhead steps ahead of the log on disk, so a
-// fast run loses nothing. Events stand in the order of step and graph table, whatever the order of
-// arrival. So equal runs have equal logs except for the run id. The recorder also answers requests
-// for recorded steps, from roles that have been started again. If the recorder itself is killed,
-// another one continues its log.
+// fast run loses nothing. Events stand in the order of the steps, and within a step in the order of
+// the graph table. The order of arrival does not matter. So equal runs have equal logs except for
+// the run id. The recorder also answers requests for recorded steps, from roles that have been
+// started again. If the recorder itself is killed, another recorder continues its log.
 #pragma once
 
 #include <filesystem>
@@ -22,8 +22,8 @@ class Recorder final : public runtime::Work {
   /// What to do with an existing file.
   enum class Existing { kReplace, kResume };
 
-  /// With a run id, an existing file is replaced at once. Without one, the file is replaced as soon
-  /// as a run has been found.
+  /// With kReplace and a run id, an existing file is replaced at once. With kReplace and no run id,
+  /// the file is replaced as soon as a run has been found.
   /// @throws InputError if the file cannot be written
   Recorder(runtime::Bus& bus, std::optional<std::int64_t> run_id, const std::filesystem::path& file,
            Existing existing = Existing::kReplace);
@@ -44,13 +44,14 @@ class Recorder final : public runtime::Work {
   /// The steps of this run in the file.
   /// @throws InputError if the file has fewer steps than were acknowledged
   log::Remains ReadOwnRemains(const log::LogFront& front);
-  /// Stores the last steps of the log as inputs, so that a role that computes them again must come
-  /// to the same bytes.
+  /// Stores the last steps of the log as inputs. A role that computes these steps again must then
+  /// publish the same bytes.
   void RememberLastSteps();
   void WriteScenario();
   void Write(std::int64_t step);
   void WriteStatus(std::int64_t step);
-  /// Writes into STATUS how much of the log the operating system has, and its checksum.
+  /// Writes into STATUS how much of the log the operating system has, and the checksum of this
+  /// part.
   void TellWritten();
   void AnswerRecent(std::string_view channel, runtime::StepRange steps, TimePoint now);
   /// Answers some of the requests. @return when to call it again

@@ -1,5 +1,5 @@
-// The recorder as a process: it writes the event log of one run, complete by construction. It is no
-// general logger of LCM traffic (lcm-logger is one), and it computes nothing.
+// The recorder as a process: it writes the event log of one run. It is no general logger of LCM
+// traffic (use lcm-logger for this), and it computes nothing.
 #include "services/recorder/recorder.h"
 
 #include <memory>
@@ -28,7 +28,7 @@ int main(int argc, char** argv) {
   std::string file;
   bool resume = false;
   bool shared = false;
-  // The lock on the log while the recorder writes it.
+  // One of these two objects locks the log while the recorder writes it.
   std::optional<FileLock> lock;
   std::unique_ptr<LogOfRun> log;
   return fogline::runtime::RunProcess(
@@ -37,7 +37,7 @@ int main(int argc, char** argv) {
         if (shared) {
           lock.emplace(file, FileLock::Kind::kShared, "--log", "run");
         } else {
-          log.reset();  // gives up the lock of an earlier try to find a run
+          log.reset();  // gives up the lock that an earlier call took
           log = std::make_unique<LogOfRun>(file);
         }
         return std::make_unique<Recorder>(
@@ -50,6 +50,6 @@ int main(int argc, char** argv) {
                      "Go on with the log of a recorder that was killed in the same run");
         app.add_flag("--shared-log", shared,
                      "The log is locked by the runner, which has started this recorder");
-        app.footer(kHelpFooter);  // the other roles' footer says how they join a run from outside
+        app.footer(kHelpFooter);  // replaces the footer of the other roles
       });
 }

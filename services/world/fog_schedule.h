@@ -1,4 +1,4 @@
-// Time and density of the fog. The sensors model its effects themselves.
+// Time and density of the fog. The sensors themselves model the effects of the fog.
 #pragma once
 
 #include <cstdint>
@@ -17,15 +17,16 @@ struct Fog {
 /// Level of a profile at x in [0, 1). x is the part of the fog window that has passed.
 double FogLevel(FogProfile profile, double x);
 
-/// The fog of a scenario. Its window is compared in whole microseconds, so that the binary rounding
-/// of 0.1 does not decide whether a step belongs to it. Its end does not belong to it.
+/// The fog of a scenario. Times are compared in whole microseconds, so that the binary rounding of
+/// 0.1 does not decide whether a step belongs to the fog window. The end of the window does not
+/// belong to it.
 class FogSchedule {
  public:
   explicit FogSchedule(const FogSection& fog);
 
   /// Fog `utime` microseconds after the start of the run. The models beam and modes blend the
-  /// extinction of clear air and of fog linearly by the level; otherwise the visibility is that of
-  /// clear air.
+  /// extinction of clear air and of fog linearly by the level. With the other models the visibility
+  /// is that of clear air.
   Fog At(std::int64_t utime) const;
 
  private:

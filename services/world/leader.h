@@ -1,5 +1,5 @@
-// Speed of the preceding car over time: the stimulus of the experiment. It does not react to other
-// cars.
+// Speed of the preceding car over time: the stimulus of the experiment. The preceding car does not
+// react to other cars.
 #pragma once
 
 #include <cstdint>

@@ -25,8 +25,8 @@ double StrongestBraking(double friction, double grade) {
   return std::max(0.0, models::kGravity_mps2 * (friction + grade) * cosine);
 }
 
-// The limit at the steepest rise of the road: on each slope of a scenario, of at most 0.3, it grows
-// with the grade.
+// The limit at the steepest rise of the road. For grades of at most 0.3, as in a scenario, the
+// limit grows with the grade.
 double StrongestAnywhere(const RoadSection& road, double friction) {
   double steepest = road.grade.empty() ? 0.0 : road.grade.front().grade;
   for (const GradePoint& point : road.grade) steepest = std::max(steepest, point.grade);
@@ -60,7 +60,7 @@ StatedBraking HardestBreakpoint(const LeadSection& lead) {
 StatedBraking HardestStated(const LeadSection& lead) {
   switch (lead.profile) {
     case LeadProfile::kConstant:
-    case LeadProfile::kRecorded:  // known only step by step
+    case LeadProfile::kRecorded:  // its braking is known only step by step
       break;
     case LeadProfile::kBreakpoints:
       return HardestBreakpoint(lead);

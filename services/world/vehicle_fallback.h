@@ -1,5 +1,5 @@
 // Fallback of the cars in real time if their commands are missing: the last command holds for a
-// short time, then the car stops. Only the world itself is needed for it.
+// short time, then the car stops. The world does this without any other process.
 #pragma once
 
 #include <cstddef>
@@ -30,7 +30,7 @@ class CarFallback {
 
   /// The acceleration for the step that begins here. Call it once per step.
   /// @param command_mps2 the newest command, if any has come
-  /// @param speed_mps, applied_mps2 of the car at the begin of the step
+  /// @param speed_mps, applied_mps2 of the car at the beginning of the step
   double Step(InputState state, std::optional<double> command_mps2, double speed_mps,
               double applied_mps2);
 
@@ -44,13 +44,13 @@ class CarFallback {
 };
 
 /// The host and the following cars. The results have the form that World::Step takes. Each
-/// following car has its own fallback: if messages leave out the acceleration of one car, only this
-/// car stops.
+/// following car has its own fallback. If messages lack the acceleration of one car, only this car
+/// stops.
 ///
 /// Once the arbitrator has commanded the host's minimal risk manoeuvre, the vehicle remembers it.
-/// It follows the arbitrator's commands as long as they continue the manoeuvre. If they stop
+/// It follows the arbitrator's commands while they continue the manoeuvre. If the commands stop
 /// coming, or if another arbitrator commands something else, the vehicle makes the manoeuvre by
-/// itself. Only a driver who was asked and has taken over ends it (mode RECOVERING, or
+/// itself. Only a driver who was asked and has taken over ends the manoeuvre (mode RECOVERING, or
 /// EMERGENCY_BRAKING with authority of the human).
 class VehicleFallback {
  public:
@@ -63,12 +63,12 @@ class VehicleFallback {
 
   /// Puts the host into the manoeuvre, because it was in the manoeuvre under an earlier process.
   void ResumeHost(const truth_t& now) { host_.BeginMinimalRisk(now.host_acceleration_mps2); }
-  /// Puts all following cars into the manoeuvre, because it is not known which of them were in it
-  /// under the earlier process.
+  /// Puts all following cars into the manoeuvre, because it is not known which cars were in the
+  /// manoeuvre under the earlier process.
   void ResumeFollowers(const truth_t& now);
 
-  /// The host's command as carried out. While the vehicle stops by itself, its mode is MINIMAL_RISK
-  /// and both authorities are 0; before the first command, its mode is AUTOMATION.
+  /// The host's command as carried out. While the vehicle stops by itself, the mode is MINIMAL_RISK
+  /// and both authorities are 0. Before the first command, the mode is AUTOMATION.
   const arbitration_t& host() const { return host_out_; }
   const follower_command_t& followers() const { return followers_out_; }
 
@@ -81,8 +81,8 @@ class VehicleFallback {
   bool host_stops_by_itself() const { return host_.in_minimal_risk(); }
   /// Whether any of the following cars is in the manoeuvre.
   bool follower_in_minimal_risk() const;
-  /// State of the followers' commands: the worst of all cars. For a car, a message without an
-  /// acceleration for it counts as missing.
+  /// State of the followers' commands: the worst of all cars. A message without an acceleration for
+  /// a car counts as missing for this car.
   InputState follower_state() const { return follower_state_; }
 
  private:
@@ -102,7 +102,7 @@ class VehicleFallback {
   CarFallback host_;
   std::vector<FollowingCar> followers_;
   InputState follower_state_ = InputState::kAwaited;
-  bool commanded_ = false;  // by the arbitrator
+  bool commanded_ = false;  // whether the arbitrator has commanded the manoeuvre
   arbitration_t host_out_{};
   follower_command_t followers_out_{};
 };

@@ -22,19 +22,20 @@
 namespace fogline::world {
 
 /// The preceding car, the host and the cars that follow it, in one lane. The preceding car has the
-/// speed of its profile; while the profile brakes harder than friction allows, it is faster
+/// speed of its profile. While the profile brakes harder than friction allows, the car is faster
 /// (leader_friction.h). Each other car is a point mass, which has exactly the commanded
 /// acceleration, or a vehicle that follows the command as far as it can (services/models/vehicle).
 /// The acceleration of every car is constant within a step (services/models/vehicle/motion.h). Cars
-/// that have collided do not push each other: unless the run ends, they follow their commands
-/// through one another, and the gap between them is negative.
+/// that have collided do not push each other. Unless the run ends, they continue to follow their
+/// commands, and the gap between them is negative.
 class World {
  public:
   using Output = std::tuple<truth_t, ego_t>;
 
   /// @throw std::invalid_argument if the scenario's recorded leader has no speeds
-  /// @throw InputError if the places of its hills do not increase, a step is too short for the
-  ///     delays of a vehicle, or the leader's profile states a braking that friction does not allow
+  /// @throw InputError if the places of the scenario's hills do not increase, a step is too short
+  ///     for the delays of a vehicle, or the leader's profile states a braking that friction does
+  ///     not allow
   explicit World(const Scenario& scenario);
 
   /// Step 0: the state that the scenario describes. Begins a new run.
@@ -51,8 +52,8 @@ class World {
   /// (v(k+1) - v(k)) / step_s.
   /// @pre Start() or Resume() was called; `host` and `followers` are those of the last published
   /// step.
-  /// @throw std::invalid_argument if a command is not finite, or if there is not exactly one per
-  ///     following car.
+  /// @throw std::invalid_argument if a command is not finite, or if there are more or fewer
+  ///     commands than following cars.
   const Output& Step(const arbitration_t& host, const follower_command_t& followers);
 
   /// The last published step.
@@ -62,8 +63,8 @@ class World {
   struct Car {
     models::Motion motion;
     double begin_mps = 0;          // speed at the beginning of the step
-    double acceleration_mps2 = 0;  // in force during the step, or until the car rests
-    double applied_mps2 = 0;       // mean over the step that ended
+    double acceleration_mps2 = 0;  // constant during the step, or until the car rests
+    double applied_mps2 = 0;       // mean acceleration over the step that ended
   };
   // In the order of the lane, from the front. The car at index i follows the one at i - 1.
   enum : std::size_t { kPreceding, kHost, kFirstFollower };
@@ -72,7 +73,7 @@ class World {
   double GapOf(std::size_t car) const;
   std::size_t num_followers() const { return cars_.size() - kFirstFollower; }
   void MakeVehicles(const Scenario& scenario);
-  // Puts a car on the road as if it had had this acceleration for a long time.
+  // Puts a car on the road as if it had kept this acceleration for a long time.
   void Place(std::size_t car, const models::Motion& motion, double acceleration_mps2);
   void Command(const arbitration_t& host, const follower_command_t& followers);
   void Lead();
@@ -92,9 +93,10 @@ class World {
   std::int64_t run_id_ = 0;
   std::int64_t step_ = 0;
   std::vector<Car> cars_;
-  std::optional<double> profile_mps_;  // the leader's speed at the end of the step, if it is exact
+  std::optional<double> profile_mps_;  // speed of the leader's profile at the end of the step;
+                                       // nullopt if friction limits the braking
   std::vector<std::optional<models::LongitudinalVehicle>>
-      vehicles_;  // of each car; none of a point mass
+      vehicles_;  // vehicle of each car; nullopt for a point mass
   std::int8_t collision_ = truth_t::COLLISION_NONE;
   double collision_time_s_ = 0;
   Output output_{};

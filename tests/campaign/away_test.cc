@@ -1,5 +1,5 @@
-// One part of a run is away for longer than any other part waits for it by default: a process that
-// is stopped, or a machine whose cable is out.
+// A part of a run is away for longer than the other parts wait for it by default. The part is a
+// stopped process, or a machine whose cable is unplugged.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -10,8 +10,8 @@
 namespace fogline::test {
 namespace {
 
-// The user announces an absence with this option if it is longer than a run waits for a role by
-// default.
+// With this option a run waits longer for its roles. The user gives it if an absence is longer than
+// the default time.
 const std::vector<std::string> kWaitLonger{"--stall-timeout", "60"};
 
 const Absence kRunner = Stopped(

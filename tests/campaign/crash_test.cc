@@ -1,4 +1,5 @@
-// Each role of a run hangs, and a hundred processes are killed at random steps.
+// Each role hangs in a run of its own. In other runs a hundred processes are killed at random
+// steps.
 #include <gtest/gtest.h>
 
 #include "tests/integration/faults/killed_roles.h"

@@ -48,7 +48,7 @@ TEST_F(ExportTest, HasEveryNumberOfTheMatFileToTheLastBit) {
         fmt::format("{} {} {} {} {}", name, field.type, field.rows.size(), field.columns(), hex));
   }
   expected.emplace_back("title F\u00f6hn");
-  // THEN Octave shows the same
+  // THEN Octave shows the same bytes
   std::vector<std::string> shown;
   std::istringstream lines(octave.out);
   for (std::string line; std::getline(lines, line);) shown.push_back(line);

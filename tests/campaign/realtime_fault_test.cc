@@ -1,4 +1,4 @@
-// Every role is killed, and stopped, in two scenarios that run in real time.
+// Each role is killed in one run and stopped in another, in two scenarios that run in real time.
 #include <gtest/gtest.h>
 
 #include <csignal>

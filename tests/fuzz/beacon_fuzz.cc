@@ -1,4 +1,4 @@
-// How a program that looks for runs reads beacons from unknown senders. Input: datagrams.
+// A program that looks for runs reads beacons from unknown senders. Input: datagrams.
 #include <nlohmann/json.hpp>
 
 #include "common/text.h"

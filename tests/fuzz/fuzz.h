@@ -19,7 +19,7 @@ namespace fogline::fuzz {
 
 using Input = std::vector<std::uint8_t>;
 
-/// The inputs that the fuzzing of a target starts from. The target makes them with the code that
+/// The inputs with which the fuzzing of a target begins. The target makes them with the code that
 /// makes such bytes in a run, so they always have the current message types and formats.
 std::vector<Input> Seeds();
 
@@ -40,7 +40,7 @@ class MemoryFile {
   MemoryFile(const MemoryFile&) = delete;
   MemoryFile& operator=(const MemoryFile&) = delete;
 
-  /// Valid as long as this object lives.
+  /// The path is valid while this object lives.
   std::filesystem::path path() const;
   Input Content() const;
 
@@ -48,7 +48,8 @@ class MemoryFile {
   int fd_;
 };
 
-/// Takes an input apart from front to back. Beyond the end, bytes are 0 and datagrams are empty.
+/// Splits an input into parts, from front to back. Beyond the end, bytes are 0 and datagrams are
+/// empty.
 class Cutter {
  public:
   explicit Cutter(runtime::Bytes input) : rest_(input) {}

@@ -151,7 +151,7 @@ void AddStep(std::int64_t step, Input& input) {
   AddDatagram(Encoded(message), input);
 }
 
-/// Steps that overflow in arithmetic, on channels that some of the roles read.
+/// Messages with step numbers that overflow in arithmetic, on channels that some of the roles read.
 Input WithImpossibleSteps(Action announce) {
   using Limits = std::numeric_limits<std::int64_t>;
   Input input{announce, kGo, kPoll};

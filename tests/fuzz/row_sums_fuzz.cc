@@ -20,7 +20,7 @@ std::string Text(runtime::Bytes bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-/// FILE.sums with this content, for as long as this object lives.
+/// The file FILE.sums with this content. It exists while this object lives.
 class SumsOnDisk {
  public:
   explicit SumsOnDisk(const std::string& content)
@@ -39,8 +39,8 @@ class SumsOnDisk {
   std::filesystem::path csv_;
 };
 
-/// Whether these are lines of eight hexadecimal digits. The last line may be torn, with zeros after
-/// it.
+/// Whether this content has only lines of eight hexadecimal digits. The last line may be torn, with
+/// zeros after it.
 bool LooksLikeSums(std::string content) {
   const std::size_t last_line = content.rfind('\n') + 1;  // npos + 1 is 0
   while (content.size() > last_line && content.back() == '\0') content.pop_back();
@@ -103,7 +103,7 @@ std::vector<Input> Seeds() {
   const std::vector<std::string> rows{"seed,si_pct", "1,62.5", "2,-3"};
   std::string sums;
   for (const std::string& row : rows) sums += sweep::SumLine(row);
-  // Whole; torn by a kill; torn by a power cut.
+  // FILE.sums is whole, torn by a kill, or torn by a power cut.
   return {Of(sums, rows), Of(sums.substr(0, sums.size() - 4), rows),
           Of(sums.substr(0, sums.size() - 4) + std::string(4, '\0'), rows)};
 }

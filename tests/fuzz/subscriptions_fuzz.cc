@@ -28,7 +28,7 @@ std::optional<bool> Ask(relay::Subscriptions& subscriptions, std::string_view ch
   }
 }
 
-/// The subscriptions of one client, and the patterns that they should consist of.
+/// The subscriptions of one client, and the patterns that the client should have.
 class Client {
  public:
   void Add(std::string_view pattern) {

@@ -10,7 +10,7 @@ namespace fogline::fuzz {
 namespace {
 
 constexpr runtime::tcpq::Limits kLimits{.channel = 63, .pattern = 100, .payload = 200};
-// Type, length, channel, length, payload.
+// A frame has type, length, channel, length and payload.
 constexpr std::size_t kLargestFrame = 4 + 4 + kLimits.channel + 4 + kLimits.payload;
 constexpr std::size_t kHello = 8;
 

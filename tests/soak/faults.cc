@@ -20,7 +20,7 @@ double Uniform(Random& random, double low, double high) {
 double LogUniform(Random& random, double low, double high) {
   return std::exp(Uniform(random, std::log(low), std::log(high)));
 }
-/// Waits for as long as the fault lasts.
+/// Waits until the fault is over.
 void Last(double seconds) { std::this_thread::sleep_for(std::chrono::duration<double>(seconds)); }
 
 const Machine& AMachine(const SoakedRun& run, Random& random) {
@@ -42,13 +42,13 @@ bool LoseInput(SoakedRun& run, Random& random, const Limits&) {
   return true;
 }
 
-/// Makes a machine lack something for this time. Then waits until a message was lost because of the
-/// lack: on a busy machine it may take a moment until a message is sent. `felt` is a command of the
-/// shell that succeeds if a message was lost.
+/// Takes something away from a machine for this time, and longer if no message was lost yet: on a
+/// busy machine it may take a moment until a message is sent. `felt` is a command of the shell that
+/// succeeds if a message was lost.
 /// @return whether a message was lost
 bool Lack(const Machine& machine, const std::string& begin, const std::string& end, double seconds,
           const std::string& felt) {
-  constexpr int kTenths = 50;  // limit of that wait; a role sends STATUS five times a second
+  constexpr int kTenths = 50;  // limit of this second wait; a role sends STATUS five times a second
   return machine.Do(fmt::format("{}; sleep {:.3f}; hit=no;"
                                 "for i in $(seq {}); do if {}; then hit=yes; break; fi; sleep 0.1;"
                                 "done; {}; echo $hit",
@@ -77,8 +77,8 @@ bool ReloadFirewall(SoakedRun& run, Random& random, const Limits&) {
   return RefuseToSend(AMachine(run, random), 1, Uniform(random, 0.1, 1.5));
 }
 
-/// Takes away something without which a machine has no route for multicast. The kernel counts the
-/// datagrams for which there is no route (OutNoRoutes).
+/// Takes away an interface, address or route, so that a machine has no route for multicast. The
+/// kernel counts the datagrams for which it finds no route (OutNoRoutes).
 bool TakeTheWay(const Machine& machine, const std::string& begin, const std::string& end,
                 double seconds) {
   const std::string unrouted = "$(awk '/^Ip: [0-9]/ { print $13 }' /proc/net/snmp)";
@@ -117,8 +117,8 @@ bool Kill(SoakedRun& run, Random& random, const Limits&) { return run.KillARole(
 bool Stop(SoakedRun& run, Random& random, const Limits&) { return run.StopARole(random); }
 bool Resume(SoakedRun& run, Random&, const Limits&) { return run.KillTheRunnerAndResume(); }
 
-/// All processes stop, one after another, as by Ctrl-Z, in a frozen container or on a sleeping
-/// machine.
+/// All processes stop, one after another, as they do after Ctrl-Z, in a frozen container, or on a
+/// sleeping machine.
 bool Freeze(SoakedRun& run, Random& random, const Limits& limits) {
   std::vector<pid_t> processes = run.Processes();
   std::ranges::shuffle(processes, random);

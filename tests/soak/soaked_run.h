@@ -25,7 +25,7 @@ struct Experiment {
   static Experiment Draw(std::mt19937_64& random);
 };
 
-/// The result of the run without any fault and without messages.
+/// The result of the same run without faults and without messages.
 struct Undisturbed {
   std::string digest;
   std::uintmax_t log_bytes = 0;
@@ -33,9 +33,9 @@ struct Undisturbed {
 /// @throws std::runtime_error if the program fails
 Undisturbed RunUndisturbed(const Experiment& experiment);
 
-/// A run that is under way, on one machine or with its roles on three machines of one network. One
-/// machine has a default route to elsewhere, as most machines have. There the messages go over
-/// loopback, as they do by default, or over the interface to elsewhere.
+/// A run that is under way, on one machine or with its roles on three machines of one network. The
+/// one machine has a default route to elsewhere, as most machines have. Its messages go over
+/// loopback, which is the default, or over the interface to elsewhere.
 class SoakedRun {
  public:
   enum class Place { kLoopback, kInterface, kThreeMachines };
@@ -48,20 +48,20 @@ class SoakedRun {
 
   /// The machines of the run.
   std::vector<const Machine*> machines() const;
-  /// @pre it is on three machines
+  /// @pre the run is on three machines
   const Lab& lab() const { return *lab_; }
 
   /// The ids of the runner and of all processes of the run on all machines. The runner is first.
   std::vector<pid_t> Processes() const;
 
-  // Each of these functions strikes once. @return whether there was such a process, and it had not
+  // Each of these functions strikes once. @return false if there was no such process, or it had
   // ended by itself
 
-  /// Ends a role's process, drawn at random, by SIGKILL; starts it again if the runner does not.
+  /// Ends a role's process, drawn at random, by SIGKILL. Starts it again if the runner does not.
   bool KillARole(std::mt19937_64& random);
-  /// Stops a role's process that the runner has started, drawn at random.
+  /// Stops a process, drawn at random, of a role that the runner has started.
   bool StopARole(std::mt19937_64& random) const;
-  /// Ends the runner by SIGKILL, waits for it, and has another one resume its log.
+  /// Ends the runner by SIGKILL, waits for its end, and lets another runner resume its log.
   bool KillTheRunnerAndResume();
 
   /// Waits for the end. @return the exit code and the output of the runner

@@ -25,7 +25,7 @@ inline std::vector<pid_t> ChildrenOf(pid_t parent) {
   return children;
 }
 
-/// Sends a signal to one process that must be there: kill(2) takes 0 for the whole process group.
+/// Sends a signal to one process, which must exist. For pid 0, kill(2) would signal a whole group.
 inline void SignalOne(pid_t pid, int signal) {
   ASSERT_GT(pid, 0);
   kill(pid, signal);

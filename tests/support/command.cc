@@ -17,11 +17,11 @@ namespace {
 
 using SteadyClock = std::chrono::steady_clock;
 
-// A run of a test has a port of its own, also if the shell that starts the tests has set the
-// variable. A test that needs the variable sets it.
+// A run of a test has a port of its own, also if LCM_DEFAULT_URL is set in the shell that starts
+// the tests. A test that needs the variable sets it.
 [[maybe_unused]] const int kWithoutDefaultUrl = unsetenv("LCM_DEFAULT_URL");
 
-/// A new folder below the build's, so that tools/test finds and removes the files of a killed test.
+/// A new folder below the build folder, where tools/test finds and removes files of killed tests.
 std::filesystem::path FreshFolder(const std::string& kind) {
   const auto scratch = std::filesystem::path(FOGLINE_BINARY_DIR) / "Testing" / "tmp";
   std::filesystem::create_directories(scratch);

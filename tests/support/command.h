@@ -14,7 +14,7 @@ namespace fogline::test {
 /// The interval at which a test looks at a condition outside of its process.
 inline constexpr std::chrono::milliseconds kLookEvery(5);
 
-/// The folder of the built programs, and that of the sources.
+/// The folder of the built programs, and the folder of the sources.
 std::filesystem::path ProgramDirectory();
 std::filesystem::path SourceDirectory();
 /// The path of a program of this build, such as "fogline".
@@ -32,8 +32,8 @@ class Background {
 
   pid_t pid() const { return pid_; }
   void Signal(int signal) const;
-  /// Waits for the end. @return the exit code, or 128 + signal; -1 after the time limit (the
-  /// program is then killed)
+  /// Waits for the end. @return the exit code, or 128 + signal. After the time limit the program is
+  /// killed, and the result is -1
   int Wait(std::chrono::seconds limit = std::chrono::seconds(60));
   std::string Out() const;
   std::string Err() const;
@@ -62,7 +62,7 @@ struct Outcome {
 bool GrowsTo(std::uintmax_t bytes, const std::filesystem::path& file,
              std::chrono::seconds limit = std::chrono::seconds(20));
 
-/// The bytes of a file, "" if it is not there.
+/// The bytes of a file; "" if there is no such file.
 std::string Content(const std::filesystem::path& file);
 
 /// Runs a program to its end.
@@ -75,8 +75,8 @@ bool IsAlive(pid_t pid);
 /// The process id after "NAME " in "processes: world 4711, radar 4712". 0 if the name is missing.
 pid_t PidOf(const std::string& err, const std::string& role);
 
-/// An empty folder below the build's Testing/tmp. The destructor removes the folder; tools/test
-/// removes the folders of killed tests.
+/// An empty folder below Testing/tmp in the build folder. The destructor removes the folder;
+/// tools/test removes the folders of killed tests.
 class ScratchFolder {
  public:
   ScratchFolder();

@@ -1,7 +1,7 @@
 // Sends datagrams to a multicast group: noise, and datagrams that resemble the messages of a run.
-// No process there should accept them. The program listens to the genuine messages of this run. It
-// never sends a message that only a signature could tell from a genuine one (right type, run and
-// step, finite values).
+// No process should accept them. The program listens to the genuine messages of this run. It never
+// sends a message that only a signature could tell from a genuine one (right type, run and step,
+// finite values).
 #include <arpa/inet.h>
 #include <linux/filter.h>
 #include <netinet/in.h>
@@ -60,7 +60,7 @@ void WriteInt64(Buffer& to, std::size_t offset, std::int64_t value) {
   std::ranges::copy(bytes, to.begin() + static_cast<std::ptrdiff_t>(offset));
 }
 
-/// The multicast group: it sends to the group and hears what others send.
+/// The multicast group. It sends to the group and hears the datagrams of other processes.
 class Group {
  public:
   Group(const std::string& address, int port, int ttl)
@@ -231,7 +231,7 @@ class Attacker {
     made ? Wrap() : Noise();
   }
   void WrongStep() {
-    // In STATUS the step is the sender's, in RESEND the wanted one. No step is wrong there.
+    // In STATUS the step is the sender's, and in RESEND it is the wanted one. So no step is wrong.
     if (channel_ == ChannelOf<status_t>().name || channel_ == ChannelOf<resend_t>().name) {
       return Noise();
     }
@@ -260,12 +260,13 @@ class Attacker {
     Wrap();
   }
   void Fragment() {
-    // Sizes and offsets of fragments that contradict each other: beyond the message, beyond 2^32.
+    // Sizes and offsets of fragments that contradict each other: beyond the message, or beyond
+    // 2^32.
     constexpr std::array<std::uint32_t, 7> kAbsurd{0,          1,          1000,      0x7fffffff,
                                                    0x80000000, 0xfffffc00, 0xffffffff};
     constexpr std::array<std::uint16_t, 5> kNumbers{0, 1, 2, 0x7fff, 0xffff};
     Append(datagram_, kFragmentMagic);
-    AppendBigEndian(datagram_, static_cast<std::uint32_t>(Below(4)));  // some belong to one message
+    AppendBigEndian(datagram_, static_cast<std::uint32_t>(Below(4)));  // number of the message
     AppendBigEndian(datagram_, OneOf(kAbsurd));                        // size of the message
     AppendBigEndian(datagram_, OneOf(kAbsurd));                        // offset of this fragment
     AppendBigEndian(datagram_, OneOf(kNumbers));                       // number of this fragment
@@ -348,7 +349,7 @@ int Main(int argc, char** argv) {
     for (runtime::Bytes heard = network.Receive(); !heard.empty(); heard = network.Receive()) {
       attacker.Learn(heard);
     }
-    // The loop catches up when the system gave this process no time, so the rate holds on average.
+    // If the system gave this process no time, the loop catches up. So the rate holds on average.
     while (static_cast<double>(sent) < rate_hz * elapsed_s && stopped == 0) {
       network.Send(attacker.Next());
       ++sent;

@@ -1,7 +1,7 @@
-// Several machines within this one: network namespaces with their own addresses and host names,
-// joined by veth pairs and a bridge. The kernel handles their packets like those of real machines,
-// and can lose some on request. They change nothing outside. They have no names that could be left
-// behind: the kernel removes them when this process and its children have ended.
+// Several simulated machines within this one. They are network namespaces with their own addresses
+// and host names, joined by veth pairs and a bridge. The kernel handles their packets like those of
+// real machines, and can lose some packets on request. The namespaces change nothing outside. The
+// kernel removes them when this process and its children have ended, because they have no names.
 #pragma once
 
 #include <cstdint>
@@ -13,22 +13,22 @@
 
 namespace fogline::test {
 
-/// The reason why machines cannot be made here, such as "unshare: Operation not permitted". "" if
-/// they can.
+/// The reason why machines cannot be made here, such as "unshare: Operation not permitted"; "" if
+/// they can be made.
 std::string WhyNoMachines();
 
 /// A machine: a network namespace and a host name of its own. It has a loopback device and no
 /// route.
 class Machine {
  public:
-  /// @throws std::system_error if this process may not make one
+  /// @throws std::system_error if this process may not make a machine
   explicit Machine(const std::string& name);
   ~Machine();
   Machine(Machine&& other) noexcept;
   Machine(const Machine&) = delete;
 
   /// The command line that runs a command on this machine, for Background and RunCommand(). The
-  /// process id is that of the command itself.
+  /// process has the id of the command itself.
   std::vector<std::string> On(const std::vector<std::string>& command) const;
   /// Runs lines of sh on this machine. @return their output @throws std::runtime_error with the
   /// error text if a line fails
@@ -39,14 +39,14 @@ class Machine {
 
   /// Makes this machine's multicast stay on it.
   void RouteMulticastToItself() const { Do("ip route add 239.0.0.0/8 dev lo"); }
-  /// From now on the kernel loses `per_cent` of 100 UDP datagrams that arrive here, also those of
-  /// this machine.
+  /// From now on the kernel loses `per_cent` of 100 UDP datagrams that arrive here, also those that
+  /// this machine sends to itself.
   void LoseUdp(int per_cent) const;
   /// From now on the kernel loses the datagrams of one LCM channel.
   void LoseChannel(const std::string& channel) const;
   /// The number of lost datagrams.
   std::int64_t LostUdp() const;
-  /// From now on the kernel loses none.
+  /// From now on the kernel loses no datagrams.
   void LoseNothing() const { Do("nft delete table inet loss"); }
   /// Calls a function. The sockets that it makes belong to this machine.
   void Enter(const std::function<void()>& function) const;
@@ -69,8 +69,8 @@ class Lab {
   void Unplug(std::size_t machine) const { SetPort(machine, "down"); }
   void Plug(std::size_t machine) const { SetPort(machine, "up"); }
 
-  /// From now on the switch sends `per_cent` of 100 UDP datagrams from each machine to the next
-  /// machine twice. @throws std::runtime_error if the kernel cannot do this
+  /// From now on the switch sends a share of the UDP datagrams from each machine to the next
+  /// machine twice: `per_cent` of 100. @throws std::runtime_error if the kernel cannot do this
   void RepeatUdp(int per_cent) const;
   /// The number of datagrams that the switch has sent twice.
   std::int64_t RepeatedUdp() const;

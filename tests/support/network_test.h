@@ -1,4 +1,4 @@
-// Common parts of tests on machines of their own.
+// Common parts of tests on simulated machines.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-// The order of the folders: which folder may use which, how many files a folder may have, and one
-// meaning for each name.
+// These tests check which folder may use which other folder, how many files a folder may have, and
+// that each name has one meaning.
 #include <gmock/gmock-more-matchers.h>
 #include <gtest/gtest.h>
 
@@ -30,7 +30,7 @@ using ::testing::UnorderedElementsAre;
 struct Room {
   std::string_view folder;  // with its subfolders, unless they are rooms of their own; see kAlone
   std::string_view space;   // its types lie in fogline::SPACE; "": in fogline, for all to use
-  std::string_view why;     // why it stands after those before it
+  std::string_view why;     // why this room stands after the rooms before it
 };
 
 /// A file may include files of its own room and of rooms before it, and a library may link
@@ -195,7 +195,7 @@ TEST(HouseTest, OnlyFilesThatAnExtensionReplacesAndAProgramIncludeTheListsOfChoi
                           "services/decision/policies/policies.cc", "tools/fogline/report.cc"));
 }
 
-/// The places of a library's folders in the order. A folder without a room stands behind all.
+/// The places of a library's folders in the order. A folder without a room stands behind all rooms.
 std::set<std::size_t> PlacesOf(const std::string& folders) {
   std::set<std::size_t> places;
   std::istringstream in(folders);
@@ -225,8 +225,9 @@ Links ReadLinks(const std::string& lines) {
   return links;
 }
 
-/// "LIBRARY links LIBRARY" for each link that the order of the rooms forbids. Every folder of the
-/// linked library must stand before every folder of the other, so allowed links make no circle.
+/// "LIBRARY links LIBRARY" for each link that the order of the folders (kRooms) forbids. Every
+/// folder of the linked library must stand before every folder of the linking library, so allowed
+/// links make no circle.
 std::vector<std::string> ForbiddenLinks(const Links& links) {
   std::vector<std::string> forbidden;
   for (const auto& [library, all_linked] : links.linked) {

@@ -28,7 +28,7 @@ namespace {
 constexpr unsigned kPayloadBytes = 120;
 using Payload = std::array<std::uint8_t, kPayloadBytes>;
 
-// Steps before the measurement starts: after them every process has joined the network.
+// Steps before the measurement starts. After them every process has joined the network.
 constexpr int kWarmUpSteps = 200;
 // A bare network repairs no loss. So the first process sends a step's message again if no message
 // has come for this time.

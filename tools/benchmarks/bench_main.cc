@@ -34,7 +34,7 @@ std::vector<Comparison> AllComparisons(Effort effort) {
   return all;
 }
 
-/// Why no comparison has this name; "" if one has it.
+/// The error text for a name that no comparison has; "" if a comparison has it.
 std::string WhyNoComparison(const std::string& name) {
   const std::vector<Comparison> all = AllComparisons(Effort::kQuick);
   if (std::ranges::find(all, name, &Comparison::name) != all.end()) return "";

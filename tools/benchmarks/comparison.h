@@ -9,7 +9,7 @@
 
 namespace fogline::benchmarks {
 
-/// The side of its goal on which a ratio has to lie.
+/// Whether a ratio must be at most or at least its goal.
 enum class Bound { kAtMost, kAtLeast };
 
 /// The two sides of a comparison, and the expected result. Both functions measure once and return
@@ -51,7 +51,7 @@ struct Finding {
   std::string Verdict() const;
 };
 
-/// Measures. The side that goes first changes from round to round.
+/// Measures both sides in each round. The side that goes first changes from round to round.
 Finding Compare(const Comparison& comparison, int rounds);
 
 }  // namespace fogline::benchmarks

@@ -8,7 +8,7 @@
 namespace fogline::benchmarks {
 namespace {
 
-// A step has nine messages: this is a million messages and eight.
+// A step has nine messages, so these steps have 1,000,008 messages.
 constexpr int kLogSteps = 111'112;
 
 ProgramResult Sweep(int rows, int jobs) {
@@ -18,8 +18,8 @@ ProgramResult Sweep(int rows, int jobs) {
                      ScratchFolder() / ("sweep-" + std::to_string(rows) + ".csv")});
 }
 
-/// Rows (a run and its pair without traded control) per second. Removes old sweep files first,
-/// because a sweep would resume them.
+/// Rows (a run and its paired run without traded control) per second. Removes old sweep files
+/// first, because a sweep would resume them.
 double SweepRowsPerSecond(int rows, int jobs) {
   for (const auto& entry : std::filesystem::directory_iterator(ScratchFolder())) {
     if (entry.path().filename().string().starts_with("sweep-")) {
@@ -34,8 +34,8 @@ double SweepPeakMemory_mb(int rows) {
   return Sweep(rows, 2).peak_memory_mb;
 }
 
-/// A log of a run of a million messages, made once. This function also reads it once, so that it is
-/// in the page cache for both sides.
+/// A log of a run of a million messages, made once. This function also reads it once, so that the
+/// log is in the page cache for both sides.
 const std::filesystem::path& LargeLog() {
   static const std::filesystem::path file = [] {
     const std::filesystem::path log = ScratchFolder() / "large.lcm";

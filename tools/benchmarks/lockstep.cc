@@ -54,8 +54,8 @@ double RunSeconds(const Options& options, int steps) {
   return nlohmann::json::parse(RunProgram(command).out)["wall_s"];
 }
 
-/// Microseconds per step, from the difference of a short and a long run. So the cost of starting
-/// and ending cancels out.
+/// Microseconds per step. They are computed from a long and a short run, so that the cost of
+/// starting and ending cancels out.
 double LockstepStepMicros(const Options& options, int steps) {
   constexpr int kShort = 500;
   const double more_s = RunSeconds(options, kShort + steps) - RunSeconds(options, kShort);
@@ -82,7 +82,7 @@ Comparison OverUdpm(int steps, const std::string& name, const std::string& refer
   return comparison;
 }
 
-/// Each sender signs its messages, and each reader verifies them.
+/// The lockstep with signed messages, compared with the lockstep without signatures.
 Comparison SignedOverUdpm(int steps) {
   Comparison comparison = OverUdpm(steps);
   comparison.name = "key";

@@ -62,7 +62,8 @@ double SumoSeconds(int steps) {
       .wall_s;
 }
 
-/// Takes the difference of two lengths, so that the cost of loading cancels out.
+/// Updates of a car per second. They are computed from a long and a short run, so that the cost of
+/// loading cancels out.
 double SumoUpdatesPerSecond(int steps) {
   constexpr int kShort = 1'000;
   return kCars * steps / (SumoSeconds(kShort + steps) - SumoSeconds(kShort));

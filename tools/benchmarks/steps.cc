@@ -1,6 +1,5 @@
-// fogline-bench-steps: cost of each Step function, and of the closed loop of all of them. The
-// inputs are those of a recorded run, repeated in a loop. The algorithms keep their state between
-// the calls.
+// fogline-bench-steps: cost of each Step function, and of the whole closed loop. The inputs are
+// those of a recorded run, repeated in a loop. The algorithms keep their state between the calls.
 #include <benchmark/benchmark.h>
 
 #include <vector>
@@ -61,7 +60,7 @@ const std::vector<Recorded>& HardSteps(const Scenario& scenario) {
   return steps;
 }
 
-/// Times `call` on one recorded step after another, in a loop.
+/// Measures the time of `call` on one recorded step after another, in a loop.
 template <class Call>
 void Replay(benchmark::State& state, const std::vector<Recorded>& steps, Call&& call) {
   if (steps.empty()) return state.SkipWithError("no such step in the recorded run");

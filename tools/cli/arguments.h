@@ -21,7 +21,7 @@
 
 namespace fogline::cli {
 
-/// SCENARIO, --set and --seed.
+/// The arguments SCENARIO, --set and --seed.
 class ScenarioArguments {
  public:
   explicit ScenarioArguments(CLI::App& verb, bool with_seed = true) {
@@ -41,8 +41,7 @@ class ScenarioArguments {
   }
   const std::filesystem::path& file() const { return file_; }
 
-  /// For a verb that varies a field itself: refuses a --set of this field. `why` says what sets the
-  /// field.
+  /// Refuses a --set of a field that the verb itself varies. `why` says what sets the field.
   /// @throws InputError
   void RefuseOverrideOf(std::string_view pointer, std::string_view why) const;
 
@@ -54,15 +53,16 @@ class ScenarioArguments {
 
 /// Prepares a log file for writing. It refuses a log that another run is writing, and a non-empty
 /// file unless `force` is true. Even with `force` it refuses a file that is no event log. It
-/// requires the folder as RequireFolderOf() does.
+/// requires the folder as RequireFolderOf() does. If a killed run has left an older log of this
+/// name, the function takes it back and says so on stderr.
 /// @throws InputError
 log::LogOfRun PrepareLog(const std::filesystem::path& log, bool force);
 
-/// "logs/STEM-1.lcm", or the first number that is free.
+/// The log "logs/STEM-N.lcm" with the first number N that is free, from 1 on.
 log::LogOfRun FreshLog(const std::filesystem::path& scenario_file);
 
 /// Calls `work(log)` for each log. A log that cannot be read is named on stderr and left out; the
-/// work continues with the others. @return whether all logs could be read
+/// work continues with the other logs. @return whether all logs could be read
 template <class Work>
 bool ForEachReadable(const std::vector<std::filesystem::path>& logs, const Work& work) {
   bool readable = true;
@@ -82,13 +82,14 @@ bool ForEachReadable(const std::vector<std::filesystem::path>& logs, const Work&
 /// @throws InputError
 sweep::SeedRange ReadSeeds(const std::string& text);
 
-/// Prints --json output: a document and a newline on stdout. Names that are not UTF-8 contain
-/// U+FFFD, because JSON cannot carry them. Control characters for terminals are escaped.
+/// Prints --json output: a document and a newline on stdout. In a name that is not UTF-8, U+FFFD
+/// replaces the bytes that JSON cannot have. Control characters for terminals are escaped.
 void PrintJson(const nlohmann::ordered_json& json, int indent = 2);
 void PrintJson(const std::string& text);
 
-/// Refuses --json if the verb's document goes to stdout: the reader could not separate the two.
-/// @param option that says where the document goes, such as "--out"; "" for nowhere
+/// Refuses --json if the verb's document goes to stdout: the reader could not separate the two
+/// texts.
+/// @param option the option that says where the document goes, such as "--out"; "" for nowhere
 /// @throws InputError
 void RefuseJsonBeside(const std::filesystem::path& document, std::string_view option, bool json);
 
@@ -96,13 +97,13 @@ void RefuseJsonBeside(const std::filesystem::path& document, std::string_view op
 /// stdout.
 void PrintBeside(const std::filesystem::path& document, std::string_view text);
 
-/// 16 hexadecimal digits, or null for an unknown build.
+/// A build as 16 hexadecimal digits; null for an unknown build.
 nlohmann::ordered_json BuildJson(runtime::BuildId build);
 
-/// --lcm-url of a verb that observes a network from outside.
+/// The option --lcm-url of a verb that observes a network from outside.
 class NetworkArguments {
  public:
-  /// @param what completes "LCM network ..."
+  /// @param what the end of the help text "LCM network ..."
   NetworkArguments(CLI::App& verb, std::string_view what);
 
   /// The network to observe, by the rule that every program uses (lcm_url.h).
@@ -123,7 +124,7 @@ std::string MetricsJson(const runner::ExperimentResult& result);
 /// table of their measures follows.
 std::string MetricsText(const runner::ExperimentResult& result);
 
-/// The same for the figures of a run in real time, and its fallbacks.
+/// The figures of a run in real time, and its fallbacks, as JSON and as text.
 nlohmann::ordered_json RealtimeJson(const log::RealtimeFigures& figures);
 std::string RealtimeText(const log::RealtimeFigures& figures);
 

@@ -30,7 +30,7 @@ struct ExitMeanings {
   bool interruptible = false;
 };
 
-/// Puts the exit codes in front of the footer of a help text; footer() sets the rest.
+/// Puts the exit codes in front of the text that footer() sets for a help text.
 void ShowExitCodes(CLI::App& command, const ExitMeanings& meanings = {});
 
 /// The help of `app`, or of one of its verbs.

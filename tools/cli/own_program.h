@@ -19,12 +19,12 @@ inline constexpr OwnProgram kCalibrate{"calibrate", "Find values of fields that 
 inline constexpr OwnProgram kStudy{"study", "Answer an open question with runs and intervals"};
 inline constexpr std::array kOwnPrograms{kCalibrate, kStudy};
 
-/// Adds these verbs to the list of verbs, for help and spelling hints. They have no action here.
+/// Adds these verbs to the list of verbs, for help and spelling hints. These verbs get no action.
 void AddOwnPrograms(CLI::App& app, Action& action);
 
 /// Replaces this process by the program of the verb argv[1], or argv[2] after "help". It returns if
-/// the verb is not one of these. If the program cannot be started, it prints an error on stderr and
-/// ends the process with kRunFailed.
+/// this verb has no program of its own. If the program cannot be started, it prints an error on
+/// stderr and ends the process with kRunFailed.
 void BecomeOwnProgram(int argc, char** argv);
 
 }  // namespace fogline::cli

@@ -1,5 +1,5 @@
-// Finds the paired run without traded control of each run: the measures of a pair, such as the
-// safety improvement SI, need both.
+// Finds the paired run without traded control of each run. The measures of a pair, such as the
+// safety improvement SI, need both runs.
 #pragma once
 
 #include <span>
@@ -14,14 +14,14 @@ namespace fogline::cli {
 /// The scenario of the paired run: lambda_A = 1 throughout, everything else the same.
 Scenario WithoutTradedControl(Scenario scenario);
 
-/// What a run's pair says. Everything is empty if the pair is not there.
+/// The results that need the paired run. All of them are empty if there is no paired run.
 struct Pairing {
   metrics::PairedMetrics measures;
-  metrics::FogEffect without;  // effect of the fog in the pair, which has no traded control
+  metrics::FogEffect without;  // effect of the fog in the paired run without traded control
 };
 
-/// The pairing of every run, in the order of `runs`. Its pair is a run of the same scenario and
-/// seed with policy none, where only the arbitrator differs.
+/// The pairing of every run, in the order of `runs`. The paired run has the policy `none` and the
+/// same seed. Its scenario differs only in the section `arbitrator`.
 std::vector<Pairing> MeasurePairs(std::span<const runner::LoggedRun> runs);
 
 }  // namespace fogline::cli

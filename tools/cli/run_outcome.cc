@@ -33,7 +33,7 @@ nlohmann::ordered_json VerificationJson(const replay::Verification& verification
   return json;
 }
 
-/// The roles that were computed again, and those that were not.
+/// The roles that were computed again, and the roles that were not.
 std::string VerificationText(const replay::Verification& verification) {
   std::string text;
   for (const Role role : verification.roles) text += fmt::format(" {}", NameOf(role));

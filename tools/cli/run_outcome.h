@@ -17,7 +17,7 @@ struct RunOutcome {
   std::int64_t steps = 0;      // of the scenario; a collision ends a run earlier
   runner::ExperimentResult result;
   std::optional<std::int64_t> resumed;  // number of steps that the log already had
-  bool computed = true;                 // whether this process computed the rest
+  bool computed = true;                 // whether this process computed the other steps
 };
 
 nlohmann::ordered_json ToJson(const RunOutcome& outcome);

@@ -10,7 +10,7 @@
 
 namespace fogline::cli {
 
-/// --transport, --lcm-url, --external, --wait, --same-build, --verify, --key and --faults.
+/// The options --transport, --lcm-url, --external, --wait, --same-build, --verify, --key, --faults.
 class TransportArguments {
  public:
   /// @param transport default transport. If it starts the roles as processes and $LCM_DEFAULT_URL
@@ -18,7 +18,7 @@ class TransportArguments {
   TransportArguments(CLI::App& verb, std::string transport);
 
   /// Sets the transport, the options of its traffic, and the roles that are started elsewhere.
-  /// @throws InputError for a contradiction between them
+  /// @throws InputError for a contradiction between these options
   void Apply(runner::ExperimentOptions& options) const;
 
  private:

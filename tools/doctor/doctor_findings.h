@@ -26,23 +26,23 @@ using Findings = std::vector<Finding>;
 /// "ok", "warning" or "problem".
 std::string_view NameOf(Finding::Level level);
 
-/// Route, multicast on this machine, socket filter, receive buffer, or the relay of a tcpq:// URL.
+/// Examines route, multicast, socket filter and receive buffer, or the relay of a tcpq:// URL.
 void ExamineNetwork(const std::string& url, Findings& findings);
 
-/// Traffic on the network within a second: runs there, and runs that are announced there.
+/// Finds the runs on the network, and the runs that are announced on it, within a second.
 void ExamineTraffic(const std::string& url, Findings& findings);
 
-/// Clock, wake-up time, synchronisation, processors, disk.
+/// Examines clock, wake-up time, synchronisation, processors and disk.
 void ExamineMachine(Findings& findings);
 
-/// LCM's programs, Java and the message types for lcm-spy.
+/// Examines LCM's programs, Java and the message types for lcm-spy.
 /// @param programs folder of this program
 void ExamineTools(const std::filesystem::path& programs, Findings& findings);
 
-/// Whether fogline-ROLE programs exist beside this program and are of the same build.
+/// Examines whether fogline-ROLE programs exist beside this program and are of the same build.
 void ExaminePrograms(const std::filesystem::path& programs, Findings& findings);
 
-/// Processes of Fogline that run on this machine. The function does not disturb them.
+/// Finds processes of Fogline that run on this machine. The function does not disturb them.
 void ExamineProcesses(Findings& findings);
 
 }  // namespace fogline::doctor

@@ -26,7 +26,7 @@ namespace {
 
 using Level = Finding::Level;
 
-/// Value of a number among a URL's options; `otherwise` if the URL lacks it.
+/// The number that a URL's option has; `otherwise` if the URL lacks the option.
 int UrlOption(const std::string& url, const std::string& name, int otherwise) {
   const std::size_t at = url.find(name + "=");
   if (at == std::string::npos) return otherwise;
@@ -51,7 +51,7 @@ std::string RouteRemedy() {
       runtime::kLoopbackRoute);
 }
 
-/// Traffic that stays on this machine. @return whether it can be sent
+/// Examines traffic that stays on this machine. @return whether such traffic can be sent
 bool ExamineOwnMachine(const std::string& url, const std::string& group, Findings& findings) {
   if (const std::string why = runtime::WhyNoMulticast(url); !why.empty()) {
     findings.push_back({"multicast_route", Level::kProblem, why, "as root: ip link set lo up"});
@@ -97,8 +97,8 @@ bool ExamineRoute(const std::string& group, int ttl, Findings& findings) {
   return true;
 }
 
-/// Sends a message forth and back between two connections. @return the time that it took; zero if
-/// it was lost
+/// Sends a message forth and back between two connections. @return the time that the message took;
+/// zero if it was lost
 Duration RoundTrip(runtime::Bus& here, runtime::Bus& there, bool& back) {
   constexpr Duration kLimit = milliseconds(300);
   const std::vector<std::uint8_t> message(runtime::kHeaderEnd);

@@ -111,7 +111,7 @@ void ExamineProcesses(Findings& findings) {
     const bool has_runner = parent != processes.end() && parent->second.program == "fogline";
     const Finding finding = AssessRole(process, has_runner);
     if (has_runner) runs[process.parent].push_back(&process);
-    // Roles of a run without problems are named together below.
+    // Roles of a run without problems get one common line below.
     if (!has_runner || finding.level != Level::kOk) findings.push_back(finding);
   }
   for (const auto& [runner, roles] : runs) {

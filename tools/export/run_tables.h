@@ -17,8 +17,7 @@ namespace fogline::exports {
 struct FieldTable {
   std::string name;  // as in lcmtypes; a dot leads into a nested message: "header.step"
   bool is_list = false;
-  std::size_t width = 1;  // values in a message, the same in all messages; a matrix is stored row
-                          // by row
+  std::size_t width = 1;  // values in each message; a matrix is stored row by row
   /// The values of all messages one after another, in the type of the field.
   std::variant<std::vector<double>, std::vector<std::int8_t>, std::vector<std::int32_t>,
                std::vector<std::int64_t>>
@@ -36,8 +35,8 @@ struct RunTables {
   std::string scenario;                // JSON, ASCII only
   std::int64_t steps = 0;
   bool complete = false;
-  std::string note;  // why the log is not complete, or which bytes the reader ignored; "" if
-                     // neither
+  std::string note;  // why the log is not complete, or which bytes the reader ignored; "" if all
+                     // is well
 };
 
 /// Reads a whole log into memory: 0.8 kB for each step with one following car.

@@ -47,7 +47,7 @@ struct Recording {
 // missing value.
 constexpr double kFastest_mps = 150;
 constexpr double kFarthest_m = 10'000;
-// The run's leader counts as the recorded one if their speeds never differ by more than this.
+// The run's leader counts as the recorded one if their speeds never differ by more than this value.
 constexpr double kSameLeader_mps = 0.5;
 
 [[noreturn]] void Refuse(const std::filesystem::path& file, const std::string& why) {
@@ -165,8 +165,8 @@ class Differences {
   double mean() const { return ours_ / Count(); }
   double recorded_mean() const { return recorded_ / Count(); }
   double rmse() const { return std::sqrt(squares_ / Count()); }
-  /// Root mean square without the mean difference. The choice of a time gap causes the mean
-  /// difference.
+  /// Root mean square of the differences from their mean. (The choice of a time gap causes a mean
+  /// difference.)
   double spread() const {
     const double bias = mean() - recorded_mean();
     return std::sqrt(std::max(0.0, squares_ / Count() - bias * bias));

@@ -32,7 +32,7 @@ struct Signature {
   std::string trouble;  // "" if there is none
 };
 
-/// @param key with which a log must be signed; nullptr: any key or none
+/// @param key the key with which a log must be signed; nullptr: any key or none
 Signature SignatureOf(const log::RunLog& run, const runtime::SigningKey* key) {
   const bool is_signed = run.seal && runtime::LooksSigned(run.seal->event);
   if (key == nullptr) return {is_signed ? "not checked" : "none", ""};

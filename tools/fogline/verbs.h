@@ -1,5 +1,6 @@
-// The verbs of `fogline`. Each verb has a file of its own with one function, which adds the verb to
-// the command line and, when the verb is chosen, sets `action`; main() runs the action then.
+// The verbs of `fogline`. Each verb has a file of its own with one function. The function adds the
+// verb to the command line and, when the verb is chosen, sets `action`. main() then runs this
+// action.
 #pragma once
 
 #include <CLI/CLI.hpp>

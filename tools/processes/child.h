@@ -38,7 +38,7 @@ std::string HowItEnded(int status);
 
 /// The program of this name in the folder of the running program.
 std::filesystem::path ProgramBeside(std::string_view name);
-/// The program of a role in that folder.
+/// The program of a role in the folder of the running program.
 std::filesystem::path ProgramOf(Role role);
 
 }  // namespace fogline::processes

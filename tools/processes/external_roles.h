@@ -13,11 +13,11 @@ namespace fogline::processes {
 class ExternalRoles {
  public:
   /// @param url network of the run
-  /// @param limit time in which all of them must be ready; 0: no limit
+  /// @param limit time in which all these roles must be ready; 0: no limit
   ExternalRoles(std::string url, const runtime::TrafficOptions& traffic, Duration limit)
       : url_(std::move(url)), key_file_(traffic.key_file), limit_(limit), began_(Clock::now()) {}
 
-  /// "60 s", or "for ever".
+  /// The time limit as text: "60 s", or "for ever".
   std::string Limit() const;
   /// The command that starts a role for this run, such as
   /// "fogline-driver --lcm-url 'udpm://239.255.76.67:7700?ttl=0'".

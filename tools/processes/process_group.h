@@ -31,7 +31,7 @@ class ProcessGroup {
     Role role;
     pid_t pid;
     std::string how;                 // such as "exited with code 3" or "was killed by signal 9"
-    bool killed;                     // by a signal, so it could not print a reason
+    bool killed;                     // by a signal; the process then printed no reason
     std::vector<std::string> lines;  // the last lines that it printed
   };
   /// Reads the output of the processes and collects those that have ended since the last call.

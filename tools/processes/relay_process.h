@@ -1,5 +1,5 @@
-// A relay for one run: fogline-relay on a free port of this machine. It is restarted at the same
-// address when it dies. The destructor ends it.
+// A relay for one run: fogline-relay on a free port of this machine. A relay that dies is restarted
+// at the same address. The destructor ends it.
 #pragma once
 
 #include <sys/types.h>
@@ -23,7 +23,7 @@ class RelayProcess {
 
   const std::string& url() const { return url_; }
 
-  /// Checks whether the relay has died, and restarts it after its delay. Call it every few tens of
+  /// Checks whether the relay has died, and restarts it after a delay. Call it every few tens of
   /// milliseconds.
   /// @return a message for the user, "" if there is none
   /// @throws std::runtime_error if the restarts are used up

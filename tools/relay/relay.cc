@@ -62,7 +62,7 @@ void Relay::Leave(std::uint64_t id, const std::string& address, const std::strin
     ++disconnected_;
     lines_.Print(fmt::format("{} disconnected: {}", address, why));
   }
-  // Erase it later: Forward() may be iterating over clients_.
+  // The client is erased later, because Forward() may be iterating over clients_.
   asio::post(context_, [this, id] { clients_.erase(id); });
 }
 

@@ -2,8 +2,8 @@
 // to its channel, in the order of arrival. The sender is included, as with LCM's own relay.
 //
 // The relay has one thread, and nothing blocks it. Each client has its own queue for bytes that it
-// has not taken yet. A client whose queue is full is disconnected. So clients cannot hold each
-// other up.
+// has not taken yet. A client whose queue is full is disconnected. So no client can delay another
+// one.
 #pragma once
 
 #include <cstddef>
@@ -40,13 +40,13 @@ class Relay {
         const RelayOptions& options);
   ~Relay();
 
-  /// The address on which it listens. If the given port was 0, this is the chosen port.
+  /// The address on which the relay listens. For port 0 it has the port that the system has chosen.
   tcp::endpoint endpoint() const { return acceptor_.local_endpoint(); }
 
-  /// Ends all connections; the context then has nothing left to do.
+  /// Ends all connections. The context then has no more work.
   void Stop();
 
-  /// Counts so far, in one line.
+  /// The counts up to this moment, in one line.
   std::string Summary() const;
 
  private:

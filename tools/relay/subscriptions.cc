@@ -15,17 +15,17 @@ namespace {
 // all the time would fill the memory without this limit.
 constexpr std::size_t kMaxKnown = 1000;
 // Limit for the bytes of all expressions: kMeanBytes for each allowed expression, and kSpareBytes
-// for a few long ones. Boost takes up to 320 bytes of memory for each byte.
+// for a few long ones. Boost takes up to 320 bytes of memory for each byte of an expression.
 constexpr std::size_t kMeanBytes = 32;
 constexpr std::size_t kSpareBytes = 256;
-// Budget of processor time for new channel names: this much at once, and the same again every ten
-// seconds. Boost gives up a match that takes too many steps. A match below that limit takes up to a
-// fifth of a second, and a client may have many expressions.
+// Budget of processor time for new channel names, seconds. It is full at first, and an empty budget
+// is full again after ten seconds. Boost gives up a match that takes too many steps. A match below
+// that limit takes up to a fifth of a second, and a client may have many expressions.
 constexpr double kBudgetS = 0.1;
 constexpr double kRefillPerS = kBudgetS / 10;
 // Time that is free for each name. Tens of simple expressions take no longer, so a flood of names
-// does not disconnect a client with such expressions. The relay has spent about as much time on
-// receiving the name.
+// does not disconnect a client with such expressions. To receive a name takes the relay about as
+// long.
 constexpr double kFreeS = 50e-6;
 
 double ProcessorTimeS() {

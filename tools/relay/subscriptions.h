@@ -20,17 +20,18 @@ class Subscriptions {
   explicit Subscriptions(std::size_t limit);
 
   /// Adds an expression; the same one may be added several times. The number and the total length
-  /// of the expressions are limited. @return "", or what is wrong with this expression
+  /// of the expressions are limited. @return what is wrong with the expression; "" if it was added
   std::string Add(std::string_view pattern);
 
   /// Removes one copy of an expression; does nothing if it was not added.
   void Remove(std::string_view pattern);
 
   /// Whether one of the expressions matches this channel. The time to match a new name is charged
-  /// to a budget of processor time; a short time for each name is free, and a few simple
-  /// expressions take no longer. The budget fills again slowly (a token bucket). Without a budget a
-  /// client that keeps publishing new names could make the slow expressions of another client hold
-  /// up the relay. @throws std::runtime_error if the budget is spent
+  /// to a budget of processor time. A short time for each name is free, and a few simple
+  /// expressions take no longer. The budget fills again slowly (a token bucket). Without a budget,
+  /// a client that publishes ever new names could stop the relay by the slow expressions of another
+  /// client.
+  /// @throws std::runtime_error if the budget is spent
   bool Match(std::string_view channel, TimePoint now);
 
  private:

@@ -23,7 +23,7 @@ struct Difference {
 std::optional<Difference> FirstDifference(std::size_t channel, std::int64_t step, runtime::Bytes a,
                                           runtime::Bytes b);
 
-/// The same for all channels of a step, in the order of the graph table.
+/// The first difference in any channel of a step, in the order of the graph table.
 std::optional<Difference> FirstDifference(std::int64_t step, const log::StepMessages& a,
                                           const log::StepMessages& b);
 

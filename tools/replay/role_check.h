@@ -1,5 +1,6 @@
-// Checks that the messages of a run's roles are those that the algorithms compute here. Each step
-// takes its inputs from the log, so a difference in one role does not carry over to another role.
+// Checks whether the algorithms of this program compute the same messages as the roles of a run.
+// Each step takes its inputs from the log, so a difference in one role does not carry over to
+// another role.
 #pragma once
 
 #include <cstdint>
@@ -48,8 +49,8 @@ struct Verification {
   std::string Trouble() const;
 };
 
-/// The roles whose build, by the seal of a log, is unknown or differs from that of the programs
-/// here. None for a log without a seal.
+/// The roles whose build is unknown in the seal of a log, or differs from that of the programs
+/// here. The list is empty for a log without a seal.
 std::vector<runtime::OtherBuild> OtherBuildsIn(const log::RunLog& run);
 
 /// @param others roles of another build; their algorithms are not in this program

@@ -19,8 +19,8 @@ class RoleReplay {
   virtual ~RoleReplay() = default;
 
   /// Computes a step. Call it for every step in order, from 0 on.
-  /// @param messages of the step
-  /// @param before messages of the step before; step 0 does not use them
+  /// @param messages the messages of the step
+  /// @param before the messages of the step before; step 0 does not use them
   /// @return the first difference, `a` in the log and `b` computed here
   /// @throws InputError for an invalid message, or one that the role refuses
   virtual std::optional<Difference> Step(std::int64_t step, const log::StepMessages& messages,

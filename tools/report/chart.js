@@ -1,4 +1,5 @@
-// One panel of a figure: a uPlot chart of one or more runs over time.
+// One panel of a figure: a uPlot chart of one or more runs over time. A core is a second colour
+// along the middle of a line.
 
 const TICK_SPACE = {time: 56, value: 34, stripValue: 18};  // smallest distance of ticks, in pixels
 const VALUE_AXIS_WIDTH = 50;               // the same in all charts, so that their time axes line up
@@ -32,7 +33,7 @@ function runCore(run) {
   return [null, surface, ink][Math.floor(run.index / PALETTE_SIZE) % CORES];
 }
 
-/** Lines of a run on shared axes: one in its colour, and its core on top, if it has one. */
+/** Lines of a run on shared axes: one in its colour and, if the run has a core, the core on top. */
 function runLines(run, curve, width) {
   const line = {run, curve, stroke: runColour(run), dash: curve.dash, width};
   const core = runCore(run);
@@ -40,7 +41,7 @@ function runLines(run, curve, width) {
   return [{...line, width: 2 * width}, {...line, stroke: core, width: 0.8 * width, isCore: true}];
 }
 
-/** Columns for uPlot: one time axis for all runs, whatever their lengths and steps are. */
+/** Columns for uPlot: one time axis for all runs, also if their lengths and steps differ. */
 function panelData(curves) {
   if (curves.length === 0) return [state.span.slice()];
   return uPlot.join(curves.map(({run, curve}) => [run.columns.time_s, run.columns[curve.column]]));
@@ -66,7 +67,7 @@ function hatch(context, colour) {
   return context.createPattern(tile, "repeat");
 }
 
-/** Fills [from, to] in s over the full height, or `height` from `top`, in canvas pixels. */
+/** Fills the times [from, to] (s) over the full height, or over `height` pixels from `top` on. */
 function fillSpan(chart, [from, to], fill, top = chart.bbox.top, height = chart.bbox.height) {
   const left = chart.valToPos(from, "x", true);
   chart.ctx.fillStyle = fill;
@@ -87,7 +88,7 @@ function drawHuman(chart, run) {
   }
 }
 
-/** The same for several runs: one bar for each, above the plot. */
+/** Shows when the human drives in each of several runs: one bar for each, above the plot. */
 function drawLanes(chart, runs) {
   const lanes = runs.filter((run) => run.human.length);
   lanes.forEach((run, lane) => {
@@ -179,7 +180,7 @@ function tickTexts(suffix) {
   };
 }
 
-/** Whether the figure shows several runs as strips, one below the other. */
+/** Whether the figure shows several runs as strips: low panels, one below the other. */
 function isStrip(figure) {
   return sharesAxes() && figure.strips;
 }
@@ -191,7 +192,7 @@ function chartHeight(width, figure, runs) {
 
 /**
  * Makes a chart of `runs` in `element`. It calls `onTime(time)` when the reader points at a time,
- * and `onSpan(span)` when they choose a time span.
+ * and `onSpan(span)` when the reader chooses a time span.
  */
 function makeChart(element, figure, runs, {onTime, onSpan}) {
   const curves = panelCurves(figure, runs);

@@ -19,7 +19,7 @@ namespace {
 
 using nlohmann::json;
 
-/// "0.2", or "0.01–0.27, 0.3": adjacent rows form a range.
+/// The thresholds of rows as text, such as "0.01–0.27, 0.3". Adjacent rows form a range.
 std::string ThresholdsText(const ReportCurves& curves, const std::vector<std::size_t>& rows) {
   std::string text;
   for (std::size_t i = 0; i < rows.size();) {

@@ -19,7 +19,7 @@ struct FrontPoint {
   std::string thresholds;  // such as "0.36", or "0.01–0.27" for all thresholds of the curves in
                            // this range
   bool on_front = false;
-  bool beside = true;  // whether a label has room on the right: there is no flat part of the front
+  bool beside = true;  // whether a label has room on the right, where the front may be flat
 };
 
 /// All points, by ascending RHE, then SI. Thresholds without SI or RHE have no point.
@@ -29,7 +29,7 @@ std::vector<FrontPoint> FrontPoints(const ReportCurves& curves);
 /// 0.1 among their thresholds (those with more thresholds first), then points on the front.
 std::vector<std::size_t> LabelOrder(const ReportCurves& curves, std::span<const FrontPoint> points);
 
-/// "seeds 1 to 200", "seed 7".
+/// The seeds as text, such as "seeds 1 to 200" or "seed 7".
 std::string SeedsText(const ReportCurves& curves);
 
 /// The figures' frames on the page, a slider for the threshold, and all values as a table.

@@ -100,8 +100,8 @@ function drawDiamond(chart, x, y, colour) {
 }
 
 /**
- * Makes a chart in a figure's element. It calls `onPoint(chart)` when the reader points at it. A
- * drag zooms in both directions.
+ * Makes a chart in a figure's element. It calls `onPoint(chart)` when the reader points at the
+ * chart. A drag zooms in both directions.
  */
 function makeCurveChart(figure, {data, series, bands, wholeX, wholeY, xLabel, cursor, draw,
                                  onPoint}) {

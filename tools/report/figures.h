@@ -20,14 +20,14 @@ struct Column {
 
 /// Colours on paper, as in page.css. RunStyle() distinguishes runs beyond the last colour. Under
 /// simulated protanopia and deuteranopia (Machado, Oliveira & Fernandes 2009) any two of the first
-/// five colours are at least 25 apart in CIELAB, and any two of all at least 15. On white each has
-/// a contrast of 3 or more.
+/// five colours are at least 25 apart in CIELAB, and any two of all eight at least 15. On white
+/// each colour has a contrast of 3 or more.
 inline constexpr std::array<std::string_view, 8> kPalette{
     "#0059a1", "#bd3a29", "#00997f", "#65184c", "#d38003", "#00a0d9", "#5e6572", "#a6484b"};
 inline constexpr std::size_t kPaletteSize = kPalette.size();
 
 /// Classes of page.css for the elements of the run with this index: its colour and, from the ninth
-/// run on, a core in its lines. They distinguish 24 runs.
+/// run on, a second colour along the middle of its lines (a core). They distinguish 24 runs.
 std::string RunStyle(std::size_t index);
 
 /// Course of a curve between two samples.
@@ -68,8 +68,8 @@ struct Figure {
   double least_span;      // smallest range of an axis, so that noise does not look like an event
   std::span<const Curve> curves;
   Shade shade = {};
-  /// Whether each run gets a panel of its own even if runs share the axes elsewhere. Curves of
-  /// noise are unreadable on top of each other.
+  /// Whether each run always has a low panel of its own (a strip), also if runs share the axes of
+  /// other figures. Curves of noise are unreadable on top of each other.
   bool strips = false;
 };
 

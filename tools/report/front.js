@@ -1,4 +1,5 @@
-// Figure B: the cost of safety. One point for each threshold, the Pareto front, and the published points.
+// Figure B: safety improvement, and what it costs in human engagement. It has one point for each
+// threshold, the Pareto front, and the published points.
 
 /** Index of the point nearest to the cursor. */
 function nearestPoint(chart) {

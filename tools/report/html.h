@@ -26,10 +26,10 @@ std::string FigureElement(std::string_view id, std::string_view heading, std::st
 /// A number with this many decimals and a true minus sign; "–" for NaN and infinity.
 std::string Decimal(double value, int decimals);
 
-/// The same in a data element, which also has the exact number.
+/// Decimal() in a data element, which also has the exact number.
 std::string DataElement(double value, int decimals);
 
-/// The same for a measure, formatted by MetricText().
+/// A data element for a measure, formatted by MetricText().
 std::string MetricElement(std::string_view name, double value, std::string_view unit);
 
 }  // namespace fogline::report

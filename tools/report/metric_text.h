@@ -26,7 +26,7 @@ bool IsTimeToCollision(std::string_view name);
 /// @param name as in VisitMetrics()
 std::string MetricText(std::string_view name, double value, std::string_view unit);
 
-/// "a, b and c".
+/// Names as one text: "a, b and c".
 std::string ListText(const std::vector<std::string>& names);
 
 /// "the host hit the preceding car at 12.3 s"; "" without a collision.

@@ -82,7 +82,10 @@ function wholeSpan() {
   return first < last ? [first, last] : [0, 1];
 }
 
-/** Time at which, in fog, the follower's gap is furthest below its safe distance; else the middle. */
+/**
+ * The time in fog at which the follower's gap is furthest below its safe distance. If it is never
+ * below, the middle of the first fog; without fog, the first time.
+ */
 function tellingTime() {
   let worst = 0;
   let time = null;
@@ -102,7 +105,7 @@ function sharesAxes() {
   return state.runs.length > 1 && !state.apart;
 }
 
-/** Whether runs share the figure's axes: then the colour names the run and the dash the curve. */
+/** Whether runs share the figure's axes. Colours then distinguish runs, and dashes curves. */
 function isOverlaid(figure) {
   return sharesAxes() && !figure.strips;
 }
@@ -162,8 +165,8 @@ function valueSpan(figure, from, to) {
 }
 
 /**
- * Says how little an axis shows: "axis spans 0.3 % of the value", where a fitted axis spans less than 1 % of the
- * figure's largest value. Otherwise "".
+ * "axis spans 0.3 % of the value" if a fitted axis spans less than 1 % of the figure's largest
+ * value; otherwise "".
  */
 function axisNote(figure, from, to) {
   const range = valueRange(figure, from, to);

@@ -1,4 +1,4 @@
-// The page: builds the figures for the reader's choices, and keeps them in step.
+// The page: builds the figures for the reader's choices. All figures show the same time.
 
 const page = {
   charts: [],   // of all figures
@@ -62,8 +62,8 @@ function switchAxis(figure) {
 }
 
 /**
- * A line above a panel that says if its value axis shows next to nothing of the values, and a box that makes the
- * axis begin at zero.
+ * A line above a panel: a text if the value axis spans little of the values (axisNote()), and a box
+ * that makes the axis begin at zero.
  */
 function axisLine(figure, number, id) {
   const text = make("span");

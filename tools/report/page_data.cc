@@ -21,8 +21,8 @@ std::string Dump(const json& value) {
   return value.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
-/// Rounds to six decimals, a micrometre: the text has a third of the bytes. Beyond 1e9 a double has
-/// no more decimals.
+/// Rounds to six decimals (a micrometre), so that the text has a third of the bytes. Beyond 1e9 a
+/// double has no more decimals than these.
 double Rounded(double value) {
   constexpr double kGrid = 1e6;
   constexpr double kLargest = 1e9;

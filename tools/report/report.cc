@@ -126,7 +126,7 @@ std::string CurvesSection(const std::optional<ReportCurves>& curves) {
   return Section("curves", "Every threshold, over seeds", CurvesContent(*curves));
 }
 
-/// "7", or "7 to 9" if the runs differ.
+/// A number of all runs: "7", or "7 to 9" if the runs differ.
 template <class Get>
 std::string RangeOf(std::span<const ReportRun> runs, Get get) {
   const auto [first, last] = std::ranges::minmax(std::views::transform(runs, get));

@@ -8,7 +8,7 @@ function markScroll(element) {
   element.classList.toggle("more", scrollWidth > clientWidth + scrollLeft + slack);
 }
 
-// A mark changes the size of the observed element, so it waits for the next frame.
+// Marks change the size of the observed element, so they are set in the next frame.
 const scrollSizes = new ResizeObserver((entries) => {
   const changed = new Set(entries.map(({target}) => target.closest(".scroll")));
   requestAnimationFrame(() => changed.forEach(markScroll));

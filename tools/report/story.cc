@@ -20,8 +20,8 @@
 namespace fogline::report {
 namespace {
 
-constexpr std::size_t kMostSituations = 3;  // that get a sentence each
-constexpr std::size_t kMostRuns = 3;        // with traded control that a sentence names
+constexpr std::size_t kMostSituations = 3;  // situations with a sentence of their own
+constexpr std::size_t kMostRuns = 3;        // runs with traded control that a sentence names
 
 /// A run with the values that the story uses.
 struct Told {
@@ -94,7 +94,7 @@ std::string FogText(std::span<const metrics::Sample> samples) {
 struct Deception {
   double short_m = 0;  // largest length by which the LiDAR read short
   double far_m = 0;
-  double lost_s = 0;  // time without an echo, in the run with the most of it
+  double lost_s = 0;  // longest time without an echo in a run
 };
 
 Deception DeceptionOf(const Group& group) {
@@ -139,7 +139,7 @@ std::string FogSentence(const Group& group) {
   return fmt::format("{} the LiDAR {}", fog, ListText(effects));
 }
 
-/// "0.047 m/s".
+/// A speed, such as "0.047 m/s".
 std::string SpeedText(double speed_mps) {
   return fmt::format("{:.{}f} m/s", speed_mps, speed_mps < 0.1 ? 3 : speed_mps < 10 ? 2 : 0);
 }
@@ -160,7 +160,7 @@ std::string EffectText(const metrics::RunMetrics& measures) {
   return text;
 }
 
-/// "3 mm on average"; "nothing".
+/// Compromised safety as "3 mm on average" or "nothing".
 std::string LeftText(double compromised_m) {
   return compromised_m > 0 ? LengthText(compromised_m) + " on average" : "nothing";
 }
@@ -183,7 +183,7 @@ bool IsComparable(const Told& told, const Told* baseline) {
   return baseline != nullptr && told.run->si_pct && is_whole(told) && is_whole(*baseline);
 }
 
-/// Outcome of a run, compared with its pair without traded control, if there is one.
+/// Outcome of a run, compared with its paired run without traded control, if there is one.
 std::string OutcomeText(const Told& told, const Told* baseline) {
   if (!IsComparable(told, baseline)) {
     const bool saved = baseline != nullptr && baseline->measures.collision_time_s &&

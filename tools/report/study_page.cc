@@ -18,13 +18,13 @@ namespace {
 
 using nlohmann::json;
 
-// The drawings of the page need no more digits. With rounding, equal numbers give equal pages.
+// Significant digits of the numbers in drawings. More digits would not be visible.
 constexpr int kDigits = 6;
 
 json Numbers(const std::vector<double>& values) {
   json numbers = json::array();
   for (const double value : values) {
-    // Goes through text, for the shortest double that prints with these digits.
+    // The number is printed and read again, so that it has only these digits.
     numbers.push_back(std::isfinite(value) ? json(std::stod(fmt::format("{:.{}g}", value, kDigits)))
                                            : json(nullptr));
   }
@@ -87,7 +87,7 @@ std::string Folded(std::string_view kind, std::string_view summary, std::string_
                      EscapeHtml(summary), content);
 }
 
-/// "9 of 9 claims hold"; names those that fail or are open.
+/// "9 of 9 claims hold", with the numbers of claims that fail or are open.
 std::string ClaimsText(const std::vector<StudyClaim>& claims) {
   const auto count = [&](ClaimState state) {
     return std::ranges::count(claims, state, &StudyClaim::state);

@@ -26,11 +26,11 @@ struct StudyFigure {
   std::string caption;
   std::string x_label;
   std::string y_label;
-  /// Names of the values 0, 1, 2 ... of x. With names, each gets a row with points and whiskers;
-  /// without names, the figure has lines with bands.
+  /// Names of the values 0, 1, 2 ... of x. With names, each value gets a row with points and
+  /// whiskers. Without names, the figure has lines with bands.
   std::vector<std::string> categories;
   bool log_x = false;
-  bool log_y = false;  // such as for times to collision, which range from seconds to half an hour
+  bool log_y = false;  // for times to collision, which range from seconds to half an hour
   /// Values of y above this limit are marked at the end of the axis, so that they do not flatten
   /// the others.
   double most = std::numeric_limits<double>::infinity();
@@ -49,7 +49,7 @@ enum class ClaimState {
   kOpen,  // too few runs to decide
 };
 
-/// A statement on which an answer rests, and what the runs say of it.
+/// A statement that supports an answer, and whether the runs confirm it.
 struct StudyClaim {
   std::string says;
   std::string compared;
@@ -61,7 +61,7 @@ struct StudyClaim {
 std::string_view Text(ClaimState state);
 
 /// Content of one study. Every text may contain any characters; it is escaped. A reader sees
-/// question, answer, claims, first figure and first table at once, and unfolds the rest.
+/// question, answer, claims, first figure and first table at once. The other parts are folded.
 struct StudySection {
   std::string name;  // such as "policy"
   std::string title;
@@ -74,10 +74,10 @@ struct StudySection {
   std::vector<StudyTable> tables;
 };
 
-/// The page. @param command that makes it, such as "fogline study all"
+/// The page. @param command the command that makes the page, such as "fogline study all"
 std::string MakeStudyPage(const std::string& command, std::span<const StudySection> sections);
 
-/// The same in Markdown without figures, for places that do not show HTML. It has the first table
+/// The page in Markdown without figures, for places that do not show HTML. It has the first table
 /// of each study only.
 std::string MakeStudyText(const std::string& command, std::span<const StudySection> sections);
 

@@ -13,7 +13,8 @@ namespace fogline::report {
 /// The reproduced table next to the published one.
 std::string ThresholdTable(const ReportTable& table);
 
-/// All values of the curves, one row for each threshold; `points` tell which are on the front.
+/// All values of the curves, one row for each threshold; `points` says which thresholds are on the
+/// front.
 std::string CurveTable(const ReportCurves& curves, std::span<const FrontPoint> points);
 
 /// Every measure that any run has: one row for each measure, one column for each run.

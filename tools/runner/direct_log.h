@@ -31,7 +31,7 @@ class DirectLog {
   void Flush();
   /// Seals the log of a complete run. @throws std::runtime_error
   void End(const ExperimentResult& result);
-  /// Seals the log of an interrupted run as far as it goes.
+  /// Seals the log of an interrupted run with the steps that it has.
   void CutOff();
 
  private:
@@ -41,7 +41,7 @@ class DirectLog {
   void Compare(std::int64_t step, const ChannelInfo& channel, runtime::Bytes message);
 
   const std::filesystem::path file_;
-  std::optional<log::EventLogReader> old_;  // as long as it has steps to compare
+  std::optional<log::EventLogReader> old_;  // nullopt if it has no more steps to compare
   log::Remains remains_;
   std::optional<log::EventLogWriter> log_;
   std::optional<LogKeeper> keeper_;

@@ -8,8 +8,8 @@
 
 namespace fogline::runner {
 
-/// "the log so far: FILE" and the command that resumes it, or that there is no log; "" if the run
-/// was to write no log.
+/// "the log so far: FILE" and the command that resumes it, or that there is no log; "" for a run
+/// without a log.
 std::string KeptLog(std::int64_t run_id, const ExperimentOptions& options);
 
 /// The command that resumes the log of a run. It has those options of the run that the log does not

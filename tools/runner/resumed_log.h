@@ -12,11 +12,12 @@ namespace fogline::runner {
 
 /// A log of a run in lockstep that has ended early, or is complete. Its lock keeps other runs away
 /// until the end of this object. The constructor does not change the file, also if it refuses the
-/// log.
+/// log. Only if a killed run was to replace an older log, and has not begun, the older log comes
+/// back, and the constructor says so on stderr.
 class ResumedLog {
  public:
-  /// @param key must have signed the seal, if there is a seal; nullptr: any key or none @throws
-  /// InputError with the reason why the log cannot be resumed
+  /// @param key must have signed the seal, if there is a seal; nullptr: the seal has no signature
+  /// @throws InputError with the reason why the log cannot be resumed
   ResumedLog(const std::filesystem::path& log, const runtime::SigningKey* key);
 
   const Scenario& scenario() const { return scenario_; }

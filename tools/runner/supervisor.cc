@@ -21,8 +21,8 @@ constexpr int kStopRepeats = 5;
 // A process hangs if it has sent nothing for this long after its start.
 constexpr Duration kStartLimit = milliseconds(5000);
 // A silent process that still runs is killed only if the probability that all its messages were
-// lost is below this. With this value a process is killed by mistake in one of some thousand runs
-// on a network that loses many messages.
+// lost is below this value. With this value a process is killed by mistake in one of some thousand
+// runs on a network that loses many messages.
 constexpr double kUnlikely = 1e-6;
 
 /// Number of context switches of a process, voluntary or not; nullopt if unknown. A live process
@@ -58,8 +58,8 @@ void Supervisor::Start(Child& child, TimePoint now) {
   arguments.insert(arguments.end(), options_.arguments.begin(), options_.arguments.end());
   if (child.role == Role::kRecorder) {
     arguments.insert(arguments.end(), {"--log", options_.log.string(), "--shared-log"});
-    // Only if the log is that of this run. Before the recorder was met, the file may be an old log
-    // that is to be replaced.
+    // Only a log of this run may be resumed. Before the recorder was met, the file may be an old
+    // log that is to be replaced.
     if (options_.resume || coordinator_.Met(Role::kRecorder)) arguments.emplace_back("--resume");
   }
   child.pid = group_.Start(child.role, processes::ProgramOf(child.role), arguments);

@@ -41,7 +41,7 @@ class Supervisor {
   /// Sends STOP until every process has left, then kills the rest.
   void End();
 
-  /// The restarted roles, here or elsewhere.
+  /// The roles that were restarted, on this machine or elsewhere.
   std::vector<Restarts> restarts() const;
   const processes::ProcessGroup& group() const { return group_; }
 
@@ -65,7 +65,7 @@ class Supervisor {
   void KillIfItHangs(Child& child, TimePoint now);
   void KillIfItIsDeaf(Child& child);
   void Kill(Child& child, std::string why);
-  /// Reports deaf roles that are not restarted here, once for each time that they become deaf.
+  /// Reports deaf roles that are not restarted here, once each time that they become deaf.
   void NameTheDeaf();
 
   runtime::Bus& bus_;

@@ -6,8 +6,8 @@
 
 namespace fogline::stats {
 
-/// Holm's adjustment (1979). If a null hypothesis counts as refused when its adjusted p-value is
-/// below a level, the probability that any true one is refused stays below this level.
+/// Holm's adjustment (1979). A null hypothesis is refused if its adjusted p-value is below a level.
+/// The probability that any true null hypothesis is refused then stays below this level.
 std::vector<double> Holm(std::span<const double> p);
 
 }  // namespace fogline::stats

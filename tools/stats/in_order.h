@@ -17,16 +17,16 @@
 
 namespace fogline::stats {
 
-/// Units in progress for each thread: enough to keep all threads busy while the slowest unit holds
-/// up the delivery.
+/// Units in progress for each thread: enough to keep all threads busy while the slowest unit delays
+/// the delivery.
 inline constexpr int kUnitsPerJob = 4;
 
 /// Computes the units from `begin` up to, but not including, `end` on `jobs` threads. It calls
 /// `compute(worker, unit)` with a worker that `make_worker()` made for the thread. `consume(unit,
-/// result)` takes the results, in order of units, and returns false to stop. It sees the same
-/// results for every `jobs`. ComputeInOrder() passes on exceptions of `consume`. It also passes on
-/// the exception of the first unit that cannot be computed, after the units before it have been
-/// delivered.
+/// result)` takes the results, in order of units, and returns false to stop. `consume` sees the
+/// same results for every `jobs`. ComputeInOrder() passes on exceptions of `consume`. It also
+/// passes on the exception of the first unit that cannot be computed, after the units before it
+/// have been delivered.
 template <class MakeWorker, class Compute, class Consume>
 void ComputeInOrder(std::int64_t begin, std::int64_t end, int jobs, const MakeWorker& make_worker,
                     const Compute& compute, const Consume& consume) {

@@ -13,10 +13,10 @@ struct TradeOff {
   double si_pct = 0;
 };
 
-/// Indices of the points that no other point dominates, in order of ascending RHE; equal points
-/// keep the given order. A point dominates another one if it is no worse in both quantities and
-/// better in one. So equal points are all on the front. A point with NaN is not on the front and
-/// dominates no point.
+/// Indices of the points that no other point dominates, in order of ascending RHE. Equal points
+/// keep the given order. A point dominates another one if it is better in one quantity and not
+/// worse in the other. So equal points are all on the front. A point with NaN is not on the front
+/// and dominates no point.
 std::vector<std::size_t> ParetoFront(std::span<const TradeOff> points);
 
 }  // namespace fogline::stats

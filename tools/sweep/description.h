@@ -1,6 +1,6 @@
-// Description of a sweep file, in "FILE.json" beside it: grid, seeds, scenario, and which shard of
-// them the file has. With it a sweep recognises its own file, and a merge recognises shards of one
-// sweep.
+// Description of a sweep file, in "FILE.json" beside it: grid, seeds, scenario, and the shard that
+// the file has. By the description a sweep recognises its own file, and a merge recognises shards
+// of one sweep.
 #pragma once
 
 #include <cstdint>
@@ -22,10 +22,10 @@ struct Description {
 
 Description Describe(const SweepPlan& plan, const Shard& shard);
 
-/// "FILE.json".
+/// The path "FILE.json".
 std::filesystem::path DescriptionFile(const std::filesystem::path& csv);
 
-/// Whether a file belongs to a sweep: it does if a description lies beside it.
+/// Whether a file belongs to a sweep, that is, whether a description lies beside it.
 bool IsSweep(const std::filesystem::path& csv);
 
 /// The description beside a sweep's file.
@@ -33,7 +33,7 @@ bool IsSweep(const std::filesystem::path& csv);
 Description ReadDescription(const std::filesystem::path& csv);
 
 /// Writes the description beside a sweep's file, whole or not at all.
-/// @throws InputError if it cannot be created, std::runtime_error when the disk is full
+/// @throws InputError if the file cannot be created, std::runtime_error when the disk is full
 void WriteDescription(const std::filesystem::path& csv, const Description& description);
 
 }  // namespace fogline::sweep

@@ -18,8 +18,8 @@ namespace fogline::sweep {
 /// Result of a row of a sweep.
 struct SweepRow {
   metrics::RunMetrics measures;
-  /// Measures of the pair with the run without traded control. They are empty for a run that is its
-  /// own pair, and for a paired run without compromised safety.
+  /// Measures of this run and its paired run together. They are empty for a run that is its own
+  /// pair, and for a paired run without compromised safety.
   metrics::PairedMetrics paired;
   /// The effect of the fog in the paired run without traded control; empty for a run that is its
   /// own pair.
@@ -32,7 +32,7 @@ struct SweepRow {
 SweepRow RunPaired(closed_loop::ReusedLoop& loop, const Scenario& scenario,
                    std::span<const metrics::Sample> baseline);
 
-/// Computes units of a plan, one after another. For use by one thread; it keeps its buffers.
+/// Computes units of a plan, one after another. One thread uses it. It keeps its buffers.
 class SweepWorker {
  public:
   explicit SweepWorker(const SweepPlan& plan) : plan_(plan), scenario_(plan.base()) {}

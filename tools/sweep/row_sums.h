@@ -12,7 +12,7 @@
 
 namespace fogline::sweep {
 
-/// "FILE.sums".
+/// The path "FILE.sums".
 std::filesystem::path SumsFile(const std::filesystem::path& csv);
 
 /// The line of a row: its CRC-32 (that of zlib and POSIX's gzip) in hexadecimal digits.

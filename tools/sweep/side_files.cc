@@ -7,7 +7,7 @@
 namespace fogline::sweep {
 
 void RefuseForeignSideFiles(const std::filesystem::path& csv) {
-  // `force` is true, because a sweep replaces such a file of another sweep without --force, too.
+  // `force` is true, because a sweep replaces the side files of another sweep even without --force.
   RefuseToReplace(DescriptionFile(csv), "--out", true, "sweep description",
                   [&csv](const std::filesystem::path&) { return IsSweep(csv); });
   RefuseToReplace(SumsFile(csv), "--out", true, "file of checksums", IsSums);

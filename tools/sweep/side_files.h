@@ -6,9 +6,9 @@
 namespace fogline::sweep {
 
 /// Refuses a sweep that would replace a file which no sweep has written: "--out scenario/paper"
-/// must not cost "scenario/paper.json".
+/// must not destroy "scenario/paper.json".
 /// @throws InputError "FILE.json: error: --out: the file is no sweep description and is not
-///     replaced, even with --force", or the same of FILE.sums
+/// replaced, even with --force", or a similar text for FILE.sums
 void RefuseForeignSideFiles(const std::filesystem::path& csv);
 
 }  // namespace fogline::sweep

@@ -25,7 +25,7 @@ class SweepFile {
   SweepFile(const std::filesystem::path& file, const SweepPlan& plan, const Shard& shard,
             bool force);
 
-  /// First unit that is not in the file yet; the shard's end if it is complete.
+  /// First unit that is not in the file yet; the shard's end if the file is complete.
   std::int64_t next_unit() const { return next_unit_; }
 
   /// Appends the rows of unit next_unit(). @throws std::runtime_error when the disk is full, or the

@@ -47,8 +47,8 @@ struct ThresholdRow {
   stats::Statistics rhe_pct;
   stats::Statistics si_until_recovery_pct;
   std::array<metrics::Mean, metrics::kSafetyChoices.size()> other_si_pct;
-  // The effect behind the percentages: mean compromised safety in fog, with and without traded
-  // control, and how far the host slows down in fog without it.
+  // The effect of the fog: mean compromised safety in fog, with and without traded control, and how
+  // far the host slows down in fog without traded control.
   stats::Statistics cs_m;
   stats::Statistics cs_without_m;
   stats::Statistics slow_down_without_mps;

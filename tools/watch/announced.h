@@ -13,7 +13,7 @@ namespace fogline::watch {
 /// One line for each run. @param followed whether the view shows the first run
 std::vector<Line> AnnouncedLines(const std::vector<runtime::Announcement>& runs, bool followed);
 
-/// A list of objects. @param followed whether the view shows the first run
+/// The runs as a list of objects. @param followed whether the view shows the first run
 nlohmann::ordered_json AnnouncedJson(const std::vector<runtime::Announcement>& runs, bool followed);
 
 }  // namespace fogline::watch

@@ -15,20 +15,20 @@ struct ArrivalView {
   double rate_hz = 0;                   // messages of the interval / its length
   double bandwidth_bytes_per_s = 0;     // payload only: without the bytes that LCM, UDP and IP add
   std::optional<double> jitter_s;       // of the gaps that end in the interval; needs two gaps
-  std::optional<double> longest_gap_s;  // of the gaps that end in the interval; none without a gap
+  std::optional<double> longest_gap_s;  // of these gaps; nullopt without a gap
   double age_s = 0;                     // since the last message
 };
 
 /// Counts arrivals, interval by interval. Jitter is the sample standard deviation of the times
 /// between successive arrivals, computed by the recurrence of Welford (Technometrics 4, 1962). It
-/// needs no clock of the sender, unlike RFC 3550's interarrival jitter: a paced run and a log that
-/// is played fast have no clock that runs like the receiver's.
+/// needs no clock of the sender, unlike RFC 3550's interarrival jitter. A paced run, or a log that
+/// is played fast, has no clock that runs like the receiver's.
 class Arrivals {
  public:
   void Add(std::size_t bytes, TimePoint now);
 
-  /// Ends an interval of observation and begins the next one. @param interval length of the ended
-  /// one
+  /// Ends an interval of observation and begins the next one.
+  /// @param interval length of the ended interval
   ArrivalView Observe(TimePoint now, Duration interval);
 
   TimePoint last() const { return last_; }
@@ -36,7 +36,7 @@ class Arrivals {
  private:
   std::int64_t messages_ = 0;
   TimePoint last_{};
-  // Of the interval:
+  // The members below are counts of the interval.
   std::int64_t new_messages_ = 0;
   std::int64_t new_bytes_ = 0;
   std::int64_t gaps_ = 0;  // times between arrivals whose second arrival is in the interval

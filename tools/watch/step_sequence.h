@@ -11,7 +11,7 @@
 namespace fogline::watch {
 
 /// The steps of one channel of one run, as they arrive. Steps before the first seen one do not
-/// count: an observer that starts in the middle of a run has not lost its beginning.
+/// count: an observer that starts in the middle of a run has not lost the beginning of this run.
 class StepSequence {
  public:
   struct Counts {
@@ -30,10 +30,10 @@ class StepSequence {
   static constexpr std::int64_t kWindow = runtime::kRingSteps;
   /// No run has this many steps. The limit keeps the arithmetic below from overflowing.
   static constexpr std::int64_t kMaxStep = std::int64_t{1} << 62;
-  /// A step that is further ahead counts only when its successor follows at once. The rule and the
-  /// number (MAX_DROPOUT) are from the algorithm for sequence numbers of RTP (RFC 3550, appendix
-  /// A.1). The steps between are not counted as lost, because it is unknown whether they were ever
-  /// sent.
+  /// A step that is further ahead than this counts only when its successor follows at once. The
+  /// rule and the number (MAX_DROPOUT) are from the algorithm for sequence numbers of RTP (RFC
+  /// 3550, appendix A.1). The steps between are not counted as lost, because it is unknown whether
+  /// they were ever sent.
   static constexpr std::int64_t kMaxJump = 3000;
   /// Old steps restart the sequence if no new step has come for this long. This happens when a log
   /// is played twice.

@@ -209,8 +209,8 @@ std::vector<RoleView> TrafficStatistics::ObserveRoles(RunRecord& run, TimePoint 
   std::vector<RoleView> views;
   for (RoleRecord& role : run.roles) {
     if (role.heard > role.base) {
-      // As double: the counters come from the network, and their difference may overflow an
-      // integer.
+      // The type is double, because the counters come from the network, and their difference may
+      // overflow an integer.
       const double cpu_ms =
           static_cast<double>(role.status.cpu_ms) - static_cast<double>(role.base_cpu_ms);
       role.cpu_percent = 100 * 1e-3 * cpu_ms / Seconds(role.heard - role.base);

@@ -1,5 +1,5 @@
 // Statistics of the traffic on an LCM network, by run, channel and role. The caller passes messages
-// and times in: nothing here subscribes to a channel or reads a clock. traffic_text and
+// and times in. No code in this file subscribes to a channel or reads a clock. traffic_text and
 // traffic_json show the result.
 #pragma once
 
@@ -37,7 +37,7 @@ struct ChannelView {
 /// A role according to its last STATUS.
 struct RoleView {
   status_t status;
-  std::optional<double> cpu_percent;  // of one processor; none before the second reading
+  std::optional<double> cpu_percent;  // of one processor; nullopt before the second reading
   double age_s = 0;                   // of the last STATUS
   bool silent = false;                // older than kSilent
 };
@@ -45,7 +45,7 @@ struct RoleView {
 struct RunView {
   std::int64_t run_id = 0;
   std::int64_t step = -1;            // newest on all channels
-  std::optional<std::int8_t> phase;  // of run_t, none before the first RUN message
+  std::optional<std::int8_t> phase;  // of run_t; nullopt before the first RUN message
   double pace = 0;
   std::string scenario_hash;
   std::vector<ChannelView> channels;  // in the order of kGraph
@@ -61,8 +61,8 @@ struct TrafficView {
                                     // of room
 };
 
-/// Whether a channel carries no traffic of programs: LCM's own channels (its test of the network,
-/// and the announcements of ports by mpudpm), and the beacons of runs.
+/// Whether a channel is LCM's own (its test of the network, and the announcements of ports by
+/// mpudpm), or has the beacons of runs. Such a channel carries no traffic of programs.
 bool IsHousekeeping(std::string_view channel);
 
 /// Statistics of everything that arrives. Its memory is bounded for any input: when there is no
@@ -79,7 +79,7 @@ class TrafficStatistics {
   /// Number of messages on channels whose names were unknown or forgotten.
   std::int64_t unknown_names() const { return unknown_names_; }
 
-  /// A role that has sent no STATUS for this long is silent: five heartbeats.
+  /// A role that has sent no STATUS for this long is silent. This is the time of five heartbeats.
   static constexpr Duration kSilent = milliseconds(1000);
   /// A replaced instance of a role is forgotten after this time of silence.
   static constexpr Duration kFollowed = milliseconds(10'000);

@@ -14,8 +14,8 @@ namespace {
 constexpr double kMilli = 1e-3;
 constexpr double kKilo = 1e3;
 constexpr double kMega = 1e6;
-// Number of characters of a scenario's hash that are shown; they suffice to tell two scenarios
-// apart.
+// Number of characters of a scenario's hash that are shown. They suffice to distinguish two
+// scenarios.
 constexpr std::size_t kHashShown = 12;
 
 std::string Number(const std::optional<double>& value, double unit, int decimals) {
@@ -75,7 +75,7 @@ Line RoleHeading() {
           Line::Style::kHeading};
 }
 
-/// Problems of a role, and what it waits for.
+/// Problems of a role, and the inputs for which it waits.
 std::string Remarks(const RoleView& role) {
   std::string text;
   const auto add = [&text](const std::string& remark) {

@@ -18,8 +18,8 @@ struct Line {
   Style style = Style::kPlain;
 };
 
-/// The view as a table. Text from the network is printed with '?' for everything but ASCII letters,
-/// digits, signs and spaces, so that no sender can send commands to the terminal.
+/// The view as a table. In text from the network, each character other than ASCII letters, digits,
+/// signs and spaces is printed as '?'. So no sender can send commands to the terminal.
 std::vector<Line> TrafficLines(const TrafficView& view, std::string_view url);
 
 /// The lines that fit into a window. The last line says how many lines do not fit.

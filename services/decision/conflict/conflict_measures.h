@@ -13,9 +13,9 @@ namespace fogline::conflict {
 /// One measure. `Measure` is ConflictMeasure or BlameMeasure.
 template <class Measure>
 struct MetricRow {
-  std::string_view name;  // in the scenario (scenario/sections/decision.h)
+  std::string_view name;  // name in the scenario (scenario/sections/decision.h)
   std::string_view source;
-  std::string_view range;    // with unit, if it has one
+  std::string_view range;    // range of the score, with the unit if there is one
   std::string_view missing;  // treatment of a step without radar or LiDAR value
   std::unique_ptr<Measure> (*make)(const ConflictParameters& parameters);
   bool posterior = false;  // the score is the posterior probability of conflict by all evidence

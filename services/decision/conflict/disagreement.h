@@ -45,10 +45,10 @@ class DisagreementSource {
   double nominal_radar_std_m_;
   double nominal_lidar_std_m_;
 
-  // Last stated.
+  // Last stated standard deviations.
   double radar_std_m_;
   double lidar_std_m_;
-  std::optional<Disagreement> measured_;  // the last one
+  std::optional<Disagreement> measured_;  // the last measured disagreement
 };
 
 }  // namespace fogline::conflict

@@ -7,9 +7,9 @@
 
 namespace fogline::conflict {
 
-/// The values of the last W steps. A step without a value has an empty place, which leaves the
-/// window like any other. A measure computes the whole sum again in every step, so its result
-/// depends only on the contents of the window.
+/// The values of the last W steps. A step without a value adds an empty place. After W steps this
+/// place drops out of the window, as any other place does. A measure computes the whole sum again
+/// in every step, so its result depends only on the contents of the window.
 class Window {
  public:
   /// @param steps W, at least 1
@@ -47,7 +47,7 @@ class Window {
   }
 
  private:
-  std::vector<std::optional<double>> values_;  // a ring
+  std::vector<std::optional<double>> values_;  // a ring buffer
   std::size_t oldest_ = 0;
 };
 

@@ -5,8 +5,8 @@
 
 namespace fogline::policies {
 
-/// Time in s until a follower has to brake harder than `limit_mps2` to avoid the host, while it
-/// keeps its speed and the host brakes with `host_braking_mps2` >= 0:
+/// Time in s until a follower has to brake harder than `limit_mps2` to avoid the host, while the
+/// follower keeps its speed and the host brakes with `host_braking_mps2` >= 0:
 ///
 ///     DRAC(t) = (w + b t)^2 / (2 (s - w t - b t^2/2)) = limit
 ///
@@ -21,8 +21,9 @@ double TimeUntilHardBraking(double gap_m, double closing_mps, double host_brakin
 /// is the time budget minus the required time.
 ///
 /// The fusion always leaves out the sensor that is to blame, as with Isolate, also while the driver
-/// is available. It does not know whether he is, and need not know: while he drives, the track is
-/// not used; when the automation drives, it has a usable track from the first step on.
+/// is available. The fusion does not know whether he is available, and does not need to know this.
+/// While he drives, the track is not used. When the automation drives again, it has a usable track
+/// from the first step on.
 class Availability final : public EngagementPolicy {
  public:
   static constexpr bool kNeedsSurroundings = true;
@@ -38,7 +39,7 @@ class Availability final : public EngagementPolicy {
   bool DriverIsAvailable(const ArbitratorView& view) const;
 
   AvailabilitySection section_;
-  double take_over_s_;  // 95th percentile
+  double take_over_s_;  // 95th percentile of the take-over time
   Isolation isolation_;
 };
 

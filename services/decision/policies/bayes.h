@@ -10,7 +10,7 @@ namespace fogline::policies {
 /// The human drives while P C_a >= (1 - P) C_h, that is while P >= C_h/(C_h + C_a), the threshold
 /// in force. P is the probability that the automation is deceived; the policy uses the DoC as P.
 /// The DoC is a probability with measure lidar_modes and measure_scale probability
-/// (services/decision/conflict/over_time/lidar_modes.h); with the paper's z it is only a steep
+/// (services/decision/conflict/over_time/lidar_modes.h). With the paper's z it is only a steep
 /// function of the conflict. With readiness A, visibility MOR and the follower's time to collision
 /// TTC the expected costs are
 ///

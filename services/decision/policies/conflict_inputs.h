@@ -28,12 +28,13 @@ inline conflict::StatedRange StatedBy(const lidar_t& lidar) {
 
 /// The filter's prediction before it used the values of the step. Its range is the measured value
 /// minus the innovation. Its variance is the innovation's variance minus the sensor noise that the
-/// filter assumes. It is computed from the radar, or from the LiDAR in a step without radar value.
-/// It is not valid in the step that starts a track, nor in a step without any value.
+/// filter assumes. The prediction is computed from the radar's value, or from the LiDAR's value in
+/// a step without radar value. It is not valid in the step that starts a track, and in a step
+/// without any value.
 ///
 /// If the filter estimates the noise by itself (fusion.adaptive_noise), TRACK does not say which
 /// noise it has used. The variance is then computed from the covariance of the step before, as the
-/// filter predicts it. So there is no prediction in a step whose predecessor was not heard.
+/// filter predicts it. So there is no prediction if the track of the step before is missing.
 class Witness {
  public:
   explicit Witness(const Scenario& scenario);
@@ -46,7 +47,7 @@ class Witness {
   /// The range of a sensor, as the filter sees it.
   struct Sensor {
     std::size_t value;  // index in track_t's arrays
-    double noise_m2;    // assumed
+    double noise_m2;    // variance of the noise that the filter assumes
     double lateral_offset_m;
   };
 

@@ -1,5 +1,5 @@
-// Policy `isolate`: reject the sensor, keep the automation. Every policy with hand-overs should be
-// better than this one.
+// Policy `isolate`: it rejects the sensor that is to blame, and keeps the automation. Every policy
+// with hand-overs should be better than `isolate`.
 #pragma once
 
 #include "services/decision/policies/isolation.h"

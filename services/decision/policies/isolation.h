@@ -10,7 +10,7 @@
 namespace fogline::policies {
 
 /// Drops the sensor with the larger blame, by the scenario's measure of blame, if this blame is at
-/// least blame_threshold. Never drops both. The witness is the filter's prediction.
+/// least blame_threshold. Never drops both sensors. The witness is the filter's prediction.
 class Isolation {
  public:
   explicit Isolation(const ArbitratorSection& section)

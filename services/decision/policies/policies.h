@@ -11,10 +11,10 @@
 namespace fogline::policies {
 
 struct PolicyRow {
-  std::string_view name;  // in the scenario (scenario/sections/decision.h)
-  bool selects_sensors;   // selects sensors in the fusion
-  Rule rule;              // its decision in the arbitrator
-  bool uses_threshold;    // the scenario's threshold changes what it decides
+  std::string_view name;  // name in the scenario (scenario/sections/decision.h)
+  bool selects_sensors;   // whether the policy selects sensors in the fusion
+  Rule rule;              // how the policy decides in the arbitrator
+  bool uses_threshold;    // whether the scenario's threshold changes its decisions
   bool needs_true_gap;
   bool needs_surroundings;
   bool shares;

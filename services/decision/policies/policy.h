@@ -1,7 +1,7 @@
 // Interface of the policies of engagement: their inputs and decisions. A policy decides in two
-// processes: in the fusion, which sensors are used; in the arbitrator, which side should drive.
-// Each process has its own instance, and the two exchange only the messages of the run. The
-// arbitrator decides how authority then changes (services/arbitrator/README.md).
+// processes. In the fusion, it decides which sensors are used. In the arbitrator, it decides which
+// side should drive. Each process has its own instance, and the two exchange only the messages of
+// the run. The arbitrator decides how authority then changes (services/arbitrator/README.md).
 #pragma once
 
 #include <algorithm>
@@ -40,7 +40,7 @@ struct Surroundings {
 
   /// 1/TTC of the follower in 1/s; 0 without a follower, or if its gap does not close.
   double ClosingRate(double host_speed_mps) const {
-    // A smaller gap counts as this one, at which the bumpers nearly touch.
+    // A smaller gap counts as this gap, at which the bumpers nearly touch.
     constexpr double kTouching_m = 0.1;
     if (!followed) return 0;
     return std::max(0.0, follower_speed_mps - host_speed_mps) /
@@ -52,7 +52,7 @@ struct Surroundings {
 struct ArbitratorView {
   double doc;           // Degree of Conflict in this step, in [0, 1]
   double threshold;     // DoC_th of the scenario
-  double lambda_human;  // authority in the step before
+  double lambda_human;  // the human's authority in the step before
   const ego_t& ego;
   const track_t& track;
   const accel_command_t& automation;
@@ -62,8 +62,8 @@ struct ArbitratorView {
 
 /// A policy's decision in the arbitrator.
 struct EngagementRequest {
-  double lambda_human = 0;  // wanted, in [0, 1]
-  double threshold = 1;     // in force: the DoC from which on the human is wanted
+  double lambda_human = 0;  // wanted authority of the human, in [0, 1]
+  double threshold = 1;     // threshold in force: the DoC from which on the human is wanted
   /// true: the request passes without delay. false: the request is the result of the comparison of
   /// DoC and threshold, and a hysteresis may delay it.
   bool firm = true;
@@ -80,8 +80,8 @@ inline EngagementRequest StayAutomated(double threshold) {
 }
 
 /// The rule that a policy's Decide() follows. The arbitrator follows the simple rules without a
-/// call of Decide(), which saves 6 ns of a step's 400 (AMD EPYC, GCC 12). The rules of both runs of
-/// a pair are simple ones.
+/// call of Decide(), which saves 6 ns of a step's 400 (AMD EPYC, GCC 12). The rules of the policies
+/// `none` and `traded` are simple.
 enum class Rule : std::uint8_t {
   kOwn,        // a rule of the policy itself: Decide() is called
   kNever,      // StayAutomated() with the scenario's threshold
@@ -96,19 +96,19 @@ class EngagementPolicy {
   /// constants.
   static constexpr bool kNeedsTrueGap = false;
   static constexpr bool kNeedsSurroundings = false;
-  /// Whether the policy shares authority: its requests can lie between 0 and 1. A driver who must
-  /// be asked is asked for any share, and has this share after he has taken over.
+  /// Whether the policy shares authority, that is whether its requests can lie between 0 and 1. A
+  /// driver who must be asked is asked for any share, and has this share after he has taken over.
   static constexpr bool kShares = false;
-  /// Whether its decisions depend on the scenario's threshold. A policy with a rule of its own that
-  /// does not depend on it redefines this constant.
+  /// Whether its decisions depend on the scenario's threshold. A policy whose own rule does not
+  /// depend on the threshold redefines this constant.
   static constexpr bool kUsesThreshold = true;
   /// The rule of Decide(). A policy with a simple rule redefines this constant.
   static constexpr Rule kRule = Rule::kOwn;
 
   virtual ~EngagementPolicy() = default;
 
-  /// Decision in the fusion, once per step, after the prediction if there is a track. Not called
-  /// for a policy that does not override it.
+  /// Decision in the fusion, once per step, after the prediction if there is a track. It is called
+  /// only for a policy that overrides it.
   virtual SensorSelection SelectSensors(const FusionView& /*view*/) { return {}; }
 
   /// Decision in the arbitrator, once per decision. Called only with Rule::kOwn.

@@ -5,9 +5,9 @@
 
 namespace fogline::policies {
 
-/// The paper's rule, and as long as the automation drives, it drives without the sensor that is to
-/// blame, as with Isolate. With a driver who must be asked, this is the request together with the
-/// best automation until he is there.
+/// The paper's rule. While the automation drives, it does not use the sensor that is to blame, as
+/// with Isolate. If the driver must be asked, the automation drives in this way until he takes
+/// over.
 class TradedIsolating final : public EngagementPolicy {
  public:
   static constexpr Rule kRule = Rule::kThreshold;

@@ -21,17 +21,17 @@ struct TakeOverInputs {
   bool human_wanted = false;   // the policy's engagement request
   double automation_mps2 = 0;  // the automation's offer
   double human_mps2 = 0;       // the driver's
-  double readiness = 0;        // the driver's, in [0, 1]
-  double speed_mps = 0;        // of the host
+  double readiness = 0;        // the driver's readiness, in [0, 1]
+  double speed_mps = 0;        // speed of the host
   double applied_mps2 = 0;     // command sent in the step before; at first the applied acceleration
-  const track_t* track = nullptr;  // the preceding car; nullptr: none is known
+  const track_t* track = nullptr;  // nullptr if no preceding car is known
 };
 
 /// Result of a step.
 struct TakeOverOutcome {
   TakeOverState state = TakeOverState::kAutomated;
   Authority authority = Authority::kAutomation;
-  double acceleration_mps2 = 0;  // of the side that has authority, or of the manoeuvre
+  double acceleration_mps2 = 0;  // command of the side that has authority, or of the manoeuvre
 };
 
 /// Below this speed in m/s the host counts as standing, unless it is about to drive off. Our
@@ -39,8 +39,8 @@ struct TakeOverOutcome {
 inline constexpr double kStandstill_mps = 0.01;
 
 /// A stage of the manoeuvre is overdue after this multiple of the time that its brake needs on a
-/// level road. Our choice: with 2, a descent of 7 % and slow brakes may take half of a comfortable
-/// 1.5 m/s2.
+/// level road. Our choice: with 2, a stage is not overdue if a descent of 7 % and slow brakes take
+/// away half of a comfortable 1.5 m/s2.
 inline constexpr double kOverdueFactor = 2.0;
 
 /// Runs the state machine of take_over_table.h. t is the time in s since the request:
@@ -49,25 +49,24 @@ inline constexpr double kOverdueFactor = 2.0;
 ///                      absent_probability            transfer: and readiness >= required_readiness
 ///     escalation:      t >= escalation_s             deadline: t >= lead_s
 ///     easing:          a = min(a_A, max(0, a' - j h))   a' the command of the step before
-///     manoeuvre:       services/models/minimal_risk with jerk j and, in its stages, the
-///     deceleration
-///                      clip(-a_A, comfort, emergency) and emergency
+///     manoeuvre:       services/models/minimal_risk with jerk j and the decelerations
+///                      clip(-a_A, comfort, emergency) and emergency of its two stages
 ///
 /// So the manoeuvre brakes at least as hard as the automation would, up to the emergency's
 /// deceleration. A driver who is not absent is late if and only if T > lead_s. Between
-/// acknowledgement and transfer the automation drives for at least one step; only a driver who
+/// acknowledgement and transfer the automation drives for at least one step. Only a driver who
 /// answers during the manoeuvre gets authority at once.
 class TakeOver {
  public:
-  /// @throw std::invalid_argument if lead_s is below kLeastLead_s, and when TakeOverTime throws it
+  /// @throw std::invalid_argument if lead_s is below kLeastLead_s, or if TakeOverTime throws it
   explicit TakeOver(const Scenario& scenario);
 
-  /// Decides the step of `header`. Call it in the order of steps; some may be left out. The result
-  /// is valid until the next call.
+  /// Decides the step of `header`. Call it in the order of steps; some steps may be left out. The
+  /// result is valid until the next call.
   const TakeOverOutcome& Step(const header_t& header, const TakeOverInputs& inputs);
 
   const TakeOverOutcome& outcome() const { return out_; }
-  /// The last request, if there has been one, without `effective`.
+  /// The last request, if there has been one. Its field `effective` is always empty.
   const std::optional<TakeOverRequest>& request() const { return request_; }
   /// A manoeuvre is running, has failed, or has ended in standstill.
   bool in_manoeuvre() const { return out_.authority >= Authority::kComfort; }
@@ -92,9 +91,9 @@ class TakeOver {
   models::MinimalRisk manoeuvre_;
 
   std::optional<TakeOverRequest> request_;
-  std::int64_t answer_step_ = 0;   // of this request's acknowledgement
+  std::int64_t answer_step_ = 0;   // step of this request's acknowledgement
   bool in_time_ = false;           // the driver answers within lead_s
-  std::int64_t overdue_step_ = 0;  // of this stage of the manoeuvre
+  std::int64_t overdue_step_ = 0;  // last step before this stage of the manoeuvre is overdue
   TakeOverOutcome out_;
 };
 

@@ -130,7 +130,7 @@ void TakeOverLog::Change(const arbitration_t& command, std::int8_t from, bool tr
   // If the driver was never asked, there is no request to update.
   if (requests_.empty()) return;
   requests_.back().Enter(state->state, command.header.step);
-  // Transfer() sets this: in kRecovering the driver's share may still be small.
+  // Transfer() sets `transferred`, because in kRecovering the driver's share may still be small.
   if (state->state == TakeOverState::kRecovering) requests_.back().transferred.reset();
 }
 

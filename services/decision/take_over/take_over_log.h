@@ -1,6 +1,6 @@
-// The events of a run as a data recorder would keep them (UN R157, 8: DSSAD). It reads them from
-// the commands of the host, which every log has. It lists every change of mode, also in runs whose
-// driver need not be asked.
+// The events of a run as a data recorder would keep them (UN R157, 8: DSSAD). They are read from
+// the commands of the host, which every log has. Every change of mode is an event, also in runs
+// whose driver need not be asked.
 #pragma once
 
 #include <cstdint>
@@ -17,12 +17,13 @@ namespace fogline::take_over {
 std::string_view NameOfMode(std::int8_t mode);
 
 /// An event of a step. If a driver's input became effective, or lambda_H passed one half on a ramp,
-/// `from` and `to` are the same mode. If emergency braking or its warning begins or ends, they are
-/// the modes of the commands; otherwise the modes that these would be without it.
+/// `from` and `to` are the same mode. If emergency braking or its warning begins or ends, `from`
+/// and `to` are the modes of the commands. For other events they are the modes that the commands
+/// would have without emergency braking.
 struct TakeOverEntry {
   std::int64_t step = 0;
   std::int64_t utime = 0;
-  std::int8_t from = 0;  // modes
+  std::int8_t from = 0;  // mode before the event
   std::int8_t to = 0;
   bool transfer = false;  // the main authority changed, as the measures count it
   std::string_view logged;
@@ -31,17 +32,17 @@ struct TakeOverEntry {
 /// Reads commands in the order of steps; some may be missing.
 ///
 /// The state says whether the driver has a share of the authority, and lambda_H how large this
-/// share is. It may be small, even 0, and it may be growing. So two events differ: the driver gets
-/// a share; and the transfer, at which lambda_H passes kMainAuthority. If both happen in one step,
-/// one entry covers both. The driver's input is effective if it changes the command enough: the
-/// measure is lambda_H (a_H - a), with a the command before he got his share. The automation's part
-/// of the command does not count.
+/// share is. It may be small, even 0, and it may be growing. So there are two different events: the
+/// driver gets a share, and the transfer, at which lambda_H passes kMainAuthority. If both happen
+/// in one step, one entry covers both. The driver's input is effective if it changes the command
+/// enough. This change is lambda_H (a_H - a), where a is the command before he got his share. The
+/// automation's part of the command does not count.
 ///
-/// The modes of emergency braking hide the state. Until they end, the state counts as the last one
-/// that was seen; in a run without requests it is that of the side with more authority.
+/// The modes of emergency braking hide the state. Until these modes end, the last state before them
+/// counts. In a run without requests, the state of the side with more authority counts.
 class TakeOverLog {
  public:
-  /// @param human_mps2 a_H, the driver's offer; nullopt if that is not known
+  /// @param human_mps2 a_H, the driver's offer; nullopt if a_H is not known
   void Add(const arbitration_t& command, std::optional<double> human_mps2);
 
   const std::vector<TakeOverEntry>& entries() const { return entries_; }
@@ -55,7 +56,7 @@ class TakeOverLog {
   void Transfer(const arbitration_t& command);
   void Drive(const arbitration_t& command, double human_mps2);
 
-  std::optional<arbitration_t> last_;                  // with the mode without emergency braking
+  std::optional<arbitration_t> last_;                  // its mode is that without emergency braking
   std::int8_t last_sent_ = arbitration_t::AUTOMATION;  // mode of the last command
   // If the driver has a share of the authority: the command before he got it (empty after his first
   // effective input), and whether he was asked.

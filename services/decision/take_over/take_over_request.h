@@ -10,12 +10,12 @@
 namespace fogline::take_over {
 
 /// Least change of the command by the driver alone for which an input counts as effective, in m/s2.
-/// Our choice: 0.1 % of g, half of the jump at a transfer in the paper's experiment. No brake or
-/// engine has a finer setting.
+/// Our choice: 0.1 % of g, half of the command's jump at a transfer in the paper's experiment. No
+/// brake or engine has a finer setting.
 inline constexpr double kEffectiveInput_mps2 = 0.01;
 
-/// Whether the driver's offer changes the command noticeably: his share times the difference
-/// between his offer and the command before he had a share.
+/// Whether the driver's offer changes the command noticeably. The change is his share times the
+/// difference between his offer and the command before he had a share.
 inline bool IsEffective(double lambda_human, double human_mps2, double before_mps2) {
   return std::abs(lambda_human * (human_mps2 - before_mps2)) >= kEffectiveInput_mps2;
 }
@@ -30,10 +30,10 @@ struct TakeOverRequest {
   std::optional<std::int64_t> acknowledged;
   std::optional<std::int64_t> transferred;
   std::optional<std::int64_t> effective;  // first effective input
-  std::optional<std::int64_t> manoeuvre;  // begins
+  std::optional<std::int64_t> manoeuvre;  // begin of the manoeuvre
   std::optional<std::int64_t> standstill;
 
-  /// The state changes in this step.
+  /// Notes that the state has changed to `state` in this step.
   void Enter(TakeOverState state, std::int64_t step) {
     using enum TakeOverState;
     if (state == kUrgentDemand) escalated = step;

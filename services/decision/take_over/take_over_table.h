@@ -16,15 +16,16 @@ enum class TakeOverState : std::uint8_t {
   kDemand,        // the driver is asked
   kUrgentDemand,  // the driver is asked urgently
   kHandover,      // the driver has acknowledged, but may not be ready yet
-  kRecovering,    // the driver drives, since less than recovery_s
+  kRecovering,    // the driver has been driving for less than recovery_s
   kManual,
   kMrmComfort,    // minimal risk manoeuvre, first stage
   kMrmEmergency,  // minimal risk manoeuvre, second stage
   kMrmDone,       // the car stands until the end of the run
-  kMrmFailed,     // the brake does not bring it to a standstill
+  kMrmFailed,     // the brake does not bring the car to a standstill
 };
 
-/// Conditions of a step. Several may hold in one step; then the first row of the table decides.
+/// Conditions of a step. Several may hold in one step. Then the first row of the table that applies
+/// decides.
 enum class TakeOverEvent : std::uint8_t {
   kWanted,        // the policy wants the human to drive
   kCalm,          // the policy does not want the human to drive
@@ -32,7 +33,7 @@ enum class TakeOverEvent : std::uint8_t {
   kAcknowledged,  // the driver has answered within lead_s
   kReady,         // he has answered, maybe late, and his readiness is at least required_readiness
   kDeadline,      // lead_s after the request
-  kSevere,        // time to collision with the preceding car, by the track, below severe_ttc_s
+  kSevere,        // time to collision with the tracked car is below severe_ttc_s
   kRecovered,     // recovery_s after the transfer
   kStandstill,
   kOverdue,  // the stage of the manoeuvre takes kOverdueFactor times the time that its brake needs
@@ -52,10 +53,10 @@ enum class TakeOverGuard : std::uint8_t {
 /// Which side has authority. This determines the acceleration that is applied.
 enum class Authority : std::uint8_t {
   kAutomation,  // the automation's offer
-  kEasing,   // the automation's offer, but it does not accelerate; it slows down by slow_down_mps2
-  kHuman,    // the human's offer
-  kComfort,  // neither side: the manoeuvre with comfort_deceleration_mps2
-  kHard,     // neither side: the manoeuvre with emergency_deceleration_mps2
+  kEasing,      // the automation's offer, limited so that the car slows down by slow_down_mps2
+  kHuman,       // the human's offer
+  kComfort,     // no side: the manoeuvre with comfort_deceleration_mps2
+  kHard,        // no side: the manoeuvre with emergency_deceleration_mps2
 };
 
 struct TakeOverRow {
@@ -79,14 +80,15 @@ using Row = TakeOverRow;
 /// Sources, by paragraph of UN R157:
 ///   - Only deactivation or the manoeuvre ends a request to take over (5.4.4); a change of the
 ///     policy's engagement request does not.
-///   - No manoeuvre within lead_s of the request (5.4.4.1) unless it is severe (5.4.4.1.1).
-///   - A driver who is late ends the manoeuvre, in either stage, as long as the car moves (5.5.2,
-///     5.5.3): a driver who is there and able may always drive. SUMO's ToC device has the same
-///     rule.
+///   - No manoeuvre within lead_s of the request (5.4.4.1) unless the situation is severe
+///     (5.4.4.1.1).
+///   - A driver who is late ends the manoeuvre, in either stage, while the car moves (5.5.2,
+///     5.5.3), because a driver who is there and able may always drive. SUMO's ToC device has the
+///     same rule.
 ///   - After any manoeuvre, also one that the driver has ended, the automation is not activated
-///     again before the next run cycle (5.5.5). A car that stands stays: driving off (5.5.4) is a new
-///     run.
-///   - The manoeuvre only escalates (Autoware's mrm_handler).
+///     again before the next run cycle (5.5.5). A car that stands remains there, because driving
+///     off (5.5.4) is a new run.
+///   - The manoeuvre never goes back from its second stage to its first (Autoware's mrm_handler).
 inline constexpr std::array kTakeOverTable{
     //  state          event          guard   next           authority    logged
     Row{kAutomated,    kWanted,       kAny,   kDemand,       kEasing,     "request to take over"},

@@ -11,19 +11,19 @@ namespace fogline::metrics {
 ///     e_0 = (b_r/s_r^2 + b_l/s_l^2) / (1/s_r^2 + 1/s_l^2)
 ///
 /// b are the offsets (bias_m), s the standard deviations of range that the filter assumes. A steady
-/// filter over both ranges has this error exactly. Lateral offsets cause none, because the filter
-/// knows them.
+/// filter over both ranges has this error exactly. Lateral offsets cause no error, because the
+/// filter knows them.
 double ErrorOfOffsets(const Scenario& scenario);
 
-/// In a step the track is *wrong* if its fused distance d_fused lies more than the tolerance
-/// outside the true gap d and the distance d + e_0 of clear air:
+/// The true gap d and the distance d + e_0 of clear air are the ends of an interval. In a step the
+/// track is *wrong* if its fused distance d_fused is outside of this interval by more than the
+/// tolerance:
 ///
 ///     d_fused - d < min(0, e_0) - tolerance   or   d_fused - d > max(0, e_0) + tolerance
 ///
-/// So neither a true distance nor that of clear air counts as wrong, whatever the offsets are. Only
-/// the distance decides, for whatever reason it is wrong: a deceived LiDAR, a filter that has not
-/// settled, or a policy that uses only the sensor with the larger offset. A step without a track is
-/// not wrong.
+/// So a true distance and the distance of clear air always count as right. The reason of the error
+/// has no effect. It may be a deceived LiDAR, a filter that has not settled, or a policy that uses
+/// only the sensor with the larger offset. A step without a track is not wrong.
 class TrackJudge {
  public:
   explicit TrackJudge(const Scenario& scenario);

@@ -3,14 +3,13 @@
 
 namespace fogline::metrics {
 
-/// The fog harms beyond its end: a filter that was deceived needs time to settle, and the
-/// automation drives on it meanwhile. This class keeps sums over the steps from the first one in
-/// fog to the last one that is in fog or has a wrong track (TrackJudge). After that step the fused
-/// distance is right for good. If it is not right at the end of the run, the sums have all steps up
-/// to the end.
+/// The fog does harm after its end, too. A deceived filter needs time to settle, and the automation
+/// drives on this filter. This class keeps sums over the steps from the first one in fog to the
+/// last one that is in fog or has a wrong track (TrackJudge). After that step the fused distance
+/// stays right. If it is not right at the end of the run, the sums have all steps up to the end.
 ///
-/// That a step was the last one is known only later, so the class has the sums twice: over all
-/// steps so far, and over those that surely count.
+/// Only later steps show which step was the last one. So the class has two sums, one over all steps
+/// so far, and one over the steps that surely count.
 template <class Sums>
 class UntilRecovery {
  public:
@@ -23,7 +22,7 @@ class UntilRecovery {
     if (fog || wrong_track) sums_ = so_far_;
   }
 
-  /// As constructed if the run has no fog.
+  /// The sums. They are as constructed if the run has no fog.
   const Sums& sums() const { return sums_; }
 
  private:

@@ -33,7 +33,7 @@ class Aeb {
   AebState Step(const Situation& seen);
   AebState state() const { return state_; }
 
-  /// The acceleration that is applied in this state, instead of this one.
+  /// The acceleration that is applied in this state, in place of `acceleration_mps2`.
   double Applied(double acceleration_mps2) const;
 
  private:

@@ -11,16 +11,16 @@ namespace fogline::models {
 
 enum class DriverTask {
   kMonitors,  // the automation drives and has not asked him to take over
-  kDrives,    // he drives, or has been asked to and may still take over
+  kDrives,    // he drives, or has been asked to drive and may still take over
 };
 
 /// Awareness A in [0, 1], integrated exactly from step to step:
 ///
 ///     monitors:  dA/dt = (A_mon - A) / tau            drives:  dA/dt = r, up to 1
 ///
-/// The reaction time is T_r0 + k (1 - A). The size of the errors follows SUMO's driver state: a
-/// relative error of the gap of 0.75 and an error of the closing speed of 0.15 per second and gap,
-/// each times a process of standard deviation 0.2 (1 - A).
+/// The reaction time is T_r0 + k (1 - A). The size of the errors follows SUMO's driver state. The
+/// relative error of the gap is 0.75, the error of the closing speed 0.15 per second and gap. Each
+/// is multiplied by a process of standard deviation 0.2 (1 - A).
 class Awareness {
  public:
   /// @throw std::invalid_argument for a parameter out of its range.

@@ -1,6 +1,6 @@
-// Sight of a human in fog. Of the car ahead he sees its outline if it is near, only its lamps if it
-// is further away, and nothing beyond. The model also gives the distance and closing speed that he
-// perceives.
+// Sight of a human in fog. He sees the outline of the car ahead if the car is near, and only its
+// lamps if it is further away. Beyond the range of the lamps he sees nothing. The model also gives
+// the distance and closing speed that he perceives.
 #pragma once
 
 #include "scenario/sections/human.h"
@@ -14,11 +14,12 @@ enum class Seen { kOutline, kLamps, kNothing };
 ///
 ///     outline:  C_0 e^(-sigma d) >= eps           up to d_o = ln(C_0 / eps) / sigma (Koschmieder)
 ///     lamps:    I e^(-sigma d) / d^2 >= E_t       up to d_l                       (Allard 1876)
-///     closing:  W |v - v_l| / d^2 > threshold     otherwise he perceives v_l = v, constant
+///     closing:  W |v - v_l| / d^2 > threshold     otherwise he perceives v_l = v
+/// and acceleration 0 of the car ahead.
 ///
-/// The perceived distance is d up to a share of d_o, and kappa d from d_o on; between them the
-/// factor grows linearly from 1 to kappa. d_l = (2 / sigma) W_0(sigma / 2 sqrt(I / E_t)) with
-/// Lambert's W.
+/// The perceived distance is d up to a share of d_o, and kappa d from d_o on. Between these
+/// distances the factor grows linearly from 1 to kappa. d_l = (2 / sigma) W_0(sigma / 2 sqrt(I /
+/// E_t)) with Lambert's W.
 class FogSight {
  public:
   /// @throw std::invalid_argument for a parameter out of its range.

@@ -10,8 +10,8 @@ namespace {
 
 constexpr double kFreeRoad_m = std::numeric_limits<double>::infinity();
 
-// Limit of the exponent of z^(2 a / a_free), which goes to infinity as v goes to v_0. z < 1 to this
-// power is practically 0.
+// Limit of the exponent of z^(2 a / a_free), which goes to infinity as v goes to v_0. A z below 1
+// to this power is practically 0.
 constexpr double kLargestExponent = 100;
 
 }  // namespace
@@ -62,7 +62,7 @@ double Following::ConstantAccelerationHeuristic(double speed_mps, const CarAhead
   const double closing = speed_mps - lead;
   const double denominator = lead * lead - 2.0 * s * a;
   if (lead * closing <= -2.0 * s * a && denominator > 0.0) {
-    return speed_mps * speed_mps * a / denominator;  // the car ahead stands when he stops
+    return speed_mps * speed_mps * a / denominator;  // the car ahead stands when the driver stops
   }
   const double approach = std::max(closing, 0.0);
   return a - approach * approach / (2.0 * s);

@@ -33,7 +33,7 @@ namespace fogline::models {
 ///
 /// with the coolness c in [0, 1]: 0 gives the IIDM; the paper has 0.99.
 ///
-/// As in the IDM, max_deceleration_mps2 is the strongest braking, and the result at a gap <= 0.
+/// As in the IDM, max_deceleration_mps2 is the strongest braking, and the braking at a gap <= 0.
 class Following {
  public:
   static constexpr double kPapersCoolness = 0.99;
@@ -41,7 +41,7 @@ class Following {
   /// @throw std::invalid_argument if coolness is outside [0, 1].
   Following(FollowingModel model, const DriverSection& driver, double coolness = kPapersCoolness);
 
-  /// In m/s2, in [-max_deceleration_mps2, a_max]; finite for any finite situation.
+  /// Acceleration in m/s2, in [-max_deceleration_mps2, a_max]; finite for any finite situation.
   double Acceleration(const Situation& seen) const;
 
  private:

@@ -32,7 +32,7 @@ struct Attention {
 ///     v'   = v + T_r a             s' = s_est - T_r (v - v_l,est)
 ///     v_l' = v' - (v - v_l,est)                    with all values of t - T_r
 ///
-/// The equations are those that the literature quotes from the paper; of the paper only the
+/// The equations are those that the literature quotes from the paper. Of the paper itself, only the
 /// abstract was checked. Without errors and reaction time this equals the car-following model, bit
 /// by bit.
 class HumanDriver {
@@ -46,11 +46,11 @@ class HumanDriver {
   HumanDriver(const HumanParameters& human, const Following& model, const Random& random,
               double step_s);
 
-  /// The acceleration in this step. Call it once per step, in the order of steps: errors and memory
-  /// continue from step to step. Until T_r has passed, he acts on the first situation.
+  /// The acceleration in this step. Call it once per step, in the order of steps, because errors
+  /// and memory continue from step to step. Until T_r has passed, he acts on the first situation.
   double Step(std::int64_t step, const Situation& seen);
-  /// The same for a driver whose attention changes. A reaction time above that of the constructor
-  /// is lowered to it.
+  /// The acceleration of a driver whose attention changes. A reaction time above that of the
+  /// constructor is lowered to that of the constructor.
   double Step(std::int64_t step, const Situation& seen, const Attention& attention);
 
  private:
@@ -65,7 +65,7 @@ class HumanDriver {
   OrnsteinUhlenbeck gap_error_;
   OrnsteinUhlenbeck approach_error_;
   double step_s_;
-  std::array<Situation, kMaxReactionSteps + 2> seen_{};  // a ring
+  std::array<Situation, kMaxReactionSteps + 2> seen_{};  // a ring buffer
   std::size_t last_ = 0;
   bool begun_ = false;
 };

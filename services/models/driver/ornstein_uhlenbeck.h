@@ -1,4 +1,4 @@
-// Correlated noise: an error of perception lasts for some time.
+// Correlated noise, because an error of perception lasts for some time.
 #pragma once
 
 #include <cmath>

@@ -13,7 +13,7 @@ struct CarAhead {
 
 /// Truth or perception of one driver at one moment.
 struct Situation {
-  double speed_mps = 0;  // of the own car
+  double speed_mps = 0;  // speed of the own car
   double acceleration_mps2 = 0;
   std::optional<CarAhead> ahead;  // empty if the driver sees no car ahead
 };

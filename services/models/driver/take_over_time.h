@@ -22,8 +22,8 @@ class TakeOverTime {
  public:
   /// @param lead_s t, above 0
   /// @throw std::invalid_argument for a parameter out of its range, or if no log-normal
-  /// distribution has this P(late), because z^2 < 2 ln(t / m): this is so above 19.9 % for t up to
-  /// 8.2 s, and above 5 % for 60 s.
+  /// distribution has this P(late), because z^2 < 2 ln(t / m). This happens if P(late) is above
+  /// 19.9 % for t up to 8.2 s, or above 5 % for t = 60 s.
   TakeOverTime(const TakeOverParameters& parameters, double lead_s);
 
   /// T in s for a request in this step. It depends only on `random` and the step, not on the order
@@ -37,7 +37,7 @@ class TakeOverTime {
   double Quantile(double probability) const;
 
  private:
-  bool normal_ = false;  // else log-normal
+  bool normal_ = false;  // false: log-normal
   double lead_s_;
   double location_ = 0;  // mu, or m in s
   double scale_ = 0;     // s, or the standard deviation in s

@@ -11,7 +11,7 @@ namespace fogline::models {
 struct RssParameters {
   double response_s = 1.0;          // rho, at least 0
   double acceleration_mps2 = 3.5;   // a_acc during the response, at least 0
-  double least_braking_mps2 = 4.0;  // b_min of the car behind after it, above 0
+  double least_braking_mps2 = 4.0;  // b_min of the car behind after the response, above 0
   double most_braking_mps2 = 8.0;   // b_max of the car ahead, above 0
 };
 
@@ -20,8 +20,8 @@ struct RssParameters {
 double RssSafeDistance(const RssParameters& rss, double speed_mps, double lead_speed_mps);
 
 /// Fuzzy safety model (Mattas, Makridis, Botzoris, Kriston, Minarini, Papadopoulos, Re, Rognelund &
-/// Ciuffo, Accident Analysis & Prevention 148:105794, 2020). Defaults: UN R157's use of it, as
-/// published by the JRC (JRC-FSM).
+/// Ciuffo, Accident Analysis & Prevention 148:105794, 2020). Defaults: the values that UN R157
+/// uses, as published by the JRC (JRC-FSM).
 struct FuzzyParameters {
   double response_s = 0.75;             // rho, at least 0
   double comfortable_braking_mps2 = 4;  // b_c, above 0

@@ -13,27 +13,29 @@ enum class SafetyModel { kReferenceHuman, kRss, kFuzzy };
 /// (Annex 4, appendix 3, by the JRC's implementation and secondary sources; the text was not
 /// available).
 struct ResponseParameters {
-  double perception_s = 0.4;        // until he perceives the danger, at least 0
-  double delay_s = 0.75;            // from then until he brakes, at least 0
+  double perception_s = 0.4;        // time until he perceives the danger, at least 0
+  double delay_s = 0.75;            // time from the perception until he brakes, at least 0
   double lift_off_mps2 = 0.4;       // deceleration during the delay, at least 0
-  double jerk_mps3 = 12.65;         // of the brake, above 0: 0.774 g in 0.6 s
+  double jerk_mps3 = 12.65;         // jerk of the brake, above 0: 0.774 g in 0.6 s
   double full_braking_mps2 = 7.59;  // 0.774 g, above 0
-  double critical_ttc_s = 2.0;      // he sees danger below this time to collision, at least 0,
-  double critical_headway_s = 2.0;  // or below this time gap ...
-  double lead_braking_mps2 = 5.0;   // ... behind a car that brakes harder than this
+  double critical_ttc_s = 2.0;      // he sees danger below this time to collision, at least 0
+  double critical_headway_s = 2.0;  // he sees danger below this time gap if the car ahead brakes
+                                    // hard
+  double lead_braking_mps2 = 5.0;   // the car ahead brakes hard above this deceleration
 };
 
 /// After the danger appears, the driver does nothing for the perception time. Then his foot is off
 /// the throttle for the delay. Then the braking grows at the jerk limit to the deceleration that
 /// the model demands:
 ///
-/// - reference human: full braking in danger as above, until the closing speed is 0
-/// - RSS: full braking while the gap is below the safe distance; it has its response time rho in
-///   place of the perception time, and no delay
-/// - fuzzy safety model: FuzzyDeceleration; it has its response time in place of the perception
-///   time, and no delay
+/// - reference human: full braking from the danger that ResponseParameters defines until the
+///   closing speed is 0
+/// - RSS: full braking while the gap is below the safe distance. The response time rho of RSS
+///   replaces the perception time, and there is no delay.
+/// - fuzzy safety model: FuzzyDeceleration(). The response time of this model replaces the
+///   perception time, and there is no delay.
 ///
-/// If the model demands nothing, the response ends; at the next danger it starts from the
+/// If the model demands nothing, the response ends. At the next danger the response starts from the
 /// beginning.
 class SafetyResponse {
  public:

@@ -30,13 +30,13 @@ struct StyleShares {
   double cautious = 1;
 };
 
-/// The style of this following car, counted from 0. It depends only on shares, seed and number of
-/// the car.
+/// The style of the following car with this number, which counts from 0. It depends only on shares,
+/// seed and number of the car.
 /// @throw std::invalid_argument if a share is negative or all are 0.
 Style DrawStyle(const StyleShares& shares, const Random& random, std::int64_t follower);
 
-/// A random choice that is true for this share of following cars, in [0, 1]. It depends only on
-/// share, seed and number of the car, and is independent of the car's style.
+/// A random choice that is true for a share of the following cars. `share` is in [0, 1]. It depends
+/// only on share, seed and number of the car, and is independent of the car's style.
 bool DrawChance(double share, const Random& random, std::int64_t follower);
 
 }  // namespace fogline::models

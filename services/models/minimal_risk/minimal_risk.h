@@ -14,16 +14,17 @@ namespace fogline::models {
 ///     r(v) = v/(n h) + (n - 1) j h/2          n = ceil((sqrt(1 + 8 v/(j h^2)) - 1)/2)
 ///
 /// r(v) is the braking that can still be released at the rate j, one step at a time, so that the
-/// car stands exactly when a step ends: n steps of r, r - j h, r - 2 j h, ... add up to v, and the
-/// last of them is at most j h. So the end is as smooth as the beginning. Two cases exceed a limit,
-/// each as little as possible:
+/// car stands exactly when a step ends. The n steps of r, r - j h, r - 2 j h, ... add up to v, and
+/// the last of them is at most j h. So the end is as smooth as the beginning. Two cases exceed a
+/// limit, each as little as possible:
 ///
 /// - A car that brakes harder than d at the start releases the brake at the rate j, down to d.
 /// - A car that brakes harder than r(v) at the start (it is about to stand) stops before the brake
-///   is released; its acceleration then jumps to 0.
+///   is released. Its acceleration then jumps to 0.
 ///
-/// The manoeuvre ends with the process: UN R157, 5.5.5, allows another activation only after a new
-/// run cycle. A car that stands is held with the command 0 and does not roll backwards.
+/// The manoeuvre lasts until the end of the process, because UN R157, 5.5.5, allows another
+/// activation only after a new run cycle. A car that stands is held with the command 0 and does not
+/// roll backwards.
 class MinimalRisk {
  public:
   /// @param step_s h, above 0
@@ -34,10 +35,10 @@ class MinimalRisk {
   bool begun() const { return begun_; }
 
   /// The acceleration for the step that begins here. Call it once per step. @pre begun()
-  /// @param speed_mps measured at the begin of the step, at least 0
+  /// @param speed_mps measured at the beginning of the step, at least 0
   double Step(double speed_mps) { return Step(speed_mps, limits_.deceleration_mps2); }
-  /// The same with another deceleration d, which may change from step to step. The limit on jerk
-  /// stays in force.
+  /// The acceleration with another deceleration d, which may change from step to step. The limit on
+  /// jerk stays in force.
   /// @param deceleration_mps2 above 0, at most that of the limits
   double Step(double speed_mps, double deceleration_mps2);
 
@@ -48,7 +49,7 @@ class MinimalRisk {
   MinimalRiskSection limits_;
   double step_s_;
   bool begun_ = false;
-  double acceleration_mps2_ = 0;  // at first the applied one, then the last command
+  double acceleration_mps2_ = 0;  // at first the applied acceleration, then the last command
 };
 
 }  // namespace fogline::models

@@ -15,7 +15,7 @@ namespace fogline::models {
 ///
 ///     F(t) = u + (F(0) - u) e^(-t/tau)        integral = u t + (F(0) - u) tau (1 - e^(-t/tau))
 ///
-/// There is no error of discretisation: a smaller step changes F only by rounding.
+/// There is no error of discretisation, so a smaller step changes F only by rounding.
 class Actuator {
  public:
   /// Longest delay in steps.
@@ -23,10 +23,11 @@ class Actuator {
 
   /// @param delay_s D, at least 0
   /// @param lag_s tau, at least 0; with 0 the force equals the arriving demand
-  /// @throw std::invalid_argument if one is negative, or D is longer than kMaxDelaySteps steps.
+  /// @throw std::invalid_argument if D or tau is negative, or D is longer than kMaxDelaySteps
+  /// steps.
   Actuator(double delay_s, double lag_s, double step_s);
 
-  /// Sets the state that this demand leads to after a long time.
+  /// Sets the state that the actuator has after a long time with this demand.
   void Settle(double demand_n);
 
   /// Advances by one step with this demand. Returns the mean force over the step.
@@ -50,9 +51,9 @@ class Actuator {
 
   double step_s_;
   std::size_t delay_steps_ = 0;  // whole steps in D
-  Piece older_;                  // while the demand of one step earlier still arrives
+  Piece older_;                  // part of the step in which the older demand arrives
   Piece newer_;
-  std::array<double, kMaxDelaySteps + 2> demands_n_{};  // a ring
+  std::array<double, kMaxDelaySteps + 2> demands_n_{};  // a ring buffer
   std::size_t last_ = 0;                                // index of the last demand
   double force_n_ = 0;
 };

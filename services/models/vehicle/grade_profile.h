@@ -22,7 +22,7 @@ class GradeProfile {
   double GradeAt(double position_m) const;
 
  private:
-  std::shared_ptr<const std::vector<GradePoint>> points_;  // none: a level road
+  std::shared_ptr<const std::vector<GradePoint>> points_;  // null for a level road
 };
 
 }  // namespace fogline::models

@@ -61,8 +61,8 @@ double LongitudinalVehicle::Step(double command_mps2, const Motion& now) {
     return Respond({.traction_n = traction_n_, .brake_n = brake_n_}, SlopeAt(at.position_m),
                    now.speed_mps);
   };
-  // First uses the limits and the slope at the beginning to find the middle of the step. Then uses
-  // those of the middle for the whole step.
+  // The inner call uses the limits and the slope at the beginning of the step, to find the middle
+  // of the step. The outer call uses those of the middle for the whole step.
   last_mps2_ = respond(Middle(now, respond(now)));
   return last_mps2_;
 }
@@ -105,7 +105,7 @@ double LongitudinalVehicle::Respond(const Forces& forces, const Slope& slope,
   const double rolling_n = vehicle_.rolling_coefficient * weight_n * slope.cosine;
   const double free_mps2 = MeanAcceleration(forces.traction_n - forces.brake_n - rolling_n - down_n,
                                             effective_mass_kg_, speed_mps);
-  // If the tyres slip, the inertia of the wheels has no effect on the car: the mass is m, not
+  // If the tyres slip, the inertia of the wheels has no effect on the car, so the mass is m, not
   // m_eff.
   const double sliding_mps2 = MeanAcceleration(-grip_n - down_n, mass_kg, speed_mps);
   const double spinning_mps2 =

@@ -6,8 +6,8 @@
 
 namespace fogline::models {
 
-/// A vehicle on its longitudinal axis. The defaults are the sedan. If no published figure was
-/// available, the source says "estimate": a usual value of our choice.
+/// Parameters of a vehicle that drives straight ahead. The defaults are the sedan. If no published
+/// figure was available, the source says "estimate": a usual value of our choice.
 struct VehicleParameters {
   /// m in kg, 500 to 60,000. Sedan: estimate, a mid-size car with its driver.
   double mass_kg = 1500.0;
@@ -31,7 +31,7 @@ struct VehicleParameters {
   /// Strongest traction per mass at low speed in m/s2, above 0. Estimate.
   double max_traction_mps2 = 4.0;
 
-  /// Share of the weight on driven wheels, above 0 to 1. Cars: estimate, front drive.
+  /// Share of the weight on driven wheels, above 0 and at most 1. Cars: estimate, front drive.
   double driven_weight_share = 0.6;
 
   /// Strongest force of the brakes per mass in m/s2, above 0. The friction of the road is a

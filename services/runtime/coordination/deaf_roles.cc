@@ -11,11 +11,11 @@ namespace fogline::runtime {
 namespace {
 
 // If the network loses the inputs of a role, the role recovers within a second. The limit is twice
-// that, or kDeafPeriods periods if these last longer.
+// this time, or kDeafPeriods periods if these last longer.
 constexpr Duration kDeaf = milliseconds(2000);
 constexpr int kDeafPeriods = 5;
-// Three signs of life. A longer pause between two STATUS messages of a role says nothing about the
-// time in between.
+// Three times the longest interval between two STATUS messages. If two STATUS messages of a role
+// are further apart, the time between them is not judged.
 constexpr Duration kSteady = milliseconds(600);
 // A role may be ahead of the last known step of its producer by this many steps. A STATUS is on its
 // way for less than 100 ms, which is five steps at 50 Hz.
@@ -43,8 +43,8 @@ void DeafRoles::Heard(Role role, const status_t& status, TimePoint now) {
     Ear& ear = speaker.ears[channel];
     const Duration age =
         std::chrono::microseconds(std::clamp<std::int64_t>(status.input_age_us[i], 0, kMaxStep));
-    // The age of an input grows on the role's own clock until a message comes, however late its
-    // STATUS is read. An input that never came has no age.
+    // The age of an input grows on the role's own clock until a message comes. It does not depend
+    // on when the STATUS is read. An input that never came has no age.
     const bool awaited = status.input_state[i] == status_t::INPUT_AWAITED;
     const Duration silent = awaited ? since : std::max(Duration::zero(), age - ear.age);
     const Role from = kChannels[channel].from;

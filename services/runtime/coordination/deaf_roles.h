@@ -1,6 +1,6 @@
 // Which roles of a run in real time are deaf, by their STATUS. A deaf process is alive and reports
-// its state. But on a channel that another role publishes all the time, it has heard nothing for a
-// long time. Such a role does not recover by itself. A network that loses many messages for a while
+// its state. But for a long time it has heard nothing on a channel that another role publishes all
+// the time. Such a role does not recover by itself. A network that loses many messages for a while
 // makes no role deaf.
 #pragma once
 
@@ -20,7 +20,7 @@ namespace fogline::runtime {
 
 struct Deafness {
   std::size_t channel;  // what the role does not hear, a place in kChannels
-  Duration missed;      // for how long; time counts only while the producer is known to publish
+  Duration missed;      // for how long, as far as the producer is known to publish
 };
 
 /// "has heard no TRUTH for 2.1 s, although the world has published it".
@@ -40,7 +40,7 @@ class DeafRoles {
   /// The input that the role has missed for the longest time; nullopt if this time is not yet long
   /// enough to be sure.
   std::optional<Deafness> Of(Role role) const { return Missing(role, limit_); }
-  /// The same for a run that is over; half the time is enough, because no further message will
+  /// Of() for a run that is over. Half of the time is enough then, because no further message will
   /// come.
   std::optional<Deafness> AtTheEnd(Role role) const { return Missing(role, limit_ / 2); }
 
@@ -62,7 +62,7 @@ class DeafRoles {
   std::optional<Deafness> Missing(Role role, Duration limit) const;
   /// Whether the role computes step after step, by its STATUS.
   bool Computes(Role role, TimePoint now) const;
-  /// Whether `step` is further than the role can have computed by now.
+  /// Whether `step` is later than any step that the role can have computed by `now`.
   bool IsAheadOf(Role role, std::int64_t step, TimePoint now) const;
 
   Duration period_;

@@ -1,6 +1,6 @@
 // Processes that speak on a run's network but are not part of the run (foreign peers). They are
-// roles of another run, or processes that an earlier run has left there. Their messages are
-// refused. This class only records which processes they are.
+// roles of another run, or processes that are left of an earlier run. Their messages are refused.
+// This class only records which processes they are.
 #pragma once
 
 #include <cstdint>
@@ -22,14 +22,15 @@ struct ForeignPeer {
 std::string Describe(const ForeignPeer& peer);
 
 /// The foreign processes that were heard most often. A flood of invented names does not fill the
-/// memory. It does not hide a process that continues to speak either: a name that was heard once is
-/// forgotten before one that was heard again.
+/// memory. It also does not hide a process that continues to speak. A name that was heard once is
+/// forgotten before a name that was heard again.
 class ForeignPeers {
  public:
   /// The most processes that are reported.
   static constexpr std::size_t kMax = 32;
-  /// The most processes that are watched. A role sends a STATUS at least five times a second. So it
-  /// is heard again before it is forgotten, unless others invent more than 5,000 names a second.
+  /// The most processes that are watched. A role sends a STATUS at least five times a second. So
+  /// its process is heard again before it is forgotten, unless a flood has more than 5,000 invented
+  /// names a second.
   static constexpr std::size_t kMaxWatched = 1024;
 
   /// Takes note of a STATUS of another run. A STATUS whose role does not exist is ignored. Host
@@ -39,8 +40,8 @@ class ForeignPeers {
   /// The processes that were heard most often, at most kMax, in the order in which they were first
   /// heard.
   std::vector<ForeignPeer> known() const;
-  /// A line "ignored: ..." for each process, and one more if there were more than kMax; "" if there
-  /// are none.
+  /// A line "ignored: ..." for each process, and one more line if there were more than kMax
+  /// processes; "" if there are none.
   std::string Text() const;
 
  private:

@@ -1,5 +1,5 @@
 // When a role that has died is started again. The first restart comes soon. While restarts do not
-// help, each further one comes later. Their number in a run is limited.
+// help, the wait before each further restart is longer. The number of restarts in a run is limited.
 #pragma once
 
 #include <algorithm>
@@ -12,15 +12,15 @@ namespace fogline::runtime {
 class RestartPolicy {
  public:
   /// The shortest and the longest wait before a restart. The wait doubles with each restart that
-  /// does not help (the figures of procman, LCM's process manager).
+  /// does not help. The figures are those of procman, LCM's process manager.
   static constexpr Duration kShortest = milliseconds(10);
   static constexpr Duration kLongest = milliseconds(1000);
 
-  /// @param limit restarts in one run
+  /// @param limit the most restarts of the role in one run
   explicit RestartPolicy(int limit) : limit_(limit) {}
 
   /// Notes that the role has died when the run was at this step.
-  /// @return how long to wait before it is started again; nullopt if it is not started again
+  /// @return how long to wait before the restart; nullopt if there is no further restart
   std::optional<Duration> OnDeath(std::int64_t step) {
     if (restarts_ >= limit_) return std::nullopt;
     const bool helped = restarts_ == 0 || step > step_;
@@ -41,7 +41,7 @@ class RestartPolicy {
  private:
   int limit_;
   int restarts_ = 0;
-  std::int64_t step_ = -1;  // at the last death
+  std::int64_t step_ = -1;  // step of the run at the last death
   Duration wait_{};
 };
 

@@ -15,16 +15,15 @@ namespace fogline::runtime {
 namespace {
 
 constexpr Duration kAnnounceEvery = milliseconds(50);
-// The interval of the runner's signs of life while the run goes on. Roles that were started
-// elsewhere wait for these signs.
+// The interval of RUN while the run goes on. Roles that were started elsewhere take RUN as a sign
+// that the runner lives.
 constexpr Duration kRepeatEvery = milliseconds(200);
 // Requests for parts of the scenario that come within this time get one answer.
 constexpr Duration kPartsEvery = milliseconds(10);
-// If the recorder's report of the last step was lost, the recorder is asked for it at this
-// interval.
+// If the recorder's report of the last step was lost, the runner asks for it at this interval.
 constexpr Duration kAskRecorderEvery = milliseconds(5);
-// In real time a role may be ahead of the runner's clock by two steps. The first: a tick may be
-// early by the delay of an earlier tick, which is less than a period. The second: the world takes a
+// In real time a role may be ahead of the runner's clock by two steps. One step, because the clock
+// may rest on a tick that was late by less than a period. One more step, because the world takes a
 // step at the start.
 constexpr std::int64_t kEarly = 2;
 
@@ -70,7 +69,8 @@ TimePoint RunCoordinator::Poll(TimePoint now) {
     progressed_ = now;
     going_since_ = now;
   }
-  // progressed_ counts as well: a recorder that reads a long log reports how far it is.
+  // The limit also counts from progressed_, because a recorder that reads a long log reports its
+  // progress.
   if (phase_ == Phase::kJoining && options_.join_limit > Duration::zero() &&
       HeldAgainst(std::max(began_, progressed_), now) > options_.join_limit) {
     Fail(fmt::format("not ready after {:.1f} s: {}", Seconds(options_.join_limit), NotReady()));
@@ -219,13 +219,13 @@ void RunCoordinator::OnStatus(const status_t& heard) {
   status.send_error = EscapeControls(heard.send_error);
   const auto role = RoleNamed(status.role);
   if (!role) return Refuse(&status_t::malformed);
-  // After the end only the recorder's STATUS counts: it reports what was written last.
+  // After the end only the recorder's STATUS counts, because it reports what was written last.
   const bool over = phase_ != Phase::kJoining && phase_ != Phase::kRunning;
   if (over && role != Role::kRecorder) return;
   Attend(now);
   if (!Admit(*role, status, now)) return;
   Member& member = members_[static_cast<std::size_t>(*role)];
-  if (member.status && status.sequence <= member.status->sequence) return;  // overtaken on its way
+  if (member.status && status.sequence <= member.status->sequence) return;  // a newer one is known
   const bool joined = status.state == status_t::READY || status.state == status_t::RUNNING;
   if (joined && status.scenario_hash != hash_) {
     return Fail(fmt::format("{} (pid {} on {}) has another scenario", status.role, status.pid,
@@ -235,8 +235,8 @@ void RunCoordinator::OnStatus(const status_t& heard) {
     return Fail(fmt::format("{} (pid {} on {}) was built with other message types", status.role,
                             status.pid, status.host));
   }
-  // A role that catches up makes progress, too: a new instance starts at a lower step than its
-  // predecessor had reached.
+  // Each instance is compared with its own last step. So a role that catches up makes progress,
+  // too, although its predecessor had reached a later step.
   if (member.status && status.header.step > member.status->header.step) progressed_ = now;
   progress_ = std::max(progress_, status.header.step);
   signs_of_life_.Heard(*role, member.status ? status.sequence - member.status->sequence - 1 : 0,
@@ -278,8 +278,8 @@ void RunCoordinator::OnDone() {
 }
 
 void RunCoordinator::OnFailure(Role role, const status_t& status) {
-  // In real time the cars keep moving: the failed role counts as lost, and the other roles have
-  // fallbacks for that.
+  // In real time the cars keep moving. The failed role counts as lost, and the other roles have
+  // fallbacks for this case.
   if (GoesOnWithout(role)) return;
   Fail(fmt::format("{}: {}", status.role, status.error));
 }
@@ -299,7 +299,7 @@ void RunCoordinator::OnResend(Bytes bytes) {
 }
 
 void RunCoordinator::Announce(std::size_t part, std::int64_t answer_to) {
-  // A run in real time that has started does not wait for all roles: with GO a late role joins at
+  // A run in real time that has started does not wait for all roles. With GO a late role joins at
   // once.
   const bool go = ready_ || (options_.realtime && phase_ == Phase::kRunning);
   Announce(go ? run_t::GO : run_t::PREPARE, part, answer_to);
@@ -336,8 +336,7 @@ std::string RunCoordinator::HindranceOf(Role role) const {
 
 std::string RunCoordinator::Culprit(TimePoint now) const {
   // Follow the chain of waiting roles from the world to the first role that does not say what it
-  // waits for. `stuck` is the step that the current role of the chain works on: the world is one
-  // step ahead of the others.
+  // waits for. `stuck` is the step that the present role of the chain cannot complete.
   std::int64_t stuck = step() + 1;
   Role waiting = Role::kWorld;
   for (std::size_t hops = 0; hops < kRoles.size(); ++hops) {
@@ -352,8 +351,8 @@ std::string RunCoordinator::Culprit(TimePoint now) const {
     const ChannelInfo* channel = place < kNumChannels ? &kChannels[place] : nullptr;
     const Role producer = channel != nullptr ? channel->from : Role::kRecorder;
     const Member& source = member(producer);
-    // A producer that has already computed the awaited step may be waiting, too, but for something
-    // else. The chain ends before it.
+    // The chain ends before a producer that has already computed the awaited step, because this
+    // producer waits for something else.
     const bool done = channel != nullptr && source.status &&
                       source.status->header.step >= stuck - LagOf(producer, waiting);
     const bool passes_on = source.status && HeldAgainst(source.heard, now) <= kSilent && !done &&

@@ -1,6 +1,6 @@
 // The runner's side of a run, its coordinator. It announces the scenario, waits until every role is
 // ready, lets the world start and follows the STATUS of every role. It tells a role that joins late
-// how far the run is. When a step does not complete, it names the culprit.
+// how far the run is. If a step does not complete, the coordinator names the culprit.
 #pragma once
 
 #include <array>
@@ -31,16 +31,16 @@ struct RunCoordinatorOptions {
   std::string scenario_text;      // the effective scenario
   std::int64_t steps = kMaxStep;  // number of steps of the scenario
   std::int64_t progress = -1;     // last step that is known to have begun
-  // The sequences of this runner's RUN messages begin above this number, which exceeds those of an
-  // earlier runner of the same run.
+  // The sequence numbers of this runner's RUN messages begin above this number. An earlier runner
+  // of the same run has used only smaller numbers.
   std::int64_t sequence = 0;
-  double pace = 0;                            // simulated seconds per second; 0: as fast as it goes
-  bool realtime = false;                      // runs at that pace, even if a role does not keep up
-  Duration period{};                          // of a step in real time, on the wall clock
-  Duration join_limit{};                      // until all roles are ready; 0: no limit
+  double pace = 0;                            // simulated seconds per second; 0: no limit
+  bool realtime = false;                      // whether the run does not wait for slow roles
+  Duration period{};                          // duration of a step in real time, on the wall clock
+  Duration join_limit{};                      // longest wait until all roles are ready; 0: no limit
   Duration stall_limit = milliseconds(4000);  // longest time without a completed step of any role
-  std::vector<Role> external;                 // roles that the runner neither starts nor restarts
-  int restarts = 0;                           // how often each of them may be started again
+  std::vector<Role> external;                 // roles that are started elsewhere
+  int restarts = 0;                           // most restarts of each external role
   RoleBuilds builds{};                        // expected builds of the roles
   bool same_build = false;                    // whether a role of another build ends the run
 };
@@ -56,35 +56,38 @@ class RunCoordinator {
   TimePoint Poll(TimePoint now);
 
   /// Notes that the runner looks at the clock. If two looks are far apart, the runner itself was
-  /// held up (a suspended machine, a disk, Ctrl-Z). That time does not count against any role.
+  /// held up (a frozen container, a disk, Ctrl-Z). That time does not count against any role.
   void Attend(TimePoint now) { pauses_.Attend(now); }
   /// The time since `since` in which this process could have heard a message.
   Duration HeldAgainst(TimePoint since, TimePoint now) const {
     return pauses_.HeldAgainst(since, now);
   }
-  /// The probability that a role with this silence is alive: that the network has lost all messages
-  /// which the role sent in this time.
+  /// The probability that a living role is silent for this time, because the network loses all its
+  /// messages.
   double ChanceOfLife(Role role, Duration silence) const {
     return signs_of_life_.ChanceOfLife(role, silence);
   }
   /// In real time, a channel that the role has not heard for a long time although its producer
   /// publishes it.
   std::optional<Deafness> Deaf(Role role) const { return deaf_.Of(role); }
-  /// The longest time that the runner was held up since the last call, 0 if it was not.
+  /// The longest time for which the runner was held up since the last call; 0 if it was not held
+  /// up.
   Duration TakeLongestPause() { return pauses_.TakeLongest(); }
 
   Phase phase() const { return phase_; }
-  /// What went wrong, one line. Empty unless phase() is kFailed.
+  /// What went wrong; one line, and more lines if keys or sends cause trouble. "" unless phase() is
+  /// kFailed.
   const std::string& error() const { return error_; }
-  /// Last step that the world has begun, -1 before the first.
+  /// Last step that is known to have begun; -1: none.
   std::int64_t step() const { return progress_; }
   /// step() as text for a message: "at step 217", or "before step 0".
   std::string Where() const;
   /// Names of the roles that have not reported ready.
   std::string NotReady() const;
-  /// External roles that are not there: never heard of, or silent while the run goes on.
+  /// External roles that the run waits for: they are not ready, or are silent while the run goes
+  /// on.
   std::vector<Role> Awaited(TimePoint now) const;
-  /// Sum over the roles of a counter of status_t.
+  /// The sum of a counter of status_t over the processes of all roles, also those that are dead.
   std::int64_t Total(std::int64_t status_t::*counter) const;
   /// Messages that the roles and the runner have refused.
   Refusals Refused() const;
@@ -97,8 +100,8 @@ class RunCoordinator {
   const ForeignPeers& foreign_peers() const { return foreign_peers_; }
   /// The expected builds of the roles.
   const RoleBuilds& builds() const { return options_.builds; }
-  /// Whether the run goes on after the final loss of this role. In real time it goes on, except
-  /// without the world (the road) or the recorder (the log).
+  /// Whether the run goes on after the final loss of this role. In real time it goes on, unless the
+  /// role is the world (the road) or the recorder (the log).
   bool GoesOnWithout(Role role) const {
     return options_.realtime && phase_ == Phase::kRunning && role != Role::kWorld &&
            role != Role::kRecorder;
@@ -114,11 +117,12 @@ class RunCoordinator {
   void Hinder(Role role, std::string why);
   /// Notes that the role has been started again, as this process on this machine.
   void Launched(Role role, std::int32_t pid, TimePoint now);
-  /// Calls `handler` for every STATUS that is accepted, in the order of its sender.
+  /// Calls `handler` for every STATUS that is accepted. A STATUS that a newer one has overtaken is
+  /// not accepted.
   void OnEveryStatus(std::function<void(const status_t&)> handler) {
     on_status_ = std::move(handler);
   }
-  /// Whether any instance of the role has been heard of.
+  /// Whether a process of the role has been heard.
   bool Met(Role role) const { return member(role).status || !member(role).dead.empty(); }
 
   /// A role's process as its STATUS describes it.
@@ -126,17 +130,18 @@ class RunCoordinator {
     std::optional<status_t> status;  // last STATUS of the accepted instance
     TimePoint heard{};
     std::vector<status_t> dead;      // last STATUS of each dead instance
-    std::vector<std::int32_t> pids;  // of dead processes on this machine
+    std::vector<std::int32_t> pids;  // ids of dead processes on this machine
     std::optional<status_t> rival;   // another instance that claims this role
     TimePoint rival_since{};
     TimePoint rival_heard{};
-    // An instance that counts as dead speaks since `undead`; it was last heard at `undead_heard`.
+    // `undead`: since when an instance that counts as dead has spoken; `undead_heard`: when it was
+    // last heard.
     std::optional<TimePoint> undead;
     std::int64_t undead_instance = 0;
     TimePoint undead_heard{};
-    std::string hindrance;    // why it cannot be started again for now
+    std::string hindrance;    // why the role cannot be started again at present
     int replaced = 0;         // number of times that an external role was started again
-    TimePoint replaced_at{};  // when this last happened
+    TimePoint replaced_at{};  // when the role was last started again
   };
   const Member& member(Role role) const { return members_[static_cast<std::size_t>(role)]; }
 
@@ -149,18 +154,18 @@ class RunCoordinator {
   /// The newest step that a role can have computed by now.
   std::int64_t NewestPossible(TimePoint now) const;
   /// Ends the run when the world is done and, in lockstep, the recorder's report includes the last
-  /// step. The caller compares the log with that report.
+  /// step. The caller then compares the log with this report.
   void FinishWhenRecorded(TimePoint now);
   /// Ends the run after its last step is recorded. The run fails if a role is deaf at its end.
   void OnDone();
-  /// Handles the role's report that it failed.
+  /// Handles a role's report of its failure.
   void OnFailure(Role role, const status_t& status);
   void OnResend(Bytes bytes);
   bool AllReady(TimePoint now) const;
   /// Whether this role is missing, so that the run cannot begin or go on.
   bool Lacks(Role role, TimePoint now) const;
   bool IsExternal(Role role) const;
-  /// Whether to accept the STATUS for its role; false if it comes from a dead or second instance.
+  /// Whether to accept the STATUS; false if it comes from a dead or second instance of the role.
   bool Admit(Role role, const status_t& status, TimePoint now);
   /// Admit() for a STATUS that does not come from the role's present process.
   bool AdmitOther(Role role, const status_t& status, TimePoint now);
@@ -168,12 +173,13 @@ class RunCoordinator {
   void OnUndead(Role role, const status_t& status, TimePoint now);
   void FailForTwo(const status_t& one, const status_t& other);
   bool HasRival(Role role, TimePoint now) const;
-  /// Instance of the process that has an external role; 0 if no process has it.
+  /// Instance of the process that has an external role; 0 if no process has it, or the process is
+  /// silent.
   std::int64_t HolderOf(Role role, TimePoint now) const;
   void AnnounceWhenDue(TimePoint now);
   void Announce(std::size_t part, std::int64_t answer_to = 0);
   void Announce(std::int8_t phase, std::size_t part, std::int64_t answer_to = 0);
-  /// Why the role is not there, to be added to a message; "" if nothing is known.
+  /// Why the role is not there, as the end of an error text; "" if nothing is known.
   std::string HindranceOf(Role role) const;
   /// The line that says which role holds up the run.
   std::string Culprit(TimePoint now) const;
@@ -189,17 +195,17 @@ class RunCoordinator {
   status_t own_{};  // counts messages that the runner itself has refused or could not send
   std::string host_;
   Phase phase_ = Phase::kJoining;
-  TimePoint going_since_{};       // the first GO
-  bool ready_ = false;            // all roles were ready at the last Poll()
-  std::int8_t minimal_risk_ = 0;  // cars, as in status_t
+  TimePoint going_since_{};       // since when phase() has been kRunning
+  bool ready_ = false;            // whether all roles were ready at the last Poll()
+  std::int8_t minimal_risk_ = 0;  // cars in a minimal risk manoeuvre, as in status_t
   std::function<void(const status_t&)> on_status_;
   std::string error_;
   TimePoint began_;
   OwnPauses pauses_;
   TimePoint announce_at_{};
   TimePoint parts_at_{};
-  std::optional<TimePoint> ask_recorder_at_;  // set once the world is done
-  std::int64_t sequence_;                     // of the last RUN that was sent
+  std::optional<TimePoint> ask_recorder_at_;  // when to ask for the recorder's last report
+  std::int64_t sequence_;                     // sequence number of the last RUN
   std::int64_t progress_;
   TimePoint progressed_{};
   std::vector<std::uint8_t> buffer_;

@@ -10,10 +10,11 @@
 namespace fogline::runtime {
 namespace {
 
-// A STATUS may take this long on its way. If one arrives later than that, its sender is alive.
+// The longest time that a STATUS is on its way. If another process claims a role, and the first
+// process is still heard after this time, the first process is alive.
 constexpr Duration kOnItsWay = milliseconds(100);
-// A process that hears that another process has its place leaves within this time (Membership):
-// five of the runner's signs of life.
+// A process that has lost its place leaves within this time. Five RUN in this time say that another
+// process has the place (Membership).
 constexpr Duration kLeaves = milliseconds(1000);
 
 }  // namespace
@@ -24,7 +25,8 @@ bool RunCoordinator::IsExternal(Role role) const {
 
 bool RunCoordinator::HasRival(Role role, TimePoint now) const {
   const Member& of = member(role);
-  // The runner does not see the death of a process that was started elsewhere.
+  // The runner does not see the death of a process that was started elsewhere, so a silent rival
+  // counts as gone.
   return of.rival && !(IsExternal(role) && HeldAgainst(of.rival_heard, now) > kLeaves);
 }
 
@@ -61,8 +63,8 @@ bool RunCoordinator::Admit(Role role, const status_t& status, TimePoint now) {
 
 void RunCoordinator::OnUndead(Role role, const status_t& status, TimePoint now) {
   Member& member = members_[static_cast<std::size_t>(role)];
-  // Messages that the process sent before its death may come late. If it sends more, it is not
-  // dead.
+  // Messages that the process sent before its death may come late. Later messages show that the
+  // process is not dead.
   if (!IsExternal(role) || !member.status || status.state == status_t::LEFT ||
       HeldAgainst(member.replaced_at, now) <= kOnItsWay) {
     return;

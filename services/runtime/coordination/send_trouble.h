@@ -1,5 +1,5 @@
-// Messages that processes of a run could not send, because the kernel or a relay refused them. Each
-// counts as lost, like a message that the network loses.
+// Messages that processes of a run could not send, because the kernel or a relay refused them. Such
+// a message counts as lost, like a message that the network loses.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@ namespace fogline::runtime {
 struct SendTrouble {
   std::string role;
   std::int64_t count = 0;
-  std::string error;  // why the last one could not be sent
+  std::string error;  // why the last message could not be sent
 };
 
 /// "world 3, fusion 12 (Operation not permitted); lidar 1 (Network is unreachable)", "" for none.

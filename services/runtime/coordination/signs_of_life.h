@@ -31,8 +31,8 @@ class SignsOfLife {
     since_[static_cast<std::size_t>(role)] = {.time = now, .heard = heard_, .lost = lost_};
   }
 
-  /// The probability that the network lost all messages of a living role in the time in which it
-  /// was not heard; 1 if no other role was heard since.
+  /// The probability that the network loses all messages that a living role sends in this silence;
+  /// 1 if no other role was heard since the role's last message.
   /// @param silence the part of the time since the role's last message in which this process could
   ///     hear
   double ChanceOfLife(Role role, Duration silence) const {
@@ -43,9 +43,9 @@ class SignsOfLife {
     const double signs = Seconds(silence) / Seconds(every_);
     const auto heard = static_cast<double>(heard_ - last.heard);
     const auto lost = static_cast<double>(lost_ - last.lost);
-    // The share of lost messages. It is the larger of two estimates: one by the number of messages
-    // that the other roles must have sent at least, one by the number of messages that are known to
-    // be lost.
+    // The share of lost messages. It is the larger of two estimates. The first compares the heard
+    // messages with the least number of messages that the other roles have sent. The second uses
+    // the number of messages that are known to be lost.
     const double share_lost =
         std::max(1 - heard / (static_cast<double>(others) * signs), lost / (heard + lost));
     return std::pow(std::clamp(share_lost, 0.0, 1.0), signs);

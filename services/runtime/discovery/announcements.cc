@@ -13,7 +13,7 @@
 namespace fogline::runtime {
 namespace {
 
-// Runner and listener share a clock, but it may be set between two readings.
+// The runner and the listener read the same clock, but it may be set between the two readings.
 constexpr std::int64_t kClockSlack_us = 1'000'000;
 
 /// The roles with these names; nullopt if a name is unknown or occurs twice.

@@ -31,7 +31,8 @@ struct Announcement {
 
   bool Awaits(Role role) const;
   /// "run 123 at udpm://239.255.76.67:7700?ttl=0, scenario A box of fog, announced by pid 4711 on
-  /// lab1; it waits for the driver". ASCII: '?' stands for other characters of the title.
+  /// lab1; it waits for the driver". The text is ASCII: '?' stands for other characters of the
+  /// title.
   std::string Text() const;
 };
 

@@ -15,14 +15,15 @@ struct _lcm_t;
 
 namespace fogline::runtime {
 
-/// The runner's side. It is best effort: if a beacon cannot be sent, the run goes on without it. A
-/// beacon stays on this machine (ttl=0) whatever ttl the meeting address has. It is never signed,
-/// even if the run has a key: a beacon tells only where to look, and the messages of the run itself
-/// are verified.
+/// The runner's side. If a beacon cannot be sent, the run goes on without it. A beacon stays on
+/// this machine (ttl=0), also if the meeting address has another ttl. It is never signed, even if
+/// the run has a key. A beacon tells only where to look, and the messages of the run itself are
+/// verified.
 class Beacon {
  public:
   /// Announces nothing if the run is at the meeting address itself, if programs may not follow a
-  /// beacon to the run's URL (MayBeAnnounced()), or if the meeting address is no multicast group.
+  /// beacon to the run's URL (MayBeAnnounced()), or if the meeting address is no multicast group or
+  /// has no route.
   /// @param run without host, process and time of beginning, which the constructor fills in
   explicit Beacon(Announcement run);
   /// Says that the run is over.
@@ -39,7 +40,7 @@ class Beacon {
   void Publish();
 
   beacon_t beacon_{};
-  // LCM itself, not a Bus: for sending alone, LCM starts no thread and no self-test.
+  // This is LCM itself, not a Bus: if LCM only sends, it starts no thread and no self-test.
   _lcm_t* lcm_ = nullptr;
   TimePoint due_{};
   std::vector<std::uint8_t> buffer_;
@@ -56,13 +57,13 @@ class BeaconListener {
   /// The runs that have not ended, the newest first.
   std::vector<Announcement> Runs() const { return announcements_.Current(Clock::now()); }
   std::int64_t refused() const { return announcements_.refused(); }
-  /// Readable when Look() has something to read; -1 if there will never be anything.
+  /// This descriptor is readable when Look() has something to read; -1 if nothing can ever come.
   int fd() const { return bus_ ? bus_->fd() : -1; }
 
  private:
   std::optional<Bus> bus_;
   Announcements announcements_;
-  // The limit, in beacons per second: many times what the runs of one machine send.
+  // The limit in beacons per second. The runs of one machine send far fewer.
   LoadShedder shedder_{3000};
 };
 

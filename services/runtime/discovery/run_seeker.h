@@ -1,6 +1,6 @@
-// Decides where a role looks for a run if it was given neither a network nor a run. The role looks
-// at the meeting address (lcm_url.h), and at the network of each run that is announced there and
-// waits for the role.
+// Decides where a role looks for a run if its command line names no network and no run. The role
+// looks at the meeting address (lcm_url.h), and at the network of each run that is announced there
+// and waits for the role.
 #pragma once
 
 #include <cstdint>
@@ -19,19 +19,19 @@ class RunSeeker {
   RunSeeker(Role role, const std::string& meeting_url)
       : role_(role), listener_(meeting_url), began_(Clock::now()), pauses_(began_) {}
 
-  /// Call it while the role has no run.
+  /// Call it while the role has no run, or its runner is silent.
   /// @return the run to join now: the newest that waits for this role and was not tried in vain;
   ///     nullopt if there is none
   std::optional<Announcement> Look(TimePoint now);
 
-  /// Whether the role is at the network of an announced run.
+  /// Whether the role has gone to the network of an announced run.
   bool Tries() const { return tried_.has_value(); }
-  /// Whether the run is over, or nothing was heard of it for kSilentLimit. The role then goes back
-  /// to the meeting address.
+  /// Whether the announced run is over, or the role has heard nothing of it for kSilentLimit. The
+  /// role then goes back to the meeting address.
   bool InVain(TimePoint now);
   /// Excludes the run that was tried last from Look() for kTryAgain, so that a run at the meeting
   /// address comes first. The exclusion ends earlier if an announcement says that the run does not
-  /// wait for the role: if the run waits for the role after that, the place has become free.
+  /// wait for the role. If the run waits for the role after that, the place has become free.
   void GiveUp(TimePoint now);
   /// Excludes this run from Look(), because the role already takes part in it.
   void Ignore(std::int64_t run_id) { own_ = run_id; }
@@ -42,8 +42,8 @@ class RunSeeker {
   // A runner that waits speaks 20 times a second. A busy machine or a bad network delays its
   // messages by less than kSilentLimit.
   static constexpr Duration kSilentLimit = milliseconds(5000);
-  // A run that was tried in vain may only be slow: a busy machine held it up, or the port of its
-  // network was taken for a moment.
+  // After this time a run that was tried in vain is tried again. A busy machine may have held up
+  // the run, or the port of the run's network may have been taken for a moment.
   static constexpr Duration kTryAgain = milliseconds(5000);
   // A limit, so that invented runs do not fill the memory.
   static constexpr std::size_t kMaxInVain = 64;

@@ -3,7 +3,8 @@
 namespace fogline::runtime {
 namespace {
 
-// The shortest time between two requests of a role that asks because another process asked it.
+// A role that is asked for a later step asks for its own inputs. This is the shortest time between
+// two such requests.
 constexpr Duration kMinBetweenAsks = milliseconds(2);
 
 }  // namespace
@@ -22,7 +23,8 @@ void LockstepRule::OnGo(const run_t& run, TimePoint now) {
 
 StepRing::Verdict LockstepRule::Judge(const Input& input, std::int64_t step, Bytes bytes) const {
   const auto verdict = input.ring.Classify(step, bytes, FirstNeeded(input));
-  // A role that catches up also hears the current steps of the others, which are too new for it.
+  // A role that catches up also hears the current steps of the other roles, which are too new for
+  // it.
   const bool elsewhere = CatchingUp() && step <= late_ + kRingSteps;
   return verdict == StepRing::Verdict::kOutOfWindow && elsewhere ? StepRing::Verdict::kElsewhere
                                                                  : verdict;
@@ -106,7 +108,7 @@ void LockstepRule::Advance(TimePoint now) {
 TimePoint LockstepRule::Repair(TimePoint now) {
   if (expected_ < next() || FirstMissing() == nullptr) return now + OwnStatus::kHeartbeat;
   const TimePoint ask_at = retry_.Wait(now);
-  // The step has not been asked for yet, so none of its inputs can be on their way.
+  // The role has not asked for the inputs of this step yet, so it is of no use to wait for them.
   if (CatchingUp() && next() > asked_) {
     AskForMissing(now);
     retry_.AskedForMany(now);
@@ -119,8 +121,8 @@ TimePoint LockstepRule::Repair(TimePoint now) {
 
 void LockstepRule::AskForMissing(TimePoint now) {
   retry_.Asked(now);
-  // Asks up to the newest step that is known to be under way, but for no more steps than the rings
-  // can hold.
+  // Asks for the steps up to the newest step that is known to be under way. The size of the rings
+  // limits the number of these steps.
   asked_ = std::clamp(expected_, next(), next() + kRingSteps - 2);
   for (const Input& input : parts_.inputs.all()) {
     const StepRange steps = Lacking(input, FirstNeeded(input), asked_ - input.lag);

@@ -1,8 +1,8 @@
-// Lockstep: a node keeps a ring of messages per input. It computes step k exactly once, when all
-// its inputs for step k are there, in any order of arrival. It encodes its outputs once and keeps
-// the bytes. No message is sent again without a request: a node that misses an input asks for it
-// (RESEND). A node that is asked for an output that it cannot compute yet asks for its own inputs.
-// So any loss below 100 % only costs time.
+// The rule in lockstep. A node keeps a ring of messages per input. It computes step k exactly once,
+// when all its inputs for step k are there, in any order of arrival. It encodes its outputs once
+// and keeps the bytes. No message is sent again without a request: a node that lacks an input asks
+// for it (RESEND). If a node cannot compute a requested output yet, it asks for its own inputs. So
+// any loss below 100 % only costs time.
 //
 // Catching up. RUN says how far the world is. A node that joins late (its predecessor was killed)
 // computes all steps from step 0 on, and asks for the inputs of many steps at a time. The recorder
@@ -51,16 +51,17 @@ class LockstepRule final : public FireRule {
   TimePoint PollGate(TimePoint now);
   TimePoint Repair(TimePoint now);
   void AskForMissing(TimePoint now);
-  /// The steps from `first` to `last` that an input lacks and that one request should ask for.
+  /// The range of steps that one request asks for. It lies between `first` and `last`, and contains
+  /// steps that the input lacks.
   StepRange Lacking(const Input& input, std::int64_t first, std::int64_t last) const;
-  /// Whether the next step is one of those with which this role has to catch up.
+  /// Whether this role is behind the run, so that it asks for many steps at a time.
   bool CatchingUp() const { return next() <= late_; }
 
   Parts& parts_;
   StepGate* const gate_;
   std::int64_t expected_;    // highest step that is known to be under way
-  std::int64_t late_;        // last step to catch up with
-  std::int64_t asked_ = -1;  // last step whose inputs were asked for
+  std::int64_t late_;        // a late role catches up until it has computed this step
+  std::int64_t asked_ = -1;  // last step for whose inputs the role has asked
   RetryTimer retry_;
 };
 

@@ -1,5 +1,5 @@
-// The retry timer of a node that lacks an input. It waits while the input may still be on its way.
-// Then, while the input does not come, it asks again and again, at growing intervals up to a limit.
+// The retry timer of a node that lacks an input. The node first waits, because the input may still
+// be on its way. Then it asks for the input again and again, at intervals that grow up to a limit.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +11,7 @@ namespace fogline::runtime {
 
 class RetryTimer {
  public:
-  /// The next step lacks an input. @return when to ask for it
+  /// Notes that the next step lacks an input. @return when to ask for this input
   TimePoint Wait(TimePoint now) {
     if (!since_) {
       since_ = now;
@@ -21,22 +21,21 @@ class RetryTimer {
     return ask_at_;
   }
 
-  /// The node asks now. After AskedInVain() it asks again, each time after an interval that is a
-  /// quarter longer.
+  /// Notes that the node asks now. AskedInVain() makes the next interval a quarter longer.
   void Asked(TimePoint now) { asked_ = now; }
   void AskedInVain(TimePoint now) {
     wait_ = std::min(wait_ + wait_ / 4, kLongest);
     ask_at_ = now + wait_;
   }
-  /// The node has asked for many steps at once. As long as such steps come in, it need not ask
-  /// again.
+  /// Notes that the node has asked for many steps at once. Each step that comes (Arrived()) delays
+  /// the next request.
   void AskedForMany(TimePoint now) {
     wait_ = kShortest;
     ask_at_ = now + wait_;
   }
   void Arrived(TimePoint now) { ask_at_ = std::max(ask_at_, now + kShortest); }
 
-  /// The step is computed.
+  /// Notes that the step has been computed.
   void Computed(TimePoint now) {
     // Steps with a repair do not show how long a step takes (Karn & Partridge 1987).
     if (computed_ != TimePoint{} && asked_ < computed_) {
@@ -47,8 +46,7 @@ class RetryTimer {
     since_.reset();
   }
 
-  /// The time from which on the next step has been known to lack an input; nullopt if it lacks
-  /// none.
+  /// Since when the next step is known to lack an input; nullopt if it lacks none.
   const std::optional<TimePoint>& since() const { return since_; }
   TimePoint asked() const { return asked_; }
 
@@ -68,7 +66,7 @@ class RetryTimer {
   TimePoint asked_{};
   Duration wait_{};
   TimePoint computed_{};
-  Duration step_time_{};  // smoothed
+  Duration step_time_{};  // smoothed duration of a step
 };
 
 }  // namespace fogline::runtime

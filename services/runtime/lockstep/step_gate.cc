@@ -7,14 +7,14 @@ namespace {
 
 constexpr Duration kFirstRetryInterval = milliseconds(20);
 constexpr Duration kMaxRetryInterval = milliseconds(500);
-// Three years: a step is due after this time at the latest, even at the slowest pace.
+// A step is due after this time (three years) at the latest, even at the slowest pace.
 constexpr double kLongest_s = 1e8;
 
 }  // namespace
 
 StepGate::StepGate(Bus& bus, status_t& own) {
   bus.Subscribe(ChannelOf<status_t>().name, [this, &own](Arrival& arrival) {
-    if (run_id_ == 0) return;  // in no run yet
+    if (run_id_ == 0) return;  // the role is in no run yet
     const auto* status = arrival.As<status_t>();
     if (status == nullptr || status->header.run_id != run_id_) {
       ++(own.*(status == nullptr ? arrival.Wrong<status_t>() : &status_t::foreign));
@@ -22,7 +22,7 @@ StepGate::StepGate(Bus& bus, status_t& own) {
     }
     // If the recorder has failed, the step that it reports may not be on disk.
     if (status->role != NameOf(Role::kRecorder) || status->state == status_t::FAILED) return;
-    // The recorder cannot have a step that neither this world nor an earlier one has begun.
+    // No world of this run has begun this step yet, so the recorder cannot have it.
     if (status->header.step > std::max(own.header.step, begun_before_)) {
       ++own.out_of_window;
       return;

@@ -1,6 +1,6 @@
-// A step gate says when the role that begins the steps (the world) may begin the next one. The
-// world may not begin a step before the runner's GO, faster than the pace, more than kMaxAhead
-// steps ahead of the recorder's log on disk, or after the end.
+// A step gate says when the role that begins the steps (the world) may begin the next step. The
+// runner must have said GO, and the step must be due at the run's pace. The step may be at most
+// kMaxAhead steps ahead of the recorder's log on disk, and not after the run's last step.
 #pragma once
 
 #include <algorithm>
@@ -20,23 +20,23 @@ class StepGate {
   StepGate(Bus& bus, status_t& own);
 
   void Configure(const Scenario& scenario, std::int64_t run_id);
-  /// An earlier process of the world has begun this step.
+  /// Notes that an earlier process of the world has begun this step.
   void BegunBefore(std::int64_t step) { begun_before_ = std::max(begun_before_, step); }
   void OnGo(const run_t& run, TimePoint now);
   bool started() const { return started_; }
 
   /// Whether step `step` may begin.
   bool Open(std::int64_t step, TimePoint now) const;
-  /// No step follows `step`.
+  /// Notes that `step` is the last step of the run.
   void SetFinal(std::int64_t step) { final_ = step; }
   /// Whether the final step has begun and is on disk.
   bool Finished(std::int64_t next) const {
     return final_ && next > *final_ && recorded_ >= *final_;
   }
-  /// If the recorder holds up step `next`, and it is time to ask the recorder: the step to ask for.
-  /// Otherwise nullopt.
+  /// The step for which to ask the recorder, if step `next` waits for the recorder and a request is
+  /// due; otherwise nullopt.
   std::optional<std::int64_t> WantsRecorded(std::int64_t next, TimePoint now);
-  /// When the answer of Open() or WantsRecorded() may next change without a message.
+  /// When the result of Open() or WantsRecorded() may next change although no message comes.
   TimePoint NextPoll(std::int64_t next, TimePoint now) const;
 
  private:

@@ -1,5 +1,5 @@
-// When a role computes a step, and what it does about missing inputs. This is all that differs
-// between a run in lockstep (lockstep_rule.h) and one in real time (realtime_rule.h).
+// When a role computes a step, and what it does about missing inputs. A role in lockstep
+// (lockstep_rule.h) and a role in real time (realtime_rule.h) differ only in this rule.
 #pragma once
 
 #include <cstdint>
@@ -10,8 +10,8 @@
 
 namespace fogline::runtime {
 
-/// The rule of one role, made when the role joins a run. It works with the parts that its
-/// constructor gets (parts.h).
+/// The rule of one role, made when the role joins a run. Its constructor gets the parts of the node
+/// (parts.h).
 class FireRule {
  public:
   virtual ~FireRule() = default;
@@ -25,13 +25,13 @@ class FireRule {
   virtual void OnInput(std::size_t input, std::int64_t step, Arrival& arrival) = 0;
   /// Does what is due. @return the latest time for the next call
   virtual TimePoint Poll(TimePoint now) = 0;
-  /// A RUN has told how far the run is.
+  /// A RUN has reported the progress of the run (RunNews::progress).
   virtual void OnProgress() {}
   /// This step is known to be under way.
   virtual void Expect(std::int64_t /*step*/) {}
   /// Another process asks for the output of a step that this role has not computed yet.
   virtual void OnAskedAhead(std::int64_t /*step*/, TimePoint /*now*/) {}
-  /// Called before every STATUS: adds to it what the rule knows.
+  /// Called before every STATUS. Adds to the STATUS what the rule knows.
   virtual void WriteStatus(TimePoint /*now*/) {}
   /// This step is the last one of the run.
   virtual void SetFinal(std::int64_t /*step*/) {}

@@ -1,5 +1,6 @@
-// The inputs of a role: the channels that it reads, and the last steps of each. Messages that are
-// of another run, or cannot be of this run, are refused. The rule decides about all others.
+// The inputs of a role: the channels that it reads, and the last steps of each channel. Messages
+// that are of another run, or cannot be of this run, are refused. The rule decides about all other
+// messages.
 #pragma once
 
 #include <cstdint>
@@ -20,17 +21,17 @@ namespace fogline::runtime {
 
 /// One channel that a role reads.
 struct Input {
-  std::size_t channel;       // in kChannels
-  std::int64_t fingerprint;  // of its type
+  std::size_t channel;       // place in kChannels
+  std::int64_t fingerprint;  // fingerprint of the channel's message type
   std::int64_t lag;          // step k uses this input's step k - lag
-  bool on_demand;            // algorithm.h; in real time the role does not wait for it
+  bool on_demand;            // whether this is an input on demand (algorithm.h)
   StepRing ring;
   TimePoint heard{};
   // Called with each message that is new and sound; may be empty.
   std::function<void(std::int64_t step, Arrival& arrival)> keep{};
 
-  /// Whether this input has the message that a step uses. A step uses no message if this would be
-  /// from before step 0.
+  /// Whether this input has the message that a step uses. Also true if step - lag is below 0,
+  /// because the step then uses no message of this input.
   bool ReadyFor(std::int64_t step) const { return step < lag || ring.Has(step - lag); }
 };
 
@@ -38,13 +39,13 @@ class Inputs {
  public:
   Inputs(const Inputs&) = delete;  // the bus refers to this object
   Inputs& operator=(const Inputs&) = delete;
-  /// Reads the role's inputs except those on demand. The recorder reads every channel of steps.
+  /// Reads the role's inputs except those on demand. The recorder reads every kStep channel.
   /// @param rule the role's rule, null until the role has joined
   Inputs(Bus& bus, Role role, const RunNews& run, OwnStatus& own,
          const std::unique_ptr<FireRule>& rule);
 
-  /// In the order of kChannels; the inputs on demand stand behind them. References are valid until
-  /// the next ReadOnDemand().
+  /// The role's inputs in the order of kChannels. Inputs on demand come last. References are valid
+  /// until the next ReadOnDemand().
   std::span<Input> all() { return inputs_; }
   std::span<const Input> all() const { return inputs_; }
   /// The input of a channel (its place in kChannels). @pre the role reads it
@@ -72,7 +73,7 @@ class Inputs {
   OwnStatus& own_;
   const std::unique_ptr<FireRule>& rule_;
   std::vector<Input> inputs_;
-  std::int64_t remembered_ = 0;  // the steps before this one are those of a log
+  std::int64_t remembered_ = 0;  // the steps before this one were read from a log
 };
 
 }  // namespace fogline::runtime

@@ -10,9 +10,9 @@
 namespace fogline::runtime {
 namespace {
 
-// A missing part of the scenario is asked for at this interval.
+// The role asks for a missing part of the scenario at this interval.
 constexpr Duration kPartRetry = milliseconds(20);
-// Repeated announcements are answered at most at this interval.
+// The shortest time between two answers to announcements (PREPARE) that are repeated.
 constexpr Duration kAnnouncedRetry = milliseconds(20);
 // If the runner is silent for this time, a role that has not received the whole scenario yet leaves
 // the run and looks for another one.
@@ -87,7 +87,7 @@ void Membership::OnOtherRun(const run_t& run, TimePoint now) {
   const status_t& own = own_.message();
   const bool may_go = run_.id && !chosen_ && runner_.Silent(now) && run.phase != run_t::STOP;
   if (!may_go || SeatIn(run, own.role, own.instance) != Seat::kFree) return;
-  // A signed RUN may be the repetition of an old one, so it must answer a request of this process.
+  // A signed RUN may be a repetition from an old run, so it must answer a request of this process.
   if (parts_.bus.secured() && run.answer_to != own.instance) return AskWhetherThere(run, now);
   own_.Release(
       fmt::format("the runner of run {} has been silent for {:.1f} s; run {} waits for the {}",

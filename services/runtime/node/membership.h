@@ -32,14 +32,15 @@ class Membership {
   void OnRun(Bytes bytes);
   /// Handles a RUN of another run.
   void OnOtherRun(const run_t& run, TimePoint now);
-  /// Whether the runner has sent this RUN now, and not in an old run. If that is not known, asks
-  /// the runner.
+  /// Whether the runner has sent this RUN now, so that it is no repetition from an old run. If this
+  /// is not known, asks the runner.
   bool IsFresh(const run_t& run, TimePoint now);
   /// Asks a runner for a RUN that answers this process.
   void AskWhetherThere(const run_t& run, TimePoint now);
-  /// In lockstep the role fails if nothing could be sent for as long as the run waits for a step.
+  /// In lockstep the role fails if nothing could be sent for longer than the run's stall limit.
   void CheckSends(TimePoint now);
-  /// Takes a RUN's news about the whole run. @return whether the RUN is newer than all before
+  /// Takes a RUN's news about the whole run. @return whether this RUN is newer than all earlier
+  /// ones
   bool TakeNews(const run_t& run, TimePoint now);
   /// Forgets a run whose runner fell silent before the whole scenario had come.
   void Unbind();
@@ -51,12 +52,12 @@ class Membership {
   Work& work_;
   std::unique_ptr<FireRule>& rule_;
   const bool chosen_;  // whether an option names the run: then the role looks for no other run
-  bool fresh_;         // the runner has answered this process, or need not: there is no key
+  bool fresh_;         // whether the runner has answered this process; also true without a key
   RateLimiter questions_{200, 20};  // limits the requests that ask runners for an answer
   TimePoint part_at_{};             // when to ask for the next part of the scenario
   TimePoint announced_at_{};        // when a repeated announcement was last answered
   RunnerWatch runner_{Clock::now()};
-  // The runner has started this process, and the kernel ends both together.
+  // Whether the runner has started this process. The kernel then ends both together.
   const bool ends_with_runner_;
 };
 

@@ -1,7 +1,7 @@
-// One role's part in a run, made of its parts: Membership joins, Inputs and Outputs hold messages,
-// a FireRule decides when a step is computed, and Work computes it.
+// One role's part in a run. Membership joins the run, Inputs and Outputs hold messages, a FireRule
+// decides when a step is computed, and Work computes the step.
 //
-// Thread: everything happens on the one thread that calls Bus::Wait() and Poll().
+// Everything happens on the one thread that calls Bus::Wait() and Poll().
 #pragma once
 
 #include <cstdint>

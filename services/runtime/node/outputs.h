@@ -1,5 +1,5 @@
-// The outputs of a role. They publish each step once (unless the recorder answers for the step),
-// keep the last steps, and answer requests for these.
+// The outputs of a role. This class publishes each step once (unless the recorder answers for the
+// step), keeps the last steps, and answers requests for them.
 #pragma once
 
 #include <array>
@@ -29,7 +29,7 @@ class Outputs {
   /// keeps it. A step that the recorder answers for is only kept.
   /// @throws std::runtime_error if the output is too large
   void Publish(std::size_t channel, std::int64_t step, Bytes bytes);
-  /// The limit for answers about older steps.
+  /// The limit for answers to requests for older steps.
   RateLimiter& limiter() { return limiter_; }
 
  private:
@@ -47,10 +47,10 @@ class Outputs {
   Work& work_;
   const std::unique_ptr<FireRule>& rule_;
   std::vector<Output> outputs_;
-  // In messages per second and per burst. Repairs on a network that loses a third of the messages
-  // take a few hundred a second.
+  // The limits in messages per second and in messages per burst. On a network that loses a third of
+  // the messages, repairs need a few hundred messages a second.
   RateLimiter limiter_{2000, 500};
-  LoadShedder requests_{3000};  // RESEND per second: many times the number on the worst network
+  LoadShedder requests_{3000};  // limit in RESEND per second; a bad network causes far fewer
 };
 
 }  // namespace fogline::runtime

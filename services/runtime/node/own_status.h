@@ -1,4 +1,4 @@
-// How a role stands in its run, and the STATUS that reports it.
+// The state of a role in its run, and the STATUS that reports this state.
 #pragma once
 
 #include <cstdint>
@@ -50,12 +50,12 @@ class OwnStatus {
   /// Gives up the role's place in the run. @param why the reason, which STATUS reports
   void Release(const std::string& why);
 
-  /// Publishes a STATUS now. Without a run id it publishes none.
+  /// Publishes a STATUS now. While the role knows no run id, nothing is published.
   void Publish();
   /// Publishes a STATUS if one is due. @return when the next one is due
   TimePoint Poll(TimePoint now);
   /// If there are failed sends to report, makes the next STATUS due soon. @return whether there are
-  /// any
+  /// such sends
   bool HastensForFailedSends();
 
  private:
@@ -69,7 +69,7 @@ class OwnStatus {
   status_t message_{};
   std::vector<std::uint8_t> buffer_;
   TimePoint said_at_{};  // when the last STATUS was sent
-  TimePoint due_{};      // when the next one is due
+  TimePoint due_{};      // when the next STATUS is due
   TimePoint use_at_{};   // when to measure this process again
 };
 

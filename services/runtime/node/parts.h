@@ -1,4 +1,4 @@
-// The parts of a node that its other parts, its rule and its work use.
+// The common parts of a node. Its rule, its work and its other parts use them.
 #pragma once
 
 #include <memory>

@@ -12,7 +12,8 @@ namespace fogline::runtime {
 
 class RateLimiter {
  public:
-  /// @param per_second messages that may be sent in answer, @param burst how many of them at once
+  /// @param per_second answers that may be sent per second
+  /// @param burst answers that may be sent in one burst
   constexpr RateLimiter(double per_second, double burst)
       : per_second_(per_second), burst_(burst), left_(burst) {}
 
@@ -26,7 +27,7 @@ class RateLimiter {
     return left_ >= 1;
   }
 
-  /// The same; if it returns true, the message counts as sent.
+  /// Like Has(); if the result is true, the message counts as sent.
   bool Take(TimePoint now) {
     if (!Has(now)) return false;
     left_ -= 1;

@@ -10,10 +10,10 @@
 namespace fogline::runtime {
 
 struct RunNews {
-  std::optional<std::int64_t> id;  // nullopt: none heard, none chosen
-  std::int64_t sequence = 0;       // of the newest RUN
+  std::optional<std::int64_t> id;  // nullopt: no run is known yet
+  std::int64_t sequence = 0;       // sequence number of the newest RUN
   std::int64_t progress = -1;      // last step that is known to have begun; -1: none
-  std::int8_t minimal_risk = 0;    // in real time: the cars in a minimal risk manoeuvre; status_t
+  std::int8_t minimal_risk = 0;    // cars in a minimal risk manoeuvre, as in status_t
   ScenarioParts parts;
   // Known once the scenario is complete:
   std::int64_t steps = kMaxStep;

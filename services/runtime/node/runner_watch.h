@@ -30,27 +30,28 @@ class RunnerWatch {
  public:
   /// A runner speaks five times a second. After this silence (ten missing messages) a role joins
   /// another run that waits for it. On a machine that is not overloaded, a runner is never held up
-  /// for so long. A runner that a person has stopped may come back too late.
+  /// for so long. If a person stops a runner (Ctrl-Z), it may continue too late.
   static constexpr Duration kSilent = milliseconds(2000);
-  /// If no other run waits, a role waits this much longer than the runner waits for a step. By then
-  /// the run is lost, unless its runner itself is paused (Ctrl-Z). This time is meant for such a
-  /// pause.
+  /// If no other run waits for the role, the role leaves after the stall limit and this time. After
+  /// the stall limit the run has ended, unless the runner itself is paused (Ctrl-Z). This time is
+  /// meant for such a pause.
   static constexpr Duration kGone = milliseconds(15'000);
   /// The stall limit if the runner does not give one: the default of `fogline run`.
   static constexpr Duration kStallLimit = milliseconds(4000);
 
   explicit RunnerWatch(TimePoint now) : pauses_(now) {}
 
-  /// Notes that the process looks at the clock. Call it before a question about a duration.
+  /// Notes that the process looks at the clock. Call it before Silence(), Silent(), Gone() and
+  /// Stalled().
   /// @return the time of its latest look
   TimePoint Attend(TimePoint now) { return pauses_.Attend(now); }
-  /// The runner has said something new.
+  /// Notes that the runner has sent a new RUN.
   void Heard(const run_t& run, TimePoint now) {
-    constexpr std::int64_t kMax_ms = 1'000'000'000;  // the largest that fogline run takes
+    constexpr std::int64_t kMax_ms = 1'000'000'000;  // the largest limit of `fogline run`
     if (run.stall_ms > 0) stall_limit_ = milliseconds(std::min(run.stall_ms, kMax_ms));
     heard_ = now;
   }
-  /// The role has no runner.
+  /// Notes that the role has no runner.
   void Forget() { heard_ = {}; }
 
   /// How long the runner has been silent, without the time in which this process was held up. Zero
@@ -60,7 +61,7 @@ class RunnerWatch {
   }
   bool Silent(TimePoint now) const { return Silence(now) > kSilent; }
   bool Gone(TimePoint now) const { return Silence(now) > stall_limit_ + kGone; }
-  /// Whether something has lasted for longer than the run waits for a step.
+  /// Whether something that began at `since` has lasted for longer than the stall limit.
   bool Stalled(TimePoint since, TimePoint now) const {
     return pauses_.HeldAgainst(since, now) > stall_limit_;
   }

@@ -1,4 +1,5 @@
-// The steps of a role, in order. Each is computed once in lockstep, and at most once in real time.
+// The steps of a role, in order. Each step is computed once in lockstep, and at most once in real
+// time.
 #pragma once
 
 #include <cstdint>

@@ -14,16 +14,17 @@ namespace fogline::runtime {
 class FireRule;
 class Node;
 
-/// One role's work. Its Node calls it, on the one thread that calls Bus::Wait() and Node::Poll().
+/// One role's work. The role's Node calls these functions, on the one thread that calls Bus::Wait()
+/// and Node::Poll().
 class Work {
  public:
   virtual ~Work() = default;
   Work(const Work&) = delete;
   Work& operator=(const Work&) = delete;
 
-  /// Its place in the run.
+  /// The role's part in the run.
   virtual Node& node() = 0;
-  /// Gets ready for a run, when the whole scenario is here.
+  /// Prepares for a run. Called when the whole scenario has come.
   /// @return the rule that decides when steps are computed
   /// @throws std::exception that says what is wrong
   virtual std::unique_ptr<FireRule> Join(const Scenario& scenario) = 0;
@@ -34,13 +35,16 @@ class Work {
   /// Does the work that is due beside the steps. Called before the rule's Poll(), while the role is
   /// READY or RUNNING. @return the latest time for the next call
   virtual TimePoint Poll(TimePoint /*now*/) { return TimePoint::max(); }
-  /// Called before every STATUS, to make the claims of the STATUS true.
+  /// Called before every STATUS. The role finishes the work that the STATUS reports as done; the
+  /// recorder, for example, flushes its log.
   virtual void BeforeStatus() {}
-  /// Called once when the role's part in its run ends (OwnStatus::left()), not at Release().
+  /// Called once when the role's part in its run ends (OwnStatus::left()). OwnStatus::Release()
+  /// does not call it.
   virtual void OnLeave() {}
   /// Another process asks for a STATUS that shows at least this step.
   virtual void OnStatusAsked(std::int64_t /*step*/) {}
-  /// Another process asks for these steps of a channel. This role need not be its producer.
+  /// Another process asks for these steps of a channel. The producer of this channel may be another
+  /// role.
   virtual void OnAsked(std::string_view /*channel*/, StepRange /*steps*/, TimePoint /*now*/) {}
 
  protected:

@@ -23,7 +23,7 @@ using WorkFactory =
 int RunProcess(int argc, char** argv, Role role, const WorkFactory& make,
                const std::function<void(CLI::App&)>& extend = {});
 
-/// The same for an algorithm. Failsafe replaces it in real time (step_node.h).
+/// RunProcess() for an algorithm. Failsafe replaces the algorithm in real time (step_node.h).
 template <class Algorithm, class Failsafe = void>
 int RunService(int argc, char** argv) {
   return RunProcess(argc, argv, AlgorithmTraits<Algorithm>::kRole,

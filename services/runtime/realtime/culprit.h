@@ -1,5 +1,5 @@
-// Which role is to blame when inputs are lost. A role that falls silent silences all roles that
-// depend on it, so the channel that a role misses first is rarely that of the failed role.
+// Which role is to blame when inputs are lost. If a role falls silent, all roles that depend on it
+// fall silent, too. So the channel that a role misses first is rarely a channel of the failed role.
 #pragma once
 
 #include <array>
@@ -21,15 +21,15 @@ using LostByRole = std::array<ChannelSet, kRoles.size()>;
 
 struct Culprit {
   Role role;            // role that fell silent
-  std::size_t channel;  // its channel that is lost, a place in kChannels
+  std::size_t channel;  // the lost channel of this role, a place in kChannels
 
   bool operator==(const Culprit&) const = default;
 };
 
-/// First the blame is on the producer of the first lost input in the order of the graph table,
-/// which is an order of evaluation. If this producer has reported lost inputs itself, the blame
-/// passes to the producer of the first of these, and so on. In a circle the blame stays at the role
-/// where the circle closes.
+/// Blames the producer of the first lost input in the order of the graph table, which is an order
+/// of evaluation. If this producer has reported lost inputs itself, the blame passes to the
+/// producer of the first of these inputs, and so on. In a circle the blame stays at the role where
+/// the circle closes.
 /// @return nullopt if `lost` is empty
 std::optional<Culprit> FindCulprit(const ChannelSet& lost, const LostByRole& reported);
 

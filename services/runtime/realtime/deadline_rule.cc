@@ -23,7 +23,7 @@ TimePoint DeadlineRule::Fire(TimePoint now) {
   const auto inputs = parts_.inputs.all();
   const Input& tick = inputs[watch_.tick_input()];
   const std::int64_t step = tick.ring.newest();
-  // A process that was held up decides its old steps late, so that the log does not lack them.
+  // A process that was held up decides its old steps late, so that the log has them.
   for (std::int64_t over = watch_.Oldest(step); over < step && parts_.own.Running(); ++over) {
     if (tick.ring.Has(over)) Decide(over, now);
   }
@@ -33,7 +33,8 @@ TimePoint DeadlineRule::Fire(TimePoint now) {
   for (std::size_t i = 0; i < watch_.awaited().size(); ++i) {
     const bool there = inputs[i].ring.Has(step);
     // The role waits for a lost input only if messages of this input come again. Without this wait,
-    // the role would decide before they come: the input would be late in every step and stay lost.
+    // the role would decide before these messages come. The input would then be late in every step
+    // and stay lost.
     if (!there && (watch_.StateOf(i) != InputState::kLost || watch_.Speaks(i, now)))
       complete = false;
     if (there) due = std::max(due, inputs[i].heard);

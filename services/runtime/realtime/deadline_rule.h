@@ -1,8 +1,8 @@
-// The real-time rule for the role that must decide in every step (the arbitrator). It decides as
-// soon as it has all inputs that are not lost. It also waits for a lost input that comes again. At
-// a fixed time after the world's tick it decides with the inputs that it has. This time is so early
-// that the command still reaches the world in time. If the next step has already begun, it decides
-// at once.
+// The real-time rule for the role that must decide in every step (the arbitrator). The role decides
+// as soon as it has all inputs that are not lost. It also waits for a lost input that comes again.
+// At its deadline, a fixed time after the world's tick, it decides with the inputs that it has. The
+// deadline is so early that the command still reaches the world in time. If the next step has
+// already begun, the role decides at once.
 #pragma once
 
 #include "services/runtime/node/fire_rule.h"
@@ -29,7 +29,7 @@ class DeadlineRule final : public FireRule {
 
   Parts& parts_;
   RealtimeWatch watch_;
-  Duration until_deadline_;  // from the tick to the deadline
+  Duration until_deadline_;  // time from the tick to the deadline
 };
 
 }  // namespace fogline::runtime

@@ -5,8 +5,8 @@
 
 namespace fogline::runtime {
 
-// A duration is m 2^e us, rounded down, with m in [64, 128); below 64 us e is 0 and m the duration.
-// Its cell is 64 e + m.
+// A duration, rounded down, is m 2^e us with m in [64, 128). Below 64 us, e is 0 and m is the
+// duration. The cell is 64 e + m.
 std::size_t DurationHistogram::CellOf(std::int64_t us) {
   const auto value = static_cast<std::uint64_t>(us);
   const auto width = static_cast<int>(std::bit_width(value));

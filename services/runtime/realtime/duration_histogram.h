@@ -1,4 +1,4 @@
-// Quantiles of durations. The memory does not grow with their number.
+// Quantiles of durations. The memory does not grow with the number of durations.
 #pragma once
 
 #include <array>
@@ -10,21 +10,22 @@
 
 namespace fogline::runtime {
 
-/// Counts in cells whose width grows with the duration, as in G. Tene's HdrHistogram: below 128 us
-/// each microsecond has its cell, above that each power of two is divided into 64. A quantile is
-/// therefore too large by at most 1/64 (1.6 %) and never too small. Maximum and count are exact.
-/// The histogram takes 14 kB, allocates nothing, and adds a duration in constant time.
+/// Counts durations in cells whose width grows with the duration, as in G. Tene's HdrHistogram.
+/// Below 128 us each microsecond has its own cell. Above 128 us each range from a power of two to
+/// the next is divided into 64 cells. A quantile is therefore too large by at most 1/64 (1.6 %) and
+/// never too small. Maximum and count are exact. The histogram takes 14 kB, allocates nothing, and
+/// adds a duration in constant time.
 ///
-/// (The P2 estimator of Boost.Accumulators has no bound on its error in the tail. HdrHistogram in C
-/// is no Debian package.)
+/// The P2 estimator of Boost.Accumulators is not used, because the error in its tail has no bound.
+/// HdrHistogram in C is not used, because Debian has no package of it.
 class DurationHistogram {
  public:
-  /// Counts a duration, in whole microseconds, rounded up. A negative one counts as 0, one above
-  /// kMaxUs as kMaxUs.
+  /// Counts a duration, in whole microseconds, rounded up. A negative duration counts as 0. A
+  /// duration above kMaxUs counts as kMaxUs.
   void Add(Duration duration);
 
-  /// The smallest duration, in microseconds, that at least a share `q` of all durations does not
-  /// exceed; 0 if there are none. q is in [0, 1].
+  /// The `q` quantile of the durations, in microseconds; 0 if there are no durations. @pre 0 <= q
+  /// <= 1
   std::int64_t QuantileUs(double q) const;
   std::int64_t MaxUs() const { return max_us_; }
   std::int64_t count() const { return count_; }
@@ -32,7 +33,7 @@ class DurationHistogram {
   static constexpr std::int64_t kMaxUs = (std::int64_t{1} << 32) - 1;  // 71 minutes
 
  private:
-  static constexpr int kCellBits = 6;  // 64 cells to a power of two
+  static constexpr int kCellBits = 6;  // 2^6 = 64 cells for each power of two
   static constexpr int kExactBits = kCellBits + 1;
   static constexpr std::size_t kNumCells = (32 - kExactBits + 2) << kCellBits;
 

@@ -14,7 +14,8 @@ std::size_t PlaceOf(std::string_view role) {
                                   kRoles.begin());
 }
 
-// On the wall clock. A living process publishes a STATUS five times a second.
+// A role without a STATUS for this time of the wall clock is silent. A living process publishes a
+// STATUS five times a second.
 constexpr double kSilent_us = 600e3;
 
 void Append(std::string& list, std::string_view separator, std::string_view text) {
@@ -40,7 +41,8 @@ FallbackLog::FallbackLog(std::int64_t step_us, double speed, std::int64_t steps)
 
 const Fallback* FallbackLog::Add(const status_t& status) {
   const std::size_t role = PlaceOf(status.role);
-  // The recorder's STATUS adds nothing: each of its inputs is also an input of another role.
+  // The recorder's STATUS adds nothing, because each of its inputs is also an input of another
+  // role.
   if (role == kRoles.size() || kRoles[role].role == Role::kRecorder) return nullptr;
   if (status.header.utime / step_us_ >= steps_ - 1) return nullptr;
   Known& known = roles_[role];
@@ -48,7 +50,7 @@ const Fallback* FallbackLog::Add(const status_t& status) {
   known.utime = status.header.utime;
   std::string lost;
   std::string back;
-  std::string stale;  // reported only if the role reacts to it
+  std::string stale;  // stale inputs, reported only if the role reacts to them
   for (std::size_t i = 0; i < status.input.size(); ++i) {
     const std::size_t channel = ChannelNamed(status.input[i]);
     if (channel == kNumChannels) continue;
@@ -59,8 +61,8 @@ const Fallback* FallbackLog::Add(const status_t& status) {
     if (state == InputState::kStale) Append(stale, ", ", name);
     if (state == InputState::kLost && known_state != InputState::kLost) Append(lost, ", ", name);
     if (state == InputState::kOk && known_state == InputState::kLost) Append(back, ", ", name);
-    // A restarted process does not know yet that an input was lost before: its "awaited" changes
-    // nothing.
+    // A restarted process does not know yet that an input was lost before. So its state "awaited"
+    // changes nothing.
     if (state == InputState::kLost || state == InputState::kOk) known_state = state;
   }
   std::string does;
@@ -94,9 +96,9 @@ bool FallbackLog::IsSilent(const Known& known, std::int64_t utime) const {
   return static_cast<double>(utime) - static_cast<double>(known.utime) > silent_us_;
 }
 
-// The STATUS of the role names the first of its own lost inputs. The STATUS of the other roles says
-// which lost inputs silence those roles. No lost input silences the world. The arbitrator is
-// silenced only by lost channels of the world.
+// `status` names the first of the role's own lost inputs. The last STATUS of each other role says
+// which lost inputs make that role silent. The world is never silent because of a lost input. The
+// arbitrator is silent only because of lost channels of the world.
 std::string FallbackLog::Culprit(const status_t& status) const {
   const std::size_t channel = ChannelNamed(status.waiting_for);
   if (channel == kNumChannels) return "";

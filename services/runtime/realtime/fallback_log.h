@@ -1,5 +1,5 @@
-// The failures in a run in real time and the reactions of its roles, by their STATUS. A person
-// reads them during the run, and afterwards from the log.
+// The failures in a run in real time and the reactions of its roles, by the STATUS of the roles. A
+// person reads these texts during the run, and afterwards from the log.
 #pragma once
 
 #include <array>
@@ -14,47 +14,48 @@
 
 namespace fogline::runtime {
 
-/// A change: a role reacts to its inputs in another way, or an input is lost or there again. (An
-/// input that is only stale is reported if the role reacts to it.)
+/// A change in the run: a role reacts to its inputs in another way, or an input is lost, or it
+/// comes again. (An input that is only stale is reported if the role reacts to it.)
 struct Fallback {
-  std::int64_t step = 0;  // step that was under way then
+  std::int64_t step = 0;  // step that was under way at the change
   std::string role;
   std::string what;     // "TRACK, ACC_COMMAND lost: the human drives"
   std::string culprit;  // role that fell silent, "" if none is
-  double age_s = 0;     // since the role last heard the culprit
+  double age_s = 0;     // how long ago the role last heard the culprit
 
   /// "step 217: arbitrator: TRACK lost (culprit: fusion, last heard 0.25 s ago): the human drives"
   std::string Text() const;
 
   std::string inputs;  // "TRACK, ACC_COMMAND lost"
-  std::string does;    // "the human drives", as it may be printed
+  std::string does;    // "the human drives"; safe to print
 };
 
 class FallbackLog {
  public:
-  /// At most this many changes are kept. More would tell a reader little, and must not fill the
-  /// memory.
+  /// At most this many changes are kept. Further changes would tell a reader little, and must not
+  /// fill the memory.
   static constexpr std::size_t kMaxKept = 1000;
 
   /// @param step_us simulated time of a step
   /// @param speed simulated seconds per second
-  /// @param steps of the run; silence after its last step is not reported
+  /// @param steps number of steps of the run; silence after the last step is not reported
   FallbackLog(std::int64_t step_us, double speed, std::int64_t steps);
 
   /// Takes the next STATUS of a role.
-  /// @return the change since its last one, nullptr if there is none; valid until the next call
+  /// @return the change since the last STATUS of this role, nullptr if there is none; valid until
+  ///     the next call
   const Fallback* Add(const status_t& status);
 
   /// The first changes, kMaxKept at most.
   const std::vector<Fallback>& all() const { return all_; }
-  /// How many changes came after these.
+  /// How many changes came after all() was full.
   std::int64_t left_out() const { return left_out_; }
 
  private:
   struct Known {
-    std::array<InputState, kNumChannels> inputs{};  // LOST until it is OK again
+    std::array<InputState, kNumChannels> inputs{};  // a lost input stays LOST until it is OK again
     std::string does;
-    // The lost inputs in its last STATUS, and how far the run was then.
+    // The lost inputs in the role's last STATUS, and the simulated time of this STATUS in us.
     ChannelSet lost;
     std::int64_t utime = 0;
   };
@@ -65,7 +66,7 @@ class FallbackLog {
 
   std::int64_t step_us_;
   std::int64_t steps_;
-  double silent_us_;  // simulated
+  double silent_us_;  // a role is silent after this simulated time
   std::array<Known, kRoles.size()> roles_;
   Fallback newest_;
   std::vector<Fallback> all_;

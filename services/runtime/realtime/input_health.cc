@@ -15,8 +15,8 @@ InputHealth::InputHealth(const HealthSection& section, Duration period, TimePoin
     : stale_(Periods(section.stale_periods, period)),
       lost_(std::max(stale_, Periods(section.lost_periods, period))),
       recover_steps_(section.recover_steps),
-      // n steps take n - 1 periods. If the first of them came late (by up to stale_periods - 1
-      // periods), they take that much less.
+      // n steps take n - 1 periods. If the first step came late (by up to stale_periods - 1
+      // periods), this delay makes the time shorter.
       recover_time_(std::max(
           Duration::zero(),
           Periods(static_cast<double>(section.recover_steps) - section.stale_periods, period))),
@@ -83,7 +83,7 @@ double InputHealth::RateHz(TimePoint now) const {
   const TimePoint oldest = arrivals_[first];
   const auto intervals = static_cast<double>(num_arrivals_ - 1);
   // The open interval since the last arrival counts as soon as it is longer than the average of the
-  // others.
+  // closed intervals.
   const double closed_s = Seconds(heard_ - oldest) / intervals;
   const double open_s = Seconds(now - oldest) / (intervals + 1);
   const double interval_s = std::max(closed_s, open_s);

@@ -1,5 +1,6 @@
 // The health of one input in real time, by the arrival times of its steps on the receiver's own
-// clock. Callers pass the time in: nothing here reads a clock, and senders' clocks do not matter.
+// clock. Callers pass the time as an argument. This class reads no clock, and the clocks of the
+// senders do not matter.
 #pragma once
 
 #include <array>
@@ -20,23 +21,25 @@ namespace fogline::runtime {
 ///
 /// The age is the time since the last new step arrived, or since the beginning. The limits are
 /// inclusive: an age of exactly `stale` is OK. An input is OK again after `recover_steps` new
-/// steps. Each of them but the first must come within `stale` of the one before, and together they
-/// must take as long as this number of steps takes at the normal rate. So a sender that was stopped
-/// and sends its backlog at once recovers only when it is back in its rhythm.
+/// steps. Each of these steps except the first must come within `stale` after the one before.
+/// Together they must take at least the time that these steps take at the normal rate. So an input
+/// does not recover while its sender, after a stop, sends a backlog. It recovers when the sender is
+/// back in its rhythm.
 ///
-/// The loss of an input is detected `lost` periods after its last step. That is at most `lost`
-/// periods after its sender's death, plus the time until the receiver looks: see NextChange().
+/// The loss of an input is detected `lost` periods after its last step. This is at most `lost`
+/// periods after the death of the sender, plus the time until the receiver calls Update() (see
+/// NextChange()).
 class InputHealth {
  public:
   /// @param period of the steps on the wall clock, above 0
-  /// @param began from when on the input is expected
+  /// @param began the time from which on the input is expected
   InputHealth(const HealthSection& section, Duration period, TimePoint began);
 
   /// Takes note of a message of step `step`. A repetition of the newest step changes nothing. An
   /// older step is late and counted.
   void Arrived(std::int64_t step, TimePoint now);
 
-  /// Takes the time into account. @return the state now
+  /// Updates the state to the time `now`. @return the state
   InputState Update(TimePoint now);
   InputState state() const { return state_; }
   /// When Update() will change the state if no step arrives; TimePoint::max() if it will not.
@@ -49,7 +52,7 @@ class InputHealth {
   /// Steps per second over the last kRateSteps arrivals. The rate falls while no step comes. It is
   /// 0 before two steps have come.
   double RateHz(TimePoint now) const;
-  /// Messages that came after a newer one of the same input.
+  /// Messages that came after a newer message of the same input.
   std::int64_t late() const { return late_; }
 
   static constexpr std::size_t kRateSteps = 16;

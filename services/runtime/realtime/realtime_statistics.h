@@ -14,10 +14,10 @@ class status_t;
 
 namespace fogline::runtime {
 
-/// A tick is the moment at which a step is due: the beginning of a period at the world, the arrival
-/// of an input at another role. Latency goes from sensor to command: it begins when the world has
-/// sent a step's TRUTH, and ends when the HOST_COMMAND of this step reaches the world. Both times
-/// are on the world's clock, so no clocks of two hosts are compared.
+/// A tick is the beginning of a step. At the world it is due when a period begins, at another role
+/// when an input arrives. The latency of a step begins when the world has sent the TRUTH of this
+/// step, and ends when the HOST_COMMAND of this step reaches the world. Both times are on the
+/// world's clock, so no clocks of two hosts are compared.
 class RealtimeStatistics {
  public:
   /// A tick that is later than this counts as late.
@@ -25,7 +25,7 @@ class RealtimeStatistics {
 
   /// Counts a tick that was due at `due` and happened at `now`.
   void Tick(TimePoint due, TimePoint now);
-  /// Counts the time after which the command of a step came back.
+  /// Counts the latency of a step.
   void Latency(Duration duration) { latency_.Add(duration); }
   /// Counts a step that lacked an input that was due.
   void Miss() { ++deadline_misses_; }
@@ -36,7 +36,7 @@ class RealtimeStatistics {
   /// The time between a tick and its due time, early or late.
   const DurationHistogram& jitter() const { return jitter_; }
 
-  /// Writes everything into a STATUS.
+  /// Writes all figures into a STATUS.
   void Write(status_t& status) const;
 
  private:

@@ -7,7 +7,8 @@
 namespace fogline::runtime {
 namespace {
 
-// The part of a period by which a call may be late, as for the world's ticks (RunClock).
+// The part of a period by which a call may be late. RunClock has the same limit for the world's
+// ticks.
 constexpr double kLateCall = 0.25;
 // The longest interval, in periods, between two messages of an input that comes again. By default
 // an input counts as lost only after a longer silence.
@@ -61,10 +62,10 @@ StepRing::Verdict RealtimeWatch::Judge(std::size_t input, std::int64_t step, Byt
 }
 
 void RealtimeWatch::Heard(std::size_t input, std::int64_t step, TimePoint time) {
-  NoticeOwnPause(time);  // first, because the pause stops the clock that judges inputs
+  NoticeOwnPause(time);  // first, because a pause shifts the clock for the ticks
   const auto inputs = parts_.inputs.all();
   if (inputs[input].on_demand) return horizon_.KnowOf(step);
-  // every role except the world has an input that begins its steps
+  // The world's ticks begin the steps of every role except the world itself.
   if (tick_input_ < inputs.size()) {
     if (!clock_.started()) health_[tick_input_] = InputHealth(limits_, period_, time - pause_.sum);
     Begun(step, time);
@@ -143,7 +144,7 @@ void RealtimeWatch::WriteStatus(TimePoint now) {
     status.input_late.back() += late_[i].count;
   }
   statistics_.Write(status);
-  // How far the run is; the role itself may be behind.
+  // The time of the newest step of the run; the role itself may be behind.
   const std::int64_t newest = std::max(horizon_.newest(), parts_.steps.next() - 1);
   status.header.utime = std::max<std::int64_t>(0, newest) * step_us_;
   NameCulprit(now);

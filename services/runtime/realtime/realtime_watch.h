@@ -1,5 +1,5 @@
-// What every rule in real time does: it decides which messages are in time, judges inputs by
-// age (input_health.h), computes a step that is due, and keeps the statistics of the role.
+// The common part of the rules in real time. It decides which messages are in time, judges inputs
+// by age (input_health.h), computes a step that is due, and keeps the statistics of the role.
 //
 // A message that comes after the end of its step is late: it is counted and never used. A message
 // of a step that cannot be under way is refused (step_horizon.h). An input on demand has no state.
@@ -35,7 +35,7 @@ class RealtimeWatch {
 
   /// Decides what to do with an input's message of a step, and counts the message if it is late.
   StepRing::Verdict Judge(std::size_t input, std::int64_t step, Bytes bytes);
-  /// An input has a new message of a step (Inputs::Keep()).
+  /// Notes that an input has a new message of a step (Inputs::Keep()).
   void Heard(std::size_t input, std::int64_t step, TimePoint time);
   /// Judge(), Inputs::Keep() and Heard() in one, for a rule that adds nothing to them.
   void Take(std::size_t input, std::int64_t step, Arrival& arrival) {
@@ -46,9 +46,9 @@ class RealtimeWatch {
   /// `fire`, which computes the steps that are due and returns the latest time for the next call.
   /// @return the latest time for the next call
   TimePoint Poll(TimePoint now, const std::function<TimePoint(TimePoint now)>& fire);
-  /// A RUN has told how far the run is.
+  /// Notes the progress that a RUN has reported.
   void OnProgress() { horizon_.Told(parts_.run.progress, Clock::now()); }
-  /// Adds the figures of inputs and time to a STATUS.
+  /// Writes the states of the inputs and the statistics into STATUS.
   void WriteStatus(TimePoint now);
 
   InputState StateOf(std::size_t input) const { return health_[input].state(); }
@@ -59,7 +59,7 @@ class RealtimeWatch {
   /// Whether a message of the input has come lately, in time or too late to be used.
   bool Speaks(std::size_t input, TimePoint now) const;
 
-  /// The inputs that a step needs: all but those on demand.
+  /// The inputs that a step needs: all inputs except those on demand.
   std::span<const Input> awaited() const { return parts_.inputs.all().first(health_.size()); }
   /// The input that brings the world's ticks; the number of inputs if there is none.
   std::size_t tick_input() const { return tick_input_; }
@@ -67,11 +67,11 @@ class RealtimeWatch {
   std::int64_t Oldest(std::int64_t newest) const {
     return std::max(parts_.steps.next(), newest - kRingSteps + 1);
   }
-  /// Computes a step that was due at `due`. Steps between the last one and this one are counted as
-  /// missed.
+  /// Computes a step that was due at `due`. Steps between the last computed step and this one are
+  /// counted as missed.
   void ComputeDue(std::int64_t step, TimePoint due, TimePoint now);
 
-  /// The world has begun this step now.
+  /// Notes that the world has begun this step now.
   void Begun(std::int64_t step, TimePoint now);
   RunHorizon& horizon() { return horizon_; }
   /// Newest step that can be under way.
@@ -84,20 +84,22 @@ class RealtimeWatch {
   /// Messages of an input that were too late to be used.
   struct Late {
     std::int64_t count = 0;
-    TimePoint at{};  // when the last one came
+    TimePoint at{};  // when the last message came
   };
-  /// The pauses of this process: it was held up if a call came much later than was asked for.
+  /// The pauses of this process. The process was held up if Poll() was called much later than
+  /// `wake`.
   struct OwnPause {
-    TimePoint wake = TimePoint::max();  // the latest time that was asked for the next call
+    TimePoint wake = TimePoint::max();  // the latest time for the next call, from the last Poll()
     Duration sum{};
   };
 
   void NoticeOwnPause(TimePoint now);
-  /// Takes the time into account. @return when the passage of time may next change a state
+  /// Updates the states to the time `now`. @return when a state may next change although no message
+  /// comes
   TimePoint UpdateHealth(TimePoint now);
-  /// The clock that judges an input. The world's ticks are judged on the wall clock without this
-  /// process's own pauses, in which it could not hear them. All other inputs are judged on the
-  /// clock of the run.
+  /// The time `now` on the clock by which an input is judged. For the world's ticks this is the
+  /// wall clock without the pauses of this process, in which it could not hear ticks. For all other
+  /// inputs it is the clock of the run (RunClock).
   TimePoint ClockOf(std::size_t input, TimePoint now) const {
     return input == tick_input_ && clock_.started() ? now - pause_.sum : clock_.At(now);
   }
@@ -114,7 +116,7 @@ class RealtimeWatch {
   std::vector<InputHealth> health_;  // one for each awaited input
   std::vector<Late> late_;           // one for each input
   RealtimeStatistics statistics_;
-  std::string fallback_;  // in the last STATUS
+  std::string fallback_;  // the fallback in the last STATUS
 };
 
 }  // namespace fogline::runtime

@@ -1,6 +1,6 @@
 // The clock on which a role judges its inputs in real time: the wall clock without the world's
 // pauses. When the world's process stops, every role falls silent a step later, and only the world
-// is to blame. The world cannot hear its inputs during its own pause either.
+// is to blame. During its own pause the world cannot hear its inputs.
 #pragma once
 
 #include <algorithm>
@@ -12,16 +12,16 @@ namespace fogline::runtime {
 
 /// The clock runs with the wall clock while the run goes on. It stands still when the next step is
 /// overdue by more than kGrace periods, and goes on with the next step that is heard of. If steps
-/// were skipped in between, the clock advances by their periods as well. A message may come late
-/// without a pause of the world (a TRUTH that was lost and sent again). The clock then stands
-/// still, too, until the next message that is in time sets it right. The clock never goes
-/// backwards, nor ahead of the wall clock. Before the first step it stands at its beginning.
+/// were skipped in between, the clock advances by their periods as well. A message may also come
+/// late without a pause of the world (a TRUTH that was lost and sent again). The clock then stands
+/// still, too, until the next message in time corrects it. The clock never goes backwards, and it
+/// is never ahead of the wall clock. Before the first step it stands still at `began`.
 class RunClock {
  public:
   RunClock(Duration period, TimePoint began)
       : period_(period), heard_(began), then_(began), due_(began), limit_(began) {}
 
-  /// Takes note of a message that claims to be of this step: the world has begun the step.
+  /// Takes note of a message of this step, which says that the world has begun the step.
   void Heard(std::int64_t step, TimePoint now) {
     if (step <= step_) return;
     then_ = At(now);
@@ -34,7 +34,8 @@ class RunClock {
 
   /// @pre `now` is not before the last step
   TimePoint At(TimePoint now) const { return std::min(then_ + (now - heard_), limit_); }
-  /// The wall-clock time when At() is `at`; TimePoint::max() if that is not before the next step.
+  /// The wall-clock time at which At() reaches `at`; TimePoint::max() if At() does not reach it
+  /// before the next step.
   TimePoint Wall(TimePoint at) const {
     return at > limit_ ? TimePoint::max() : heard_ + (at - then_);
   }
@@ -57,9 +58,9 @@ class RunClock {
 
   Duration period_;
   std::int64_t step_ = -1;  // newest step that was heard of
-  TimePoint heard_;         // when it was heard of, on the wall clock
-  TimePoint then_;          // the same moment on this clock
-  TimePoint due_;           // when the step was due, on this clock
+  TimePoint heard_;         // when step_ was heard of, on the wall clock
+  TimePoint then_;          // heard_ on this clock
+  TimePoint due_;           // when step_ was due, on this clock
   TimePoint limit_;         // the time at which this clock stands still
 };
 

@@ -1,11 +1,12 @@
 // The newest step that a run in real time can have reached, by the reader's own clock. A message of
 // a later step must be wrong.
 //
-// The world never runs faster than its clock. So each message that proves that the world had begun
-// a step by some time gives an upper bound for all later times. A proof that comes late (a TRUTH
-// that was lost and sent again) gives a bound that is too low. So the loosest bound counts, which
-// is that of the message with the shortest way. If the world stands still, the bound only becomes
-// looser. If two clocks drift apart, newer proofs are better, so old ones are forgotten.
+// A message of a step proves that the world has begun this step. The world never runs faster than
+// its clock, so each proof gives an upper bound of the steps at all later times. A proof that comes
+// late (a TRUTH that was lost and sent again) gives a bound that is too low. So the highest
+// (loosest) bound counts, which comes from the message with the shortest delay. If the world stands
+// still, the bound becomes higher than necessary. If two clocks drift apart, newer proofs are
+// better, so old proofs are forgotten.
 #pragma once
 
 #include <algorithm>
@@ -20,9 +21,9 @@ namespace fogline::runtime {
 class StepHorizon {
  public:
   /// @param period of the steps on the wall clock, above 0
-  /// @param slack steps by which the world can be further than the best proof says
-  /// @param remembered least time for which a proof counts; the longest is twice that. In any such
-  ///     time at least one proof must come without delay.
+  /// @param slack steps by which the world can be ahead of the best proof
+  /// @param remembered a proof counts for this time at least, and for twice this time at most. In
+  ///     any period of this length at least one proof must come without delay.
   StepHorizon(Duration period, std::int64_t slack, Duration remembered)
       : period_(period), slack_(slack), remembered_(remembered) {}
 
@@ -51,7 +52,7 @@ class StepHorizon {
     TimePoint time{};
   };
 
-  /// Whether the bound of the newer proof is at least as loose as that of the older.
+  /// Whether the bound of the newer proof is the higher one, or both bounds are equal.
   bool Allows(const Proof& newer, const Proof& older) const {
     const double periods = static_cast<double>((newer.time - older.time).count()) /
                            static_cast<double>(period_.count());
@@ -63,7 +64,7 @@ class StepHorizon {
   Duration remembered_;
   bool known_ = false;
   Proof loosest_;
-  Proof recent_;  // loosest since recent_since_
+  Proof recent_;  // best proof since recent_since_
   TimePoint recent_since_{};
 };
 
@@ -73,8 +74,7 @@ class StepHorizon {
 /// second limit, which counts only while new steps are heard. So a role that is wrong about the
 /// progress corrects itself soon (for example a role that was started in the middle of the run and
 /// heard an old message first). One false message can mislead a role by the slack of two steps.
-/// Many false messages can mislead it by no more than the runner's report allows, which is one
-/// second.
+/// Many false messages can mislead it by one second, because the runner's report allows no more.
 class RunHorizon {
  public:
   /// @param period of the steps on the wall clock, above 0
@@ -83,14 +83,14 @@ class RunHorizon {
         heard_(period, kSlack, kHeardPeriods * period),
         told_(period, kSlack + kHearsay / period, kToldFor) {}
 
-  /// A message of the step came.
+  /// Notes that a message of the step has come.
   void Heard(std::int64_t step, TimePoint now) {
     heard_.Heard(step, now);
     KnowOf(step);
   }
-  /// The runner has reported this progress.
+  /// Notes that the runner has reported this progress.
   void Told(std::int64_t progress, TimePoint now) { told_.Heard(progress, now); }
-  /// This step is under way, by the runner's word or by a message of the step.
+  /// Notes that this step is under way. The runner or a message of the step says so.
   void KnowOf(std::int64_t step) { newest_ = std::max(newest_, step); }
 
   /// Newest step that is known to be under way, -1 if none.
@@ -104,12 +104,12 @@ class RunHorizon {
   }
 
  private:
-  /// The world may be ahead of the estimate by two steps. The first: a tick may be early by the
-  /// delay of an earlier tick, which is less than a period. The second: a message is on its way for
-  /// a moment.
+  /// The world may be ahead of the estimate by two steps. One step, because the estimate may rest
+  /// on a tick that was late by less than a period. One more step, because a message is on its way
+  /// for a moment.
   static constexpr std::int64_t kSlack = 2;
-  /// The progress that the runner reports is at most this old: five signs of life of the roles,
-  /// some of which may be lost.
+  /// The progress that the runner reports is at most this old. In this time a role sends five
+  /// STATUS messages, of which some may be lost.
   static constexpr Duration kHearsay = milliseconds(1000);
   /// How long a proof of the run's progress counts. A message that is sent again comes late, but a
   /// message that is older than a ring is not sent again. The runner reports old progress while it
@@ -120,8 +120,8 @@ class RunHorizon {
   static constexpr int kUnheard = 3;
 
   Duration period_;
-  StepHorizon heard_;  // by the steps that were heard
-  StepHorizon told_;   // by the runner's progress
+  StepHorizon heard_;  // the limit by the steps that were heard
+  StepHorizon told_;   // the limit by the runner's progress
   std::int64_t newest_ = -1;
 };
 

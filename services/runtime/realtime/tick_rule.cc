@@ -9,16 +9,16 @@ namespace {
 // How long the recorder may take to write the last steps. It may wait for repairs or be started
 // again itself.
 constexpr Duration kEndLimit = milliseconds(3000);
-// A world that is started again asks the recorder at this interval. It takes the newest answer that
-// comes within kAnswersLast after the first.
+// A world that is started again asks the recorder at this interval. The world takes the newest
+// answer that comes within kAnswersLast after the first answer.
 constexpr Duration kAskEvery = milliseconds(20);
 constexpr Duration kAnswersLast = milliseconds(5);
 // The first step that a restarted world asks for is this many steps before the known progress.
 constexpr std::int64_t kProgressAge = 8;
 // A tick that is later than this, in periods, was held up by more than the usual jitter.
 constexpr double kHeldUp = 0.05;
-// After such a tick the other roles get at most this long to finish the step before: several times
-// the time that they need. The next tick is at least kApart periods away.
+// Such a tick waits until the other roles have finished the previous step, but at most this long.
+// They usually need a fraction of this time. The next tick comes at least kApart periods later.
 constexpr Duration kFinish = milliseconds(3);
 constexpr double kApart = 0.25;
 

@@ -2,10 +2,10 @@
 // wall clock, even if roles have not answered.
 //
 // Step k is due k periods after the start, on a grid that does not drift. While the process or its
-// machine is stopped, ticks pass without a step. The world does not make up for them: only the last
-// of them begins a step. After a stop of the machine the step before may not be finished. The other
-// roles then get a moment for it, and the next tick keeps a distance from the late one. Simulated
-// time is the number of steps. So it stands still with the world's process, and no step is ever
+// machine is held up, ticks pass without a step. Only the last of these ticks begins a step. If the
+// whole machine was held up, the other roles may not have finished the previous step. They then get
+// a moment to finish it, and the next tick keeps a distance from the late tick. Simulated time is
+// the number of steps. So it stands still together with the world's process, and no step is ever
 // left out. Missed ticks are counted.
 //
 // A world that is started again continues after the last TRUTH that the recorder has.
@@ -77,7 +77,7 @@ class TickRule final : public FireRule {
   struct Search {
     bool listening = false;
     TimePoint ask_at{};
-    std::optional<truth_t> newest;  // that has come as an answer
+    std::optional<truth_t> newest;  // the newest TRUTH among the answers
     TimePoint answered_at{};        // when the first answer came
   };
 
@@ -87,7 +87,7 @@ class TickRule final : public FireRule {
   TakeOver take_over_;
   Phase phase_ = Phase::kWaiting;
   Grid grid_;
-  // The latest time until which a late tick waits for the step before.
+  // Until when a late tick waits for the roles to finish the previous step.
   std::optional<TimePoint> finish_by_{};
   std::array<Sent, kRingSteps> sent_{};
   std::optional<TimePoint> give_up_at_{};  // end of the wait for the recorder at the end of the run

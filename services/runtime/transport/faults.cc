@@ -66,7 +66,7 @@ void Set(std::string_view name, std::string_view text, FaultRates& rates) {
   throw FaultsError(fmt::format("\"{}\" is no kind of fault", name));
 }
 
-/// A place in [0, size).
+/// A random place in [0, size).
 std::size_t Place(double uniform, std::size_t size) {
   return static_cast<std::size_t>(uniform * static_cast<double>(size));
 }

@@ -23,15 +23,16 @@ struct FaultRates {
   double duplicate = 0;
   double reorder = 0;   // held back for 2 ms, so that later messages overtake it
   double truncate = 0;  // cut off at a random place
-  double flip = 0;      // one bit of it is wrong
-  double delay_ms = 0;  // of every message
+  double flip = 0;      // one bit is wrong
+  double delay_ms = 0;  // delay of every message
   std::int64_t seed = 1;
 
   /// Whether messages may arrive with changed contents. Only a signature detects that.
   bool Damage() const { return truncate > 0 || flip > 0; }
 };
 
-/// "loss=0.3,delay_ms=5,seed=7": any of the members of FaultRates by name. @throws InputError
+/// Reads a text such as "loss=0.3,delay_ms=5,seed=7", with any members of FaultRates by name.
+/// @throws InputError
 FaultRates ParseFaults(std::string_view text);
 
 class Faults {
@@ -58,7 +59,7 @@ class Faults {
   FaultRates rates_;
   Role role_;
   std::int64_t count_ = 0;                     // messages taken
-  std::multimap<TimePoint, Message> waiting_;  // by the time when they are due
+  std::multimap<TimePoint, Message> waiting_;  // messages by due time
 };
 
 }  // namespace fogline::runtime

@@ -119,8 +119,8 @@ void GroupMembership::Renew() {
 
 }  // namespace fogline::runtime
 
-// These functions replace the C library's, in LCM's code too. So a filter is attached before
-// bind(), and no datagram arrives before the filter.
+// These functions replace those of the C library, also in LCM's code. So a filter is attached
+// before bind(), and no datagram arrives before the filter.
 extern "C" int bind(int socket, const sockaddr* address, socklen_t size) noexcept {
   return fogline::runtime::in_charge != nullptr
              ? fogline::runtime::in_charge->OnBind(socket, address, size)

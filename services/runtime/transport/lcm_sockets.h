@@ -1,9 +1,9 @@
-// Controls LCM's UDP sockets, which LCM does not give access to: a filter is attached before the
-// first datagram arrives, and a network of this machine alone uses the loopback interface.
+// Controls LCM's UDP sockets, to which LCM gives no access. A filter is attached before the first
+// datagram arrives. A network of this machine alone uses the loopback interface.
 //
-// LCM uses the interface of the route to the group, even if no message is to leave the machine
+// LCM uses the interface of the route to the group, even if all messages stay on the machine
 // (ttl=0). Such traffic ends when that interface, its address or its route goes away, for example
-// when a cable is pulled, a Wi-Fi is lost or a lease ends. Loopback depends on none of them.
+// when a cable is pulled, a Wi-Fi is lost or a lease ends. Loopback does not depend on them.
 #pragma once
 
 #include <linux/filter.h>
@@ -38,7 +38,8 @@ class LcmSockets {
   /// them.
   bool filtered() const { return !receiving_.empty() && !refused_; }
 
-  // These replace bind(), connect() and setsockopt() of the C library, and return the same.
+  // These functions replace bind(), connect() and setsockopt() of the C library, and return the
+  // same values.
   int OnBind(int socket, const sockaddr* address, socklen_t size);
   int OnConnect(int socket, const sockaddr* address, socklen_t size) const;
   int OnOption(int socket, int level, int name, const void* value, socklen_t size);
@@ -51,7 +52,7 @@ class LcmSockets {
   bool refused_ = false;
 };
 
-/// Whether loopback is up. Some containers have none.
+/// Whether loopback is up. In some containers it is not.
 bool LoopbackIsUp();
 
 /// How far a udpm:// URL reaches: kLoopback if ttl is 0 and loopback is up, otherwise kRoute.

@@ -51,8 +51,7 @@ bool ReadOptions(std::string_view options, MulticastAddress& address) {
   return true;
 }
 
-/// Whether an address belongs to one of this machine's interfaces or to loopback: all of
-/// 127.0.0.0/8 is this machine.
+/// Whether an address belongs to one of this machine's interfaces or to loopback (127.0.0.0/8).
 bool IsOfThisMachine(in_addr numeric) {
   if (ntohl(numeric.s_addr) >> 24 == IN_LOOPBACKNET) return true;
   ifaddrs* interfaces = nullptr;
@@ -113,7 +112,7 @@ std::optional<MulticastAddress> ParseMulticastUrl(std::string_view url) {
   if (!url.starts_with(kUdpm)) return std::nullopt;
   std::string_view options = url.substr(kUdpm.size());
   std::string_view place = TakeUntil('?', options);
-  // LCM's own ttl is 0, as is ours (bus.h).
+  // The default of ttl is 0, in LCM and in Fogline (bus.h).
   MulticastAddress address{.group = *GroupOf(url), .port = kLcmPort, .ttl = 0};
   TakeUntil(':', place);
   if (!place.empty()) {

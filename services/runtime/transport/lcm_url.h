@@ -38,14 +38,14 @@ struct MulticastAddress {
 /// address in numbers, or has an option that LCM does not know.
 std::optional<MulticastAddress> ParseMulticastUrl(std::string_view url);
 
-/// Whether two URLs name one network. This compares group and port of udpm, host and port of tcpq,
-/// and the whole URL without its options otherwise.
+/// Whether two URLs name one network. For udpm this compares group and port, for tcpq host and
+/// port, otherwise the whole URL without its options.
 bool SameNetwork(std::string_view a, std::string_view b);
 
-/// Whether a program may go to this network because a message names it. It may if the URL is a
-/// multicast group whose traffic gets no further than the next router (ttl 0 or 1), or a relay of
-/// this machine with its address in numbers. With mpudpm it may not, because nothing filters the
-/// messages that reach LCM's parser.
+/// Whether a program may go to this network because a message names it. The URL must name a
+/// multicast group whose traffic ends at the next router or before (ttl 0 or 1), or a relay of this
+/// machine with its address in numbers. mpudpm is refused, because nothing filters the messages
+/// that reach LCM's parser.
 bool MayBeAnnounced(std::string_view url);
 
 }  // namespace fogline::runtime

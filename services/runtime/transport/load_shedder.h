@@ -1,5 +1,6 @@
-// A limit for floods of messages: a process lets in as many messages as it can handle. The kernel
-// drops the rest before it fills the receive buffer. That costs nothing.
+// A limit for floods of messages. A process lets in only a share of the messages, so that it can
+// handle them. The kernel drops the other messages before they fill the receive buffer, which costs
+// the process nothing.
 #pragma once
 
 #include <algorithm>
@@ -15,18 +16,19 @@ class LoadShedder {
   /// @param per_second messages that the process can handle
   explicit constexpr LoadShedder(double per_second) : per_second_(per_second) {}
 
-  /// Counts a message that has come. @return the share of messages to let in from now on, if that
-  /// changes
+  /// Counts a message that has come. @return the share of messages to let in from now on; nullopt
+  /// if the share does not change
   std::optional<double> Count(TimePoint now) {
     ++count_;
     const std::chrono::duration<double> passed = now - since_;
     if (passed < kWindow) return std::nullopt;
-    // Only share_ of the sent messages came.
+    // Of the sent messages, only the share `share_` has come.
     const double sent = count_ / passed.count() / share_;
     since_ = now;
     count_ = 0;
     const double share = std::clamp(per_second_ / sent, kLeast, 1.0);
-    // A change costs a system call, so a share within a fifth of the wanted one is kept.
+    // A change costs a system call, so the share is kept if it differs from the wanted share by
+    // less than a fifth.
     if (share > 0.8 * share_ && share < 1.2 * share_ && !(share == 1 && share_ < 1)) {
       return std::nullopt;
     }

@@ -57,7 +57,7 @@ std::string InPlaceOfUnicast(std::string_view url) {
 std::string RouteError(const std::string& address) {
   const auto numeric = ToAddress(address);
   if (!numeric) return "not an IPv4 address";
-  // A UDP socket is connected without a packet: the kernel only looks for the route.
+  // connect() of a UDP socket sends no packet: the kernel only looks for the route.
   constexpr std::uint16_t kAnyPort = 7667;
   sockaddr_in to{};
   to.sin_family = AF_INET;
@@ -123,7 +123,7 @@ bool HasGroup(std::string_view table, std::string_view interface, const std::str
     if (!line.starts_with('\t')) {  // "2	eth0      :     3      V3", and then its groups
       std::string name;
       fields >> name >> name;
-      here = name.substr(0, name.find(':')) == interface;  // a long name has the colon attached
+      here = name.substr(0, name.find(':')) == interface;  // a long name touches the colon
       continue;
     }
     std::uint32_t address =

@@ -26,9 +26,9 @@ std::string InPlaceOfUnicast(std::string_view url);
 /// The kernel's error for a route to an IPv4 address; "" if it has a route.
 std::string RouteError(const std::string& address);
 
-/// The interface of the route to an IPv4 address, by a table in the form of /proc/net/route
-/// (longest prefix, then lowest metric); "" if there is no such route or `address` is no IPv4
-/// address.
+/// The interface of the route to an IPv4 address; "" if there is no such route or `address` is no
+/// IPv4 address.
+/// @param table in the form of /proc/net/route; the longest prefix wins, then the lowest metric
 std::string RouteInterface(std::string_view table, const std::string& address);
 
 /// A table of the kernel, such as /proc/net/route; "" if it cannot be read.

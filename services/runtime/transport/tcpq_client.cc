@@ -33,7 +33,8 @@ constexpr std::size_t kMaxReceived = 64 << 20;
 // that read nothing.
 constexpr std::size_t kReadEvery = 256 << 10;
 
-/// A file that is never readable: polled in place of a lost connection, it wakes no program.
+/// A file that is never readable. It takes the place of a lost connection, so that it does not wake
+/// a program that polls the descriptor.
 int QuietFile() { return eventfd(0, EFD_CLOEXEC); }
 
 }  // namespace
@@ -69,7 +70,7 @@ int Client::Connect(Duration limit) const {
     ThrowIfExhausted(errno, endpoint_.ToString());
     throw std::runtime_error(fmt::format("no socket: {}", std::strerror(errno)));
   }
-  const int on = 1;  // sends each message at once, not after the previous packet is acknowledged
+  const int on = 1;  // sends a message without a wait for earlier acknowledgements
   setsockopt(connection, IPPROTO_TCP, TCP_NODELAY, &on, sizeof(on));
   sockaddr_in address{};
   address.sin_family = AF_INET;
@@ -104,7 +105,7 @@ void Client::Greet(Duration limit) {
   const TimePoint end = Clock::now() + limit;
   while (!parser_.Greeted()) {
     if (!Ready(POLLIN, end - Clock::now())) {
-      if (Clock::now() < end) continue;  // a signal
+      if (Clock::now() < end) continue;  // a signal has ended the wait
       throw std::runtime_error(
           fmt::format("{} takes connections but does not answer: is it a fogline-relay?",
                       endpoint_.ToString()));
@@ -211,7 +212,7 @@ bool Client::Parse() {
 
 void Client::Handle() {
   if (!Parse()) return;
-  const Frame frame = *next_;  // its bytes stay valid until Readable() appends others
+  const Frame frame = *next_;  // its bytes are valid until Readable() appends others
   next_.reset();
   for (const auto& [channel, handler] : handlers_) {
     if (channel == frame.name) handler(frame.payload);

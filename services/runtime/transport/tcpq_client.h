@@ -29,16 +29,15 @@ class ConnectionLost : public std::runtime_error {
 /// One connection, for one thread.
 ///
 /// Readable() makes a lost connection again as soon as the relay is back. All messages in the
-/// meantime are lost, those of this process and those of others. If the relay is not back after
-/// kTries, Readable() throws ConnectionLost once. After that it only waits, so that the process can
-/// end a run in order.
+/// meantime are lost. If the relay is not back after kTries tries, Readable() throws ConnectionLost
+/// once. After that it only waits, so that the process can end a run in order.
 class Client {
  public:
   using Handler = std::function<void(Bytes)>;
 
   /// The interval and the number of tries to make a lost connection again: 10 s in all. A killed
   /// relay of a run is started again within a second, unless the machine has no room for a process.
-  /// A person who restarts a relay takes longer than any role waits.
+  /// A person needs more time to restart a relay than any role waits.
   static constexpr Duration kTryEvery = milliseconds(50);
   static constexpr int kTries = 200;
 
@@ -79,7 +78,7 @@ class Client {
 
  private:
   class Lost;
-  /// A socket that is connected to the relay.
+  /// Connects a socket to the relay. @return the socket
   int Connect(Duration limit) const;
   /// Sends the client's greeting and its subscriptions, and waits until the relay has answered.
   void Greet(Duration limit);
@@ -101,16 +100,16 @@ class Client {
   FrameParser parser_;
   std::optional<Frame> next_;        // the frame to be handled next
   std::vector<std::uint8_t> chunk_;  // buffer for a read from the kernel
-  // Received but not yet parsed, because a handler may still use the last frame.
+  // Bytes that are received but not yet parsed, because a handler may still use the last frame.
   std::vector<std::uint8_t> received_;
-  std::vector<std::uint8_t> frame_;    // being sent
+  std::vector<std::uint8_t> frame_;    // the frame that is being sent
   std::size_t sent_unread_ = 0;        // bytes sent since the last read
   std::vector<std::string> patterns_;  // subscriptions for the relay
   std::vector<std::pair<std::string, Handler>> handlers_;
   Watcher watcher_;
   bool lost_ = false;
   std::string trouble_;
-  int tries_ = 0;  // to connect again
+  int tries_ = 0;  // number of tries to connect again
   TimePoint try_at_{};
 };
 

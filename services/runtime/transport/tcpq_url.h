@@ -1,6 +1,6 @@
-// The address of a tcpq relay. LCM resolves no host names: its test of what inet_aton() returns
-// cannot fail, so a name silently becomes 0.0.0.0, this machine. So Fogline resolves names before
-// LCM's programs see them.
+// The address of a tcpq relay. LCM resolves no host names, and does not notice that inet_aton()
+// fails for a name. So a name silently becomes 0.0.0.0, which is this machine. Fogline therefore
+// resolves names before LCM's programs see them.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace fogline::runtime::tcpq {
 
-inline constexpr std::uint16_t kDefaultPort = 7700;  // LCM's
+inline constexpr std::uint16_t kDefaultPort = 7700;  // the default of LCM
 
 /// An IPv4 address in numbers and a port.
 struct Endpoint {
@@ -21,11 +21,11 @@ struct Endpoint {
   std::string Url() const { return "tcpq://" + ToString(); }
 };
 
-/// "HOST", "HOST:PORT" or "" (127.0.0.1), where HOST is a name or an IPv4 address.
-/// @throws InputError that begins with `what` if there is no such host or port
+/// Reads "HOST", "HOST:PORT" or "" (127.0.0.1), where HOST is a name or an IPv4 address.
+/// @throws InputError that names `what` if there is no such host or port
 Endpoint Resolve(std::string_view host_and_port, std::string_view what);
 
-/// The same for a URL: such a text after "tcpq://".
+/// Resolve() for a URL: "tcpq://" and such a text. @throws InputError also for port 0
 Endpoint ResolveUrl(std::string_view url);
 
 }  // namespace fogline::runtime::tcpq

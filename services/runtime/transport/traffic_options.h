@@ -1,5 +1,5 @@
-// The options for a process's traffic: a key, faults. They are the same for `fogline run` and for
-// every service.
+// The options for the messages of a process: a key and faults. They are the same for `fogline run`
+// and for every service.
 #pragma once
 
 #include <optional>
@@ -15,8 +15,8 @@ class App;
 namespace fogline::runtime {
 
 struct TrafficOptions {
-  std::string key_file;  // "": unsigned
-  std::string faults;    // text for ParseFaults(); "": none
+  std::string key_file;  // "": messages are not signed
+  std::string faults;    // text for ParseFaults(); "": no faults
 };
 
 /// Adds --key and --faults to a command line.

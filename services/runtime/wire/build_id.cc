@@ -23,7 +23,7 @@ constexpr std::size_t kBeginning = 1 << 16;
 constexpr std::size_t kNoteAlignment = 4;
 constexpr std::string_view kNoteOwner("GNU\0", 4);
 
-/// The structure at an offset; nullopt if the bytes end before it does.
+/// The structure at an offset; nullopt if the bytes end before the end of the structure.
 template <class T>
 std::optional<T> At(Bytes bytes, std::size_t offset) {
   if (offset > bytes.size() || bytes.size() - offset < sizeof(T)) return std::nullopt;
@@ -32,7 +32,7 @@ std::optional<T> At(Bytes bytes, std::size_t offset) {
   return value;
 }
 
-/// `size` bytes from `offset` on, or as many of them as there are.
+/// `size` bytes from `offset` on, or fewer if the bytes end before.
 Bytes Part(Bytes bytes, std::size_t offset, std::size_t size) {
   const Bytes rest = bytes.subspan(std::min(offset, bytes.size()));
   return rest.first(std::min(size, rest.size()));

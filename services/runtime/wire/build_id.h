@@ -1,7 +1,7 @@
 // The build of the program that a process runs. The linker writes a hash of everything that it
-// links into the program (its GNU build id). So two programs of one name have the same build id
-// only if their code is the same. The build id distinguishes builds but proves nothing: a process
-// may report any number.
+// links into the program (its GNU build id). So two programs of the same name have the same build
+// id only if they have the same code. The build id distinguishes builds but proves nothing: a
+// process may report any number.
 #pragma once
 
 #include <cstdint>
@@ -14,11 +14,11 @@ namespace fogline::runtime {
 
 /// The first 8 bytes of a program's GNU build id.
 using BuildId = std::int64_t;
-/// The build id of a program that has none or does not report one.
+/// Stands for the build id of a program that has no build id or does not report it.
 inline constexpr BuildId kUnknownBuild = 0;
 
 /// The build id in the first bytes of a program's file (ELF, of this machine's byte order); the
-/// bytes must include its notes.
+/// bytes must include the notes of the file.
 BuildId BuildIdIn(Bytes file);
 /// The build id of a program's file.
 BuildId BuildIdOf(const std::filesystem::path& program);

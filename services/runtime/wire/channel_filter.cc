@@ -45,12 +45,12 @@ std::uint8_t Jump(std::size_t instructions) {
   return static_cast<std::uint8_t>(instructions);
 }
 
-/// Skips `skip` instructions unless the value loaded last is this one.
+/// Skips `skip` instructions unless the value that was loaded last is `value`.
 sock_filter SkipUnless(std::uint32_t value, std::size_t skip) {
   return BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, value, 0, Jump(skip));
 }
 
-/// Skips `skip` instructions if the value loaded last is this one.
+/// Skips `skip` instructions if the value that was loaded last is `value`.
 sock_filter SkipIf(std::uint32_t value, std::size_t skip) {
   return BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, value, Jump(skip), 0);
 }
@@ -64,7 +64,7 @@ std::uint32_t BigEndian(std::string_view bytes) {
 }
 
 /// Appends instructions that compare the datagram with `text` at offset `at`. If the datagram
-/// differs, as many instructions after these are skipped as `then` says.
+/// differs, the next `then` instructions after these are skipped.
 void AppendText(std::string_view text, std::size_t at, std::size_t then,
                 std::vector<sock_filter>& program) {
   struct Piece {
@@ -89,7 +89,7 @@ void AppendText(std::string_view text, std::size_t at, std::size_t then,
 /// Appends instructions for one wanted channel: they take or drop a datagram of this channel. For a
 /// datagram of another channel, the program goes on behind these instructions.
 void AppendWanted(const Wanted& wanted, std::vector<sock_filter>& program) {
-  const std::string_view name(wanted.channel.c_str(), wanted.channel.size() + 1);  // with its 0
+  const std::string_view name(wanted.channel.c_str(), wanted.channel.size() + 1);  // with the 0
   std::vector<sock_filter> contents;
   if (wanted.share < 1) {
     constexpr double kRandomMax = 4294967295.0;
@@ -112,7 +112,7 @@ void AppendWanted(const Wanted& wanted, std::vector<sock_filter>& program) {
 std::vector<sock_filter> WholeMessages() {
   return {
       BPF_STMT(BPF_LD | BPF_W | BPF_LEN, 0),
-      BPF_JUMP(BPF_JMP | BPF_JGT | BPF_K, kMaxDatagram, 2, 0),  // to Take(kNothing)
+      BPF_JUMP(BPF_JMP | BPF_JGT | BPF_K, kMaxDatagram, 2, 0),  // drops longer datagrams
       Load(4, kMagicOffset),
       SkipIf(kSmallMessage, 1),  // goes on with the channels
       Take(kNothing),
@@ -123,8 +123,8 @@ std::vector<sock_filter> WholeMessages() {
 
 std::vector<sock_filter> ChannelFilter(std::vector<Wanted> wanted) {
   std::vector<sock_filter> program = WholeMessages();
-  // A filter that reads beyond the end of a datagram drops it. Short names are compared first. So
-  // no comparison reads further than the name that matches and its wanted contents.
+  // If a filter reads beyond the end of a datagram, the datagram is dropped. Short names are
+  // compared first. So no comparison reads beyond the matching name and its wanted contents.
   std::ranges::stable_sort(wanted, {}, [](const Wanted& one) { return one.channel.size(); });
   for (const Wanted& one : wanted) AppendWanted(one, program);
   program.push_back(Take(kNothing));
@@ -133,7 +133,8 @@ std::vector<sock_filter> ChannelFilter(std::vector<Wanted> wanted) {
 
 std::vector<sock_filter> AnyChannelFilter() {
   std::vector<sock_filter> program = WholeMessages();
-  // Looks for the 0 behind the name. A filter that reads beyond the end of a datagram drops it.
+  // Looks for the 0 behind the name. If the filter reads beyond the end of a datagram, the datagram
+  // is dropped.
   constexpr std::size_t kPlaces = kLongestChannel + 1;
   for (std::size_t i = 0; i < kPlaces; ++i) {
     program.push_back(Load(1, kChannelOffset + i));

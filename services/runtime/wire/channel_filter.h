@@ -1,14 +1,15 @@
 // Lets the kernel drop LCM messages that this process has not subscribed to.
 //
-// Every process of an LCM network receives every message. LCM's receiving thread wakes up for each,
-// and throws most of them away. With ten processes and nine messages a step, two thirds of a
-// machine's work for a step goes into waking threads that then have nothing to do. The kernel can
-// read the channel's name when the datagram arrives, and wake no thread (a socket filter, see
-// socket(7)). Nothing else changes: subscribed messages arrive in the same order.
+// Every process of an LCM network receives every message. LCM's receiving thread wakes up for each
+// message, and throws most messages away. With ten processes and nine messages a step, two thirds
+// of a machine's work for a step goes into waking threads that then have nothing to do. With a
+// socket filter (socket(7)) the kernel reads the channel's name when a datagram arrives, and wakes
+// no thread for an unwanted datagram. Nothing else changes: subscribed messages arrive in the same
+// order.
 //
-// Datagrams that no Fogline process sends do not reach LCM's parser either. These are fragments,
-// whose bounds LCM does not check properly (lcm-proj/lcm#628: a remote heap write), and datagrams
-// that are no LCM message at all.
+// The filter also drops datagrams that no Fogline process sends, before they reach LCM's parser.
+// These are fragments, whose bounds LCM does not check properly (lcm-proj/lcm#628: a remote heap
+// write), and datagrams that are no LCM message at all.
 #pragma once
 
 #include <linux/filter.h>
@@ -40,12 +41,12 @@ struct Wanted {
 ///     skip
 std::vector<sock_filter> ChannelFilter(std::vector<Wanted> wanted);
 
-/// The same for all channels: takes every whole LCM message of at most that size whose channel name
-/// ends with a 0.
+/// Like ChannelFilter(), but for all channels: takes every whole LCM message that is not too large
+/// and whose channel name ends with a 0.
 std::vector<sock_filter> AnyChannelFilter();
 
 /// Attaches a filter to the socket, in place of an earlier one.
-/// @return false if the kernel refuses: the socket goes on as before
+/// @return false if the kernel refuses; the socket then works as before
 /// @throws std::logic_error if the program is longer than the kernel allows (BPF_MAXINSNS)
 [[nodiscard]] bool AttachFilter(int socket, std::vector<sock_filter> program);
 

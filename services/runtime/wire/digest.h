@@ -26,8 +26,8 @@ class Hash {
   std::unique_ptr<State> state_;
 };
 
-/// BLAKE2b-256 over the payloads of all kStep channels in the order of the graph table, step by
-/// step, without the run id, which names a run but does not describe it.
+/// BLAKE2b-256 of the payloads of all kStep channels in the order of the graph table, step by step.
+/// The run id is not included, because it names a run but does not describe it.
 class Digest {
  public:
   /// Adds one encoded message (at least kHeaderEnd bytes).

@@ -4,7 +4,7 @@
 //
 //   payload | "FLS1" | key id, 2 bytes | sender's role, 2 bytes | tag, 16 bytes
 //
-// The tag is BLAKE2b (RFC 7693) under the key, over the channel's name, a 0, the sender and the
+// The tag is BLAKE2b (RFC 7693) with the key, of the channel's name, a 0, the sender and the
 // payload. The payload's own header contains run id and step. So a message is not valid in another
 // run, in another step, on another channel or from another role. All processes share one key: a
 // process that has it can sign as any role. The key id distinguishes keys and protects nothing.
@@ -35,10 +35,12 @@ class SigningKey {
   SigningKey& operator=(const SigningKey&) = default;
 
   /// @throws InputError when the file cannot be read, holds no key, or is not a secret of this
-  ///     user: it belongs to another user (except root), or other users can read or change it
+  ///     user. It is no secret if it belongs to another user (except root), or if other users can
+  ///     read or change it.
   static SigningKey Load(const std::filesystem::path& file);
   /// Writes a random key into a new file that only its owner can read.
-  /// @throws InputError when the file exists or cannot be written
+  /// @throws InputError when the file exists or cannot be created; std::runtime_error when the disk
+  ///     is full
   static void Create(const std::filesystem::path& file);
 
   const Secret& secret() const { return secret_; }
@@ -52,7 +54,7 @@ inline constexpr std::size_t kSignatureBytes = 24;
 
 inline constexpr std::array<std::uint8_t, 4> kSignatureMagic{'F', 'L', 'S', '1'};
 
-/// Whether the message ends like a signed one. The signature is not verified.
+/// Whether the message ends like a signed message. The signature is not verified.
 inline bool LooksSigned(Bytes message) {
   return message.size() >= kSignatureBytes &&
          std::memcmp(message.data() + message.size() - kSignatureBytes, kSignatureMagic.data(),
@@ -63,11 +65,11 @@ inline Bytes WithoutSignature(Bytes message) {
   return message.first(message.size() - kSignatureBytes);
 }
 
-/// Signs and verifies for one process.
+/// Signs and verifies the messages of one process.
 class MessageSigner {
  public:
-  /// @param sender this process's role; nullopt if the process has every role (a run in memory):
-  ///     then each message is signed as from its producer
+  /// @param sender this process's role; nullopt if the process has every role (a run in memory).
+  ///     Each message is then signed as if its producer had signed it.
   MessageSigner(const SigningKey& key, std::optional<Role> sender)
       : key_(key), id_(IdOf(key)), sender_(sender) {}
 
@@ -81,7 +83,7 @@ class MessageSigner {
   };
   struct Opened {
     Verdict verdict;
-    Bytes payload;  // without the trailer; empty unless the verdict is good
+    Bytes payload;  // without the trailer; empty if the verdict is not good
   };
   Opened Open(std::string_view channel, Bytes message) const;
 

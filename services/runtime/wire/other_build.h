@@ -25,7 +25,7 @@ struct OtherBuild {
   BuildId ours;   // build of the role's program in the runner's folder
 
   /// "driver (pid 4711 on lab2) is of build 1f..., but the runner is of build 2e...". If one of the
-  /// builds is not known, says which.
+  /// builds is not known, the text says which one.
   std::string Text() const;
 };
 

@@ -11,7 +11,7 @@
 namespace fogline::runtime {
 
 struct RefusalKind {
-  std::string_view key;  // in JSON and in status_t
+  std::string_view key;  // name in JSON and in status_t
   std::int64_t status_t::*counter;
   std::string_view what;  // completes "refused messages: 3 ..."
 };
@@ -30,7 +30,8 @@ inline constexpr std::array kRefusals{
 using RefusalCounter = std::int64_t status_t::*;
 
 /// Decodes a message.
-/// @return why it must be refused, apart from its run and step; nullptr if it is sound
+/// @return why the message must be refused; nullptr if it is sound. Run and step are not checked
+///     here.
 template <class M>
 [[nodiscard]] RefusalCounter Examine(Bytes bytes, M& message) {
   if (bytes.size() < kHeaderEnd) return &status_t::malformed;

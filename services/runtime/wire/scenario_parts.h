@@ -11,8 +11,8 @@
 
 namespace fogline::runtime {
 
-/// Bytes of scenario text in one RUN message; the rest of kMaxMessageBytes is for its other
-/// fields.
+/// Bytes of scenario text in one RUN message; the rest of kMaxMessageBytes is for the other fields
+/// of RUN.
 inline constexpr std::size_t kPartBytes = 1000;
 
 /// The range of simulated seconds per second that a run may have: a step of 0.1 s takes between 0.1
@@ -51,7 +51,7 @@ inline run_t MakeRunPart(std::int64_t run_id, std::int8_t phase, double pace,
 /// Collects the parts of one run's scenario, in any order and with repetitions.
 class ScenarioParts {
  public:
-  /// The most parts that a sender may announce: 240 MB of text.
+  /// The most parts that a sender may announce. With kPartBytes each, they are 200 MB of text.
   static constexpr std::int32_t kMaxParts = 200'000;
 
   /// Takes the part in a run_t.

@@ -17,7 +17,7 @@ inline constexpr std::int64_t kRingSteps = 64;
 inline constexpr std::int64_t kMaxAhead = 32;
 static_assert(2 * kMaxAhead <= kRingSteps, "some steps would be neither in a ring nor on disk");
 
-/// Far beyond any run. Arithmetic on steps up to here does not overflow.
+/// A step number that no run reaches. Arithmetic on steps up to this number does not overflow.
 inline constexpr std::int64_t kMaxStep = 1'000'000'000'000;
 
 /// Steps `first` to `first + count - 1`.
@@ -38,11 +38,11 @@ class StepRing {
   enum class Verdict {
     kNew,        // Store() it
     kDuplicate,  // known already, or so old that it is not needed
-    // The same step with other bytes: two producers, or a producer whose output is not a function
-    // of its inputs.
+    // The same step with other bytes. There are two producers, or a producer whose output is not a
+    // function of its inputs.
     kConflict,
     kOutOfWindow,  // so far ahead that it cannot belong to a run in lockstep
-    kElsewhere,    // of no use here, but known to be under way
+    kElsewhere,    // of no use to this role, but its step is known to be under way
     kLate,         // came after the end of its step
   };
 

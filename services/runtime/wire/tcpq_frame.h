@@ -1,12 +1,13 @@
-// The frames of LCM's tcpq protocol, both ways: a byte stream in, whole frames out, no socket.
+// The frames of LCM's tcpq protocol. FrameParser cuts a received byte stream into frames;
+// AppendFrame() writes a frame. There is no socket here.
 //
 // All words are 32 bits, big endian. Each side begins with two words: its magic and the version.
 // Then frames follow:
 //   PUBLISH      1, length, channel, length, payload
 //   SUBSCRIBE    2, length, regular expression
 //   UNSUBSCRIBE  3, length, regular expression
-// A relay sends PUBLISH only, the same bytes that it got. Source: lcm_tcpq.c and TCPService.java of
-// LCM 1.3.1.
+// A relay sends only PUBLISH frames, with the same bytes that it has received. Source: lcm_tcpq.c
+// and TCPService.java of LCM 1.3.1.
 #pragma once
 
 #include <cstddef>
@@ -29,7 +30,7 @@ enum class FrameType : std::uint32_t { kPublish = 1, kSubscribe = 2, kUnsubscrib
 /// The largest parts of a frame, in bytes. A longer part is refused before it is read.
 struct Limits {
   std::size_t channel = kLongestChannel;
-  // Of a subscription: the cost of a match grows with the square of its length.
+  // The cost of matching a subscription grows with the square of the length of its pattern.
   std::size_t pattern = 256;
   std::size_t payload = 4 << 20;
 };
@@ -43,7 +44,7 @@ struct Frame {
 };
 
 /// Cuts a byte stream into frames. If the caller takes all frames after every Append(), the parser
-/// holds at most one frame and the bytes that came with its end.
+/// holds at most the bytes of one frame and of the last Append().
 class FrameParser {
  public:
   /// @param magic the word that the other side must begin with
@@ -58,7 +59,7 @@ class FrameParser {
   /// The next whole frame; nullopt if more bytes are needed, or if error() says what is wrong.
   std::optional<Frame> Next();
 
-  /// Why the stream cannot be tcpq; "" while it can. An error is final.
+  /// Why the stream is not tcpq; "" if no error is known. An error is final.
   const std::string& error() const { return error_; }
 
  private:
@@ -68,7 +69,7 @@ class FrameParser {
   std::uint32_t magic_;
   Limits limits_;
   std::vector<std::uint8_t> buffer_;
-  std::size_t begin_ = 0;  // of the bytes that are not taken yet
+  std::size_t begin_ = 0;  // where the bytes that are not taken yet begin
   bool greeted_ = false;
   std::string error_;
 };

@@ -21,8 +21,8 @@ namespace fogline::runtime {
 
 using Bytes = std::span<const std::uint8_t>;
 
-/// The largest message. With the headers of UDP and LCM, the channel's name and a signature it
-/// still fits into one Ethernet frame, so it is not fragmented.
+/// The largest message. With the headers of UDP and LCM, the channel's name and a signature, such a
+/// message fits into one Ethernet frame. So it is not fragmented.
 inline constexpr std::size_t kMaxMessageBytes = 1400;
 /// LCM's longest channel name (LCM_MAX_CHANNEL_NAME_LENGTH), in bytes.
 inline constexpr std::size_t kLongestChannel = 63;

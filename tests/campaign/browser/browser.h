@@ -27,9 +27,9 @@ enum class Scheme { kDark = 0, kLight = 1 };
 inline constexpr ViewSize kDesktop{1280, 900};
 inline constexpr ViewSize kPhone{360, 740};
 
-/// The page in a frame of the wanted size (a window itself has at least 500 pixels), beside an
-/// unfinished document. Chromium prints when everything is loaded, so the probe ends that document
-/// when it is done.
+/// The page in a frame of the wanted size, because a window has at least 500 pixels. Chromium
+/// prints when everything is loaded. So an unfinished document lies beside the page, and the probe
+/// ends this document at its own end.
 inline constexpr std::string_view kFrame = R"(<!DOCTYPE html><body style="margin:0">
 <iframe id="hold" hidden></iframe>
 <script>document.getElementById("hold").contentDocument.open();</script>
@@ -87,8 +87,8 @@ inline std::string Replaced(std::string text, std::string_view what, std::string
 
 class BrowserTest : public ::testing::Test {
  protected:
-  /// Shows a page in a window and runs `script`. @return the object `found` of the script, with the
-  /// page's "problems" and with "loaded", the number of resources from outside
+  /// Shows a page in a window and runs `script`. @return the object `found` of the script. In it,
+  /// "problems" are the page's errors, and "loaded" is the number of resources from outside
   nlohmann::json Show(std::string report, ViewSize window, std::string_view script,
                       Scheme scheme = Scheme::kLight) {
     report.insert(report.find("<meta"), kWatch);

@@ -55,7 +55,7 @@ TEST_F(ReportInBrowserTest, GivesEachRunAPanelSideBySideAtFirst) {
   EXPECT_EQ(found["spans"], 1) << "panels of a figure are compared, so they share their axis";
 }
 
-/// Runs in which all cars keep 20 m/s. The axis of speeds is then as short as it may be.
+/// Runs in which all cars keep 20 m/s. The axis of speeds then has its shortest span.
 std::vector<report::ReportRun> SteadyRuns() {
   std::vector<report::ReportRun> runs = ExampleRuns();
   for (report::ReportRun& run : runs) {

@@ -1,4 +1,4 @@
-// Prints the digest of every shipped scenario with every fog model: "paper none 63a1...".
+// Prints the digest of every shipped scenario with every fog model, as lines "paper none 63a1...".
 #include <cstdio>
 
 #include "tests/property/services/closed_loop/shipped.h"

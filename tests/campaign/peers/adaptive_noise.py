@@ -11,7 +11,7 @@ import sys
 
 from exported_run import Differences, Run
 
-# Relative; an inverse of a covariance with entries from 1e-4 to 1e3 loses some digits.
+# A relative tolerance. The inverse of a covariance with entries from 1e-4 to 1e3 loses some digits.
 TOLERANCE = 1e-7
 CASES = {
     "innovation": ["/fusion/adaptive_noise=innovation"],

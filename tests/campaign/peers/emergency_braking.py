@@ -9,7 +9,8 @@ import sys
 
 from exported_run import Differences, Run
 
-# An ACC that may hardly brake closes in on a slow car, in clear air, in fog and with a driver. Two cars follow.
+# An ACC whose braking is limited to 0.1 m/s2 closes in on a slow car, in clear air, in fog and with
+# a driver. Two cars follow.
 SLOW_CAR = ["/lead/speed_mps=8", "/world/host_gap_m=40", "/world/follower_gap_m=8", "/followers/count=2",
             "/world/end_on_collision=false", "/acc/min_acceleration_mps2=-0.1", "/aeb/enabled=true",
             "/followers/aeb/enabled=true", "/steps=300"]
@@ -107,7 +108,7 @@ def main(fogline, scenario):
         print(f"{name}: host {counts}, following cars brake in {braked} steps")
         differences.expect(counts["braking"] > 0, f"{name}: the host never brakes")
         if run.scenario["host_vehicle"]["model"] == "longitudinal":
-            # Friction 0.15, air drag and rolling resistance.
+            # The limit is a friction of 0.15, plus air drag and rolling resistance.
             hardest = min(truth["host_acceleration_mps2"] for truth in run.TRUTH)
             differences.expect(hardest > -(0.15 * 9.80665 + 0.3), f"{name}: {hardest} m/s2 on ice")
     return differences.exit_code()

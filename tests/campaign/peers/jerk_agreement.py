@@ -13,7 +13,7 @@ import sys
 import tempfile
 
 MEASURES = ("max_abs_jerk_1s_mps3", "max_handover_jerk_1s_mps3")
-RELATIVE = 1e-12  # both subtract the same two numbers
+RELATIVE = 1e-12  # Fogline and the script subtract the same two numbers
 CASES = {
     "as in the file": [],
     "steps of 0.05 s": ["/step_s=0.05", "/steps=1000"],

@@ -39,7 +39,7 @@ double Idm(double v, double preceding_v, double gap, double time_gap) {
 class BareDriver {
  public:
   BareDriver(lcm::LCM& lcm, double time_gap) : lcm_(lcm), time_gap_(time_gap) {
-    // 0 is no limit. LCM's default is 30 waiting messages, and it drops the newest beyond that.
+    // 0 means no limit. By default LCM keeps 30 waiting messages and drops newer ones.
     lcm_.subscribe("RUN", &BareDriver::OnRun, this)->setQueueCapacity(0);
     lcm_.subscribe("TRUTH", &BareDriver::OnTruth, this)->setQueueCapacity(0);
     lcm_.subscribe("RESEND", &BareDriver::OnResend, this)->setQueueCapacity(0);
@@ -74,7 +74,7 @@ class BareDriver {
     stopped_ = run->phase == run_t::STOP;
   }
 
-  // One answer to each step. A TRUTH that comes twice gets no second answer.
+  // Answers each step once. A TRUTH that comes twice gets no second answer.
   void OnTruth(const lcm::ReceiveBuffer*, const std::string&, const truth_t* truth) {
     const int64_t step = truth->header.step;
     if (!IsOurs(truth->header) || answers_.count(step) > 0) return;
@@ -84,13 +84,13 @@ class BareDriver {
                                    truth->host_gap_m, time_gap_);
     answer.readiness = 1;
     lcm_.publish("DRIVER_COMMAND", &answer);
-    answers_.erase(answers_.begin(), answers_.lower_bound(step - 64));  // no role lags that much
+    answers_.erase(answers_.begin(), answers_.lower_bound(step - 64));  // no role is so far behind
     status_.state = status_t::RUNNING;
     status_.header.step = step;
   }
 
-  // Another role lacks an answer: repeat it. If this driver lacks the TRUTH of that step, ask for
-  // it.
+  // Another role lacks an answer of this driver, so the driver repeats it. If the driver lacks the
+  // TRUTH of that step, it asks for this TRUTH.
   void OnResend(const lcm::ReceiveBuffer*, const std::string&, const resend_t* resend) {
     if (!IsOurs(resend->header) || resend->channel != "DRIVER_COMMAND") return;
     const auto answer = answers_.find(resend->header.step);

@@ -1,4 +1,5 @@
-// Processes of a run are killed or hang, and the run ends as if nothing had happened.
+// Processes of a run are killed or hang. The run replaces them and has the same result, or it ends
+// with one clear error.
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -22,7 +23,7 @@ class CrashOfARoleTest : public testing::TestWithParam<std::string> {};
 
 TEST_P(CrashOfARoleTest, ChangesNoResultAndIsReported) {
   const std::string& role = GetParam();
-  // Each role has a step of its own, the same in every execution.
+  // Each role is killed at a step of its own, which is the same in every execution.
   std::mt19937 random(static_cast<unsigned>(role.size() * 256 + static_cast<unsigned>(role[0])));
   const int step = std::uniform_int_distribution(80, 200)(random);
   WatchedRun watched;
@@ -67,7 +68,8 @@ TEST(CrashTest, OfRolesThatReadEachOtherChangesNoResult) {
 TEST(CrashTest, OfARoleThatCatchesUpChangesNoResult) {
   WatchedRun watched;
   watched.WaitForStep(100);
-  // The next process is killed as soon as it is heard: before, while or after it catches up.
+  // The next process is killed as soon as it is heard: before, while or after it catches up with
+  // the run.
   for (int i = 0; i < 5; ++i) {
     for (const char* role : {"fusion", "recorder", "world"}) watched.Signal(role, SIGKILL);
   }
@@ -97,9 +99,9 @@ TEST(CrashTest, ProcessesThatHangAreKilledAndStartedAgain) {
 }
 
 TEST(CrashTest, ARunnerThatWasHeldUpItselfTakesNoRoleForHung) {
-  // GIVEN a runner that stands still for longer than a role may be silent, but not to the end of
-  // the run (8 s). A role may be silent for half of the timeout, 3 s; a busy machine holds up no
-  // role for so long
+  // GIVEN a runner that stands still for longer than a role may be silent (half of the timeout, 3
+  // s), and goes on before the run would end (8 s). Even a busy machine delays a role by less than
+  // 3 s
   WatchedRun watched({"--stall-timeout", "6"}, 8000);
   watched.WaitForStep(100);
   kill(watched.run().pid(), SIGSTOP);
@@ -123,13 +125,13 @@ TEST(CrashTest, EndsTheRunByNameWhenItHappensTooOften) {
 }
 
 TEST(CrashTest, OfARoleFromElsewhereIsOverWhenItIsStartedAgain) {
-  // GIVEN a run that goes on for longer than it takes to be sure of a death
+  // GIVEN a run that lasts longer than the runner needs to be sure that a role is dead
   WatchedRun watched({"--external", "driver"}, 1500);
   const std::vector<std::string> command{Program("fogline-driver"), "--lcm-url", watched.url()};
   const Background first(command);
   watched.WaitForStep(100);
   watched.Signal("driver", SIGKILL);
-  // This process knows only those things of the run that it hears.
+  // The second driver is started without --run-id. It learns of the run only from messages.
   const Background second(command);
   const auto result = watched.ExpectSameResult();
   ASSERT_EQ(WatchedRun::RestartsOf(result, "driver"), 1);
@@ -158,7 +160,7 @@ TEST(CrashTest, AProcessOfARoleThatTheRunHasItselfWaitsForAnotherRun) {
 }
 
 TEST(CrashTest, ARoleFromElsewhereThatGoesOnAfterItWasReplacedLeavesTheRun) {
-  // GIVEN a driver that stands still, and another one that has taken its place
+  // GIVEN a driver that stands still, and a second driver that has taken its place
   WatchedRun watched({"--external", "driver"}, 6000);
   const std::vector<std::string> command{Program("fogline-driver"), "--lcm-url", watched.url()};
   Background first(command);

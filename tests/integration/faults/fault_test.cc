@@ -16,7 +16,7 @@ namespace {
 
 using SteadyClock = std::chrono::steady_clock;
 
-// A run is well under way after this many steps, which are one second.
+// A run is well under way after this many steps. They take one second.
 constexpr int kUnderWay = 10;
 
 /// A run in real speed that is well under way. It ends if one of its roles ends.
@@ -26,7 +26,7 @@ class PacedRun {
       : run_({Program("fogline"), "run", "scenario/paper.json", "--pace", "1", "--restarts", "0",
               "--log", folder_.File("run.lcm")}) {
     EXPECT_TRUE(run_.WaitForErr("processes: "));
-    // The run is under way when this many steps are on disk. No event shows this.
+    // The run is under way when this many steps are on disk. No event shows this moment.
     const auto end = SteadyClock::now() + std::chrono::seconds(20);
     while (StepsOnDisk() < kUnderWay && SteadyClock::now() < end) {
       std::this_thread::sleep_for(kLookEvery);

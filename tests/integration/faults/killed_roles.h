@@ -1,4 +1,4 @@
-// Runs whose roles are killed or stopped, and that end as if nothing had happened.
+// Roles of runs are killed or stopped. The runs have the results of undisturbed runs.
 #pragma once
 
 #include <gmock/gmock-matchers.h>
@@ -22,7 +22,7 @@ inline std::vector<std::string> AllRoles() {
   return names;
 }
 
-/// Stops these roles of a run. They are killed, started again, and named in the result.
+/// Stops these roles of a run. Expects that each is killed, started again, and named in the result.
 inline void ExpectHangersAreStartedAgain(const std::vector<std::string>& roles) {
   WatchedRun watched({"--stall-timeout", "2"});
   watched.WaitForStep(100);
@@ -55,7 +55,7 @@ inline void ExpectKillsAtRandomStepsChangeNoResult(int wanted) {
     const auto result = watched.ExpectSameResult();
     int restarts = 0;
     for (const auto& role : result["restarts"]) restarts += role["count"].get<int>();
-    // A role that is killed at the very end may not be needed again.
+    // The run may end without a role that is killed in its last 50 steps.
     const auto needed = std::ranges::count_if(steps, [](int step) { return step < kSteps - 50; });
     EXPECT_GE(restarts, needed) << watched.run().Err();
     EXPECT_LE(restarts, kills);

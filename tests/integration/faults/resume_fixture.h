@@ -55,15 +55,15 @@ class ResumeTest : public testing::Test {
     EXPECT_EQ(result.value("steps", 0), whole["steps"]);
     EXPECT_EQ(result.value("seed", 0), whole["seed"]);
     EXPECT_EQ(result["metrics"], whole["metrics"]);
-    // The resumed log has the same events as the whole one, and no others. Only their run ids
-    // differ. With a key, the last event has a signature.
+    // The resumed log has the same events as whole.lcm and no others. Only the run ids differ. With
+    // a key, the last event has a signature.
     const bool is_signed = std::ranges::find(more, "--key") != more.end();
     EXPECT_EQ(std::filesystem::file_size(log_), std::filesystem::file_size(File("whole.lcm")) +
                                                     (is_signed ? runtime::kSignatureBytes : 0));
     return result;
   }
   /// Kills the runner, not its roles, as soon as the log has `bytes` bytes.
-  /// @return whether the runner had not ended by itself
+  /// @return false if the runner had ended by itself before
   bool KillAt(std::uintmax_t bytes, const Words& command) const {
     Background run(command + Words{"--log", log_});
     EXPECT_TRUE(GrowsTo(bytes, log_)) << run.Err();
@@ -88,11 +88,11 @@ class ResumeTest : public testing::Test {
   const std::string log_ = folder_.File("run.lcm");
 };
 
-// Far longer than any wait here, even on a busy machine.
+// A time limit, far longer than any wait in these tests, even on a busy machine.
 inline constexpr Duration kResumePatience = std::chrono::seconds(30);
 inline const Words kPaced{"--pace", "33"};
 
-/// A run over the network. This test hears its steps.
+/// A run over the network whose steps the test hears.
 class SeenRun {
  public:
   SeenRun(const Words& command, const std::string& log)
@@ -144,14 +144,14 @@ class ResumeAfterKillTest : public ResumeTest {
     }
   }
 
-  /// Kills runs in one process, which die with their runner: `kills` runs for each of two
-  /// transports.
+  /// Kills `kills` runs for each of two transports. Each run is one process, so it dies with its
+  /// runner.
   void ExpectKilledProcessesGoOnToTheSameResult(int kills) const {
     std::mt19937 random(2026);
-    // The faster transport takes 0.2 s for so many steps, and the run is killed in the first half
-    // of this time.
+    // The faster transport takes 0.2 s for these steps. The run is killed in the first half of this
+    // time.
     constexpr int kMany = 20'000;
-    // A busy machine may let the test look too late.
+    // On a busy machine a run may end before the test kills it.
     constexpr int kTries = 10;
     const auto whole = Undisturbed(kMany);
     const std::uintmax_t size = std::filesystem::file_size(File("whole.lcm"));

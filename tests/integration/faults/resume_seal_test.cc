@@ -28,7 +28,7 @@ class ResumeOfCompleteLogTest : public ResumeTest {
            return event.channel != "FOGLINE_SEAL";
          });
   }
-  /// The same with a RADAR of step 100 that its role did not compute.
+  /// Like LeaveUnsealed(), but the RADAR of step 100 differs from what the radar computed.
   void LeaveForgedAndUnsealed() const {
     Copy(File("whole.lcm"), log_,
          [](log::EventLogWriter&, const log::Event& event, std::vector<std::uint8_t>& data) {
@@ -62,7 +62,7 @@ TEST_F(ResumeOfCompleteLogTest, SaysTheResultAgainAndComputesNothing) {
 
 TEST_F(ResumeOfCompleteLogTest, ComputesAgainWhatItGoesOnFrom) {
   Undisturbed();
-  // GIVEN a log that was changed before the steps that every role publishes again
+  // GIVEN a log that was changed at step 100, before the last steps, which all roles publish again
   const auto resume = [&](std::int64_t steps, const Words& more) {
     Copy(File("whole.lcm"), log_,
          [&](log::EventLogWriter&, const log::Event& event, std::vector<std::uint8_t>& data) {
@@ -87,7 +87,7 @@ TEST_F(ResumeOfCompleteLogTest, VerifiesAndSealsTheLogOfARunnerThatDiedBeforeItS
   LeaveUnsealed();
   EXPECT_EQ(ExpectSameEnd(whole)["verified"]["roles"].size(), 8U);
   EXPECT_EQ(Digest()["seal"], "holds");
-  // AND the seal names the builds that computed the roles, so that the roles can be verified again
+  // AND the seal names the builds of the roles, so that the roles can be verified again
   const auto again = ExpectSameEnd(whole, {"--verify"})["verified"];
   EXPECT_EQ(again["roles"].size(), 8U) << again;
   EXPECT_TRUE(again["left_out"].empty()) << again;

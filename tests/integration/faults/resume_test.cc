@@ -66,7 +66,7 @@ TEST_F(ResumeTest, GoesOnWithTheRolesFromElsewhereThatHaveOutlivedTheirRunner) {
     // GIVEN a driver that was started from another shell
     SeenRun seen(Paper(kSteps) + kPaced + Words{"--external", "driver"} + sealed, log_);
     Background driver(Words{Program("fogline-driver"), "--lcm-url", seen.url()} + sealed);
-    // WHEN the runner dies; THEN the same driver goes on with the next one
+    // WHEN the runner dies, THEN the same driver goes on with the next runner
     seen.KillAtStep(150);
     ASSERT_TRUE(IsAlive(driver.pid()));
     const auto result =
@@ -162,7 +162,7 @@ TEST_F(ResumeTest, RefusesTheLogOfARunThatIsUnderWay) {
 
 TEST_F(ResumeTest, CutsNothingOffALogThatSomethingElseHasWritten) {
   Undisturbed();
-  // GIVEN a log like that of lcm-logger, which contains STATUS messages
+  // GIVEN a log with STATUS messages, as lcm-logger writes it
   status_t status{};
   status.header.run_id = 1;
   std::vector<std::uint8_t> encoded;

@@ -51,9 +51,9 @@ class StartAgainTest : public testing::Test {
                 HasSubstr("was killed by signal 9 (Killed) at step "));
     EXPECT_THAT(run.Err(), HasSubstr(role + " (pid "));
   }
-  /// Waits for longer than the first five tries to start the process again. They come 10 ms after
-  /// its death and then after 20, 40, 80 and 160 ms (RestartPolicy). The test waits for a fixed
-  /// time because the runner does not report a failed try.
+  /// Waits for longer than the first five tries to start the process again. These tries come 10 ms
+  /// after its death and then after 20, 40, 80 and 160 ms (RestartPolicy). The test waits for a
+  /// fixed time because the runner does not report a failed try.
   static void StayAway() { std::this_thread::sleep_for(milliseconds(500)); }
 
   ScratchFolder folder_;
@@ -96,7 +96,7 @@ TEST_F(StartAgainTest, EndsTheRunByTheStallTimeoutAndSaysWhatWillNotStart) {
 
 TEST_F(StartAgainTest, WaitsForRoomForAProcess) {
   if (geteuid() != 0) return MachineLacks("root, to be a user with a limit of processes");
-  // GIVEN a run of a user of its own that may have no more processes from now on
+  // GIVEN a run under its own user id. The test then lets this user start no more processes
   fs::permissions(folder_.path(), fs::perms::all);
   const std::string user = "4" + std::to_string(getpid() % 100'000);
   const std::vector<std::string> as_user{"setpriv", "--reuid", user,
@@ -116,7 +116,7 @@ TEST_F(StartAgainTest, WaitsForRoomForAProcess) {
   rlimit before{};
   getrlimit(RLIMIT_NPROC, &before);
   limit("1");
-  // WHEN a role is killed, and there is room half a second later
+  // WHEN a role is killed, and the user may start processes again half a second later
   kill(PidOf(run.Err(), "fusion"), SIGKILL);
   StayAway();
   limit(before.rlim_cur == RLIM_INFINITY ? "unlimited" : std::to_string(before.rlim_cur));

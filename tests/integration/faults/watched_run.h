@@ -17,9 +17,9 @@
 
 namespace fogline::test {
 
-// Far longer than anything here takes on a busy machine.
+// A time limit, far longer than any wait in these tests on a busy machine.
 inline constexpr Duration kRunPatience = std::chrono::seconds(30);
-// Steps of a watched run, and its pace: a millisecond for each step.
+// Steps of a watched run, and its pace, at which each step takes a millisecond.
 inline constexpr int kSteps = 300;
 inline constexpr int kPace = 100;
 
@@ -47,7 +47,7 @@ inline std::string UndisturbedDigest(int steps, const std::vector<std::string>& 
 /// A run over the network. Its STATUS messages tell this test the process of each role.
 class WatchedRun {
  public:
-  /// @param changes of the scenario, as "--set", "/steps=10"
+  /// @param changes changes of the scenario, such as "--set", "/steps=10"
   explicit WatchedRun(const std::vector<std::string>& more = {}, int steps = kSteps,
                       int pace = kPace, const std::vector<std::string>& changes = {})
       : steps_(steps),
@@ -65,7 +65,8 @@ class WatchedRun {
     });
   }
 
-  /// Handles messages until the condition holds. @throws std::runtime_error if it never does
+  /// Handles messages until the condition holds. @throws std::runtime_error if it does not hold in
+  /// time
   template <class Condition>
   void WaitUntil(const Condition& condition, const std::string& what) {
     const TimePoint end = Clock::now() + kRunPatience;
@@ -115,7 +116,7 @@ class WatchedRun {
     EXPECT_EQ(result.value("steps", 0), steps_);
     return result;
   }
-  /// How often the result says that a role was started again.
+  /// The number of restarts of a role, from the result.
   static int RestartsOf(const nlohmann::json& result, const std::string& role) {
     for (const auto& entry : result.at("restarts")) {
       if (entry.at("role") == role) return entry.at("count");

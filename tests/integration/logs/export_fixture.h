@@ -45,7 +45,7 @@ void ForEachMessage(const log::StepMessages& messages, const Visit& visit) {
   });
 }
 
-/// The values of one field of a channel in a log. The tests compare MAT-files with them.
+/// The values of one field of a channel in a log. The tests compare MAT-files with these values.
 struct LoggedField {
   std::string type;
   std::vector<std::string> rows;  // the bytes of the field in each message

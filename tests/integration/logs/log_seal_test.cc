@@ -114,12 +114,14 @@ TEST_F(SealedLogTest, ALogThatLcmToolsPlayAndRecordKeepsDigestAndSeal) {
   const std::string log = DirectLog("log.lcm");
   const std::string copy = folder_.File("copy.lcm");
   {
-    // Over TCP, because lcm-logger loses UDP messages when a busy machine holds it up.
+    // The messages go over TCP, because lcm-logger loses UDP messages when a busy machine delays
+    // it.
     const Relay relay;
     runtime::Bus bus(relay.url());
     Background logger(
         {"lcm-logger", "--quiet", "--flush-interval=10", "--lcm-url=" + relay.url(), copy});
-    // Sends until lcm-logger has written a message of this channel, thus all earlier ones too.
+    // Sends messages until lcm-logger has written one of this channel. It has then also written all
+    // earlier messages.
     const auto mark = [&](std::string_view channel) {
       const auto has = [&] {
         std::ifstream in(copy, std::ios::binary);
@@ -155,7 +157,7 @@ TEST_F(SealedLogTest, ALogWithOtherTimesIsACopyAndItsSealProvesNoResultOfARunInR
                                   "--quiet", "--set", "/steps=20", "--key", key, "--log", log_});
   ASSERT_EQ(run.code, 0) << run.err;
   EXPECT_EQ(Digest({log_, "--key", key}, 0)["seal"], "holds");
-  constexpr std::size_t kTimeInEvent = 19;  // the last byte of it: sync word, number, time
+  constexpr std::size_t kTimeInEvent = 19;  // the last byte of the time, after sync word and number
   for (const auto& [log, code] : {std::pair{lockstep, 0}, std::pair{log_, 1}}) {
     FlipLowestBit(log, kTimeInEvent);
     FlipLowestBit(log, FirstEventOf(log, log::kLogSealChannel).at + kTimeInEvent);
@@ -189,11 +191,11 @@ TEST_F(SealedLogTest, ARunGoesOnWithNoLogThatWasChangedSinceItWasSealed) {
     EXPECT_EQ(Content(log_), before);
   };
   expect_refused(other, "the seal of the log is not signed with this key");
-  // WHEN one bit of its first step is changed
+  // WHEN one bit of the log's first step is changed
   const EventPlace radar = FirstEventOf(log_, "RADAR");
   FlipLowestBit(log_, radar.at + radar.size - 17);
   expect_refused(key, "the log is not the one that was sealed: ");
-  // THEN the run does not continue this log, but continues the log that was sealed
+  // THEN the run does not continue this log. With the bit as it was sealed, the run continues
   FlipLowestBit(log_, radar.at + radar.size - 17);
   EXPECT_EQ(resume(key).code, 0);
   EXPECT_EQ(Digest({log_, "--key", key}, 0)["signature"], "holds");

@@ -1,4 +1,5 @@
-// `fogline replay`: a role computes its outputs again from the inputs in a log, and compares them.
+// `fogline replay`: a role computes its outputs again from the inputs in a log, and compares them
+// with the log.
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -90,12 +91,12 @@ TEST_F(ReplayTest, ComputesALogOfOneProcessAgain) {
 }
 
 TEST_F(ReplayTest, ComputesALogWithEverythingSwitchedOnAgainWhateverThePolicyDemands) {
-  // With bayes the arbitrator reads TRUTH on demand; with oracle the fusion does. The driver reads
-  // HOST_COMMAND on demand.
+  // With policy `bayes` the arbitrator reads TRUTH on demand, with policy `oracle` the fusion does.
+  // The driver reads HOST_COMMAND on demand.
   for (const char* policy : {"bayes", "oracle"}) {
     SCOPED_TRACE(policy);
     Words more = kEverything;
-    // The runs end here, because with one of these policies the cars collide later.
+    // The runs end after 500 steps, because with one of these policies the cars collide later.
     more.insert(more.end(), {"--transport", "direct", "--force", "--set", "/steps=500", "--set",
                              std::string("/arbitrator/policy=") + policy});
     ExpectSame(Log("scenario/dense_fog.json", more), 500);

@@ -1,4 +1,4 @@
-// A message of a run is altered on its way. The steps, computed again from the log, show this.
+// A message of a run is altered on its way. The log shows this when its steps are computed again.
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>

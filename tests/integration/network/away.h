@@ -18,7 +18,7 @@
 namespace fogline::test {
 
 inline constexpr const char* kAwayUrl = "udpm://239.255.76.67:7700?ttl=1";
-// Longer than a role waits for its runner.
+// The time of an absence. It is longer than a role waits for its runner.
 inline constexpr auto kAway = runtime::RunnerWatch::kGone + milliseconds(2000);
 
 /// A run with its driver on another machine.
@@ -29,7 +29,7 @@ struct RunOnTwoMachines {
 };
 
 /// The processes or the machine that are away, and the options with which the user announces this
-/// to the run.
+/// absence to the run.
 struct Absence {
   std::string name;
   std::vector<std::string> options;
@@ -58,7 +58,7 @@ class AwayTest : public NetworkTest, public testing::WithParamInterface<Absence>
   void ExpectAbsenceCostsNoRun(const Absence& absence) {
     const Lab lab(2);
     Background driver(lab[1].On({Program("fogline-driver"), "--lcm-url", kAwayUrl}));
-    // A run of five seconds. The first seconds are over when the absence begins.
+    // A run of five seconds. The absence begins after a dozen steps.
     const ScratchFolder folder;
     const std::string log = folder.File("run.lcm");
     std::vector<std::string> command{Program("fogline"),

@@ -1,5 +1,5 @@
-// All processes of a run are away for longer than any of them waits for another by default: stopped
-// by Ctrl-Z, or frozen with their container.
+// All processes of a run are away for longer than any of them waits for another by default. They
+// are stopped by Ctrl-Z, or frozen with their container.
 #include <gtest/gtest.h>
 
 #include <vector>

@@ -150,7 +150,7 @@ TEST(DocsLinesTest, RecordARunWithLcmLoggerByTheLinesThatTheyShow) {
   const std::string run = "fogline run scenario/paper.json";
   ASSERT_THAT(lines, HasSubstr(run));
   lines.insert(lines.find(run) + run.size(), " --set /steps=30 --log run.lcm");
-  // WHEN a shell executes them in a folder of its own
+  // WHEN a shell executes these lines in a folder of its own
   const ScratchFolder folder;
   std::filesystem::create_directory_symlink(SourceDirectory() / "scenario",
                                             folder.path() / "scenario");
@@ -158,7 +158,7 @@ TEST(DocsLinesTest, RecordARunWithLcmLoggerByTheLinesThatTheyShow) {
       RunCommand({"bash", "-c",
                   "cd " + folder.path().string() + " && PATH=" + ProgramDirectory().string() +
                       ":$PATH\n" + lines + "\nkill -INT $!; wait"});
-  // THEN lcm-logger has logged steps of the run; the first is the step at which it began to listen
+  // THEN lcm-logger has logged steps of the run, from the step on at which it began to listen
   log::EventLogReader log(folder.File("copy.lcm"));
   std::int64_t truths = 0;
   while (const auto event = log.Next()) truths += event->channel == "TRUTH" ? 1 : 0;

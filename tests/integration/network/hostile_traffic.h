@@ -19,8 +19,8 @@ inline constexpr double kScenarioS = 50;
 struct Hostility {
   double seconds;       // duration of the run
   double rate_hz;       // datagrams per second
-  double least_sent;    // of these datagrams
-  int least_of_a_kind;  // datagrams that are sent, and that are refused
+  double least_sent;    // least number of sent datagrams
+  int least_of_a_kind;  // least number of each kind, both of sent and of refused datagrams
   bool alone = false;   // whether the test is alone on the machine, so that times can be judged
 };
 
@@ -60,7 +60,7 @@ class HostileTrafficTest : public NetworkTest {
     }
     // THEN the result is that of the undisturbed run
     EXPECT_EQ(result["digest"], Undisturbed());
-    // AND it took not much longer than its pace demands
+    // AND it took less than twice the time that its pace demands
     if (hostility.alone) {
       EXPECT_LT(result["wall_s"], 2 * hostility.seconds);
     }
@@ -68,7 +68,7 @@ class HostileTrafficTest : public NetworkTest {
     for (const char* kind : {"foreign", "malformed", "wrong_type", "not_finite", "out_of_window"}) {
       EXPECT_GT(result["refused"][kind], hostility.least_of_a_kind) << result["refused"];
     }
-    // AND it names some of the senders that claimed to be of other runs
+    // AND it names some of the senders that pretended to be of other runs
     EXPECT_FALSE(result["strangers"].empty());
   }
 
@@ -80,8 +80,8 @@ class HostileTrafficTest : public NetworkTest {
   }
 };
 
-/// Floods of the kinds that cost most: requests that must be answered, fragments that LCM's parser
-/// handles badly, and copies of genuine messages.
+/// Floods of the most expensive kinds of datagrams: requests that must be answered, fragments that
+/// LCM's parser handles badly, and copies of genuine messages.
 class FloodTest : public HostileTrafficTest, public testing::WithParamInterface<std::string> {};
 inline const auto kFloods = testing::Values("request", "fragment", "replayed");
 inline std::string NameOfFlood(const testing::TestParamInfo<std::string>& kind) {

@@ -1,5 +1,5 @@
-// A few seconds of hostile traffic, at a rate that a machine with other work to do withstands. At
-// least a visible number of datagrams is sent.
+// A few seconds of hostile traffic, at a rate that also a busy machine can send and withstand. The
+// tests demand only a small number of sent datagrams.
 #include <gtest/gtest.h>
 
 #include "tests/integration/network/hostile_traffic.h"

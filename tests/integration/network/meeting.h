@@ -15,7 +15,7 @@
 
 namespace fogline::test {
 
-// Programs start and messages arrive within this even when every processor is busy.
+// A time limit. Programs start and messages arrive earlier even when every processor is busy.
 inline constexpr std::chrono::seconds kPatience(30);
 
 /// A multicast address that the variable LCM_DEFAULT_URL gives to all programs of a test.

@@ -1,5 +1,5 @@
-// The lockstep on networks of the kernel's own. Their machines have their own addresses and lose
-// messages.
+// The lockstep on networks that the kernel simulates. Their machines have their own addresses and
+// lose messages.
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 
@@ -32,7 +32,7 @@ TEST_F(NetworkTest, LosingThreeOfTenDatagramsInTheKernelChangesNoResult) {
   EXPECT_GT(run["repairs"], 500);
 }
 
-/// Three machines. The test starts every role except the recorder by hand on one of them.
+/// Three machines. Every role except the recorder is started by hand on one of these machines.
 class ThreeMachinesTest : public NetworkTest {
  protected:
   nlohmann::json RunOn(const Lab& lab, std::vector<std::string> more) {
@@ -102,10 +102,10 @@ TEST_P(TwoRunsTest, OnOneGroupAndPortDoNotMix) {
   // GIVEN a run that takes 1.5 s
   Background paced(lab[0].On(Run({"--lcm-url", kUrl, "--set", "/steps=150", "--pace", "10"})));
   ASSERT_TRUE(paced.WaitForErr("processes: "));
-  // WHEN another run takes place meanwhile, which differs from the first from its first step on
+  // WHEN another run takes place meanwhile. It differs from the first run from the first step on
   const auto other =
       Result(RunCommand(lab[GetParam()].On(Run({"--lcm-url", kUrl, "--seed", "7"}))));
-  // THEN both have the results that they have when they run alone
+  // THEN each of the two has the result that it has when it runs alone
   EXPECT_EQ(other["digest"], Undisturbed({"--seed", "7"}));
   const auto first = ResultOf(paced);
   EXPECT_EQ(first["digest"], Undisturbed({"--set", "/steps=150"}));
@@ -159,7 +159,7 @@ TEST_F(NetworkTest, TwoProducersOfOneChannelEndTheRunByTheNamesOfBoth) {
   const Lab lab(3);
   Background run(lab[0].On(Run({"--lcm-url", kUrl, "--external", "driver", "--pace", "1"})));
   ASSERT_TRUE(run.WaitForErr("waiting for the driver"));
-  // A role that knows its run by --run-id asks for no place in it.
+  // A role with --run-id joins this run without asking whether its place is free.
   const std::string id = run.Err().substr(4, run.Err().find(" on ") - 4);
   Background one(lab[1].On({Program("fogline-driver"), "--lcm-url", kUrl, "--run-id", id}));
   Background two(lab[2].On({Program("fogline-driver"), "--lcm-url", kUrl, "--run-id", id}));
@@ -184,7 +184,7 @@ TEST_F(NetworkTest, OfTwoProcessesOfOneRoleOneTakesPartAndTheOtherWaits) {
     return std::ranges::count_if(drivers,
                                  [](const Background& one) { return !IsAlive(one.pid()); });
   };
-  // The runner does not wait for the end of this driver. On a busy machine the driver ends within
+  // The runner does not wait for the end of its driver. On a busy machine the driver ends within
   // this time.
   constexpr auto kPatience = std::chrono::seconds(20);
   const TimePoint end = Clock::now() + kPatience;
@@ -199,7 +199,7 @@ TEST_F(NetworkTest, AMachineWithoutAMulticastRouteRunsAsAnyOther) {
   EXPECT_EQ(result["transport"], "udpm");
   EXPECT_EQ(result["digest"], Undisturbed());
   EXPECT_EQ(std::ranges::count(run.err, '\n'), 2) << run.err;
-  // AND so does a table
+  // AND a table runs there, too
   const Outcome table = RunCommand(machine.On(
       {Program("fogline"), "table", "scenario/paper.json", "--transport", "udpm", "--json"}));
   EXPECT_EQ(table.code, 0) << table.err;
@@ -222,13 +222,13 @@ TEST_F(NetworkTest, AMachineWithoutAMulticastRouteIsToldWhichOneAnUrlNeeds) {
                                        "76.67; as root: \"ip route add 239.0.0.0/8 dev lo\""));
     EXPECT_EQ(std::ranges::count(outcome.err, '\n'), 1) << outcome.err;
   }
-  // AND this route is all that the run needs
+  // AND with this route alone the run succeeds
   machine.Do("ip route add 239.0.0.0/8 dev lo");
   EXPECT_EQ(Result(RunCommand(machine.On(Run({}))))["digest"], Undisturbed());
 }
 
 TEST_F(NetworkTest, OfSeveralInterfacesTheRouteChoosesOne) {
-  // GIVEN machines with a default route that does not lead to each other
+  // GIVEN two machines, each with a default route that does not lead to the other machine
   const Lab lab(2);
   for (const Machine& machine : lab.machines()) {
     machine.Do(

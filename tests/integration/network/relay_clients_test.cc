@@ -23,7 +23,7 @@ using testing::HasSubstr;
 class RawSocket {
  public:
   explicit RawSocket(std::uint16_t port) : fd_(socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
-    // A call that blocks for this time counts as blocked for ever.
+    // A call that takes longer than this time counts as blocked for ever.
     const timeval limit{.tv_sec = kPatience.count(), .tv_usec = 0};
     setsockopt(fd_, SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof(limit));
     setsockopt(fd_, SOL_SOCKET, SO_SNDTIMEO, &limit, sizeof(limit));
@@ -37,7 +37,7 @@ class RawSocket {
   RawSocket(const RawSocket&) = delete;
   RawSocket& operator=(const RawSocket&) = delete;
 
-  /// Sends all bytes; the test fails if a call blocks. @return false if the other side has closed
+  /// Sends all bytes. The test fails if a call blocks. @return false if the other side has closed
   bool Send(runtime::Bytes bytes) const {
     while (!bytes.empty()) {
       const ssize_t size = send(fd_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
@@ -49,7 +49,7 @@ class RawSocket {
     }
     return true;
   }
-  /// Reads until the other side closes. @return false if it does not
+  /// Reads until the other side closes. @return false if the other side does not close
   bool WaitForClose() const {
     Payload bytes(4096);
     ssize_t size = 0;
@@ -112,11 +112,11 @@ TEST(HostileRelayClientTest, DoesNotBlockWithAPublisherThatNeverReadsItsOwnMessa
   Relay relay({"--max-queue", "4"});
   const RawSocket publisher(relay.port());
   ASSERT_TRUE(publisher.Send(SubscriptionTo(".*")));
-  // WHEN it sends up to 100 MB and reads nothing; Send() fails the test if it blocks
+  // WHEN the publisher sends up to 100 MB and reads nothing. (Send() fails the test if it blocks)
   const Payload message = Message("ECHO", Payload(100'000));
   int sent = 0;
   while (sent < 1000 && publisher.Send(message)) ++sent;
-  // THEN the relay disconnects it before the end
+  // THEN the relay disconnects the publisher before the end
   EXPECT_LT(sent, 1000);
   EXPECT_TRUE(relay.process().WaitForErr(publisher.Name() + " disconnected: does not read; "));
 }
@@ -174,9 +174,8 @@ TEST(HostileRelayClientTest, TakesNoMoreClientsThanItMay) {
 
 TEST(HostileRelayClientTest, IsCutOffWhenItsExpressionsAreSlowOnEverNewNames) {
   Relay relay;
-  // GIVEN a client with an expression that is slow on some names, but not so slow that the relay
-  // gives up the search (it allows more visits for long expressions). Another client wants
-  // everything
+  // GIVEN a client with an expression that is slow on some names. The expression is long, so the
+  // relay allows a long search. Another client wants everything
   const RawSocket slow(relay.port());
   ASSERT_TRUE(slow.Send(SubscriptionTo("(a|aa)+b" + std::string(240, 'c'))));
   runtime::Bus bus(relay.url());
@@ -184,7 +183,7 @@ TEST(HostileRelayClientTest, IsCutOffWhenItsExpressionsAreSlowOnEverNewNames) {
   bus.Subscribe("LAST", [&heard](runtime::Bytes) { ++heard; });
   const RawSocket sleeper(relay.port());
   ASSERT_TRUE(sleeper.Send(SubscriptionTo(".*")));
-  // WHEN a third client publishes more and more new names of that kind
+  // WHEN a third client publishes more and more names on which the expression is slow
   constexpr int kNames = 5000;
   for (int i = 0; i < kNames; ++i)
     bus.Publish(std::string(20, 'a') + std::to_string(i), Payload(1));

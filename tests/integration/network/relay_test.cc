@@ -67,17 +67,18 @@ TEST(RelayTest, TakesAndGivesMessagesOfStockLcm) {
         (*static_cast<std::map<std::string, std::size_t>*>(user))[channel] = buffer->data_size;
       },
       &got);
-  // WHEN it publishes, it hears itself
+  // WHEN this client publishes, THEN it hears its own message
   const Payload large(100'000, 7);
   ASSERT_EQ(lcm_publish(stock, "FROM_STOCK", large.data(), static_cast<unsigned>(large.size())), 0);
   ASSERT_GT(lcm_handle_timeout(stock, 20'000), 0);
   EXPECT_EQ(got["FROM_STOCK"], large.size());
-  // THEN it hears our messages too
+  // AND it hears our messages
   runtime::Bus bus(relay.url());
   bus.Publish("FROM_OURS", Payload(5));
   ASSERT_GT(lcm_handle_timeout(stock, 20'000), 0);
   EXPECT_EQ(got["FROM_OURS"], 5U);
-  // AND after it has unsubscribed (no other message is on its way), only our bus hears its message
+  // AND after this client has unsubscribed, only our bus hears its message (no other message is on
+  // the way)
   std::size_t heard = 0;
   bus.Subscribe("LAST", [&heard](runtime::Bytes bytes) { heard = bytes.size(); });
   ASSERT_TRUE(RoundTrip(bus));
@@ -174,7 +175,7 @@ TEST(RelayTest, IsFoundAgainWhereItWasByItsSubscribers) {
   int heard = 0;
   bus.Subscribe("A", [&heard](runtime::Bytes) { ++heard; });
   ASSERT_TRUE(RoundTrip(bus));
-  // GIVEN a relay that is killed: messages are lost, and the sender counts them
+  // GIVEN a relay that is killed. Messages are lost, and the sender counts them
   relay->process().Signal(SIGKILL);
   relay->process().Wait();
   const TimePoint end = Clock::now() + kPatience;
@@ -220,7 +221,7 @@ TEST(RelayTest, EndsARunWithOneClearLineWhenItIsKilled) {
   ASSERT_TRUE(GrowsTo(20'000, folder.File("run.lcm")));
   // WHEN its relay is killed
   relay.process().Signal(SIGKILL);
-  // THEN the run ends with code 3 and this reason, and its log is readable
+  // THEN the run ends with code 3 and names the relay, and its log is readable
   EXPECT_EQ(run.Wait(seconds(10)), 3);
   EXPECT_THAT(run.Err(), HasSubstr("lost the relay " + relay.url()));
   EXPECT_EQ(RunCommand({Program("fogline"), "digest", folder.File("run.lcm")}).code, 1);
@@ -258,7 +259,7 @@ TEST(RelayTest, LetsLcmLoggerRecordEveryMessageOfARunInRealSpeed) {
   const Outcome check = RunCommand({Program("fogline"), "digest", "--json", stock});
   EXPECT_EQ(check.code, 0) << check.err;
   EXPECT_THAT(check.out, HasSubstr(digest));
-  // AND it has every payload that our log has
+  // AND it has every payload of our own log
   const auto payloads = [](const std::string& log) {
     std::multimap<std::string, Payload> all;
     log::EventLogReader reader(log);
@@ -269,8 +270,8 @@ TEST(RelayTest, LetsLcmLoggerRecordEveryMessageOfARunInRealSpeed) {
   };
   const auto logged = payloads(stock);
   for (const auto& [channel, payload] : payloads(folder.File("own.lcm"))) {
-    // These channels differ: our log has one RUN, in another phase, and a seal, which no process
-    // sends.
+    // Two channels differ. Our log has only one RUN, in another phase, and it has a seal, which no
+    // process sends.
     if (channel == ChannelOf<run_t>().name || channel == log::kLogSealChannel) continue;
     const auto [first, last] = logged.equal_range(channel);
     EXPECT_TRUE(std::any_of(first, last, [&](const auto& it) { return it.second == payload; }))

@@ -1,5 +1,5 @@
-// Real time on networks that lose one channel for good. The run names a role that does not hear
-// this channel, and starts the role again if the runner has started it. A run with a deaf role
+// Real time on networks that lose all messages of one channel. The run names a role that does not
+// hear this channel, and starts the role again if the runner has started it. A run with a deaf role
 // fails.
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
@@ -54,7 +54,7 @@ TEST_F(DeafRoleTest, IsNamedAndStartedAgainAndComputesWhenItHears) {
                              ") has heard no TRUTH for "))
       << run.Err();
   machine.LoseNothing();
-  // THEN the run starts a role again that reads TRUTH, and the role computes to the end
+  // THEN the run starts a role again that reads TRUTH, and this role computes to the end
   EXPECT_EQ(run.Wait(), kFailed);
   const auto result = nlohmann::json::parse(run.Out(), nullptr, false);
   ASSERT_TRUE(result.is_object()) << run.Err();
@@ -67,14 +67,14 @@ TEST_F(DeafRoleTest, IsNamedAndStartedAgainAndComputesWhenItHears) {
   }
   EXPECT_TRUE(radar) << result["restarts"];
   EXPECT_GE(NewestStepOf("RADAR"), kSeconds * kRate_hz - 5);
-  // AND the run fails: about two seconds are missing in the log for good
+  // AND the run fails, because the log lacks about two seconds
   EXPECT_THAT(run.Err(), HasSubstr(kNotWhole));
 }
 
 TEST_F(DeafRoleTest, AtTheEndIsAFailureOfTheRun) {
   const Machine machine("deaf");
   machine.RouteMulticastToItself();
-  // It is deaf after some 3 s; on a busy machine this may take two seconds more.
+  // The ACC is deaf after some 3 s. On a busy machine this may take two seconds more.
   Background run(machine.On(RealtimeRun(6, {"--restarts", "0"})));
   ASSERT_TRUE(run.WaitForErr("processes: "));
   ASSERT_TRUE(GrowsTo(20'000, Log()));
@@ -89,8 +89,8 @@ TEST_F(DeafRoleTest, AtTheEndIsAFailureOfTheRun) {
 TEST_F(DeafRoleTest, FromElsewhereIsNamed) {
   const Lab lab(2);
   Background driver(lab[1].On({Program("fogline-driver"), "--lcm-url", kUrl}));
-  // The driver is deaf after some 3 s, and then hears again; on a busy machine both may take a
-  // second more.
+  // The driver is deaf after some 3 s, and then hears again. On a busy machine each of these may
+  // take a second more.
   constexpr int kSeconds = 8;
   Background run(lab[0].On(RealtimeRun(kSeconds, {"--external", "driver"})));
   ASSERT_TRUE(run.WaitForErr("processes: "));

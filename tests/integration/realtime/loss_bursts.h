@@ -1,5 +1,5 @@
 // Real time on networks that lose many messages for a while. When the network is clean again, every
-// role computes again, whichever messages were lost. A run that succeeds has a whole log.
+// role computes again, no matter which messages were lost. A run that succeeds has a whole log.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -38,9 +38,9 @@ struct BurstPlan {
   double clean_s;  // the time after each burst, without loss
 };
 
-/// The time that a role needed after a burst: from the moment at which the network was clean until
-/// the role computed in time. A role computes in time within a period after the world began the
-/// step. The world is in time within two periods after it began the step before.
+/// The time from the moment at which the network was clean until the role was in time. A role is in
+/// time if it publishes a step within a period after the world began the step. The world is in time
+/// if it begins a step within two periods after the step before.
 struct BackAfterBurst {
   Role role;
   std::optional<double> after_s;
@@ -294,7 +294,7 @@ class LossBurstInRealtimeTest : public NetworkTest {
                                std::to_string(result.plan.machines) + " machines";
       EXPECT_EQ(result.trouble, "") << what;
       EXPECT_EQ(result.back.size(), result.plan.bursts.size()) << what;
-      // A burst is no reason to start a role again: no role hangs, and no role is deaf for long.
+      // A burst is no reason to start a role again. No role hangs, and no role is deaf for long.
       EXPECT_EQ(result.restarts, 0) << what;
       restarts_ += result.restarts;
       for (std::size_t i = 0; i < result.back.size(); ++i) {

@@ -1,5 +1,5 @@
-// Real time on a network that loses much: the stay of the recorder, the steps in its log, and the
-// text about messages that are lost for good.
+// Real time on a network that loses much: how long the recorder stays, which steps its log has, and
+// what the run reports about messages that it cannot get again.
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 
@@ -24,7 +24,7 @@ using testing::HasSubstr;
 
 constexpr const char* kUrl = "udpm://239.255.76.67:7700?ttl=1";
 constexpr int kRate_hz = 50;
-// Far longer than any wait here, even on a busy machine.
+// A time limit, far longer than any wait in these tests, even on a busy machine.
 constexpr Duration kPatience = std::chrono::seconds(30);
 
 /// Hears, on the machine of a run, the step that the world has begun, and whether the runner has
@@ -112,8 +112,8 @@ TEST_F(LossyNetworkInRealtimeTest, ThatLosesAThirdAllTheTimeLeavesNoRoleDeaf) {
     EXPECT_EQ(outcome.code, kFailed);
     EXPECT_THAT(outcome.err, HasSubstr(kNotWhole));
   }
-  // Every role and the recorder hear and send until the end, except for messages that are lost at
-  // the end.
+  // Every role and the recorder hear and send until the end. Only messages near the end may be
+  // lost.
   const auto newest = NewestSteps();
   for (std::size_t i = 0; i < kNumChannels; ++i) {
     if (kChannels[i].pace != Pace::kStep) continue;
@@ -145,7 +145,7 @@ TEST_F(LossyNetworkInRealtimeTest, ForLongerThanMessagesAreKeptFailsTheRun) {
   Listener listener(*machine_);
   Background run(RealtimeRun(4 * kRate_hz));
   ASSERT_TRUE(listener.WaitForStep(kRate_hz)) << run.Err();
-  // A second has 50 steps; the world and the roles can send the last 32 again.
+  // A second has 50 steps. The world and the roles can send only the last 32 of them again.
   LoseEverythingFor(milliseconds(1000));
   EXPECT_EQ(run.Wait(), kFailed);
   EXPECT_THAT(run.Err(), HasSubstr(kNotWhole));

@@ -20,11 +20,11 @@
 namespace fogline::test {
 
 inline constexpr double kPeriodS = kStepS / kSpeed;
-// kDetection: from a role's last message until a reader reports the loss. kInForce: from the loss
-// until the fallback acts.
+// kDetection: from a role's last message until a reader reports the loss. kInForce: from this
+// report until the fallback acts.
 inline constexpr std::int64_t kDetection = 3;  // periods
 inline constexpr std::int64_t kInForce = 1;
-// A role hears the runner's news within 100 ms: 5 periods.
+// A role hears news from the runner within 100 ms, which are 5 periods.
 inline constexpr std::int64_t kNews = 5;
 // The length of a manoeuvre from 20 m/s, steps.
 inline constexpr int kManoeuvre = 230;
@@ -67,21 +67,21 @@ inline FaultPlan PlanOf(const Fault& fault) {
   if (fault.role == "arbitrator" || fault.role == "follower") {
     plan.steps = plan.fault_step + kManoeuvre;
   } else if (fault.role == "driver") {
-    // The human is needed some 20 steps after the fault: 13 steps into the fog of the paper, 120
-    // into the dense one. A stopped process is missing for 50 steps.
+    // The human is needed some 20 steps after the fault. This is 13 steps after the fog begins in
+    // paper, and 120 steps after it begins in dense_fog. A stopped process is missing for 50 steps.
     const bool dense = fault.scenario == "dense_fog";
     plan.fault_step = dense ? 100 : 60;
     plan.settings = {dense ? "/fog/start_s=0" : "/fog/start_s=6.7"};
     plan.steps = plan.fault_step + 40 + kManoeuvre;
   } else if (fault.role == "recorder") {
-    // A second passes until the recorder's silence counts as a hang. At this speed a second has no
-    // more steps than the other roles keep for the recorder.
+    // A second passes until the recorder's silence counts as a hang. At this speed a second has 20
+    // steps, fewer than the other roles keep for the recorder.
     plan.speed = 2;
   }
   return plan;
 }
 
-// The vehicle stops by itself. The next arbitrator lets it finish the stop.
+// The vehicle stops by itself. The arbitrator that is started again lets it finish the stop.
 inline void JudgeWithoutArbitrator(const Log& log, std::int64_t lost) {
   EXPECT_LT(log.truth.at(lost + 1 + kInForce).host_acceleration_mps2,
             log.truth.at(lost).host_acceleration_mps2);
@@ -93,7 +93,7 @@ inline void JudgeWithoutArbitrator(const Log& log, std::int64_t lost) {
       [](std::int8_t mode) { return mode == arbitration_t::MINIMAL_RISK; }, "the vehicle stops");
 }
 
-// The host drives as without the fault; the following car stops.
+// The host drives as without the fault. The following car stops.
 inline void JudgeWithoutFollower(const Log& log, std::int64_t lost) {
   ExpectCommandsAreCarriedOut(log, 1, log.last());
   ExpectFollowerObeys(log, 1, lost);
@@ -155,7 +155,7 @@ inline void JudgeFault(const Log& log, const Fault& fault, std::int64_t fault_st
   if (fault.role == "arbitrator") return JudgeWithoutArbitrator(log, loss->step);
   if (fault.role == "follower") return JudgeWithoutFollower(log, loss->step);
   if (fault.role == "driver") return JudgeWithoutDriver(log, fault, silence, loss->step);
-  // Time stands still without the world. Nothing else changes.
+  // When the world is lost, time stands still. Nothing else changes.
   if (fault.role == "world") return ExpectCommandsAreCarriedOut(log, 1, log.last());
   JudgeWithoutAutomation(log, silence, loss->step);
 }
@@ -166,7 +166,7 @@ inline void ExpectFaultLeavesNoCarUndecided(const Fault& fault) {
   run.WaitForStep(plan.fault_step);
   const std::int64_t step = run.Signal(fault.role, fault.signal);
   if (fault.role == "world") {
-    // The steps do not show how long the world was silent. This process may hear of the loss one
+    // The steps do not show how long the world was silent. This test may hear of the loss one
     // period later.
     const auto missed = run.WaitForTheWorldToBeMissed();
     EXPECT_TRUE(missed || fault.signal == SIGKILL) << "no role missed it";

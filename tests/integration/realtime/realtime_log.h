@@ -70,9 +70,9 @@ struct Log {
     return misses;
   }
 
-  /// The first STATUS from a step on in which a role has lost a channel.
+  /// The first STATUS, from a given step on, that reports a lost channel.
   struct Loss {
-    std::int64_t step;  // that was under way
+    std::int64_t step;  // the step that was under way
     std::string reporter;
     std::string culprit_channel;
   };
@@ -102,7 +102,7 @@ struct Log {
             .back = after == there.end() ? last() + 1 : *after};
   }
 
-  /// The longest sequence of steps that a channel lacks, from a step on.
+  /// The longest sequence of steps that a channel lacks, from step `from` on.
   std::int64_t LongestSilence(const std::string& channel, std::int64_t from) const {
     std::int64_t longest = 0;
     std::int64_t silent = 0;
@@ -140,12 +140,12 @@ inline Car Follower(const truth_t& truth) {
   return {truth.follower_speed_mps.at(0), truth.follower_acceleration_mps2.at(0)};
 }
 
-/// In each step a process carries out the message that came for the step. If no message came, or it
-/// came too late, the process keeps to the message before. The log shows which messages came. The
-/// process reports how many of them came too late.
+/// In each step a process carries out the message that came for the step. If the message did not
+/// come, or came too late, the process keeps to the message before. The log shows which messages
+/// came. The process reports how many of them came too late.
 class Obedience {
  public:
-  /// @param role that obeys
+  /// @param role the role that obeys
   Obedience(const Log& log, const std::string& role) : role_(role), misses_(log.MissesOf(role)) {}
   ~Obedience() {
     EXPECT_LE(late_, misses_) << role_ << " does not say how often it was not in time";
@@ -165,8 +165,8 @@ class Obedience {
   std::int64_t late_ = 0;
 };
 
-/// Expects that the host follows the command of each step, and that this is the human's offer while
-/// the human drives.
+/// Expects that the host follows the command of each step, and that the command is the human's
+/// offer while the human drives.
 inline void ExpectCommandsAreCarriedOut(const Log& log, std::int64_t from, std::int64_t to) {
   Obedience world(log, "world");
   Obedience arbitrator(log, "arbitrator");

@@ -53,7 +53,7 @@ class RealtimeRun {
     return step_;
   }
   /// The time between the world's last TRUTH and the first STATUS that calls the world lost, on
-  /// this process's clock. Nothing if the world is back before that.
+  /// this process's clock. std::nullopt if the world is back earlier.
   std::optional<Duration> WaitForTheWorldToBeMissed() {
     const std::int64_t silent_since = step_;
     const TimePoint end = Clock::now() + std::chrono::seconds(5);

@@ -1,5 +1,5 @@
-// Choices of the models of sensors, fusion and cars have one digest on all transports, and a check
-// that names what is impossible.
+// Each choice of a model for sensors, fusion or cars has one digest on all transports. `fogline
+// check` names impossible choices.
 #include <string>
 #include <vector>
 
@@ -20,7 +20,7 @@ struct Variant {
   std::vector<std::string> fields;
 };
 
-/// The host approaches a slow car with an ACC that may hardly brake. A car follows it closely.
+/// The host approaches a slow car with an ACC that can hardly brake. A car follows it closely.
 const std::vector<std::string> kSlowCar{"/lead/speed_mps=8",
                                         "/world/host_gap_m=40",
                                         "/world/follower_gap_m=10",

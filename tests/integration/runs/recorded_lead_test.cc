@@ -58,7 +58,7 @@ TEST_F(RecordedLeadTest, IsFollowedFor700SecondsInClearAirWithoutACollision) {
 }
 
 TEST_F(RecordedLeadTest, IsFollowedThroughDenseFogWithoutACollision) {
-  // Fog from 300 s to 400 s of the recording, which begins at 200 s.
+  // Fog from 300 s to 400 s of the recording. The run begins at 200 s of the recording.
   const ScratchFolder folder;
   std::vector<std::string> more{"--transport", "udpm", "--log", folder.File("fog.lcm")};
   more.insert(more.end(), dense_fog_.begin(), dense_fog_.end());
@@ -82,8 +82,8 @@ TEST_F(RecordedLeadTest, LetsTheAccDriveLikeTheRealSecondCarThatHasItsTimeGap) {
   std::printf("behind the recorded leader: RMSE of speed %.3f m/s, of gap %.3f m\n",
               json["speed_rmse_mps"].get<double>(), json["gap_rmse_m"].get<double>());
   EXPECT_EQ(json["steps"], 7000);
-  // THEN ACC and real car drive alike. Car-following models that are fitted to a car leave 11 to 29
-  // % of the gap (Kesting & Treiber 2008).
+  // THEN ACC and real car drive alike. Car-following models that are fitted to a car have errors of
+  // 11 to 29 % of the gap (Kesting & Treiber 2008).
   EXPECT_LT(json["gap_rmse_m"], 0.29 * json["recorded_mean_gap_m"].get<double>());
   EXPECT_LT(json["speed_rmse_mps"], 1);
 }

@@ -15,7 +15,7 @@ namespace {
 
 using ::testing::ContainsRegex;
 
-/// Runs paper.json, with fewer steps where a full run would prove no more. @return the JSON result
+/// Runs paper.json, with fewer steps if a full run would prove the same. @return the JSON result
 nlohmann::json RunPaper(const std::string& log, const std::vector<std::string>& more) {
   std::vector<std::string> command{
       Program("fogline"), "run", "scenario/paper.json", "--json", "--quiet", "--log", log};
@@ -76,8 +76,7 @@ TEST(RunTest, PrintsDigitsThatMeanSomethingAndHasAllOfThemInJson) {
   const auto json = RunPaper(folder.File("run.lcm"), more)["metrics"];
   const Outcome text = RunCommand({Program("fogline"), "metrics", folder.File("run.lcm")});
   ASSERT_EQ(text.code, 0) << text.err;
-  // THEN the text does not print a time to collision of a year, nor a number near 0 with many
-  // decimals
+  // THEN the text shortens a time to collision of a year, and a number near 0 with many decimals
   EXPECT_GT(json["min_follower_ttc_s"], 1e6);
   EXPECT_THAT(text.out, ContainsRegex("min_follower_ttc_s +> 1000 s\n"));
   EXPECT_GT(json["max_compromised_safety_m"], 0);
@@ -88,13 +87,14 @@ TEST(RunTest, PrintsDigitsThatMeanSomethingAndHasAllOfThemInJson) {
 }
 
 TEST(RunTest, WritesTheSameLogByteForByteWhateverTheTransport) {
-  // GIVEN two logs of the same run, WHEN their run ids (8 bytes of every payload) are left out
+  // GIVEN the logs of one run on three transports
   const ScratchFolder folder;
   RunPaper(folder.File("memq.lcm"), {"--transport", "memq"});
   RunPaper(folder.File("udpm.lcm"), {"--transport", "udpm"});
   RunPaper(folder.File("direct.lcm"), {"--transport", "direct"});
   const auto size = [&](const char* name) { return std::filesystem::file_size(folder.File(name)); };
-  // THEN they have the same events in the same order
+  // THEN they have the same size. Two of them have the same events in the same order, except run
+  // ids
   EXPECT_EQ(size("memq.lcm"), size("udpm.lcm"));
   EXPECT_EQ(size("memq.lcm"), size("direct.lcm"));
   const Outcome diff =
@@ -109,14 +109,15 @@ TEST(RunTest, InMemoryMayTakeLongerThanAStepMay) {
                     {"--transport", "memq", "--set", "/steps=" + std::to_string(steps),
                      "--stall-timeout", "1"})["wall_s"];
   };
-  // WHEN the run gets longer until it takes longer than the timeout, THEN none of these runs fails
+  // WHEN the run gets longer until it takes longer than the timeout, THEN each of these runs
+  // succeeds
   int steps = 100'000;
   while (seconds(steps) < 1.2) steps *= 2;
 }
 
 TEST(RunTest, EndsAtACollisionIfTheScenarioSaysSo) {
   const ScratchFolder folder;
-  // GIVEN a leader that stops at once and an ACC that may hardly brake
+  // GIVEN a leader that stops at once and an ACC that can hardly brake
   const auto run =
       RunPaper(folder.File("crash.lcm"),
                {"--transport", "udpm", "--set", "/lead/profile=emergency_brake", "--set",
@@ -203,7 +204,7 @@ TEST(RunTest, SpeaksOfNoStepBeforeTheFirst) {
       << run.Err();
   run.Signal(SIGKILL);
   run.Wait();
-  // THEN neither the text of the run nor the text about its log mentions a step -1
+  // THEN no text about the run or its log mentions a step -1
   const Outcome metrics = RunCommand({Program("fogline"), "metrics", log});
   EXPECT_EQ(metrics.code, 1);
   EXPECT_EQ(metrics.err, log + ": no step of 500 is complete\n");

@@ -24,7 +24,7 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-// Messages between processes of one machine take far less, even when every processor is busy.
+// A time limit. Messages on one machine take far less time, also when every processor is busy.
 constexpr Duration kPatience = std::chrono::seconds(30);
 // The requester of this test's RESEND messages.
 constexpr const char* kTest = "test";
@@ -184,7 +184,7 @@ TEST(SwapTest, APartWithNothingButTheMessageTypesGivesTheSameDigestIfItDoesTheSa
       RunCommand({fogline, "run", "scenario/paper.json", "--transport", "direct", "--json"});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   const auto ours = nlohmann::json::parse(outcome.out);
-  // WHEN a driver from elsewhere replaces it
+  // WHEN a driver from elsewhere replaces our driver
   const auto same = RunWith(fogline, {bare, url, "1.6"}, url, elsewhere.File("same.lcm"));
   // THEN the digest is the same
   EXPECT_EQ(same["steps"], 500);
@@ -216,7 +216,7 @@ TEST(SwapTest, AClassWithAStepFunctionIsARoleByFindPackageAlone) {
   EXPECT_EQ(reader.run().steps, 500);
 }
 
-// The message types are headers alone.
+// The message types have headers only, so no library of them is linked.
 TEST(SwapTest, ARoleFromElsewhereLinksOnlyTheRuntimeAndWhatTheRuntimeUses) {
   const Elsewhere elsewhere;
   EXPECT_THAT(elsewhere.LibrariesOfMyDriver(),
@@ -322,7 +322,7 @@ TEST(SwapTest, TwoProcessesOfOneRoleAreRefusedByName) {
   const std::string url = runtime::FreshMulticastUrl();
   ListeningDriver one(bare, url);
   ListeningDriver two(bare, url);
-  // The run has real speed, so it still goes on when a busy machine starts one of the drivers late
+  // The run has real speed. So it still goes on when a busy machine starts one of the drivers late.
   auto command = RunWithExternalDriver(Program("fogline"), url, elsewhere.File("run.lcm"));
   command.insert(command.end(), {"--pace", "1"});
   const Outcome run = RunCommand(command);

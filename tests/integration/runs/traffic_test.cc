@@ -126,7 +126,8 @@ TEST_F(TrafficTest, IsRefusedByCheckInTheSameWords) {
 
 class CompareTest : public testing::Test {
  protected:
-  /// Makes the log of a host that keeps 20 m/s and its gap of 1.5 s and 3 m, exact to millimetres.
+  /// Makes the log of a host that keeps 20 m/s and a gap of 3 m + 1.5 s * speed, exact to
+  /// millimetres.
   void SetUp() override {
     std::ofstream(folder_.File("calm.json")) << R"({"version": 1, "steps": 41,
         "world": {"host_speed_mps": 20, "host_gap_m": 33},
@@ -199,7 +200,7 @@ TEST_F(CompareTest, GivesTheRootMeanSquareOfBothDifferences) {
   const Outcome outcome = Compare({Recording(), "--json", "--out", folder_.File("both.csv")});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   const auto json = nlohmann::json::parse(outcome.out);
-  // Noise of 1 mm in the sensors moves the host by less than this, metres.
+  // Noise of 1 mm in the sensors moves the host by less than this distance (metres).
   constexpr double kNoise = 0.02;
   EXPECT_EQ(json["steps"], 41);
   EXPECT_NEAR(json["speed_rmse_mps"], 1, kNoise);

@@ -28,7 +28,7 @@ inline nlohmann::json RunOn(const std::string& transport, const std::string& sce
 }
 
 /// Expects the same digest, measures and steps in one process, in memory and over the network.
-/// @param run runs it on a transport
+/// @param run runs the scenario on a transport
 /// @return the result of the run in one process
 inline nlohmann::json ExpectTheSameOnAnyTransport(
     const std::function<nlohmann::json(const std::string& transport)>& run, int steps) {

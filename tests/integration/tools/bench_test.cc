@@ -1,5 +1,5 @@
-// The benchmarks start the programs that they compare, and print figures. Whether a goal is met
-// depends on the machine, so the tests do not examine this.
+// The benchmarks start the programs that they compare, and print figures. The tests do not examine
+// whether a goal is met, because it depends on the machine.
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 
@@ -21,7 +21,7 @@ using ::testing::HasSubstr;
 TEST(BenchTest, MeasuresBothSidesOfAComparison) {
   const Outcome outcome = RunCommand(
       {Program("fogline-bench"), "--quick", "--only", "memq", "--rounds", "1", "--json"});
-  ASSERT_THAT(outcome.code, AnyOf(0, 1)) << outcome.err;  // 1: the goal is missed
+  ASSERT_THAT(outcome.code, AnyOf(0, 1)) << outcome.err;  // with code 1 the goal is missed
   const auto comparisons = nlohmann::json::parse(outcome.out)["comparisons"];
   ASSERT_EQ(comparisons.size(), 1U);
   EXPECT_EQ(comparisons[0]["name"], "memq");

@@ -1,4 +1,4 @@
-// cmake/harden_decoders.sh completes the decoders that lcm-gen has written, or says that it cannot.
+// cmake/harden_decoders.sh completes the decoders that lcm-gen has written, or reports a failure.
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -33,7 +33,7 @@ class HardenDecodersTest : public testing::Test {
     std::ifstream in(header_);
     return {std::istreambuf_iterator<char>(in), {}};
   }
-  /// Writes the decoder as another lcm-gen might.
+  /// Replaces a text in the decoder, as if another lcm-gen had written it.
   void Replace(const std::string& what, const std::string& by) const {
     std::string text = Text();
     const std::size_t begin = text.rfind(what);

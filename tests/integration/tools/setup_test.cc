@@ -1,4 +1,5 @@
-// tools/setup installs the packages of package-lock.json once, and again if they are not whole.
+// tools/setup installs the packages of package-lock.json once, and again if node_modules/ is not
+// complete.
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -21,8 +22,8 @@ using ::testing::Not;
 /// The file that npm installs.
 constexpr const char* kFile = "node_modules/chart/chart.js";
 
-/// A clone of a user without root. The machine has all Debian packages but npm, an npm of its own,
-/// and only the programs below. `$user` is the user who calls a program.
+/// A clone that belongs to a user without root. The machine has all Debian packages except npm. It
+/// has another npm, and only the programs below. `$user` is the user who calls a program.
 class SetupTest : public testing::Test {
  protected:
   SetupTest() {
@@ -83,7 +84,7 @@ TEST_F(SetupTest, InstallsOnceAsTheUser) {
   }
   EXPECT_TRUE(std::filesystem::is_empty(File("tmp")));
 
-  // WHEN nothing could be installed
+  // WHEN npm fails, THEN setup does not call it, because nothing is missing
   Write("npm", "exit 1");
   const Outcome again = Setup();
   EXPECT_EQ(again.code, 0);
@@ -141,14 +142,14 @@ TEST_F(SetupTest, RefusesAnNpmThatCannotReadTheLockFileBeforeItInstallsAnything)
             "tools/setup: error: npm 6.14.18 cannot read package-lock.json, which needs npm 7 or a "
             "later one\n");
   EXPECT_EQ(Content(File("calls")), "");
-  // WHEN it is replaced
+  // WHEN a later npm replaces this npm
   Write("dpkg-query", "echo installed");
   for (const char* version : {"7.0.0", "10.9.2"}) {
     write_npm(version);
     std::filesystem::remove_all(File("node_modules"));
     EXPECT_THAT(Calls(), HasSubstr("npm ci")) << version;
   }
-  // An old one does no harm where nothing has to be installed.
+  // An old npm does no harm if nothing has to be installed.
   write_npm("6.14.18");
   EXPECT_EQ(Calls(), "");
 }

@@ -1,4 +1,4 @@
-// Programs that cannot write to stderr, or whose stderr no process reads; and the signals that end
+// Programs that cannot write to stderr, or whose stderr no process reads, and the signals that end
 // a program.
 #include <fcntl.h>
 #include <sys/ioctl.h>
@@ -29,7 +29,7 @@ namespace {
 using testing::HasSubstr;
 using Words = std::vector<std::string>;
 
-// A run of 20 steps takes less than this, even on a busy machine.
+// A time limit, longer than a run of 20 steps takes on a busy machine.
 constexpr std::chrono::seconds kPatience(60);
 
 std::string Content(const std::filesystem::path& file) {
@@ -37,7 +37,7 @@ std::string Content(const std::filesystem::path& file) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-/// A command after a redirection or a builtin of the shell, such as "exec 2>/dev/full".
+/// A shell that executes `before`, such as "exec 2>/dev/full", and then the command.
 Words Shell(const std::string& before, Words command) {
   command.insert(command.begin(), {"sh", "-c", before + "; exec \"$@\"", "sh"});
   return command;
@@ -68,7 +68,7 @@ class FullPipe {
   int pages_ = 0;
 };
 
-/// Waits for the process of a role that a run has started. @return 0 if it does not come
+/// Waits for the process of a role that a run has started. @return 0 if no such process comes
 pid_t WaitForRole(pid_t run, const std::string& program) {
   const TimePoint end = Clock::now() + kPatience;
   while (Clock::now() < end) {

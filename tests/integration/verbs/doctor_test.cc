@@ -21,7 +21,7 @@ namespace {
 using nlohmann::json;
 using testing::HasSubstr;
 
-// Programs start and messages arrive within this even when every processor is busy.
+// A time limit. Programs start and messages arrive earlier even when every processor is busy.
 constexpr std::chrono::seconds kPatience(30);
 
 /// Levels of all findings of one check.
@@ -108,7 +108,7 @@ TEST(DoctorTest, NamesProgramsThatAreMissingOrOfAnotherBuild) {
                                     " cannot be run  -> ninja -C build fogline_programs\n"));
 }
 
-/// Machines without a network, or with one of their own.
+/// Machines without a network, or with a network of their own.
 class DoctorOnMachineTest : public testing::Test {
  protected:
   void SetUp() override {
@@ -126,7 +126,7 @@ constexpr const char* kEverywhere = "udpm://239.255.76.67:7700?ttl=1";
 
 TEST_F(DoctorOnMachineTest, FindsTheMissingRouteAndItsRemedyHelps) {
   const Machine island("island");
-  // Without a route neither LCM's own programs nor runs on several machines work.
+  // LCM's own programs, and runs on several machines, need a route.
   const Outcome here = Doctor(island, kHere);
   EXPECT_EQ(here.code, 0) << here.err;
   const json own = json::parse(here.out);
@@ -150,7 +150,7 @@ TEST_F(DoctorOnMachineTest, FindsTheMissingRouteAndItsRemedyHelps) {
   EXPECT_EQ(Find(mended["findings"], "check", "multicast_route")["what"],
             "239.255.76.67 goes over loopback and stays on this machine (ttl=0)");
   EXPECT_EQ(Levels(mended, "multicast_loopback"), std::multiset<std::string>{"ok"});
-  // THEN it is enough for this machine, but not for others
+  // THEN this route is enough for this machine, but not for other machines
   const Outcome wider = Doctor(island, kEverywhere);
   EXPECT_EQ(wider.code, 1);
   EXPECT_THAT(wider.out, HasSubstr("no other machine hears it"));

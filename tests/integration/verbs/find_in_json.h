@@ -8,7 +8,7 @@
 
 namespace fogline::test {
 
-/// @return null, and the test fails, if there is none
+/// @return null if there is none; the test then fails
 inline const nlohmann::json& Find(const nlohmann::json& array, const std::string& key,
                                   const std::string& value) {
   static const nlohmann::json kNone;

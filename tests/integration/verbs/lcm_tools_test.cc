@@ -220,12 +220,12 @@ std::size_t PlayedAndVerified(const std::string& log, const std::string& key) {
   return truths;
 }
 
-// After this many steps the driver waits for lcm-spy, so lcm-spy is ready for the next messages. It
-// may lose later messages of this interval if it gets no processor time.
+// At intervals of this many steps the driver waits for lcm-spy, so lcm-spy is then ready for the
+// next messages. It may lose later messages of the interval if it gets no processor time.
 constexpr std::int64_t kStepsOfSpy = 10;
 
-/// The driver of a run. It answers for a step only after lcm-logger has written all messages
-/// before. lcm-logger queues 30 messages, and lcm-spy as many as its socket holds; on a busy
+/// The driver of a run. It answers for a step only after lcm-logger has written all earlier
+/// messages. lcm-logger queues 30 messages, and lcm-spy those that fit into its socket. On a busy
 /// machine both lose further messages. A run that waits for its driver sends fewer messages at a
 /// time.
 class DriverThatWaits {
@@ -323,7 +323,7 @@ TEST_P(LoggerAndSpyTest, GetAndDecodeTheMessagesOfARunThatLeavesThemTheTime) {
       EXPECT_EQ(ScenarioTexts(got), ScenarioTexts(expected->second));
     }
   }
-  // AND its log gives the same results as ours
+  // AND lcm-logger's log gives the same results as our log
   const Outcome metrics = RunCommand({Program("fogline"), "metrics", "--json", own, debian});
   ASSERT_EQ(metrics.code, 0) << metrics.err;
   const auto logs = nlohmann::json::parse(metrics.out);
@@ -377,7 +377,7 @@ TEST(LcmToolsTest, LogplayerPlaysEveryMessageToASubscriberThatDecodesIt) {
   ForEachStepChannel([&]<class M>(std::size_t) { listen.template operator()<M>(); });
   bool ended = false;
   bus.Subscribe("END", [&ended](runtime::Bytes) { ended = true; });
-  // WHEN lcm-logplayer plays it, 25 times as fast as the 50 s that its event times span
+  // WHEN lcm-logplayer plays it at 25 times its speed (its event times span 50 s)
   Background player({"lcm-logplayer", "--speed=25", "--lcm-url=" + bus.url(), log});
   ASSERT_EQ(player.Wait(), 0) << player.Err();
   ASSERT_TRUE(Mark(bus, "END", [&] {

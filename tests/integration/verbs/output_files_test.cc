@@ -84,8 +84,8 @@ TEST_F(OutputFilesTest, TwoReportsAtOnceOnOneFileEachWriteAWholePage) {
     pages.push_back(Content(page_));
   }
   ASSERT_NE(pages[0], pages[1]);
-  // WHEN both are reported at the same time, many times, THEN the page is always one of the two
-  // pages
+  // WHEN both logs are reported at the same time, many times, THEN the page is always one of the
+  // two pages
   constexpr int kPairs = 20;
   for (int pair = 0; pair < kPairs; ++pair) {
     Background one(report(log_));
@@ -278,7 +278,7 @@ TEST_F(DocumentTest, GoesToStdoutOnlyWithoutTheJsonOfTheVerb) {
                                " /dev/stdout uses stdout already; give " + words.back() +
                                " a file\n");
   }
-  // /dev/null may get both texts, because nothing reads it.
+  // /dev/null may get both the page and the JSON text, because nothing reads it.
   EXPECT_EQ(Bash("fogline report run.lcm -o /dev/null --json > /dev/null").code, 0);
 }
 

@@ -123,7 +123,7 @@ TEST(ReportVerbTest, WritesThePageOfALogThatIsCutOffMarksItThereAndExitsWith1) {
   // AND stderr names the missing part of the log
   EXPECT_THAT(report.err, ContainsRegex(cut + ": cut off after event [^;]*; .*; ends after step "
                                               "[0-9]+ of 220"));
-  // AND the page says so for this run only
+  // AND the page reports this for the cut run only
   const nlohmann::json runs = DataOf(Read(page))["runs"];
   EXPECT_EQ(runs[0]["badge"], "");
   const std::string badge = runs[1]["badge"];
@@ -205,8 +205,7 @@ TEST(ReportVerbTest, WritesTheFiguresAsPngSvgAndPdfIntoTheFoldersAskedFor) {
 }
 
 TEST(ReportVerbTest, EndsOnCtrlCWithoutAPage) {
-  // GIVEN a log that is cut off, which the report reports before it computes, and curves that would
-  // take minutes
+  // GIVEN a log that is cut off, and curves that would take minutes. The cut log is reported first
   const ScratchFolder folder;
   const std::string log = folder.File("cut.lcm");
   RunCommand({Program("fogline"), "run", "scenario/paper.json", "--transport", "direct", "--log",
@@ -218,7 +217,7 @@ TEST(ReportVerbTest, EndsOnCtrlCWithoutAPage) {
   ASSERT_TRUE(report.WaitForErr(log)) << report.Err();
   // WHEN a person presses Ctrl-C
   report.Signal(SIGINT);
-  // THEN the report says so and leaves no file
+  // THEN the report says that it was interrupted, and leaves no file
   EXPECT_EQ(report.Wait(), 130);
   EXPECT_THAT(report.Err(), HasSubstr("fogline report: interrupted"));
   EXPECT_FALSE(std::filesystem::exists(file));

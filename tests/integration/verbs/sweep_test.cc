@@ -278,7 +278,7 @@ TEST_F(SweepTest, VariesTheFieldsOfAListsItems) {
   const Words cars{"--set", R"(/followers/cars=[{"driver":"human"},{"driver":"acc"}])"};
   const Words axis{"--grid", "/followers/cars/0/style=normal,aggressive", "--seeds", "1:1"};
   const std::string rows = Made("rows.csv", kShort + cars + axis);
-  // After the value of the grid, the row equals that of a sweep of the same cars without a grid.
+  // After the grid's value, a row has the cells of a sweep of the same cars without a grid.
   const Words aggressive{
       "--set", R"(/followers/cars=[{"driver":"human","style":"aggressive"},{"driver":"acc"}])",
       "--seeds", "1:1"};
@@ -295,7 +295,7 @@ TEST_F(SweepTest, VariesTheFieldsOfAListsItems) {
 }
 
 TEST_F(SweepTest, NamesTheFirstRowThatCannotBeComputedAndKeepsThoseBefore) {
-  // GIVEN weights of which the second makes an ill-conditioned problem for the ACC
+  // GIVEN two weights, of which the second gives the ACC an ill-conditioned problem
   const Words sweep = kShort + Words{"--set",   "/step_s=1",
                                      "--set",   "/acc/horizon_steps=60",
                                      "--set",   "/acc/headway_s=0",
@@ -360,7 +360,7 @@ std::vector<std::map<std::string, std::string>> Rows(const std::string& csv) {
   return rows;
 }
 
-/// Expects that a cell has the value of a JSON number; it is empty for null.
+/// Expects that a cell has the value of a JSON number; the cell is empty for null.
 void ExpectSame(const std::string& cell, const nlohmann::json& value, const std::string& what) {
   if (value.is_null()) {
     EXPECT_EQ(cell, "") << what;

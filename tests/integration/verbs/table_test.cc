@@ -42,11 +42,12 @@ TEST(TableTextTest, EndsWithSafetyByOtherFloorsAndReadings) {
       RunCommand({Program("fogline"), "table", "scenario/paper.json", "--thresholds", "0.5"});
   ASSERT_EQ(table.code, 0) << table.err;
   EXPECT_THAT(table.out, HasSubstr("(/measures/safety_floor_m, 0.01 m)"));
-  // The scenario's own floor gives SI itself.
+  // For the scenario's own floor, the value is SI itself.
   const nlohmann::json row = TableRows({"--thresholds", "0.5"})[0];
   EXPECT_EQ(row["other_si_pct"]["floor_10mm"], row["si_pct"]);
   EXPECT_EQ(row["other_si_pct"].size(), 7U);
-  // A lower floor takes in steps in which little is compromised, and less of it is avoided.
+  // A lower floor also counts steps with little compromised safety. Traded control avoids less of
+  // it.
   double above = 100;
   for (const char* floor : {"floor_20mm", "floor_10mm", "floor_5mm", "floor_1mm", "floor_0mm"}) {
     EXPECT_LT(row["other_si_pct"][floor], above) << floor;
@@ -174,7 +175,7 @@ TEST(TableOfRunsTest, IsTheSameWithADriverFromElsewhereThatIsStartedForEveryRun)
 
 TEST(TableOfRunsTest, CountsTheRunsThatEndInACollision) {
   EXPECT_EQ(TableRows({"--thresholds", "0.5", "--seeds", "1:3"})[0]["collisions"], 0);
-  // GIVEN a leader that stops at once, and two cars that may hardly brake
+  // GIVEN a leader that stops at once, and two cars that can hardly brake
   const nlohmann::json rows =
       TableRows({"--thresholds", "1", "--seeds", "1:3", "--set", "/lead/profile=emergency_brake",
                  "--set", "/acc/min_acceleration_mps2=-0.1"});

@@ -70,7 +70,8 @@ TEST(SilentFollowersTest, WithoutASilentFollowerIsTheLockstepRun) {
   follower::Follower follower(scenario);
   lockstep.Start(1);
   RealTimeLoop(scenario).Run([&](const Moment& m) {
-    // GIVEN the same host, THEN the followers' commands are those of a run in lockstep
+    // GIVEN the same commands to the host, THEN the followers' commands are those of a run in
+    // lockstep
     const follower_command_t& command = follower.Step(lockstep.truth());
     ASSERT_EQ(m.truth.follower_position_m, lockstep.truth().follower_position_m);
     ASSERT_EQ(m.vehicle.followers().acceleration_mps2, command.acceleration_mps2);

@@ -41,7 +41,7 @@ class Braking {
   void Take(bool in_force, double speed_mps, double applied_mps2) {
     if (in_force_) {
       ASSERT_LE(std::abs(applied_mps2 - last_mps2_), limits_.jerk_mps3 * step_s_ + kRounding);
-      // A car that braked harder before releases the brake.
+      // If the car has braked harder before, it releases the brake.
       ASSERT_GE(applied_mps2, std::min(-limits_.deceleration_mps2, last_mps2_) - kRounding);
       ASSERT_TRUE(!stands_ || speed_mps == 0) << "drives off";
       stands_ = speed_mps == 0;
@@ -88,7 +88,7 @@ class SilentRolesTest : public testing::TestWithParam<const char*> {
     return m.truth.header.step >= death - 1 + kDetection + kInForce;
   }
 
-  // Checks that the host comes to a standstill after `death`.
+  // Checks that the host comes to a standstill after step `death`.
   void CheckHostStops(std::int64_t death, const Moment& m) {
     CheckStops(death, m, m.truth.host_speed_mps, m.truth.host_acceleration_mps2);
   }

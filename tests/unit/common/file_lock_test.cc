@@ -19,7 +19,8 @@ using Kind = FileLock::Kind;
 
 class FileLockTest : public testing::Test {
  protected:
-  /// The error text of an attempt to take a lock, which is given back at once. "" if there is none.
+  /// The error text of an attempt to take a lock, "" if the attempt succeeds. The lock is then
+  /// given back at once.
   static std::string ErrorOf(const std::string& path, Kind kind) {
     return test::ErrorOf([&] { const FileLock lock(path, kind, "--log", "run"); });
   }

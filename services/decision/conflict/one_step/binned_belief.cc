@@ -10,8 +10,8 @@ namespace fogline::conflict {
 namespace {
 
 // Greatest number of bins of one belief. It covers 6 standard deviations on each side if the
-// standard deviation is at most 5 widths. For larger ones the outermost bins contain the
-// probability beyond.
+// standard deviation is at most 5 widths. With a larger standard deviation, the outermost bins
+// contain the probability beyond them.
 constexpr std::int64_t kMostBins = 64;
 constexpr double kReach = 6;  // standard deviations; the probability beyond is 2e-9
 
@@ -65,15 +65,15 @@ double OneMinusCosine(double ab, double aa, double bb) {
 }  // namespace
 
 BinnedPair PairOnBins(const Disagreement& disagreement, const ConflictParameters& parameters) {
-  // The sign of the difference has no effect: the grid is the same on both sides of the radar's
-  // reading.
+  // The sign of the difference has no effect, because the grid is the same on both sides of the
+  // radar's reading.
   const double distance_m = std::abs(disagreement.difference_m);
   const Bins radar = OnBins(0, disagreement.radar_std_m, parameters.bin_width_m);
   const Bins lidar = OnBins(distance_m, disagreement.lidar_std_m, parameters.bin_width_m);
   const double eta_1 = parameters.radar_reliability;
   const double eta_2 = parameters.lidar_reliability;
   const double n = parameters.frame_bins;
-  const double theta_difference = (eta_2 - eta_1) / n;  // per bin, of BetP1 - BetP2
+  const double theta_difference = (eta_2 - eta_1) / n;  // part of BetP1 - BetP2 in each bin
 
   BinnedPair pair{.reliability_1 = eta_1, .reliability_2 = eta_2, .bins = n};
   std::int64_t used = 0;

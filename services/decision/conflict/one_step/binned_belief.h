@@ -18,15 +18,15 @@ struct BinnedPair {
   double absolute = 0;       // sum of |BetP1 - BetP2| over the bins that m1 or m2 uses
   double reliability_1 = 0;  // eta1
   double reliability_2 = 0;  // eta2
-  double elsewhere = 0;      // share of the frame that neither m1 nor m2 uses
+  double elsewhere = 0;      // share of the frame's bins that m1 and m2 do not use
   double bins = 0;           // n
 };
 
 /// Radar (1) and LiDAR (2) on bins of `bin_width_m`: m({bin}) = eta P(bin), m(Theta) = 1 - eta
 /// (Shafer's discounting), P being the sensor's Gaussian. The radar's reading is an edge of the
-/// grid, so that the pair depends on the difference alone; mirrored differences give equal pairs.
-/// A reading within a bin and one on an edge give different evidence, though their precision is the
-/// same. So the measures grow with |d| between multiples of the width, but not at every |d|.
+/// grid, so that the pair depends on the difference alone; mirrored differences give equal pairs. A
+/// reading within a bin and a reading on an edge give different evidence, though their precision is
+/// the same. So the measures grow from one multiple of the width to the next, but not at every |d|.
 BinnedPair PairOnBins(const Disagreement& disagreement, const ConflictParameters& parameters);
 
 /// Dempster's conflict k = sum of m1(A) m2(B) over disjoint A, B, in [0, 1] (Dempster 1967). It has

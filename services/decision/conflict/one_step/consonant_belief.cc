@@ -37,8 +37,8 @@ double MaxwellBelow(double y) {
 }
 
 double ConsonantConflict(const Disagreement& disagreement) {
-  // The integral is over the intervals of the narrow belief, because F of the wide one varies
-  // slowly there. Beyond 9 standard deviations the integral of f is 1e-16.
+  // The integral is over the intervals of the narrow belief, because F of the wide belief varies
+  // slowly over these intervals. Beyond 9 standard deviations the integral of f is 1e-16.
   constexpr double kReach = 9;
   constexpr int kNodes = 30;
   const double d = std::abs(disagreement.difference_m);

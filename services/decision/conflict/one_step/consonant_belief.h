@@ -8,14 +8,14 @@
 
 namespace fogline::conflict {
 
-/// The least-committed of all belief densities that have as pignistic probability the sensor's
-/// Gaussian N(mu, s^2). Its focal sets are the nested intervals [mu - y s, mu + y s], with the
-/// Maxwell density f(y) = sqrt(2/pi) y^2 exp(-y^2/2) (Smets 2005; Ristic & Smets 2004; Caron et al.
-/// 2008). It needs neither a frame with bins nor a reliability.
+/// The least-committed of all belief densities whose pignistic probability is the sensor's Gaussian
+/// N(mu, s^2). Its focal sets are the nested intervals [mu - y s, mu + y s], with the Maxwell
+/// density f(y) = sqrt(2/pi) y^2 exp(-y^2/2) (Smets 2005; Ristic & Smets 2004; Caron et al. 2008).
+/// It does not need a frame with bins or a reliability.
 ///
-/// Dempster's k and the pignistic distance are computed from the density itself. The others need
-/// sums over pairs of focal sets. For them `levels` intervals of mass 1/levels each, at the
-/// quantiles (i + 1/2)/levels of f, replace the density; |A| is the length of A.
+/// Dempster's k and the pignistic distance are computed from the density itself. The other measures
+/// need sums over pairs of focal sets. For these measures, `levels` intervals of mass 1/levels each
+/// replace the density, at the quantiles (i + 1/2)/levels of f. |A| is the length of A.
 class ConsonantBeliefs {
  public:
   static constexpr int kMostLevels = 64;
@@ -36,7 +36,7 @@ class ConsonantBeliefs {
   /// d_J, in [0, 1].
   double JousselmeDistance(const Disagreement& disagreement) const;
   /// 1 - cosine of the contours, in [0, 1]. The cosine of the masses themselves would be 0 for all
-  /// but equal readings, because intervals of two different readings are never the same set.
+  /// different readings, because intervals of two different readings are never the same set.
   double CosineConflict(const Disagreement& disagreement) const;
   /// 1 - r, in [0, 1].
   double CorrelationConflict(const Disagreement& disagreement) const;
@@ -45,7 +45,7 @@ class ConsonantBeliefs {
   int levels_;
   std::array<double, kMostLevels> half_widths_{};  // y of each interval, in standard deviations
   double jaccard_square_;
-  double contour_square_;  // of a reading with s = 1 m; it grows with s
+  double contour_square_;  // for a reading with s = 1 m; proportional to s
 };
 
 /// F(y) = erf(y/sqrt(2)) - sqrt(2/pi) y exp(-y^2/2), the distribution of f; 0 for y <= 0.
@@ -54,12 +54,12 @@ double MaxwellBelow(double y);
 /// k(d) = P(s1 Y1 + s2 Y2 < |d|), Y1 and Y2 independent with density f: the probability that two
 /// intervals have no point in common,
 ///     k = integral over [0, |d|/s1] of f(y) F((|d| - s1 y)/s2) dy,
-/// in [0, 1], with k(0) = 0. By quadrature, to 1e-9.
+/// in [0, 1], with k(0) = 0. It is computed by quadrature, to 1e-9.
 double ConsonantConflict(const Disagreement& disagreement);
 
 /// difBetP, in [0, 1]. The pignistic probabilities are the Gaussians themselves. The largest
-/// difference of two probabilities over all sets is their total variation: the difference of their
-/// probabilities between the points of equal density. At d = 0 it is above 0 if the precisions
+/// difference of the two probabilities over all sets is the total variation of the Gaussians. It is
+/// the difference between the points of equal density. At d = 0 it is above 0 if the precisions
 /// differ.
 double ConsonantPignisticDistance(const Disagreement& disagreement);
 

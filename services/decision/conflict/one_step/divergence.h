@@ -2,16 +2,16 @@
 // s2^2. The normalised square of the difference is NIS = d^2/S, for a chi-square test (Bar-Shalom,
 // Li & Kirubarajan 2001, section 5.4). The Bhattacharyya distance is D_B = d^2/(4 S) + ln(S/(2 s1
 // s2))/2, at least 0 (Bhattacharyya 1943). Its second part is above 0 at d = 0, too, if the
-// precisions differ: unequal precision looks like conflict. So only the first part is used. The
-// Hellinger distance is H = sqrt(1 - exp(-D_B)), in [0, 1].
+// precisions differ, so that unequal precision looks like conflict. Therefore only the first part
+// is used. The Hellinger distance is H = sqrt(1 - exp(-D_B)), in [0, 1].
 #pragma once
 
 #include "services/decision/conflict/disagreement.h"
 
 namespace fogline::conflict {
 
-/// NIS = d^2/S, at least 0. Without a fault it is chi-square with one degree of freedom: above
-/// 3.84, 6.63, 10.83 in 5, 1, 0.1 % of the steps.
+/// NIS = d^2/S, at least 0. Without a fault it is chi-square with one degree of freedom. It is then
+/// above 3.84 in 5 %, above 6.63 in 1 %, and above 10.83 in 0.1 % of the steps.
 inline double NormalisedSquare(const Disagreement& disagreement) {
   const double u = disagreement.standardised();
   return u * u;

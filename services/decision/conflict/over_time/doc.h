@@ -7,9 +7,10 @@
 namespace fogline::conflict {
 
 /// DoC = 1/(1 + exp(-slope (z - centre))) of the windowed z, in [0, 1] (Sourav & Cheng 2024;
-/// services/decision/conflict/over_time/degree_of_conflict.h). Without a fault E z = sqrt(2 S/pi)
-/// with the mean of absolutes: only this measure has a scale in metres. The offset of the sensors
-/// is not subtracted. Skipped steps leave their place in the window empty.
+/// services/decision/conflict/over_time/degree_of_conflict.h). If z is the mean of absolute
+/// differences, its expectation without a fault is sqrt(2 S/pi). Only this measure has a scale in
+/// metres. The offset of the sensors is not subtracted. Skipped steps leave their place in the
+/// window empty.
 class Doc final : public ConflictMeasure {
  public:
   explicit Doc(const ConflictParameters& parameters);

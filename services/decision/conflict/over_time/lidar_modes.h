@@ -1,4 +1,5 @@
-// Modes of the LiDAR: it measures the range of the car, of the fog, or of nothing.
+// Modes of the LiDAR: it measures the range of the car, it measures the range of the fog, or it has
+// no echo.
 #pragma once
 
 #include <array>
@@ -16,11 +17,11 @@ namespace fogline::conflict {
 /// The reference range r is the radar's, or the prediction's if the radar has none. The likelihood
 /// of an echo at z is Lambda_j = P_echo,j times
 ///     clean       N(r - z; offset, S)
-///     fog return  (1 - e) N(z; r* + E, s_z^2 + V) + e/R     E, V: of the scatter a Beta(2, 20)
+///     fog return  (1 - e) N(z; r* + E, s_z^2 + V) + e/R     E, V: mean, variance of a Beta(2, 20)
 ///     dropout     1/R                                       an echo can be anywhere
 /// with share e of stray echoes over the range R. The likelihood of no echo is 1 - P_echo,j. A
-/// missing LiDAR value is evidence of a mode, so the rule for missing values does not apply. Of an
-/// echo without any reference no likelihood is computed: only the Markov chain advances.
+/// missing LiDAR value is evidence of a mode, so the rule for missing values does not apply. After
+/// an echo without any reference, only the Markov chain advances.
 class LidarModes {
  public:
   using Probabilities = std::array<double, kLidarModes>;  // order of LidarMode; add up to 1
@@ -49,7 +50,8 @@ class LidarModeConflict final : public ConflictMeasure {
   LidarModes modes_;
 };
 
-/// Blames the LiDAR by the same probability. The radar has no modes here and is never blamed.
+/// Blames the LiDAR with the probability of LidarModeConflict. The radar has no modes here and is
+/// never blamed.
 class LidarModeBlame final : public BlameMeasure {
  public:
   explicit LidarModeBlame(const ConflictParameters& parameters) : conflict_(parameters) {}

@@ -12,13 +12,14 @@ double Mean(const Window& window);
 /// sum / sqrt(n) of the n values of a window; 0 if it is empty.
 double StandardisedMean(const Window& window);
 
-/// Mean over the window of NIS, at least 0: N times it is chi-square with N degrees of freedom.
+/// Mean of NIS over the window, at least 0. N times this mean is chi-square with N degrees of
+/// freedom.
 using WindowedNis = Windowed<NormalisedSquare, Mean, &ConflictParameters::window_steps>;
 
 /// T = sum u_i / sqrt(n) with u = d/sqrt(S) over the n differences of the window, any real number.
 /// Without a fault T is standard normal; it is mean(d) sqrt(n/S) while S is constant. T is above 0
-/// if the LiDAR's range is too short; a range that is too long counts as the opposite of conflict.
-/// T is best for a constant bias.
+/// if the LiDAR's range is too short; a range that is too long makes T negative. T is best for a
+/// constant bias.
 using SignedNis =
     Windowed<&Disagreement::standardised, StandardisedMean, &ConflictParameters::window_steps>;
 

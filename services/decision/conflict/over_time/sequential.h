@@ -10,9 +10,10 @@ namespace fogline::conflict {
 ///
 ///     g+ = min(ceiling, max(0, g + u - kappa)),        in [0, ceiling]
 ///
-/// in standard deviations. With kappa = 0.5 and a threshold of 4 or 5, two such tests of opposite
-/// sign have a mean run length of 168 or 465 steps to a false alarm, and of 8.4 or 10.4 steps to
-/// the alarm after a shift by one standard deviation. A skipped step changes nothing.
+/// in standard deviations. Two such tests of opposite sign with kappa = 0.5 and a threshold of 4
+/// have a mean run length of 168 steps to a false alarm. After a shift by one standard deviation,
+/// the mean run length to the alarm is 8.4 steps. With a threshold of 5 these run lengths are 465
+/// and 10.4 steps. A skipped step changes nothing.
 class Cusum final : public ConflictMeasure {
  public:
   explicit Cusum(const ConflictParameters& parameters);
@@ -50,8 +51,8 @@ SprtBounds WaldBounds(double alpha, double beta);
 ///     L+ = L + (delta/S)(d - delta/2),        in [accept_agreement, ceiling accept_conflict]
 ///
 /// At the lower bound the test accepts agreement and begins again, so L never falls below this
-/// bound. The two bounds are a hysteresis with known errors. Scores from accept_conflict on accept
-/// the conflict. A skipped step changes nothing.
+/// bound. The two bounds are a hysteresis with known errors. A score of at least accept_conflict
+/// accepts the conflict. A skipped step changes nothing.
 class Sprt final : public ConflictMeasure {
  public:
   explicit Sprt(const ConflictParameters& parameters);

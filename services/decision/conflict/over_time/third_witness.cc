@@ -65,8 +65,8 @@ void SensorResidual::Reset() {
 
 NisBlame::NisBlame(const ConflictParameters& parameters)
     : offset_m_(parameters.offset_m),
-      // d = radar - LiDAR = missing_conflict_m: the radar's range is too long, or the LiDAR's too
-      // short.
+      // With d = radar - LiDAR = missing_conflict_m the radar's range is too long, or the LiDAR's
+      // range is too short.
       radar_(parameters, parameters.nominal_radar_std_m, parameters.missing_conflict_m),
       lidar_(parameters, parameters.nominal_lidar_std_m, -parameters.missing_conflict_m) {}
 

@@ -1,9 +1,9 @@
-// Finds the sensor that is wrong. Two different values are not enough for this, so a third one, the
-// witness, is needed: the filter's prediction of the range from all steps before this one.
+// Finds the sensor that is wrong. The values of radar and LiDAR are not enough for this, so a third
+// value, the witness, is needed. It is the filter's prediction of the range from all earlier steps.
 //
 // All measures here first subtract the offset of the sensors from the radar's range. Without a
-// prediction there is no witness, and the blame of both sensors is 0. A witness is only as good as
-// its earlier input: a filter that has followed a slowly drifting sensor blames the other one.
+// prediction there is no witness, and the blame of both sensors is 0. The witness depends on its
+// earlier input. After it has followed a slowly drifting sensor, the other sensor is blamed.
 #pragma once
 
 #include <array>
@@ -28,8 +28,8 @@ class SensorResidual {
   SensorResidual(const ConflictParameters& parameters, double nominal_std_m,
                  double missing_error_m);
 
-  /// T; 0 without a prediction or a residual. A missing value repeats the last residual, leaves its
-  /// place empty, or counts as conflict, by the rule of the parameters.
+  /// T after this step; 0 without a prediction or a residual. A missing value repeats the last
+  /// residual, leaves its place empty, or counts as conflict, by the rule of the parameters.
   double Step(const StatedRange& sensor, const StatedRange& prediction, double offset_m);
   void Reset();
 
@@ -41,7 +41,7 @@ class SensorResidual {
   double missing_error_m_;
   double smallest_std_m_;
   double nominal_std_m_;
-  double std_m_;  // last stated
+  double std_m_;  // last stated standard deviation
   std::optional<double> last_;
   Window residuals_;
 };
@@ -106,9 +106,11 @@ Support MurphySupport(const BeliefProducts& products);
 /// Deng's rule); their equations were not available.
 Support MutualSupport(const BeliefProducts& products);
 
-/// Blame = 1 - support/support0, at least 0. support0 is the support for the same three precisions
-/// and equal means, so bodies that agree are not blamed for unequal precision. For a missing value
-/// the rule says: hold, the last blame; skip, no blame; conflict, all the blame on that sensor.
+/// Blame = 1 - support/support0, at least 0. support0 is the support that the sensor would have
+/// with the same precisions if all three means were equal. So a sensor that agrees with the others
+/// is not blamed because the precisions differ. For a missing value,
+/// rule hold gives the last blame, rule skip gives no blame, and rule conflict gives all the blame
+/// to the sensor without value.
 class BeliefBlame final : public BlameMeasure {
  public:
   using SupportFunction = Support (*)(const BeliefProducts&);

@@ -9,9 +9,10 @@
 
 namespace fogline::conflict {
 
-/// A measure of the disagreements of the last steps: double kScore(Window) over the values
-/// double kValue(Disagreement). `kSteps` is the parameter with the length of the window. A skipped
-/// step leaves its place empty; an empty window scores 0.
+/// A measure of the last steps. kValue computes a number from the Disagreement of each step, and
+/// kScore computes the score from the Window of these numbers. Both return double. `kSteps` is the
+/// parameter with the length of the window. A skipped step leaves its place empty. An empty window
+/// has score 0.
 template <auto kValue, auto kScore, int ConflictParameters::*kSteps>
 class Windowed final : public ConflictMeasure {
  public:

@@ -15,7 +15,7 @@ using Solver = acc::AccController::Solver;
 
 constexpr double kTolerance = 1e-9;
 
-// From calm to hopeless situations. The speed is logarithmic, so slow cars are as frequent as fast
+// Situations from calm to hopeless. The speed is logarithmic, so slow cars are as frequent as fast
 // ones.
 acc::AccController::Input RandomInput(Draw& draw, const AccSection& section) {
   const double scale = draw.LogUniform(0.01, 1);
@@ -79,7 +79,8 @@ TEST(AccControllerPropertyTest, PlansKeepTheLimitsOfTheControlAndOfItsChange) {
   });
 }
 
-// The highest speed that the car reaches or would settle at during the fall-back plan.
+// The highest of the car's speed and of the speeds at which the car would settle during the
+// fall-back plan.
 double HighestInFallback(const AccSection& section, double step_s,
                          const acc::AccController::Input& input) {
   const acc::AccProgram program(section, step_s);
@@ -94,8 +95,7 @@ double HighestInFallback(const AccSection& section, double step_s,
   return highest;
 }
 
-// The test computes speeds by the written-out integrals of the model, also in the middle of each
-// step.
+// The test computes speeds by closed-form integrals of the model, also in the middle of each step.
 TEST(AccControllerPropertyTest, PlansKeepTheMaximumSpeedWhereTheFallbackDoes) {
   int close = 0;
   ForRandomSituations(3, [&](const AccSection& section, double step_s, const auto& input,

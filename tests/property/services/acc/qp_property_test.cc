@@ -112,7 +112,7 @@ TEST(QpPropertyTest, ContradictionsAreFound) {
     program.upper.conservativeResize(m + 1);
     program.constraints.row(m) =
         program.constraints.row(row) + weight * program.constraints.row(other);
-    // WHEN c'x must be greater than that sum
+    // WHEN c'x must be greater than this sum
     program.lower(m) =
         program.upper(row) + weight * program.upper(other) + draw.LogUniform(1e-6, 1);
     program.upper(m) = std::numeric_limits<double>::infinity();

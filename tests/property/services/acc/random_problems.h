@@ -84,7 +84,7 @@ inline AccSection RandomSection(Draw& draw) {
 
 inline double RandomStep(Draw& draw) { return draw.LogUniform(0.02, 0.5); }
 
-/// From calm to hopeless situations. The speed may be above the section's maximum.
+/// Situations from calm to hopeless. The speed may be above the section's maximum.
 inline acc::AccSituation RandomSituation(Draw& draw, const acc::AccProgram& program) {
   acc::AccSituation now;
   const double scale = draw.LogUniform(0.01, 1);

@@ -16,7 +16,7 @@ namespace {
 constexpr auto kAbsolute = ConflictReading::kMeanOfAbsolute;
 constexpr auto kSigned = ConflictReading::kAbsoluteOfMean;
 
-// A difference of about a metre. In one step of five there is none.
+// A difference of about a metre. In one step of five there is no difference.
 std::optional<double> AnyDifference(const Random& random, std::int64_t step) {
   if (random.Uniform2(step, 0)[0] < 0.2) return std::nullopt;
   return random.Normal2(step, 1)[0];
@@ -28,7 +28,7 @@ TEST(DegreeOfConflictPropertyTest, GrowsWithTheConflictAndIsSymmetricAboutTheCen
       const double doc = conflict::DegreeOfConflict(z, slope, 1);
       EXPECT_GE(doc, 0);
       EXPECT_LE(doc, 1);
-      // DoC grows strictly, as long as it is not within rounding of 1.
+      // The DoC grows strictly until rounding makes it 1.
       if (doc < 1 - 1e-12) {
         EXPECT_LT(doc, conflict::DegreeOfConflict(z + 0.01, slope, 1));
       }
@@ -37,8 +37,8 @@ TEST(DegreeOfConflictPropertyTest, GrowsWithTheConflictAndIsSymmetricAboutTheCen
   }
 }
 
-// The window must agree exactly with a simple one made of a deque and loops: its sums do not drift,
-// and it contains no old value.
+// The window must agree exactly with a simple window made of a deque and loops. So its sums do not
+// drift, and it contains no old value.
 TEST(ConflictWindowPropertyTest, AveragesTheLastStepsAndNothingElse) {
   for (const std::size_t length : {1, 2, 7, 8, 50}) {
     conflict::ConflictWindow window(static_cast<int>(length));

@@ -1,8 +1,8 @@
-// Checks that no step of the closed loop after the first allocates memory, and that the measures
-// allocate none. It covers every shipped scenario, every fog model and policy, one car and a column
-// of mixed vehicles. It also checks each step of the ACC, whatever path its solver takes, and of
-// the models of vehicle, driver and follower. It is a separate program because it replaces malloc.
-// It prints the allocations and exits with 1 if there are any.
+// Checks that only the first step of the closed loop allocates memory, and that the measures do not
+// allocate memory. It covers every shipped scenario, every fog model and policy, one car and a
+// column of mixed vehicles. It also checks each step of the ACC, whatever path its solver takes,
+// and of the models of vehicle, driver and follower. It is a separate program because it replaces
+// malloc. It prints the allocations and exits with 1 if there are any.
 #include <cstddef>
 #include <cstdio>
 
@@ -50,8 +50,8 @@ extern "C" void* aligned_alloc(std::size_t align, std::size_t size) {
 namespace fogline::test {
 namespace {
 
-// Allocations during random steps of the ACC, with and without a target, from calm to hopeless.
-// Counts the steps in which the solver ran.
+// The number of allocations in random steps of the ACC, with and without a target, in situations
+// from calm to hopeless. The function also counts the steps in which the solver ran.
 long ControllerAllocations(int& solver_steps) {
   Draw draw(1);
   acc::AccController acc(AccSection{}, 0.1);
@@ -200,7 +200,7 @@ bool Check() {
     clean = CheckTakeOver(shipped.scenario) && clean;
   }
   clean = CheckHuman(all.front().scenario) && clean;
-  // Without any allocation at all, the counter itself would be broken.
+  // If the counter had counted no allocation at all, the counter would be broken.
   return clean && all.size() >= 2 && allocations > 0;
 }
 

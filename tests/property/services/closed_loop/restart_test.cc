@@ -52,13 +52,13 @@ void Change(Draw& draw, Scenario& scenario) {
 }
 
 TEST(ClosedLoopProperty, RestartsAsIfNewWhateverRanBefore) {
-  // GIVEN a loop that has computed a different run each time
+  // GIVEN a loop that may have computed other runs before
   Draw draw(1);
   Scenario scenario;
   closed_loop::ClosedLoop loop(scenario);
   std::vector<std::string> digests;
   for (int i = 0; i < 60; ++i) {
-    // WHEN it restarts with the same or with other parameters, after a run or without one
+    // WHEN the loop restarts with the same or with other parameters, after a run or without one
     Change(draw, scenario);
     loop.Restart(scenario);
     if (draw.Chance(0.2)) continue;

@@ -14,7 +14,7 @@
 
 namespace fogline::test {
 
-/// A recorded leader drives for many minutes. This many steps prove as much as all of them.
+/// A recorded leader drives for many minutes. The first kMostSteps steps prove enough.
 inline constexpr std::int64_t kMostSteps = 1000;
 
 struct Shipped {

@@ -16,7 +16,8 @@
 namespace fogline::test {
 namespace {
 
-// ISO 15622 above 20 m/s. It averages over 1 s; here every single step keeps the limit, too.
+// The limit of ISO 15622 above 20 m/s. ISO 15622 averages over 1 s; here every single step keeps
+// the limit, too.
 constexpr double kSmooth_mps3 = 2.5;
 
 Scenario Paper() { return LoadScenario(FOGLINE_SOURCE_DIR "/scenario/paper.json"); }
@@ -61,7 +62,7 @@ constexpr TransferProfile kProfiles[] = {TransferProfile::kLinear, TransferProfi
                                          TransferProfile::kJerkLimited};
 
 // The jumps in the paper's experiment are only a few cm/s2 (0.3 to 0.4 m/s3), so even abrupt
-// transfers keep the limit. There a profile must not cost safety.
+// transfers keep the limit. In this experiment a profile must not cost safety.
 TEST(SmoothTransferProperty, EveryProfileIsSmoothInThePapersExperimentForThreePointsOfSafety) {
   for (const int seeds : {1, 40}) {
     Scenario scenario = Paper();
@@ -265,8 +266,9 @@ TEST(SmoothTransferProperty, EveryCommandOfARunIsTheOneThatItsProfileDefines) {
 }
 
 // The ACC plans from the real acceleration of the host. So in every step of a return (a jump or a
-// ramp) its offer differs from the last command by at most (1 - exp(-step/T_e)) times one change of
-// u, whichever side gave that command. The ACC's own share of the new command makes no bump.
+// ramp) the ACC's offer differs from the last command by at most (1 - exp(-step/T_e)) times one
+// change of u, whichever side gave that command. The ACC's own share of the new command makes no
+// bump.
 TEST(BumplessTransferProperty, TheAutomationReturnsFromTheAccelerationThatTheHostHas) {
   constexpr double kRounding = 1e-9;
   for (const TransferProfile profile : kAllProfiles) {

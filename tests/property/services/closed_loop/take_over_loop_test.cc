@@ -125,8 +125,8 @@ double LeftInTheFirstStep(const Scenario& scenario) {
   }
 }
 
-// In the step in which the driver takes over, or the automation gets control back, the command
-// contains a share of the new side's offer: all of it, or on a ramp the share of the ramp's first
+// In the step in which the driver takes over, or the automation gets control back, the new side's
+// offer has a share in the command. The share is 1, or on a ramp the share of the ramp's first
 // step. So the command differs from the old side's offer by this share of the difference between
 // both offers. A driver who ends a manoeuvre has full authority at once.
 TEST_F(TakeOverLoopTest, ATransferIsFeltInItsStepWhateverTheProfile) {

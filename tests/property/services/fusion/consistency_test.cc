@@ -1,6 +1,6 @@
-// The filter must be as accurate as it reports. Over many runs of exactly the model that it
-// assumes, its errors and innovations must have the covariances that it reports (Bar-Shalom, Li &
-// Kirubarajan 2001, section 5.4).
+// The filter must have the accuracy that it reports. In many runs of exactly the model that the
+// filter assumes, its errors and innovations must have the covariances that it reports (Bar-Shalom,
+// Li & Kirubarajan 2001, section 5.4).
 #include <array>
 #include <vector>
 
@@ -90,8 +90,8 @@ int MostOutside() {
   return static_cast<int>(quantile(boost::math::binomial(kSteps - 1, kOutsideChance), 0.999));
 }
 
-// Errors of neighbouring steps are correlated, so one unlucky period counts several times. Twice as
-// many steps are allowed: a quarter of all.
+// Errors of neighbouring steps are correlated, so one unlucky period counts several times. Twice
+// MostOutside() is allowed: a quarter of all steps.
 int MostNeesOutside() { return 2 * MostOutside(); }
 
 double Mean(const std::vector<double>& sums) {

@@ -41,7 +41,7 @@ TEST(EkfPropertyTest, CovarianceStaysSymmetricAndPositiveDefinite) {
     fusion::Fusion fusion(scenario);
     for (int k = 0; k < 300; ++k) {
       const testing::LeadStep step = lead.Step();
-      // WHEN it has made a step
+      // WHEN the filter has made a step
       const track_t& track = fusion.Step(step.ego, step.radar, step.lidar);
       if (!track.valid) continue;
       // THEN the covariance is symmetric and positive definite
@@ -109,7 +109,8 @@ TEST(EkfPropertyTest, SequentialCorrectionsEqualAJointOne) {
     const Eigen::Matrix3d gain = p * h.transpose() * (h * p * h.transpose() + r).inverse();
     const Eigen::Vector3d x = joint.state() + gain * (z - h * joint.state());
     joint.Start(x, (Eigen::Matrix3d::Identity() - gain * h) * p);
-    // Both compute the same numbers by different operations. 1e-10 is about 1000 roundings of 33 m.
+    // Both filters compute the same numbers by different operations. 1e-10 is about 1000 roundings
+    // of 33 m.
     ASSERT_LT((own - x).cwiseAbs().maxCoeff(), 1e-10) << "step " << k;
     ASSERT_LT((CovarianceOf(track) - joint.covariance()).cwiseAbs().maxCoeff(), 1e-12);
   }

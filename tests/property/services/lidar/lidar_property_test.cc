@@ -139,8 +139,8 @@ TEST(LidarProperty, OfTwoEchoesTheNearerOneCounts) {
 }
 
 TEST(LidarProperty, TheEchoIsThatOfTheMajorityOfBeams) {
-  // At the range where one beam has an echo with probability 1/2, the majority of 15 beams has one
-  // with probability 1/2, too.
+  // At the range where one beam has an echo with probability 1/2, a majority of 15 beams has an
+  // echo with probability 1/2, too.
   Scenario scenario = Beam();
   scenario.fog.clear_visibility_m = 1e5;
   scenario.lidar.beam.target_reflectivity = scenario.lidar.beam.clear_reflectivity;
@@ -152,7 +152,8 @@ TEST(LidarProperty, TheEchoIsThatOfTheMajorityOfBeams) {
     for (const lidar_t& lidar : Measure(scenario, range_m, 1e5)) detections += lidar.valid;
     ExpectShare(detections, 0.5, "detection");
   }
-  // Half of an even number is a majority: one beam of two, with probability 3/4.
+  // Half of an even number of beams suffices. Of two beams at least one has an echo with
+  // probability 3/4.
   scenario.lidar.beam.beams = 2;
   int detections = 0;
   for (const lidar_t& lidar : Measure(scenario, range_m, 1e5)) detections += lidar.valid;
@@ -192,8 +193,8 @@ TEST(LidarProperty, NothingIsEverSeenBehindTheTarget) {
 }
 
 TEST(LidarProperty, DenserFogNeverBringsTheTargetBack) {
-  // With the same draws in a step: once the echo of the fog wins, the target does not win in denser
-  // fog.
+  // The draws of a step are the same in any fog. So once the echo of the fog wins, the target does
+  // not win in denser fog.
   lidar::Lidar lidar(Beam());
   for (std::int64_t step = 0; step < 100; ++step) {
     bool sees_target = true;

@@ -51,8 +51,8 @@ TEST(RadarProperty, NoiseHasTheStatedMomentsAroundTheBias) {
   }
   ExpectStandardNormalMoments(range);
   ExpectStandardNormalMoments(rate);
-  // The noises are independent of each other and from step to step: the correlation is 0, with
-  // deviation 1 / sqrt(n).
+  // The noises are independent of each other and from step to step. So the estimated correlations
+  // have mean 0 and standard deviation 1 / sqrt(n).
   double cross = 0.0;
   double lag = 0.0;
   for (std::size_t i = 0; i < range.size(); ++i) cross += range[i] * rate[i];

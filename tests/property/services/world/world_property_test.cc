@@ -69,7 +69,7 @@ TEST(WorldProperty, AccelerationIsTheChangeOfSpeed) {
   for (int run = 0; run < kRuns; ++run) {
     const auto truths = Drive(Rough(), static_cast<std::uint64_t>(run));
     for (std::size_t k = 1; k < truths.size(); ++k) {
-      // The rounding 1e-12 of 60 m/s, divided by the step of 0.1 s.
+      // The relative rounding 1e-12 of 60 m/s, divided by the step of 0.1 s.
       constexpr double kTolerance_mps2 = 1e-12 * 60.0 / 0.1;
       ASSERT_NEAR(truths[k].host_acceleration_mps2,
                   (truths[k].host_speed_mps - truths[k - 1].host_speed_mps) / 0.1, kTolerance_mps2);
@@ -90,13 +90,13 @@ TEST(WorldProperty, SubstepsChangeNothingButRounding) {
     for (std::size_t k = 0; k < coarse_truths.size(); ++k) {
       const truth_t& a = coarse_truths[k];
       const truth_t& b = fine_truths[k];
-      // 300 steps with 16 roundings each, on positions up to 1 km.
+      // The tolerance covers 300 steps with 16 roundings each, on positions up to 1 km.
       ASSERT_NEAR(a.host_position_m, b.host_position_m, 1e-9);
       ASSERT_NEAR(a.host_speed_mps, b.host_speed_mps, 1e-11);
       ASSERT_NEAR(a.preceding_position_m, b.preceding_position_m, 1e-9);
       ASSERT_NEAR(a.follower_gap_m[0], b.follower_gap_m[0], 1e-9);
       ASSERT_EQ(a.collision, b.collision);
-      // The gap closes with at least millimetres per second in these runs.
+      // In these runs the gap closes with at least some millimetres per second.
       ASSERT_NEAR(a.collision_time_s, b.collision_time_s, 1e-6);
     }
     if (coarse_truths.back().collision != truth_t::COLLISION_NONE) ++collisions;

@@ -19,7 +19,7 @@ constexpr double kStep = 0.1;
 constexpr double kSpeed = 20;
 constexpr double kSafe = 33;
 
-// Extremes and the end of a run of the closed loop.
+// The final state of a drive of two cars, and the extremes of this drive.
 struct Trip {
   TwoCars cars;
   double smallest_gap_m = 1e9;

@@ -19,7 +19,8 @@ struct Drive {
   double largest_acceleration_mps2 = 0;
 };
 
-// A car follows another car of 20 m/s for a minute. After 5 s that car brakes to 12 m/s at 2 m/s2.
+// A car follows another car of 20 m/s for a minute. After 5 s the car ahead brakes to 12 m/s at 2
+// m/s2.
 Drive FollowABrakingCar(const AccSection& section, VehicleModel model,
                         const models::VehicleParameters& car = models::kSedan) {
   acc::AccController acc(section, kStep_s, model);
@@ -57,8 +58,8 @@ TEST(AccOnVehicleTest, KeepsItsDistanceAlmostAsWellAsInAPointMass) {
     for (const models::VehicleParameters& car :
          {models::kCompact, models::kSedan, models::kTruck}) {
       const Drive real = FollowABrakingCar(section, VehicleModel::kLongitudinal, car);
-      // Delay and lag are half a second. In this time 2 m/s2 move the car by 0.25 m, and by more
-      // while delay and lag add up.
+      // Delay and lag together are half a second. In this time 2 m/s2 move the car by 0.25 m. The
+      // loss of gap adds up while the car brakes.
       EXPECT_GT(real.least_gap_m, ideal.least_gap_m - 2) << "headway " << headway_s;
       EXPECT_LT(real.largest_acceleration_mps2, 3.5) << "headway " << headway_s;
       // In the end speed and gap are right, except for the dead band of the pedals.

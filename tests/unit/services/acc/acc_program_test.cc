@@ -93,8 +93,8 @@ TEST(AccProgramTest, LimitsAreThoseOfThePredictedCar) {
     const double settled = speed + section.engine_time_constant_s * x(acc::kOwnAcceleration);
     const double gap = x(acc::kDeltaD) + acc::SafeDistance(section, speed);
     const Index row = 5 * j;
-    // Under the fall-back plan this car stays below its maximum speed. So the maximum speed is the
-    // limit.
+    // Under the fall-back plan this car stays below its maximum speed. So the speed limit of the
+    // program is the maximum speed.
     EXPECT_NEAR(above(row), section.max_speed_mps - settled, 1e-12) << j;
     EXPECT_NEAR(below(row + 1), settled + z(0), 1e-12) << j;
     const double forgiven = z(0) * static_cast<double>(6 - j) / 6;
@@ -127,7 +127,7 @@ TEST(AccProgramTest, FallbackPlanApproachesItsDecelerationAtTheFastestChange) {
   double u = -0.5;
   std::vector<double> plan;
   for (int j = 0; j < 5; ++j) plan.push_back(u = program.FallbackControl(u));
-  // u ends at 1.2 / 0.5 and changes by 5 * 0.1 / 0.5 in a step.
+  // u changes by 5 * 0.1 / 0.5 in a step until it is 1.2 / 0.5.
   const std::vector<double> expected{0.5, 1.5, 2.4, 2.4, 2.4};
   for (std::size_t j = 0; j < 5; ++j) EXPECT_NEAR(plan[j], expected[j], 1e-15);
 }

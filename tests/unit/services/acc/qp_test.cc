@@ -85,7 +85,7 @@ TEST_F(PlaneTest, ToleratesLimitsThatRepeatEachOther) {
 }
 
 TEST_F(PlaneTest, ToleratesMoreActiveLimitsThanVariables) {
-  // Five lines through the origin, all of them active there.
+  // Five lines through the origin. At the origin all of them are active.
   const MatrixXd constraints{{1, 0}, {0, 1}, {1, 1}, {1, 2}, {2, 1}};
   const auto result = Solve(constraints, VectorXd::Constant(5, -9), VectorXd::Zero(5));
   EXPECT_EQ(result.status, Status::kOptimal);
@@ -122,10 +122,10 @@ TEST(QpSolverTest, FindsTheSameMinimumFromAnyActiveSet) {
     // GIVEN a linear term that turns, so that every limit becomes active and inactive again
     const VectorXd linear = 10 * Vector({std::cos(0.3 * i), std::sin(0.5 * i), std::cos(0.7 * i)});
     acc::QpSolver cold(hessian, constraints, {});
-    // WHEN one solver has solved the problems before this one and the other has not
+    // WHEN one solver has solved the problems before this one and the other solver has not
     ASSERT_EQ(warm.Solve(linear, lower, upper).status, Status::kOptimal);
     ASSERT_EQ(cold.Solve(linear, lower, upper).status, Status::kOptimal);
-    // THEN they agree
+    // THEN both solvers agree
     EXPECT_LE((warm.solution() - cold.solution()).norm(), 1e-13) << i;
   }
 }

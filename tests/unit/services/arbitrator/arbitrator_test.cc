@@ -60,7 +60,7 @@ Scenario Missing(MissingLidar missing) {
   return scenario;
 }
 
-// 32 + difference rounds the last bits of the difference away.
+// The sum 32 + difference loses the last bits of the difference by rounding.
 constexpr double kRoundingOfRange_m = 1e-14;
 
 TEST(ArbitratorTest, CopiesTheHeader) {
@@ -244,7 +244,7 @@ TEST(ArbitratorTest, LooksAroundForThePoliciesThatWantItAndForNoOther) {
   m.driver.readiness = 1;
   arbitrator::Arbitrator arbitrator(WithPolicy("adaptive"));
   EXPECT_EQ(Step(arbitrator, m).threshold, 0.5);
-  // WHEN the arbitrator hears this THEN its threshold is lower, by 5 m/50 m and 0.5 s/5 s
+  // WHEN the arbitrator gets this TRUTH THEN its threshold is lower, by 5 m/50 m and 0.5 s/5 s
   arbitrator.SetOnDemandInput(truth);
   EXPECT_NEAR(Step(arbitrator, m).threshold, 0.3, 1e-15);
 }
@@ -322,7 +322,8 @@ TEST_F(SharedWithTheAskedTest, HeIsAskedForAnyShareAndHasThatOnceHeHasCome) {
     EXPECT_NEAR(out.acceleration_mps2, share * kHuman_mps2 + (1 - share) * kAutomation_mps2, 1e-12);
     EXPECT_FALSE(arbitrator_.must_ask());
   }
-  // A driver who recovers is available, so he gets the requested share at once: here it is 0.
+  // A driver in state RECOVERING is available, so he gets each requested share at once. Here the
+  // share is 0.
   EXPECT_EQ(RequestingNothing().lambda_human, 0);
   EXPECT_NEAR(Requesting(0.6).lambda_human, 0.6, 1e-12) << "without being asked again";
 }

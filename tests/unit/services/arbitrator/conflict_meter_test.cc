@@ -50,7 +50,7 @@ TEST(ConflictMeterTest, GivesEachMeasureTheEvidenceOfTheMessages) {
     arbitrator::ConflictMeter meter(scenario);
     meter.Observe(m.radar, m.lidar, m.track);
     const auto measure = row.make(policies::ConflictParametersOf(scenario.arbitrator));
-    // The meter has added a variance and subtracted it again.
+    // The meter adds a variance and subtracts it again, which causes rounding.
     EXPECT_NEAR(meter.conflict(), measure->Step(evidence), 1e-9 * (1 + meter.conflict()))
         << row.name;
   }

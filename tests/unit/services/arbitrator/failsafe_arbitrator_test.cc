@@ -83,7 +83,7 @@ class FailsafeArbitratorTest : public testing::Test {
   std::int64_t step_ = 0;
 };
 
-// The state of an input with such an offer.
+// The state of the input from which this offer follows.
 InputState StateOf(arbitrator::Offer offer) {
   return offer == arbitrator::kThere    ? InputState::kOk
          : offer == arbitrator::kNotYet ? InputState::kAwaited
@@ -170,7 +170,7 @@ TEST_F(FailsafeArbitratorTest, HoldsTheLastOffersWhileTheyAreStale) {
 
 TEST_F(FailsafeArbitratorTest, TakesNoConflictFromValuesOfDifferentSteps) {
   ExpectAutomation(Step());
-  // GIVEN no LiDAR value of this step, and a radar value that differs by 5 m
+  // GIVEN sensors that differ by 5 m, without a LiDAR value of this step
   inputs_.lidar.state = InputState::kStale;
   Disagree();
   // THEN the conflict of the last pair holds until the next pair of the same step is complete
@@ -282,7 +282,7 @@ TEST_F(GuardedFailsafeTest, BrakesInTheMinimalRiskManoeuvreUnderItsMode) {
   ExpectMinimalRisk(Step(), kApplied_mps2 - 0.4);
 }
 
-// The command that holds is that of a side, not that of the emergency.
+// The command that holds is the last one of the driving side, not that of emergency braking.
 TEST_F(GuardedFailsafeTest, HoldsTheCommandBeforeTheBraking) {
   ExpectEmergencyBraking(Step());
   track_.state[1] = 1;

@@ -24,7 +24,7 @@ class FailsafeTakeOverTest : public testing::Test {
   FailsafeTakeOverTest() {
     radar_.valid = lidar_.valid = 1;
     radar_.range_m = 37;
-    lidar_.range_m = 32;  // they disagree
+    lidar_.range_m = 32;  // radar and LiDAR disagree
     ego_.speed_mps = 20;
     automation_.acceleration_mps2 = 0.2;
     driver_.acceleration_mps2 = -0.4;
@@ -43,7 +43,7 @@ class FailsafeTakeOverTest : public testing::Test {
     ego_.header = radar_.header = lidar_.header = header;
     return last_ = arbitrator_.Step(header, inputs_);
   }
-  /// Steps until the mode is reached, at most for a minute.
+  /// Makes steps until the mode is reached, at most for a minute.
   void StepUntil(std::int8_t mode) {
     for (int k = 0; k < 600 && Step().mode != mode; ++k) {
     }

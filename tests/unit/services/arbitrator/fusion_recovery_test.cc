@@ -23,7 +23,7 @@ class FusionRecoveryTest : public testing::Test {
     track_.valid = radar_.valid = lidar_.valid = 1;
     track_.state[0] = radar_.range_m = lidar_.range_m = 30;
   }
-  /// One more step; whether the track has recovered.
+  /// Takes one more step. @return whether the track has recovered
   bool Observe() {
     recovery_.Observe(radar_, lidar_, track_);
     return recovery_.recovered();

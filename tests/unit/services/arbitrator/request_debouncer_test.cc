@@ -123,7 +123,8 @@ TEST(RequestDebouncerTest, LetsAFirmRequestPassWhateverTheTrack) {
   EXPECT_EQ(debouncer.Step(policies::StayAutomated(kThreshold), 1, false), 0);
 }
 
-// The band ends at half of the threshold. Otherwise no DoC would be low enough for a wide band.
+// The band ends at half of the threshold. Otherwise no DoC would be low enough to leave a wide
+// band.
 TEST(RequestDebouncerTest, ABandOfWhateverWidthGivesTheWheelBack) {
   for (const double threshold : {1e-6, 0.1, 0.2, 0.5, 1.0}) {
     for (const double band : {0.0, 0.2, 0.5, 1.0}) {
@@ -139,7 +140,7 @@ TEST(RequestDebouncerTest, ABandOfWhateverWidthGivesTheWheelBack) {
   }
 }
 
-// ln(0.99/0.01) = 4.595: a posterior of 0.99 is this much evidence against 0.5, at any time.
+// A posterior of 0.99 has the evidence ln(0.99/0.01) = 4.595 against 0.5, at any time.
 TEST(RequestDebouncerTest, SprtDoesNotCountTheEvidenceOfAPosteriorTwice) {
   arbitrator::RequestDebouncer debouncer(
       {.hysteresis = Hysteresis::kSprt, .sprt_alpha = 0.01, .sprt_beta = 0.01}, 0.1, true);

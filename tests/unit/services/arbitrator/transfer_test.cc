@@ -96,7 +96,7 @@ TEST(TransferTest, JerkLimitedGivesAuthorityAtOnceAndLetsTheCommandCatchUp) {
     EXPECT_NEAR(states[i].acceleration_mps2, -0.5 + 0.2 * static_cast<double>(i + 1), kRounding);
   }
   EXPECT_EQ(states[7].acceleration_mps2, 1.0);
-  // WHEN the command has caught up THEN it is free again.
+  // WHEN the command has caught up with the offer THEN the jerk limit has ended.
   EXPECT_EQ(Steps(transfer, 1, 1, {-0.5, -3.0})[0].acceleration_mps2, -3.0);
 }
 

@@ -1,4 +1,4 @@
-// After the fog the automation must not drive on a distance that the fog has left behind.
+// After the fog the automation must not drive on a distance that is still wrong because of the fog.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -55,7 +55,7 @@ TEST(HandBackTest, ByTheFusionComesAsSoonAsTheDistanceIsRight) {
   EXPECT_LT(seen.largest_m, 0.2);
 }
 
-// There the radar differs from the track by 0.9 m without any fault.
+// In paper.json the radar differs from the track by 0.9 m without any fault.
 TEST(HandBackTest, ByTheFusionHappensInThePapersExperiment) {
   for (const char* seed : {"/seed=1", "/seed=2", "/seed=3", "/seed=4", "/seed=5"}) {
     const AfterHandBack seen = Drive("paper.json", {seed, "/arbitrator/transfer/hand_back=fusion"});

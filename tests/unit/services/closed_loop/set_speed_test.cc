@@ -1,4 +1,5 @@
-// After the fog the ACC closes the gap that the fog has left. Its set speed limits how fast.
+// After the fog the ACC closes the gap that the fog has left. Its set speed limits the host's
+// speed.
 #include <algorithm>
 #include <string>
 #include <vector>

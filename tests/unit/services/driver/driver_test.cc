@@ -289,7 +289,7 @@ TEST_F(AwarenessOfTheDriverTest, MakesHimErrMoreAndReactLater) {
     const truth_t truth = TruthOf(step);
     if (step > 0) awareness_.Step(models::DriverTask::kMonitors, scenario_.step_s);
     const double faded = 1 - awareness_.awareness();
-    // V_s and r_c grow by the values of SUMO's driver state without awareness, T_r by 0.7 s.
+    // Without awareness V_s and r_c grow as in SUMO's driver state, and T_r grows by 0.7 s.
     const models::Attention attention{.reaction_time_s = 0.8 + 0.7 * faded,
                                       .gap_error = 0.05 + 0.75 * 0.2 * faded,
                                       .approach_error_ps = 0.01 + 0.15 * 0.2 * faded};

@@ -167,7 +167,8 @@ TEST(DriverAssignmentTest, DrawsInProportionToTheShares) {
       aggressive += assignment.style == models::Style::kAggressive ? 1 : 0;
     }
   }
-  // A quarter and three fifths of 6,400 cars. Four standard deviations are 139 and 157.
+  // Expected are a quarter and three fifths of 6,400 cars. Four standard deviations are 139 and
+  // 157.
   EXPECT_NEAR(acc, 1600, 139);
   EXPECT_NEAR(aggressive, 3840, 157);
 }
@@ -222,7 +223,7 @@ TEST_F(FogSightOfPeopleTest, IsThatOfTheHostsDriver) {
                           Random(scenario.seed, FollowerErrors(0)), scenario.step_s);
   // WHEN the first of the two cars follows the host through fog of 40 m
   const std::vector<double> driven = Drive(scenario, 40);
-  // THEN its driver reacts to the situation that his sight shows
+  // THEN the driver of this car reacts to the situation that his sight shows
   for (std::int64_t k = 0; k < 30; ++k) {
     const models::Situation truth{
         .speed_mps = 20,

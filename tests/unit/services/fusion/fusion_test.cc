@@ -154,7 +154,7 @@ TEST(FusionTest, ReportsTheAccelerationRelativeToTheHosts) {
   fusion::Fusion fusion{Scenario()};
   Step(fusion, At(0));
   Messages m = At(1, 30 + 0.5 * 2 * 0.01, 0.2);
-  m.ego.acceleration_mps2 = -2;  // the preceding car's is 0: no innovation, no correction
+  m.ego.acceleration_mps2 = -2;  // that of the car ahead is 0: no innovation
   const track_t& track = Step(fusion, m);
   EXPECT_NEAR(track.state[2], 2, kNear);
   EXPECT_NEAR(track.state[1], 0.2, kNear);
@@ -207,7 +207,7 @@ TEST(FusionTest, RefusedValueLeavesTheEstimateAsIfItWereMissing) {
     Step(gated, At(k));
     Step(blind, At(k));
   }
-  // GIVEN a LiDAR value in the fog, 26 m short
+  // GIVEN a LiDAR value that the fog makes 26 m too short
   Messages deceived = At(30);
   deceived.lidar.range_m = 4;
   Messages missing = At(30);
@@ -237,7 +237,7 @@ TEST(FusionTest, FollowsAnotherCarThatCutsInOnceTheGateReopens) {
     EXPECT_NEAR(track.state[0], 40, 1e-9);
   }
   EXPECT_EQ(Step(fusion, At(k, 25)).usage[0], track_t::USED);
-  // THEN the estimate converges to this distance
+  // THEN the estimate converges to the new distance
   for (int i = 0; i < 60; ++i) Step(fusion, At(++k, 25));
   const track_t& settled = Step(fusion, At(++k, 25));
   EXPECT_NEAR(settled.state[0], 25, 0.05);  // one standard deviation of a range
@@ -250,7 +250,7 @@ TEST(FusionTest, KeepsItsCarForeverBehindAGateThatNeverReopens) {
   fusion::Fusion fusion(scenario);
   int k = 0;
   for (; k < 30; ++k) Step(fusion, At(k, 40));
-  // GIVEN a LiDAR that ranges the fog for good WHEN it measures 4 m for a minute
+  // GIVEN a LiDAR that only has echoes of the fog WHEN it measures 4 m for a minute
   for (int i = 0; i < 600; ++i) {
     Messages m = At(k++, 40);
     m.lidar.range_m = 4;
@@ -291,7 +291,8 @@ Scenario Adapting(NoiseAdaptation rule) {
 
 constexpr NoiseAdaptation kAdapting[]{NoiseAdaptation::kInnovation, NoiseAdaptation::kResidual};
 
-// The variance of an innovation contains the noise of the values before, not that of its own.
+// The variance of an innovation contains the noise that was estimated from earlier values. It does
+// not contain the noise that is estimated from this value.
 TEST(FusionTest, UsesAnAdaptedNoiseFromTheNextStepOn) {
   for (const NoiseAdaptation rule : kAdapting) {
     fusion::Fusion plain{Scenario()};

@@ -16,7 +16,8 @@ inline double AttenuatedRange_m(double clear_range_m, double extinction_pm) {
   return boost::math::lambert_w0(extinction_pm * clear_range_m) / extinction_pm;
 }
 
-/// Range beyond which the echo of the fog is stronger than that of the target. There the ratio
+/// Range beyond which the echo of the fog is stronger than that of the target. At this range the
+/// ratio
 ///     rho = P_f / P_t = (pi beta / Gamma) J R^2 exp(2 alpha R)    (full overlap, R >= R2)
 /// is 1, so the range is AttenuatedRange_m of sqrt(Gamma / (pi beta J)).
 inline double CrossoverRange_m(double fog_strength_pm, double reflectivity, double backscatter_pmsr,

@@ -36,7 +36,8 @@ double Crossover(const lidar::BeamOptics& optics, double reflectivity, double vi
                                 kBackscatterFactor / visibility_m, extinction_pm);
 }
 
-// The reference gives whole metres: half a metre of rounding, and a little for its integration.
+// The reference gives whole metres. The tolerance is half a metre for this rounding, and a little
+// for the reference's integration.
 constexpr double kTableTolerance_m = 0.6;
 
 struct Row {
@@ -126,7 +127,8 @@ TEST(FogBeamTest, PeakMatchesBruteForceOverTheRangeOfParameters) {
           (optics.overlap_end_m - optics.overlap_start_m + 0.5 * optics.pulse_length_m) / 200.0;
       const lidar::FogPeak expected = BruteForce(optics, extinction_pm, step_m);
       const lidar::FogPeak peak = lidar::FindFogPeak(optics, extinction_pm);
-      // Errors of the grids at the kinks of the overlap: 0.3 % in J, two steps in r*.
+      // The tolerances are the errors of the grids at the kinks of the overlap: 0.3 % in J, two
+      // steps in r*.
       EXPECT_NEAR(peak.strength_pm / expected.strength_pm, 1.0, 3e-3)
           << optics.pulse_length_m << " " << extinction_pm;
       EXPECT_NEAR(peak.range_m, expected.range_m, 2.0 * step_m)

@@ -227,7 +227,7 @@ TEST(LidarTest, NoDrawServesTwoPurposes) {
                                    lidar::Lidar::kModeDraw, lidar::Lidar::kModeScatterDraw}) {
     EXPECT_TRUE(draws.insert(draw).second);
   }
-  draws.clear();  // those of the other stream
+  draws.clear();  // the other stream has draws of its own
   constexpr std::uint32_t kMaxBeams = 101;
   for (std::uint32_t n = 0; n < kMaxBeams; ++n) {
     EXPECT_TRUE(draws.insert(lidar::Lidar::PowerDraw(n)).second);

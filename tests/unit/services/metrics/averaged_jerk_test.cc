@@ -73,7 +73,7 @@ TEST(AveragedJerkTest, TakesTheAccelerationThatHeldOneSecondAgo) {
 TEST(AveragedJerkTest, LooksAtTheNextKnownStepAfterAHole) {
   metrics::AveragedJerk jerk;
   EXPECT_EQ(jerk.Add(0.1, 1), std::nullopt);
-  EXPECT_EQ(jerk.Add(5.0, 4), 0);  // nothing is known of the last second but its end
+  EXPECT_EQ(jerk.Add(5.0, 4), 0);  // only the end of the last second is known
   EXPECT_EQ(jerk.Add(6.0, 6), 2);
 }
 

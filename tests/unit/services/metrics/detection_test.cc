@@ -112,8 +112,8 @@ TEST(DetectionTest, CountsAlarmsThatBeginInClearAirPerHourOfIt) {
   auto run = QuietRun(9);
   for (const std::size_t k : {6, 7}) Deceive(run[k]);
   EXPECT_EQ(Collect(run).false_alarms_ph, 0);
-  // One alarm from the first step on, one of a single step. The alarm in fog is right, and lasts
-  // beyond the fog.
+  // One false alarm begins in the first step, another one lasts a single step. The alarm in fog is
+  // right, and lasts beyond the fog.
   for (const std::size_t k : {0, 1, 3, 7, 8}) run[k].doc = 0.9;
   EXPECT_EQ(Collect(run).false_alarms_ph, 2 * 3600 / (6 * kStep_s));
 }

@@ -28,7 +28,7 @@ TEST(ClopperPearsonTest, MeetsTheTables) {
 
 TEST(ClopperPearsonTest, BoundsAreWhereTheBinomialTailsAreHalfOfWhatIsLeftOut) {
   const metrics::EventShare share = metrics::ClopperPearson(1, 3);
-  // P(at least 1 of 3) at the lower bound, P(at most 1 of 3) at the upper one.
+  // The tails are P(at least 1 of 3) at the lower bound, and P(at most 1 of 3) at the upper bound.
   const double lower_tail = 1 - std::pow(1 - share.lower, 3);
   const double q = 1 - share.upper;
   const double upper_tail = q * q * q + 3 * share.upper * q * q;

@@ -85,11 +85,12 @@ TEST(MeasureTest, SlowDownIsTheDropOfTheHostsSpeedSinceTheFogBegan) {
   EXPECT_EQ(metrics::Measure(run).max_slow_down_fog_mps, std::nullopt);
   for (const std::size_t k : {1, 2, 3, 4}) run[k].fog_present = true;
   EXPECT_EQ(metrics::Measure(run).max_slow_down_fog_mps, 3);
-  run[3].host_speed_mps = run[4].host_speed_mps = 22;  // it only speeds up
+  run[3].host_speed_mps = run[4].host_speed_mps = 22;  // the host only speeds up
   EXPECT_EQ(metrics::Measure(run).max_slow_down_fog_mps, 0);
 }
 
-// A run of 12 steps of 0.5 s with fog from step 2 to step 4. The track is wrong in `wrong`.
+// A run of 12 steps of 0.5 s with fog from step 2 to step 4. The track is wrong in the steps
+// `wrong`.
 std::vector<metrics::Sample> RunAroundFog(const std::vector<std::size_t>& wrong) {
   std::vector<metrics::Sample> run = QuietRun(12);
   for (const std::size_t k : {2, 3, 4}) run[k].fog_present = true;
@@ -102,7 +103,7 @@ void Shorten(std::vector<metrics::Sample>& run, std::size_t step, double shortfa
 }
 
 TEST(MeasureTest, CompromisedSafetyUntilRecoveryEndsWhenTheTrackIsRightForGood) {
-  auto run = RunAroundFog({5, 7});  // right at step 6, but not for good
+  auto run = RunAroundFog({5, 7});  // right at step 6, wrong again at 7
   Shorten(run, 1, 9);               // before the fog
   Shorten(run, 3, 1);
   Shorten(run, 6, 2);
@@ -208,8 +209,8 @@ TEST(MeasureTest, JerkOfAHandOverIsWhatFollowsAChangeOfTheAuthorities) {
   const std::array<double, 10> acceleration{0, 0, 3, 3, 2, 2, 4, 4, 4, 4};
   for (std::size_t k = 0; k < run.size(); ++k) run[k].host_acceleration_mps2 = acceleration[k];
   EXPECT_EQ(metrics::Measure(run, scenario).max_handover_jerk_mps3, std::nullopt);
-  // The command of step 3 takes effect at step 4. The two steps from there on belong to the
-  // hand-over. The jump at step 2 comes before it, the jump at step 6 after it.
+  // The command of step 3 takes effect at step 4. Steps 4 and 5 belong to the hand-over. The jump
+  // at step 2 comes before the hand-over, the jump at step 6 after it.
   for (std::size_t k = 3; k < run.size(); ++k) run[k].lambda_human = 1;
   EXPECT_EQ(metrics::Measure(run, scenario).max_handover_jerk_mps3, 2);
   // A ramp takes time: authority still changes at step 4, so step 6 belongs to the hand-over, too.
@@ -239,15 +240,15 @@ TEST(MeasureTest, JerkIsTheChangeOfTheAppliedAccelerationOverTime) {
   const std::array<double, 5> acceleration{0, 2, 2.5, 0.5, 0.5};
   for (std::size_t k = 0; k < run.size(); ++k) run[k].host_acceleration_mps2 = acceleration[k];
   const metrics::RunMetrics m = metrics::Measure(run);
-  // Changes of 0.5, -2 and 0 within 0.5 s. The 2 m/s2 of step 1 do not follow an applied
-  // acceleration.
+  // Changes of 0.5, -2 and 0 within 0.5 s each. The 2 m/s2 of step 1 are no change, because step 0
+  // has no applied acceleration.
   EXPECT_EQ(m.max_abs_jerk_mps3, 4);
   EXPECT_EQ(m.rms_jerk_mps3, std::sqrt((1.0 + 16.0 + 0.0) / 3));
   EXPECT_EQ(m.max_abs_acceleration_mps2, 2.5);
 }
 
-// A run of 10 s: a hand-over at 4 s makes the acceleration jump by 0.6 m/s2. At 8 s, when the
-// hand-over is over, it rises by 1.5 m/s3 for 1 s.
+// A run of 10 s: a hand-over at 4 s makes the acceleration jump by 0.6 m/s2. At 8 s, after the
+// hand-over, the acceleration rises by 1.5 m/s3 for 1 s.
 std::vector<metrics::Sample> RunWithAJump(double step_s) {
   std::vector<metrics::Sample> run(static_cast<std::size_t>(std::lround(10 / step_s)) + 1);
   for (std::size_t k = 0; k < run.size(); ++k) {
@@ -272,7 +273,7 @@ TEST(MeasureTest, JerkOverASecondDoesNotDependOnTheStepButTheJerkOfAJumpDoes) {
 }
 
 TEST(MeasureTest, JerkOverASecondNeedsASecondAndAHandOver) {
-  EXPECT_EQ(metrics::Measure(QuietRun(3)).max_abs_jerk_1s_mps3, std::nullopt);  // 0.5 s to 1 s
+  EXPECT_EQ(metrics::Measure(QuietRun(3)).max_abs_jerk_1s_mps3, std::nullopt);  // covers only 0.5 s
   EXPECT_EQ(metrics::Measure(QuietRun(4)).max_abs_jerk_1s_mps3, 0);
   EXPECT_EQ(metrics::Measure(QuietRun(4)).max_handover_jerk_1s_mps3, std::nullopt);
 }

@@ -81,10 +81,10 @@ TEST(PairedMeasuresTest, SafetyIsCountedUntilTheTracksOfBothRunsAreRightAgain) {
   auto baseline = BesideFog();
   auto traded = BesideFog();
   for (metrics::Sample& sample : traded) sample.follower_gap_m = 32;  // nothing is compromised
-  traded[4].follower_gap_m = 30;                                      // 2 m, twice the baseline's
-  // Only the fog counts: the track is right at its end.
+  traded[4].follower_gap_m = 30;                                      // CS 2 m, baseline 1 m
+  // Only the steps in fog count, because the track is right at the end of the fog.
   EXPECT_EQ(metrics::MeasurePair(baseline, traded, {}).si_until_recovery_pct, 100);
-  // The track of either run is wrong until step 4: steps 1 to 4 count.
+  // If the track of one of the two runs is wrong until step 4, steps 1 to 4 count.
   traded[4].fused_distance_m = 20;
   EXPECT_EQ(metrics::MeasurePair(baseline, traded, {}).si_until_recovery_pct, 50);
   traded[4].fused_distance_m = 30;
@@ -130,7 +130,8 @@ TEST(PairedMeasuresTest, HaveSafetyWithOtherReadingsOfCompromisedSafety) {
   for (const std::size_t k : {1, 2}) baseline[k].fog_present = true;
   for (metrics::Sample& sample : baseline) sample.follower_safe_distance_m = 30;
   auto traded = baseline;
-  // WHEN the gap shrinks by 4 m, and the safe distance by 1 m; with traded control by less
+  // WHEN the gap shrinks by 4 m, and the safe distance by 1 m, and with traded control both shrink
+  // by less
   baseline[2].follower_gap_m = 28;
   traded[2].follower_gap_m = 30;
   baseline[2].follower_safe_distance_m = 29;

@@ -12,7 +12,7 @@ namespace {
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr double kStep_s = 0.5;  // a power of two, so integrals are exact
 
-// A gap of 30 m to a car of 20 m/s, 5 m/s faster.
+// A gap of 30 m to a car of 20 m/s. The car behind drives 5 m/s faster.
 constexpr metrics::CarPair kClosing{.gap_m = 30, .speed_mps = 25, .lead_speed_mps = 20};
 constexpr metrics::CarPair kFollowing{.gap_m = 30, .speed_mps = 20, .lead_speed_mps = 20};
 
@@ -45,7 +45,8 @@ TEST(SurrogateTest, DecelerationToAvoidACrashStopsTheClosingWithinTheGap) {
 }
 
 TEST(SurrogateTest, UrgentDecelerationGapIsWhatBothBrakingsLeave) {
-  // 20^2/6.6 = 60.61 m ahead, 25 m of reaction and 25^2/6.6 = 94.70 m behind.
+  // The car ahead needs 20^2/6.6 = 60.61 m; the car behind needs 25 m of reaction and 25^2/6.6 =
+  // 94.70 m.
   EXPECT_NEAR(metrics::UrgentDecelerationGap({}, kClosing), 30 + 60.6061 - 94.6970 - 25, 1e-4);
   EXPECT_EQ(metrics::UrgentDecelerationGap({}, kFollowing), 10);
 }

@@ -216,7 +216,7 @@ TEST_F(RecorderTest, SaysThatItLivesWhileItReadsALogFromFrontToBack) {
     WriteSteps(log, 0, kMany);
   }
   std::filesystem::resize_file(file, std::filesystem::file_size(file) + 2 * log::kTailBytes);
-  // WHEN a recorder continues it
+  // WHEN a recorder continues this log
   const auto recorder = Record(script_, "long", recorder::Recorder::Existing::kResume);
   EXPECT_EQ(ErrorOf(*recorder), "");
   // THEN the recorder has reported its progress during that time, and then that it is ready
@@ -266,16 +266,16 @@ TEST_F(RecorderTest, ReadsOfALongLogOnlyItsEndWhenItGoesOn) {
          .events = front.head.events + steps * static_cast<std::int64_t>(log::kStepChannels)});
     WriteSteps(log, steps, steps + kLastSteps);
   }
-  // WHEN a recorder continues it
+  // WHEN a recorder continues this log
   const std::int64_t before = BytesRead();
   const auto recorder = Record(script_, "long", recorder::Recorder::Existing::kResume);
-  // THEN it is ready at the last step, with a checksum of the end of the log
+  // THEN the recorder is ready at the last step, with a checksum of the end of the log
   EXPECT_EQ(ErrorOf(*recorder), "");
   EXPECT_EQ(status_.back().state, status_t::READY);
   EXPECT_EQ(status_.back().header.step, steps + kLastSteps - 1);
   EXPECT_EQ(status_.back().log_bytes, static_cast<std::int64_t>(std::filesystem::file_size(file)));
-  // AND it has read only some megabytes: at most twice the end of the log, and the pages of the
-  // process itself
+  // AND the recorder has read only some megabytes: at most twice the end of the log, and the pages
+  // of the process itself
   EXPECT_LT(BytesRead() - before, 64 << 20);
 }
 
@@ -314,7 +314,7 @@ TEST_F(RecorderTest, TellsInStatusWhatItHasWritten) {
   const std::string content = Content(folder_.File("log"));
   EXPECT_EQ(acknowledged.log_bytes, std::ssize(content)) << "no step behind it is on disk";
   EXPECT_EQ(acknowledged.log_checksum, ChecksumOf(content, acknowledged.log_bytes));
-  // WHEN it leaves in an incomplete step, THEN its last STATUS covers that part, too
+  // WHEN the recorder leaves in an incomplete step, THEN its last STATUS covers that step, too
   truth_t truth = Script::Of<truth_t>(100);
   script_.Say(truth);
   recorder->node().parts().own.Leave();

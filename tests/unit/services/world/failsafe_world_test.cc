@@ -46,7 +46,7 @@ TEST_F(FailsafeWorldTest, SaysThatLastCommandsHold) {
   Step(kOk, kStale);
   EXPECT_EQ(world_.fallback(), "the follower's last command holds");
   EXPECT_EQ(truth_.follower_acceleration_mps2.at(0), -0.25);
-  follower_ = {};  // it publishes messages without a command
+  follower_ = {};  // the follower publishes messages without a command
   Step(kOk, kOk);
   EXPECT_EQ(world_.fallback(), "the follower's last command holds");
 }

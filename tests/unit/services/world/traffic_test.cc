@@ -100,7 +100,7 @@ TEST(WorldVehicleTest, TakesTimeToDoWhatItIsTold) {
   // GIVEN a sedan with brakes that act after 0.1 s, and then gradually
   world::World world(WithVehicles());
   world.Start(1);
-  // WHEN it is told to brake
+  // WHEN the sedan is told to brake
   const truth_t first = Truth(world.Step(HostCommand(-3), FollowerCommand(-3)));
   const truth_t second = Truth(world.Step(HostCommand(-3), FollowerCommand(-3)));
   truth_t later = second;
@@ -130,7 +130,7 @@ TEST(WorldVehicleTest, BrakesOnIceNoHarderThanItsTyresHold) {
   world.Start(1);
   for (int k = 0; k < 30; ++k) {
     const truth_t& truth = Truth(world.Step(HostCommand(-6), FollowerCommand(-6)));
-    // mu g, plus less than 0.2 m/s2 of drag at 20 m/s.
+    // The braking is mu g, plus less than 0.2 m/s2 of drag at 20 m/s.
     ASSERT_GE(truth.host_acceleration_mps2, -0.15 * models::kGravity_mps2 - 0.2);
   }
 }
@@ -145,10 +145,10 @@ TEST(WorldVehicleTest, SubstepsChangeNothingButRoundingForVehiclesToo) {
   a.Start(1);
   b.Start(1);
   for (int k = 0; k < 150; ++k) {
-    const double command = k < 50 ? 2 : -4;  // it comes to rest
+    const double command = k < 50 ? 2 : -4;  // the sedan comes to rest
     const truth_t& one = Truth(a.Step(HostCommand(command), FollowerCommand(command)));
     const truth_t& other = Truth(b.Step(HostCommand(command), FollowerCommand(command)));
-    // 150 steps with 16 roundings each, on positions of some hundred metres.
+    // The tolerance covers 150 steps with 16 roundings each, on positions of some hundred metres.
     ASSERT_NEAR(one.host_position_m, other.host_position_m, 1e-9) << k;
     ASSERT_NEAR(one.host_speed_mps, other.host_speed_mps, 1e-11) << k;
   }

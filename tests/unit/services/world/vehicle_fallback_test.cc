@@ -110,7 +110,7 @@ TEST_F(VehicleFallbackTest, TakesCommandsForNoCarAsNone) {
   now_.follower_acceleration_mps2 = {-1.5};
   // WHEN messages come in time but contain no command for the car
   const follower_command_t empty{};
-  // THEN the last command holds as long as a stale one would, and then the car stops
+  // THEN the last command holds for the time of a stale command, and then the car stops
   EXPECT_EQ(Follower(kOk, &empty), -1.5);
   EXPECT_EQ(fallback_.follower_state(), kStale);
   EXPECT_NEAR(Follower(kOk, &empty), -1.5 - 0.2, 1e-12);

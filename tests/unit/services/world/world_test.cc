@@ -68,10 +68,10 @@ TEST(WorldTest, ReportsTheMeanAccelerationOfACarThatCameToRest) {
   scenario.world.host_speed_mps = 0.5;
   world::World world(scenario);
   world.Start(1);
-  // WHEN: it comes to rest and still brakes
+  // WHEN: the host comes to rest and still brakes
   const truth_t resting = Truth(world.Step(HostCommand(-10.0), FollowerCommand(0.0)));
   const truth_t at_rest = Truth(world.Step(HostCommand(-10.0), FollowerCommand(0.0)));
-  // THEN: its acceleration is that of its speed, not that of the command
+  // THEN: its acceleration is the change of its speed, not the command
   EXPECT_EQ(resting.host_speed_mps, 0.0);
   EXPECT_DOUBLE_EQ(resting.host_acceleration_mps2, -5.0);
   EXPECT_DOUBLE_EQ(resting.host_position_m, 0.0125);
@@ -92,7 +92,8 @@ TEST(WorldTest, TheLeaderFollowsItsProfileExactly) {
     EXPECT_EQ(truth.preceding_speed_mps, profile.SpeedAt(step, time_s));
     EXPECT_DOUBLE_EQ(truth.preceding_acceleration_mps2,
                      (truth.preceding_speed_mps - before.preceding_speed_mps) / 0.1);
-    // The acceleration is constant within the step, so the mean speed is the mean of both ends.
+    // The acceleration is constant within the step, so the mean speed is the mean of the speeds at
+    // both ends.
     EXPECT_NEAR(truth.preceding_position_m - before.preceding_position_m,
                 0.05 * (truth.preceding_speed_mps + before.preceding_speed_mps), 1e-12);
     before = truth;

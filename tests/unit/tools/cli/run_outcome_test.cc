@@ -13,7 +13,7 @@ using testing::HasSubstr;
 using testing::Not;
 using testing::StartsWith;
 
-/// A run to which nothing happened.
+/// A run without any trouble.
 RunOutcome Undisturbed() {
   RunOutcome outcome{.file = "paper.json", .steps = 500, .result = {}};
   outcome.result.seed = 3;

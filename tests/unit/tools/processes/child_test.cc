@@ -20,7 +20,7 @@
 namespace fogline::test {
 namespace {
 
-/// All that comes out of a pipe until its other end is closed.
+/// All bytes that come out of a pipe until its other end is closed.
 std::string ReadAll(int file) {
   std::string text;
   std::array<char, 256> buffer{};

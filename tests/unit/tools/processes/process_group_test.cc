@@ -76,7 +76,7 @@ TEST(ProcessGroupTest, EndsWithItsProcesses) {
   pid_t pid = 0;
   {
     ProcessGroup group;
-    // Signals that a shell ignores are ignored by the program that takes its place, too.
+    // If a shell ignores a signal, the program that takes its place ignores the signal, too.
     pid = StartScript(group, Role::kWorld, "trap '' TERM INT HUP; exec sleep 60");
     const TimePoint end = Clock::now() + std::chrono::seconds(20);
     while (Content("/proc/" + std::to_string(pid) + "/comm") != "sleep\n" && Clock::now() < end) {

@@ -86,7 +86,8 @@ TEST(SubscriptionsTest, RefuseWhatIsNoRegularExpression) {
 }
 
 TEST(SubscriptionsTest, SurviveExpressionsMadeAtRandom) {
-  // Mostly characters that the parser of expressions treats specially. Sanitizers watch the test.
+  // The pieces are mostly characters that the parser of expressions treats specially. Sanitizers
+  // watch the test.
   constexpr std::string_view kPieces = "AB.*+?|()[]{}^$-,:=!<\\1dQEx";
   std::mt19937_64 engine(20'260'101);
   int refused = 0;
@@ -95,8 +96,7 @@ TEST(SubscriptionsTest, SurviveExpressionsMadeAtRandom) {
     std::string pattern;
     for (auto n = engine() % 24; n > 0; --n) pattern += kPieces[engine() % kPieces.size()];
     relay::Subscriptions wanted(1);
-    // The pattern in a block of its own, as if it were part of a socket's buffer: a read beyond it
-    // is an error.
+    // The pattern has a block of its own, so a sanitizer sees a read beyond the pattern.
     const std::vector<char> exact(pattern.begin(), pattern.end());
     if (!wanted.Add({exact.data(), exact.size()}).empty()) {
       ++refused;
@@ -136,8 +136,8 @@ TEST(SubscriptionsTest, GiveUpManySlowExpressionsAsOne) {
   EXPECT_THROW(Match(wanted, std::string(24, 'a')), std::runtime_error);
 }
 
-/// So slow that some tens of names like SlowName() take a tenth of a second. For a long expression
-/// Boost allows more visits before it gives up the search.
+/// This expression is so slow that some tens of names like SlowName() take a tenth of a second. For
+/// a long expression Boost allows more visits before it gives up the search.
 const std::string kSlow = "(a|aa)+b" + std::string(240, 'c');
 std::string SlowName(int i) { return std::string(20, 'a') + std::to_string(i); }
 

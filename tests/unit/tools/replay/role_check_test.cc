@@ -29,7 +29,7 @@ using testing::SizeIs;
 
 constexpr std::int64_t kSteps = 40;
 constexpr std::int64_t kAltered = 23;
-constexpr std::size_t kComputing = 8;  // all roles but the recorder
+constexpr std::size_t kComputing = 8;  // all roles except the recorder
 
 /// The log of a run, and a copy in which a message of one step is altered.
 class RoleCheckTest : public testing::Test {
@@ -82,7 +82,7 @@ TEST_F(RoleCheckTest, ComputesEveryStepOfEveryRoleAgain) {
 TEST_F(RoleCheckTest, FindsTheStepInWhichARoleDiffersAndNoOther) {
   Alter<driver_command_t>([](driver_command_t& command) { command.acceleration_mps2 = 9; });
   for (const RoleCheck& one : Check(altered_)) {
-    if (one.role == Role::kArbitrator) continue;  // reads the altered message
+    if (one.role == Role::kArbitrator) continue;  // it reads the altered message
     EXPECT_EQ(one.steps_that_differ, one.role == Role::kDriver ? 1 : 0) << NameOf(one.role);
     if (one.role != Role::kDriver) continue;
     ASSERT_TRUE(one.first);

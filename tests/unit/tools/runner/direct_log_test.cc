@@ -24,7 +24,7 @@ constexpr std::int64_t kCut = 7;
 
 class DirectLogTest : public testing::Test {
  protected:
-  /// Passes the messages of these steps of a log to another.
+  /// Passes the messages of these steps from one log to another log.
   static void AddSteps(const std::string& from, DirectLog& to, std::int64_t first,
                        std::int64_t end) {
     log::EventLogReader reader(from);

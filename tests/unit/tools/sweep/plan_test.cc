@@ -41,9 +41,10 @@ TEST(SweepPlanTest, ConfiguresARowWhateverTheScenarioWasBefore) {
   // GIVEN a scenario that holds the last row
   Scenario scenario = plan.base();
   plan.Configure(plan.units() - 1, plan.rows_per_unit() - 1, scenario);
-  // WHEN it becomes row 1 of unit 11
+  // WHEN the scenario becomes row 1 of unit 11
   plan.Configure(11, 1, scenario);
-  // THEN its values are those of its name, and otherwise those of the base
+  // THEN the fields in the row's name have the values of the name, and all other fields those of
+  // the base
   EXPECT_EQ(plan.NameOf(11, 1),
             "/arbitrator/threshold=0.2, /fog/bias_m=0.2, /arbitrator/window_steps=8, "
             "/fog/model=bias, seed 4");

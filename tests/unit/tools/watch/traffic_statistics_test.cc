@@ -185,8 +185,8 @@ TEST_F(TrafficStatisticsTest, KeepsRolesInTheOrderOfTheGraphAndInstancesApart) {
   EXPECT_EQ(roles[0].status.role, "world");
   EXPECT_EQ(roles[1].status.instance, 3);
   EXPECT_EQ(roles[2].status.instance, 4);
-  // After some time it forgets a process that another process has replaced. It never forgets the
-  // last process of a role.
+  // The statistics forget a process some time after another process has replaced it. They never
+  // forget the last process of a role.
   const auto later = Observe(60'000).runs.at(0).roles;
   ASSERT_EQ(later.size(), 2U);
   EXPECT_EQ(later[0].status.role, "world");

@@ -26,7 +26,7 @@ namespace {
 
 constexpr int kSteps = 1000;
 
-// Whether any measure of these rows allocates in a step; prints those that do.
+// Prints the measures of these rows that allocate memory in a step. @return whether there are any
 template <class Row>
 bool Allocates(std::span<const Row> rows, const conflict::ConflictParameters& parameters) {
   const Random random(1, Stream::kRadar);
@@ -51,7 +51,8 @@ bool Check() {
     any = Allocates(conflict::ConflictMeasures(), parameters) || any;
     any = Allocates(conflict::BlameMeasures(), parameters) || any;
   }
-  // Measures are made on the heap, so without any allocation the counter itself would be broken.
+  // Measures are made on the heap. So if the counter had counted no allocation, the counter would
+  // be broken.
   return !any && allocations > 0;
 }
 

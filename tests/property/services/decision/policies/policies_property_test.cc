@@ -123,7 +123,7 @@ TEST_P(EveryPolicyProperty, AuthoritiesSumToOneAndTheCommandLiesBetweenTheOffers
       ASSERT_GE(out.threshold, 0);
       ASSERT_LE(out.threshold, 1);
       ASSERT_EQ(out.mode == arbitration_t::HUMAN, out.lambda_human >= 0.5);
-      // The command may also be at the limit of the step gate.
+      // With the gate of transfers the command may also be at the gate's limit.
       const TransferSection& transfer = scenario.arbitrator.transfer;
       const double gate_mps2 = transfer.gate ? transfer.gate_acceleration_mps2 : kInfinity;
       const auto [low, high] =
@@ -266,8 +266,8 @@ TEST(RequestDebouncerProperty, SprtErrsNoMoreOftenThanItsParametersSay) {
     for (int test = 0; test < kTests; ++test) {
       arbitrator::RequestDebouncer debouncer(
           {.hysteresis = Hysteresis::kSprt, .sprt_alpha = alpha, .sprt_beta = alpha}, 0.1);
-      // GIVEN no conflict WHEN the test runs until its first decision, at most 60 steps THEN it
-      // decides for the human in at most a share alpha of the cases
+      // GIVEN no conflict WHEN the test runs until its first decision, at most 60 steps THEN at
+      // most a share alpha of the tests decides for the human
       for (int k = 0; k < 60; ++k) {
         const double x = random.Normal2(test, static_cast<std::uint32_t>(k))[0] - kMean;
         const double doc = 1 / (1 + std::exp(-2 * kMean * x));

@@ -79,7 +79,7 @@ void ExpectTheFiltersPrediction(const Scenario& scenario) {
         ++predictions;
         const double measured = step.radar.valid ? step.radar.range_m : step.lidar.range_m;
         EXPECT_DOUBLE_EQ(seen.range_m, measured - track.innovation[value]);
-        // Both subtract numbers of the size of S.
+        // Witness and recursion both subtract numbers of the size of S.
         const double rounding = 1e-9 * std::max(1.0, track.innovation_variance[value]);
         ASSERT_NEAR(seen.std_m * seen.std_m, recursion.Variance(track, value), rounding)
             << "seed " << seed << ", step " << k;
@@ -107,7 +107,7 @@ TEST(WitnessProperty, OfAnAdaptiveFilterNeedsTheStepBefore) {
   for (int k = 0; k < 50; ++k) {
     const testing::LeadStep step = lead.Step();
     const track_t& track = fusion.Step(step.ego, step.radar, step.lidar);
-    if (k % 10 == 5) continue;  // not heard
+    if (k % 10 == 5) continue;  // the witness does not hear this step
     const bool predicted = witness.Prediction(track, step.radar, step.lidar).valid;
     EXPECT_EQ(predicted, k % 10 != 6 && k > 0) << k;
   }

@@ -1,5 +1,5 @@
-// The shares of drivers that are late and that never come. Both must be those of the scenario,
-// within the exact confidence interval of a binomial count.
+// The shares of drivers that are late and that never come. Both shares must be those of the
+// scenario, within the exact confidence interval of a binomial count.
 #include <cstdint>
 #include <utility>
 
@@ -85,7 +85,7 @@ TEST(TakeOverLateTest, HappensAsOftenAsTheParameterSaysWhateverTheModel) {
   }
 }
 
-// SUMO repeats a negative draw. Long requests have many of them: 15 % for a request of 20 s.
+// SUMO repeats a negative draw. Long requests have many negative draws: 15 % for a request of 20 s.
 TEST(TakeOverLateTest, IsWhatTheDistributionHasOfItForTheLongestRequest) {
   for (const TakeOverModel model : {TakeOverModel::kLogNormalByLead, TakeOverModel::kSumo}) {
     const TakeOverParameters given{.model = model, .late_probability = 0.1};

@@ -22,7 +22,7 @@ using enum take_over::TakeOverState;
 constexpr std::int64_t kSequences = 10'000;
 constexpr std::int64_t kSteps = 300;
 
-/// How often a row was taken, and how often it changed the applied command.
+/// How often a row of the table was taken, and how often it changed the applied command.
 struct RowCount {
   int taken = 0;
   int changed = 0;
@@ -45,7 +45,7 @@ void ExpectTheTable(const take_over::TakeOverRow* row, take_over::TakeOverState 
 /// have given with the same inputs. If both states have the same controller, the command is that of
 /// this controller.
 ///
-/// One change may have its effect later: that to the harder stage of the manoeuvre. The jerk limit,
+/// Only the change to the harder stage of the manoeuvre may have its effect later. The jerk limit,
 /// or the limit shortly before standstill, may allow less deceleration than the softer stage wants.
 /// Then both stages command this limit.
 /// @return whether the command changed

@@ -1,6 +1,7 @@
-// Random events for the fallback, and an independent computation of its states and commands. It
-// uses the inputs alone, not services/decision/take_over/take_over.cc. Both use the same code for
-// the drawn take-over time and the course of a manoeuvre, which has tests of its own.
+// Random events for the fallback, and an independent computation of its states and commands. The
+// computation uses the inputs, and does not call services/decision/take_over/take_over.cc. It
+// shares with that file only the code for the drawn take-over time and for the course of a
+// manoeuvre; this code has tests of its own.
 #pragma once
 
 #include <algorithm>

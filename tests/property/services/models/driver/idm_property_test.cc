@@ -58,7 +58,8 @@ TEST(IdmPropertyTest, EquilibriumGapNeedsNoAcceleration) {
     const double v = 0.99 * driver.desired_speed_mps * u;
     const double ratio = std::pow(v / driver.desired_speed_mps, driver.exponent);
     const double gap = (driver.standstill_m + v * driver.headway_s) / std::sqrt(1 - ratio);
-    // Terms of size 1 cancel; a_max scales the result.
+    // The tolerance is the rounding of terms of size 1, which cancel and are then multiplied by
+    // a_max.
     ASSERT_NEAR(models::Idm(driver).Acceleration(v, v, gap), 0, 1e-14);
   });
 }

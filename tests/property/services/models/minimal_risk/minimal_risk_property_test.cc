@@ -34,7 +34,7 @@ Case AnyCase(std::int64_t index) {
           .acceleration_mps2 = Between(-9, 4, a)};
 }
 
-// The upper bound that the README gives.
+// The upper bound for the time to rest (services/models/minimal_risk/README.md).
 double LongestTimeToRest(const Case& c) {
   const double d = c.limits.deceleration_mps2;
   const double j = c.limits.jerk_mps3;

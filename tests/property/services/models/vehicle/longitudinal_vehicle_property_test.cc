@@ -62,8 +62,8 @@ TEST(LongitudinalVehicleProperty, NeverMakesEnergyAndNeverGoesBackwards) {
       // The energy from the engine, which its power limits.
       const double engine_j = car.traction_n() * path_m;
       ASSERT_LE(engine_j, vehicle.power_w * step_s * (1 + 1e-2));
-      // Kinetic energy of car and wheels, and potential energy. Between its ends the path may be
-      // flatter, at most by the change of the grade: 0.2 in 40 m.
+      // Kinetic energy of car and wheels, and potential energy. The path may be flatter in its
+      // middle than at its ends, but only as far as the grade changes: by 0.2 in 40 m.
       const double kinetic_j =
           0.5 * vehicle.rotating_mass_factor * vehicle.mass_kg *
           (next.speed_mps * next.speed_mps - motion.speed_mps * motion.speed_mps);
@@ -107,7 +107,7 @@ models::Motion DriveWith(const Commands& commands, double step_s) {
   return motion;
 }
 
-// The error against a step of 1/640 s.
+// The error in comparison with steps of 1/640 s.
 Error ErrorOf(const Commands& commands, double step_s) {
   const models::Motion reference = DriveWith(commands, 0.4 / 256);
   const models::Motion motion = DriveWith(commands, step_s);

@@ -21,7 +21,8 @@ namespace {
 
 enum class Sides { kBoth, kLidarShort };
 
-// Properties of a measure beside its range. The list below has the measures that lack one of them.
+// Properties of a measure beside its range. The list below has the measures that lack one of these
+// properties.
 struct Claims {
   Sides sides = Sides::kBoth;  // both: d and -d score the same, and 0 scores the least
   bool zero_for_equal = true;  // equal evidence scores 0
@@ -29,11 +30,11 @@ struct Claims {
 
 Claims ClaimsOf(std::string_view name) {
   static const std::map<std::string_view, Claims> kLess{
-      {"doc", {.zero_for_equal = false}},  // 0.00005
+      {"doc", {.zero_for_equal = false}},  // the score is 0.00005
       {"nis_signed", {.sides = Sides::kLidarShort}},
-      {"dempster_bins", {.zero_for_equal = false}},  // a known defect
+      {"dempster_bins", {.zero_for_equal = false}},  // a known defect of k
       {"cusum", {.sides = Sides::kLidarShort}},
-      {"sprt", {.sides = Sides::kLidarShort, .zero_for_equal = false}},  // below 0
+      {"sprt", {.sides = Sides::kLidarShort, .zero_for_equal = false}},  // it is below 0
       {"lidar_modes", {.zero_for_equal = false}},                        // a small probability
   };
   const auto less = kLess.find(name);
@@ -113,7 +114,8 @@ TEST(EveryMeasureTest, TellsALidarThatIsLongAsItClaims) {
       if (ClaimsOf(row.name).sides == Sides::kLidarShort) {
         EXPECT_LE(longer, After(row, kSteps, LidarShortBy(0))) << error_m;
       } else if (row.name == "lidar_modes") {
-        // No other range is clean. But r* is on one side only, so the two sides differ.
+        // For lidar_modes each error is suspicious. But r* is on one side only, so errors of both
+        // signs have different scores.
         EXPECT_GT(longer, After(row, kSteps, LidarShortBy(0))) << error_m;
       } else {
         EXPECT_NEAR(longer, After(row, kSteps, LidarShortBy(error_m)), kRounding) << error_m;
@@ -171,8 +173,7 @@ TEST(EveryMeasureTest, ScoresASkippedStepNoHigherThanOneThatWasMeasured) {
     conflict::ConflictParameters parameters;
     parameters.missing = MissingLidar::kSkip;
     const auto measure = row.make(parameters);
-    // 0.1 m leaves lidar_modes clean. Only this measure finds a missing echo more suspicious than
-    // that.
+    // Only lidar_modes finds a missing echo more suspicious than a LiDAR that reads 0.1 m short.
     const double before = measure->Step(LidarShortBy(0.1));
     const double after = measure->Step(WithoutLidar(LidarShortBy(0.1)));
     EXPECT_EQ(after > before, row.name == "lidar_modes");

@@ -95,7 +95,7 @@ TEST(PoliciesTest, AMisspeltNameIsAnsweredWithTheNearestOfTheTable) {
 }
 
 TEST(PoliciesTest, KnowsTheTraitsOfEachPolicy) {
-  // Only the policies that this file tests. Another policy has tests of its own.
+  // The list has only the policies that this file tests. Another policy has tests of its own.
   for (const std::string_view name : {"none", "traded", "isolate", "oracle", "blend", "adaptive",
                                       "bayes", "availability", "traded_isolating"}) {
     const policies::PolicyRow& row = policies::RowOf(test::FindPolicy(name).value());
@@ -283,8 +283,8 @@ TEST(PoliciesTest, ThreePoliciesDropTheSensorThatThePredictionBlames) {
   }
 }
 
-// The fusion and the arbitrator each have an instance of the policy. Neither knows the decisions of
-// the other about the driver.
+// The fusion and the arbitrator each have an instance of the policy. An instance does not know the
+// decisions of the other one about the driver.
 TEST(PoliciesTest, AvailabilityDropsTheSensorWhetherTheDriverIsCalledOrNot) {
   const auto policy = policies::RowOf(test::FindPolicy("availability").value()).make({});
   Situation available;

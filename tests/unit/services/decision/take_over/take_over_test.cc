@@ -13,7 +13,8 @@ using enum take_over::TakeOverState;
 
 constexpr double kStep_s = 0.1;
 
-/// A scenario whose driver takes over after `time_s`, within a few milliseconds.
+/// A scenario in which the driver's take-over time differs from `time_s` by less than a
+/// millisecond.
 Scenario Answering(double time_s) {
   Scenario scenario;
   scenario.step_s = kStep_s;
@@ -52,7 +53,8 @@ class TakeOverTest : public testing::Test {
     return out;
   }
 
-  /// Steps until the state changes, or until this time. @return seconds since the start of the run
+  /// Makes steps until the state changes, or until this time. @return seconds since the start of
+  /// the run
   double StepWhile(take_over::TakeOverState state, double limit_s = 100) {
     while (take_over_->outcome().state == state && Now() < limit_s) Step();
     return Now();
@@ -118,7 +120,7 @@ TEST_F(TakeOverTest, StopsComfortablyTenSecondsAfterARequestWithoutAnAnswer) {
   StepWhile(kDemand);
   EXPECT_NEAR(StepWhile(kUrgentDemand), 10.0, 1e-9);
   EXPECT_EQ(state(), kMrmComfort);
-  // 20 m/s at 1.5 m/s2 take 13.3 s, and 0.6 s for each end.
+  // 20 m/s at 1.5 m/s2 take 13.3 s. The ramps at both ends, at 2.5 m/s3, add 0.6 s in total.
   EXPECT_NEAR(StepWhile(kMrmComfort), 10.0 + 13.3 + 0.6, 0.5);
   EXPECT_EQ(state(), kMrmDone);
   EXPECT_EQ(take_over_->request()->manoeuvre, 100);

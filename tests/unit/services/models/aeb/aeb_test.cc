@@ -47,7 +47,8 @@ TEST(AebTest, BrakesByTheDecelerationThatIsRequired) {
 }
 
 TEST(AebTest, CombinesBothTriggers) {
-  // At a closing speed of 4 m/s, 1 s is 4 m and 5 m/s2 are 1.6 m; at 16 m/s 16 m and 25.6 m.
+  // At a closing speed of 4 m/s, 1 s needs 4 m, and braking by 5 m/s2 needs 1.6 m. At 16 m/s these
+  // distances are 16 m and 25.6 m.
   for (const auto& [closing_mps, gap_m] : {std::pair{4.0, 3.0}, {16.0, 20.0}}) {
     EXPECT_EQ(StateOf(On(AebTrigger::kEither), Closing(gap_m, closing_mps)), AebState::kBraking);
     EXPECT_NE(StateOf(On(AebTrigger::kBoth), Closing(gap_m, closing_mps)), AebState::kBraking);
@@ -114,10 +115,11 @@ struct Approach {
   double warned_s = 0;    // time of warnings before the braking
 };
 
-// No time to collision of a step is a limit itself, which rounding would decide.
+// With this distance no step has a time to collision that is exactly a limit. Otherwise rounding
+// would decide.
 constexpr double kFarAway_s = 6.05;
 
-/// An unbraked approach at this relative speed.
+/// An approach at this relative speed, in which the driver does not brake.
 /// @param vehicle nullptr: a point mass
 Approach Approaching(double relative_kmph, double ahead_kmph,
                      models::LongitudinalVehicle* vehicle) {

@@ -48,11 +48,12 @@ TEST(FollowingTest, IidmIsAsWorkedByHand) {
   driver.standstill_m = 2;
   driver.exponent = 4;
   const models::Following iidm(FollowingModel::kIidm, driver);
-  // s* = 12 m, so z = 2: 1 - 4.
+  // s* = 12 m, so z = 2, and the acceleration is 1 - z^2 = 1 - 4.
   EXPECT_NEAR(iidm.Acceleration(Behind(10, 6, 10)), -3, kNear);
-  // z = 1/2, a_free = 1 - 1/16 = 15/16: 15/16 (1 - 2^(-32/15)).
+  // z = 1/2 and a_free = 1 - 1/16 = 15/16, so the acceleration is 15/16 (1 - 2^(-32/15)).
   EXPECT_NEAR(iidm.Acceleration(Behind(10, 24, 10)), 0.9375 * (1 - std::exp2(-32.0 / 15)), kNear);
-  // Above v_0: -2 (1 - (1/2)^2) = -1.5. With s* = 42 m at a gap of 21 m, z = 2, this is three more.
+  // Above v_0: -2 (1 - (1/2)^2) = -1.5. With s* = 42 m at a gap of 21 m, z = 2, so the car brakes
+  // by 3 m/s2 more.
   EXPECT_NEAR(iidm.Acceleration({.speed_mps = 40}), -1.5, kNear);
   EXPECT_NEAR(iidm.Acceleration(Behind(40, 1000, 40)), -1.5, kNear);
   EXPECT_NEAR(iidm.Acceleration(Behind(40, 21, 40)), -4.5, kNear);
@@ -88,7 +89,7 @@ TEST(FollowingTest, AccIdmTakesACutInCoolly) {
 TEST(FollowingTest, AccIdmBrakesForACarThatWillStandAsItsHeuristicSays) {
   // v = 20, v_l = 20, s = 20, a_lead = -4: v_l (v - v_l) = 0 <= 160, so a_CAH = -1600 / 560 =
   // -2.857. The IIDM with s* = 32 m gives 0.73 (1 - 2.56) = -1.139, which is greater, so the model
-  // takes it.
+  // uses the IIDM.
   DriverSection driver;
   const models::Following acc(FollowingModel::kAccIdm, driver);
   EXPECT_NEAR(acc.Acceleration(Behind(20, 20, 20, -4)), 0.73 * (1 - 2.56), kNear);

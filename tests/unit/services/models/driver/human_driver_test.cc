@@ -40,7 +40,7 @@ TEST(HumanDriverTest, RemembersBetweenStepsInProportion) {
   models::HumanDriver driver(late, AnyModel(), AnyErrors(), kStep_s);
   driver.Step(0, Behind(20, 0, 40, 20));
   driver.Step(1, Behind(20, 0, 36, 18));
-  // 0.175 s before 0.2 s: a quarter of the way from step 0 to step 1.
+  // 0.175 s before 0.2 s is a quarter of the way from step 0 to step 1.
   EXPECT_NEAR(driver.Step(2, Behind(20, 0, 30, 10)),
               AnyModel().Acceleration(Behind(20, 0, 39, 19.5)), 1e-9);
 }

@@ -23,8 +23,8 @@ TEST(SafeDistanceTest, RssIsAsWorkedByHand) {
 TEST(SafeDistanceTest, RssIsNeverNegative) { EXPECT_EQ(models::RssSafeDistance({}, 0, 40), 0); }
 
 TEST(SafeDistanceTest, ProactiveFuzzyIsAsWorkedByHand) {
-  // At 20 m/s behind 20 m/s: 15 + 50 - 28.571 + 2 = 38.429 m are safe, 15 + 33.333 - 28.571 =
-  // 19.762 m are unsafe, each beyond a gap of 2 m.
+  // Both cars drive at 20 m/s: 15 + 50 - 28.571 + 2 = 38.429 m are safe, and 15 + 33.333 - 28.571 =
+  // 19.762 m are unsafe. A gap of 2 m at standstill is added to both.
   EXPECT_EQ(models::ProactiveFuzzy({}, Behind(20, 40.43, 20)), 0);
   EXPECT_EQ(models::ProactiveFuzzy({}, Behind(20, 21.76, 20)), 1);
   EXPECT_NEAR(models::ProactiveFuzzy({}, Behind(20, 2 + 0.5 * (38.4286 + 19.7619), 20)), 0.5, 1e-5);
@@ -32,19 +32,21 @@ TEST(SafeDistanceTest, ProactiveFuzzyIsAsWorkedByHand) {
 }
 
 TEST(SafeDistanceTest, CriticalFuzzyIsAsWorkedByHand) {
-  // Closing at 10 m/s: 7.5 + 100 / 8 = 20 m safe, 7.5 + 100 / 12 = 15.833 m unsafe.
+  // At a closing speed of 10 m/s, 7.5 + 100 / 8 = 20 m are safe, and 7.5 + 100 / 12 = 15.833 m are
+  // unsafe.
   EXPECT_EQ(models::CriticalFuzzy({}, Behind(20, 20, 10)), 0);
   EXPECT_EQ(models::CriticalFuzzy({}, Behind(20, 15.83, 10)), 1);
   EXPECT_NEAR(models::CriticalFuzzy({}, Behind(20, 0.5 * (20 + 15.83333), 10)), 0.5, 1e-6);
   EXPECT_EQ(models::CriticalFuzzy({}, Behind(10, 1, 10)), 0);
-  // Already braking at 4 m/s2: closing at 2 m/s ends after half a second and 0.5 m.
+  // A car that closes at 2 m/s and already brakes at 4 m/s2 stops closing after half a second and
+  // 0.5 m.
   EXPECT_EQ(models::CriticalFuzzy({}, Behind(12, 0.49, 10, -4)), 1);
   EXPECT_EQ(models::CriticalFuzzy({}, Behind(12, 0.51, 10, -4)), 0);
 }
 
 TEST(SafeDistanceTest, CriticalFuzzyCountsOnComfortableBrakingAtMost) {
-  // Closing at 10 m/s, braking at 8 m/s2. The model counts 4 m/s2: 8.5 * 0.75 + 7^2 / 8 = 12.5 m
-  // are safe.
+  // The car closes at 10 m/s and brakes at 8 m/s2. The model counts only 4 m/s2 of this braking:
+  // 8.5 * 0.75 + 7^2 / 8 = 12.5 m are safe.
   EXPECT_EQ(models::CriticalFuzzy({}, Behind(20, 12.5, 10, -8)), 0);
   EXPECT_GT(models::CriticalFuzzy({}, Behind(20, 12.4, 10, -8)), 0);
 }

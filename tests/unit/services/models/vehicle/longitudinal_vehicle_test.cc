@@ -94,7 +94,7 @@ TEST_P(EveryVehicleTest, FollowsASteadyCommandWithinItsLimits) {
   for (const double command : {0.1, -0.5, -2.0}) {
     Drive drive(GetParam(), 20, command);
     // Drag changes with the speed, and its compensation comes late by delay and lag. The error is 2
-    // c v (D + tau) / m_eff of the command: at 20 m/s below 1 % for each of the three.
+    // c v (D + tau) / m_eff of the command: at 20 m/s below 1 % for each of the three cars.
     EXPECT_NEAR(drive.For(5, command), command, 0.01 * std::abs(command)) << command;
   }
 }
@@ -140,7 +140,7 @@ TEST(LongitudinalVehicleTest, SpinsItsWheelsOnIceAtTheDrivenShareOfFriction) {
 }
 
 TEST(LongitudinalVehicleTest, BrakesWithDelayAndLag) {
-  models::VehicleParameters light = models::kSedan;  // nothing but brakes
+  models::VehicleParameters light = models::kSedan;  // only the brakes act on this car
   light.drag_coefficient = 0;
   light.rolling_coefficient = 0;
   light.pedal_dead_band_mps2 = 0;
@@ -150,9 +150,9 @@ TEST(LongitudinalVehicleTest, BrakesWithDelayAndLag) {
   EXPECT_EQ(drive.For(0.2, -4), 0);
   drive.For(0.4, -4);
   const double before = drive.For(0.1, -4);  // mean from 0.6 to 0.7 s
-  const double after = drive.For(0.1, -4);   // and up to 0.8 s
-  // 0.7 s is delay plus time constant, between the two means: 63.2 %. The tolerance is half the
-  // curvature.
+  const double after = drive.For(0.1, -4);   // mean from 0.7 to 0.8 s
+  // 0.7 s is delay plus time constant, so 63.2 % of the braking is there. Both means together are
+  // centred on 0.7 s. The tolerance is half the curvature.
   EXPECT_NEAR(0.5 * (before + after), -4 * (1 - std::exp(-1)), 4 * 0.004);
 }
 
@@ -160,7 +160,7 @@ TEST(LongitudinalVehicleTest, DoesNotTouchThePedalsForATremblingCommand) {
   Drive drive(models::kSedan, 20);
   int changes = 0;
   models::Pedal pedal = drive.car().pedal();
-  // Around the acceleration of coasting, where the demanded force is 0.
+  // The commands alternate around the acceleration of coasting, where the demanded force is 0.
   const double coasting =
       -(Rolling(models::kSedan) + DragFactor(models::kSedan) * 400) / (1.05 * 1500);
   for (int i = 0; i < 100; ++i) {

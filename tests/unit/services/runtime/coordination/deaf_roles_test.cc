@@ -34,8 +34,8 @@ class DeafRolesTest : public testing::Test {
     status.input_late = {ear.late};
     deaf_.Heard(Role::kRadar, status, now_);
   }
-  /// Passes `signs` STATUS messages of the world, which computes two steps between them, and of the
-  /// radar. The radar's input gets 200 ms older each time.
+  /// Passes `signs` STATUS messages of the world and of the radar. Between two of its messages the
+  /// world computes two steps. The radar's input gets 200 ms older each time.
   void Pass(int signs, std::int8_t state = status_t::INPUT_LOST) {
     for (int i = 0; i < signs; ++i) {
       now_ += milliseconds(200);
@@ -153,7 +153,7 @@ TEST_F(DeafRolesTest, OfATimeInWhichItIsNotHeardItselfNothingIsKnown) {
 }
 
 TEST_F(DeafRolesTest, AReaderThatIsLateForgetsNoSilence) {
-  // GIVEN a reader that reads three signs of life together, and then none for half a second
+  // GIVEN a reader that reads three signs of life together, and then no sign for half a second
   for (int i = 1; i <= 12; ++i) {
     now_ += milliseconds(i % 3 == 0 ? 598 : 1);
     world_step_ += 2;
@@ -162,7 +162,7 @@ TEST_F(DeafRolesTest, AReaderThatIsLateForgetsNoSilence) {
     SayRadar({.age_ms = age_ms_});
   }
   EXPECT_TRUE(IsDeaf());
-  // WHEN a message comes, THEN the reader notices it as well
+  // WHEN a message comes, THEN the reader notices the message as well
   age_ms_ = 0;
   for (int i = 1; i <= 6; ++i) {
     now_ += milliseconds(i % 3 == 0 ? 598 : 1);

@@ -62,7 +62,7 @@ TEST(ForeignPeersTest, AreNotHiddenByAFloodOfInventedOnes) {
     foreign_peers.Hear(Status(7, "fusion", 4711, "lab2"));
     flood();
   }
-  // THEN the text names the genuine one, and the list does not grow
+  // THEN the text names the genuine process, and the list does not grow
   EXPECT_THAT(foreign_peers.Text(),
               testing::HasSubstr("ignored: fusion (pid 4711 on lab2) of run 7"));
   EXPECT_EQ(foreign_peers.known().size(), runtime::ForeignPeers::kMax);

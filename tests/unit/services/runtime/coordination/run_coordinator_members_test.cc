@@ -51,7 +51,7 @@ TEST_F(RunCoordinatorTest, EndsTheRunWhenTwoLivingProcessesAreOneRole) {
   SayStatus(Role::kAcc);
   EXPECT_EQ(coordinator_.phase(), runtime::RunCoordinator::Phase::kRunning)
       << "the first may be dead";
-  // WHEN the first process speaks long after the second has come
+  // WHEN the first process speaks long after the second process has come
   const TimePoint end = Clock::now() + milliseconds(120);
   while (Clock::now() < end) Poll(Clock::now());
   role(Role::kAcc) = first;
@@ -168,7 +168,7 @@ TEST_F(StrayWordTest, OfADeadProcessLongAfterAnotherIsNotEither) {
   BeAtStep(-1);
   status_t& dead = role(Role::kDriver);
   status_t other = OtherDriver();
-  // GIVEN a driver that is replaced when it was silent for a second
+  // GIVEN a driver that was silent for a second and was then replaced
   while (external_.member(Role::kDriver).replaced == 0) SpeakFor(milliseconds(100), other);
   SpeakFor(milliseconds(200), other);
   Say(dead);

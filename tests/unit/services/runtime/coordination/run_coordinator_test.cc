@@ -42,11 +42,11 @@ TEST_F(RunCoordinatorTest, PreparesARoleThatIsStartedAgainAndSaysGoWhenItIsReady
   Poll(Clock::now());
   EXPECT_EQ(said_.back().phase, run_t::PREPARE);
   EXPECT_EQ(said_.back().progress, 40);
-  // AND its last STATUS comes late, THEN this STATUS does not count
+  // AND the last STATUS of the dead process comes late, THEN this STATUS does not count
   SayStatus(Role::kFusion);
   Poll(Clock::now());
   EXPECT_FALSE(coordinator_.member(Role::kFusion).status);
-  // WHEN the next process is there
+  // WHEN the next process of the fusion is there
   Replace(Role::kFusion);
   SayStatus(Role::kFusion);
   Poll(Clock::now());
@@ -102,7 +102,7 @@ TEST_F(RunCoordinatorTest, BlamesNoRoleForSilenceWhileItWasHeldUpItself) {
 TEST_F(RunCoordinatorTest, FindsAStallHoweverOftenItIsHeldUpItself) {
   BeAtStep(-1);
   BeAtStep(40);
-  // GIVEN a runner that looks for a second, and is held up for 0.6 s, again and again
+  // GIVEN a runner that looks at the clock for a second, and is held up for 0.6 s, again and again
   const TimePoint began = Clock::now();
   TimePoint now = began;
   Duration looked{};
@@ -114,7 +114,7 @@ TEST_F(RunCoordinatorTest, FindsAStallHoweverOftenItIsHeldUpItself) {
     looked += milliseconds(20);
     coordinator_.Poll(now);
   }
-  // THEN the four seconds in which it looked count
+  // THEN the four seconds in which the runner looked count
   EXPECT_EQ(coordinator_.phase(), runtime::RunCoordinator::Phase::kFailed);
   EXPECT_NEAR(std::chrono::duration<double>(now - began).count(), 4 + 4 * 0.6, 0.7);
 }
@@ -125,7 +125,7 @@ TEST_F(RunCoordinatorTest, BlamesForAStallTheRoleAtTheEndOfTheChain) {
                                                 .stall_limit = milliseconds(100)});
   BeAtStep(-1);
   hasty.Poll(Clock::now());
-  // GIVEN that every role waits for another one
+  // GIVEN roles that wait for one another
   const auto wait = [this](Role who, std::int64_t next, const char* channel, std::int64_t heard) {
     role(who).header.step = next - 1;
     role(who).waiting_for = channel;
@@ -248,7 +248,7 @@ TEST_F(RunCoordinatorTest, EndsOnlyWhenTheRecorderHasToldWhatItHasWrittenOfTheLa
   role(Role::kRecorder).log_bytes = 4711;
   SayStatus(Role::kRecorder);
   EXPECT_EQ(coordinator_.phase(), runtime::RunCoordinator::Phase::kDone);
-  // AND the report that it sends when it leaves counts
+  // AND the report that the recorder sends when it leaves counts
   role(Role::kRecorder).log_bytes = 4712;
   SayStatus(Role::kRecorder);
   EXPECT_EQ(coordinator_.member(Role::kRecorder).status->log_bytes, 4712);

@@ -6,7 +6,7 @@ namespace fogline {
 namespace {
 
 constexpr Duration kEvery = milliseconds(200);
-// Of a million living processes one is wrongly taken for hanging.
+// One of a million living processes is wrongly regarded as hanging.
 constexpr double kUnlikely = 1e-6;
 
 TimePoint At(std::int64_t ms) { return TimePoint(std::chrono::hours(5)) + milliseconds(ms); }

@@ -31,7 +31,7 @@ class RunSeekerTest : public testing::Test {
     runner_.Publish(runtime::kBeaconChannel, bytes);
   }
 
-  /// Announces the run until the driver goes there. @return whether it does
+  /// Announces the run until the driver goes there. @return whether the driver goes there
   bool Finds(TimePoint now) {
     for (int tries = 0; tries < 2000; ++tries) {
       Announce({"driver"});
@@ -47,8 +47,8 @@ class RunSeekerTest : public testing::Test {
   TimePoint begin_ = Clock::now();
 };
 
-// The test passes times in steps of 0.4 s: the seeker would take a longer step for a pause of its
-// own.
+// The test passes times in steps of 0.4 s: the seeker would regard a longer step as a pause of its
+// own process.
 TEST_F(RunSeekerTest, TriesARunAgainSomeSecondsAfterItWasInVain) {
   // GIVEN a seeker that has tried a run in vain
   ASSERT_TRUE(Finds(begin_));
@@ -67,14 +67,14 @@ TEST_F(RunSeekerTest, TriesARunAgainAtOnceWhenItsPlaceWasTakenAndLeft) {
   // GIVEN a seeker that has tried a run in vain at `begin_`
   ASSERT_TRUE(Finds(begin_));
   driver_.GiveUp(begin_);
-  // WHEN the run waits for another role alone, and then for the driver again
+  // WHEN the run waits for another role only, and then for the driver again
   bool found = false;
   for (int tries = 0; !found && tries < 1000; ++tries) {
     Announce({tries % 2 == 0 ? "acc" : "driver"});
     runner_.Wait(milliseconds(10));
     found = driver_.Look(begin_).has_value();
   }
-  // THEN the seeker goes there at `begin_`, without a pause
+  // THEN the seeker goes to the run at `begin_`, without a pause
   EXPECT_TRUE(found);
 }
 

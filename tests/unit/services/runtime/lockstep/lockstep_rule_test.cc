@@ -16,7 +16,7 @@ using LockstepRuleTest = test::DriverInRun;
 TEST_F(LockstepRuleTest, AsksForOneStepAtATimeWhenItIsInStep) {
   script_.SayRun(run_t::GO, -1);
   script_.Say(Truth(0));
-  // WHEN another role asks for an answer and the node lacks its input
+  // WHEN another role asks for an answer, and the node lacks the input for this answer
   script_.AskFor("DRIVER_COMMAND", 1, 1);
   // THEN the node asks for this input
   ASSERT_EQ(requests_.size(), 2U);
@@ -41,13 +41,13 @@ TEST_F(LockstepRuleTest, CatchesUpManyStepsAtATimeAndInSilence) {
   constexpr std::int64_t kProgress = 200;
   script_.SayRun(run_t::GO, kProgress);
   script_.Poll(node_);
-  // GIVEN that it asks at once for as many steps as its ring holds
+  // GIVEN a node that asks at once for all steps that its ring can hold
   ASSERT_EQ(requests_.size(), 1U);
   EXPECT_EQ(requests_[0].header.step, 0);
   EXPECT_EQ(requests_[0].count, runtime::kRingSteps - 1);
-  // WHEN it gets these steps, and all that it asks for next
+  // WHEN the node gets these steps, and all steps that it asks for next
   AnswerRequests();
-  // THEN it reaches the step of the other roles and has asked for each step once
+  // THEN the node reaches the step of the other roles, and has asked for each step once
   script_.Say(Truth(kProgress + 1));
   ASSERT_EQ(requests_.size(), 4U);
   std::int64_t next = 0;
@@ -56,7 +56,7 @@ TEST_F(LockstepRuleTest, CatchesUpManyStepsAtATimeAndInSilence) {
     next += request.count;
   }
   EXPECT_EQ(next, kProgress + 1);
-  // AND it publishes only the steps for which the recorder does not answer
+  // AND the node publishes only the steps for which the recorder does not answer
   ASSERT_FALSE(commands_.empty());
   EXPECT_EQ(commands_.front().header.step, kProgress - runtime::kRingSteps + 1);
   EXPECT_EQ(commands_.back().header.step, kProgress + 1);

@@ -54,7 +54,7 @@ TEST_F(StepGateTest, DoesNotBelieveThatAStepIsOnDiskBeforeItHasBegun) {
   Recorded(6);
   EXPECT_FALSE(gate_.Open(runtime::kMaxAhead, now_));
   EXPECT_EQ(own_.out_of_window, 1);
-  // The gate believes this if an earlier world has begun the step.
+  // The gate believes the recorder if an earlier world has begun the step.
   Go(0, 6);
   Recorded(6);
   EXPECT_TRUE(gate_.Open(runtime::kMaxAhead + 6, now_));

@@ -1,5 +1,5 @@
-// A role whose algorithm and rule do nothing but note their calls. The test publishes the messages
-// of all other processes (script.h).
+// A role whose algorithm and rule only note their calls. The test publishes the messages of all
+// other processes (script.h).
 #pragma once
 
 #include <gtest/gtest.h>
@@ -104,7 +104,7 @@ class FakeRole final : public runtime::Work {
   runtime::Node node_;
 };
 
-/// That role alone on a bus in memory.
+/// The fake role alone on a bus in memory.
 class FakeRoleInRun : public testing::Test {
  protected:
   /// The runner announces the run and says GO.

@@ -25,7 +25,7 @@ class InputsTest : public test::FakeRoleInRun {
     truth.host_gap_m = gap_m;
     script_.Say(truth);
   }
-  /// The log of a predecessor has this step.
+  /// Gives the inputs this step from the log of a predecessor.
   void Remember(std::int64_t step) {
     std::vector<std::uint8_t> bytes;
     runtime::Encode(Script::Of<truth_t>(step), bytes);

@@ -191,7 +191,7 @@ TEST_F(ExternalRoleTest, GoesWhenAnotherProcessHasItsPlace) {
   EXPECT_TRUE(own_.released());
   EXPECT_EQ(status_.back().state, status_t::LEFT);
   EXPECT_EQ(own_.message().error, "another process is the driver of run 7");
-  // AND it publishes nothing more
+  // AND the role publishes nothing more
   const std::size_t said = status_.size();
   script_.PollUpTo(node_, Clock::now() + milliseconds(1000));
   EXPECT_EQ(status_.size(), said);

@@ -16,8 +16,8 @@ using testing::Contains;
 using testing::ElementsAre;
 using testing::Not;
 
-/// In each step he offers the last acceleration that he heard. His readiness is the number of
-/// commands that he heard.
+/// In each step this driver offers the last acceleration that he heard. His readiness is the number
+/// of commands that he heard.
 class Echo {
  public:
   explicit Echo(const Scenario& /*scenario*/) { out_.acceleration_mps2 = kNothing; }
@@ -109,7 +109,7 @@ TEST_F(OnDemandTest, IsWaitedForAndAskedForLikeAnyOther) {
   EXPECT_EQ(requests_[0].channel, "HOST_COMMAND");
   EXPECT_EQ(requests_[0].header.step, 0);
   EXPECT_EQ(requests_[0].count, 1);
-  // AND its STATUS says for which input it waits
+  // AND the driver's STATUS says for which input he waits
   script_.Poll(node_, Clock::now() + milliseconds(500));
   EXPECT_EQ(status_.back().waiting_for, "HOST_COMMAND");
   EXPECT_EQ(status_.back().last_heard_step, -1);
@@ -137,7 +137,7 @@ TEST_F(OnDemandTest, IsAskedForFromTheFirstStepOnByALateRole) {
     }
     script_.Poll(node_);
   }
-  // THEN it asks for each step once
+  // THEN the driver asks for each step once
   std::int64_t truths = 0;
   std::int64_t hosts = 0;
   for (const resend_t& request : requests_) {
@@ -147,7 +147,7 @@ TEST_F(OnDemandTest, IsAskedForFromTheFirstStepOnByALateRole) {
   }
   EXPECT_EQ(truths, kProgress + 1);
   EXPECT_EQ(hosts, kProgress);
-  // AND it computes as if it had been there from the start
+  // AND the driver computes as if he had been there from the start
   ASSERT_FALSE(commands_.empty());
   EXPECT_EQ(commands_.back().header.step, kProgress);
   EXPECT_EQ(commands_.back().readiness, kProgress + 1);
@@ -163,7 +163,7 @@ TEST_F(OnDemandTest, OfTwoProducersEndsTheRun) {
             "arbitrator?");
 }
 
-// ---- a scenario that does not demand it --------------------------------------------------------
+// ---- a scenario that does not demand HOST_COMMAND ----------------------------------------------
 
 class NotOnDemandTest : public OnDemandTest {
  protected:

@@ -34,7 +34,7 @@ class FallbackLogTest : public testing::Test {
     }
     return status;
   }
-  /// The text of the change that this STATUS causes, "" if there is none.
+  /// The text of the change that this STATUS causes, "" if it causes no change.
   std::string Add(const status_t& status) {
     const runtime::Fallback* change = log_.Add(status);
     return change != nullptr ? change->Text() : "";

@@ -82,12 +82,12 @@ TEST(InputHealthTest, NoticesAGapBetweenTwoLooks) {
 TEST(InputHealthTest, IsOkAgainOnlyAfterStepsInTimeOneAfterTheOther) {
   runtime::InputHealth health = Running(3);
   health.Update(At(1000));
-  // GIVEN two steps in time and then a late one
+  // GIVEN two steps in time and then a late step
   health.Arrived(10, At(1000));
   health.Arrived(11, At(1100));
   health.Arrived(12, At(1251));
   EXPECT_EQ(health.state(), InputState::kLost);
-  // THEN the count of steps in time starts again with the late one
+  // THEN the count of steps in time starts again with the late step
   health.Arrived(13, At(1351));
   EXPECT_EQ(health.state(), InputState::kLost);
   health.Arrived(14, At(1451));

@@ -18,7 +18,8 @@ using test::Script;
 
 constexpr double kSpeed = 10;
 constexpr Duration kPeriod = milliseconds(10);
-// Far longer than any wait here, even on a busy machine; 30 s of the run.
+// Much longer than any wait in these tests, even on a busy machine. In this time the run advances
+// by 30 s.
 constexpr Duration kPatience = milliseconds(3000);
 
 class RealtimeHorizonTest : public testing::Test {
@@ -42,7 +43,7 @@ class RealtimeHorizonTest : public testing::Test {
     script_.Poll(node_);
   }
   /// Publishes the inputs of the current step until the fusion computes one, or until kPatience.
-  /// @return whether it has
+  /// @return whether the fusion has computed a step
   bool IsComputed() {
     const TimePoint end = Clock::now() + kPatience;
     std::int64_t step = Now();
@@ -149,9 +150,9 @@ TEST_F(RealtimeHorizonTest, TheRecorderAsksForStepsOfWhichItHasHeardNothingButTh
   Join(-1);
   ForEachStepChannel([&]<class M>(std::size_t) { script_.Say(Script::Of<M>(0)); });
   Pass(20);
-  // WHEN the runner reports that the run is further
+  // WHEN the runner reports that the run has reached step 10
   script_.SayRun(run_t::GO, 10, kSpeed);
-  // THEN it asks for all missing steps at once
+  // THEN the recorder asks for all missing steps at once
   const auto asked = [&] {
     return std::ranges::any_of(requests, [](const resend_t& request) {
       return request.channel == ChannelOf<truth_t>().name && request.header.step == 1 &&

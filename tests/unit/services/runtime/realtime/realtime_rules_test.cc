@@ -187,9 +187,9 @@ TEST_F(DeadlineRuleTest, WaitsNotForWhatIsLostButForWhatComesAgain) {
   Say<ego_t, radar_t, lidar_t, track_t, accel_command_t>(1);
   script_.PollUpTo(node_);
   EXPECT_THAT(StepsOf(commands_), ElementsAre(0, 1));
-  // WHEN the driver speaks again, too late for that step
+  // WHEN the driver speaks again, too late for step 1
   Say<driver_command_t>(1);
-  // THEN the arbitrator waits for him in the step after it
+  // THEN the arbitrator waits for him in step 2
   Say<ego_t, radar_t, lidar_t, track_t, accel_command_t>(2);
   script_.PollUpTo(node_);
   EXPECT_THAT(StepsOf(commands_), ElementsAre(0, 1));
@@ -240,11 +240,11 @@ TEST_F(TickRuleTest, MakesUpForNoTickOfAPauseAndLeavesNoneOutThatIsHardlyOver) {
 TEST_F(TickRuleTest, LetsTheOthersFinishTheStepInWhichTheMachineStoodStill) {
   Go();
   script_.PollUpTo(node_, At(0));
-  // GIVEN a world that wakes just before a tick, and no answers yet
+  // GIVEN a world that wakes just before tick 3, when no role has answered yet
   script_.Poll(node_, At(2.999));
   EXPECT_THAT(StepsOf(truths_), ElementsAre(0));
-  // WHEN the other roles answer THEN the step begins at once, and tick 3 begins no step, because it
-  // is too close
+  // WHEN the other roles answer THEN the step begins at once, and tick 3 begins no step, because
+  // this tick comes too soon after it
   Say<arbitration_t, follower_command_t>(0);
   script_.PollUpTo(node_, At(2.9995));
   EXPECT_THAT(StepsOf(truths_), ElementsAre(0, 1));
@@ -321,7 +321,7 @@ TEST_F(RecordRuleTest, CountsAsLateOnlyWhatItHasNotWrittenAndThatOnce) {
   Say<radar_t>(0);
   script_.PollUpTo(recorder_);
   EXPECT_EQ(late(), 0) << "it is in the log";
-  // WHEN another message of that step comes
+  // WHEN another message of the repaired step comes
   auto other = Script::Of<radar_t>(0);
   other.range_m = 17;
   script_.Say(other);

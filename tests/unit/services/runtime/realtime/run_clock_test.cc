@@ -86,7 +86,8 @@ TEST_F(RunClockTest, NeverGoesBackwards) {
   TimePoint last = clock_.At(At(1400));
   std::int64_t step = 5;
   for (std::int64_t ms = 1400; ms < 4000; ms += 7) {
-    // Ticks at irregular times, from too early to far too late, some of them repeated.
+    // The ticks come at irregular times, from too early to far too late, and some of them are
+    // repeated.
     if (ms % 3 == 0 && ms % 5 != 0) clock_.Heard(ms % 2 == 0 ? step++ : step - 1, At(ms));
     EXPECT_GE(clock_.At(At(ms)), last) << ms;
     last = clock_.At(At(ms));

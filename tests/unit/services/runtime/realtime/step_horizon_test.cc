@@ -47,7 +47,7 @@ TEST_F(StepHorizonTest, OpensWithTheFirstMessageThatIsInTimeAfterOneThatWasNot) 
 }
 
 TEST_F(StepHorizonTest, IsNotNarrowedByStepsThatAreABitLateEachTime) {
-  // Each step is as late as possible without being a whole period later than the first.
+  // Each step comes 11 ms later than its period says. In total this is less than a whole period.
   for (std::int64_t k = 0; k < 9; ++k) horizon_.Heard(k, At(111 * k));
   EXPECT_EQ(horizon_.Newest(At(900)), 9 + kSlack);
 }
@@ -56,7 +56,7 @@ TEST_F(StepHorizonTest, ForgetsThePausesOfTheWorldAndAStepThatNeverWas) {
   Hear(0, 10);
   horizon_.Heard(40, At(1000));
   EXPECT_EQ(horizon_.Newest(At(1000)), 40 + kSlack);
-  // The horizon does not forget the step at once: among many late messages this one could be the
+  // The horizon does not forget step 40 at once. If all other messages were late, it could be the
   // only one in time.
   Hear(10, kRemembered - 4, 5);
   EXPECT_GT(horizon_.Newest(At(7000)), 90 + kSlack);
@@ -78,7 +78,7 @@ TEST_F(StepHorizonTest, FollowsAWorldWhoseClockIsFaster) {
   EXPECT_EQ(horizon_.Newest(At(99 * kSteps)), kSteps - 1 + kSlack);
 }
 
-// ---- of a run ----------------------------------------------------------------------------------
+// ---- RunHorizon --------------------------------------------------------------------------------
 
 constexpr Duration kLong = 10 * kPeriod;  // a silence after which only the runner's report counts
 

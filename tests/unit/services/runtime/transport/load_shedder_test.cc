@@ -5,7 +5,8 @@
 namespace fogline {
 namespace {
 
-/// Sends messages at a rate to a process that admits the share that its rate limiter allows.
+/// Sends messages at this rate to a process. The process admits the share that its rate limiter
+/// allows.
 class Sender {
  public:
   explicit Sender(runtime::LoadShedder& shedder) : shedder_(shedder) {}

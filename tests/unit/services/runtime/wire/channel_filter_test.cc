@@ -17,7 +17,7 @@ namespace {
 
 using namespace std::string_literals;
 
-/// An LCM datagram of a message that fits into one.
+/// An LCM datagram with a whole message.
 std::string Datagram(const std::string& channel, const std::string& data = "12345678") {
   return "LC02\0\0\0\7"s + channel + '\0' + data;
 }

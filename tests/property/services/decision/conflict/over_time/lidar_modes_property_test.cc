@@ -70,7 +70,7 @@ class Lidar {
 };
 
 /// All steps with a posterior in one interval: the sum of the posteriors, and the number of steps
-/// in which the LiDAR is deceived. The difference of both has mean 0.
+/// in which the LiDAR is deceived. The sum minus this number has mean 0.
 struct Claims {
   double said = 0;
   double variance = 0;  // variance of the number of deceived steps

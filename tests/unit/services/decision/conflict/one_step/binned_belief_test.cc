@@ -40,7 +40,7 @@ TEST(BinnedBeliefTest, HasTheTabulatedValues) {
 
 TEST(BinnedBeliefTest, TheFrameResemblesABinByItsShareOfIt) {
   // GIVEN: four bins. The radar is on an edge, m = (.4, .4, 0, 0). The LiDAR is inside of a bin,
-  // (0, 0, .8, 0). Each has 0.2 on the frame.
+  // (0, 0, .8, 0). Each sensor has the mass 0.2 on the frame.
   conflict::ConflictParameters parameters;
   parameters.frame_bins = 4;
   parameters.radar_reliability = 0.8;
@@ -73,10 +73,11 @@ TEST(BinnedBeliefTest, ReadingsFarApartHaveOnlyTheFrameInCommon) {
 }
 
 TEST(BinnedBeliefTest, MassAddsUpToTheReliabilityHoweverWideTheBelief) {
-  // Standard deviations below a bin, of some bins, and wider than the kept bins (64 of 0.5 m).
+  // The standard deviations are smaller than a bin, some bins wide, and wider than all kept bins
+  // (64 of 0.5 m).
   for (const double std_m : {0.01, 0.4, 3.0, 40.0}) {
     const conflict::BinnedPair far = conflict::PairOnBins(Differing(2000, std_m, std_m), {});
-    EXPECT_NEAR(far.absolute, 2 * 0.95, 1e-9) << std_m;  // the mass of both: they share nothing
+    EXPECT_NEAR(far.absolute, 2 * 0.95, 1e-9) << std_m;  // the readings share no bin
   }
 }
 

@@ -39,7 +39,8 @@ TEST(LidarModesTest, FogIsLikeliestAtTheMeanOfItsScatter) {
   const double fog_m = 3.5 + 10 * 2.0 / 22;
   conflict::LidarModes modes({});
   const auto& posterior = modes.Step(At(200, fog_m));
-  // THEN: odds of fog to dropout, with Var[Beta(2, 20)] = 40/(22^2 23) and a LiDAR of 0.05 m
+  // THEN: the odds of fog to dropout follow from Var[Beta(2, 20)] = 40/(22^2 23) and a LiDAR noise
+  // of 0.05 m
   const double variance = 0.05 * 0.05 + 100 * 40.0 / (22 * 22 * 23);
   const double fog = 0.9 * (0.9 / std::sqrt(2 * std::numbers::pi * variance) + 0.1 / 250);
   EXPECT_NEAR(Of(posterior, conflict::LidarMode::kDropout), 0.02 / 250 / (0.02 / 250 + fog), 1e-12);
@@ -78,7 +79,7 @@ TEST(LidarModesTest, AnEchoWithoutAnyReferenceSaysNothing) {
   conflict::Evidence alone = WithoutRadar(At(30, 4.3));
   alone.prediction.valid = false;
   EXPECT_NEAR(Of(modes.Step(alone), conflict::LidarMode::kClean), 0.99,
-              1e-12);  // the chain's step alone
+              1e-12);  // only the step of the Markov chain counts
 }
 
 TEST(LidarModesTest, ComesBackFromFogWithinASecond) {

@@ -110,7 +110,8 @@ TEST(NisBlameTest, TakesTheOffsetOffTheRadar) {
 }
 
 TEST(SupportTest, OfTwoSourcesCannotTellWhichIsWrong) {
-  // GIVEN: a third body that shares nothing with the others, so it counts as missing
+  // GIVEN: a prediction whose belief has no interval in common with those of radar and LiDAR, so it
+  // counts as missing
   const conflict::BeliefProducts products{
       .square = 0.6, .radar_lidar = 0.2, .radar_prediction = 0, .lidar_prediction = 0};
   for (const auto support : {conflict::DengSupport, conflict::MutualSupport}) {
