@@ -49,12 +49,12 @@ fs::path FolderOf(const fs::path& file) {
 /// The file to which a name leads when all its links are followed.
 struct Target {
   fs::path path;
-  std::optional<int> descriptor;  // of this process, in place of the path
+  std::optional<int> descriptor;  // set if the name stands for an open descriptor of this process
   fs::file_status status;
 };
 
-/// The descriptor that a name in /proc/self/fd stands for. Opening a file by that name would write
-/// from the file's beginning, over the bytes that the descriptor has written so far.
+/// The descriptor that a name in /proc/self/fd stands for. A file opened by this name would be
+/// written from its beginning, over the bytes that the descriptor has written so far.
 std::optional<int> DescriptorOf(const fs::path& link) {
   std::error_code error;
   const fs::path folder = fs::canonical(FolderOf(link), error);
@@ -70,8 +70,8 @@ Target TargetOf(const fs::path& file) {
     if (const auto descriptor = DescriptorOf(path)) {
       return {.path = path, .descriptor = descriptor, .status = fs::status(path, ignored)};
     }
-    path = FolderOf(path) / fs::read_symlink(path, ignored);  // an absolute link replaces the
-                                                              // folder
+    path = FolderOf(path) / fs::read_symlink(path, ignored);  // operator/ drops the folder if the
+                                                              // link is absolute
   }
   return {.path = path, .descriptor = {}, .status = fs::symlink_status(path, ignored)};
 }
@@ -80,7 +80,7 @@ bool IsStream(const Target& target) {
   return target.descriptor || fs::is_fifo(target.status) || fs::is_character_file(target.status);
 }
 
-/// Reason why the file cannot be written; "" if it can.
+/// Reason why the file cannot be written; "" if it can be written.
 std::string Obstacle(const fs::path& file, const Target& target) {
   if (fs::is_directory(target.status)) return "it is a folder";
   if (IsStream(target)) return "";
@@ -208,6 +208,18 @@ void AtomicFile::Fail(int error) const {
       fmt::format("{}: cannot write: {}", PathText(file_), std::strerror(error)));
 }
 
+void AtomicFiles::Finish() {
+  for (AtomicFile& file : files_) file.Close();
+  if (WasInterrupted()) throw Interrupted("interrupted; no file was written");
+  for (AtomicFile& file : files_) {
+    if (file.is_stream()) file.Finish();
+  }
+  for (auto file = files_.rbegin(); file != files_.rend(); ++file) file->RemoveOld();
+  for (AtomicFile& file : files_) {
+    if (!file.is_stream()) file.Finish();
+  }
+}
+
 bool IsReplaceable(const fs::path& file) { return !IsStream(TargetOf(file)); }
 
 int OpenStream(const fs::path& file, std::string_view option) {
@@ -239,18 +251,33 @@ void RequireWritable(const fs::path& file, std::string_view option) {
   if (const std::string why = Obstacle(file, target); !why.empty()) {
     ThrowCannotWrite(file, option, why);
   }
-  if (IsStream(target)) return;  // opening and closing it would end the pipe for its reader
+  if (IsStream(target)) return;  // opening and closing a pipe would end the input of its reader
   RequireFolderOf(file, option);
   TryFile(FolderOf(target.path), file, option);
 }
 
-void RequireWritableFolder(const fs::path& folder, std::string_view option) {
+OutputFolder::OutputFolder(fs::path folder, std::string_view option) : folder_(std::move(folder)) {
   // "figures/" is the folder "figures".
-  RequireFolderOf(folder.has_filename() ? folder : folder.parent_path(), option);
+  RequireFolderOf(folder_.has_filename() ? folder_ : folder_.parent_path(), option);
   std::error_code error;
-  fs::create_directories(folder, error);
-  if (error) ThrowCannotWrite(folder, option, error.message());
-  TryFile(folder, folder, option);
+  is_new_ = fs::create_directory(folder_, error);
+  if (error && fs::exists(folder_) && !fs::is_directory(folder_)) {
+    ThrowCannotWrite(folder_, option, "it is a file, not a folder");
+  }
+  if (error) ThrowCannotWrite(folder_, option, error.value());
+  try {
+    TryFile(folder_, folder_, option);
+  } catch (...) {
+    Leave();
+    throw;
+  }
+}
+
+OutputFolder::~OutputFolder() { Leave(); }
+
+void OutputFolder::Leave() const {
+  std::error_code not_empty;
+  if (is_new_) fs::remove(folder_, not_empty);
 }
 
 void RefuseToReplace(const fs::path& file, std::string_view option, bool force,

@@ -58,8 +58,8 @@ std::string Meaning(const Field& field) {
   const auto* section = field.As<SectionField>();
   if (section == nullptr || section->need.choice.empty()) return meaning;
   const NeedSpec& need = section->need;
-  return meaning + fmt::format(" Needed with {} or {} where {} is {}.", need.fields[0],
-                               need.fields[1], need.choice, Quote(need.value));
+  return meaning + fmt::format(" If {} is {}, this section is required, with {} or {}.",
+                               need.choice, Quote(need.value), need.fields[0], need.fields[1]);
 }
 
 void AddLine(std::string& text, std::string_view label, std::string_view content) {

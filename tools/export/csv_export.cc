@@ -1,7 +1,6 @@
 #include "tools/export/csv_export.h"
 
 #include <algorithm>
-#include <deque>
 #include <fstream>
 #include <iterator>
 #include <string>
@@ -71,8 +70,8 @@ bool BeginsWith(const std::filesystem::path& file, std::string_view text) {
   return in.gcount() == std::ssize(text) && head == text;
 }
 
-/// Whether an export of a channel may go there: into a pipe or device, or in place of an older
-/// export. The columns of an export begin with those of the messages' header.
+/// Whether an export of a channel may replace `file`: a pipe, a device, or an older export. An
+/// export begins with the columns of the messages' header.
 bool IsChannel(const std::filesystem::path& file) {
   std::error_code ignored;
   return !IsReplaceable(file) || (std::filesystem::is_regular_file(file, ignored) &&
@@ -92,25 +91,19 @@ std::vector<std::filesystem::path> CsvFiles(const std::filesystem::path& folder)
 
 bool IsCsvExport(const std::filesystem::path& file) {
   if (file.filename() != kScenarioFile) return IsChannel(file);
-  // Other scenarios begin like this, too.
+  // Other scenarios also begin like this. So the files beside scenario.json must be exports, too.
   if (!BeginsWith(file, "{\n  \"version\": ")) return false;
   const std::vector<std::filesystem::path> files = CsvFiles(file.parent_path());
   return std::all_of(files.begin(), files.end() - 1, IsChannel);
 }
 
 void WriteCsv(const RunTables& tables, const std::filesystem::path& folder) {
-  // The files get their names only when all of them are complete, so that no folder has files of
-  // two logs.
-  std::deque<AtomicFile> files;
+  AtomicFiles files;
   for (const ChannelTable& table : tables.channels) {
-    WriteChannel(table, files.emplace_back(FileOf(table.name, folder)));
+    WriteChannel(table, files.Add(FileOf(table.name, folder)));
   }
-  files.emplace_back(folder / kScenarioFile).Write(tables.scenario + '\n');
-  for (AtomicFile& file : files) file.Close();
-  if (WasInterrupted()) throw Interrupted("interrupted; no file was written");
-  // Removes the scenario first: a folder that has the scenario also has all channels.
-  for (auto file = files.rbegin(); file != files.rend(); ++file) file->RemoveOld();
-  for (AtomicFile& file : files) file.Finish();
+  files.Add(folder / kScenarioFile).Write(tables.scenario + '\n');
+  files.Finish();
 }
 
 }  // namespace fogline::exports

@@ -37,11 +37,7 @@ struct Free {
 };
 using Variable = std::unique_ptr<matvar_t, Free>;
 
-[[noreturn]] void Fail(const std::filesystem::path& file) {
-  throw std::runtime_error(fmt::format("{}: cannot write the MAT-file", PathText(file)));
-}
-
-/// How a MAT-file calls a type of numbers.
+/// The names of a type of numbers in a MAT-file.
 struct MatType {
   matio_classes class_type;
   matio_types data_type;
@@ -72,7 +68,7 @@ Variable StructOf(const char* name, const std::vector<std::string>& names) {
   std::vector<const char*> pointers;
   for (const std::string& one : names) pointers.push_back(one.c_str());
   const std::array<std::size_t, 2> size{1, 1};
-  pointers.push_back(nullptr);  // marks their end
+  pointers.push_back(nullptr);  // marks the end
   return Variable(Mat_VarCreateStruct2(name, size.size(), size.data(), pointers.data()));
 }
 
@@ -108,14 +104,31 @@ std::size_t BytesOf(const ChannelTable& table) {
   return bytes;
 }
 
+/// Fails with the reason why matio could not write the tables, which matio does not tell. Whatever
+/// kept matio from writing also keeps this function from writing as many bytes in the same place.
+/// @throws std::runtime_error
+[[noreturn]] void Fail(const RunTables& tables, const std::filesystem::path& path,
+                       AtomicFile& file) {
+  constexpr std::size_t kMostOfField = 1024;  // its name and the descriptions of its matrix
+  const std::string zeros(1 << 20, '\0');
+  std::size_t bytes = tables.scenario.size();
+  for (const ChannelTable& table : tables.channels) {
+    bytes += BytesOf(table) + kMostOfField * (table.fields.size() + 1);
+  }
+  for (std::size_t at = 0; at < bytes; at += zeros.size()) file.Write(zeros);
+  file.Close();
+  throw std::runtime_error(fmt::format("{}: cannot write the MAT-file", PathText(path)));
+}
+
 Variable TextVariable(const char* name, std::string text) {
   std::array<std::size_t, 2> size{1, text.size()};
   return Variable(
       Mat_VarCreate(name, MAT_C_CHAR, MAT_T_UINT8, size.size(), size.data(), text.data(), 0));
 }
 
-/// Whether the file has this number of variables and each is whole: the sizes lead from the first
-/// variable to the end. matio does not report every failed write to a full disk.
+/// Whether the file has this number of variables, and all of them are whole. Their sizes must lead
+/// from the first variable to the end of the file. matio does not report every failed write to a
+/// full disk.
 bool IsWhole(const std::filesystem::path& file, std::size_t variables) {
   constexpr std::streamoff kHeaderBytes = 128;
   std::ifstream in(file, std::ios::binary);
@@ -151,19 +164,21 @@ void WriteMat(const RunTables& tables, const std::filesystem::path& path) {
   }
   AtomicFile file(path);
   std::unique_ptr<mat_t, Free> mat(Mat_CreateVer(file.part().c_str(), kHeader, MAT_FT_MAT5));
-  if (mat == nullptr) Fail(path);
+  if (mat == nullptr) Fail(tables, path, file);
   const auto write = [&](const Variable& variable) {
-    if (variable == nullptr || Mat_VarWrite(mat.get(), variable.get(), MAT_COMPRESSION_NONE) != 0) {
-      Fail(path);
-    }
+    if (variable == nullptr) throw std::bad_alloc();
+    if (Mat_VarWrite(mat.get(), variable.get(), MAT_COMPRESSION_NONE) == 0) return;
+    mat.reset();
+    Fail(tables, path, file);
   };
   for (const ChannelTable& table : tables.channels) {
     if (WasInterrupted()) throw Interrupted("interrupted; no file was written");
     write(StructOf(table));
   }
   write(TextVariable("scenario", tables.scenario));
-  if (Mat_Close(mat.release()) != 0 || !IsWhole(file.part(), tables.channels.size() + 1))
-    Fail(path);
+  if (Mat_Close(mat.release()) != 0 || !IsWhole(file.part(), tables.channels.size() + 1)) {
+    Fail(tables, path, file);
+  }
   file.Finish();
 }
 

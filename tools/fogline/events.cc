@@ -1,4 +1,4 @@
-// fogline events: when which side drove, the outcome of every request to take over, and every
+// fogline events: which side drove when, the outcome of every request to take over, and every
 // emergency braking, from logs alone.
 #include <array>
 #include <memory>
@@ -142,8 +142,8 @@ void AddEvents(CLI::App& app, cli::Action& action) {
       "Lists the events that a data recorder stores: changes of state, requests to take over\n"
       "and their escalation, acknowledgements, transfers, first effective inputs, manoeuvres,\n"
       "collision warnings and emergency braking.\n"
-      "Then lists the times of each request, from the start of the run. If the driver need not\n"
-      "be asked (take_over with mode instant), the other events are transfers only.\n\n"
+      "Then lists the times of each request, from the start of the run. With the mode instant\n"
+      "of take_over the driver is not asked, so there are no requests and acknowledgements.\n\n"
       "Examples:\n"
       "  fogline run scenario/paper.json --set /arbitrator/take_over/mode=requested --log "
       "logs/asked.lcm\n"

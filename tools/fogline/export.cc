@@ -1,5 +1,6 @@
 // fogline export: writes a log as CSV or as a MAT-file, for programs that do not know LCM.
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,8 +29,8 @@ struct ExportArguments {
 
 bool IsMat(const std::filesystem::path& out) { return out.extension() == ".mat"; }
 
-/// The files to be written. Without --force none of them may exist; with it, an existing one must
-/// be an export. @throws InputError
+/// The files to be written. Without --force none of them may exist. With --force an existing file
+/// must be an export. @throws InputError
 std::vector<std::filesystem::path> FilesOf(const ExportArguments& arguments) {
   const bool is_mat = IsMat(arguments.out);
   const std::vector<std::filesystem::path> files =
@@ -44,10 +45,11 @@ std::vector<std::filesystem::path> FilesOf(const ExportArguments& arguments) {
 int RunExport(const ExportArguments& arguments) {
   const std::vector<std::filesystem::path> files = FilesOf(arguments);
   WatchInterrupts();
-  // Read the log first: if it is no log, no folder is made.
+  // The log is read first, so that no folder is made if the file is no log.
   const exports::RunTables tables = exports::ReadRunTables(arguments.log);
   const bool is_mat = IsMat(arguments.out);
-  is_mat ? RequireWritable(arguments.out, "--out") : RequireWritableFolder(arguments.out, "--out");
+  std::optional<OutputFolder> folder;
+  is_mat ? RequireWritable(arguments.out, "--out") : void(folder.emplace(arguments.out, "--out"));
   is_mat ? exports::WriteMat(tables, arguments.out) : exports::WriteCsv(tables, arguments.out);
   if (arguments.json) {
     nlohmann::ordered_json json{{"log", arguments.log.string()},

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <deque>
 #include <fstream>
 #include <iterator>
 #include <limits>
@@ -135,7 +136,8 @@ std::vector<report::ReportMetric> MetricsOf(const metrics::RunMetrics& measures)
   return out;
 }
 
-/// The table from the logs alone: one row for each run that has a pair. nullopt if no run has one.
+/// The table from the logs alone: one row for each run that has a pair; nullopt if no run has a
+/// pair.
 std::optional<report::ReportTable> TableOf(std::span<const runner::LoggedRun> runs,
                                            std::span<const cli::Pairing> pairs) {
   const bool one_seed = HaveOneSeed(runs);
@@ -162,8 +164,8 @@ std::optional<report::ReportTable> TableOf(std::span<const runner::LoggedRun> ru
   return table;
 }
 
-/// The runs of the logs. Those without traded control come first, because the others are compared
-/// with them.
+/// The runs of the logs. Runs without traded control come first, because the other runs are
+/// compared with them.
 std::vector<runner::LoggedRun> ReadRuns(std::span<const std::filesystem::path> logs) {
   std::vector<runner::LoggedRun> runs;
   for (const std::filesystem::path& log : logs) {
@@ -178,12 +180,13 @@ std::vector<runner::LoggedRun> ReadRuns(std::span<const std::filesystem::path> l
   return runs;
 }
 
-/// Moves the samples out of `run`.
+/// The content of a run on the page. It takes the samples out of `run`.
 report::ReportRun PageOf(runner::LoggedRun& run, const std::string& name,
                          const metrics::PairedMetrics& paired) {
   return {.name = name,
           .log = LogNameOf(run),
           .shortage = run.complete ? "" : run.note,
+          .ended = run.ended,
           .scenario = run.scenario,
           .scenario_title = run.scenario.title,
           .scenario_json = run.scenario_text,
@@ -231,6 +234,21 @@ nlohmann::ordered_json ToJson(const ReportArguments& arguments,
   return json;
 }
 
+/// Writes the page and the files of figures. If one of them cannot be written, all old files stay.
+void WriteFiles(const ReportArguments& arguments, std::span<const report::ReportRun> pages,
+                const std::optional<report::ReportTable>& table,
+                const std::optional<report::ReportCurves>& curves) {
+  AtomicFiles files;
+  files.Add(arguments.output).Write(report::MakeReport(pages, table, curves));
+  for (const FigureOption& option : kFigureOptions) {
+    const std::filesystem::path& folder = arguments.*option.folder;
+    if (folder.empty()) continue;
+    report::DrawFigures(folder, option.format, pages, files);
+    if (curves) report::DrawCurveFigures(folder, option.format, *curves, files);
+  }
+  files.Finish();
+}
+
 int RunReport(const ReportArguments& arguments) {
   if (arguments.logs.empty() && arguments.curves.empty()) {
     throw InputError("error: neither LOG nor --curves is given: nothing to report");
@@ -238,9 +256,10 @@ int RunReport(const ReportArguments& arguments) {
   cli::RefuseJsonBeside(arguments.output, "--output", arguments.json);
   RefuseToReplaceOther(arguments.output);
   RequireWritable(arguments.output, "--output");
+  std::deque<OutputFolder> folders;
   for (const FigureOption& option : kFigureOptions) {
     const std::filesystem::path& folder = arguments.*option.folder;
-    if (!folder.empty()) RequireWritableFolder(folder, option.name);
+    if (!folder.empty()) folders.emplace_back(folder, option.name);
   }
   if (!arguments.curves.empty()) WatchInterrupts();
   std::vector<runner::LoggedRun> runs = ReadRuns(arguments.logs);
@@ -254,15 +273,7 @@ int RunReport(const ReportArguments& arguments) {
   std::optional<report::ReportCurves> curves;
   if (!arguments.curves.empty()) curves = ComputeCurves(arguments);
   WatchInterrupts();  // an interrupt leaves no partial file
-  AtomicFile file(arguments.output);
-  file.Write(report::MakeReport(pages, table, curves));
-  file.Finish();
-  for (const FigureOption& option : kFigureOptions) {
-    const std::filesystem::path& folder = arguments.*option.folder;
-    if (folder.empty()) continue;
-    report::WriteFigures(folder, option.format, pages);
-    if (curves) report::WriteCurveFigures(folder, option.format, *curves);
-  }
+  WriteFiles(arguments, pages, table, curves);
   if (arguments.json) {
     cli::PrintJson(ToJson(arguments, runs));
   } else if (!IsStdout(arguments.output)) {

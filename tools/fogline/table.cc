@@ -173,19 +173,19 @@ nlohmann::ordered_json ToJson(const std::filesystem::path& file, const std::stri
   return json;
 }
 
-/// "80.80"; "-" without a value.
+/// A value as "80.80"; "-" without a value.
 std::string Cell(std::optional<double> value, int decimals = 2) {
   return value ? fmt::format("{:.{}f}", *value, decimals) : std::string("-");
 }
 
-/// "80.80", or "80.81 +- 2.64" over seeds.
+/// A mean as "80.80", or with its deviation over seeds as "80.81 +- 2.64".
 std::string Spread(const stats::Statistics& of, int decimals = 2) {
   const auto deviation = of.deviation();
   return deviation ? fmt::format("{} +- {}", Cell(of.mean(), decimals), Cell(deviation, decimals))
                    : Cell(of.mean(), decimals);
 }
 
-/// The columns at the end of the table: SI until recovery, and the effect behind the percentages.
+/// The last columns of the table: SI until recovery, and the effect of the fog in metres and m/s.
 std::string EffectHead(int width) {
   return fmt::format("  {:>{w}}  {:>{w}}  {:>{w}}  {:>{w}}", "SI recov. (%)", "CS (m)",
                      "CS none (m)", "slower (m/s)", fmt::arg("w", width));
@@ -198,7 +198,7 @@ std::string EffectCells(const sweep::ThresholdRow& row, int width) {
                      Spread(row.slow_down_without_mps, kSpeedDecimals), fmt::arg("w", width));
 }
 
-/// Says that SI depends on choices that the paper leaves open, and on which values they lead to.
+/// Says that SI depends on choices that the paper leaves open, and prints SI for other choices.
 void PrintOtherChoices(const Scenario& scenario, const std::vector<sweep::ThresholdRow>& rows) {
   fmt::print(
       "\nCS: mean compromised safety in fog, with traded control and with none. slower: how\n"
@@ -267,10 +267,11 @@ int RunTable(const TableArguments& arguments) {
                                      ? sweep::SeedRange{scenario.seed, scenario.seed}
                                      : cli::ReadSeeds(arguments.seeds);
   const std::vector<double> thresholds = ThresholdsOf(arguments, scenario);
-  std::optional<FileLock> folder;
+  std::optional<OutputFolder> folder;
+  std::optional<FileLock> lock;
   if (!arguments.logs.empty()) {
-    RequireWritableFolder(arguments.logs, "--logs");
-    folder.emplace(arguments.logs, FileLock::Kind::kOwn, "--logs", "table");
+    folder.emplace(arguments.logs, "--logs");
+    lock.emplace(arguments.logs, FileLock::Kind::kOwn, "--logs", "table");
   }
   WatchInterrupts();
   const std::vector<sweep::ThresholdRow> rows =

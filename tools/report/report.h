@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "common/atomic_file.h"
 #include "scenario/sections/scenario.h"
 #include "services/metrics/fog_effect.h"
 #include "services/metrics/sample.h"
@@ -29,6 +30,7 @@ struct ReportRun {
   std::string name;        // such as "threshold 0.5", or the name of its log
   std::string log;         // name of its log; "" if there is none
   std::string shortage;    // the part that its log lacks; "" if the log is complete
+  bool ended = false;      // its log goes to the last step
   Scenario scenario = {};  // the effective one, for the LiDAR's mounting, the arbitrator and the
                            // number of steps
   std::string scenario_title;
@@ -83,15 +85,16 @@ std::string MakeReport(std::span<const ReportRun> runs, const std::optional<Repo
 /// File format of a figure: pixels (PNG), or scalable lines (SVG, PDF).
 enum class FigureFormat { kPng, kSvg, kPdf };
 
-/// Writes one file for each figure into `dir` (made if missing), with gnuplot: one panel for each
-/// run, all with the same axes. File names are figure-1-speeds.png and so on.
-/// @throws std::runtime_error with gnuplot's own message if it fails or is not installed
-void WriteFigures(const std::filesystem::path& dir, FigureFormat format,
-                  std::span<const ReportRun> runs);
+/// Draws one file for each figure with gnuplot, and adds it to `files`: one panel for each run, all
+/// with the same axes. File names in the folder are figure-1-speeds.png and so on.
+/// @throws InputError if a file cannot be created in the folder; Interrupted; std::runtime_error
+///     when the disk is full, or with gnuplot's own message if gnuplot fails or is not installed
+void DrawFigures(const std::filesystem::path& dir, FigureFormat format,
+                 std::span<const ReportRun> runs, AtomicFiles& files);
 
-/// The same for the curves: figure-a-thresholds.png and figure-b-front.png.
-/// @throws std::runtime_error as WriteFigures()
-void WriteCurveFigures(const std::filesystem::path& dir, FigureFormat format,
-                       const ReportCurves& curves);
+/// Draws the figures of the curves: figure-a-thresholds.png and figure-b-front.png.
+/// @throws as DrawFigures()
+void DrawCurveFigures(const std::filesystem::path& dir, FigureFormat format,
+                      const ReportCurves& curves, AtomicFiles& files);
 
 }  // namespace fogline::report

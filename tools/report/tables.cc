@@ -163,7 +163,7 @@ std::string RunName(std::span<const ReportRun> runs, std::size_t index) {
 std::string BadgeOf(const ReportRun& run) {
   if (run.shortage.empty()) return "";
   if (run.samples.empty()) return fmt::format("incomplete: has no step of {}", run.scenario.steps);
-  if (run.samples.back().last) return "incomplete log";
+  if (run.ended || run.samples.back().last) return "incomplete log";
   return fmt::format("incomplete: ends after step {} of {}", run.samples.back().step,
                      run.scenario.steps);
 }

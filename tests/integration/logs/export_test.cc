@@ -196,7 +196,7 @@ TEST_F(ExportTest, ReplacesNoFileUnlessForced) {
   std::filesystem::remove(csv);
   std::ofstream(out_ + "/scenario.json") << "{\"mine\": 1}";
   EXPECT_EQ(Export({"--out", out_, "--force"}).code, 2);
-  EXPECT_EQ(error(log_), log_ + ": error: --out: cannot write: Not a directory\n");
+  EXPECT_EQ(error(log_), log_ + ": error: --out: cannot write: it is a file, not a folder\n");
   EXPECT_EQ(error(log_ + "/x.mat"), log_ + "/x.mat: error: --out: cannot write: Not a directory\n");
 }
 
@@ -247,7 +247,8 @@ TEST_F(ExportTest, FailsOnAFullDiskAndKeepsTheMatFileThatWasThere) {
                                       Program("fogline"), folder.path().string(), log_});
   EXPECT_EQ(outcome.code, 3) << outcome.err;
   EXPECT_EQ(outcome.out, "run.mat\nMATLAB 5.0 MAT-file, Fogline\n");
-  EXPECT_THAT(outcome.err, HasSubstr("run.mat: cannot write the MAT-file"));
+  EXPECT_EQ(outcome.err, "fogline export: error: " + folder.File("run.mat") +
+                             ": cannot write: No space left on device\n");
 }
 
 TEST_F(ExportTest, LeavesEveryFileAsItWasWhenOneOfThemCannotBeWritten) {
@@ -256,7 +257,7 @@ TEST_F(ExportTest, LeavesEveryFileAsItWasWhenOneOfThemCannotBeWritten) {
   const std::string last = out_ + "/scenario.json";
   std::filesystem::remove(last);
   std::filesystem::create_directory(last);
-  // GIVEN another log: the first half of the same log
+  // GIVEN another log, the first half of the exported log
   std::filesystem::resize_file(log_, std::filesystem::file_size(log_) / 2);
   const Outcome outcome = Export({"--out", out_, "--force"});
   EXPECT_EQ(outcome.code, 2);

@@ -1,4 +1,5 @@
-// Files that exist either completely or not at all, and checks whether they could be written.
+// Tests of files that exist completely or not at all, and of the check whether such a file can be
+// written.
 #include "common/atomic_file.h"
 
 #include <fcntl.h>
@@ -16,6 +17,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/command.h"
+#include "tests/support/file_size_limit.h"
 #include "tests/support/input_errors.h"
 
 namespace fogline {
@@ -175,9 +177,57 @@ TEST_F(AtomicFileTest, IsTriedBeforehandWithoutATrace) {
   std::ofstream(file_) << "of before";
   EXPECT_EQ(ErrorOf([&] { RequireWritable(file_, "--out"); }), "");
   EXPECT_EQ(Content(file_), "of before");
-  // A missing folder for files is made.
-  EXPECT_EQ(ErrorOf([&] { RequireWritableFolder(folder_.File("figures"), "--png"); }), "");
-  EXPECT_TRUE(std::filesystem::is_empty(folder_.path() / "figures"));
+}
+
+TEST_F(AtomicFileTest, OfAFolderThatIsMissingHasAFolderThatStaysOnlyWithFiles) {
+  for (const char* name : {"figures", "figures/"}) {
+    {
+      const OutputFolder figures(folder_.File(name), "--png");
+      EXPECT_TRUE(std::filesystem::is_empty(folder_.path() / "figures"));
+    }
+    EXPECT_TRUE(IsEmpty()) << name;
+  }
+  {
+    const OutputFolder figures(folder_.File("figures"), "--png");
+    std::ofstream(folder_.File("figures/figure.png")) << "a figure";
+  }
+  EXPECT_EQ(Content(folder_.File("figures/figure.png")), "a figure");
+  // An empty folder that was there before stays.
+  std::filesystem::remove(folder_.File("figures/figure.png"));
+  { const OutputFolder figures(folder_.File("figures"), "--png"); }
+  EXPECT_TRUE(std::filesystem::exists(folder_.File("figures")));
+}
+
+TEST_F(AtomicFileTest, OfSeveralReplacesNoneIfOneDoesNotFit) {
+  const std::string other = folder_.File("other.csv");
+  std::ofstream(file_) << "old";
+  std::ofstream(other) << "old";
+  {
+    const test::FileSizeLimit limit(10);
+    AtomicFiles files;
+    files.Add(file_).Write("new");
+    files.Add(other).Write("far too long");
+    EXPECT_EQ(ErrorOf<std::runtime_error>([&] { files.Finish(); }),
+              other + ": cannot write: File too large");
+  }
+  EXPECT_EQ(Content(file_), "old");
+  EXPECT_EQ(Content(other), "old");
+  AtomicFiles files;
+  files.Add(file_).Write("new");
+  files.Add(other).Write("newer");
+  files.Finish();
+  EXPECT_EQ(Content(file_), "new");
+  EXPECT_EQ(Content(other), "newer");
+}
+
+TEST_F(AtomicFileTest, OfSeveralReplacesNoneIfADeviceTakesNothing) {
+  std::ofstream(file_) << "old";
+  AtomicFiles files;
+  files.Add(file_).Write("new");
+  files.Add("/dev/full").Write("new");
+  EXPECT_EQ(ErrorOf<std::runtime_error>([&] { files.Finish(); }),
+            "/dev/full: cannot write: No space left on device");
+  EXPECT_EQ(Content(file_), "old");
 }
 
 TEST_F(AtomicFileTest, NeedsItsFolderForAMissingOneIsLikelyToBeASlip) {
@@ -185,13 +235,9 @@ TEST_F(AtomicFileTest, NeedsItsFolderForAMissingOneIsLikelyToBeASlip) {
   const std::string none = ": error: --out: there is no folder " + slip;
   EXPECT_EQ(ErrorOf([&] { RequireWritable(slip + "/result.csv", "--out"); }),
             slip + "/result.csv" + none);
-  EXPECT_EQ(ErrorOf([&] { RequireWritableFolder(slip + "/figures", "--out"); }),
-            slip + "/figures" + none);
-  EXPECT_EQ(ErrorOf([&] { RequireWritableFolder(slip + "/figures/", "--out"); }),
-            slip + "/figures" + none);
+  EXPECT_EQ(ErrorOf([&] { OutputFolder(slip + "/figures", "--out"); }), slip + "/figures" + none);
+  EXPECT_EQ(ErrorOf([&] { OutputFolder(slip + "/figures/", "--out"); }), slip + "/figures" + none);
   EXPECT_TRUE(IsEmpty());
-  EXPECT_EQ(ErrorOf([&] { RequireWritableFolder(folder_.File("figures/"), "--out"); }), "");
-  EXPECT_TRUE(std::filesystem::is_empty(folder_.path() / "figures"));
 }
 
 TEST_F(AtomicFileTest, IsTriedBeforehandWithoutTouchingTheHalfThatAnotherProcessWrites) {
@@ -208,12 +254,12 @@ TEST_F(AtomicFileTest, IsRefusedBeforehandByTheNameOfItsOption) {
             file_ + "/below: error: --out: cannot write: Not a directory");
   EXPECT_EQ(ErrorOf([&] { RequireWritable(folder, "--out"); }),
             folder + ": error: --out: cannot write: it is a folder");
-  EXPECT_EQ(ErrorOf([&] { RequireWritableFolder(file_, "--png"); }),
-            file_ + ": error: --png: cannot write: Not a directory");
+  EXPECT_EQ(ErrorOf([&] { OutputFolder(file_, "--png"); }),
+            file_ + ": error: --png: cannot write: it is a file, not a folder");
   // In this folder no user can make a file.
   EXPECT_EQ(ErrorOf([&] { RequireWritable("/proc/result.csv", "--out"); }),
             "/proc/result.csv: error: --out: cannot write: No such file or directory");
-  EXPECT_EQ(ErrorOf([&] { RequireWritableFolder("/proc", "--logs"); }),
+  EXPECT_EQ(ErrorOf([&] { OutputFolder("/proc", "--logs"); }),
             "/proc: error: --logs: cannot write: No such file or directory");
 }
 

@@ -12,10 +12,11 @@
 #include <cstring>
 #include <memory>
 #include <stdexcept>
+#include <utility>
 
 #include <fmt/format.h>
 
-#include "common/atomic_file.h"
+#include "common/file.h"
 #include "common/interrupt.h"
 
 extern char** environ;
@@ -70,26 +71,68 @@ class Streams {
   posix_spawn_file_actions_t actions_;
 };
 
-/// Runs gnuplot. @return its exit status, in the form of waitpid(). gnuplot reads the script as a
-/// file instead of typed input, so that it ends at the first error.
-int StatusOfGnuplot(const Streams& streams) {
-  std::string name = "gnuplot";
-  std::string ignore_personal_settings = "-d";
-  std::string script = "/dev/stdin";
-  std::array<char*, 4> arguments{name.data(), ignore_personal_settings.data(), script.data(),
-                                 nullptr};
-  pid_t child = 0;
-  const int error =
-      posix_spawnp(&child, name.c_str(), streams.get(), nullptr, arguments.data(), environ);
-  if (error == ENOENT)
-    Fail("gnuplot", "not found; it draws the files of figures (package gnuplot-nox)");
-  if (error != 0) Fail("gnuplot", std::strerror(error));
-  int status = 0;
-  while (waitpid(child, &status, 0) < 0) {
-    if (errno != EINTR) Fail("gnuplot", std::strerror(errno));
+/// A running gnuplot. It reads the script as a file instead of typed input, so that it ends at the
+/// first error. Its standard output is a pipe, because it does not report a failed write: on a full
+/// disk it would write a part of the picture, and succeed.
+class Gnuplot {
+ public:
+  /// @param script, words standard input and standard error
+  Gnuplot(std::FILE* script, std::FILE* words) {
+    std::array<int, 2> ends{};
+    if (pipe2(ends.data(), O_CLOEXEC) != 0) Fail("gnuplot", std::strerror(errno));
+    out_ = ends[0];
+    Streams streams;
+    streams.Connect(STDIN_FILENO, fileno(script));
+    streams.Connect(STDOUT_FILENO, ends[1]);
+    streams.Connect(STDERR_FILENO, fileno(words));
+    const int error = Start(streams);
+    close(ends[1]);
+    if (error == 0) return;
+    close(out_);
+    if (error == ENOENT)
+      Fail("gnuplot", "not found; it draws the files of figures (package gnuplot-nox)");
+    Fail("gnuplot", std::strerror(error));
   }
-  return status;
-}
+  /// Without its pipe gnuplot ends at its next write.
+  ~Gnuplot() { Wait(); }
+  Gnuplot(const Gnuplot&) = delete;
+  Gnuplot& operator=(const Gnuplot&) = delete;
+
+  /// The next bytes of standard output; "" at its end.
+  std::string_view Read() {
+    ssize_t size = 0;
+    do {
+      size = read(out_, buffer_.data(), buffer_.size());
+    } while (size < 0 && errno == EINTR);
+    if (size < 0) Fail("gnuplot", std::strerror(errno));
+    return {buffer_.data(), static_cast<std::size_t>(size)};
+  }
+
+  /// Closes the pipe and waits for the end. @return the exit status, in the form of waitpid()
+  int Wait() {
+    if (out_ < 0) return status_;
+    close(std::exchange(out_, -1));
+    while (waitpid(child_, &status_, 0) < 0 && errno == EINTR) {
+    }
+    return status_;
+  }
+
+ private:
+  /// @return 0, or errno
+  int Start(const Streams& streams) {
+    std::string name = "gnuplot";
+    std::string ignore_personal_settings = "-d";
+    std::string script = "/dev/stdin";
+    std::array<char*, 4> arguments{name.data(), ignore_personal_settings.data(), script.data(),
+                                   nullptr};
+    return posix_spawnp(&child_, name.c_str(), streams.get(), nullptr, arguments.data(), environ);
+  }
+
+  pid_t child_ = 0;
+  int status_ = -1;
+  int out_ = -1;
+  std::array<char, kWorthACall> buffer_{};
+};
 
 /// Settings of gnuplot for a format. Letters and lines have the same share of the picture in all
 /// formats.
@@ -118,22 +161,21 @@ const FormatRow& FormatRowOf(FigureFormat format) {
 
 }  // namespace
 
-void RunGnuplot(const std::string& script, const std::filesystem::path& output) {
+void RunGnuplot(const std::string& script, AtomicFile& picture) {
   const File input = NamelessFile();
   const File words = NamelessFile();
-  AtomicFile picture(output);
-  std::fwrite(script.data(), 1, script.size(), input.get());
-  if (std::fflush(input.get()) != 0) Fail("temporary file", std::strerror(errno));
-
-  Streams streams;
-  streams.Connect(STDIN_FILENO, fileno(input.get()));
-  streams.Connect(STDOUT_FILENO, picture.descriptor());
-  streams.Connect(STDERR_FILENO, fileno(words.get()));
-  const int status = StatusOfGnuplot(streams);
+  if (const int error = WriteAll(fileno(input.get()), script); error != 0) {
+    Fail("temporary file", std::strerror(error));
+  }
+  if (lseek(fileno(input.get()), 0, SEEK_SET) != 0) Fail("temporary file", std::strerror(errno));
+  Gnuplot gnuplot(input.get(), words.get());
+  for (std::string_view part = gnuplot.Read(); !part.empty(); part = gnuplot.Read()) {
+    picture.Write(part);
+  }
+  const int status = gnuplot.Wait();
   // Ctrl-C reaches gnuplot too, so an interrupt is checked before gnuplot's status.
-  if (WasInterrupted()) throw Interrupted("interrupted; not all figures are written");
+  if (WasInterrupted()) throw Interrupted("interrupted; no file was written");
   if (status != 0) Fail("gnuplot", ContentOf(words.get()));
-  picture.Finish();
 }
 
 std::string FigureFile(FigureFormat format, std::string_view name) {

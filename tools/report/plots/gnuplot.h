@@ -1,18 +1,18 @@
 // Runs gnuplot, and defines the style of the pictures.
 #pragma once
 
-#include <filesystem>
 #include <string>
 #include <string_view>
 
+#include "common/atomic_file.h"
 #include "tools/report/report.h"
 
 namespace fogline::report {
 
-/// Runs gnuplot with `script`, and writes its standard output into the file `output`. It uses no
-/// shell. If gnuplot fails, no file is made.
-/// @throws std::runtime_error with gnuplot's own message
-void RunGnuplot(const std::string& script, const std::filesystem::path& output);
+/// Runs gnuplot with `script`, and writes its standard output into `picture`, which is not finished
+/// then. It uses no shell.
+/// @throws std::runtime_error with gnuplot's own message, or when the disk is full; Interrupted
+void RunGnuplot(const std::string& script, AtomicFile& picture);
 
 inline constexpr std::string_view kInk = "#1b2127";
 
@@ -22,7 +22,7 @@ inline constexpr double kWidth = 1600;
 std::string FigureFile(FigureFormat format, std::string_view name);
 
 /// Commands for a picture of this format, kWidth wide: in pixels for a PNG file, in 1/200 inch for
-/// a PDF file. Point sizes are multiplied by its `point_scale`.
+/// a PDF file. Point sizes are multiplied by the format's `point_scale`.
 std::string Terminal(FigureFormat format, double height);
 
 /// Commands for axes and grid.

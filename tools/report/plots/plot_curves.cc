@@ -22,7 +22,7 @@ namespace {
 
 constexpr std::string_view kSi = kPalette[0];
 constexpr std::string_view kRhe = kPalette[1];
-constexpr std::string_view kLight = "d8";  // transparency of the bands, of ff
+constexpr std::string_view kLight = "d8";  // transparency of the bands; ff is invisible
 constexpr std::string_view kDark = "98";
 constexpr double kHeight = 1000;              // in the unit of kWidth
 constexpr double kLeastThresholdSpan = 0.01;  // smallest range of an axis, so that a flat line does
@@ -228,11 +228,10 @@ std::string FrontScript(FigureFormat format, const ReportCurves& curves) {
 
 }  // namespace
 
-void WriteCurveFigures(const std::filesystem::path& dir, FigureFormat format,
-                       const ReportCurves& curves) {
-  std::filesystem::create_directories(dir);
-  RunGnuplot(ThresholdScript(format, curves), dir / FigureFile(format, "a-thresholds"));
-  RunGnuplot(FrontScript(format, curves), dir / FigureFile(format, "b-front"));
+void DrawCurveFigures(const std::filesystem::path& dir, FigureFormat format,
+                      const ReportCurves& curves, AtomicFiles& files) {
+  RunGnuplot(ThresholdScript(format, curves), files.Add(dir / FigureFile(format, "a-thresholds")));
+  RunGnuplot(FrontScript(format, curves), files.Add(dir / FigureFile(format, "b-front")));
 }
 
 }  // namespace fogline::report

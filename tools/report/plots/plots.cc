@@ -205,7 +205,7 @@ std::string Plot(const Figure& figure, std::size_t number) {
   return fmt::format("plot {}\n", fmt::join(parts, ", \\\n     "));
 }
 
-/// The key, as a plot that has nothing else.
+/// A plot that shows only the key.
 std::string Key(const Figure& figure, const Layout& layout) {
   std::vector<std::string> parts{"NaN notitle"};
   for (const Curve& curve : figure.curves) {
@@ -280,14 +280,13 @@ std::string Script(const Figure& figure, FigureFormat format, std::span<const Re
 
 }  // namespace
 
-void WriteFigures(const std::filesystem::path& dir, FigureFormat format,
-                  std::span<const ReportRun> runs) {
+void DrawFigures(const std::filesystem::path& dir, FigureFormat format,
+                 std::span<const ReportRun> runs, AtomicFiles& files) {
   if (runs.empty()) return;
-  std::filesystem::create_directories(dir);
   for (std::size_t i = 0; i < Figures().size(); ++i) {
     const Figure& figure = Figures()[i];
-    RunGnuplot(Script(figure, format, runs),
-               dir / FigureFile(format, fmt::format("{}-{}", i + 1, figure.id)));
+    const std::string name = FigureFile(format, fmt::format("{}-{}", i + 1, figure.id));
+    RunGnuplot(Script(figure, format, runs), files.Add(dir / name));
   }
 }
 

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <iterator>
 #include <limits>
+#include <map>
 #include <span>
 #include <sstream>
 #include <stdexcept>
@@ -16,7 +17,10 @@
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 
+#include "common/atomic_file.h"
 #include "tests/support/command.h"
+#include "tests/support/file_size_limit.h"
+#include "tests/support/input_errors.h"
 #include "tests/unit/tools/report/example_curves.h"
 #include "tests/unit/tools/report/example_runs.h"
 #include "tools/report/figures.h"
@@ -37,6 +41,22 @@ class PlotsTest : public ::testing::Test {
   const fs::path& dir_ = folder_.path();
 };
 
+void WriteFigures(const fs::path& folder, report::FigureFormat format,
+                  std::span<const report::ReportRun> runs) {
+  fs::create_directories(folder);
+  AtomicFiles files;
+  report::DrawFigures(folder, format, runs, files);
+  files.Finish();
+}
+
+void WriteCurveFigures(const fs::path& folder, report::FigureFormat format,
+                       const report::ReportCurves& curves) {
+  fs::create_directories(folder);
+  AtomicFiles files;
+  report::DrawCurveFigures(folder, format, curves, files);
+  files.Finish();
+}
+
 std::string Read(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);
   return {std::istreambuf_iterator<char>(stream), {}};
@@ -52,7 +72,7 @@ std::uint32_t NumberAt(const std::string& bytes, std::size_t at) {
 }
 
 TEST_F(PlotsTest, WritesAPictureOfPaperSizeForEveryFigure) {
-  report::WriteFigures(dir_ / "figures", report::FigureFormat::kPng, ExampleRuns(60));
+  WriteFigures(dir_ / "figures", report::FigureFormat::kPng, ExampleRuns(60));
   std::size_t number = 0;
   for (const report::Figure& figure : report::Figures()) {
     const fs::path file = dir_ / "figures" / fmt::format("figure-{}-{}.png", ++number, figure.id);
@@ -65,10 +85,10 @@ TEST_F(PlotsTest, WritesAPictureOfPaperSizeForEveryFigure) {
 }
 
 TEST_F(PlotsTest, WritesThemAsSvgAndPdfTooWithTextThatStaysText) {
-  report::WriteFigures(dir_, report::FigureFormat::kSvg, ExampleRuns(60));
-  report::WriteFigures(dir_, report::FigureFormat::kPdf, ExampleRuns(60));
-  report::WriteCurveFigures(dir_, report::FigureFormat::kSvg, ExampleCurves());
-  report::WriteCurveFigures(dir_, report::FigureFormat::kPdf, ExampleCurves());
+  WriteFigures(dir_, report::FigureFormat::kSvg, ExampleRuns(60));
+  WriteFigures(dir_, report::FigureFormat::kPdf, ExampleRuns(60));
+  WriteCurveFigures(dir_, report::FigureFormat::kSvg, ExampleCurves());
+  WriteCurveFigures(dir_, report::FigureFormat::kPdf, ExampleCurves());
   EXPECT_EQ(std::distance(fs::directory_iterator(dir_), {}), 2 * (6 + 2));
   const std::string svg = Read(dir_ / "figure-2-host-gap.svg");
   EXPECT_THAT(svg, StartsWith("<?xml"));
@@ -83,7 +103,7 @@ TEST_F(PlotsTest, WritesThemAsSvgAndPdfTooWithTextThatStaysText) {
 }
 
 TEST_F(PlotsTest, SaysAboveEveryPanelIfTheAxisSpansLessThanAHundredthOfTheValue) {
-  // GIVEN cars that keep 20 m/s, so that the axis of speeds is as short as it may be: 0.112 m/s
+  // GIVEN cars that keep 20 m/s, so that the axis of speeds has its least span, 0.112 m/s
   std::vector<report::ReportRun> runs = ExampleRuns(60);
   for (report::ReportRun& run : runs) {
     for (metrics::Sample& sample : run.samples) {
@@ -97,13 +117,13 @@ TEST_F(PlotsTest, SaysAboveEveryPanelIfTheAxisSpansLessThanAHundredthOfTheValue)
     for (std::size_t at = svg.find(note); at != svg.npos; at = svg.find(note, at + 1)) ++count;
     return count;
   };
-  report::WriteFigures(dir_ / "four", report::FigureFormat::kSvg, runs);
+  WriteFigures(dir_ / "four", report::FigureFormat::kSvg, runs);
   EXPECT_EQ(notes(dir_ / "four/figure-1-speeds.svg"), 4U);
   EXPECT_THAT(Read(dir_ / "four/figure-1-speeds.svg"), HasSubstr(">threshold 0.5<"));
-  // AND accelerations, which pass 0
+  // AND the axis of accelerations has no such note, because it contains 0
   EXPECT_THAT(Read(dir_ / "four/figure-5-accelerations.svg"),
               ::testing::Not(HasSubstr("axis spans")));
-  report::WriteFigures(dir_ / "one", report::FigureFormat::kSvg, std::span(runs).first(1));
+  WriteFigures(dir_ / "one", report::FigureFormat::kSvg, std::span(runs).first(1));
   EXPECT_EQ(notes(dir_ / "one/figure-1-speeds.svg"), 1U);
 }
 
@@ -130,10 +150,12 @@ class OtherFont {
 /// selects.
 std::size_t CountInk(const fs::path& picture, std::string_view part) {
   const fs::path table = picture.parent_path() / "pixels.txt";
+  AtomicFile output(table);
   report::RunGnuplot(
       fmt::format("set table\nplot '{}' binary filetype=png every {} with rgbimage\n",
                   picture.string(), part),
-      table);
+      output);
+  output.Finish();
   std::ifstream lines(table);
   std::size_t ink = 0;
   std::size_t pixels = 0;
@@ -152,8 +174,8 @@ std::size_t CountInk(const fs::path& picture, std::string_view part) {
 TEST_F(PlotsTest, CutsNoTextOffWhateverTheFont) {
   const OtherFont font(dir_);
   const fs::path figures = dir_ / "figures";
-  report::WriteFigures(figures, report::FigureFormat::kPng, ExampleRuns());
-  report::WriteCurveFigures(figures, report::FigureFormat::kPng, ExampleCurves());
+  WriteFigures(figures, report::FigureFormat::kPng, ExampleRuns());
+  WriteCurveFigures(figures, report::FigureFormat::kPng, ExampleCurves());
   std::vector<fs::path> pictures;
   for (const auto& entry : fs::directory_iterator(figures)) pictures.push_back(entry.path());
   EXPECT_EQ(pictures.size(), 6U + 2U);
@@ -167,8 +189,8 @@ TEST_F(PlotsTest, CutsNoTextOffWhateverTheFont) {
 }
 
 TEST_F(PlotsTest, GrowsWithTheNumberOfRuns) {
-  report::WriteFigures(dir_, report::FigureFormat::kPng,
-                       std::vector<report::ReportRun>(9, ExampleRun({.steps = 5})));
+  WriteFigures(dir_, report::FigureFormat::kPng,
+               std::vector<report::ReportRun>(9, ExampleRun({.steps = 5})));
   EXPECT_GT(NumberAt(Read(dir_ / "figure-1-speeds.png"), 20), 1000U);
 }
 
@@ -179,12 +201,12 @@ TEST_F(PlotsTest, DrawsRunsWithoutValuesToo) {
     sample.follower_gap_m = sample.follower_safe_distance_m =
         std::numeric_limits<double>::quiet_NaN();
   }
-  EXPECT_NO_THROW(report::WriteFigures(dir_, report::FigureFormat::kPng,
-                                       std::vector<report::ReportRun>{empty, alone}));
+  EXPECT_NO_THROW(
+      WriteFigures(dir_, report::FigureFormat::kPng, std::vector<report::ReportRun>{empty, alone}));
 }
 
 TEST_F(PlotsTest, DrawsTheCurvesInTwoPictures) {
-  report::WriteCurveFigures(dir_ / "figures", report::FigureFormat::kPng, ExampleCurves());
+  WriteCurveFigures(dir_ / "figures", report::FigureFormat::kPng, ExampleCurves());
   for (const char* name : {"figure-a-thresholds.png", "figure-b-front.png"}) {
     const std::string picture = Read(dir_ / "figures" / name);
     ASSERT_THAT(picture, StartsWith("\x89PNG")) << name;
@@ -200,31 +222,58 @@ TEST_F(PlotsTest, DrawsCurvesWithoutSpreadPublishedValuesOrSiToo) {
     point.si_pct = {};
     point.rhe_pct = {.count = 1, .mean = 0.0};
   }
-  EXPECT_NO_THROW(report::WriteCurveFigures(dir_, report::FigureFormat::kPng, curves));
+  EXPECT_NO_THROW(WriteCurveFigures(dir_, report::FigureFormat::kPng, curves));
   curves.points.resize(1);
   curves.points[0].si_pct = {.count = 1, .mean = 100.0};
-  EXPECT_NO_THROW(report::WriteCurveFigures(dir_, report::FigureFormat::kPng, curves));
+  EXPECT_NO_THROW(WriteCurveFigures(dir_, report::FigureFormat::kPng, curves));
 }
 
 TEST_F(PlotsTest, TakesTheNameOfARunForNothingButAName) {
   const fs::path trap = dir_ / "trap";
   report::ReportRun run = ExampleRun({.threshold = 0.5, .steps = 20});
   run.name = fmt::format("it's `touch {0}`\n system('touch {0}')", trap.string());
-  report::WriteFigures(dir_, report::FigureFormat::kPng, std::vector<report::ReportRun>{run, run});
+  WriteFigures(dir_, report::FigureFormat::kPng, std::vector<report::ReportRun>{run, run});
   EXPECT_FALSE(fs::exists(trap));
 }
 
 TEST_F(PlotsTest, FailsWithTheReasonIfTheFileCannotBeWritten) {
   const fs::path file = dir_ / "occupied";
   std::ofstream(file) << "a file, not a folder";
-  EXPECT_THROW(report::WriteFigures(file, report::FigureFormat::kPng, ExampleRuns(5)),
-               std::runtime_error);
+  AtomicFiles files;
+  EXPECT_EQ(test::ErrorOf([&] {
+              report::DrawFigures(file, report::FigureFormat::kPng, ExampleRuns(5), files);
+            }),
+            (file / "figure-1-speeds.png").string() + ": error: cannot write: Not a directory");
+}
+
+TEST_F(PlotsTest, FailsIfAPictureDoesNotFitAndKeepsTheOldOnes) {
+  WriteFigures(dir_, report::FigureFormat::kPng, ExampleRuns(5));
+  const auto pictures = [&] {
+    std::map<std::string, std::string> content;
+    for (const auto& entry : fs::directory_iterator(dir_)) {
+      content[entry.path().filename()] = Read(entry.path());
+    }
+    return content;
+  };
+  const auto before = pictures();
+  const std::string first = (dir_ / "figure-1-speeds.png").string();
+  // GIVEN a limit that the script for gnuplot keeps and the picture does not
+  const test::FileSizeLimit limit(20'000);
+  ASSERT_GT(fs::file_size(first), limit.bytes());
+  try {
+    WriteFigures(dir_, report::FigureFormat::kPng, ExampleRuns(6));
+    FAIL() << "the picture fits";
+  } catch (const std::runtime_error& error) {
+    EXPECT_EQ(error.what(), first + ": cannot write: File too large");
+  }
+  EXPECT_TRUE(pictures() == before);
 }
 
 TEST_F(PlotsTest, FailsWithGnuplotsOwnWordsAndLeavesNoFile) {
   const fs::path file = dir_ / "picture.png";
   try {
-    report::RunGnuplot("set terminal pngcairo\nplot nonsense(x)\n", file);
+    AtomicFile picture(file);
+    report::RunGnuplot("set terminal pngcairo\nplot nonsense(x)\n", picture);
     FAIL() << "gnuplot knows nonsense(x)";
   } catch (const std::runtime_error& error) {
     EXPECT_THAT(error.what(), AllOf(StartsWith("gnuplot: "), HasSubstr("line 2"),
