@@ -5,13 +5,15 @@
 #include <unistd.h>
 
 #include <cstdio>
-#include <cstdlib>
 #include <optional>
 #include <string>
 #include <system_error>
 #include <utility>
 
+#include <fmt/core.h>
+
 #include "common/errors.h"
+#include "common/text.h"
 #include "services/log/event_log.h"
 #include "services/log/log_seal.h"
 
@@ -27,17 +29,31 @@ bool IsInVain(const std::filesystem::path& log) {
   }
 }
 
-/// Makes an empty file with a new name in the folder of `file`. It has the same rights as `file`.
+/// The name of the log that was in `place` before a run began to replace it. A later run finds the
+/// older log by this name. @param place without symbolic links
+std::filesystem::path OlderOf(const std::filesystem::path& place) {
+  return place.parent_path() / (".fogline-older-" + place.filename().string());
+}
+
+/// Makes an empty file with the name of an older log. It has the same rights as `file`.
 std::optional<std::filesystem::path> EmptyFileBeside(const std::filesystem::path& file) {
   struct stat info {};
-  std::string name = (file.parent_path() / ".fogline-XXXXXX").string();
-  const int fd = stat(file.c_str(), &info) == 0 ? mkstemp(name.data()) : -1;
+  std::filesystem::path name = OlderOf(file);
+  const int fd = stat(file.c_str(), &info) == 0
+                     ? open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600)
+                     : -1;
   if (fd < 0) return std::nullopt;
   const bool same_rights = fchmod(fd, info.st_mode & 0777) == 0;
   close(fd);
   if (same_rights) return name;
   unlink(name.c_str());
   return std::nullopt;
+}
+
+bool IsOlderLog(const std::filesystem::path& file) {
+  std::error_code missing;
+  return std::filesystem::is_regular_file(std::filesystem::symlink_status(file, missing)) &&
+         IsEventLogOrEmpty(file);
 }
 
 }  // namespace
@@ -72,8 +88,42 @@ LogOfRun::~LogOfRun() {
   } else if (!older_.empty()) {
     std::filesystem::remove(older_, ignored);
   } else if (in_vain) {
-    std::filesystem::remove(path_, ignored);
+    // A link to the log stays.
+    std::filesystem::remove(std::filesystem::canonical(path_, ignored), ignored);
   }
+}
+
+void LogOfRun::RemoveOlder() {
+  if (older_.empty()) return;
+  std::error_code ignored;
+  std::filesystem::remove(older_, ignored);
+  older_.clear();
+}
+
+std::string TakeBackOlder(const std::filesystem::path& log, std::string_view option,
+                          Duration patience) {
+  std::error_code error;
+  const std::filesystem::path place = std::filesystem::weakly_canonical(log, error);
+  const std::filesystem::path older = OlderOf(place);
+  if (error || !IsOlderLog(older)) return "";
+  const FileLock lock(log, FileLock::Kind::kOwn, option, "run", patience);
+  if (!IsOlderLog(older)) return "";              // its run was alive, and has ended
+  if (std::filesystem::is_empty(older, error)) {  // its run was killed before it moved the log
+    std::filesystem::remove(older, error);
+    return "";
+  }
+  if (IsInVain(place)) {
+    std::filesystem::rename(older, place, error);
+    if (!error) {
+      return fmt::format(
+          "{}: the older log is back: the run that was to replace it was killed before its first "
+          "step",
+          PathText(log));
+    }
+  }
+  return fmt::format(
+      "{}: a killed run has left {}, an older log of this name; remove it if you do not need it",
+      PathText(log), PathText(older));
 }
 
 bool HasSteps(const std::filesystem::path& log) {

@@ -3,31 +3,38 @@
 
 #include <filesystem>
 #include <memory>
+#include <string>
+#include <string_view>
 
+#include "common/clock.h"
 #include "common/file_lock.h"
 
 namespace fogline::log {
 
-/// Keeps a log locked against other runs until the end of this object. At this end a log without a
-/// step is removed, because its run never began. If the log has replaced an older one, that one
-/// comes back.
+/// Keeps a log locked against other runs as long as this object exists. The destructor removes a
+/// log without a step, because its run never began. If this log has replaced an older log, the
+/// older log comes back.
 class LogOfRun {
  public:
   /// A run without a log.
   LogOfRun() = default;
-  /// @throws InputError if another run is writing it, or if it cannot be written
+  /// @throws InputError if another run is writing the log, or if the log cannot be written
   explicit LogOfRun(const std::filesystem::path& log);
-  /// @param lock on the file
+  /// @param lock the lock on the file
   LogOfRun(std::filesystem::path log, std::unique_ptr<FileLock> lock);
-  /// Puts an empty log in the place of an older one, which is kept beside it as ".fogline-*" until
-  /// the end of this object. Where the file system cannot exchange two files, the older log is
-  /// written over.
-  /// @param lock on the older log
+  /// Puts an empty log in the place of an older log. The older log stays in the same folder as
+  /// ".fogline-older-NAME" until RemoveOlder() or the end of this object. If the file system cannot
+  /// exchange two files, or cannot make a file of this name, the run writes over the older log.
+  /// @param lock the lock on the older log
   static LogOfRun InPlaceOf(const std::filesystem::path& log, std::unique_ptr<FileLock> lock);
   ~LogOfRun();
   LogOfRun(LogOfRun&&) = default;
   LogOfRun(const LogOfRun&) = delete;
   LogOfRun& operator=(const LogOfRun&) = delete;
+
+  /// Removes the older log. Call it when the log has its first step: then a run that is killed
+  /// leaves one log and no other file. Later calls do nothing.
+  void RemoveOlder();
 
   /// "" for a run without a log.
   const std::filesystem::path& path() const { return path_; }
@@ -37,6 +44,15 @@ class LogOfRun {
   std::unique_ptr<FileLock> lock_;
   std::filesystem::path older_;  // the older log; "" if there was none
 };
+
+/// Looks for the older log that a killed run has left beside `log`. If that run had not begun to
+/// write `log`, the older log comes back: the result is the same as if the run had ended by itself.
+/// @param option the command line option that names the log, such as "--log"
+/// @param patience how long to wait until the processes of the killed run have ended
+/// @return one line that says what was found; "" if there is no older log
+/// @throws InputError if another run is writing the log
+std::string TakeBackOlder(const std::filesystem::path& log, std::string_view option,
+                          Duration patience = Duration::zero());
 
 /// Whether a log contains more than a scenario and a seal. @throws InputError if it is no event log
 bool HasSteps(const std::filesystem::path& log);

@@ -13,25 +13,28 @@ namespace fogline::log {
 namespace {
 
 static_assert(kTailBytes > (runtime::kRingSteps + 3) * kMostStepBytes);
-// While a log is read from front to back, STATUS is sent each time that this many bytes have been
-// read. Even a slow disk reads them in less than two heartbeats.
+// While a log is read from front to back, a STATUS is sent after each piece of this many bytes.
+// Even a slow disk reads such a piece in less than two heartbeats.
 constexpr std::int64_t kAliveEvery = 8 << 20;
-// More steps than a run can lose in a row before it ends for another reason.
+// The most steps in a row that a log in real time can lack. A run that loses more steps has ended
+// for another reason.
 constexpr std::int64_t kLongestGap = 1'000'000;
 
-/// Follows the events of a log in the order in which the recorder writes them: whole steps in
-/// lockstep; in real time the messages that came.
+/// Follows the events of a log in the order in which the recorder writes them. In lockstep these
+/// are whole steps, in real time the messages that came.
 class Follower {
  public:
   /// @param steps number of steps that have ended
-  /// @param head the log up to their end
+  /// @param head the log up to the end of these steps
   Follower(const LogFront& front, std::int64_t steps, const LogHead& head)
       : front_(front), remains_{.head = head, .steps = steps, .last = head.bytes} {}
 
-  /// @param head ends with the event
+  /// @param head the log up to the end of the event
   /// @return false at the first event that does not continue the steps of the recorder
   bool Take(const Event& event, const LogHead& head) {
     if (event.number != head.events - 1) return false;
+    // The STATUS of a role that has computed no step has step -1.
+    if (front_.realtime && IsStatus(event)) return true;
     const std::int64_t step = StepOf(event, front_.run_id);
     if (step < 0) return false;
     return front_.realtime ? TakeRealtime(event, step, head) : TakeNext(event, step, head);
@@ -40,6 +43,10 @@ class Follower {
   const Remains& remains() const { return remains_; }
 
  private:
+  bool IsStatus(const Event& event) const {
+    return event.channel == ChannelOf<status_t>().name && IsOfRun(event, front_.run_id);
+  }
+
   bool TakeNext(const Event& event, std::int64_t step, const LogHead& head) {
     if (event.channel != kStepNames[next_] || step != remains_.steps) return false;
     if (event.channel == ChannelOf<truth_t>().name && runtime::Decode(event.data, truth_)) {
@@ -55,7 +62,6 @@ class Follower {
   /// In real time steps may lack messages, and STATUS stands between the steps. A step ends when it
   /// has all its messages, or where a later step begins.
   bool TakeRealtime(const Event& event, std::int64_t step, const LogHead& head) {
-    if (event.channel == ChannelOf<status_t>().name) return true;
     if (!IsStepChannel(event.channel)) return false;
     if (step < remains_.steps || step > remains_.steps + kLongestGap) return false;
     if (step > remains_.steps) {
@@ -78,13 +84,13 @@ class Follower {
 
   const LogFront& front_;
   Remains remains_;
-  // The channel of kStepNames that comes next; in real time the number of messages so far.
+  // Place in kStepNames of the next message; in real time, number of messages of the step so far.
   std::size_t next_ = 0;
   truth_t truth_{};
   bool last_ = false;
 };
 
-/// Reads up to the first event that does not continue the steps so far.
+/// Reads from `head` up to the first event that does not continue the steps.
 Remains Follow(EventLogReader& reader, const LogFront& front, std::int64_t steps, LogHead head,
                const std::function<void(std::int64_t steps)>& alive) {
   Follower follower(front, steps, head);
@@ -126,15 +132,15 @@ std::optional<Start> StartIn(runtime::Bytes content, std::int64_t from, const Lo
   return Start{.step = step, .head = {.bytes = static_cast<std::int64_t>(*at), .events = number}};
 }
 
-/// What the log contains, as its last `tail` bytes show it; nullopt if these bytes do not show
-/// where the last complete step lies.
+/// What the log contains, by its last `tail` bytes; nullopt if these bytes do not show where the
+/// last complete step is.
 std::optional<Remains> ReadTail(EventLogReader& reader, const LogFront& front, std::int64_t tail) {
   const std::int64_t from = std::ssize(reader.content()) - tail;
   if (from <= front.head.bytes) return std::nullopt;
   const auto start = StartIn(reader.content(), from, front);
   if (!start) return std::nullopt;
   const Remains remains = Follow(reader, front, start->step, start->head, {});
-  // In real time the first step may have begun before these bytes.
+  // In real time the tail may begin in the middle of a step, so a second step must end in the tail.
   const std::int64_t least = start->step + (front.realtime ? 2 : 1);
   return remains.steps >= least ? std::optional(remains) : std::nullopt;
 }

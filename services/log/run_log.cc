@@ -15,8 +15,6 @@
 #include "services/runtime/wire/scenario_parts.h"
 
 namespace fogline::log {
-namespace {}  // namespace
-
 /// Combines the events of a log into steps.
 class RunLogReader::Assembler {
  public:
@@ -46,8 +44,8 @@ class RunLogReader::Assembler {
   const RunLog& run() const { return run_; }
 
  private:
-  // In real time, a message may stand in the log behind messages of steps that are newer by this
-  // number at most.
+  // In real time, a message may stand in the log behind messages of later steps, but at most this
+  // many steps later.
   static constexpr std::int64_t kLongestOverdue = 64;
 
   struct Pending {
@@ -55,7 +53,7 @@ class RunLogReader::Assembler {
     std::size_t count = 0;
   };
 
-  /// Whether the next step is complete, or in real time as complete as it will be.
+  /// Whether the next step is complete, or (in real time) no further message of it is expected.
   bool Ready() const {
     if (pending_.empty()) return false;
     const auto& [step, next] = *pending_.begin();
@@ -128,8 +126,12 @@ class RunLogReader::Assembler {
     if (realtime_) run_.realtime = realtime_->Result();
     const std::string alteration = Alteration();
     run_.altered = !alteration.empty();
-    run_.complete =
+    // In real time the TRUTH that says so may be missing.
+    if (realtime_ && (run_.steps == steps_ || run_.steps == end_)) last_ = true;
+    run_.ended =
         last_ && pending_.empty() && conflict_.empty() && reader_.torn().empty() && !run_.altered;
+    const std::int64_t unlogged = run_.realtime ? run_.realtime->unlogged_messages : 0;
+    run_.complete = run_.ended && unlogged == 0;
     run_.note = reader_.torn();
     const auto note = [this](const std::string& text) {
       run_.note += run_.note.empty() ? text : "; " + text;
@@ -138,6 +140,7 @@ class RunLogReader::Assembler {
     if (!last_) note(Shortage());
     if (run_.realtime && run_.realtime->missed_messages > 0) {
       note(fmt::format("real time, {} messages missing", run_.realtime->missed_messages));
+      if (unlogged > 0) note(fmt::format("published, but not in the log: {}", unlogged));
     }
     if (!pending_.empty()) {
       note(fmt::format("step {} lacks {}", run_.steps, Lacking(pending_.begin()->second.messages)));
@@ -167,8 +170,8 @@ class RunLogReader::Assembler {
   }
 
   std::size_t Find(std::string_view name) {
-    // The recorder writes channels in the order of the table, so the channel after the last one is
-    // the best guess.
+    // The recorder writes channels in the order of the table, so the channel after the last found
+    // channel is the best guess.
     for (std::size_t i = 0; i < kNumChannels; ++i) {
       const std::size_t guess = (guess_ + i) % kNumChannels;
       if (kChannels[guess].name != name) continue;
@@ -214,11 +217,13 @@ class RunLogReader::Assembler {
     status_t status{};
     if (!realtime_ || !runtime::Decode(data, status) || status.header.run_id != run_.run_id) return;
     realtime_->Add(status);
+    const bool is_done = status.role == NameOf(Role::kWorld) && status.state == status_t::DONE;
+    if (is_done) end_ = status.header.step + 1;
   }
 
-  /// The payload of a message. lcm-logger writes signed messages as they come, with their
-  /// signatures. This reader cannot verify them. In a signed run a message without a signature does
-  /// not belong to the run: the result is then empty.
+  /// The payload of a message. lcm-logger writes signed messages with their signatures. This reader
+  /// cannot verify the signatures. In a signed run a message without a signature does not belong to
+  /// the run, so its payload is empty here.
   runtime::Bytes Payload(runtime::Bytes data) const {
     if (!is_signed_) return data;
     return runtime::LooksSigned(data) &&
@@ -254,6 +259,7 @@ class RunLogReader::Assembler {
   bool ended_ = false;  // the log has no further event
   std::optional<RealtimeAccumulator> realtime_;
   std::int64_t steps_ = 0;  // number of steps of the scenario, in real time
+  std::int64_t end_ = -1;   // number of steps of a world that is done, in real time; -1: unknown
 };
 
 RunLogReader::RunLogReader(const std::filesystem::path& file, Compared compared)

@@ -15,7 +15,7 @@
 
 namespace fogline::log {
 
-/// The messages of one step by place in kChannels; empty where there is none.
+/// The messages of one step, by place in kChannels. A message that is not there is empty.
 using StepMessages = std::array<runtime::Bytes, kNumChannels>;
 
 /// The contents of a log, apart from its steps.
@@ -26,23 +26,27 @@ struct RunLog {
   std::string scenario_hash;
   std::int64_t steps = 0;  // number of complete steps
   std::string digest;      // digest of these steps
-  // True if the last step is marked as the last of the run, nothing was changed since the log was
-  // sealed, and (in lockstep) nothing is missing.
+  // Whether four conditions hold: the log ends with the last step of the run, it was not changed
+  // since it was sealed, no event is torn, and no two messages of one step and channel differ. In
+  // lockstep, all messages must be there, too.
+  bool ended = false;
+  // Whether the log has ended and, in real time, lacks no message that was published.
   bool complete = false;
-  std::string note;  // why it is not complete, or what was ignored; "" if there is nothing to say
-  LogHead events{};  // all whole events of the file
+  // Why the log is not complete, or what was ignored; "" if there is nothing to say.
+  std::string note;
+  LogHead events{};                         // all whole events of the file
   std::optional<LogSeal> seal;              // none in a log of lcm-logger or of an interrupted run
   bool altered = false;                     // the log differs from its seal
   std::optional<RealtimeFigures> realtime;  // set for a run in real time
 };
 
-/// Reads the run in a log that the recorder or lcm-logger wrote, step by step, with events in any
-/// order. Memory is bounded if the events are in order.
+/// Reads a run step by step from a log that the recorder or lcm-logger wrote. The events may be in
+/// any order. If they are in order, the memory is bounded.
 class RunLogReader {
  public:
   /// The part of a log that is compared with its seal.
   enum class Compared {
-    kRun,   // scenario and steps; in real time the whole file, because STATUS counts
+    kRun,   // scenario and steps; in real time all bytes, because STATUS gives results, too
     kFile,  // all bytes of the file, which are read once more at the end
   };
 
@@ -50,12 +54,12 @@ class RunLogReader {
   explicit RunLogReader(const std::filesystem::path& file, Compared compared = Compared::kRun);
   ~RunLogReader();
 
-  /// The next complete step, from 0 on; nullptr at the end. Its bytes are valid as long as the
-  /// reader. In real time it is the next step, complete or not.
+  /// The next complete step, from 0 on; nullptr at the end. In real time the step may be
+  /// incomplete. Its bytes are valid as long as the reader exists.
   /// @throws InputError at the end, when the log has no scenario of a run
   const StepMessages* Next();
 
-  /// The contents of the whole log. Known once Next() has reached the end of the log.
+  /// The contents of the whole log. Known once Next() has returned nullptr.
   const RunLog& run() const;
 
  private:

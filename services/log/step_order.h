@@ -37,11 +37,14 @@ inline bool IsStepChannel(std::string_view channel) {
   return std::ranges::find(kStepNames, channel) != kStepNames.end();
 }
 
+inline bool IsOfRun(const Event& event, std::int64_t run_id) {
+  return event.data.size() >= runtime::kHeaderEnd &&
+         runtime::ReadInt64(event.data, runtime::kRunIdOffset) == run_id;
+}
+
 /// The step of a message of this run; -1 if the message is of another run.
 inline std::int64_t StepOf(const Event& event, std::int64_t run_id) {
-  const bool is_ours = event.data.size() >= runtime::kHeaderEnd &&
-                       runtime::ReadInt64(event.data, runtime::kRunIdOffset) == run_id;
-  return is_ours ? runtime::ReadInt64(event.data, runtime::kStepOffset) : -1;
+  return IsOfRun(event, run_id) ? runtime::ReadInt64(event.data, runtime::kStepOffset) : -1;
 }
 
 /// The step of a run in lockstep that begins with this event; nullopt if none does.

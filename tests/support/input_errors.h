@@ -1,4 +1,4 @@
-// The errors that bad input gets, in tests.
+// The texts of errors for bad input, in tests.
 #pragma once
 
 #include <string>
@@ -7,12 +7,12 @@
 
 namespace fogline::test {
 
-/// The text of the InputError that a call throws; "" if it throws none.
-template <class Call>
+/// The text of the InputError, or other error, that a call throws; "" if it throws none.
+template <class Error = InputError, class Call>
 std::string ErrorOf(const Call& call) {
   try {
     call();
-  } catch (const InputError& error) {
+  } catch (const Error& error) {
     return error.what();
   }
   return "";

@@ -54,8 +54,15 @@ log::LogOfRun PrepareLog(const std::filesystem::path& log, bool force) {
   if (std::filesystem::exists(log, ignored) && !std::filesystem::is_regular_file(log, ignored)) {
     throw InputError(fmt::format("{}: error: --log: not a file", PathText(log)));
   }
-  // Makes the file if it is missing. If two runs start at once, only one of them gets the lock,
-  // whichever made the file. --force does not help while another run is writing the file.
+  // /dev/stdout and /proc/self/fd/1 are other files for the recorder than for this process.
+  if (!IsReplaceable(log)) {
+    throw InputError(fmt::format(
+        "{}: error: --log: the name of an open file of this process is no log", PathText(log)));
+  }
+  if (const std::string older = log::TakeBackOlder(log, "--log"); !older.empty()) Complain(older);
+  // Makes the file if it is missing. If two runs start at once, only one of them gets the lock, no
+  // matter which of them made the file. Even --force does not replace a file that another run is
+  // writing.
   auto lock = std::make_unique<FileLock>(log, FileLock::Kind::kOwn, "--log", "run");
   if (std::filesystem::is_empty(log, ignored)) return {log, std::move(lock)};
   if (!force) {
@@ -98,7 +105,7 @@ void PrintJson(const std::string& text) { fmt::print("{}\n", EscapeLines(text));
 
 void RefuseJsonBeside(const std::filesystem::path& document, std::string_view option, bool json) {
   std::error_code ignored;
-  // /dev/null may get both texts, because nothing reads it.
+  // /dev/null may get both the document and the JSON text, because nothing reads it.
   if (!json || !IsStdout(document) ||
       std::filesystem::canonical(document, ignored) == "/dev/null") {
     return;

@@ -1,9 +1,10 @@
 #include "tools/cli/help.h"
 
-#include <cmath>
 #include <sstream>
 
 #include <fmt/core.h>
+
+#include "common/text.h"
 
 namespace fogline::cli {
 namespace {
@@ -13,18 +14,15 @@ constexpr std::size_t kOptionColumns = 34;  // width of the column with the name
 }  // namespace
 
 CLI::Validator NumberIn(double least, double most) {
-  const CLI::Validator range =
-      CLI::Range(least, most);  // accepts NaN, because comparisons with NaN are false
-  CLI::Validator number = range;
-  number.operation([range, least, most](std::string& text) {
-    const std::string wrong = range(text);
+  // CLI::Range has the same texts for whole numbers. For real numbers its texts have six decimals
+  // or three hundred digits, and it accepts NaN.
+  const auto check = [least, most](const std::string& text) -> std::string {
     double value = 0;
-    if (!wrong.empty() || (CLI::detail::lexical_cast(text, value) && !std::isnan(value))) {
-      return wrong;
-    }
-    return fmt::format("Value {} not in range [{:g} - {:g}]", text, least, most);
-  });
-  return number;
+    const bool is_number = CLI::detail::lexical_cast(text, value);
+    if (is_number && least <= value && value <= most) return "";
+    return fmt::format("Value {} not in range {} to {}", text, NumberText(least), NumberText(most));
+  };
+  return {check, fmt::format("FLOAT in [{} - {}]", NumberText(least), NumberText(most))};
 }
 
 HelpFormatter::HelpFormatter() { column_width(kOptionColumns); }
@@ -52,7 +50,7 @@ void ShowExitCodes(CLI::App& command, const ExitMeanings& meanings) {
 }
 
 std::string HelpText(const CLI::App& app, const CLI::App& of) {
-  // of.help() would print the name of the verb on the command line, in place of the name of `of`.
+  // of.help() would print the name of the chosen verb, even if `of` is another verb.
   const std::string name = &of == &app ? app.get_name() : app.get_name() + " " + of.get_name();
   return app.get_formatter()->make_help(&of, name, CLI::AppFormatMode::Normal);
 }

@@ -72,7 +72,13 @@ std::string FieldHint(const std::string& option, const std::vector<std::string>&
   return hint;
 }
 
-/// Explains the word that `command` does not accept. @param words the first one is this word
+/// A hint for a word such as "-run.lcm", which may be meant as a file. "" if it looks like options.
+std::string FileHint(const std::string& word) {
+  const bool is_name = !word.starts_with("--") && word.find_first_of("./") != std::string::npos;
+  return is_name ? fmt::format("; a file of this name is {}", QuoteShort("./" + word)) : "";
+}
+
+/// Explains the word that `command` does not accept. @param words this word and the words after it
 std::string Misfit(const CLI::App& app, const CLI::App& command,
                    const std::vector<std::string>& words) {
   const std::string& word = words.front();
@@ -89,6 +95,7 @@ std::string Misfit(const CLI::App& app, const CLI::App& command,
     if (hint.empty() && command.get_option_no_throw("--set") != nullptr) {
       hint = FieldHint(name, words);
     }
+    if (hint.empty()) hint = FileHint(word);
     return fmt::format("no option {}{}", QuoteShort(name), hint);
   }
   if (!command.get_subcommands({}).empty()) return NoSuchVerb(app, word);
@@ -119,6 +126,29 @@ std::string UnknownVerb(const CLI::App& app) {
   return fmt::format("{0}: error: {1} (see {0} --help)", app.get_name(), Misfit(app, app, words));
 }
 
+void RefuseEmptyTexts(CLI::App& app) {
+  const auto refuse = [](const std::string& text) -> std::string {
+    return text.empty() ? "the text is empty" : "";
+  };
+  for (CLI::App* verb : app.get_subcommands({})) {
+    for (CLI::Option* option : verb->get_options()) {
+      option->transform(CLI::Validator(refuse, ""));  // before the option's own checks
+    }
+  }
+}
+
+std::vector<std::string> SeparateEmptyValues(const std::vector<std::string>& words) {
+  std::vector<std::string> separate;
+  const auto end_of_options = std::ranges::find(words, "--");
+  for (auto word = words.begin(); word != words.end(); ++word) {
+    const bool is_empty =
+        word < end_of_options && word->starts_with("--") && word->find('=') == word->size() - 1;
+    separate.push_back(is_empty ? word->substr(0, word->size() - 1) : *word);
+    if (is_empty) separate.emplace_back();
+  }
+  return separate;
+}
+
 std::string Refusal(const CLI::App& app, const CLI::ParseError& error) {
   const std::vector<CLI::App*> verbs = app.get_subcommands();
   const bool is_extra = error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError);
@@ -126,7 +156,10 @@ std::string Refusal(const CLI::App& app, const CLI::ParseError& error) {
   const bool is_verb = !verbs.empty() && !(is_extra && verbs.front()->remaining().empty());
   const CLI::App& command = is_verb ? *verbs.front() : app;
   const std::vector<std::string> misfits = command.remaining();
-  const bool is_misfit = !misfits.empty() && (verbs.empty() || is_extra);
+  // An argument may be missing because its word was taken for an option.
+  const bool is_missing =
+      error.get_exit_code() == static_cast<int>(CLI::ExitCodes::RequiredError) && is_verb;
+  const bool is_misfit = !misfits.empty() && (verbs.empty() || is_extra || is_missing);
   const std::string what = is_misfit ? Misfit(app, command, misfits) : OneLine(error.what());
   const std::string name = is_verb ? CommandName(app) : app.get_name();
   return fmt::format("{}: error: {} (see {} --help)", name, what, name);

@@ -1,7 +1,8 @@
-// Error messages for wrong command lines.
+// Wrong command lines, and the error messages for them.
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 
@@ -14,8 +15,17 @@ std::string CommandName(const CLI::App& app);
 /// for any other command line.
 std::string UnknownVerb(const CLI::App& app);
 
-/// `no verb "tabel"; did you mean "table"?`
+/// An error text, such as `no verb "tabel"; did you mean "table"?`
 std::string NoSuchVerb(const CLI::App& app, const std::string& word);
+
+/// Makes every option and argument of the verbs of `app` refuse an empty text. Such a text is often
+/// that of a shell's variable that is not set, as in --log "$UNSET". Without a refusal the verb
+/// would ignore the option.
+void RefuseEmptyTexts(CLI::App& app);
+
+/// The words of a command line with "--log=" as two words, "--log" and "". CLI11 would take the
+/// word after "--log=" for the value.
+std::vector<std::string> SeparateEmptyValues(const std::vector<std::string>& words);
 
 /// A refused command line as one line: "fogline VERB: error: ... (see fogline VERB --help)".
 std::string Refusal(const CLI::App& app, const CLI::ParseError& error);

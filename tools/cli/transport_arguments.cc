@@ -45,7 +45,7 @@ TransportArguments::TransportArguments(CLI::App& verb, std::string transport)
   CLI::Option* verify = verb.add_flag(
       "--verify", verify_,
       "Compute each step again from the log and compare (default with --external, and for a "
-      "resumed run). Leaves out roles of another build, and runs in real time");
+      "resumed run). Roles of another build and runs in real time are not compared");
   verb.add_flag("--no-verify", no_verify_, "Do not compute the steps again")->excludes(verify);
   runtime::AddTrafficOptions(verb, traffic_);
 }

@@ -1,11 +1,13 @@
 #include "tools/cli/verb_program.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <memory>
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <vector>
 
 #include <fmt/core.h>
@@ -22,13 +24,15 @@
 namespace fogline::cli {
 namespace {
 
+constexpr const char* kNoStdout = "standard output cannot be written (a full disk?)";
+
 /// Runs a verb and prints its error if there is one. @return its exit code
 int Run(const CLI::App& app, const Action& action) {
   const std::string name = CommandName(app);
   try {
     const int code = action();
     if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
-      throw std::runtime_error("standard output cannot be written (a full disk?)");
+      throw std::runtime_error(kNoStdout);
     }
     return code;
   } catch (const InputError& error) {
@@ -43,6 +47,10 @@ int Run(const CLI::App& app, const Action& action) {
   } catch (const CheckFailed& error) {
     Complain(fmt::format("{}: error: {}", name, error.what()));
     return kCheckFailed;
+  } catch (const std::system_error& error) {
+    // fmt::print() throws an error without the name of the file.
+    Complain(fmt::format("{}: error: {}", name, std::ferror(stdout) ? kNoStdout : error.what()));
+    return kRunFailed;
   } catch (const std::exception& error) {
     Complain(fmt::format("{}: error: {}", name, error.what()));
     return kRunFailed;
@@ -64,6 +72,7 @@ int Main(std::vector<std::string> arguments, std::initializer_list<AddVerb> verb
       "  fogline table --help");
   Action action;
   for (const AddVerb add : verbs) add(app, action);
+  RefuseEmptyTexts(app);
   try {
     app.parse(std::move(arguments));
   } catch (const CLI::Success& asked) {  // --help, --version
@@ -76,7 +85,7 @@ int Main(std::vector<std::string> arguments, std::initializer_list<AddVerb> verb
     Complain(Refusal(app, error));
     return kBadInput;
   }
-  if (!action) {  // without a verb: the help, and exit code 0, as in cargo
+  if (!action) {  // without a verb: print the help, exit code 0, as in cargo
     action = [&app] {
       fmt::print("{}", HelpText(app, app));
       return kDone;
@@ -86,8 +95,8 @@ int Main(std::vector<std::string> arguments, std::initializer_list<AddVerb> verb
 }
 
 std::vector<std::string> Reversed(int argc, char** argv) {
-  std::vector<std::string> arguments;
-  for (int i = argc - 1; i > 0; --i) arguments.emplace_back(argv[i]);
+  std::vector<std::string> arguments = SeparateEmptyValues({argv + 1, argv + argc});
+  std::ranges::reverse(arguments);
   return arguments;
 }
 

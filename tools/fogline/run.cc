@@ -38,10 +38,11 @@ process hangs if it is silent for 2 s (1 s with --realtime), or for half of
 
 --resume LOG goes on with a run that has ended early, for whatever reason. The
 result is the same. Scenario and seed are those of the log. Give transport, pace,
-key and the external roles again. The roles go on from the log, so its steps are
-computed again and compared, unless --no-verify is given. A complete log without
-a seal is compared in the same way, and then gets a seal; with --no-verify it
-gets none. A complete log with a seal is compared only with --verify.
+key and the external roles again. A log whose seal is signed needs the same key;
+a log without a seal does not show whether its run had a key. The roles go on from
+the log, so its steps are computed again and compared, unless --no-verify is given.
+A complete log without a seal is compared in the same way, and then gets a seal;
+with --no-verify it gets none. A complete log with a seal is compared only with --verify.
 
 A run has a port of its own unless LCM_DEFAULT_URL names another; fogline top,
 spy, doctor and roles without --lcm-url find it on this machine.
@@ -163,14 +164,16 @@ int RunNew(RunArguments& arguments) {
   if (const double period_s = scenario.step_s / arguments.speed;
       options.realtime && period_s < kMinPeriodS) {
     throw InputError(fmt::format(
-        "error: --speed {:g}: a step of {:g} s would take {:.3g} ms of wall clock, at least {:g}",
+        "error: --speed {:g}: a step of {:g} s would take {:.3g} ms of wall clock; the shortest "
+        "is {:g} ms",
         arguments.speed, scenario.step_s, 1e3 * period_s, 1e3 * kMinPeriodS));
   }
   const bool has_log = !options.log.empty() || options.transport != "direct";
-  const log::LogOfRun log = !has_log              ? log::LogOfRun()
-                            : options.log.empty() ? cli::FreshLog(arguments.scenario.file())
-                                                  : cli::PrepareLog(options.log, arguments.force);
+  log::LogOfRun log = !has_log              ? log::LogOfRun()
+                      : options.log.empty() ? cli::FreshLog(arguments.scenario.file())
+                                            : cli::PrepareLog(options.log, arguments.force);
   options.log = log.path();
+  options.on_logged_step = [&log] { log.RemoveOlder(); };
   options.command_to_go_on = runner::CommandToGoOn(options);
   WatchInterrupts();
   return Print(arguments, {.file = arguments.scenario.file(),
@@ -179,8 +182,8 @@ int RunNew(RunArguments& arguments) {
                            .resumed = std::nullopt});
 }
 
-/// The builds of the roles that a verification has computed again: they were computed in this
-/// process, with equal results. The other roles are of an unknown build.
+/// The builds of the roles that a verification has computed again. This process has computed them
+/// with equal results, so they have its build. The other roles are of an unknown build.
 runtime::RoleBuilds BuildsOf(const replay::Verification& verification) {
   runtime::RoleBuilds builds{};
   for (const Role role : verification.roles) {
@@ -191,7 +194,7 @@ runtime::RoleBuilds BuildsOf(const replay::Verification& verification) {
 
 /// Continues the run of a log to its end. If the log already has the whole run, no step is added.
 /// If such a log has no seal, it is verified, and sealed if the verification holds; --no-verify
-/// omits both.
+/// omits verification and seal.
 int Resume(RunArguments& arguments) {
   runner::ExperimentOptions& options = arguments.options;
   const auto key = runtime::KeyOf(options.traffic);
@@ -216,7 +219,7 @@ int Resume(RunArguments& arguments) {
     throw InputError(fmt::format("{}: error: --resume: {}", PathText(options.log), run.note));
   }
   outcome.result = std::move(run.result);
-  // Without a seal: the runner of that run ended after the last step and before it sealed the log.
+  // If there is no seal, the runner ended after the last step and before it sealed the log.
   const bool to_seal = !run.seal;
   auto& verification = outcome.result.verification;
   if (options.verify.value_or(to_seal)) {

@@ -35,7 +35,7 @@ newer one (late), or came again (twice); undecodable messages, by apparent type.
 STATUS: state, step, repairs asked for and served, processor time, memory, refusals; a role is
 silent after 1 s without STATUS. Without --lcm-url top follows the newest run that is announced on
 this machine, and names all announced runs. Top sees only messages that reach this machine; a
-message that is lost on the way here may have arrived elsewhere. q or Ctrl-C quits.
+message that is lost on the way here may have arrived elsewhere. q quits.
 
 Examples:
   fogline run scenario/paper.json --pace 1 & fogline top
@@ -73,8 +73,8 @@ constexpr Duration kLookEvery = milliseconds(50);
 constexpr Duration kFollowEvery = milliseconds(100);
 // Every run of this machine announces itself within this time.
 constexpr Duration kDiscovery = 2 * runtime::kBeaconEvery;
-// LCM keeps every channel name that it has heard while it is open, at about 300 bytes each. After
-// this many unknown names it is closed and opened again.
+// LCM keeps every channel name that it hears while a network is open, at about 300 bytes each.
+// After this many unknown names top closes the network and opens it again.
 constexpr std::int64_t kMostNames = 10'000;
 // Number of announced runs with unreachable networks that are remembered.
 constexpr std::size_t kMaxUnreachable = 64;
@@ -101,7 +101,7 @@ class Top {
     if (terminal_) Show();
     for (TimePoint next = began + interval; Clock::now() < end; next += interval) {
       const bool whole = Listen(std::min(next, end));
-      if (!whole && terminal_) return kDone;
+      if (!whole && !WasInterrupted()) return kDone;  // q
       if (!whole && arguments_.once) throw Interrupted("interrupted before the interval was over");
       if (!whole) return kInterrupted;
       Show();

@@ -49,13 +49,15 @@ constexpr Duration kJoinLimit = milliseconds(10'000);
 constexpr Duration kLookEvery = milliseconds(20);
 // Interval at which the runner checks whether awaited roles belong to other runs.
 constexpr Duration kLookForExternal = milliseconds(100);
-// A process that is silent for this long hangs: ten of its signs of life.
+// A process that is silent for this long hangs. In this time it would have sent ten signs of life.
 constexpr Duration kHangLimit = milliseconds(2000);
-// In real time the limit is half of that, because by then the readers of the process have long
-// worked without it. The limit still covers five signs of life, because a lost one is not repaired.
+// In real time the limit is half of kHangLimit, because by then the readers of the process have
+// long worked without it. The limit still covers five signs of life, because a lost STATUS is not
+// repaired.
 constexpr Duration kRealtimeHangLimit = milliseconds(1000);
 
-/// The builds of the runner's own programs; a role that is started elsewhere may have another one.
+/// The builds of the runner's own programs; a role that is started elsewhere may have another
+/// build.
 runtime::RoleBuilds OwnBuilds(bool in_memory) {
   runtime::RoleBuilds builds{};
   for (const RoleInfo& info : kRoles) {
@@ -65,9 +67,9 @@ runtime::RoleBuilds OwnBuilds(bool in_memory) {
   return builds;
 }
 
-/// First sequence number of a runner that replaces another one. Roles of the old runner may still
-/// be alive, and they obey the newest runner. A runner sends less than one message per microsecond,
-/// so the present time in microseconds exceeds every number of the old runner.
+/// First sequence number of a runner that replaces another runner. Roles of the old runner may
+/// still be alive, and they obey the newest runner. A runner sends less than one message per
+/// microsecond, so the present time in microseconds exceeds every number of the old runner.
 std::int64_t NewerThanEveryRunner() {
   using std::chrono::microseconds;
   const auto now = std::chrono::system_clock::now().time_since_epoch();
@@ -96,6 +98,13 @@ runtime::RunCoordinatorOptions MakeCoordinatorOptions(const Scenario& scenario,
           .same_build = options.same_build};
 }
 
+/// Calls options.on_logged_step if the log has a step. The recorder's STATUS names only steps that
+/// the operating system has.
+void TellLoggedStep(const runtime::RunCoordinator& coordinator, const ExperimentOptions& options) {
+  const auto& recorder = coordinator.member(Role::kRecorder).status;
+  if (recorder && recorder->header.step >= 0) options.on_logged_step();
+}
+
 // ---- memq --------------------------------------------------------------------------------------
 
 template <class Algorithm>
@@ -104,15 +113,18 @@ std::unique_ptr<runtime::Work> MakeWork(runtime::Bus& bus, std::int64_t run_id) 
 }
 
 void RunInMemory(runtime::Bus& bus, runtime::RunCoordinator& coordinator, std::int64_t run_id,
-                 const Scenario& scenario, const std::filesystem::path& log,
-                 recorder::Recorder::Existing existing) {
+                 const Scenario& scenario, const ExperimentOptions& options,
+                 const std::filesystem::path& log) {
   std::vector<std::unique_ptr<runtime::Work>> roles;
   for (const auto make : {MakeWork<world::World>, MakeWork<radar::Radar>, MakeWork<lidar::Lidar>,
                           MakeWork<fusion::Fusion>, MakeWork<acc::Acc>, MakeWork<driver::Driver>,
                           MakeWork<arbitrator::Arbitrator>, MakeWork<follower::Follower>}) {
     roles.push_back(make(bus, run_id));
   }
-  roles.push_back(std::make_unique<recorder::Recorder>(bus, run_id, log, existing));
+  roles.push_back(std::make_unique<recorder::Recorder>(
+      bus, run_id, log,
+      options.resume ? recorder::Recorder::Existing::kResume
+                     : recorder::Recorder::Existing::kReplace));
   Progress progress("step", scenario.steps);
   while (coordinator.phase() == runtime::RunCoordinator::Phase::kJoining ||
          coordinator.phase() == runtime::RunCoordinator::Phase::kRunning) {
@@ -122,6 +134,7 @@ void RunInMemory(runtime::Bus& bus, runtime::RunCoordinator& coordinator, std::i
     // Messages come first: while there are messages, nothing is due by the clock.
     if (bus.Wait(next - Clock::now())) bus.Drain();
     progress.Show(coordinator.step());
+    TellLoggedStep(coordinator, options);
     if (WasInterrupted()) break;
   }
   coordinator.Stop();
@@ -185,7 +198,7 @@ class BusyElsewhere {
   TimePoint look_at_{};
 };
 
-/// Prints warnings while a run goes on, each one once.
+/// Prints warnings while a run goes on, each warning once.
 class Warnings {
  public:
   Warnings(runtime::RunCoordinator& coordinator, Progress& progress)
@@ -214,7 +227,7 @@ class Warnings {
 
   runtime::RunCoordinator& coordinator_;
   Progress& progress_;
-  bool compared_ = false;  // the builds
+  bool compared_ = false;  // whether the builds were compared
   std::string key_trouble_;
 };
 
@@ -266,11 +279,12 @@ std::vector<Restarts> RunAsProcesses(runtime::Bus& bus, runtime::RunCoordinator&
       external.Check(coordinator, now);
       if (beacon.Due(now)) beacon.Send(now, coordinator.Awaited(now));
       progress.Show(coordinator.step());
+      TellLoggedStep(coordinator, options);
       if (options.announce) warnings.LookAtTheRoles();
       if (WasInterrupted()) break;
     }
   } catch (const std::exception& error) {
-    coordinator.Fail(error.what());  // the processes below still end in order
+    coordinator.Fail(error.what());  // the code below still ends the processes in order
   }
   supervisor.End();
   return supervisor.restarts();
@@ -320,9 +334,7 @@ BusRun RunOnBus(const Scenario& scenario, const ExperimentOptions& options,
   const TimePoint began = Clock::now();
   std::vector<Restarts> restarts;
   if (in_memory) {
-    RunInMemory(bus, coordinator, conducting.run_id, scenario, log,
-                options.resume ? recorder::Recorder::Existing::kResume
-                               : recorder::Recorder::Existing::kReplace);
+    RunInMemory(bus, coordinator, conducting.run_id, scenario, options, log);
   } else {
     restarts = RunAsProcesses(bus, coordinator, relay ? &*relay : nullptr, conducting.run_id,
                               scenario, options, log);
@@ -348,7 +360,7 @@ BusRun RunOnBus(const Scenario& scenario, const ExperimentOptions& options,
     keeper.SealCutOff(run.written, run.builds, key ? &*key : nullptr);
   }
   const std::string kept = KeptLog(conducting.run_id, options);
-  // Printed for every outcome: a missing role may be bound to another run.
+  // These peers are printed for every outcome, because a missing role may be bound to another run.
   const std::string foreign_peers = coordinator.foreign_peers().Text();
   if (options.announce && !foreign_peers.empty()) Notice(foreign_peers);
   if (coordinator.phase() == runtime::RunCoordinator::Phase::kFailed) {

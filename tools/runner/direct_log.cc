@@ -68,6 +68,7 @@ void DirectLog::End(const ExperimentResult& result) {
   if (!log_) return;  // the log already has all messages
   run_.steps = result.steps;
   run_.digest = result.digest;
+  run_.ended = true;
   run_.complete = true;
   run_.events = log_->head();
   keeper_->Seal(run_, {log_->written()}, builds_, key());

@@ -86,6 +86,10 @@ ExperimentResult Compute(const Scenario& scenario, const ExperimentOptions& opti
     followers.Add(step.truth, step.follower);
     if (options.samples) result.samples.push_back(sample);
     ++result.steps;
+    if (log && result.steps == 1) {
+      log->Flush();
+      options.on_logged_step();
+    }
     if (!WasInterrupted()) return;
     if (log) log->CutOff();
     throw Interrupted(fmt::format("interrupted at step {}", sample.step));
@@ -168,21 +172,21 @@ LoggedRun ReadOwnLog(const LogKeeper& keeper, const std::filesystem::path& log, 
   try {
     keeper.Check(run.written);
   } catch (const std::runtime_error&) {
-    read();  // if the log is that of another run, this error says more
+    try {
+      read();  // if the log is of another run, this error says more
+    } catch (const InputError&) {
+    }
     throw;
   }
   LoggedRun logged = read();
-  if (logged.complete) return logged;
+  if (logged.ended) return logged;
   throw std::runtime_error(
       fmt::format("{}: the log is not complete: {}", PathText(log), logged.note));
 }
 
-ExperimentResult RunLogged(const Scenario& scenario, const ExperimentOptions& options) {
-  std::optional<TemporaryDirectory> scratch;
-  std::filesystem::path log = options.log;
-  if (log.empty()) log = scratch.emplace().path() / "run.lcm";
-  const LogKeeper keeper(log);
-  BusRun run = RunOnBus(scenario, options, log, keeper);
+/// Reads the log of a run that has ended, verifies and seals it.
+ExperimentResult ReadResult(const LogKeeper& keeper, const std::filesystem::path& log, BusRun run,
+                            const Scenario& scenario, const ExperimentOptions& options) {
   LoggedRun logged = ReadOwnLog(keeper, log, run, scenario, options);
   const auto key = runtime::KeyOf(options.traffic);
   const bool checked = keeper.HasAllTold(run.written);
@@ -212,6 +216,19 @@ ExperimentResult RunLogged(const Scenario& scenario, const ExperimentOptions& op
   result.other_builds = std::move(run.other_builds);
   result.log = options.log;
   return result;
+}
+
+ExperimentResult RunLogged(const Scenario& scenario, const ExperimentOptions& options) {
+  std::optional<TemporaryDirectory> scratch;
+  std::filesystem::path log = options.log;
+  if (log.empty()) log = scratch.emplace().path() / "run.lcm";
+  const LogKeeper keeper(log);
+  BusRun run = RunOnBus(scenario, options, log, keeper);
+  try {
+    return ReadResult(keeper, log, std::move(run), scenario, options);
+  } catch (const InputError& error) {  // the log was changed since the recorder wrote it
+    throw std::runtime_error(error.what());
+  }
 }
 
 }  // namespace

@@ -1,8 +1,9 @@
-// One run of a scenario, on any transport: the same steps, the same digest.
+// One run of a scenario. Every transport gives the same steps and the same digest.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -54,6 +55,8 @@ struct ExperimentOptions {
   bool announce = false;         // print on stderr the network of the run and its processes
   bool samples = false;          // keep the samples of every step in the result
   std::string command_to_go_on;  // resumes the run; shown to the user if the run ends early
+  /// Called when the operating system has the first step of the log, and perhaps again later.
+  std::function<void()> on_logged_step = [] {};
 };
 
 /// How often a process was restarted.
@@ -102,7 +105,7 @@ struct LoggedRun : log::RunLog {
 /// Reads a run with the samples of all its steps. @throws InputError
 LoggedRun ReadLoggedRun(const std::filesystem::path& log);
 /// Reads a run without samples, in memory that does not grow with the length of the run.
-/// @param scenario the one in the log
+/// @param scenario the scenario in the log
 /// @throws InputError
 LoggedRun MeasureLoggedRun(const std::filesystem::path& log, const Scenario& scenario);
 

@@ -26,7 +26,7 @@ log_seal_t SealOf(const log::RunLog& run, const runtime::RoleBuilds& builds) {
                  .utime = TimeOfStep(run.steps - 1, run.scenario)};
   seal.digest = run.digest;
   seal.steps = run.steps;
-  seal.complete = run.complete;
+  seal.complete = run.ended;
   seal.scenario_hash = run.scenario_hash;
   seal.version = FOGLINE_VERSION;
   for (const RoleInfo& info : kRoles) {
@@ -59,10 +59,16 @@ void LogKeeper::Check(const log::EventLogReader& file,
   }
 }
 
-void LogKeeper::Check(const std::vector<log::WrittenLog>& written) const {
+void LogKeeper::Check(const std::vector<log::WrittenLog>& written) const { Check(Open(), written); }
+
+log::EventLogReader LogKeeper::Open() const {
+  std::error_code unknown;
+  if (std::filesystem::status(log_, unknown).type() == std::filesystem::file_type::not_found) {
+    throw std::runtime_error(fmt::format("{}: the log was removed during the run", PathText(log_)));
+  }
   try {
-    Check(log::EventLogReader(log_), written);
-  } catch (const InputError& error) {  // the file is gone, or it is no event log
+    return log::EventLogReader(log_);
+  } catch (const InputError& error) {  // the run itself has made and read this file
     throw std::runtime_error(error.what());
   }
 }
@@ -76,7 +82,7 @@ bool LogKeeper::HasAllTold(const std::vector<log::WrittenLog>& written) const {
 
 void LogKeeper::Seal(const log::RunLog& run, const std::vector<log::WrittenLog>& written,
                      const runtime::RoleBuilds& builds, const runtime::SigningKey* key) const {
-  const log::EventLogReader file(log_);
+  const log::EventLogReader file = Open();
   Check(file, written);
   log_seal_t seal = SealOf(run, builds);
   runtime::Hash hash;

@@ -19,9 +19,10 @@ class LogKeeper {
   explicit LogKeeper(std::filesystem::path log);
 
   /// @param written the last report of each of the run's recorders
-  /// @throws std::runtime_error if another file has replaced the log, or its bytes differ
+  /// @throws std::runtime_error if the log was removed, another file has replaced it, or its bytes
+  ///     differ
   void Check(const std::vector<log::WrittenLog>& written) const;
-  /// Whether the file is exactly as long as the recorders have reported.
+  /// Whether the file has exactly the number of bytes that the recorders have reported.
   bool HasAllTold(const std::vector<log::WrittenLog>& written) const;
 
   /// Checks the file again and seals it.
@@ -31,8 +32,8 @@ class LogKeeper {
   /// @throws std::runtime_error as Check(), or if the seal cannot be written
   void Seal(const log::RunLog& run, const std::vector<log::WrittenLog>& written,
             const runtime::RoleBuilds& builds, const runtime::SigningKey* key) const;
-  /// The same for a run that ended early, whose log has not been read. If the log cannot be sealed,
-  /// it stays as it is.
+  /// Seals the log of a run that ended early; the log has not been read. If the log cannot be
+  /// sealed, it stays as it is.
   void SealCutOff(const std::vector<log::WrittenLog>& written, const runtime::RoleBuilds& builds,
                   const runtime::SigningKey* key) const noexcept;
 
@@ -43,6 +44,8 @@ class LogKeeper {
     bool operator==(const Identity&) const = default;
   };
   std::optional<Identity> Find() const;
+  /// @throws std::runtime_error if the log is gone or is no event log
+  log::EventLogReader Open() const;
   /// Checks the bytes on the disk. @throws std::runtime_error as Check()
   void Check(const log::EventLogReader& file, const std::vector<log::WrittenLog>& written) const;
 

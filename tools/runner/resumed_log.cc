@@ -1,12 +1,16 @@
 #include "tools/runner/resumed_log.h"
 
+#include <string>
 #include <string_view>
 
 #include <fmt/core.h>
 
+#include "common/process/console.h"
 #include "common/text.h"
 #include "scenario/io/loader.h"
+#include "services/log/log_of_run.h"
 #include "services/log/run_log.h"
+#include "services/runtime/wire/message_signer.h"
 #include "services/runtime/wire/wire.h"
 
 namespace fogline::runner {
@@ -20,21 +24,28 @@ constexpr Duration kEndOfOthers = milliseconds(2000);
   throw InputError(fmt::format("{}: error: --resume: {}", PathText(log), why));
 }
 
-/// Checks that a file exists and is an event log. @return its path @throws InputError
+/// Takes back an older log that the killed run was to replace, and checks that the file exists and
+/// is an event log. @return its path @throws InputError
 const std::filesystem::path& Readable(const std::filesystem::path& log) {
+  const std::string older = log::TakeBackOlder(log, "--resume", kEndOfOthers);
+  if (!older.empty()) Complain(older);
   log::ReadFront(log);
   return log;
 }
 
-/// Refuses a log that was changed since it was sealed: a new seal must not hide the change.
+/// Refuses a log that was changed since it was sealed, because a new seal would hide the change.
 void CheckSeal(const std::filesystem::path& log, const runtime::SigningKey* key) {
   log::RunLogReader reader(log, log::RunLogReader::Compared::kFile);
   while (reader.Next() != nullptr) {
   }
   const log::RunLog& run = reader.run();
   if (run.altered) Refuse(log, "the log is not the one that was sealed: " + run.note);
-  if (key == nullptr || !run.seal || log::VerifySeal(*run.seal, *key) == log::SealSignature::kHolds)
-    return;
+  if (!run.seal) return;
+  if (key == nullptr) {
+    if (!runtime::LooksSigned(run.seal->event)) return;
+    Refuse(log, "the seal of the log is signed, and --key does not name its key");
+  }
+  if (log::VerifySeal(*run.seal, *key) == log::SealSignature::kHolds) return;
   Refuse(log, "the seal of the log is not signed with this key");
 }
 

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
+#include <thread>
 #include <utility>
 
 #include <fmt/core.h>
@@ -26,11 +27,13 @@ namespace {
 // roles, then the rest of the machine.
 constexpr int kWorldPriority = 2;
 constexpr int kPriority = 1;
-// A network that cannot be joined is tried again at this interval, until a person has repaired it.
+// If a network cannot be joined, the process tries again at this interval.
 constexpr Duration kTryAgain = milliseconds(500);
+// A process of a run that waits for its network looks this often. A whole run may wait for it.
+constexpr Duration kLookEvery = milliseconds(50);
 
 struct Arguments {
-  std::string name;  // of the program
+  std::string name;  // name of the program
   Role role;
   std::string url;  // "": NetworkUrl() decides
   std::optional<std::int64_t> run_id;
@@ -53,10 +56,10 @@ struct Arguments {
 /// A process on its network: a bus, and the role's node on that bus.
 class Service {
  public:
-  /// @throws InputError, std::runtime_error if it cannot join the network
+  /// @throws InputError, std::runtime_error if it cannot join the network, Interrupted
   Service(const Arguments& arguments, const WorkFactory& make)
       : arguments_(arguments), make_(make), began_(Clock::now()), pauses_(began_) {
-    Join(NetworkUrl(arguments.url), arguments.run_id);
+    JoinAtFirst(NetworkUrl(arguments.url));
     if (arguments.run_id) return;
     if (arguments.url.empty()) seeker_.emplace(arguments.role, MeetingUrl());
     Say(fmt::format("waiting for a run on {}{}", bus_->url(), HowToStartOne()));
@@ -106,8 +109,26 @@ class Service {
     starts_over_ = false;
   }
 
+  /// Joins the network for the first time. A process with the id of a run was started by a runner
+  /// on this network. If the network is away, the process waits for it: until the runner kills the
+  /// process, at most for the time of --wait.
+  /// @throws as Join(), and Interrupted
+  void JoinAtFirst(const std::string& url) {
+    for (bool waits = false;; waits = true) {
+      try {
+        return Join(url, arguments_.run_id);
+      } catch (const NetworkAway& error) {
+        const TimePoint now = pauses_.Attend(Clock::now());
+        if (!arguments_.run_id || WaitIsOver(now)) throw;
+        if (!waits) Say(fmt::format("{}; waits for the network", error.what()));
+      }
+      if (WasInterrupted()) throw Interrupted("interrupted");
+      std::this_thread::sleep_for(kLookEvery);
+    }
+  }
+
   std::string HowToStartOne() const {
-    // The runner starts the recorder, and every role with a run's id, itself.
+    // The runner itself starts the recorder and every role with --run-id.
     if (arguments_.role == Role::kRecorder || arguments_.run_id) return "";
     const std::string url =
         arguments_.url.empty() ? "" : fmt::format(" --lcm-url '{}'", arguments_.url);
@@ -125,36 +146,40 @@ class Service {
     }
   }
 
-  /// @throws std::runtime_error after --wait
+  bool WaitIsOver(TimePoint now) const {
+    return arguments_.wait_s > 0 &&
+           pauses_.HeldAgainst(began_, now) > std::chrono::duration<double>(arguments_.wait_s);
+  }
+
+  /// @throws std::runtime_error after the time of --wait
   void LimitWait(TimePoint now) const {
-    if (arguments_.wait_s <= 0 ||
-        pauses_.HeldAgainst(began_, now) <= std::chrono::duration<double>(arguments_.wait_s)) {
-      return;
-    }
+    if (!WaitIsOver(now)) return;
     throw std::runtime_error(
         fmt::format("waited {:g} s for a run on {} in vain{} (--wait 0 waits for ever)",
                     arguments_.wait_s, bus_->url(), HowToStartOne()));
   }
 
-  /// Whether the command line names neither a network nor a run.
+  /// Whether the process may look for a run elsewhere: the command line names no network and no
+  /// run.
   bool MaySeek() const { return arguments_.url.empty() && !arguments_.run_id; }
 
-  /// Opens the seeker if the network is there. @return whether there is a seeker
+  /// Opens the seeker if the network of the meeting address can be joined. @return whether there is
+  /// a seeker
   bool OpenSeeker(TimePoint now) {
     if (seeker_) return true;
     if (now < try_at_) return false;
     try_at_ = now + kTryAgain;
     try {
       seeker_.emplace(arguments_.role, MeetingUrl());
-    } catch (const std::exception&) {  // not yet
+    } catch (const std::exception&) {  // the network is not there yet
       return false;
     }
     return true;
   }
 
-  /// Goes to the network of a run that waits for the role, and back if it hears nothing of that
+  /// Goes to the network of a run that waits for the role. Goes back if nothing is heard of that
   /// run.
-  /// @throws std::runtime_error after --wait
+  /// @throws std::runtime_error after the time of --wait
   void Seek(TimePoint now) {
     LimitWait(now);
     if (!MaySeek() || !OpenSeeker(now)) return;
@@ -174,7 +199,7 @@ class Service {
   }
 
   /// Called while the runner is silent. If another run waits for the role, the process goes there.
-  /// (Runs on the present network are heard by the node itself.)
+  /// (The node itself hears runs on the present network.)
   void SeekAnother(TimePoint now) {
     if (!MaySeek() || !OpenSeeker(now)) return;
     seeker_->Ignore(*news().id);
@@ -185,8 +210,8 @@ class Service {
     GoTo(*run);
   }
 
-  /// Called after the node has given up its place. Joins the present network again, as soon as it
-  /// is there, and waits for a run on it. @throws std::runtime_error after --wait
+  /// Called after the node has given up its place. Joins the present network again, as soon as this
+  /// is possible, and waits for a run on it. @throws std::runtime_error after the time of --wait
   void StartOver(TimePoint now) {
     if (!std::exchange(starts_over_, true)) {
       Say(own().message().error);
@@ -202,7 +227,7 @@ class Service {
     try_at_ = now + kTryAgain;
     try {
       Join(std::string(bus_->url()), std::nullopt);
-    } catch (const std::exception&) {  // not yet
+    } catch (const std::exception&) {  // the network is not there yet
     }
   }
 
@@ -224,7 +249,7 @@ class Service {
 
   void PreferIfRealtime() {
     if (!news().realtime || std::exchange(preferred_, true)) return;
-    // If the kernel does not grant it, the process keeps time as well as the machine allows.
+    // If the kernel does not grant the priority, the process runs with the usual one.
     RunBeforeOthers(arguments_.role == Role::kWorld ? kWorldPriority : kPriority);
   }
 
@@ -234,7 +259,7 @@ class Service {
   OwnPauses pauses_;
   std::unique_ptr<Bus> bus_;
   std::unique_ptr<Work> work_;
-  std::optional<RunSeeker> seeker_;  // while there is no run yet
+  std::optional<RunSeeker> seeker_;  // while the role has no run, or its runner is silent
   TimePoint try_at_{};               // when to try again to join a network
   bool starts_over_ = false;
   bool warned_ = false;
@@ -287,6 +312,8 @@ int RunProcess(int argc, char** argv, Role role, const WorkFactory& make,
   FailWritesBeyondTheSizeLimit();
   try {
     return Service(arguments, make).Run();
+  } catch (const Interrupted&) {
+    return kInterrupted;
   } catch (const InputError& error) {
     Complain(fmt::format("{}: {}", name, error.what()));
     return kBadInput;

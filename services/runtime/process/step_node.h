@@ -1,5 +1,5 @@
-// An algorithm as the work of a node: it connects the typed inputs and outputs of the algorithm
-// with the bytes of Inputs and Outputs.
+// An algorithm as the work of a node. StepNode connects the typed inputs and outputs of the
+// algorithm with the bytes of Inputs and Outputs.
 //
 // In real time two roles go on when inputs fail: the role that begins the steps (the world), and
 // the one that decides in every step (the arbitrator). Each has a second algorithm for this,
@@ -65,7 +65,7 @@ class StepNode final : public Work {
       !kFailsafe || Traits::kHasOnDemand == requires { &InRealtime::SetOnDemandInput; },
       "an algorithm and its failsafe have the same input on demand");
 
-  /// Makes an input put its messages into the ring of decoded messages.
+  /// Makes an input store its messages, decoded, in rings_.
   template <std::size_t I>
   void KeepMessagesOf(Input& input) {
     input.keep = [this](std::int64_t step, Arrival& arrival) {
@@ -97,13 +97,13 @@ class StepNode final : public Work {
     } else if constexpr (kFailsafe) {
       return Watched(std::make_unique<DeadlineRule>(parts_, scenario));
     } else if constexpr (Traits::kStarts) {
-      throw std::runtime_error("nothing here keeps the time of a run in real time");
+      throw std::runtime_error("this world cannot run in real time: it has no Failsafe class");
     } else {
       return std::make_unique<RealtimeRule>(parts_, scenario);
     }
   }
 
-  /// Keeps access to the rule's judgement of the inputs.
+  /// Stores a pointer to the rule's RealtimeWatch, which judges the inputs.
   template <class Rule>
   std::unique_ptr<Rule> Watched(std::unique_ptr<Rule> rule) {
     watch_ = &rule->watch();
@@ -138,8 +138,8 @@ class StepNode final : public Work {
     }
   }
 
-  /// The newest message of an input that is not newer than `step`; nullptr if none has come. In
-  /// lockstep it is the message of `step`.
+  /// The newest message of an input up to step `step`; nullptr if no message has come. In lockstep
+  /// it is the message of `step`.
   template <std::size_t I>
   const std::tuple_element_t<I, AllInputs>* NewestOf(std::int64_t step) {
     const StepRing& ring = parts_.inputs.Of(kPlace<I>).ring;
@@ -232,12 +232,12 @@ class StepNode final : public Work {
   Node node_;
   Parts& parts_ = node_.parts();
   std::unique_ptr<Algorithm> algorithm_;
-  std::unique_ptr<InRealtime> failsafe_;  // in real time, if Failsafe is not void
+  std::unique_ptr<InRealtime> failsafe_;  // only in real time, if Failsafe is not void
   InputRings rings_;
   bool uses_on_demand_ = false;  // whether the input on demand is read in this scenario
   std::vector<std::uint8_t> encoded_;
   std::optional<StepGate> gate_;          // only for the role that begins the steps
-  const RealtimeWatch* watch_ = nullptr;  // of the rule in real time, if Failsafe is not void
+  const RealtimeWatch* watch_ = nullptr;  // the watch of the rule; nullptr without failsafe_
 };
 
 }  // namespace fogline::runtime

@@ -33,12 +33,12 @@ namespace {
 /// multicast message to every socket on its port, whichever group the socket has joined.
 bool IsTaken(std::uint16_t port) {
   const int probe = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-  if (probe < 0) return false;  // the caller's own socket will fail and say why
+  if (probe < 0) return false;  // the caller's own socket will fail with the reason
   sockaddr_in address{};
   address.sin_family = AF_INET;
   address.sin_port = htons(port);
-  // Without SO_REUSEADDR, which LCM sets, bind() fails with EADDRINUSE beside any other socket.
-  // Another error does not say that there is one.
+  // LCM sets SO_REUSEADDR, but this socket does not. So bind() fails with EADDRINUSE if another
+  // socket has the port. Another error does not mean that the port is taken.
   const bool taken =
       bind(probe, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) != 0 &&
       errno == EADDRINUSE;
@@ -46,8 +46,9 @@ bool IsTaken(std::uint16_t port) {
   return taken;
 }
 
-/// Adds options to a udpm URL that does not give them. Larger buffers survive bursts (a default one
-/// loses 88 % of 5000 messages sent at once); ttl=0 keeps traffic on this machine.
+/// Adds options to a udpm URL that does not give them. A larger buffer survives bursts (a default
+/// buffer loses 88 % of 5,000 messages that are sent in one burst). ttl=0 keeps traffic on this
+/// machine.
 std::string WithDefaults(std::string url) {
   if (!url.starts_with("udpm://")) return url;
   const auto add = [&url](std::string_view option, std::string_view value) {
@@ -69,17 +70,18 @@ std::string Escaped(std::string_view channel) {
   return escaped;
 }
 
-/// LCM asks for the receive buffer that any user may have. That buffer holds a hundred datagrams
-/// (rmem_max of a plain system): 5 ms of a flood of 20,000 a second. A process with CAP_NET_ADMIN
-/// may have more: it gets room for the messages that come while a busy machine does something else.
+/// LCM gets at most the receive buffer that every user may have (net.core.rmem_max). On a plain
+/// system this buffer holds a hundred datagrams, which a flood of 20,000 a second sends in 5 ms. A
+/// process with CAP_NET_ADMIN may have a larger buffer, which has room for the messages that come
+/// while a busy machine does something else.
 void WidenBuffer(int socket) {
   constexpr int kBytes = 8 * 1024 * 1024;
   setsockopt(socket, SOL_SOCKET, SO_RCVBUFFORCE, &kBytes, sizeof(kBytes));
 }
 
-/// errno if this process cannot open as many descriptors as LCM needs for a network, otherwise 0.
+/// errno if this process cannot open the descriptors that LCM needs for a network, otherwise 0.
 int LackOfDescriptors() {
-  // LCM uses at most ten: sockets, pipes and those of its self-test.
+  // LCM uses ten descriptors at most: sockets, pipes and those of its self-test.
   std::array<int, 16> descriptors{};
   int error = 0;
   for (int& descriptor : descriptors) {
@@ -92,7 +94,18 @@ int LackOfDescriptors() {
   return error;
 }
 
-// A bus that hears nothing for this long (five signs of life of a run) renews its membership.
+/// @throws NetworkAway if this machine has no route for the multicast of the URL, InputError if the
+///     URL has the address of one machine
+void RequireMulticast(const std::string& url) {
+  const std::string why = WhyNoMulticast(url);
+  if (why.empty()) return;
+  const std::string error = fmt::format("error: {}", why);
+  if (IsMulticast(GroupOf(url).value())) throw NetworkAway(error);
+  throw InputError(error);
+}
+
+// A bus that hears nothing for this long renews its membership of the group. In this time every
+// process of a run sends five messages.
 constexpr Duration kJoinAgainEvery = milliseconds(1000);
 
 }  // namespace
@@ -106,14 +119,12 @@ Bus::Bus(const std::string& url) : url_(WithDefaults(url)), in_memory_(url.start
   }
   // LCM would use its own default URL, which Fogline has not checked.
   if (url_.empty()) throw InputError("error: the LCM URL is empty");
-  if (const std::string why = WhyNoMulticast(url_); !why.empty()) {
-    throw InputError(fmt::format("error: {}", why));
-  }
+  RequireMulticast(url_);
   bool routed = false;
   {
-    // Until LCM's self-test is over, each socket accepts only the messages of this test, from its
-    // first datagram on. mpudpm gets no such filter, because it announces its ports on a channel of
-    // its own.
+    // Until LCM's self-test is over, each socket accepts only the messages of this test. The filter
+    // is attached before the socket can receive its first datagram. mpudpm gets no such filter,
+    // because it announces its ports on a channel of its own.
     std::optional<LcmSockets> sockets;
     if (url_.starts_with("udpm://")) {
       const LcmSockets::Reach reach = ReachOf(url_);
@@ -132,9 +143,11 @@ Bus::Bus(const std::string& url) : url_(WithDefaults(url)), in_memory_(url.start
   if (fd_ < 0) {
     if (lcm_ != nullptr) lcm_destroy(lcm_);
     ThrowIfExhausted(LackOfDescriptors(), url_);  // LCM does not say why
+    RequireMulticast(url_);                       // the route may be away since the first look
     throw InputError(fmt::format("error: LCM cannot open \"{}\"", url_));
   }
-  // LCM's self-test is over. The filter keeps channels without a subscription from LCM's parser.
+  // LCM's self-test is over. From now on the filter drops messages on channels without a
+  // subscription.
   Filter(ChannelFilter({}));
   static bool warned = false;
   if (!filtered_ && !std::exchange(warned, true)) {
@@ -183,7 +196,7 @@ void Bus::Subscribe(std::string_view channel, Handler handler, const Contents& c
   lcm_subscription_t* handle =
       lcm_subscribe(lcm_, Escaped(channel).c_str(), &Bus::OnMessage, &topic);
   if (handle == nullptr) throw std::runtime_error(fmt::format("cannot subscribe to {}", channel));
-  lcm_subscription_set_queue_capacity(handle, 0);  // 0: no limit (LCM's: 30, drops the newest)
+  lcm_subscription_set_queue_capacity(handle, 0);  // 0: no limit (LCM's limit: 30)
   FilterSockets();
 }
 
@@ -296,7 +309,7 @@ bool Bus::Readable(Duration timeout) {
 void Bus::Drain() {
   for (int i = 0; i < kDrained; ++i) {
     if (waiting_ > 0) {
-      Handle();  // no need to ask the kernel, nor to look at the clock
+      Handle();  // needs no call of the kernel and no look at the clock
     } else if (!Wait(Duration::zero())) {
       return;
     }
@@ -350,8 +363,9 @@ std::optional<Bytes> Bus::Verified(const Topic& topic, Bytes bytes) {
     ++(not_taken_.*kind);
   };
   if (!signer_) {
-    // The bytes go to the decoder as they are. It refuses a message with a signature behind its
-    // payload. An unsigned payload may by chance end like a signature, and must still be read.
+    // The bytes go to the decoder as they are. The decoder refuses a message with a signature
+    // behind its payload. An unsigned payload may by chance end like a signature, and must still be
+    // read.
     count(&Unverified::no_key);
     return bytes;
   }
@@ -378,11 +392,11 @@ std::string SignatureTrouble(const Bus::Unverified& unverified) {
 }
 
 std::string FreshMulticastUrl() {
-  // The ports lie above LCM's own 7667 and below 32768. From there on, Linux gives ports to sockets
-  // that ask for none (ip(7)). The group is LCM's.
+  // The ports lie above LCM's own port 7667 and below 32768. From 32768 on, Linux gives ports to
+  // sockets that ask for no port (ip(7)). The group is LCM's own.
   constexpr std::uint32_t kFirstPort = 20000;
   constexpr std::uint32_t kPorts = 12000;
-  constexpr int kTries = 20;  // if all find a taken port, the last one is used
+  constexpr int kTries = 20;  // if all tries find a taken port, the last port is used
   std::uint32_t port = 0;
   for (int i = 0; i < kTries; ++i) {
     port = kFirstPort + randombytes_uniform(kPorts);

@@ -1,6 +1,6 @@
 // LCM behind one small class: the URL gets safe options, channel names are taken literally, receive
-// queues do not have LCM's limit of 30, and handlers may throw. On request it signs messages or
-// simulates a bad network.
+// queues do not have LCM's limit of 30, and handlers may throw. On request the class signs messages
+// or simulates a bad network.
 #pragma once
 
 #include <cstdint>
@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "common/clock.h"
+#include "common/errors.h"
 #include "services/runtime/transport/faults.h"
 #include "services/runtime/transport/lcm_sockets.h"
 #include "services/runtime/wire/arrival.h"
@@ -30,16 +31,24 @@ class Client;
 
 namespace fogline::runtime {
 
+/// A network that is not there, perhaps only for a time: this machine has no route for the
+/// multicast of its URL.
+class NetworkAway : public InputError {
+ public:
+  using InputError::InputError;
+};
+
 /// One connection to an LCM network, for one thread. With memq:// a message reaches only the
 /// subscribers of the same object.
 class Bus {
  public:
   using Handler = std::function<void(Arrival&)>;
 
-  /// @param url as LCM takes it. udpm gets ttl=0 (this machine only) and asks for a receive buffer
-  ///     of 2 MiB (the kernel grants net.core.rmem_max) unless the URL says otherwise. tcpq's host
-  ///     may be a name; url() then gives its address in numbers.
-  /// @throws InputError when LCM cannot open it, std::runtime_error if there is no tcpq relay
+  /// @param url as LCM takes it. Unless the URL says otherwise, udpm gets ttl=0 (this machine only)
+  ///     and asks for a receive buffer of 2 MiB (the kernel grants at most net.core.rmem_max). The
+  ///     host of tcpq may be a name; url() then has the host's address in numbers.
+  /// @throws NetworkAway, InputError if LCM cannot open the URL
+  /// @throws std::runtime_error if there is no tcpq relay
   explicit Bus(const std::string& url);
   ~Bus();
   Bus(const Bus&) = delete;
@@ -47,54 +56,54 @@ class Bus {
 
   /// From now on signs the messages that it sends, and refuses messages without a correct
   /// signature.
-  /// @throws InputError if the kernel does not filter the messages that reach LCM's parser, which
-  ///     runs before the signature is checked: with mpudpm, or if the kernel accepts no filter
+  /// @throws InputError with mpudpm, or if the kernel accepts no filter. Unfiltered messages would
+  ///     reach LCM's parser before their signature is checked.
   void Secure(const MessageSigner& signer);
   bool secured() const { return signer_.has_value(); }
   /// From now on receives messages as over a bad network.
   void Impair(const Faults& faults) { faults_ = faults; }
 
   /// Calls `handler` from Wait() for every message on exactly this channel. Handlers of one channel
-  /// are called in the order of their subscription. The message is valid during the call. An
-  /// exception of a handler comes out of Wait().
+  /// are called in the order of their subscription. The message is valid during the call. If a
+  /// handler throws an exception, Wait() throws it.
   /// @param contents the messages that `handler` needs; if the kernel can, it drops the other
   ///     messages of the channel
   void Subscribe(std::string_view channel, Handler handler, const Contents& contents = {});
 
-  /// Takes only a share of a channel's messages, in [0, 1], if the kernel can choose; 1: all of
-  /// them.
+  /// Takes only a share of a channel's messages, if the kernel can choose messages. The share is in
+  /// [0, 1]; 1 means all messages.
   void SetSampleRate(std::string_view channel, double share);
 
-  /// Calls `watcher` from Wait() for every message on any channel that is no larger than Fogline's
-  /// messages may be. May be called once at most.
+  /// Calls `watcher` from Wait() for every message on any channel, except messages that are too
+  /// large for Fogline. May be called once at most.
   using Watcher = std::function<void(std::string_view channel, Bytes)>;
   void SubscribeAll(Watcher watcher);
 
   /// Sends bytes, which are copied before the call returns. A message that cannot be sent is lost,
   /// as on a bad network, and counted.
-  /// @throws std::runtime_error if there are more than kMaxMessageBytes
+  /// @throws std::runtime_error if the message is larger than kMaxMessageBytes
   void Publish(std::string_view channel, Bytes bytes) { Publish(TopicOf(channel), bytes); }
 
-  /// A channel on this bus, for callers that publish often: a search by name takes time.
+  /// A channel on this bus, for callers that publish often, because a search by name takes time.
   struct Topic;
   Topic& TopicOf(std::string_view channel);
   void Publish(const Topic& topic, Bytes bytes);
 
   /// Messages that could not be sent.
   struct FailedSends {
-    std::int64_t count = 0;  // since the beginning
-    std::string error;       // why the last one could not be sent
-    // Since then nothing could be sent; nullopt if the last message was sent.
+    std::int64_t count = 0;  // number since the beginning
+    std::string error;       // why the last message could not be sent
+    // The time since which nothing could be sent; nullopt if the last message was sent.
     std::optional<TimePoint> since;
   };
   const FailedSends& failed_sends() const { return failed_sends_; }
 
-  /// Handles one message, waiting for it up to `timeout`. @return whether there was one.
+  /// Handles one message. Waits up to `timeout` for the message. @return whether a message came
   bool Wait(Duration timeout);
 
-  /// Handles the messages that are there, but at most kDrained. The limit is for memq, where the
-  /// messages that handlers publish are there at once. Without the limit, a run in memory would
-  /// never let its caller look at the clock.
+  /// Handles the messages that are there, but at most kDrained. The limit is for memq: a message
+  /// that a handler publishes is there immediately. Without the limit, Drain() would not return
+  /// before the end of a run in memory.
   void Drain();
   static constexpr int kDrained = 1000;
 
@@ -106,11 +115,12 @@ class Bus {
   };
   /// The counts since the beginning.
   const Unverified& unverified() const { return unverified_; }
-  /// The counts since the last call, for several users of a bus whose counts are added up.
+  /// The counts since the last call. If several users of a bus call this, each gets a part of the
+  /// counts.
   Unverified TakeUnverified() { return std::exchange(not_taken_, {}); }
 
-  /// Readable when Wait(0) would handle a message. With tcpq this holds only once all earlier
-  /// messages are handled.
+  /// This descriptor is readable when Wait(0) would handle a message. With tcpq this is true only
+  /// when all earlier messages have been handled.
   int fd() const { return fd_; }
   const std::string& url() const { return url_; }
 
@@ -121,12 +131,13 @@ class Bus {
   void JoinAgainIfSilent();
   void Handle();
   bool HandleDue();
-  /// The bytes to be decoded: the signed payload, or, without a key, the message as it is; nullopt
-  /// if the message is refused.
+  /// The bytes to decode; nullopt if the message is refused. With a key the bytes are the payload,
+  /// without a key the whole message.
   std::optional<Bytes> Verified(const Topic& topic, Bytes bytes);
   void CallHandlers(Topic& topic, Bytes bytes);
   void FilterSockets();
-  /// @throws std::runtime_error if the kernel refuses a filter although it took earlier ones
+  /// @throws std::runtime_error if the kernel refuses a filter although it has accepted earlier
+  ///     ones
   void Filter(const std::vector<sock_filter>& program);
   static void OnMessage(const _lcm_recv_buf_t* buffer, const char* channel, void* topic);
   static void Deliver(Bytes bytes, Topic& topic);
@@ -138,7 +149,7 @@ class Bus {
   std::unique_ptr<tcpq::Client> tcpq_;  // instead of lcm_, with tcpq
   int fd_ = -1;
   std::vector<int> sockets_;  // UDP sockets, which LCM owns
-  bool filtered_ = true;      // the kernel filters what reaches LCM's parser
+  bool filtered_ = true;      // false if the kernel has refused a filter
   // Set if messages of the group come over the route, which may change.
   std::optional<GroupMembership> membership_;
   TimePoint joined_{};  // when a silent bus last renewed its membership
@@ -148,7 +159,7 @@ class Bus {
   std::int64_t waiting_ = 0;
   TimePoint now_{};            // when Wait() last handled a message
   std::deque<Topic> topics_;   // stable addresses: LCM keeps pointers to them
-  Watcher watcher_;            // of all channels, if there is one
+  Watcher watcher_;            // called for messages on all channels; may be empty
   std::exception_ptr parked_;  // an exception of a handler; it may not pass through LCM's C code
   std::optional<MessageSigner> signer_;
   std::optional<Faults> faults_;
@@ -159,8 +170,8 @@ class Bus {
 /// What the user of a process should know about keys and signatures; "" if there is nothing.
 std::string SignatureTrouble(const Bus::Unverified& unverified);
 
-/// LCM has one subscription for all handlers of a channel: a message is dispatched once and decoded
-/// once.
+/// LCM has one subscription for all handlers of a channel. So a message is dispatched once and
+/// decoded once.
 struct Bus::Topic {
   Bus* bus;
   std::string channel;

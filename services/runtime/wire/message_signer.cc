@@ -23,8 +23,8 @@ constexpr std::size_t kKeyIdOffset = kSignatureMagic.size();
 constexpr std::size_t kSenderOffset = kKeyIdOffset + 2;
 constexpr std::size_t kTagOffset = kSenderOffset + 2;
 
-/// The role that a STATUS names as its sender: its first field behind the header, a string as LCM
-/// encodes it (int32 length with the final 0, then the characters).
+/// The role that a STATUS names as its sender. It is the first field behind the header. LCM encodes
+/// this text as an int32 length with the final 0, then the characters.
 std::string_view RoleNamedIn(Bytes status) {
   constexpr std::size_t kLengthBytes = 4;
   constexpr std::size_t kText = kHeaderEnd + kLengthBytes;
@@ -70,7 +70,7 @@ void StartSodium() {
   if (!started) throw std::runtime_error("libsodium cannot be used here");
 }
 
-/// Bytes that are wiped from memory in the end, even after an exception.
+/// Bytes that the destructor wipes from memory, also after an exception.
 template <class T, std::size_t kSize>
 struct Wiped : std::array<T, kSize> {
   Wiped() : std::array<T, kSize>{} {}
@@ -80,10 +80,10 @@ struct Wiped : std::array<T, kSize> {
 };
 
 constexpr std::size_t kKeyDigits = 2 * std::tuple_size_v<SigningKey::Secret>;
-// Room for a key, its line end and one character more. A longer file is no key.
+// Room for a key, its line end and one more character. A longer file is no key.
 using KeyText = Wiped<char, kKeyDigits + 3>;
 
-/// Reads a file, at most as many bytes as `text` has.
+/// Reads a file into `text`, at most until `text` is full.
 /// @return the number of bytes; -1 with errno if it cannot be read
 ssize_t ReadAll(int fd, KeyText& text) {
   std::size_t size = 0;
@@ -159,6 +159,7 @@ void SigningKey::Create(const std::filesystem::path& file) {
   StartSodium();
   const int fd = open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, S_IRUSR | S_IWUSR);
   if (fd < 0) {
+    ThrowIfExhausted(errno, PathText(file));
     throw KeyError(file, errno == EEXIST ? "exists; a key is not replaced"
                                          : fmt::format("cannot write: {}", std::strerror(errno)));
   }
@@ -172,7 +173,8 @@ void SigningKey::Create(const std::filesystem::path& file) {
   close(fd);
   if (error == 0) return;
   unlink(file.c_str());
-  throw KeyError(file, fmt::format("cannot write: {}", std::strerror(error)));
+  throw std::runtime_error(
+      fmt::format("{}: cannot write: {}", PathText(file), std::strerror(error)));
 }
 
 MessageSigner::KeyId MessageSigner::IdOf(const SigningKey& key) {

@@ -1,4 +1,4 @@
-// The log or a role of a run is not what it should be, and the run reports it.
+// The log of a run was changed, or a role is of another build. The run reports this.
 #include <gmock/gmock-more-matchers.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -32,7 +32,7 @@ TEST_F(LogIntegrityTest, ALogThatAnotherTakesThePlaceOfEndsTheRunAlthoughItHasIt
   Background run(Run());
   ASSERT_TRUE(run.WaitForErr("waiting for the driver"));
   ASSERT_TRUE(GrowsTo(1, log_));
-  // WHEN the log of another run replaces the log of this run, and has this run's id
+  // WHEN a forged log replaces the log of this run. It is of another run, but has this run's id
   const std::int64_t run_id = RunIdIn(run.Err());
   const std::string forged = folder_.File("forged.lcm");
   Rewrite(other, forged, [run_id](std::string_view, Payload& bytes) { PutRunId(run_id, bytes); });
@@ -45,7 +45,7 @@ TEST_F(LogIntegrityTest, ALogThatAnotherTakesThePlaceOfEndsTheRunAlthoughItHasIt
   EXPECT_EQ(run.Out(), "");
 }
 
-class FlippedBitTest : public LogIntegrityTest {
+class DisturbedLogTest : public LogIntegrityTest {
  protected:
   /// Lets a run begin, stops its driver, and calls `disturb`, which changes the log on the disk.
   /// @return the outcome of the run
@@ -61,6 +61,31 @@ class FlippedBitTest : public LogIntegrityTest {
     return {.code = code, .out = run.Out(), .err = run.Err()};
   }
 };
+
+TEST_F(DisturbedLogTest, ThatIsRemovedEndsTheRun) {
+  const Outcome outcome = Disturbed([&](Background&) { std::filesystem::remove(log_); });
+  EXPECT_EQ(outcome.code, 3);
+  EXPECT_THAT(outcome.err, HasSubstr("error: " + log_ + ": the log was removed during the run"));
+  EXPECT_EQ(outcome.out, "");
+}
+
+TEST_F(DisturbedLogTest, ThatIsEmptiedEndsTheRun) {
+  const Outcome outcome = Disturbed([&](Background&) { std::filesystem::resize_file(log_, 0); });
+  EXPECT_EQ(outcome.code, 3);
+  EXPECT_THAT(outcome.err, HasSubstr("error: " + log_ + ": error: not an LCM event log"));
+  EXPECT_EQ(outcome.out, "");
+}
+
+TEST_F(DisturbedLogTest, ThatIsRemovedEndsARunInOneProcessToo) {
+  Background run({Program("fogline"), "run", "scenario/paper.json", "--transport", "direct",
+                  "--set", "/steps=2000000", "--log", log_});
+  ASSERT_TRUE(GrowsTo(1'000'000, log_)) << run.Err();
+  std::filesystem::remove(log_);
+  EXPECT_EQ(run.Wait(), 3) << run.Err();
+  EXPECT_THAT(run.Err(), HasSubstr(log_ + ": the log was removed during the run"));
+}
+
+class FlippedBitTest : public DisturbedLogTest {};
 
 TEST_F(FlippedBitTest, InAMessageEndsTheRun) {
   const Outcome outcome = Disturbed([&](Background&) {
@@ -101,7 +126,8 @@ std::string DriverOfAnotherBuild(const ScratchFolder& folder) {
   std::filesystem::copy_file(Program("fogline-driver"), program);
   std::ifstream in(program, std::ios::binary);
   const std::string content{std::istreambuf_iterator<char>(in), {}};
-  // A note: name size 4, content size 20, type 3 (NT_GNU_BUILD_ID), name.
+  // The beginning of the build id's ELF note: name size 4, content size 20, type 3
+  // (NT_GNU_BUILD_ID), name.
   using namespace std::string_view_literals;
   const std::size_t note = content.find("\x04\0\0\0\x14\0\0\0\x03\0\0\0GNU\0"sv);
   EXPECT_NE(note, std::string::npos);

@@ -10,9 +10,11 @@
 #include <iterator>
 #include <memory>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "services/runtime/transport/bus.h"
+#include "tests/support/children.h"
 #include "tests/support/command.h"
 
 namespace fogline::test {
@@ -35,7 +37,7 @@ bool HoldsALock(pid_t pid) {
 
 class LogLockTest : public testing::Test {
  protected:
-  /// A run into log_, or a table into its folder, which waits until a driver comes.
+  /// The command of a run into log_, or of a table into its folder. It waits until a driver comes.
   std::vector<std::string> WaitingForADriver(const std::vector<std::string>& command) const {
     return With(command, {"--external", "driver", "--lcm-url", url_});
   }
@@ -69,10 +71,10 @@ TEST_F(LogLockTest, ASecondRunIntoOneLogIsRefusedByNameAndTheFirstKeepsItsResult
   Background first(WaitingForADriver(With(run_, {"--json", "--seed", "1"})));
   ASSERT_TRUE(first.WaitForErr("waiting for the driver"));
   ExpectRefusalOfASecondRun(first.pid());
-  // WHEN it goes on
+  // WHEN the run goes on
   const Background driver(StartADriver());
   ASSERT_EQ(first.Wait(), 0) << first.Err();
-  // THEN its result and its log are those of this run
+  // THEN its result and its log are those of an undisturbed run
   const Outcome direct = RunCommand({Program("fogline"), "run", "scenario/paper.json", "--json",
                                      "--transport", "direct", "--seed", "1"});
   const auto result = nlohmann::json::parse(first.Out());
@@ -148,13 +150,26 @@ TEST_F(LogLockTest, ARunRefusesALogThatIsNotItsOwn) {
   Background run(WaitingForADriver(With(run_, {"--json"})));
   ASSERT_TRUE(run.WaitForErr("waiting for the driver"));
   ASSERT_TRUE(GrowsTo(1, log_));
-  // WHEN another log takes its place
+  // WHEN another log takes the place of this log
   std::filesystem::rename(other, log_);
   const Background driver(StartADriver());
   // THEN the run fails and reports no result
   EXPECT_EQ(run.Wait(), 3);
   EXPECT_THAT(run.Err(), HasSubstr("fogline run: error: " + log_ + ": the log is of run "));
   EXPECT_EQ(run.Out(), "");
+}
+
+TEST_F(LogLockTest, AnOpenFileOfTheProcessIsNoLog) {
+  const std::string link = folder_.File("link.lcm");
+  std::filesystem::create_symlink("/dev/stdout", link);
+  for (const std::string& log :
+       {std::string("/dev/stdout"), std::string("/proc/self/fd/1"), link}) {
+    const Outcome run = RunCommand(
+        {Program("fogline"), "run", "scenario/paper.json", "--transport", "direct", "--log", log});
+    EXPECT_EQ(run.code, 2) << log << run.err;
+    EXPECT_THAT(run.err, HasSubstr(log + ": error: --log: "));
+  }
+  EXPECT_TRUE(std::filesystem::is_symlink(link));
 }
 
 TEST_F(LogLockTest, ASecondTableIntoOneFolderIsRefusedByName) {
@@ -170,8 +185,7 @@ TEST_F(LogLockTest, ASecondTableIntoOneFolderIsRefusedByName) {
     EXPECT_EQ(second.err, logs + ": error: --logs: is being written by another table (pid " +
                               std::to_string(first.pid()) + ")\n");
   }
-  // Another run may not replace a log of the table either, but it may write its own log in this
-  // folder.
+  // A run may not replace a log of the table, but it may write its own log into this folder.
   const std::vector<std::string> run{
       Program("fogline"), "run",  "scenario/paper.json", "--transport", "direct",
       "--force",          "--log"};
@@ -201,18 +215,18 @@ TEST_F(LogLockTest, OfRunsThatBeginAtOnceIntoOneLogOneHasIt) {
 }
 
 TEST_F(LogLockTest, NothingStaysOfARunThatNeverBegan) {
-  // GIVEN a run that waits for a driver in vain; its log would hold a scenario and no step
+  // GIVEN a run that waits for a driver in vain. Its log would have a scenario, but no step
   const Outcome run = RunCommand(With(WaitingForADriver(run_), {"--wait", "0.5"}));
   EXPECT_EQ(run.code, 3);
   EXPECT_THAT(run.err, HasSubstr("waited 0.5 s for the driver in vain"));
   EXPECT_THAT(run.err, HasSubstr("\n  no log was written\n"));
   EXPECT_FALSE(std::filesystem::exists(log_));
-  // AND a recorder that waits for a run that never comes
+  // AND a recorder that waits for a run in vain leaves no log
   const std::vector<std::string> recorder{Program("fogline-recorder"),  "--log",  log_, "--lcm-url",
                                           runtime::FreshMulticastUrl(), "--wait", "0.5"};
   EXPECT_EQ(RunCommand(recorder).code, 3);
   EXPECT_FALSE(std::filesystem::exists(log_));
-  // AND such a recorder does not touch an older log that it would have replaced
+  // AND a recorder that waits in vain does not touch an older log
   ASSERT_EQ(RunCommand(With(run_, {"--transport", "direct"})).code, 0);
   const auto size = std::filesystem::file_size(log_);
   EXPECT_EQ(RunCommand(recorder).code, 3);
@@ -231,6 +245,76 @@ TEST_F(LogLockTest, AnOlderLogIsThereAgainWhenTheRunThatReplacesItNeverBegins) {
   EXPECT_NE(Content(log_), older);
   const std::filesystem::directory_iterator files(std::filesystem::path(log_).parent_path());
   EXPECT_EQ(std::distance(begin(files), end(files)), 1);
+}
+
+/// Ends a run by kill -9, and waits until its processes have ended, too.
+void Kill(Background& run) {
+  const std::vector<pid_t> children = ChildrenOf(run.pid());
+  run.Signal(SIGKILL);
+  EXPECT_EQ(run.Wait(), 128 + SIGKILL);
+  for (const pid_t child : children) {
+    while (IsAlive(child)) std::this_thread::sleep_for(kLookEvery);
+  }
+}
+
+std::ptrdiff_t FilesBeside(const std::string& file) {
+  const std::filesystem::directory_iterator files(std::filesystem::path(file).parent_path());
+  return std::distance(begin(files), end(files));
+}
+
+TEST_F(LogLockTest, AKilledRunThatHasBegunToReplaceALogLeavesNoFileBesideIt) {
+  for (const char* transport : {"udpm", "memq"}) {
+    ASSERT_EQ(RunCommand(With(run_, {"--transport", "direct", "--force"})).code, 0);
+    const std::string older = Content(log_);
+    Background run(With(run_, {"--force", "--seed", "2", "--transport", transport, "--pace", "1"}));
+    // GIVEN a new log with a step
+    for (std::string log = older; log == older || log.find("TRUTH") == std::string::npos;
+         log = Content(log_)) {
+      ASSERT_TRUE(IsAlive(run.pid())) << run.Err();
+      std::this_thread::sleep_for(kLookEvery);
+    }
+    // THEN the older log is removed while the run goes on, long before its end
+    while (FilesBeside(log_) > 1) {
+      ASSERT_TRUE(IsAlive(run.pid())) << transport << ": " << run.Err();
+      std::this_thread::sleep_for(kLookEvery);
+    }
+    ASSERT_TRUE(IsAlive(run.pid())) << transport << ": removed by the run's end";
+    Kill(run);
+    EXPECT_EQ(FilesBeside(log_), 1) << transport;
+    // AND the rest of the new log can be resumed
+    const Outcome resumed = RunCommand({Program("fogline"), "run", "--resume", log_});
+    EXPECT_EQ(resumed.code, 0) << resumed.err;
+    EXPECT_THAT(resumed.out, HasSubstr("500 steps"));
+    EXPECT_EQ(FilesBeside(log_), 1) << transport;
+  }
+}
+
+TEST_F(LogLockTest, AnOlderLogIsBackAfterAKillBeforeTheRunHasBegun) {
+  ASSERT_EQ(RunCommand(With(run_, {"--transport", "direct"})).code, 0);
+  const std::string older = Content(log_);
+  const std::string back = log_ +
+                           ": the older log is back: the run that was to replace it was "
+                           "killed before its first step\n";
+  const auto kill_early = [this] {
+    Background run(WaitingForADriver(With(run_, {"--force"})));
+    ASSERT_TRUE(run.WaitForErr("waiting for the driver"));
+    Kill(run);
+  };
+  // WHEN another run is to write this log, THEN it finds the older log
+  kill_early();
+  ASSERT_NE(Content(log_), older);
+  const Outcome second = RunCommand(With(run_, {"--transport", "direct"}));
+  EXPECT_EQ(second.code, 2);
+  EXPECT_EQ(second.err, back + log_ + ": error: --log: the file exists; --force replaces it\n");
+  EXPECT_EQ(Content(log_), older);
+  EXPECT_EQ(FilesBeside(log_), 1);
+  // AND so does --resume
+  kill_early();
+  const Outcome resumed = RunCommand({Program("fogline"), "run", "--resume", log_});
+  EXPECT_EQ(resumed.code, 0);
+  EXPECT_THAT(resumed.err, StartsWith(back));
+  EXPECT_EQ(Content(log_), older);
+  EXPECT_EQ(FilesBeside(log_), 1);
 }
 
 TEST_F(LogLockTest, AnEmptyFileIsAsGoodAsNone) {

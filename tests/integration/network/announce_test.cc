@@ -1,6 +1,5 @@
-// top, doctor and roles find a run on a port of its own, although no user tells them where it is.
-// Each test has a meeting address of its own, so announcements on LCM's default address do not
-// reach it.
+// top, doctor and roles find a run on a port of its own, although no user gives them its URL. Each
+// test has a meeting address of its own, so announcements on LCM's default address do not reach it.
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -138,7 +137,7 @@ TEST(AnnounceTest, TopFollowsTheNewestRunAndNamesTheOthers) {
   EXPECT_EQ(seen["announced"][1]["run_id"], first.run_id);
   EXPECT_EQ(seen["announced"][1]["followed"], false);
   EXPECT_EQ(seen["lcm_url"], second.url);
-  // WHEN the newest run is killed and so announces no end, THEN top follows the other one
+  // WHEN the newest run is killed and so announces no end, THEN top follows the other run
   newer.Signal(SIGKILL);
   top.WaitFor([&first](const json& now) { return now["lcm_url"] == first.url; });
 }
@@ -225,10 +224,11 @@ TEST(AnnounceTest, OfTwoProcessesOfOneRoleTheOtherTakesOverWhenTheFirstIsKilled)
     drivers.emplace_back(meeting.Command("fogline-driver", {}));
     ASSERT_TRUE(drivers.back().WaitForErr("waiting for a run", kPatience));
   }
+  // The run takes 25 s. A driver needs up to 5 s to find its place taken, more on a busy machine.
   Background run(
-      meeting.Run({"--transport", "udpm", "--json", "--external", "driver", "--pace", "8"}));
+      meeting.Run({"--transport", "udpm", "--json", "--external", "driver", "--pace", "2"}));
   ASSERT_TRUE(GrowsTo(20'000, meeting.Log(), kPatience)) << run.Err();
-  // GIVEN that both drivers have joined the run, and one of them has found its place taken
+  // GIVEN two drivers in the run, of which one has reported that the other has the role
   const auto is_other = [](const Background& driver) {
     const std::string said = driver.Err();
     return said.find("another process is the driver") != std::string::npos ||
@@ -242,7 +242,7 @@ TEST(AnnounceTest, OfTwoProcessesOfOneRoleTheOtherTakesOverWhenTheFirstIsKilled)
   ASSERT_EQ(std::ranges::count_if(drivers, is_other), 1);
   Background& first = drivers[is_other(drivers[0]) ? 1 : 0];
   Background& other = drivers[is_other(drivers[0]) ? 0 : 1];
-  // WHEN the first driver is killed THEN the other one takes its place before the run gives up
+  // WHEN the first driver is killed THEN the other driver takes its place before the run gives up
   first.Signal(SIGKILL);
   ASSERT_EQ(run.Wait(), 0) << run.Err() << other.Err();
   EXPECT_EQ(json::parse(run.Out())["digest"], DirectDigest());
@@ -319,7 +319,7 @@ TEST(AnnounceTest, WhatIsForgedIsRefusedAndCountedAndDisturbsNoRun) {
     }
   };
   attack();
-  // WHEN a run takes place among them
+  // WHEN a run takes place among these beacons
   Background run(
       meeting.Run({"--transport", "udpm", "--json", "--external", "driver", "--pace", "5"}));
   const Place place = PlaceOf(run);
@@ -367,7 +367,7 @@ class AnnounceOnMachineTest : public NetworkTest {};
 
 TEST_F(AnnounceOnMachineTest, ARunThatCannotAnnounceItselfGoesOnAndSaysNothingOfThat) {
   const Machine island("island");
-  // No run announces itself where LCM_DEFAULT_URL names a relay (TCP).
+  // If LCM_DEFAULT_URL names a relay (TCP), no run announces itself.
   std::vector<std::string> command{"env", "LCM_DEFAULT_URL=tcpq://127.0.0.1:1"};
   const auto rest = Run({"--transport", "udpm", "--set", "/steps=30"});
   command.insert(command.end(), rest.begin(), rest.end());

@@ -1,6 +1,6 @@
-// A run while messages cannot be sent for some time: an interface, its address or its route goes
-// away and comes back, or a firewall drops outgoing messages. Each test has a network of the
-// kernel's own.
+// Messages of a run cannot be sent for some time: an interface, its address or its route goes away
+// and comes back, or a firewall drops outgoing messages. Each test has a network that the kernel
+// simulates.
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 
@@ -25,7 +25,7 @@ using testing::HasSubstr;
 
 constexpr const char* kUrl = "udpm://239.255.76.67:7700?ttl=1";
 
-/// A part of the network that goes away and comes back, by lines of sh.
+/// A part of the network, and the lines of sh that take it away and bring it back.
 struct Outage {
   std::string name;
   std::string begin;
@@ -49,7 +49,7 @@ class OutageTest : public NetworkTest {
     more.insert(more.end(), {"--pace", "20"});
     return Run(more);
   }
-  /// Waits until the log of the run has some fifty steps more.
+  /// Waits until the log of the run has grown by some fifty steps.
   void LastForSteps() const {
     ASSERT_TRUE(GrowsTo(std::filesystem::file_size(Log()) + 50'000, Log()));
   }
@@ -91,13 +91,13 @@ TEST_P(SeveralMachinesOutageTest, IsRepairedAndTold) {
   Background driver(lab[1].On({Program("fogline-driver"), "--lcm-url", kUrl}));
   Background run(lab[0].On(PacedRun({"--lcm-url", kUrl, "--external", "driver"})));
   ASSERT_TRUE(GrowsTo(20'000, Log()));
-  // WHEN a part of the network fails there and comes back
+  // WHEN a part of the network fails on the driver's machine and comes back
   lab[1].Do(GetParam().begin);
   // The run stands still, and no event shows from outside that a message of the driver was lost.
   // The driver sends a message every 200 ms.
   std::this_thread::sleep_for(milliseconds(300));
   lab[1].Do(GetParam().end);
-  // THEN the result is the same
+  // THEN the result is that of an undisturbed run
   const auto result = ResultOf(run);
   EXPECT_EQ(result["digest"], Undisturbed());
   EXPECT_EQ(driver.Wait(), 0) << driver.Err();
@@ -119,6 +119,38 @@ INSTANTIATE_TEST_SUITE_P(
                     Outage{"TheLink", "ip link set eth0 down", kLinkAgain},
                     Outage{"TheFirewall", kFirewall, "nft delete table inet reload"}),
     [](const auto& outage) { return outage.param.name; });
+
+TEST_F(OutageTest, ARoleThatIsStartedWhileTheNetworkIsAwayWaitsForIt) {
+  const Machine machine("alone");
+  machine.RouteMulticastToItself();
+  Background run(machine.On(PacedRun({"--lcm-url", kUrl})));
+  ASSERT_TRUE(GrowsTo(20'000, Log()));
+  // WHEN a role is killed and started again while the machine has no route for multicast
+  machine.Do("ip route del 239.0.0.0/8");
+  kill(PidOf(run.Err(), "fusion"), SIGKILL);
+  EXPECT_TRUE(run.WaitForErr("started again as pid ")) << run.Err();
+  // No event shows that the new process has looked for a route in vain.
+  LastFor(milliseconds(500));
+  machine.RouteMulticastToItself();
+  // THEN the new process goes on where the old one was
+  const auto result = ResultOf(run);
+  EXPECT_EQ(result["digest"], Undisturbed());
+  ASSERT_EQ(result["restarts"].size(), 1U) << result["restarts"];
+  EXPECT_EQ(result["restarts"][0]["role"], "fusion");
+  EXPECT_EQ(result["restarts"][0]["count"], 1);
+}
+
+TEST_F(OutageTest, ARoleThatWaitsForTheNetworkSaysSoAndCanBeInterrupted) {
+  const Machine machine("alone");
+  Background driver(machine.On({Program("fogline-driver"), "--run-id", "5", "--lcm-url", kUrl}));
+  ASSERT_TRUE(driver.WaitForErr("waits for the network")) << driver.Err();
+  EXPECT_THAT(driver.Err(), HasSubstr("no route for multicast"));
+  driver.Signal(SIGTERM);
+  EXPECT_EQ(driver.Wait(), 130) << driver.Err();
+  const Outcome outcome = RunCommand(
+      machine.On({Program("fogline-driver"), "--run-id", "5", "--lcm-url", kUrl, "--wait", "0.2"}));
+  EXPECT_EQ(outcome.code, 2) << outcome.err;
+}
 
 TEST_F(OutageTest, AFirewallThatDropsOneOfAThousandEndsNoRun) {
   // GIVEN a machine on which a run could take any transport
@@ -147,7 +179,7 @@ TEST_F(OutageTest, AFirewallThatDropsWhatIsSentChangesNoResultAndIsTold) {
     EXPECT_EQ(one["error"], "Operation not permitted");
   }
   EXPECT_GT(failed, 50) << "of 4500 messages and more";
-  // AND the printed text says this, too
+  // AND the printed text says the same
   const Outcome text = RunCommand(
       machine.On({Program("fogline"), "run", "scenario/paper.json", "--log", Log() + ".text"}));
   EXPECT_THAT(text.out, ContainsRegex("\nmessages that could not be sent: .*world [0-9]+.* "
@@ -203,7 +235,7 @@ TEST_F(OutageTest, ARoleThatWasToldNoNetworkOutlivesThatOfItsRun) {
   machine.Do("ip addr flush dev eth0");
   LastFor(runtime::RunnerWatch::kSilent + milliseconds(1000));
   machine.Do("ip addr add 192.0.2.1/24 dev eth0; ip route add default via 192.0.2.2");
-  // THEN it goes on with its own run
+  // THEN the driver goes on with its own run
   EXPECT_EQ(ResultOf(run)["digest"], Undisturbed());
   EXPECT_EQ(driver.Wait(), 0) << driver.Err();
 }

@@ -1,5 +1,5 @@
-// A process without a key, with another key, or with copies of others' messages has no effect on a
-// signed run.
+// A process without a key, with another key, or with copies of other processes' messages has no
+// effect on a signed run.
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 #include <lcm/lcm.h>
@@ -160,7 +160,7 @@ TEST_F(SignedTrafficTest,
   EXPECT_GT(intruder.count(), 2000);
   EXPECT_EQ(result["steps"], 60);
   EXPECT_EQ(result["digest"], Undisturbed("/steps=60"));
-  // AND it has counted each kind of forgery
+  // AND the run has counted each kind of forgery
   EXPECT_GT(result["refused"]["not_signed"], 500);
   EXPECT_GT(result["refused"]["badly_signed"], 1000);
   EXPECT_GT(result["refused"]["foreign"], 100);
@@ -182,7 +182,7 @@ TEST_F(SignedTrafficTest, ARoleFromElsewhereTakesNoPartInARunThatIsReplayed) {
   const auto replay = [&] {
     for (const Message& message : announcements) intruder.Say("RUN", message);
   };
-  // WHEN they are replayed for a second to a driver that waits for a run
+  // WHEN these messages are replayed for a second to a driver that waits for a run
   Background driver({Program("fogline-driver"), "--lcm-url", url_, "--key", key_});
   for (int i = 0; i < 50; ++i) {
     replay();
@@ -247,7 +247,7 @@ TEST_F(SignedTrafficTest, NamesProcessesThatHaveAnotherKeyOrNone) {
   EXPECT_TRUE(
       other.WaitForErr("with a wrong signature were refused: do all processes have the "
                        "same key?"));
-  // AND the runner says so, too: while it waits, and at its end
+  // AND the runner also reports the drivers, while it waits and at its end
   EXPECT_TRUE(run.WaitForErr("warning: "));
   run.Signal(SIGINT);
   EXPECT_EQ(run.Wait(), 130);
@@ -308,7 +308,7 @@ TEST_F(SignedTrafficTest, NeverRunsUnsignedOrLooksAwayWhenAKeyWasAskedFor) {
     };
     const Outcome empty = RunCommand(with({"--key", ""}));
     EXPECT_EQ(empty.code, 2);
-    EXPECT_THAT(empty.err, HasSubstr("--key: the name of the key's file is empty"));
+    EXPECT_THAT(empty.err, HasSubstr("--key: the text is empty"));
     const Outcome missing = RunCommand(with({"--key", "no/such/file"}));
     EXPECT_EQ(missing.code, 2);
     EXPECT_EQ(missing.err, "no/such/file: error: cannot read the key: No such file or directory\n");

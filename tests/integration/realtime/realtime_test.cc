@@ -6,11 +6,15 @@
 
 #include <algorithm>
 #include <csignal>
+#include <iterator>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
+#include "services/log/event_log.h"
+#include "services/runtime/wire/wire.h"
 #include "tests/integration/realtime/realtime_fault.h"
 #include "tests/integration/realtime/realtime_log.h"
 #include "tests/integration/realtime/realtime_run.h"
@@ -37,9 +41,8 @@ TEST(RealtimeTest, UndisturbedItIsTheRunInLockstep) {
   const Outcome lockstep = RunCommand({Program("fogline"), "run", "scenario/paper.json", "--json",
                                        "--set", "/steps=60", "--transport", "direct"});
   std::int64_t misses = 0;
-  // If the machine stands still for half a period, this disturbs the run, and the run proves
-  // nothing. So the test tries several runs. With a period of 50 ms most such moments are shorter
-  // than half a period.
+  // If the machine stands still for half a period, the run is disturbed and proves nothing. So the
+  // test tries several runs. Most of these moments are shorter than half of a period of 50 ms.
   constexpr int kTries = 5;
   constexpr double kSlowly = 2;
   for (int i = 0; i < kTries; ++i) {
@@ -58,8 +61,7 @@ TEST(RealtimeTest, UndisturbedItIsTheRunInLockstep) {
          << " steps had to do without an input";
 }
 
-// A column of ACCs and people follows the driver. Every step must have commands for
-// all of them.
+// A column of ACCs and people follows the driver. Every step must have commands for all of them.
 TEST(RealtimeTest, ADriverWhoIsLateEndsTheManoeuvreAndTheLogTellsHisTimes) {
   constexpr int kSteps = 140;
   constexpr int kColumn = 5;
@@ -97,6 +99,29 @@ TEST(RealtimeTest, ADriverWhoIsLateEndsTheManoeuvreAndTheLogTellsHisTimes) {
     EXPECT_EQ(log.follower.at(step).num_followers, kColumn) << step;
     EXPECT_EQ(log.truth.at(step).num_followers, kColumn) << step;
   }
+}
+
+/// The steps of which a log has TRUTH.
+std::set<std::int64_t> StepsIn(const std::string& log) {
+  std::set<std::int64_t> steps;
+  log::EventLogReader reader(log);
+  while (const auto event = reader.Next()) {
+    if (event->channel != ChannelOf<truth_t>().name) continue;
+    steps.insert(runtime::ReadInt64(event->data, runtime::kStepOffset));
+  }
+  return steps;
+}
+
+TEST(RealtimeTest, ARecorderThatIsKilledLosesNoStepThatItHasWritten) {
+  RealtimeRun run("scenario/paper.json", 140);
+  run.WaitForStep(60);
+  std::set<std::int64_t> written = StepsIn(run.log());
+  run.Signal("recorder", SIGKILL);
+  run.run().Wait();
+  // The new recorder writes the last step, which may have been incomplete, again.
+  ASSERT_GE(written.size(), 2U);
+  written.erase(std::prev(written.end()));
+  EXPECT_THAT(StepsIn(run.log()), testing::IsSupersetOf(written)) << run.run().Err();
 }
 
 TEST_P(FaultInRealtimeTest, LeavesNoCarUndecided) { ExpectFaultLeavesNoCarUndecided(GetParam()); }

@@ -219,7 +219,7 @@ TEST(CommandLineTest, ARunThatLacksDescriptorsFailsAndItsInputIsNotCalledBad) {
   const ScratchFolder folder;
   int failed = 0;
   for (const char* transport : {"udpm", "memq", "tcpq", "direct"}) {
-    for (int limit = 12; limit <= 28; limit += 4) {  // fewer do not suffice for the libraries
+    for (int limit = 12; limit <= 28; limit += 4) {  // the libraries need this number of files
       const Outcome outcome =
           RunCommand({"sh", "-c", fmt::format("ulimit -n {}; exec \"$@\"", limit), "sh",
                       Program("fogline"), "run", "scenario/paper.json", "--set", "/steps=5",
@@ -328,7 +328,7 @@ TEST(CommandLineTest, BeginsEveryRefusalWithTheVerb) {
   EXPECT_EQ(ErrorOf({"run"}),
             "fogline run: error: SCENARIO is required (see fogline run --help)\n");
   EXPECT_EQ(ErrorOf({"run", "scenario/paper.json", "--pace", "fast"}),
-            "fogline run: error: --pace: Value fast not in range 0.000000 to 1000.000000 (see "
+            "fogline run: error: --pace: Value fast not in range 0 to 1000 (see "
             "fogline run --help)\n");
   EXPECT_EQ(ErrorOf({"run", "scenario/paper.json", "--seed"}),
             "fogline run: error: --seed: 1 required TEXT missing (see fogline run --help)\n");

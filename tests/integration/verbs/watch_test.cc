@@ -3,6 +3,7 @@
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 #include <lcm/lcm.h>
+#include <sys/stat.h>
 #include <unistd.h>
 #include <nlohmann/json.hpp>
 
@@ -27,9 +28,9 @@ using nlohmann::json;
 using std::chrono::seconds;
 using testing::HasSubstr;
 
-// Programs start and messages arrive within this time, even when every processor is busy.
+// A time limit. Programs start and messages arrive earlier, even when every processor is busy.
 constexpr seconds kPatience(30);
-// Longer than the duration of any test with top.
+// The time for which top watches. It is longer than any test with top.
 constexpr seconds kTopFor(240);
 
 /// `fogline top --json`, which prints a document for each interval until the test ends.
@@ -65,7 +66,7 @@ class Top {
   Background process_;
 };
 
-// 10 messages a second; the tolerance covers a message more or less at either end of two seconds.
+// 10 messages a second. The tolerance allows one message more or less at each end of two seconds.
 constexpr double kPace_hz = 10;
 constexpr double kPaceTolerance_hz = 1.5;
 
@@ -87,7 +88,7 @@ TEST(TopTest, ShowsEveryRoleAndChannelOfARunAtItsPace) {
   runtime::Bus bus(runtime::FreshMulticastUrl());
   std::int64_t step = -1;
   TimePoint heard{};
-  int uneven = 0;  // steps that the machine held up, and those that make up for it
+  int uneven = 0;  // steps that were late, and steps that were early after a late one
   bus.Subscribe(ChannelOf<truth_t>().name, [&](runtime::Bytes bytes) {
     step = runtime::ReadInt64(bytes, runtime::kStepOffset);
     const TimePoint now = Clock::now();
@@ -99,8 +100,8 @@ TEST(TopTest, ShowsEveryRoleAndChannelOfARunAtItsPace) {
   const TimePoint end = Clock::now() + kPatience;
   while (step < 5 && Clock::now() < end) bus.Wait(milliseconds(100));
   ASSERT_GE(step, 5) << run.Err();
-  // WHEN top watches the run for two seconds in which this machine disturbs neither the run's pace
-  // nor top, which counts a message when it handles the message
+  // WHEN top watches the run for two seconds. If the machine disturbs the run or top meanwhile, the
+  // test tries again. (top counts a message when it handles the message.)
   std::string shown;
   for (int tries = 0; !ShowsPace(shown) && tries < 15; ++tries) {
     uneven = 0;
@@ -211,6 +212,21 @@ TEST(TopTest, DrawsOnATerminalAndGivesItBackWhenQIsPressed) {
   EXPECT_THAT(top.out, testing::EndsWith("\033[?1049l"));
 }
 
+TEST(TopTest, IsInterruptedByCtrlCAndGivesTheTerminalBack) {
+  const ScratchFolder folder;
+  const std::string keys = folder.File("keys");
+  ASSERT_EQ(mkfifo(keys.c_str(), 0600), 0);
+  const int fd = open(keys.c_str(), O_RDWR | O_CLOEXEC);
+  ASSERT_GE(fd, 0);
+  Background top({"env", "LCM_DEFAULT_URL=" + runtime::FreshMulticastUrl(), "sh", "-c",
+                  "exec script -qec '" + Program("fogline") + " top' /dev/null < \"$0\"", keys});
+  ASSERT_TRUE(top.WaitForOut("0 runs", kPatience)) << top.Out();
+  ASSERT_EQ(write(fd, "\003", 1), 1);
+  EXPECT_EQ(top.Wait(kPatience), 130);
+  EXPECT_THAT(top.Out(), testing::EndsWith("\033[?1049l"));
+  close(fd);
+}
+
 TEST(WatchTest, RefusesUrlsThatNameNoNetwork) {
   for (const char* verb : {"top", "spy", "doctor"}) {
     const Outcome memory = RunCommand({Program("fogline"), verb, "--lcm-url", "memq://"});
@@ -255,8 +271,8 @@ TEST(TopTest, RemembersOnlySoManyChannelsHoweverManyNamesAreInvented) {
   // WHEN each message comes on a channel of its own (LCM keeps about 200 bytes for each name)
   const std::unique_ptr<lcm_t, decltype(&lcm_destroy)> foreign_sender(lcm_create(bus.url().c_str()),
                                                                       &lcm_destroy);
-  // Of each burst top hears at least the messages that a small socket holds, some 250 names. It
-  // hears all of them if it has a processor to itself.
+  // Of each burst top hears at least the messages that a small socket holds, some 250 names. If top
+  // has a processor to itself, it hears all of them.
   constexpr int kNames = 4000;
   constexpr int kEnough = 50'000;  // 10 MB of names
   int invented = 0;

@@ -14,18 +14,18 @@
 #include "services/runtime/wire/digest.h"
 #include "services/runtime/wire/scenario_parts.h"
 #include "tests/support/command.h"
+#include "tests/unit/services/log/short_log.h"
 
 namespace fogline {
 namespace {
 
 using test::Content;
+using test::kRunId;
+using test::kScenario;
+using test::kStep_us;
+using test::kSteps;
+using test::WriteShortLog;
 using testing::HasSubstr;
-
-constexpr std::int64_t kRunId = 7;
-constexpr std::int64_t kSteps = 3;
-constexpr std::int64_t kStep_us = 100'000;
-// The shortest scenario. A longer one would only have more bits to flip.
-constexpr std::string_view kScenario = R"({"version":1,"steps":3})";
 
 void Write(const std::string& file, const std::string& content) {
   std::ofstream(file, std::ios::binary) << content;
@@ -53,29 +53,6 @@ Reading Read(const std::string& file,
 
 class LogSealTest : public testing::Test {
  protected:
-  LogSealTest() {
-    log::EventLogWriter writer(log_);
-    std::vector<std::uint8_t> bytes;
-    const std::vector<std::string> parts = runtime::SplitScenario(std::string(kScenario));
-    for (std::size_t i = 0; i < parts.size(); ++i) {
-      runtime::Encode(
-          runtime::MakeRunPart(kRunId, run_t::PREPARE, 0, runtime::HashOf(kScenario), parts, i),
-          bytes);
-      writer.Write(ChannelOf<run_t>().name, 0, bytes);
-    }
-    for (std::int64_t step = 0; step < kSteps; ++step) {
-      ForEachStepChannel([&]<class M>(std::size_t) {
-        M message{};
-        message.header = {.run_id = kRunId, .step = step, .utime = step * kStep_us};
-        if constexpr (std::is_same_v<M, truth_t>) message.last = step == kSteps - 1;
-        runtime::Encode(message, bytes);
-        writer.Write(ChannelOf<M>().name, message.header.utime, bytes);
-      });
-    }
-    writer.Flush();
-    head_ = writer.head();
-  }
-
   log_seal_t SealOfLog() const {
     const log::RunLog run = Read(log_).run;
     log_seal_t seal{};
@@ -97,7 +74,7 @@ class LogSealTest : public testing::Test {
 
   test::ScratchFolder folder_;
   const std::string log_ = folder_.File("log");
-  log::LogHead head_;
+  const log::LogHead head_ = WriteShortLog(log_);
 };
 
 TEST_F(LogSealTest, HoldsForTheLogThatWasSealedAndChangesNoDigest) {

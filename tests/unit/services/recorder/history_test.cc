@@ -41,11 +41,12 @@ void WriteStep(log::EventLogWriter& log, std::int64_t step, bool last = false) {
   });
 }
 
-void WriteFront(log::EventLogWriter& log) {
+void WriteFront(log::EventLogWriter& log, bool realtime = false) {
   std::vector<std::uint8_t> bytes;
-  runtime::Encode(runtime::MakeRunPart(kRunId, run_t::PREPARE, 0, runtime::HashOf(kScenario),
-                                       {std::string(kScenario)}, 0),
-                  bytes);
+  run_t run = runtime::MakeRunPart(kRunId, run_t::PREPARE, 0, runtime::HashOf(kScenario),
+                                   {std::string(kScenario)}, 0);
+  run.realtime = realtime ? 1 : 0;
+  runtime::Encode(run, bytes);
   log.Write(ChannelOf<run_t>().name, 0, bytes);
 }
 
@@ -103,6 +104,19 @@ TEST_F(HistoryTest, FindsTheSameFromTheEndAsFromTheFrontWhereverTheLogIsCut) {
   }
 }
 
+TEST_F(HistoryTest, InRealTimePassesOverTheStatusOfARoleThatHasComputedNoStep) {
+  constexpr std::int64_t kSteps = 4;
+  {
+    log::EventLogWriter log(file_);
+    WriteFront(log, /*realtime=*/true);
+    for (std::int64_t step = 0; step < kSteps; ++step) {
+      WriteStep(log, step);
+      log.Write(ChannelOf<status_t>().name, step * 100'000, Encoded<status_t>(-1));
+    }
+  }
+  EXPECT_EQ(ReadFromFront().steps, kSteps);
+}
+
 TEST_F(HistoryTest, ReadsOfALongLogOnlyItsEndAndWhatItIsAskedFor) {
   // GIVEN a log of a hundred gigabytes that has only its front and its last steps. A reader of the
   // part between them would find no event there, and would take minutes.
@@ -121,7 +135,7 @@ TEST_F(HistoryTest, ReadsOfALongLogOnlyItsEndAndWhatItIsAskedFor) {
     log::EventLogWriter log(file_, head);
     for (std::int64_t step = kSteps; step < kSteps + 500; ++step) WriteStep(log, step);
   }
-  // WHEN a recorder continues this log, THEN it finds the last step and all steps near it
+  // WHEN a recorder continues this log, THEN the recorder finds the last step and all steps near it
   const log::Remains remains = ReadFromEnd();
   EXPECT_EQ(remains.steps, kSteps + 500);
   EXPECT_EQ(remains.head.events, head.events + 500 * static_cast<std::int64_t>(log::kStepChannels));
@@ -135,11 +149,11 @@ TEST_F(HistoryTest, SaysThatItLivesWhileItReadsALogThatDoesNotEndAsItShould) {
   constexpr std::int64_t kSteps = 20'000;
   Write(kSteps);
   std::filesystem::resize_file(file_, std::filesystem::file_size(file_) + 2 * log::kTailBytes);
-  // WHEN it is read
+  // WHEN the log is read
   std::vector<std::int64_t> heard;
   const log::Remains remains = log::ReadRemains(
       file_, log::ReadFront(file_), [&heard](std::int64_t steps) { heard.push_back(steps); });
-  // THEN it finds all steps, and has given signs of life that show its progress
+  // THEN the reader finds all steps, and has given signs of life that show its progress
   EXPECT_EQ(remains.steps, kSteps);
   ASSERT_GE(heard.size(), 2U);
   EXPECT_TRUE(std::ranges::is_sorted(heard));

@@ -7,6 +7,8 @@
 #include <sstream>
 #include <string>
 
+#include <fmt/core.h>
+
 namespace fogline::cli {
 namespace {
 
@@ -20,7 +22,17 @@ TEST(NumberInTest, TakesNumbersOfItsRangeAndNothingElse) {
   for (const char* bad : {"-1", "10.1", "ten", "nan", "inf"}) {
     EXPECT_THAT(complaint(bad), HasSubstr(bad)) << bad;
   }
-  EXPECT_EQ(complaint("nan"), "Value nan not in range [0 - 10]");
+  for (const char* bad : {"nan", "-1"}) {
+    EXPECT_EQ(complaint(bad), fmt::format("Value {} not in range 0 to 10", bad));
+  }
+}
+
+TEST(NumberInTest, ShowsItsLimitsLikeARangeOfWholeNumbers) {
+  std::string text = "-1";
+  const CLI::Validator number = NumberIn(0, 1e6);
+  EXPECT_EQ(number(text), CLI::Range(0, 1'000'000)(text));
+  EXPECT_EQ(number.get_description(), "FLOAT in [0 - 1000000]");
+  EXPECT_EQ(NumberIn(0.1, 3600)(text), "Value -1 not in range 0.1 to 3600");
 }
 
 /// The help of a program with a verb that has an option with a long description.

@@ -1,12 +1,20 @@
 #include "tools/cli/refusal.h"
 
+#include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "tools/cli/help.h"
+
 namespace fogline::cli {
 namespace {
+
+using testing::ElementsAre;
+using Words = std::vector<std::string>;
 
 /// A program with two verbs, and its text about a command line.
 class RefusalTest : public testing::Test {
@@ -21,7 +29,7 @@ class RefusalTest : public testing::Test {
     table->add_option("--seeds", seeds_);
   }
 
-  /// @param words in order; "" if they are no error
+  /// @param words of the command line, in order. @return "" if the words are no error
   std::string Of(const std::vector<std::string>& words) {
     try {
       app_.parse(std::vector(words.rbegin(), words.rend()));
@@ -86,10 +94,91 @@ TEST_F(RefusalTest, TellsOfAnArgumentThatIsMissingOrTooMuch) {
             "fogline run: error: \"two.json\" is one argument too many (see fogline run --help)");
 }
 
+TEST_F(RefusalTest, NamesTheWordThatWasTakenForAnOptionRatherThanTheArgumentThatIsMissing) {
+  EXPECT_EQ(Of({"run", "-dash.json"}),
+            "fogline run: error: no option \"-dash.json\"; a file of this name is "
+            "\"./-dash.json\" (see fogline run --help)");
+  EXPECT_EQ(Of({"run", "--pase", "3"}),
+            "fogline run: error: no option \"--pase\"; did you mean \"--pace\"? (see fogline run "
+            "--help)");
+  EXPECT_EQ(Of({"run", "--", "-dash.json"}), "");
+}
+
 TEST_F(RefusalTest, IsOneLineWhateverAWordContains) {
   const std::string refusal = Of({"run", "paper.json", "--pace", "a\nb\x1b"});
   EXPECT_EQ(refusal.find('\n'), std::string::npos) << refusal;
   EXPECT_EQ(refusal.find('\x1b'), std::string::npos) << refusal;
+}
+
+/// A program with a verb that has options of all types.
+class EmptyTextsTest : public testing::Test {
+ protected:
+  EmptyTextsTest() {
+    CLI::App* run = app_.add_subcommand("run");
+    run->add_option("SCENARIO", scenario_);
+    run->add_option("--log", log_);
+    run->add_option("-o,--output", output_);
+    run->add_option("--set", set_)->allow_extra_args(false);
+    run->add_option("--explain", explain_);
+    run->add_option("--pace", pace_)->check(NumberIn(0, 10));
+    run->add_flag("--force", force_);
+    RefuseEmptyTexts(app_);
+  }
+
+  /// @return the error; "" if the words are no error
+  std::string Of(const Words& words) {
+    Words separate = SeparateEmptyValues(words);
+    try {
+      app_.parse(Words(separate.rbegin(), separate.rend()));
+    } catch (const CLI::ParseError& error) {
+      return Refusal(app_, error);
+    }
+    return "";
+  }
+  /// Expects that an empty text for this option is refused, in each way to write it.
+  void ExpectRefusal(const std::string& name) {
+    const std::string error =
+        "fogline run: error: " + name + ": the text is empty (see fogline run --help)";
+    EXPECT_EQ(Of({"run", "paper.json", name, ""}), error);
+    EXPECT_EQ(Of({"run", name + "=", "paper.json"}), error);
+  }
+
+  CLI::App app_{"A program", "fogline"};
+  std::filesystem::path scenario_;
+  std::filesystem::path log_;
+  std::string output_;
+  std::vector<std::string> set_;
+  std::optional<std::string> explain_;
+  double pace_ = 0;
+  bool force_ = false;
+};
+
+TEST_F(EmptyTextsTest, AreRefusedWithTheNameOfTheirOption) {
+  for (const char* name : {"--log", "--output", "--set", "--explain", "--pace"}) {
+    ExpectRefusal(name);
+  }
+  EXPECT_EQ(Of({"run", "-o", ""}),
+            "fogline run: error: --output: the text is empty (see fogline run --help)");
+}
+
+TEST_F(EmptyTextsTest, AreRefusedWithTheNameOfTheirArgument) {
+  EXPECT_EQ(Of({"run", ""}),
+            "fogline run: error: SCENARIO: the text is empty (see fogline run --help)");
+}
+
+TEST_F(EmptyTextsTest, AreNoConcernOfOtherTexts) {
+  EXPECT_EQ(Of({"run", "paper.json", "--log", "a.lcm", "-o", "b", "--set", "/a=", "--set=/b=1",
+                "--explain=/", "--pace", "2", "--force"}),
+            "");
+  EXPECT_EQ(log_, "a.lcm");
+  EXPECT_THAT(set_, ElementsAre("/a=", "/b=1"));
+  EXPECT_EQ(explain_, "/");
+  EXPECT_TRUE(force_);
+}
+
+TEST(SeparateEmptyValuesTest, LeavesWordsBehindTheEndOfOptionsAsTheyAre) {
+  EXPECT_THAT(SeparateEmptyValues({"run", "--log=", "--out=a=", "-=", "--", "--log="}),
+              ElementsAre("run", "--log", "", "--out=a=", "-=", "--", "--log="));
 }
 
 }  // namespace

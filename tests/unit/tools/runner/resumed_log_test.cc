@@ -106,6 +106,23 @@ TEST_F(ResumedLogTest, IsSealedWithTheSameKey) {
   EXPECT_EQ(Refusal(CutOff(), &key), "") << "it has no seal";
 }
 
+TEST_F(ResumedLogTest, IsNotResumedWithoutTheKeyThatSignedItsSeal) {
+  const std::string key_file = folder_.File("key");
+  runtime::SigningKey::Create(key_file);
+  runner::ExperimentOptions options = Direct(folder_.File("signed.lcm"));
+  options.traffic.key_file = key_file;
+  runner::RunExperiment(Paper(kSteps), options);
+  const std::string log = options.log.string();
+  EXPECT_EQ(
+      Refusal(log),
+      log + ": error: --resume: the seal of the log is signed, and --key does not name its key");
+  const runtime::SigningKey other({1, 2, 3});
+  EXPECT_EQ(Refusal(log, &other),
+            log + ": error: --resume: the seal of the log is not signed with this key");
+  const runtime::SigningKey own = runtime::SigningKey::Load(key_file);
+  EXPECT_EQ(Refusal(log, &own), "");
+}
+
 TEST_F(ResumedLogTest, HasNothingBehindItsStepsThatNoRunLeaves) {
   const std::string odd = folder_.File("odd.lcm");
   Copy(log_, odd,

@@ -5,12 +5,15 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <filesystem>
 #include <fstream>
+#include <stdexcept>
 
 #include <fmt/core.h>
 
 #include "common/errors.h"
 #include "tests/support/command.h"
+#include "tests/support/file_size_limit.h"
 #include "tests/support/input_errors.h"
 #include "tests/support/machine.h"
 
@@ -165,6 +168,21 @@ TEST(SigningKeyTest, IsNeverReplaced) {
   EXPECT_THROW(runtime::SigningKey::Create(file), InputError);
   EXPECT_EQ(runtime::SigningKey::Load(file).secret(), key.secret());
   EXPECT_THROW(runtime::SigningKey::Create(folder.File("no/folder/key")), InputError);
+}
+
+TEST(SigningKeyTest, ThatDoesNotFitOnTheDiskIsAFailureAndNoBadInput) {
+  const ScratchFolder folder;
+  const std::string file = folder.File("key");
+  const test::FileSizeLimit limit(10);
+  try {
+    runtime::SigningKey::Create(file);
+    FAIL() << "the key fits";
+  } catch (const InputError& error) {
+    FAIL() << error.what();
+  } catch (const std::runtime_error& error) {
+    EXPECT_EQ(error.what(), file + ": cannot write: File too large");
+  }
+  EXPECT_FALSE(std::filesystem::exists(file));
 }
 
 TEST(SigningKeyTest, IsReadFrom64HexadecimalDigitsAndNothingElse) {

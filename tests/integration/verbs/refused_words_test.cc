@@ -1,0 +1,69 @@
+// Words of a command line that no verb accepts: empty texts, and files that look like options.
+#include <string>
+#include <vector>
+
+#include <fmt/core.h>
+#include <gmock/gmock-matchers.h>
+#include <gtest/gtest.h>
+
+#include "tests/support/command.h"
+
+namespace fogline::test {
+namespace {
+
+using ::testing::HasSubstr;
+
+/// The error text of a refused command line: exit code 2, nothing on stdout.
+std::string ErrorOf(std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), Program("fogline"));
+  const Outcome outcome = RunCommand(arguments);
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_EQ(outcome.out, "");
+  return outcome.err;
+}
+
+TEST(RefusedWordsTest, RefusesAnEmptyTextForEveryOptionAndArgumentThatNamesAFileOrFolder) {
+  const std::string scenario = "scenario/paper.json";
+  const std::vector<std::vector<std::string>> calls{
+      {"run", scenario, "--log"},
+      {"run", scenario, "--key"},
+      {"run", "--resume"},
+      {"run", ""},
+      {"table", scenario, "--logs"},
+      {"sweep", scenario, "--out"},
+      {"sweep", "--merge"},
+      {"calibrate", scenario, "--free", "/fog/bias_m=0:1", "--out"},
+      {"calibrate", scenario, "--free", "/fog/bias_m=0:1", "--target"},
+      {"compare", "a.lcm", "a.csv", "--out"},
+      {"report", "a.lcm", "--output"},
+      {"report", "a.lcm", "--png"},
+      {"report", "a.lcm", "--svg"},
+      {"report", "a.lcm", "--pdf"},
+      {"report", "--curves"},
+      {"export", "a.lcm", "--out"},
+      {"study", "policy", "--out"},
+      {"study", "policy", "--scenarios"},
+      {"digest", "a.lcm", "--key"},
+      {"spy", "--jars"},
+      {"spy", "--types"}};
+  for (std::vector<std::string> call : calls) {
+    const std::string name = call.back().empty() ? "SCENARIO" : call.back();
+    if (!call.back().empty()) call.emplace_back();
+    EXPECT_EQ(ErrorOf(call), fmt::format("fogline {0}: error: {1}: the text is empty (see fogline "
+                                         "{0} --help)\n",
+                                         call.front(), name));
+  }
+  for (const char* verb : {"digest", "metrics", "events", "report", "check", "keygen", "replay"}) {
+    EXPECT_THAT(ErrorOf({verb, ""}), HasSubstr(": the text is empty (see "));
+  }
+  EXPECT_THAT(ErrorOf({"run", "--log=", scenario}), HasSubstr("--log: the text is empty"));
+}
+
+TEST(RefusedWordsTest, NamesAFileThatWasTakenForAnOption) {
+  EXPECT_EQ(ErrorOf({"digest", "-dash.lcm"}),
+            "fogline digest: error: no option \"-dash.lcm\"; a file of this name is "
+            "\"./-dash.lcm\" (see fogline digest --help)\n");
+}
+
+}  // namespace
+}  // namespace fogline::test

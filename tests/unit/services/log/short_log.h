@@ -1,0 +1,73 @@
+// A log of a run of three steps.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+#include "services/graph.h"
+#include "services/log/event_log.h"
+#include "services/runtime/wire/digest.h"
+#include "services/runtime/wire/scenario_parts.h"
+
+namespace fogline::test {
+
+inline constexpr std::int64_t kRunId = 7;
+inline constexpr std::int64_t kSteps = 3;
+inline constexpr std::int64_t kStep_us = 100'000;
+// The shortest scenario with this number of steps.
+inline constexpr std::string_view kScenario = R"({"version":1,"steps":3})";
+
+struct ShortLog {
+  bool realtime = false;
+  /// Whether the log has the message of this channel and step. By default it has all messages.
+  std::function<bool(std::string_view channel, std::int64_t step)> has =
+      [](std::string_view, std::int64_t) { return true; };
+  /// If set, the world has said that it is done after this step.
+  std::optional<std::int64_t> done;
+};
+
+/// @return the place behind the last event
+inline log::LogHead WriteShortLog(const std::filesystem::path& file,
+                                  const ShortLog& contents = {}) {
+  log::EventLogWriter writer(file);
+  std::vector<std::uint8_t> bytes;
+  const std::vector<std::string> parts = runtime::SplitScenario(std::string(kScenario));
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    run_t run =
+        runtime::MakeRunPart(kRunId, run_t::PREPARE, 0, runtime::HashOf(kScenario), parts, i);
+    if (contents.realtime) {
+      run.realtime = 1;
+      run.pace = 1;
+    }
+    runtime::Encode(run, bytes);
+    writer.Write(ChannelOf<run_t>().name, 0, bytes);
+  }
+  for (std::int64_t step = 0; step < kSteps; ++step) {
+    ForEachStepChannel([&]<class M>(std::size_t) {
+      if (!contents.has(ChannelOf<M>().name, step)) return;
+      M message{};
+      message.header = {.run_id = kRunId, .step = step, .utime = step * kStep_us};
+      if constexpr (std::is_same_v<M, truth_t>) message.last = step == kSteps - 1;
+      runtime::Encode(message, bytes);
+      writer.Write(ChannelOf<M>().name, message.header.utime, bytes);
+    });
+  }
+  if (contents.done) {
+    status_t status{};
+    status.header = {.run_id = kRunId, .step = *contents.done, .utime = *contents.done * kStep_us};
+    status.role = NameOf(Role::kWorld);
+    status.state = status_t::DONE;
+    runtime::Encode(status, bytes);
+    writer.Write(ChannelOf<status_t>().name, status.header.utime, bytes);
+  }
+  writer.Flush();
+  return writer.head();
+}
+
+}  // namespace fogline::test
