@@ -1,6 +1,6 @@
 // fogline spy: LCM's own lcm-spy with Fogline's message types. Debian's /usr/bin/lcm-spy cannot
-// show these types: it passes an option that Java removed in version 14, and its class path lacks
-// them.
+// show these types. It passes an option that Java removed in version 14, and its class path lacks
+// the types.
 #include <unistd.h>
 
 #include <cerrno>
@@ -9,11 +9,13 @@
 #include <cstring>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include <fmt/core.h>
 
+#include "common/errors.h"
 #include "common/interrupt.h"
 #include "common/process/console.h"
 #include "common/text.h"
@@ -49,7 +51,8 @@ struct SpyArguments {
     verb.add_option("--jars", jars,
                     "Folder of lcm.jar and jchart2d.jar (default: /usr/share/java, or "
                     "/usr/local/share/java)");
-    cli::ShowExitCodes(verb, {.done = "window closed", .interruptible = true});
+    cli::ShowExitCodes(
+        verb, {.done = "window closed", .check_failed = "lcm-spy failed", .interruptible = true});
     verb.footer(kSpyExplanation);
   }
 
@@ -59,30 +62,36 @@ struct SpyArguments {
   fs::path jars;
 };
 
-/// @throws std::runtime_error that names the missing package
-fs::path JarOf(const SpyArguments& arguments, const std::string& name, const char* package) {
-  const fs::path jar = arguments.jars.empty() ? spy::InstalledJar(name) : arguments.jars / name;
-  if (access(jar.c_str(), R_OK) == 0) return jar;
-  const fs::path folder = arguments.jars.empty() ? "/usr/share/java" : arguments.jars;
-  throw std::runtime_error(
-      fmt::format("there is no {}: apt-get install {}", PathText(folder / name), package));
+/// A file that the command line names. @throws InputError if it cannot be read
+const fs::path& Named(const fs::path& file, std::string_view option) {
+  if (access(file.c_str(), R_OK) == 0) return file;
+  throw InputError(fmt::format("{}: error: {}: cannot be read: {}", PathText(file), option,
+                               std::strerror(errno)));
 }
 
-/// @throws std::runtime_error that says how to build the types
+/// @throws InputError, std::runtime_error that names the missing package
+fs::path JarOf(const SpyArguments& arguments, const std::string& name, const char* package) {
+  if (!arguments.jars.empty()) return Named(arguments.jars / name, "--jars");
+  const fs::path jar = spy::InstalledJar(name);
+  if (!jar.empty()) return jar;
+  throw std::runtime_error(
+      fmt::format("there is no /usr/share/java/{}: apt-get install {}", name, package));
+}
+
+/// @throws InputError, std::runtime_error that says how to build the types
 fs::path TypesOf(const SpyArguments& arguments) {
+  if (!arguments.types.empty()) return Named(arguments.types, "--types");
   const auto programs = fs::read_symlink("/proc/self/exe").parent_path();
-  const fs::path types = arguments.types.empty() ? spy::TypesJar(programs) : arguments.types;
-  if (access(types.c_str(), R_OK) == 0) return types;
-  if (!arguments.types.empty()) {
-    throw std::runtime_error(fmt::format("there are no message types at {}", PathText(types)));
-  }
+  const fs::path types = spy::TypesJar(programs);
+  if (!types.empty()) return types;
   throw std::runtime_error(fmt::format(
       "there are no message types beside {}: apt-get install default-jdk, then cmake -S "
       ". -B build && ninja -C build fogline_lcmtypes_java",
       PathText(programs)));
 }
 
-/// The command line of lcm-spy without its network. @throws std::runtime_error if it cannot run
+/// The command line of lcm-spy without its network. @throws InputError, std::runtime_error if
+/// lcm-spy cannot run
 std::vector<std::string> SpyCommand(const SpyArguments& arguments) {
   const fs::path java = spy::JavaProgram();
   if (java.empty()) throw std::runtime_error("there is no java: apt-get install default-jre");
@@ -94,8 +103,9 @@ std::vector<std::string> SpyCommand(const SpyArguments& arguments) {
   const fs::path lcm = JarOf(arguments, "lcm.jar", "liblcm-java");
   const fs::path charts = JarOf(arguments, "jchart2d.jar", "libjchart2d-java");
   const fs::path types = TypesOf(arguments);
-  if (const char* display = std::getenv("DISPLAY"); display == nullptr || *display == '\0') {
-    throw std::runtime_error("no screen: DISPLAY is not set (over ssh: ssh -X)");
+  const char* display = std::getenv("DISPLAY");
+  if (const std::string why = spy::WhyNoScreen(display == nullptr ? "" : display); !why.empty()) {
+    throw std::runtime_error("no screen: " + why);
   }
   return {java.string(), "-Djava.net.preferIPv4Stack=true", "-cp",
           fmt::format("{}:{}:{}", lcm.string(), charts.string(), types.string()), "lcm.spy.Spy"};

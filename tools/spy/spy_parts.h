@@ -1,5 +1,6 @@
-// Finds the parts of LCM's lcm-spy on this machine: a Java that can open windows, LCM's jars, the
-// jar of Fogline's message types, and the library that lets Java hear loopback.
+// Finds the parts of LCM's lcm-spy on this machine: a Java that can open windows, a screen for
+// them, LCM's jars, the jar of Fogline's message types, and the library that lets Java hear
+// loopback.
 #pragma once
 
 #include <filesystem>
@@ -19,7 +20,12 @@ std::filesystem::path JavaProgram();
 /// Whether a Java can open windows. The headless package cannot.
 bool OpensWindows(const std::filesystem::path& java);
 
-/// A jar in the folders of Debian or of LCM's own installation; "" if neither has it.
+/// Why no window can be opened on a screen; "" if nothing speaks against it. A screen of another
+/// machine is not tried, because that can take long.
+/// @param display the value of DISPLAY, such as ":0"
+std::string WhyNoScreen(const std::string& display);
+
+/// A jar in the folders of Debian or of LCM's own installation; "" if there is none.
 std::filesystem::path InstalledJar(const std::string& name);
 
 /// The jar of the message types that belongs to a program, in its build or installation; "" if

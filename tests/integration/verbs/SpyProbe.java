@@ -1,4 +1,4 @@
-// Reads the table that a person sees in lcm-spy's window. It is a Java agent: each time that a
+// Reads the table that a person sees in lcm-spy's window. It is a Java agent. Each time that a
 // channel has appeared, it prints all rows of the table, with tabs between the cells. lcm-spy
 // itself is unchanged:
 //
