@@ -15,6 +15,7 @@
 #include "tools/fogline/verbs.h"
 #include "tools/sweep/description.h"
 #include "tools/sweep/merge.h"
+#include "tools/sweep/row_sums.h"
 #include "tools/sweep/sweep_csv.h"
 
 namespace fogline {
@@ -104,12 +105,20 @@ std::filesystem::path DefaultOut(const SweepArguments& arguments, const sweep::S
 int Merge(const SweepArguments& arguments) {
   if (arguments.out.empty()) throw InputError("error: --merge needs --out");
   WatchInterrupts();
-  const std::int64_t rows = sweep::MergeShards(arguments.merge, arguments.out, arguments.force);
+  const sweep::Merged merged = sweep::MergeShards(arguments.merge, arguments.out, arguments.force);
+  nlohmann::ordered_json unchecked = nlohmann::ordered_json::array();
+  for (const std::filesystem::path& shard : merged.unchecked) {
+    Complain(fmt::format(
+        "fogline sweep: warning: {}: the rows are not checked, because {} is missing or empty",
+        PathText(shard), PathText(sweep::SumsFile(shard))));
+    unchecked.push_back(shard.string());
+  }
   if (arguments.json) {
-    const nlohmann::ordered_json json{{"rows", rows}, {"out", arguments.out.string()}};
+    const nlohmann::ordered_json json{
+        {"rows", merged.rows}, {"out", arguments.out.string()}, {"unchecked", unchecked}};
     cli::PrintJson(json);
   } else {
-    PrintSummary(arguments.out, fmt::format("{} rows", rows));
+    PrintSummary(arguments.out, fmt::format("{} rows", merged.rows));
   }
   return kDone;
 }
@@ -147,7 +156,7 @@ int RunSweepVerb(const SweepArguments& arguments) {
   }
   const double wall_s = std::chrono::duration<double>(Clock::now() - began).count();
   // Each unit computes one more run than it has rows: the paired run without traded control. The
-  // rate does not count it.
+  // rate does not count this run.
   const int cores = std::min(arguments.jobs, sweep::AllCores());
   const double rate = wall_s > 0 ? static_cast<double>(rows) / wall_s / cores : 0;
   if (arguments.json) {

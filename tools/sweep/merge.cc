@@ -26,7 +26,7 @@ struct ShardFile {
   Description description;
 };
 
-/// The shards by number. Checks that all are of one sweep and that each is there once.
+/// The shards by number. Checks that all shards are of one sweep, and that each number occurs once.
 std::map<std::int64_t, ShardFile> Ordered(const std::vector<std::filesystem::path>& shards) {
   std::map<std::int64_t, ShardFile> ordered;
   std::int64_t count = 0;
@@ -60,8 +60,8 @@ std::map<std::int64_t, ShardFile> Ordered(const std::vector<std::filesystem::pat
   return ordered;
 }
 
-/// @throws InputError if the row's checksum is not that of `line`, or if only rows before it have
-/// one
+/// @throws InputError if the checksum of the row is not that of `line`, or if the row has no
+/// checksum although earlier rows have one
 void RequireSum(RowChecker& checker, const std::string& line, const std::filesystem::path& shard,
                 std::int64_t row) {
   if (!checker.has_sums()) return;
@@ -74,8 +74,9 @@ void RequireSum(RowChecker& checker, const std::string& line, const std::filesys
                       : "the row has no checksum; run its sweep again to compute the row again"));
 }
 
-/// Copies the rows of a shard, with the header if it is the first one.
-void Copy(const ShardFile& shard, std::string& header, AtomicFile& out, AtomicFile* sums) {
+/// Copies the rows of a shard, with the header if it is the first one. @return false if the shard
+/// has rows but no checksums
+bool Copy(const ShardFile& shard, std::string& header, AtomicFile& out, AtomicFile* sums) {
   std::ifstream in(shard.path, std::ios::binary);
   RowChecker checker(shard.path);
   std::string line;
@@ -104,12 +105,13 @@ void Copy(const ShardFile& shard, std::string& header, AtomicFile& out, AtomicFi
                                  PathText(shard.path), std::max<std::int64_t>(0, rows),
                                  shard.description.rows));
   }
+  return checker.has_sums() || rows == 0;
 }
 
 }  // namespace
 
-std::int64_t MergeShards(const std::vector<std::filesystem::path>& shards,
-                         const std::filesystem::path& merged, bool force) {
+Merged MergeShards(const std::vector<std::filesystem::path>& shards,
+                   const std::filesystem::path& merged, bool force) {
   RefuseToReplace(merged, "--out", force, "sweep", IsSweep);
   if (IsReplaceable(merged)) RefuseForeignSideFiles(merged);
   for (const std::filesystem::path& shard : shards) {
@@ -129,15 +131,19 @@ std::int64_t MergeShards(const std::vector<std::filesystem::path>& shards,
   std::optional<AtomicFile> sums;
   if (replaceable) sums.emplace(SumsFile(merged));
   std::string header;
-  for (const auto& [index, shard] : ordered) Copy(shard, header, out, sums ? &*sums : nullptr);
+  Merged result{.rows = whole.rows, .unchecked = {}};
+  for (const auto& [index, shard] : ordered) {
+    const bool checked = Copy(shard, header, out, sums ? &*sums : nullptr);
+    if (!checked) result.unchecked.push_back(shard.path);
+  }
   if (replaceable) {
-    // There is never a file beside the description of another file.
+    // The old file is removed first, so that it never lies beside the description of the new one.
     out.RemoveOld();
     WriteDescription(merged, whole);
     sums->Finish();
   }
   out.Finish();
-  return whole.rows;
+  return result;
 }
 
 }  // namespace fogline::sweep

@@ -7,12 +7,18 @@
 
 namespace fogline::sweep {
 
+/// A merged file.
+struct Merged {
+  std::int64_t rows = 0;
+  std::vector<std::filesystem::path> unchecked;  // shards with rows, but without checksums
+};
+
 /// Merges the complete files of all shards, given in any order. The merged file is written whole or
-/// not at all. @return the number of its rows
-/// @throws InputError if a shard is missing, double, incomplete or of another sweep, or if `merged`
-///     exists and there is no `force`, or is no sweep; as RefuseForeignSideFiles();
-///     std::runtime_error when the disk is full; Interrupted
-std::int64_t MergeShards(const std::vector<std::filesystem::path>& shards,
-                         const std::filesystem::path& merged, bool force);
+/// not at all.
+/// @throws InputError if a shard is missing, double, incomplete or of another sweep; if `merged`
+/// exists, and `force` is false or the file is no sweep; as RefuseForeignSideFiles().
+/// std::runtime_error when the disk is full; Interrupted
+Merged MergeShards(const std::vector<std::filesystem::path>& shards,
+                   const std::filesystem::path& merged, bool force);
 
 }  // namespace fogline::sweep

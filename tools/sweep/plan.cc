@@ -12,8 +12,6 @@ namespace {
 
 /// Largest number of points of an axis "first:last:count".
 constexpr std::int64_t kMaxPoints = 1'000'000;
-/// Largest seed of a scenario.
-constexpr std::int64_t kMaxSeed = 9'007'199'254'740'991;
 
 /// Largest number of rows of a sweep: more rows would take one core for years. Products with the
 /// number of a shard stay far within 64 bits.
@@ -58,8 +56,8 @@ std::vector<std::string> Spaced(std::string_view text) {
   return values;
 }
 
-/// Checks a value of a field by the rules of scenario files. `argument` is its source, for
-/// messages.
+/// Checks a value of a field by the rules of scenario files. `argument` is the source of the value,
+/// for messages.
 /// @throws InputError
 void CheckSetting(const std::string& argument, const std::string& base, const std::string& pointer,
                   const std::string& value) {

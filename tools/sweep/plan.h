@@ -17,18 +17,21 @@ struct Axis {
   std::vector<std::string> values;
 };
 
-/// Values as a person writes them: "a,b,c", or "first:last:count" for evenly spaced numbers.
-/// @param argument such as "--thresholds 1:2": the beginning of an error message
+/// Reads values as a person writes them: "a,b,c", or "first:last:count" for evenly spaced numbers.
+/// @param argument the beginning of an error message, such as "--thresholds 1:2"
 /// @throws InputError
 std::vector<std::string> ParseValues(const std::string& argument, std::string_view values);
 
-/// "/pointer=a,b,c", or "/pointer=first:last:count" for evenly spaced numbers.
+/// Reads an axis "/pointer=a,b,c", or "/pointer=first:last:count" for evenly spaced numbers.
 /// @throws InputError
 Axis ParseAxis(const std::string& text);
 
-/// Thresholds of the Degree of Conflict, written as the values of an axis, each in [0, 1].
+/// Reads thresholds of the Degree of Conflict, written as the values of an axis, each in [0, 1].
 /// @throws InputError
 std::vector<double> ParseThresholds(const std::string& text);
+
+/// Largest seed of a scenario, and of every other seed that a user chooses.
+inline constexpr std::int64_t kMaxSeed = 9'007'199'254'740'991;
 
 /// First and last seed of "A:B", or of "A".
 struct SeedRange {
@@ -45,7 +48,7 @@ struct Shard {
   std::int64_t count = 1;
   bool operator==(const Shard&) const = default;
 };
-/// "I/N". @throws InputError
+/// Reads a shard "I/N". @throws InputError
 Shard ParseShard(const std::string& text);
 
 /// The rows of a sweep. Axes of the arbitrator do not change a run without traded control. So rows
@@ -61,7 +64,7 @@ class SweepPlan {
   std::int64_t units() const { return outer_points_ * seeds_.count(); }
   std::int64_t rows_per_unit() const { return inner_points_; }
   std::int64_t rows() const { return units() * rows_per_unit(); }
-  /// First unit of a shard. For the shard count + 1 it is units().
+  /// First unit of a shard. The index count + 1 gives units(), the end of the last shard.
   std::int64_t ShardBegin(const Shard& shard) const {
     return units() * (shard.index - 1) / shard.count;
   }
@@ -92,7 +95,7 @@ class SweepPlan {
   std::vector<Axis> axes_;
   SeedRange seeds_;
   std::vector<FieldAssignment> fields_;  // one for each axis
-  std::vector<bool> inner_;              // for each axis: whether it is one of the arbitrator's
+  std::vector<bool> inner_;              // for each axis: whether it belongs to the arbitrator
   std::vector<std::int64_t> stride_;     // of each axis among the axes of its kind
   std::int64_t outer_points_ = 1;
   std::int64_t inner_points_ = 1;

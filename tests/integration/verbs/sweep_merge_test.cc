@@ -1,4 +1,6 @@
 // `fogline sweep --shard` and `--merge`: several machines make one file.
+#include <nlohmann/json.hpp>
+
 #include "tests/integration/verbs/sweep_fixture.h"
 
 namespace fogline::test {
@@ -126,6 +128,36 @@ TEST_F(SweepMergeTest, DoesNotBelieveARowWithoutAChecksum) {
   // WHEN the sweep is run again, as the error text says
   EXPECT_EQ(Made(shards[1], sweep + Words{"--shard", "2/2"}), whole);
   EXPECT_EQ(Merge(shards, "merged.csv").code, 0);
+}
+
+TEST_F(SweepMergeTest, NamesEachFileWhoseRowsItCannotCheck) {
+  const Words shards = Shards(4, kShort + Words{"--seeds", "1:3"});
+  const auto warning = [&](const std::string& shard) {
+    return "fogline sweep: warning: " + File(shard) + ": the rows are not checked, because " +
+           File(shard) + ".sums is missing or empty\n";
+  };
+  // GIVEN a file that was copied without its checksums, and a file with empty ones. The first file
+  // has no rows, so there is nothing to check in it
+  ASSERT_EQ(Lines(Content(File(shards[0]))), 1);
+  std::filesystem::remove(File(shards[0] + ".sums"));
+  std::filesystem::remove(File(shards[1] + ".sums"));
+  std::filesystem::resize_file(File(shards[3] + ".sums"), 0);
+  const Outcome merge = Merge(shards, "merged.csv");
+  EXPECT_EQ(merge.code, 0);
+  EXPECT_EQ(merge.out, "3 rows\n" + File("merged.csv") + "\n");
+  EXPECT_EQ(merge.err, warning(shards[1]) + warning(shards[3]));
+  // AND --json names these files, and is empty for files that were all checked
+  const Words json{Program("fogline"), "sweep", "--json", "--force", "--out", File("merged.csv")};
+  const Words merge_all{"--merge", File(shards[0]), File(shards[1]), File(shards[2]),
+                        File(shards[3])};
+  const Outcome as_json = RunCommand(json + merge_all);
+  EXPECT_EQ(as_json.err, merge.err);
+  EXPECT_EQ(nlohmann::json::parse(as_json.out)["unchecked"],
+            (Words{File(shards[1]), File(shards[3])}));
+  const Words whole = Shards(2, kShort + Words{"--seeds", "1:2"});
+  const Outcome checked = RunCommand(json + Words{"--merge", File(whole[0]), File(whole[1])});
+  EXPECT_EQ(checked.err, "");
+  EXPECT_EQ(nlohmann::json::parse(checked.out)["unchecked"], nlohmann::json::array());
 }
 
 TEST_F(SweepMergeTest, ReplacesNoFileBesideTheMergedOneThatIsOfNoSweep) {
