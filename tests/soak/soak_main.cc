@@ -1,5 +1,5 @@
-// Real processes run under random faults, one run after the other. Every digest must be that of the
-// undisturbed run.
+// Runs of real processes under random faults, several at the same time. Every digest must be that
+// of the undisturbed run.
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -19,21 +19,32 @@
 #include "common/exit_code.h"
 #include "tests/soak/faults.h"
 #include "tests/soak/soaked_run.h"
+#include "tools/cli/help.h"
+#include "tools/sweep/plan.h"
 
 namespace fogline::test {
 namespace {
 
 using SteadyClock = std::chrono::steady_clock;
 
-// Exit code where machines cannot be made.
+// Exit code if this process may not make machines.
 constexpr int kNoMachines = 4;
+
+// Limits of the time and of numbers of runs: a year, and more runs than a year allows.
+constexpr double kMostMinutes = 525'600;
+constexpr std::int64_t kMostRuns = 1'000'000'000;
+// A time that is over before a run can begin.
+constexpr double kLeastMinutes = 1e-9;
+// Limits of the duration of a fault.
+constexpr double kShortestFault_s = 0.1;
+constexpr double kLongestFault_s = 60;
 
 volatile std::sig_atomic_t interrupted = 0;
 
 struct Options {
   double minutes = 60;
   std::int64_t runs = 0;  // 0: as many as the time allows
-  std::int64_t each = 0;  // this many of each kind, in place of `runs`
+  std::int64_t each = 0;  // number of runs of each kind; 0: `runs` counts
   std::int64_t first = 0;
   std::uint64_t seed = 1;
   std::string only;
@@ -65,7 +76,7 @@ Ended SoakOnce(const FaultKind& kind, std::uint64_t seed, std::int64_t number,
   const Experiment experiment = Experiment::Draw(random);
   const Undisturbed undisturbed = RunUndisturbed(experiment);
   std::vector<std::string> options = kind.options(random);
-  // Slow enough that a fault of a tenth of a second covers many steps.
+  // The run is so slow that a fault of a tenth of a second covers many steps.
   options.insert(options.end(), {"--pace", "10", "--stall-timeout", "90"});
   const bool three = kind.three_machines && (!kind.alone || random() % 3 == 0);
   std::vector<double> shares;
@@ -179,7 +190,7 @@ class Soak {
     fmt::print("{} runs in {:.1f} min, {} failed\n", done_, Elapsed_s() / 60, failed_);
   }
 
-  /// Prints an error for each kind of fault that hit no run, and if no run was made. @return the
+  /// Prints an error if no run was made, and for each kind of fault that hit no run. @return the
   /// number of errors
   int Complains() const {
     if (done_ == 0) fmt::print(stderr, "soak: error: no run was made: --minutes is too short\n");
@@ -199,7 +210,7 @@ class Soak {
   const SteadyClock::time_point began_ = SteadyClock::now();
   std::vector<const FaultKind*> kinds_;
   std::atomic<std::int64_t> next_;
-  std::mutex mutex_;  // of the members below
+  std::mutex mutex_;  // guards the members below
   std::vector<Tally> tallies_;
   std::int64_t done_ = 0;
   std::int64_t failed_ = 0;
@@ -221,17 +232,19 @@ int Main(int argc, char** argv) {
       "of its own. Needs root and nftables.",
       "soak"};
   app.add_option("--minutes", options.minutes, "Time in which runs are started, in minutes")
-      ->check(CLI::PositiveNumber)
+      ->check(cli::NumberIn(kLeastMinutes, kMostMinutes))
       ->capture_default_str();
   auto* runs = app.add_option("--runs", options.runs, "Number of runs, instead of a time")
-                   ->check(CLI::PositiveNumber);
+                   ->check(CLI::Range(std::int64_t{1}, kMostRuns));
   app.add_option("--each", options.each, "Number of runs of each kind, instead of a time")
-      ->check(CLI::PositiveNumber)
+      ->check(CLI::Range(std::int64_t{1}, kMostRuns))
       ->excludes(runs);
   app.add_option("--first", options.first,
                  "Number of the first run, from which it draws its faults")
-      ->check(CLI::NonNegativeNumber);
-  app.add_option("--seed", options.seed, "Seed of the faults of all runs")->capture_default_str();
+      ->check(CLI::Range(std::int64_t{0}, kMostRuns));
+  app.add_option("--seed", options.seed, "Seed of the faults of all runs")
+      ->check(CLI::Range(std::int64_t{0}, sweep::kMaxSeed))
+      ->capture_default_str();
   std::vector<std::string> names;
   for (const FaultKind& kind : FaultKinds()) names.emplace_back(kind.name);
   app.add_option("--only", options.only, "Only runs of this kind")->check(CLI::IsMember(names));
@@ -239,10 +252,10 @@ int Main(int argc, char** argv) {
       ->check(CLI::Range(1, 64))
       ->capture_default_str();
   app.add_option("--freeze", options.limits.freeze_s, "Longest freeze, in s")
-      ->check(CLI::Range(0.1, 60.0))
+      ->check(cli::NumberIn(kShortestFault_s, kLongestFault_s))
       ->capture_default_str();
   app.add_option("--partition", options.limits.partition_s, "Longest partition, in s")
-      ->check(CLI::Range(0.1, 60.0))
+      ->check(cli::NumberIn(kShortestFault_s, kLongestFault_s))
       ->capture_default_str();
   app.footer(
       TextOfKinds() +
@@ -255,7 +268,7 @@ int Main(int argc, char** argv) {
   } catch (const CLI::Success& asked) {
     return app.exit(asked);
   } catch (const CLI::ParseError& error) {
-    fmt::print(stderr, "soak: error: {} (see soak --help)\n", error.what());
+    fmt::print(stderr, "soak: error: {} (see tools/soak --help)\n", error.what());
     return kBadInput;
   }
   if (const std::string why = WhyNoMachines(); !why.empty()) {

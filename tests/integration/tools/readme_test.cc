@@ -1,6 +1,7 @@
 // The README and the pages in docs/ agree with the code, and with the output of their commands.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstddef>
 #include <filesystem>
@@ -18,8 +19,8 @@ namespace {
 
 std::string ReadSource(const std::string& file) { return Content(SourceDirectory() / file); }
 
-/// A clone for the commands of a page: it has its own scenarios and build folder, but the programs
-/// and tests of this build. Git knows all files that are there at the beginning.
+/// A clone in which the commands of a page are executed. It has its own scenarios and build folder,
+/// but the programs and tests of this build. Git knows all files that are there at the beginning.
 class Clone {
  public:
   Clone() {
@@ -75,12 +76,44 @@ std::string ScriptOf(const std::vector<Block>& blocks) {
   return script;
 }
 
-/// Expects that each block "text" shows lines of the output of the commands above it, in their
-/// order. A line "..." stands for other lines. The rest of a line after a time, such as " in 0.62
-/// s", may differ. @return the number of lines that were compared
-int ExpectShows(const std::vector<Block>& blocks, const std::string& out) {
+/// The lines of a text without the parts that may differ: the rest of a line after a time, such as
+/// " in 0.62 s", and spaces at its end.
+std::vector<std::string> Comparable(const std::string& text) {
   static const std::regex kTime(" in [0-9.]+ s.*");
-  int compared = 0;
+  static const std::regex kSpaces(" +$");
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) {
+    lines.push_back(std::regex_replace(std::regex_replace(line, kTime, " in"), kSpaces, ""));
+  }
+  return lines;
+}
+
+/// Why a text does not show the lines of an output, whole and in their order; "" if it does. A line
+/// "..." stands for any number of lines.
+std::string WhyNotShown(const std::string& shown, const std::string& printed) {
+  constexpr const char* kLeftOut = "...";
+  const std::vector<std::string> lines = Comparable(printed);
+  auto next = lines.begin();
+  bool left_out = false;
+  for (const std::string& line : Comparable(shown)) {
+    if (line == kLeftOut) {
+      left_out = true;
+      continue;
+    }
+    const auto place = left_out ? std::find(next, lines.end(), line) : next;
+    if (place == lines.end()) return "\"" + line + "\" is not printed there";
+    if (*place != line) return "\"" + line + "\" is shown for \"" + *place + "\"";
+    next = place + 1;
+    left_out = false;
+  }
+  return left_out || next == lines.end() ? "" : "\"" + *next + "\" is not shown";
+}
+
+/// Expects that each block "text" shows the output of the commands above it. @return the number of
+/// lines that were compared
+std::ptrdiff_t ExpectShows(const std::vector<Block>& blocks, const std::string& out) {
+  std::ptrdiff_t compared = 0;
   std::string printed;
   for (std::size_t i = 0; i < blocks.size(); ++i) {
     if (blocks[i].commands) {
@@ -89,18 +122,29 @@ int ExpectShows(const std::vector<Block>& blocks, const std::string& out) {
       printed = out.substr(after, out.find("@@ block ", after) - after);
       continue;
     }
-    std::istringstream lines(blocks[i].text);
-    std::size_t at = 0;
-    for (std::string line; std::getline(lines, line);) {
-      if (line.empty() || line == "...") continue;
-      const std::string expected = std::regex_replace(line, kTime, " in ");
-      const std::size_t place = printed.find(expected, at);
-      EXPECT_NE(place, std::string::npos) << "\"" << expected << "\" is not in\n" << printed;
-      if (place != std::string::npos) at = place + expected.size();
-      ++compared;
-    }
+    EXPECT_EQ(WhyNotShown(blocks[i].text, printed), "") << blocks[i].text << "for\n" << printed;
+    compared += std::ranges::count(blocks[i].text, '\n');
   }
   return compared;
+}
+
+TEST(ShownOutputTest, IsWholeOrHasALineWhereLinesAreLeftOut) {
+  const std::string printed = "head\n1 2 3\n\n4 5 6\ntail\n";
+  for (const char* shown : {"head\n1 2 3\n\n4 5 6\ntail\n", "head\n...\ntail\n",
+                            "...\n1 2 3\n...\n", "head\n1 2 3\n...\n4 5 6\ntail\n...\n"}) {
+    EXPECT_EQ(WhyNotShown(shown, printed), "") << shown;
+  }
+  EXPECT_EQ(WhyNotShown("head\n1 2\n...\n", printed), "\"1 2\" is shown for \"1 2 3\"");
+  EXPECT_EQ(WhyNotShown("...\n1 2\n...\n", printed), "\"1 2\" is not printed there");
+  EXPECT_EQ(WhyNotShown("head\n\n...\n", printed), "\"\" is shown for \"1 2 3\"");
+  EXPECT_EQ(WhyNotShown("head\n1 2 3\n", printed), "\"\" is not shown");
+  EXPECT_EQ(WhyNotShown("...\ntail\nmore\n", printed), "\"more\" is not printed there");
+}
+
+TEST(ShownOutputTest, MayDifferBehindATimeAndInSpacesAtTheEndOfALine) {
+  EXPECT_EQ(WhyNotShown("9 rows in 0.1 s, 90 rows per second\n", "9 rows in 2.34 s, 4 rows\n"), "");
+  EXPECT_NE(WhyNotShown("9 rows in 0.1 s\n", "8 rows in 0.1 s\n"), "");
+  EXPECT_EQ(WhyNotShown("steps  500\n", "steps  500 \n"), "");
 }
 
 TEST(ReadmeTest, HasTheRolesOfTheGraphAndTheArchitectureBothTables) {
@@ -125,7 +169,7 @@ TEST(DocsTest, ThePartOfExtendingIsBuiltAndDrivesTheCarByTheCommandsThere) {
   const std::vector<Block> blocks = BlocksOf(ReadSource("docs/extending.md"));
   // WHEN a shell executes the commands of the page
   const Outcome outcome = clone.Run(ScriptOf(blocks));
-  // THEN the part that they build drives the car
+  // THEN the part that these commands build drives the car
   EXPECT_EQ(outcome.code, 0) << outcome.out << outcome.err;
   EXPECT_NE(outcome.out.find("scenario/paper.json: 500 steps"), std::string::npos) << outcome.out;
   EXPECT_NE(outcome.out.find("verified: world radar lidar"), std::string::npos) << outcome.out;
@@ -178,7 +222,7 @@ TEST(ReadmeTest, ItsCommandsLeaveNoFileThatGitDoesNotKnow) {
   std::size_t commands = 0;
   for (std::sregex_iterator at(readme.begin(), readme.end(), kCommand), end; at != end; ++at) {
     std::string command = (*at)[1].str();
-    // These take long: few seeds or steps give the same files.
+    // These commands take long. Few seeds or steps give the same files.
     if ((*at)[2] == "study" || (*at)[2] == "calibrate") command += " --seeds 1:2";
     if (command.find("--pace") != std::string::npos) command += " --set /steps=20";
     // The run waits for a driver that a person starts.
@@ -189,7 +233,7 @@ TEST(ReadmeTest, ItsCommandsLeaveNoFileThatGitDoesNotKnow) {
     ++commands;
   }
   EXPECT_GE(commands, 8U);
-  // AND the log that the commands for lcm-logger write
+  // AND the commands for lcm-logger write their log
   const std::string network = ReadSource("docs/network.md");
   std::smatch words;
   ASSERT_TRUE(std::regex_search(network, words, std::regex("\n    lcm-logger ([^ ]*) &")));

@@ -16,8 +16,8 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
-/// A folder with the programs that a script needs to print a text. None of them installs, builds or
-/// runs anything.
+/// A folder with the programs that a script needs to print a text. These programs install, build
+/// and run nothing.
 class BareShell {
  public:
   BareShell() {
@@ -47,13 +47,13 @@ TEST_P(ToolTest, PrintsItsHelpAndDoesNothingElse) {
 
 INSTANTIATE_TEST_SUITE_P(Scripts, ToolTest,
                          testing::Values("demo", "test", "bench", "build", "progress", "fresh",
-                                         "format"),
+                                         "format", "soak"),
                          [](const auto& script) { return std::string(script.param); });
 
 TEST(ToolsTest, RefuseAnArgumentThatTheyDoNotKnowBeforeTheyDoAnything) {
   const BareShell shell;
   for (const std::string script : {"tools/demo", "tools/test", "tools/build", "tools/progress",
-                                   "tools/fresh", "tools/format"}) {
+                                   "tools/fresh", "tools/format", "tools/soak"}) {
     const Outcome outcome = shell.Run(script, "--fast");
     EXPECT_EQ(outcome.code, 2);
     EXPECT_EQ(outcome.out, "");
