@@ -103,8 +103,8 @@ function valueSpan(figure, range) {
 }
 
 /**
- * "axis spans 0.3 % of the value", if a fitted axis spans less than 1 % of the largest value; otherwise "". A
- * logarithmic axis has no zero.
+ * "axis spans 0.3 % of the value" if a fitted axis spans less than 1 % of the largest value;
+ * otherwise "". A logarithmic axis has no zero.
  */
 function axisNote(figure, range) {
   if (figure.logY) return "";
@@ -114,8 +114,8 @@ function axisNote(figure, range) {
 }
 
 /**
- * A line above a chart that says if its value axis shows next to nothing of the values, and a box that makes the
- * axis begin at zero. Returns the line, and a function that shows it for a range.
+ * A line above a chart: a text if the value axis spans little of the values (axisNote()), and a box
+ * that makes the axis begin at zero. Returns the line, and a function that shows it for a range.
  */
 function makeAxisLine(figure, onSwitch) {
   const text = make("span");
@@ -315,7 +315,7 @@ function axis(more) {
           ticks: {...lines, size: 4}, gap: 5, ...more};
 }
 
-/** The existing values of x, without those whose texts would touch. */
+/** Ticks at the existing values of x, except values whose texts would touch. */
 function loggedTicks(figure, chart) {
   const room = 34;  // pixels
   let last = -Infinity;
@@ -343,7 +343,7 @@ function xAxis(figure) {
   });
 }
 
-/** 1, 2, 5, 10 ... on a logarithmic axis; 1, 10, 100 ... on a long one. */
+/** Ticks 1, 2, 5, 10 ... of a logarithmic axis, or 1, 10, 100 ... of a long logarithmic axis. */
 function logTicks(least, most) {
   const decades = Array.from({length: Math.ceil(most) - Math.floor(least) + 1},
                              (_, i) => Math.floor(least) + i);
@@ -413,7 +413,13 @@ function build() {
   for (const {chart} of charts) chart.destroy();
   charts = [];
   readTheme();
-  figures.filter(isUnfolded).forEach(makeChart);
+  drawMissing();
+}
+
+/** Draws the figures that are unfolded and not drawn. */
+function drawMissing() {
+  const drawn = new Set(charts.map(({figure}) => figure));
+  figures.filter((figure) => isUnfolded(figure) && !drawn.has(figure)).forEach(makeChart);
 }
 
 /** Whether a figure has a width: the content of a closed <details> has none. */
@@ -422,7 +428,7 @@ function isUnfolded({id}) {
 }
 
 for (const folded of document.querySelectorAll("details.more-figures")) {
-  folded.addEventListener("toggle", () => { if (folded.open) build(); });
+  folded.addEventListener("toggle", drawMissing);
 }
 
 new ResizeObserver(() => {

@@ -7,7 +7,6 @@
 
 #include <fmt/format.h>
 
-#include <boost/math/distributions/binomial.hpp>
 #include "tools/stats/holm.h"
 
 namespace fogline::study {
@@ -19,21 +18,6 @@ std::string NameWithUnit(std::string_view measure) {
   const ComparedMetric& info = ComparedMetrics()[PlaceOfMetric(measure)];
   return info.unit.empty() ? NameForReaders(measure)
                            : fmt::format("{} ({})", NameForReaders(measure), info.unit);
-}
-
-/// Two-sided p-value of McNemar's exact test: collisions in only one run of a pair are equally
-/// likely in both.
-double McNemar(std::span<const double> a, std::span<const double> b) {
-  double only_a = 0;
-  double only_b = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    only_a += a[i] > 0 && !(b[i] > 0) ? 1 : 0;
-    only_b += b[i] > 0 && !(a[i] > 0) ? 1 : 0;
-  }
-  if (only_a + only_b == 0) return 1;
-  constexpr double kEven = 0.5;
-  const boost::math::binomial_distribution<double> pairs(only_a + only_b, kEven);
-  return std::min(1.0, 2 * boost::math::cdf(pairs, std::min(only_a, only_b)));
 }
 
 bool HasSign(const Claim& claim) {
@@ -91,8 +75,8 @@ Claim ClaimOf(const Comparison& comparison, std::string says, CellName a, CellNa
               .margin = margin,
               .p = {},
               .hindrance = {}};
-  if (measure == "collided") {
-    claim.p = McNemar(comparison.Values(cell_a, measure), comparison.Values(cell_b, measure));
+  if (measure == kCollided) {
+    claim.p = comparison.PValueOfCollisions(cell_a, cell_b);
   } else if (const std::int64_t cut_short = comparison.PairsCutShort(cell_a, cell_b);
              cut_short > 0) {
     claim.hindrance = fmt::format("not comparable: the runs of {} of {} seeds end early", cut_short,

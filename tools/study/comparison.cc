@@ -13,6 +13,7 @@
 #include "tools/report/metric_text.h"
 #include "tools/stats/holm.h"
 #include "tools/stats/in_order.h"
+#include "tools/stats/mcnemar.h"
 #include "tools/stats/statistics.h"
 #include "tools/study/paired_worker.h"
 
@@ -26,7 +27,7 @@ std::vector<ComparedMetric> AllMetrics() {
     all.push_back({std::string(name), std::string(unit), std::string(description)});
   };
   metrics::VisitPairedMetrics({}, put);
-  put("collided", 0, "", "probability of a collision");
+  put(kCollided, 0, "", "probability of a collision");
   metrics::VisitMetrics(metrics::RunMetrics{}, put);
   return all;
 }
@@ -142,13 +143,13 @@ Estimate Comparison::Difference(Cell a, Cell b, std::string_view measure) const 
 
 metrics::EventShare Comparison::Collisions(Cell cell) const {
   std::int64_t events = 0;
-  for (const double collided : Values(cell, "collided")) events += collided > 0 ? 1 : 0;
+  for (const double collided : Values(cell, kCollided)) events += collided > 0 ? 1 : 0;
   return metrics::ClopperPearson(events, seeds_);
 }
 
 Estimate Comparison::Point(Cell cell, std::string_view measure) const {
   Estimate mean = Mean(cell, measure);
-  if (measure == "collided") {
+  if (measure == kCollided) {
     const metrics::EventShare share = Collisions(cell);
     mean.low = share.lower;
     mean.high = share.upper;
@@ -157,8 +158,8 @@ Estimate Comparison::Point(Cell cell, std::string_view measure) const {
 }
 
 std::int64_t Comparison::PairsCutShort(Cell a, Cell b) const {
-  const std::span<const double> crash_a = Values(a, "collided");
-  const std::span<const double> crash_b = Values(b, "collided");
+  const std::span<const double> crash_a = Values(a, kCollided);
+  const std::span<const double> crash_b = Values(b, kCollided);
   const std::span<const double> steps_a = Values(a, "steps");
   const std::span<const double> steps_b = Values(b, "steps");
   std::int64_t pairs = 0;
@@ -176,54 +177,64 @@ std::size_t Comparison::VariantNamed(std::string_view name) const {
   return PlaceOf(variants_, name, "variant");
 }
 
-std::vector<Estimate> Comparison::Differences(std::size_t reference) const {
-  std::vector<Estimate> differences;
+double Comparison::PValueOfCollisions(Cell a, Cell b) const {
+  return stats::McNemar(Values(a, kCollided), Values(b, kCollided));
+}
+
+std::vector<Comparison::PairedTest> Comparison::TestsAgainst(std::size_t reference) const {
+  std::vector<PairedTest> tests;
   for (std::size_t c = 0; c < cases_.size(); ++c) {
     for (std::size_t v = 0; v < variants_.size(); ++v) {
+      const Cell cell{c, v};
+      const Cell other{c, reference};
+      const std::int64_t cut_short = v == reference ? 0 : PairsCutShort(cell, other);
       for (const ComparedMetric& measure : ComparedMetrics()) {
-        differences.push_back(v == reference ? Estimate{}
-                                             : Difference({c, v}, {c, reference}, measure.name));
+        PairedTest& test = tests.emplace_back();
+        if (v == reference) continue;
+        test = {.difference = Difference(cell, other, measure.name), .cut_short = cut_short};
+        if (!test.difference.has_interval()) continue;
+        if (measure.name == kCollided) {
+          test.p = PValueOfCollisions(cell, other);
+        } else if (cut_short == 0) {
+          test.p = PValueOfSign(test.difference);
+        }
       }
     }
   }
-  return differences;
+  return tests;
 }
 
 std::int64_t Comparison::Comparisons(std::size_t reference) const {
-  return std::ranges::count_if(Differences(reference), &Estimate::has_interval);
+  return std::ranges::count_if(TestsAgainst(reference),
+                               [](const PairedTest& test) { return test.p.has_value(); });
 }
 
 std::string Comparison::Csv(std::size_t reference) const {
   std::string csv =
       "case,variant,measure,unit,n,infinite,mean,std,ci95_low,ci95_high,reference,difference_n,"
-      "difference_infinite,difference,difference_ci95_low,difference_ci95_high,effect_size,p,"
-      "p_holm\n";
-  const std::vector<Estimate> differences = Differences(reference);
-  // Only differences with an interval are tests, and count.
+      "difference_infinite,difference_cut_short,difference,difference_ci95_low,"
+      "difference_ci95_high,effect_size,p,p_holm\n";
+  const std::vector<PairedTest> tests = TestsAgainst(reference);
   std::vector<double> p;
-  for (const Estimate& difference : differences) {
-    if (difference.has_interval()) p.push_back(PValueOfSign(difference));
+  for (const PairedTest& test : tests) {
+    if (test.p) p.push_back(*test.p);
   }
-  const std::vector<double> adjusted = stats::Holm(p);
-  auto difference = differences.begin();
-  std::size_t test = 0;
+  const std::vector<double> holm = stats::Holm(p);
+  auto adjusted = holm.begin();
+  auto test = tests.begin();
   for (std::size_t c = 0; c < cases_.size(); ++c) {
     for (std::size_t v = 0; v < variants_.size(); ++v) {
       for (const ComparedMetric& measure : ComparedMetrics()) {
         const Estimate mean = Point({c, v}, measure.name);
-        csv += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}", cases_[c].name,
+        const Estimate& difference = test->difference;
+        csv += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}", cases_[c].name,
                            variants_[v].name, measure.name, measure.unit, mean.n, mean.infinite,
                            CsvText(mean.mean), CsvText(mean.deviation), CsvText(mean.low),
-                           CsvText(mean.high), variants_[reference].name, difference->n,
-                           difference->infinite, CsvText(*difference),
-                           CsvText(difference->mean / difference->deviation));
-        if (difference->has_interval()) {
-          csv += fmt::format(",{},{}\n", CsvText(p[test]), CsvText(adjusted[test]));
-          ++test;
-        } else {
-          csv += ",,\n";
-        }
-        ++difference;
+                           CsvText(mean.high), variants_[reference].name, difference.n,
+                           difference.infinite, test->cut_short, CsvText(difference),
+                           CsvText(difference.mean / difference.deviation));
+        csv += test->p ? fmt::format(",{},{}\n", CsvText(*test->p), CsvText(*adjusted++)) : ",,\n";
+        ++test;
       }
     }
   }

@@ -4,6 +4,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -37,6 +39,9 @@ inline constexpr std::string_view kWithoutTradedControl = "/arbitrator/policy=no
 
 /// The measure of safety in most findings.
 inline constexpr std::string_view kShortfall = "mean_compromised_safety_fog_m";
+
+/// Whether a run ends in a collision: 1 or 0.
+inline constexpr std::string_view kCollided = "collided";
 
 /// A measure of a run: one of VisitPairedMetrics(), "collided" (1 or 0), or one of
 /// VisitMetrics().
@@ -91,15 +96,19 @@ class Comparison {
   /// Number of pairs of runs in which at least one run ends early: it collides, or the two runs
   /// differ in length. Sums and means over time then lack the part after the end.
   std::int64_t PairsCutShort(Cell a, Cell b) const;
+  /// p-value of the difference of `collided`, by the exact test of McNemar over the pairs.
+  double PValueOfCollisions(Cell a, Cell b) const;
   /// Index of the case, or of the variant, of this name. @throws std::out_of_range
   std::size_t CaseNamed(std::string_view name) const;
   std::size_t VariantNamed(std::string_view name) const;
 
-  /// Number of differences from variant `reference` that have an interval.
+  /// Number of differences from variant `reference` that have a p-value.
   std::int64_t Comparisons(std::size_t reference) const;
   /// A summary of every measure of every cell, and its difference from variant `reference`: with
   /// its interval, its effect size (mean by standard deviation of the paired differences, Cohen's
-  /// d_z), and its p-value, also adjusted by Holm for all differences of the file.
+  /// d_z), and its p-value, also adjusted by Holm for all differences of the file. The p-value of
+  /// `collided` is that of McNemar, any other that of the t test. If pairs of runs are cut short,
+  /// their number is there, and the other measures have no p-value.
   std::string Csv(std::size_t reference) const;
   /// Points with intervals: either the variants are on the x axis and each case is a series, or the
   /// other way round.
@@ -115,9 +124,15 @@ class Comparison {
                                     std::span<const std::string_view> measures) const;
 
  private:
-  /// The differences from variant `reference`, by case, variant and measure; those of the reference
+  /// A difference from the reference, and what it proves.
+  struct PairedTest {
+    Estimate difference;
+    std::int64_t cut_short = 0;  // number of pairs (PairsCutShort())
+    std::optional<double> p;
+  };
+  /// The tests against variant `reference`, by case, variant and measure; those of the reference
   /// itself are empty.
-  std::vector<Estimate> Differences(std::size_t reference) const;
+  std::vector<PairedTest> TestsAgainst(std::size_t reference) const;
 
   std::vector<StudyCase> cases_;
   std::vector<StudyVariant> variants_;

@@ -8,6 +8,7 @@
 #include "tools/report/metric_text.h"
 #include "tools/study/claims.h"
 #include "tools/study/comparison.h"
+#include "tools/study/sensor_noise.h"
 #include "tools/study/study.h"
 
 namespace fogline::study {
@@ -16,7 +17,7 @@ namespace {
 constexpr std::array kDensities_m{200.0, 120.0, 80.0, 60.0, 45.0, 35.0, 25.0};
 
 constexpr std::string_view kPaperName = "paper's driver";
-constexpr std::string_view kWholeName = "all of it";
+constexpr std::string_view kWholeName = "all weaknesses";
 constexpr std::string_view kBiasName = "bias fog: paper's driver";
 constexpr std::string_view kBiasMisjudgesName = "bias fog: misjudges";
 
@@ -48,6 +49,17 @@ std::vector<StudyCase> Densities() {
     overrides.insert(overrides.end(), kWholeHuman.begin(), kWholeHuman.end());
     cases.push_back({fmt::format("human at {:g} m", visibility_m), "dense_fog.json", overrides});
   }
+  return cases;
+}
+
+/// The main drivers with realistic noise.
+std::vector<StudyCase> NoisyDrivers() {
+  const std::vector<std::string> misjudges{"/human/misjudges=true"};
+  std::vector<StudyCase> cases{{std::string(kPaperName), "dense_fog.json", {}},
+                               {std::string(kWholeName), "dense_fog.json", kWholeHuman},
+                               {std::string(kBiasName), "paper.json", {}},
+                               {std::string(kBiasMisjudgesName), "paper.json", misjudges}};
+  for (StudyCase& one : cases) one = WithRealisticNoise(std::move(one));
   return cases;
 }
 
@@ -116,6 +128,26 @@ std::vector<Claim> DriverClaims(const Comparison& comparison) {
   return claims;
 }
 
+/// The claims of the answer with realistic noise.
+std::vector<Claim> NoisyDriverClaims(const Comparison& comparison) {
+  const auto noisy = [](std::string_view name) {
+    return fmt::format("{}{}", name, kWithRealisticNoise);
+  };
+  const auto claim = [&](std::string_view says, std::string_view name, Sign sign) {
+    const std::string test_case = noisy(name);
+    return ClaimOf(comparison, fmt::format("With realistic noise {}", says), {test_case, "traded"},
+                   {test_case, "none"}, kShortfall, sign);
+  };
+  return {claim("in dense fog traded control helps: paper's driver.", kPaperName, Sign::kLess),
+          claim("in dense fog traded control helps: all weaknesses.", kWholeName, Sign::kLess),
+          ClaimOf(comparison, "With realistic noise an imperfect human leaves more danger.",
+                  {noisy(kWholeName), "traded"}, {noisy(kPaperName), "traded"}, kShortfall,
+                  Sign::kMore),
+          claim("in the paper's fog the paper's driver helps.", kBiasName, Sign::kLess),
+          claim("in the paper's fog a human who misjudges does harm.", kBiasMisjudgesName,
+                Sign::kMore)};
+}
+
 }  // namespace
 
 StudyResult RunDriverStudy(const StudyContext& context) {
@@ -123,6 +155,7 @@ StudyResult RunDriverStudy(const StudyContext& context) {
   for (StudyCase& one : Densities()) cases.push_back(std::move(one));
   cases.push_back({std::string(kBiasName), "paper.json", {}});
   cases.push_back({std::string(kBiasMisjudgesName), "paper.json", {"/human/misjudges=true"}});
+  for (StudyCase& one : NoisyDrivers()) cases.push_back(std::move(one));
   const Comparison comparison(
       context, cases,
       {{"none", {"/arbitrator/policy=none"}}, {"traded", {"/arbitrator/policy=traded"}}});
@@ -132,6 +165,7 @@ StudyResult RunDriverStudy(const StudyContext& context) {
   section.answer = kDriverAnswer;
   section.would_change = kDriverWouldChange;
   result.claims = DriverClaims(comparison);
+  for (Claim& claim : NoisyDriverClaims(comparison)) result.claims.push_back(std::move(claim));
   section.figures = {
       OverDensity(comparison, "mean_compromised_safety_fog_m", "driver-cs-visibility",
                   "Compromised safety over the density of the fog (m)"),
@@ -151,8 +185,8 @@ StudyResult RunDriverStudy(const StudyContext& context) {
       "without "
       "and with traded control; sight, errors and awareness with their defaults. Without traded "
       "control the driver "
-      "has no effect, so at equal visibility this run is the same for all drivers.",
-      comparison.seeds());
+      "has no effect, so at equal visibility this run is the same for all drivers. {}",
+      comparison.seeds(), RealisticNoiseText());
   result.files = {{"driver.csv", comparison.Csv(0)}};
   return result;
 }

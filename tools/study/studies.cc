@@ -68,6 +68,14 @@ Scenario StudyContext::Load(std::string_view file, std::vector<std::string> over
   return LoadScenario(scenarios / file, overrides);
 }
 
+StudyContext StudyContext::Part(std::int64_t before, std::int64_t all) const {
+  StudyContext part = *this;
+  part.progress = [show = progress, before, all](std::int64_t done, std::int64_t) {
+    return !show || show(before + done, all);
+  };
+  return part;
+}
+
 void StudyContext::Show(std::int64_t done, std::int64_t total) const {
   if (progress && !progress(done, total)) throw StudyStopped();
 }

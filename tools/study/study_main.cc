@@ -170,32 +170,11 @@ void PrintText(const StudyArguments& arguments, const Made& made) {
   }
 }
 
-/// The folder for the files, made before long work. The destructor removes a new folder that is
-/// still empty.
-class OutFolder {
- public:
-  /// @throws InputError
-  explicit OutFolder(const std::filesystem::path& folder)
-      : folder_(folder), is_new_(!std::filesystem::exists(folder)) {
-    RequireWritableFolder(folder, "--out");
-  }
-  ~OutFolder() {
-    std::error_code not_empty;
-    if (is_new_) std::filesystem::remove(folder_, not_empty);
-  }
-  OutFolder(const OutFolder&) = delete;
-  OutFolder& operator=(const OutFolder&) = delete;
-
- private:
-  std::filesystem::path folder_;
-  bool is_new_;
-};
-
 int RunStudy(const StudyArguments& arguments) {
   const std::vector<const Study*> chosen = Chosen(arguments.name);
   if (!arguments.seeds.empty()) RequireFew(cli::ReadSeeds(arguments.seeds), arguments.seeds);
   RequireScenarios(arguments.scenarios);
-  const OutFolder folder(arguments.out);
+  const OutputFolder folder(arguments.out, "--out");
   WatchInterrupts();
   std::vector<Made> all;
   std::vector<report::StudySection> sections;

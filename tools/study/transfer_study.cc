@@ -5,6 +5,7 @@
 
 #include "tools/study/claims.h"
 #include "tools/study/comparison.h"
+#include "tools/study/sensor_noise.h"
 #include "tools/study/study.h"
 
 namespace fogline::study {
@@ -19,6 +20,8 @@ constexpr double kTolerableLoss = 3;
 
 constexpr std::string_view kPaperFog = "bias fog";
 constexpr std::string_view kDenseFog = "beam fog";
+constexpr std::string_view kPaperFogNoisy = "bias fog with realistic noise";
+constexpr std::string_view kDenseFogNoisy = "beam fog with realistic noise";
 
 std::vector<StudyVariant> WaysToTransfer() {
   std::vector<StudyVariant> variants;
@@ -74,23 +77,38 @@ std::vector<Claim> TransferClaims(const Comparison& comparison) {
               step_in_dense_fog, kTransferJerk, Sign::kLess),
       ClaimOf(comparison, "In dense fog the gate costs no safety.", gate_in_dense_fog,
               step_in_dense_fog, "si_pct", Sign::kEqual, kTolerableLoss),
+      LevelClaim(comparison,
+                 "With realistic noise in the paper's scenario the step is comfortable.",
+                 {kPaperFogNoisy, "step"}, kTransferJerk, Sign::kLess, kComfortableJerk_mps3),
+      LevelClaim(comparison, "With realistic noise in dense fog the step is comfortable.",
+                 {kDenseFogNoisy, "step"}, kTransferJerk, Sign::kLess, kComfortableJerk_mps3),
+      ClaimOf(comparison,
+              "With realistic noise in the paper's scenario a linear ramp costs safety.",
+              {kPaperFogNoisy, "linear"}, {kPaperFogNoisy, "step"}, "si_pct", Sign::kLess),
+      ClaimOf(comparison, "With realistic noise in dense fog the gate avoids jerk.",
+              {kDenseFogNoisy, "gate"}, {kDenseFogNoisy, "step"}, kTransferJerk, Sign::kLess),
+      ClaimOf(comparison, "With realistic noise in dense fog the gate costs no safety.",
+              {kDenseFogNoisy, "gate"}, {kDenseFogNoisy, "step"}, "si_pct", Sign::kEqual,
+              kTolerableLoss),
   };
 }
 
 }  // namespace
 
 StudyResult RunTransferStudy(const StudyContext& context) {
-  const Comparison comparison(
-      context,
-      {{std::string(kPaperFog), "paper.json", {}}, {std::string(kDenseFog), "dense_fog.json", {}}},
-      WaysToTransfer());
+  const Comparison comparison(context,
+                              {{std::string(kPaperFog), "paper.json", {}},
+                               {std::string(kDenseFog), "dense_fog.json", {}},
+                               {std::string(kPaperFogNoisy), "paper.json", RealisticNoise()},
+                               {std::string(kDenseFogNoisy), "dense_fog.json", RealisticNoise()}},
+                              WaysToTransfer());
   StudyResult result;
   result.runs = comparison.runs();
   report::StudySection& section = result.section;
   section.answer = kTransferAnswer;
   section.would_change = kTransferWouldChange;
   result.claims = TransferClaims(comparison);
-  for (const std::string_view name : {kDenseFog, kPaperFog}) {
+  for (const std::string_view name : {kDenseFog, kPaperFog, kDenseFogNoisy, kPaperFogNoisy}) {
     section.tables.push_back(comparison.TableOfCase(comparison.CaseNamed(name), kTransferTable));
   }
   section.figures = {
@@ -107,8 +125,8 @@ StudyResult RunTransferStudy(const StudyContext& context) {
       "ISO 15622, whose limit is {:g} m/s3 above 20 m/s. The jerk of single steps is beside it "
       "(max_handover_jerk_mps3): for a jump it is the jump divided by the step, so it depends on "
       "the "
-      "length of a step. Differences are paired by seed.",
-      comparison.seeds(), kComfortableJerk_mps3);
+      "length of a step. Differences are paired by seed. {}",
+      comparison.seeds(), kComfortableJerk_mps3, RealisticNoiseText());
   result.files = {{"transfer.csv", comparison.Csv(0)}};
   return result;
 }

@@ -6,6 +6,7 @@
 #include "services/models/vehicle/vehicle_parameters.h"
 #include "tools/study/claims.h"
 #include "tools/study/comparison.h"
+#include "tools/study/sensor_noise.h"
 #include "tools/study/study.h"
 
 namespace fogline::study {
@@ -84,6 +85,16 @@ std::vector<StudyCase> VehicleCases() {
   return cases;
 }
 
+/// Sedan and truck on every ground with realistic noise.
+std::vector<StudyCase> NoisyCars() {
+  std::vector<StudyCase> noisy = VehicleCases();
+  std::erase_if(noisy, [](const StudyCase& one) {
+    return !one.name.ends_with(": sedan") && !one.name.ends_with(": truck");
+  });
+  for (StudyCase& one : noisy) one = WithRealisticNoise(std::move(one));
+  return noisy;
+}
+
 constexpr std::array<std::string_view, 8> kVehicleTable{"si_pct",
                                                         "mean_compromised_safety_fog_m",
                                                         "collided",
@@ -111,22 +122,35 @@ std::vector<Claim> VehicleClaims(const Comparison& comparison) {
   for (const std::string_view car : {"sedan", "truck", "truck behind a sedan"}) {
     for (const std::string_view fog : {"bias fog", "beam fog"}) {
       const std::string name = fmt::format("{}: {}", fog, car);
-      add(fmt::format("It helps: {}.", name), name, "traded", "none", kShortfall, Sign::kLess);
+      add(fmt::format("Traded control helps: {}.", name), name, "traded", "none", kShortfall,
+          Sign::kLess);
     }
   }
   claims.push_back(ClaimOf(comparison, "A sedan has less safety improvement than a point mass.",
                            {"beam fog: sedan", "traded"}, {"beam fog: point mass", "traded"},
                            "si_pct", Sign::kLess));
-  claims.push_back(ClaimOf(comparison, "A truck has less than a sedan.",
+  claims.push_back(ClaimOf(comparison, "A truck has less safety improvement than a sedan.",
                            {"beam fog: truck", "traded"}, {"beam fog: sedan", "traded"}, "si_pct",
                            Sign::kLess));
   for (const std::string_view car :
        {"point mass", "sedan", "truck", "truck behind a sedan", "truck uphill 2 %", "compact"}) {
     const std::string name = fmt::format("hard braking in beam fog: {}", car);
-    add(fmt::format("It does harm: {}.", name), name, "traded", "none", kShortfall, Sign::kMore);
+    add(fmt::format("Traded control does harm: {}.", name), name, "traded", "none", kShortfall,
+        Sign::kMore);
   }
-  add("There a jerk limit lets trucks collide.", "hard braking in beam fog: truck",
-      "traded jerk-limited", "traded", "collided", Sign::kMore);
+  add("Behind a leader that brakes hard, a jerk limit lets trucks collide.",
+      "hard braking in beam fog: truck", "traded jerk-limited", "traded", "collided", Sign::kMore);
+  for (const std::string_view car : {"sedan", "truck"}) {
+    for (const std::string_view fog : {"bias fog", "beam fog"}) {
+      const std::string name = fmt::format("{}: {}{}", fog, car, kWithRealisticNoise);
+      add(fmt::format("Traded control helps: {}.", name), name, "traded", "none", kShortfall,
+          Sign::kLess);
+    }
+    const std::string name =
+        fmt::format("hard braking in beam fog: {}{}", car, kWithRealisticNoise);
+    add(fmt::format("Traded control does harm: {}.", name), name, "traded", "none", kShortfall,
+        Sign::kMore);
+  }
   return claims;
 }
 
@@ -136,6 +160,7 @@ report::StudyTable VehicleMainTable(const Comparison& comparison) {
   for (std::size_t c = 0; c < comparison.cases().size(); ++c) {
     const StudyCase& one = comparison.cases()[c];
     if (one.group == "bias fog" || one.name.ends_with("uphill 2 %")) continue;
+    if (one.name.ends_with(kWithRealisticNoise)) continue;
     rows.push_back({one.name, {c, comparison.VariantNamed("traded")}});
   }
   return comparison.TableOf("Traded control", "case", rows, kVehicleTable);
@@ -168,16 +193,19 @@ std::string VehicleMethod(const Comparison& comparison) {
       "the case is named: delay and lag in every car, the little power that a truck has left on a "
       "slope, the tyres on ice under hard braking. The compact has the delays and lags of the "
       "sedan, so it appears only under hard braking. No case has a wet road: it holds {:.1f} m/s2, "
-      "and the hardest acceleration or braking of a host in any of these runs is {:.1f} m/s2{}.",
+      "and the hardest acceleration or braking of a host in any of these runs is {:.1f} m/s2{}. {}",
       comparison.seeds(), wet, hardest,
-      hardest < wet ? ", so a wet road would give the results of the dry road" : "");
+      hardest < wet ? ", so a wet road would give the results of the dry road" : "",
+      RealisticNoiseText());
 }
 
 }  // namespace
 
 StudyResult RunVehicleStudy(const StudyContext& context) {
+  std::vector<StudyCase> cases = VehicleCases();
+  for (StudyCase& one : NoisyCars()) cases.push_back(std::move(one));
   const Comparison comparison(
-      context, VehicleCases(),
+      context, cases,
       {{"none", {"/arbitrator/policy=none"}},
        {"traded", {"/arbitrator/policy=traded"}},
        {"traded jerk-limited",

@@ -20,7 +20,7 @@ using ::testing::Each;
 using ::testing::Ge;
 using ::testing::SizeIs;
 
-/// All studies over a few seeds, as `fogline study all` makes them; made once.
+/// All studies over a few seeds, as `fogline study all` makes them. They are made only once.
 const std::vector<report::StudySection>& Sections() {
   static const std::vector<report::StudySection> kSections = [] {
     std::vector<report::StudySection> sections;
@@ -49,6 +49,7 @@ std::size_t CountFigures() {
 
 /// The figures in a folded part are drawn when the part is unfolded.
 constexpr std::string_view kUnfold = R"(
+    const chartOf = (name) => charts.find(({figure}) => figure.id === name).chart;
     document.querySelectorAll("details.more-figures").forEach((e) => { e.open = true; });
     await settled();)";
 
@@ -92,7 +93,7 @@ TEST_F(StudyInBrowserTest, HasEveryStudyDrawsEveryFigureAndLoadsNothing) {
 }
 
 TEST_F(StudyInBrowserTest, SaysIfAnAxisSpansLessThanAHundredthOfTheValueAndOffersTheWholeAxis) {
-  // GIVEN values of 100 and 100.5: with the margin the axis spans 0.55
+  // GIVEN values of 100 and 100.5. With its margin the axis spans 0.55
   report::StudySection section{.name = "narrow", .title = "Narrow", .question = "How narrow?"};
   for (const bool logarithmic : {false, true}) {
     report::StudyFigure& figure = section.figures.emplace_back(report::StudyFigure{
@@ -145,18 +146,35 @@ TEST_F(StudyInBrowserTest, HidesASeriesAndShowsItAgain) {
   EXPECT_EQ(found["restored"], true);
 }
 
+TEST_F(StudyInBrowserTest, KeepsTheFiguresThatAreThereWhenAPartIsUnfolded) {
+  const json found =
+      BrowserTest::Show(report::MakeStudyPage("fogline study all", Sections()), kDesktop, R"(
+    const drawn = canvases();
+    const button = document.querySelector(".legend button");
+    document.querySelectorAll("details.more-figures").forEach((e) => { e.open = true; });
+    await settled();
+    found.before = drawn.length;
+    found.after = canvases().length;
+    found.kept = [...drawn, button].map((e) => e.isConnected);)");
+  EXPECT_THAT(found["problems"], SizeIs(0)) << found;
+  EXPECT_GE(found["before"], 1);
+  EXPECT_GT(found["after"], found["before"]);
+  EXPECT_THAT(found["kept"], Each(true));
+}
+
 TEST_F(StudyInBrowserTest, GivesTheValuesAtTheCursor) {
   const json found = Show(kDesktop, R"(
-    const index = figures.findIndex(({id}) => id === "transfer-jerk");
-    const {chart} = charts[index];
+    const chart = chartOf("transfer-jerk");
     mouse("mousemove", chart.over, 100, chart.valToPos(0, "x"));
     await settled();
     const legend = document.querySelector("#transfer-jerk .legend");
     found.at = legend.querySelector(".at").textContent;
+    found.series = figures.find(({id}) => id === "transfer-jerk").series.map(({name}) => name);
     found.values = [...legend.querySelectorAll(".value")].map((e) => e.textContent);)");
   EXPECT_THAT(found["problems"], SizeIs(0)) << found;
   EXPECT_EQ(found["at"], "step");
-  EXPECT_THAT(found["values"], SizeIs(2));
+  EXPECT_THAT(found["series"], SizeIs(Ge(2)));
+  EXPECT_THAT(found["values"], SizeIs(found["series"].size()));
   EXPECT_THAT(found["values"], Each(::testing::Ne("")));
 }
 
@@ -200,15 +218,16 @@ TEST_F(StudyInBrowserTest, LetsNoGreatValueFlattenTheOthers) {
   const json found = Show(kDesktop, R"(
     // Of the shown points, the share that lies in the first tenth of the axis.
     const flat = (name) => {
-      const {chart} = charts[figures.findIndex(({id}) => id === name)];
+      const chart = chartOf(name);
       const {min, max} = chart.scales.y;
       const places = chart.data.slice(1).flat().filter(Number.isFinite);
       return places.filter((place) => place < min + 0.1 * (max - min)).length / places.length;
     };
     found.flat = ["followers-ttc", "followers-string-ttc-traded", "driver-ttc-visibility"].map(flat);
-    const drac = figures.findIndex(({id}) => id === "vehicle-drac");
-    found.most = charts[drac].chart.scales.y.max;
-    found.beyond = figures[drac].series.flatMap(({y}) => y).filter((y) => y > found.most).length;
+    const drac = chartOf("vehicle-drac");
+    const values = figures.find(({id}) => id === "vehicle-drac").series.flatMap(({y}) => y);
+    found.most = drac.scales.y.max;
+    found.beyond = values.filter((y) => y > found.most).length;
     found.note = document.querySelector("#vehicle-drac .axis").textContent;
     const spy = [];
     const fillText = CanvasRenderingContext2D.prototype.fillText;
@@ -216,10 +235,9 @@ TEST_F(StudyInBrowserTest, LetsNoGreatValueFlattenTheOthers) {
       spy.push(text);
       return fillText.call(this, text, ...more);
     };
-    charts[drac].chart.redraw();
+    drac.redraw();
     await settled();
-    found.marked = figures[drac].series.flatMap(({y}) => y).filter((y) => y > found.most)
-        .every((y) => spy.includes(numberText(y)));)");
+    found.marked = values.filter((y) => y > found.most).every((y) => spy.includes(numberText(y)));)");
   EXPECT_THAT(found["problems"], SizeIs(0)) << found;
   EXPECT_THAT(found["flat"], Each(::testing::Le(0.5))) << found;
   EXPECT_LT(found["most"], 14);

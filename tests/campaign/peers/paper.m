@@ -7,7 +7,7 @@
 % with Fogline's only without sensor noise.
 %
 %   octave-cli tests/campaign/peers/paper.m SCENARIO.json            the table, as JSON
-%   octave-cli tests/campaign/peers/paper.m SCENARIO.json RUNS       seconds for so many runs, as JSON
+%   octave-cli tests/campaign/peers/paper.m SCENARIO.json RUNS       seconds for RUNS runs, as JSON
 %
 % SCENARIO.json is an effective scenario: the output of `fogline check --print`.
 1;
@@ -36,7 +36,7 @@ end
 % ---- fog and sensors ----------------------------------------------------------------------------
 
 function [present, level] = fog_at(fog, t)
-  since = round((t - fog.start_s) * 1e6);    % whole microseconds: no step is lost to rounding
+  since = round((t - fog.start_s) * 1e6);    % in whole microseconds, so rounding loses no step
   duration = round(fog.duration_s * 1e6);
   present = since >= 0 && since < duration && !strcmp(fog.model, 'none');
   level = 0;
@@ -120,8 +120,8 @@ function mpc = make_mpc(acc, h)
   speed_u = -acc.engine_gain * h * tril(ones(N));      % w_j = w + speed_u u, w = v + T_e a
   mpc.rows = [D, zeros(N, 1);                          % change of u
               speed_u, zeros(N, 1);                    % speed limit
-              speed_u, ones(N, 1);                     % no reversing, but for s
-              pick_gap * G, (N:-1:1)' / N];            % smallest gap, but for s
+              speed_u, ones(N, 1);                     % no reversing, except by s
+              pick_gap * G, (N:-1:1)' / N];            % smallest gap, except by s
 
   mpc.acc = acc;
   mpc.N = N;
@@ -134,8 +134,8 @@ function mpc = make_mpc(acc, h)
   mpc.u = 0;
 end
 
-% The next u of the fall-back plan, which always exists: u moves to the fall-back deceleration at
-% its fastest change.
+% The next u of the fall-back plan. In this plan u moves to the fall-back deceleration as fast as it
+% may change. The plan always exists.
 function u = fallback(mpc, u_before)
   target = min(mpc.acc.fallback_deceleration_mps2 / mpc.acc.engine_gain, mpc.u_max);
   u = min(max(target, u_before - mpc.du_max), u_before + mpc.du_max);

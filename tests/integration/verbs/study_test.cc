@@ -49,8 +49,19 @@ std::vector<std::pair<std::string, std::string>> Files(const std::filesystem::pa
   return files;
 }
 
-std::size_t Lines(const std::string& text) {
-  return static_cast<std::size_t>(std::ranges::count(text, '\n'));
+/// The number of rows of conflict.csv for each measure, which is in the fifth column.
+std::map<std::string, int> CountByMeasure(const std::string& csv) {
+  std::istringstream lines(csv);
+  std::string line;
+  std::getline(lines, line);
+  std::map<std::string, int> counts;
+  while (std::getline(lines, line)) {
+    std::istringstream cells(line);
+    std::string cell;
+    for (int i = 0; i < 5; ++i) std::getline(cells, cell, ',');
+    ++counts[cell];
+  }
+  return counts;
 }
 
 TEST(StudyVerbTest, WritesWhatItSaysAndTheSameBytesWhateverTheNumberOfJobs) {
@@ -63,7 +74,7 @@ TEST(StudyVerbTest, WritesWhatItSaysAndTheSameBytesWhateverTheNumberOfJobs) {
   const Outcome second = Study({"conflict", "--seeds", "1:3", "--jobs", "2", "--out", two});
   ASSERT_EQ(first.code, 0) << first.err;
   ASSERT_EQ(second.code, 0) << second.err;
-  // THEN the files that it names exist, and both times have the same bytes
+  // THEN the files that the verb names exist, and both calls write the same bytes
   const nlohmann::json said = nlohmann::json::parse(first.out);
   EXPECT_EQ(said["studies"][0]["seeds"], "1:3");
   EXPECT_TRUE(std::filesystem::exists(said["report"].get<std::string>()));
@@ -75,9 +86,13 @@ TEST(StudyVerbTest, WritesWhatItSaysAndTheSameBytesWhateverTheNumberOfJobs) {
   // The output names all files; the page and its text come last.
   EXPECT_THAT(second.out, testing::EndsWith(two + "/conflict.html\n" + two + "/conflict.md\n"));
   for (const auto& [name, content] : Files(two)) EXPECT_THAT(second.out, HasSubstr(name + "\n"));
-  // AND the table has every measure in two fog models, five visibilities and three noises
-  const std::size_t measures = conflict::ConflictMeasures().size();
-  EXPECT_EQ(Lines(Read(one + "/conflict.csv")), 1U + measures * 2 * 5 * 3);
+  // AND the table has every detector in two fog models, five visibilities and four noises
+  const std::map<std::string, int> detectors = CountByMeasure(Read(one + "/conflict.csv"));
+  for (const conflict::ConflictMeasureRow& row : conflict::ConflictMeasures()) {
+    EXPECT_TRUE(detectors.contains(std::string(row.name))) << row.name;
+  }
+  EXPECT_TRUE(detectors.contains("nis + window + sign"));
+  for (const auto& [detector, rows] : detectors) EXPECT_EQ(rows, 2 * 5 * 4) << detector;
   EXPECT_THAT(Read(one + "/conflict.md"), HasSubstr(said["studies"][0]["answer"]));
 }
 

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <utility>
 
 #include "services/metrics/event_share.h"
+#include "tools/stats/in_order.h"
 #include "tools/study/bootstrap.h"
 
 namespace fogline::study {
@@ -15,7 +17,7 @@ namespace {
 constexpr Stream kClearAir{1002};
 constexpr Stream kFog{1003};
 
-/// Delay and detection of one measure at one threshold, by visibility, with weights of the seeds.
+/// Delay and detection of one detector at one threshold, by visibility, with weights of the seeds.
 struct Detection {
   std::vector<double> delay_s;
   std::vector<double> share;
@@ -23,7 +25,7 @@ struct Detection {
 };
 
 Detection DetectionAt(const DetectorRuns& runs, double threshold, std::span<const double> weights,
-                      double missed_s) {
+                      const DetectionRule& rule) {
   Detection detection;
   for (const std::vector<ScoreRecords>& seeds : runs.fog) {
     double delay_s = 0;
@@ -32,18 +34,19 @@ Detection DetectionAt(const DetectorRuns& runs, double threshold, std::span<cons
     for (std::size_t i = 0; i < seeds.size(); ++i) {
       if (weights[i] == 0) continue;
       const std::optional<double> alarm = FirstAlarm(seeds[i], threshold);
-      delay_s += weights[i] * alarm.value_or(missed_s);
+      delay_s += weights[i] * alarm.value_or(rule.missed_s);
       detected += alarm ? weights[i] : 0;
       all += weights[i];
     }
     detection.delay_s.push_back(delay_s / all);
     detection.share.push_back(detected / all);
-    detection.mean_delay_s += delay_s / all / static_cast<double>(runs.fog.size());
   }
+  for (const std::size_t v : rule.ranked) detection.mean_delay_s += detection.delay_s[v];
+  detection.mean_delay_s /= static_cast<double>(rule.ranked.size());
   return detection;
 }
 
-/// The replicates of one measure.
+/// The replicates of one detector.
 struct Replicates {
   std::vector<Detection> of;
 
@@ -79,58 +82,93 @@ DetectionMeans MeansOf(const Detection& all, const Replicates& replicates, std::
   return means;
 }
 
-/// The interval of a - b, from the differences of the replicates.
-template <class Value>
-Estimate Difference(const Detection& all_a, const Replicates& a, const Detection& all_b,
-                    const Replicates& b, std::int64_t seeds, const Value& value) {
-  std::vector<double> differences = a.Of(value);
-  const std::vector<double> others = b.Of(value);
-  for (std::size_t i = 0; i < differences.size(); ++i) differences[i] -= others[i];
-  return FromReplicates(seeds, value(all_a) - value(all_b), std::move(differences));
+/// a - b, replicate by replicate.
+std::vector<double> Differences(std::vector<double> a, std::span<const double> b) {
+  for (std::size_t i = 0; i < a.size(); ++i) a[i] -= b[i];
+  return a;
 }
+
+/// A replicate of every detector.
+class Resampler {
+ public:
+  Resampler(std::span<const DetectorRuns> detectors, const DetectionRule& rule)
+      : detectors_(detectors), rule_(rule), fog_(detectors.front().fog.front().size(), kFog) {
+    for (const DetectorRuns& runs : detectors) {
+      finders_.emplace_back(runs.clear);
+      clear_air_.try_emplace(runs.clear.size(), runs.clear.size(), kClearAir);
+    }
+  }
+
+  std::vector<Detection> All() const {
+    std::vector<Detection> all;
+    for (std::size_t d = 0; d < detectors_.size(); ++d) {
+      const std::vector<double> once(detectors_[d].fog.front().size(), 1.0);
+      all.push_back(
+          DetectionAt(detectors_[d], finders_[d].Threshold(rule_.arl_zero_s), once, rule_));
+    }
+    return all;
+  }
+
+  std::vector<Detection> Replicate(std::int64_t replicate) const {
+    std::map<std::size_t, std::vector<double>> clear_weights;
+    for (const auto& [runs, resampling] : clear_air_) {
+      resampling.Draw(replicate, clear_weights[runs]);
+    }
+    std::vector<double> fog_weights;
+    fog_.Draw(replicate, fog_weights);
+    std::vector<Detection> all;
+    for (std::size_t d = 0; d < detectors_.size(); ++d) {
+      const std::vector<double>& weights = clear_weights[detectors_[d].clear.size()];
+      all.push_back(DetectionAt(detectors_[d], finders_[d].Threshold(weights, rule_.arl_zero_s),
+                                fog_weights, rule_));
+    }
+    return all;
+  }
+
+ private:
+  std::span<const DetectorRuns> detectors_;
+  const DetectionRule& rule_;
+  std::vector<ThresholdFinder> finders_;
+  std::map<std::size_t, Resampling> clear_air_;  // by number of runs
+  Resampling fog_;
+};
 
 }  // namespace
 
+Estimate DelayDifference(const DetectionComparison& a, const DetectionComparison& b) {
+  return FromReplicates(a.detector.delay_s.n, a.detector.delay_s.mean - b.detector.delay_s.mean,
+                        Differences(a.mean_delays_s, b.mean_delays_s));
+}
+
 std::vector<DetectionComparison> CompareDetection(std::span<const DetectorRuns> detectors,
-                                                  std::optional<std::size_t> reference,
-                                                  double arl_zero_s, double missed_s) {
+                                                  const DetectionRule& rule) {
   if (detectors.empty()) return {};
-  const std::size_t clear_runs = detectors.front().clear.size();
-  const std::size_t seeds = detectors.front().fog.front().size();
-  std::vector<ThresholdFinder> finders;
-  std::vector<Detection> all;
-  const std::vector<double> once(seeds, 1.0);
-  for (const DetectorRuns& runs : detectors) {
-    const ThresholdFinder& finder = finders.emplace_back(runs.clear);
-    all.push_back(DetectionAt(runs, finder.Threshold(arl_zero_s), once, missed_s));
-  }
-  const Resampling clear_air(clear_runs, kClearAir);
-  const Resampling fog(seeds, kFog);
+  const Resampler resampler(detectors, rule);
+  const std::vector<Detection> all = resampler.All();
   std::vector<Replicates> replicates(detectors.size());
-  std::vector<double> clear_weights;
-  std::vector<double> fog_weights;
-  for (std::int64_t k = 0; k < kReplicates; ++k) {
-    clear_air.Draw(k, clear_weights);
-    fog.Draw(k, fog_weights);
-    for (std::size_t d = 0; d < detectors.size(); ++d) {
-      const double threshold = finders[d].Threshold(clear_weights, arl_zero_s);
-      replicates[d].of.push_back(DetectionAt(detectors[d], threshold, fog_weights, missed_s));
-    }
-  }
-  const auto n = static_cast<std::int64_t>(seeds);
+  struct NoState {};
+  stats::ComputeInOrder(
+      0, kReplicates, rule.jobs, [] { return NoState(); },
+      [&](NoState&, std::int64_t k) { return resampler.Replicate(k); },
+      [&](std::int64_t, std::vector<Detection> of) {
+        for (std::size_t d = 0; d < of.size(); ++d) replicates[d].of.push_back(std::move(of[d]));
+        return true;
+      });
+  const auto seeds = static_cast<std::int64_t>(detectors.front().fog.front().size());
   std::vector<DetectionComparison> result;
   for (std::size_t d = 0; d < detectors.size(); ++d) {
     DetectionComparison& one = result.emplace_back();
-    one.detector = MeansOf(all[d], replicates[d], n);
+    one.detector = MeansOf(all[d], replicates[d], seeds);
+    one.mean_delays_s = replicates[d].Of([](const Detection& e) { return e.mean_delay_s; });
     one.delay_minus_other_s.resize(all[d].delay_s.size());
-    if (!reference) continue;
-    const auto difference = [&](const auto& value) {
-      return Difference(all[d], replicates[d], all[*reference], replicates[*reference], n, value);
-    };
+    if (!rule.reference) continue;
     for (std::size_t v = 0; v < one.delay_minus_other_s.size(); ++v) {
-      one.delay_minus_other_s[v] = difference([&](const Detection& e) { return e.delay_s[v]; });
+      const auto delay = [v](const Detection& e) { return e.delay_s[v]; };
+      const std::size_t other = *rule.reference;
+      one.delay_minus_other_s[v] =
+          FromReplicates(seeds, delay(all[d]) - delay(all[other]),
+                         Differences(replicates[d].Of(delay), replicates[other].Of(delay)));
     }
-    one.mean_delay_minus_other_s = difference([](const Detection& e) { return e.mean_delay_s; });
   }
   return result;
 }

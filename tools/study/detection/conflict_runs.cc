@@ -2,14 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include <fmt/format.h>
 
-#include "services/decision/conflict/conflict_measures.h"
-#include "tools/stats/in_order.h"
-#include "tools/study/detection/conflict_intervals.h"
+#include "tools/study/detection/fog_runs.h"
+#include "tools/study/sensor_noise.h"
 
 namespace fogline::study {
 namespace {
@@ -22,45 +20,43 @@ struct Noise {
   double radar_m;
   double lidar_m;
 };
-// The optimistic noise of paper.json; then data sheet values of a Continental ARS408 at near and at
-// far range, with a Velodyne VLP-16.
+// The optimistic noise of paper.json; then data sheet values of a Continental ARS408 at near range,
+// between, and at far range, with a Velodyne VLP-16.
 constexpr std::array kNoises{Noise{"calibrated", 0.01, 0.01}, Noise{kUsualNoise, 0.1, 0.03},
+                             Noise{"realistic", kRealisticNoise_m, 0.03},
                              Noise{"far-range", 0.4, 0.03}};
-
-// After this time filters and windows are full, and the track has settled.
-constexpr double kWarmUp_s = 5;
 
 // First seeds in clear air: far from the seeds in fog, and from each other.
 constexpr std::int64_t kCalibrationSeeds = 1'000'000'000;
 constexpr std::int64_t kValidationSeeds = 2'000'000'000;
-
-// Fog of at least this level counts as fog in ROC and AUC. Weaker fog counts neither as fog nor as
-// clear air.
-constexpr double kFogLevel = 0.5;
+constexpr std::int64_t kLongClearAirSeeds = 3'000'000'000;
 
 std::vector<std::string> Overrides(std::string_view fog, const Noise& noise) {
   return {"/arbitrator/policy=traded",
           "/arbitrator/missing_lidar=conflict",
           "/arbitrator/threshold=0",  // the human drives throughout
           fmt::format("/fog/model={}", fog),
+          fmt::format("/fog/start_s={}", kWarmUp_s),
           fmt::format("/radar/range_std_m={}", noise.radar_m),
           fmt::format("/lidar/range_std_m={}", noise.lidar_m),
           fmt::format("/fusion/radar_range_std_m={}", std::max(noise.radar_m, 0.04)),
           fmt::format("/fusion/lidar_range_std_m={}", noise.lidar_m)};
 }
 
-/// Gives the measures the mounting offset of the sensors.
-Scenario KnownMounting(Scenario scenario) {
+/// A scenario with these overrides that lasts for so long after the warm-up. The measures know the
+/// mounting offset of the sensors.
+Scenario ConflictScenario(const StudyContext& context, const std::vector<std::string>& overrides,
+                          double duration_s) {
+  Scenario scenario = context.Load("paper.json", overrides);
   scenario.arbitrator.measure_offset_m = scenario.radar.bias_m - scenario.lidar.bias_m;
+  scenario.steps = std::llround((kWarmUp_s + duration_s) / scenario.step_s) + 1;
   return scenario;
 }
 
 Scenario ClearAir(const StudyContext& context, std::string_view fog, const Noise& noise) {
   std::vector<std::string> overrides = Overrides(fog, noise);
   overrides.emplace_back("/fog/duration_s=0");
-  Scenario scenario = KnownMounting(context.Load("paper.json", overrides));
-  scenario.steps = std::llround((kClearRun_s + kWarmUp_s) / scenario.step_s);
-  return scenario;
+  return ConflictScenario(context, overrides, kClearRun_s);
 }
 
 Scenario InFog(const StudyContext& context, std::string_view fog, const Noise& noise,
@@ -68,161 +64,49 @@ Scenario InFog(const StudyContext& context, std::string_view fog, const Noise& n
   std::vector<std::string> overrides = Overrides(fog, noise);
   overrides.push_back(fmt::format("/fog/visibility_m={}", visibility_m));
   overrides.push_back(fmt::format("/fog/duration_s={}", kFog_s));
-  Scenario scenario = KnownMounting(context.Load("paper.json", overrides));
+  Scenario scenario = ConflictScenario(context, overrides, kFog_s);
   scenario.fog.bias_m *= kReferenceVisibility_m / visibility_m;
   return scenario;
 }
 
-/// The runs of all measures in clear air with one seed.
-using ClearRuns = std::vector<ClearRun>;
+/// Runs in clear air, by detector.
+using ClearRuns = std::vector<std::vector<ClearRun>>;
 
-ClearRuns RunClear(DetectorBench& bench, const Scenario& scenario, std::int64_t seed) {
-  ClearRuns runs(conflict::ConflictMeasures().size());
-  bench.Run(scenario, seed, [&](const truth_t& truth, std::span<const double> scores) {
-    const double time_s = static_cast<double>(truth.header.utime) * 1e-6 - kWarmUp_s;
-    if (time_s < 0) return;
-    for (std::size_t m = 0; m < scores.size(); ++m) {
-      ClearRun& run = runs[m];
-      run.duration_s = time_s;
-      AddScore(scores[m], time_s, run.records);
-      if (truth.header.step % kClearStride == 0) run.scores.push_back(scores[m]);
-    }
-  });
+/// All runs of a set.
+struct SetRuns {
+  ClearRuns calibration;  // from which thresholds come
+  ClearRuns validation;   // in which false alarms are counted again
+  ClearRuns long_air;     // instead of `calibration`, if a condition ranks detectors
+  std::vector<std::vector<std::vector<ScoreRecords>>> fog;  // by detector, visibility, seed
+
+  /// The runs from which the threshold of a detector comes.
+  std::span<const ClearRun> OfThreshold(std::size_t detector) const {
+    return long_air[detector].empty() ? calibration[detector] : long_air[detector];
+  }
+};
+
+SetRuns RunShortClearAir(const StudyContext& context, const Traffic& clear_air,
+                         const ShowUnit& show) {
+  ClearAirPlan plan{.detectors = AllDetectors(),
+                    .first_seed = kCalibrationSeeds + context.seeds.first};
+  SetRuns runs;
+  runs.calibration = RunClearAir(context, clear_air, plan, show);
+  plan.first_seed = kValidationSeeds + context.seeds.first;
+  plan.keeps_scores = true;
+  runs.validation = RunClearAir(context, clear_air, plan, show);
+  runs.long_air.resize(Detectors().size());
+  runs.fog.resize(Detectors().size());
   return runs;
 }
 
-/// Runs in clear air, by measure. It calls `show` after each run.
-template <class Show>
-std::vector<std::vector<ClearRun>> CollectClear(const StudyContext& context,
-                                                const Scenario& scenario, std::int64_t first_seed,
-                                                const Show& show) {
-  std::vector<std::vector<ClearRun>> by_measure(conflict::ConflictMeasures().size());
-  stats::ComputeInOrder(
-      0, context.seeds.count(), context.jobs, [] { return DetectorBench(); },
-      [&](DetectorBench& bench, std::int64_t unit) {
-        return RunClear(bench, scenario, first_seed + context.seeds.first + unit);
-      },
-      [&](std::int64_t, ClearRuns runs) {
-        for (std::size_t m = 0; m < runs.size(); ++m) by_measure[m].push_back(std::move(runs[m]));
-        show();
-        return true;
-      });
-  return by_measure;
-}
-
-/// Results of a measure in clear air.
-struct Calibrated {
-  std::vector<ClearRun> runs;  // from which the threshold is found
-  DetectorThreshold threshold;
-  std::vector<std::vector<double>> scores;  // of other runs, by batch, sorted
-};
-
-std::size_t BatchOf(std::int64_t unit) { return static_cast<std::size_t>(unit % kBatches); }
-
-template <class Show>
-std::vector<Calibrated> Calibrate(const StudyContext& context, const Scenario& clear_air,
-                                  const Show& show) {
-  auto calibration = CollectClear(context, clear_air, kCalibrationSeeds, show);
-  const auto validation = CollectClear(context, clear_air, kValidationSeeds, show);
-  std::vector<Calibrated> all;
-  for (std::size_t m = 0; m < calibration.size(); ++m) {
-    Calibrated& one = all.emplace_back();
-    one.runs = std::move(calibration[m]);
-    DetectorThreshold& threshold = one.threshold;
-    threshold.threshold = ThresholdFinder(one.runs).Threshold(kArlZero_s);
-    threshold.calibrated = CountAlarms(one.runs, threshold.threshold);
-    threshold.clear = CountAlarms(validation[m], threshold.threshold);
-    one.scores.resize(static_cast<std::size_t>(std::min(kBatches, context.seeds.count())));
-    for (std::size_t i = 0; i < validation[m].size(); ++i) {
-      std::vector<double>& batch = one.scores[BatchOf(static_cast<std::int64_t>(i))];
-      batch.insert(batch.end(), validation[m][i].scores.begin(), validation[m][i].scores.end());
-    }
-    for (std::vector<double>& batch : one.scores) std::ranges::sort(batch);
+/// Runs the long clear air of some detectors. @param plan without its first seed
+void RunLongClearAir(const StudyContext& context, const Traffic& clear_air, ClearAirPlan plan,
+                     const ShowUnit& show, SetRuns& runs) {
+  plan.first_seed = kLongClearAirSeeds + plan.runs_per_seed * context.seeds.first;
+  ClearRuns of_plan = RunClearAir(context, clear_air, plan, show);
+  for (std::size_t i = 0; i < of_plan.size(); ++i) {
+    runs.long_air[plan.detectors[i]] = std::move(of_plan[i]);
   }
-  return all;
-}
-
-/// One measure in one run with fog.
-struct FogRun {
-  ScoreRecords records;        // from the beginning of the fog
-  std::vector<double> scores;  // in fog of at least kFogLevel
-  double auc = 0;
-  std::array<double, kFalsePositives.size()> true_positives{};
-};
-
-std::vector<FogRun> RunFog(DetectorBench& bench, const Scenario& scenario, std::int64_t seed,
-                           std::size_t batch, std::span<const Calibrated> calibrated) {
-  std::vector<FogRun> runs(calibrated.size());
-  bench.Run(scenario, seed, [&](const truth_t& truth, std::span<const double> scores) {
-    if (!truth.fog_present) return;
-    const double since_s = static_cast<double>(truth.header.utime) * 1e-6 - scenario.fog.start_s;
-    for (std::size_t m = 0; m < scores.size(); ++m) {
-      AddScore(scores[m], since_s, runs[m].records);
-      if (truth.fog_level >= kFogLevel) runs[m].scores.push_back(scores[m]);
-    }
-  });
-  for (std::size_t m = 0; m < runs.size(); ++m) {
-    FogRun& run = runs[m];
-    const std::vector<double>& clear = calibrated[m].scores[batch];
-    run.auc = AreaUnderRoc(run.scores, clear);
-    for (std::size_t i = 0; i < kFalsePositives.size(); ++i) {
-      run.true_positives[i] = TruePositives(run.scores, clear, kFalsePositives[i]);
-    }
-    run.scores = {};
-  }
-  return runs;
-}
-
-/// Means over the runs of each batch. Batches are independent of each other, because each has its
-/// own runs in fog and in clear air.
-class BatchMeans {
- public:
-  explicit BatchMeans(std::size_t batches) : sums_(batches, 0.0), counts_(batches, 0.0) {}
-  void Add(std::size_t batch, double value) {
-    sums_[batch] += value;
-    counts_[batch] += 1;
-  }
-  std::vector<double> Result() const {
-    std::vector<double> means = sums_;
-    for (std::size_t i = 0; i < means.size(); ++i) means[i] /= counts_[i];
-    return means;
-  }
-
- private:
-  std::vector<double> sums_;
-  std::vector<double> counts_;
-};
-
-/// Results of one measure over the seeds of one condition.
-struct Gathered {
-  explicit Gathered(std::size_t batches)
-      : auc(batches), true_positives(kFalsePositives.size(), BatchMeans(batches)) {}
-  std::vector<ScoreRecords> records;
-  BatchMeans auc;
-  std::vector<BatchMeans> true_positives;
-};
-
-template <class Show>
-std::vector<Gathered> RunCondition(const StudyContext& context, const Scenario& scenario,
-                                   std::span<const Calibrated> calibrated, const Show& show) {
-  std::vector<Gathered> gathered(calibrated.size(), Gathered(calibrated.front().scores.size()));
-  stats::ComputeInOrder(
-      0, context.seeds.count(), context.jobs, [] { return DetectorBench(); },
-      [&](DetectorBench& bench, std::int64_t unit) {
-        return RunFog(bench, scenario, context.seeds.first + unit, BatchOf(unit), calibrated);
-      },
-      [&](std::int64_t unit, std::vector<FogRun> runs) {
-        for (std::size_t m = 0; m < runs.size(); ++m) {
-          gathered[m].records.push_back(std::move(runs[m].records));
-          gathered[m].auc.Add(BatchOf(unit), runs[m].auc);
-          for (std::size_t i = 0; i < kFalsePositives.size(); ++i) {
-            gathered[m].true_positives[i].Add(BatchOf(unit), runs[m].true_positives[i]);
-          }
-        }
-        show();
-        return true;
-      });
-  return gathered;
 }
 
 /// Adds AUC and ROC, which need no threshold.
@@ -239,9 +123,94 @@ void AddRoc(std::span<const Gathered> gathered, ConflictOutcome& outcome) {
   }
 }
 
-/// Adds the number of seeds with an alarm, and the mean delay of these alarms.
+/// Runs the fog of every visibility, and adds everything that needs no threshold.
+void RunFogs(const StudyContext& context, std::string_view fog, const Noise& noise,
+             const ShowUnit& show, SetRuns& runs, ConflictSet& set) {
+  const std::vector<SortedBatches> clear_scores = SortScores(runs.validation);
+  // Means of the AUC over the visibilities, by detector and batch.
+  std::vector<std::vector<double>> auc(clear_scores.size(),
+                                       std::vector<double>(clear_scores.front().size(), 0.0));
+  for (const double visibility_m : kVisibilities_m) {
+    const Traffic traffic = TrafficOf(InFog(context, fog, noise, visibility_m));
+    std::vector<Gathered> gathered = RunInFog(context, traffic, clear_scores, show);
+    ConflictOutcome& outcome = set.outcomes.emplace_back();
+    outcome.condition = {.fog = set.fog, .noise = set.noise, .visibility_m = visibility_m};
+    AddRoc(gathered, outcome);
+    for (std::size_t d = 0; d < gathered.size(); ++d) {
+      runs.fog[d].push_back(std::move(gathered[d].records));
+      const std::vector<double> batches = gathered[d].auc.Result();
+      for (std::size_t i = 0; i < batches.size(); ++i) {
+        auc[d][i] += batches[i] / static_cast<double>(kVisibilities_m.size());
+      }
+    }
+  }
+  for (const std::vector<double>& means : auc) set.auc.push_back(EstimateOf(means));
+  set.runs += static_cast<std::int64_t>(kVisibilities_m.size()) * set.seeds;
+}
+
+void SetThresholds(const SetRuns& runs, ConflictSet& set) {
+  set.thresholds.clear();
+  for (std::size_t d = 0; d < Detectors().size(); ++d) {
+    const std::span<const ClearRun> from = runs.OfThreshold(d);
+    const double threshold = ThresholdFinder(from).Threshold(kArlZero_s);
+    set.thresholds.push_back({.threshold = threshold,
+                              .calibrated = CountAlarms(from, threshold),
+                              .clear = CountAlarms(runs.validation[d], threshold)});
+  }
+}
+
+void AddAlarms(std::span<const ClearRun> runs, double threshold, std::vector<double>& times_s) {
+  for (const ClearRun& run : runs) {
+    times_s.push_back(FirstAlarm(run.records, threshold).value_or(-1));
+  }
+}
+
+/// The alarms in the runs that all detectors have.
+std::vector<AlarmTimes> CommonAlarms(const SetRuns& runs, const ConflictSet& set) {
+  std::vector<AlarmTimes> alarms(Detectors().size());
+  for (std::size_t d = 0; d < alarms.size(); ++d) {
+    const double threshold = set.thresholds[d].threshold;
+    std::vector<double>& times_s = alarms[d].common;
+    AddAlarms(runs.calibration[d], threshold, times_s);
+    AddAlarms(runs.validation[d], threshold, times_s);
+    for (const std::vector<ScoreRecords>& seeds : runs.fog[d]) {
+      for (const ScoreRecords& records : seeds) {
+        times_s.push_back(FirstAlarm(records, threshold).value_or(-1));
+      }
+    }
+  }
+  return alarms;
+}
+
+/// ConflictSet::counts_as. Detectors without a threshold count as themselves.
+std::vector<std::size_t> CountsAs(const ConflictSet& set, std::span<const AlarmTimes> alarms) {
+  std::vector<std::size_t> counts_as = AllDetectors();
+  std::vector<std::size_t> compared;
+  std::vector<AlarmTimes> of_compared;
+  for (std::size_t d = 0; d < alarms.size(); ++d) {
+    if (!set.IsCompared(d)) continue;
+    compared.push_back(d);
+    of_compared.push_back(alarms[d]);
+  }
+  const std::vector<std::size_t> one_of = OneOfEqualAlarms(of_compared);
+  for (std::size_t i = 0; i < compared.size(); ++i) counts_as[compared[i]] = compared[one_of[i]];
+  return counts_as;
+}
+
+/// The detectors that have a threshold, each of those with the same alarms once.
+std::vector<std::size_t> DistinctOf(const ConflictSet& set) {
+  std::vector<std::size_t> distinct;
+  for (std::size_t d = 0; d < set.thresholds.size(); ++d) {
+    if (set.IsCompared(d) && set.counts_as[d] == d) distinct.push_back(d);
+  }
+  return distinct;
+}
+
+/// Number and mean delay of the alarms in the fog of one visibility.
 void AddDetected(std::span<const ScoreRecords> records, double threshold,
                  DetectorOutcome& detector) {
+  detector.detected = 0;
+  detector.delay_if_detected_s = 0;
   for (const ScoreRecords& one : records) {
     const std::optional<double> alarm = FirstAlarm(one, threshold);
     if (!alarm) continue;
@@ -251,80 +220,101 @@ void AddDetected(std::span<const ScoreRecords> records, double threshold,
   detector.delay_if_detected_s /= static_cast<double>(detector.detected);
 }
 
-/// Adds the results that need a threshold. `records` are by measure, visibility and seed.
-void AddDetection(std::span<const Calibrated> calibrated,
-                  std::span<const std::vector<std::vector<ScoreRecords>>> records,
-                  ConflictSet& set) {
-  std::vector<std::size_t> measures;
-  std::vector<DetectorRuns> runs;
-  std::optional<std::size_t> doc;
-  for (std::size_t m = 0; m < calibrated.size(); ++m) {
-    if (!calibrated[m].threshold.is_determined()) continue;
-    if (m == 0) doc = 0;  // the first measure
-    measures.push_back(m);
-    runs.push_back({.clear = calibrated[m].runs, .fog = records[m]});
+/// Finds the conditions that rank detectors, at the present thresholds.
+void SetTelling(const StudyContext& context, const SetRuns& runs, ConflictSet& set) {
+  const Scenario paper = context.Load("paper.json", {});
+  const double window_s = static_cast<double>(paper.arbitrator.window_steps) * paper.step_s;
+  for (std::size_t v = 0; v < set.outcomes.size(); ++v) {
+    std::vector<DelayAndShare> found;
+    for (const std::size_t d : DistinctOf(set)) {
+      DetectorOutcome one;
+      AddDetected(runs.fog[d][v], set.thresholds[d].threshold, one);
+      const auto seeds = static_cast<double>(set.seeds);
+      const auto detected = static_cast<double>(one.detected);
+      const double alarms_s = one.detected > 0 ? detected * one.delay_if_detected_s : 0;
+      found.push_back(
+          {.delay_s = (alarms_s + (seeds - detected) * kFog_s) / seeds, .share = detected / seeds});
+    }
+    set.outcomes[v].telling = TellingOf(found, window_s);
   }
-  const std::vector<DetectionComparison> compared = CompareDetection(runs, doc, kArlZero_s, kFog_s);
-  for (std::size_t i = 0; i < measures.size(); ++i) {
-    const std::size_t m = measures[i];
-    set.means[m].delay_s = compared[i].detector.delay_s;
-    set.means[m].delay_minus_doc_s = compared[i].mean_delay_minus_other_s;
+}
+
+/// Adds the results that need a threshold.
+void AddDetection(const StudyContext& context, const SetRuns& runs, ConflictSet& set) {
+  const std::vector<std::size_t> distinct = DistinctOf(set);
+  DetectionRule rule{
+      .arl_zero_s = kArlZero_s, .missed_s = kFog_s, .ranked = {}, .jobs = context.jobs};
+  for (std::size_t v = 0; v < set.outcomes.size(); ++v) {
+    if (set.outcomes[v].telling == Telling::kRanks) rule.ranked.push_back(v);
+  }
+  std::vector<DetectorRuns> of_distinct;
+  for (const std::size_t d : distinct) {
+    of_distinct.push_back({.clear = runs.OfThreshold(d), .fog = runs.fog[d]});
+  }
+  if (set.IsCompared(0)) rule.reference = 0;  // the Degree of Conflict
+  const std::vector<DetectionComparison> compared = CompareDetection(of_distinct, rule);
+  set.compared.resize(set.thresholds.size());
+  for (std::size_t d = 0; d < set.thresholds.size(); ++d) {
+    if (!set.IsCompared(d)) continue;
+    const auto one = std::ranges::find(distinct, set.counts_as[d]);
+    set.compared[d] = compared[static_cast<std::size_t>(one - distinct.begin())];
     for (std::size_t v = 0; v < set.outcomes.size(); ++v) {
-      DetectorOutcome& detector = set.outcomes[v].detectors[m];
-      detector.delay_s = compared[i].detector.by_visibility[v].delay_s;
-      detector.detection = compared[i].detector.by_visibility[v].detection;
-      detector.delay_minus_doc_s = compared[i].delay_minus_other_s[v];
-      AddDetected(records[m][v], calibrated[m].threshold.threshold, detector);
+      DetectorOutcome& detector = set.outcomes[v].detectors[d];
+      detector.delay_s = set.compared[d].detector.by_visibility[v].delay_s;
+      detector.detection = set.compared[d].detector.by_visibility[v].detection;
+      detector.delay_minus_doc_s = set.compared[d].delay_minus_other_s[v];
+      AddDetected(runs.fog[*one][v], set.thresholds[*one].threshold, detector);
     }
   }
 }
 
-template <class Show>
 ConflictSet RunSet(const StudyContext& context, std::string_view fog, const Noise& noise,
-                   const Show& show) {
+                   const ShowUnit& show) {
   ConflictSet set{
       .fog = std::string(fog), .noise = std::string(noise.name), .seeds = context.seeds.count()};
-  const std::vector<Calibrated> calibrated =
-      Calibrate(context, ClearAir(context, fog, noise), show);
-  for (const Calibrated& one : calibrated) set.thresholds.push_back(one.threshold);
-  std::vector<std::vector<std::vector<ScoreRecords>>> records(calibrated.size());
-  std::vector<std::vector<std::vector<double>>> auc(calibrated.size());  // by visibility, batch
-  for (const double visibility_m : kVisibilities_m) {
-    std::vector<Gathered> gathered =
-        RunCondition(context, InFog(context, fog, noise, visibility_m), calibrated, show);
-    AddRoc(gathered,
-           set.outcomes.emplace_back(ConflictOutcome{
-               .condition = {.fog = set.fog, .noise = set.noise, .visibility_m = visibility_m}}));
-    for (std::size_t m = 0; m < gathered.size(); ++m) {
-      records[m].push_back(std::move(gathered[m].records));
-      auc[m].push_back(gathered[m].auc.Result());
+  const Traffic clear_air = TrafficOf(ClearAir(context, fog, noise));
+  SetRuns runs = RunShortClearAir(context, clear_air, show);
+  set.runs = 2 * set.seeds;
+  RunFogs(context, fog, noise, show, runs, set);
+  SetThresholds(runs, set);
+  std::vector<AlarmTimes> alarms = CommonAlarms(runs, set);
+  set.counts_as = CountsAs(set, alarms);
+  SetTelling(context, runs, set);
+  if (set.Ranks()) {
+    RunLongClearAir(context, clear_air, {QuickDetectors(), 0, kQuickClearAir}, show, runs);
+    RunLongClearAir(context, clear_air, {SlowDetectors(), 0, kSlowClearAir}, show, runs);
+    set.runs += (kQuickClearAir + kSlowClearAir) * set.seeds;
+    SetThresholds(runs, set);
+    for (std::size_t d = 0; d < alarms.size(); ++d) {
+      AddAlarms(runs.long_air[d], set.thresholds[d].threshold, alarms[d].further);
     }
+    set.counts_as = CountsAs(set, alarms);
+  } else {
+    for (std::int64_t i = 0; i < 2 * set.seeds; ++i) show();
   }
-  set.means.resize(calibrated.size());
-  for (std::size_t m = 0; m < calibrated.size(); ++m) {
-    std::vector<double> means(auc[m].front().size(), 0.0);
-    for (const std::vector<double>& batches : auc[m]) {
-      for (std::size_t i = 0; i < means.size(); ++i) {
-        means[i] += batches[i] / static_cast<double>(kVisibilities_m.size());
-      }
-    }
-    set.means[m].auc = EstimateOf(means);
-  }
-  AddDetection(calibrated, records, set);
+  AddDetection(context, runs, set);
   return set;
 }
 
 }  // namespace
 
-std::int64_t ConflictRuns(const StudyContext& context) {
-  constexpr std::size_t kSets = kFogModels.size() * kNoises.size();
-  return context.seeds.count() * static_cast<std::int64_t>(kSets * (2 + kVisibilities_m.size()));
+bool ConflictSet::Ranks() const {
+  return std::ranges::count(outcomes, Telling::kRanks, &ConflictOutcome::telling) > 0;
+}
+
+Estimate ConflictSet::Difference(std::size_t a, std::size_t b) const {
+  return IsCompared(a) && IsCompared(b) ? DelayDifference(compared[a], compared[b]) : Estimate{};
 }
 
 std::vector<ConflictSet> RunConflictSets(const StudyContext& context) {
+  // Units for each seed: two runs in clear air, one in each fog, and the long clear air of quick
+  // and of slow detectors.
+  constexpr std::size_t kUnits = 2 + kVisibilities_m.size() + 2;
+  const std::int64_t all = context.seeds.count() *
+                           static_cast<std::int64_t>(kFogModels.size() * kNoises.size() * kUnits);
   std::vector<ConflictSet> sets;
   std::int64_t done = 0;
-  const auto show = [&] { context.Show(++done, ConflictRuns(context)); };
+  const auto show = [&] { context.Show(++done, all); };
   for (const std::string_view fog : kFogModels) {
     for (const Noise& noise : kNoises) sets.push_back(RunSet(context, fog, noise, show));
   }

@@ -1,5 +1,5 @@
 // The runs of study `conflict`: fog models, visibilities and noises, with the detection by every
-// measure of conflict in each.
+// detector in each.
 #pragma once
 
 #include <array>
@@ -8,7 +8,10 @@
 #include <string_view>
 #include <vector>
 
-#include "tools/study/detection/detectors.h"
+#include "tools/study/detection/conflict_intervals.h"
+#include "tools/study/detection/detector_bank.h"
+#include "tools/study/detection/fog_runs.h"
+#include "tools/study/detection/telling.h"
 #include "tools/study/estimate.h"
 #include "tools/study/study.h"
 
@@ -23,21 +26,14 @@ inline constexpr double kReferenceVisibility_m = 60;
 inline constexpr double kArlZero_s = 600;
 /// Largest ratio of a threshold's mean time to kArlZero_s that still counts as equal.
 inline constexpr double kLoosest = 1.5;
-/// Number of batches of the runs in clear air and in fog. AUC and ROC compare the runs of equal
-/// batches.
-inline constexpr std::int64_t kBatches = 10;
-/// Length of a run in clear air after the warm-up, s.
-inline constexpr double kClearRun_s = 115;
-/// One of this many steps in clear air counts for ROC and AUC. The number exceeds the windows of 8
-/// steps, so that the counted steps are nearly independent.
-inline constexpr std::int64_t kClearStride = 10;
+/// Number of runs in clear air for each seed, from which the thresholds of quick and of slow
+/// detectors come if a condition ranks detectors. Otherwise it is one run.
+inline constexpr std::int64_t kQuickClearAir = 100;
+inline constexpr std::int64_t kSlowClearAir = 5;
 /// Length of the fog in paper.json, s.
 inline constexpr double kFog_s = 11;
-/// The noise in figures and for the ROC.
+/// The noise in figures, in most claims and for the ROC.
 inline constexpr std::string_view kUsualNoise = "near-range";
-/// False positive rates for the ROC: shares of the steps in clear air.
-inline constexpr std::array kFalsePositives{0.001, 0.002, 0.005, 0.01, 0.02,
-                                            0.05,  0.1,   0.2,   0.5,  1.0};
 
 struct ConflictCondition {
   std::string fog;  // bias or beam
@@ -45,7 +41,7 @@ struct ConflictCondition {
   double visibility_m = 0;
 };
 
-/// Threshold of a measure for one fog model and noise.
+/// Threshold of a detector for one fog model and noise.
 struct DetectorThreshold {
   double threshold = 0;
   AlarmCount calibrated;  // in the runs from which it was found
@@ -53,13 +49,13 @@ struct DetectorThreshold {
 
   /// Whether the threshold alarms as often as required. If a measure has its greatest value too
   /// often, or the time in clear air is too short, the smallest threshold that alarms seldom enough
-  /// is never or hardly ever reached. Then the measure is not compared at equal false alarms.
+  /// is never or hardly ever reached. Then the detector is not compared at equal false alarms.
   bool is_determined() const {
     return calibrated.alarms > 0 && calibrated.ArlZero_s() <= kLoosest * kArlZero_s;
   }
 };
 
-/// Results of one measure in one condition. A measure whose threshold is not determined has only
+/// Results of one detector in one condition. A detector whose threshold is not determined has only
 /// the results that need no threshold. The intervals take into account that thresholds are
 /// estimates (conflict_intervals.h).
 struct DetectorOutcome {
@@ -75,30 +71,39 @@ struct DetectorOutcome {
 
 struct ConflictOutcome {
   ConflictCondition condition;
-  std::vector<DetectorOutcome> detectors;  // in the order of ConflictMeasures()
+  Telling telling = Telling::kRanks;
+  std::vector<DetectorOutcome> detectors;  // in the order of Detectors()
 };
 
-/// Mean of one measure over the visibilities of a set.
-struct DetectorMean {
-  Estimate delay_s;
-  Estimate delay_minus_doc_s;
-  Estimate auc;
-};
-
-/// One fog model and one noise; their conditions share the thresholds.
+/// One fog model and one noise; their conditions share the thresholds. Vectors of detectors are in
+/// the order of Detectors().
 struct ConflictSet {
   std::string fog;
   std::string noise;
   std::int64_t seeds = 0;
-  std::vector<DetectorThreshold> thresholds;  // in the order of ConflictMeasures()
-  std::vector<DetectorMean> means;            // in the same order
-  std::vector<ConflictOutcome> outcomes;      // in the order of kVisibilities_m
+  std::int64_t runs = 0;
+  std::vector<DetectorThreshold> thresholds;
+  /// For each detector the one with which it counts, because their alarms are the same. All of them
+  /// have its results.
+  std::vector<std::size_t> counts_as;
+  /// Detection of those that have a threshold; the mean delays are those of the conditions that
+  /// rank detectors.
+  std::vector<DetectionComparison> compared;
+  std::vector<Estimate> auc;              // mean over the visibilities
+  std::vector<ConflictOutcome> outcomes;  // in the order of kVisibilities_m
+
+  /// Whether any of its conditions ranks detectors.
+  bool Ranks() const;
+  /// Whether the detector has a threshold at which it can be compared.
+  bool IsCompared(std::size_t detector) const { return thresholds[detector].is_determined(); }
+  const Estimate& DelayOf(std::size_t detector) const {
+    return compared[detector].detector.delay_s;
+  }
+  /// The difference a - b of two mean delays; empty if one of them has no threshold.
+  Estimate Difference(std::size_t a, std::size_t b) const;
 };
 
 /// All sets, by fog model, then by noise. @throws InputError, StudyStopped
 std::vector<ConflictSet> RunConflictSets(const StudyContext& context);
-
-/// Number of runs of all sets.
-std::int64_t ConflictRuns(const StudyContext& context);
 
 }  // namespace fogline::study

@@ -38,6 +38,12 @@ const std::vector<std::string>& FallibleHuman() {
   return kOverrides;
 }
 
+const std::vector<HumanCase>& BothHumans() {
+  static const std::vector<HumanCase> kHumans{{kPerfectHuman, {}},
+                                              {kFallibleHuman, FallibleHuman()}};
+  return kHumans;
+}
+
 std::string_view HumansText() {
   return "The perfect human is the paper's. The fallible human sees only as far as the fog lets "
          "him, misjudges distances and loses awareness while the automation drives.";

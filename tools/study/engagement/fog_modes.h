@@ -30,6 +30,12 @@ std::string_view FogModesText();
 
 /// Overrides for a human who sees the fog, misjudges distances and loses awareness.
 const std::vector<std::string>& FallibleHuman();
+/// The two humans with their overrides: the perfect one has none.
+struct HumanCase {
+  std::string_view name;
+  std::vector<std::string> overrides;
+};
+const std::vector<HumanCase>& BothHumans();
 /// What the two humans are, for the method of a study.
 std::string_view HumansText();
 

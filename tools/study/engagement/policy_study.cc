@@ -8,6 +8,7 @@
 #include "tools/study/claims.h"
 #include "tools/study/comparison.h"
 #include "tools/study/engagement/fog_modes.h"
+#include "tools/study/sensor_noise.h"
 #include "tools/study/study.h"
 
 namespace fogline::study {
@@ -32,30 +33,25 @@ std::vector<StudyVariant> EveryRule() {
   return variants;
 }
 
-constexpr std::string_view kCalibratedRadar = "bias fog: calibrated radar";
-constexpr std::string_view kRealistic = "realistic noise";
-
-/// Standard deviation of a real radar's range, m (data sheet of a Continental ARS408: 0.1 to 0.4).
-constexpr double kRealisticNoise_m = 0.25;
+constexpr std::string_view kCalibratedRadar = "calibrated radar";
 
 /// Each fog with each human, with the scenario's noise and with a real radar's; and the paper's fog
 /// with a radar whose mounting offset is calibrated out and a DoC that knows the offset.
 std::vector<StudyCase> PolicyFogs() {
   std::vector<StudyCase> cases;
   for (const FogMode& fog : FogModes()) {
-    for (const auto& [human, overrides] : {std::pair(kPerfectHuman, std::vector<std::string>{}),
-                                           std::pair(kFallibleHuman, FallibleHuman())}) {
+    for (const auto& [human, overrides] : BothHumans()) {
       cases.push_back(fog.Case(human, overrides));
-      std::vector<std::string> noisy = overrides;
-      noisy.push_back(fmt::format("/radar/range_std_m={}", kRealisticNoise_m));
-      noisy.push_back(fmt::format("/fusion/radar_range_std_m={}", kRealisticNoise_m));
-      cases.push_back(fog.Case(fmt::format("{} with {}", human, kRealistic), noisy));
+      cases.push_back(WithRealisticNoise(cases.back()));
     }
   }
-  cases.push_back(
-      {std::string(kCalibratedRadar),
-       "paper.json",
-       {"/radar/bias_m=0", "/arbitrator/doc_centre_m=0.054", "/acc/standstill_m=4.4445"}});
+  for (const auto& [human, overrides] : BothHumans()) {
+    std::vector<std::string> calibrated = overrides;
+    calibrated.insert(calibrated.end(), {"/radar/bias_m=0", "/arbitrator/doc_centre_m=0.054",
+                                         "/acc/standstill_m=4.4445"});
+    cases.push_back(
+        FogModes()[0].Case(fmt::format("{} with {}", human, kCalibratedRadar), calibrated));
+  }
   return cases;
 }
 
@@ -139,11 +135,13 @@ std::vector<Claim> PolicyClaims(const Comparison& comparison) {
                           "traded", rule));
   }
   claims.push_back(less("In bias fog shared control is safer still.", bias, "blend", "traded"));
-  claims.push_back(less("In bias fog with a fallible human none is safer than traded control.",
-                        bias_fallible, "none", "traded"));
+  claims.push_back(
+      less("In bias fog with a fallible human the automation alone is safer than traded control.",
+           bias_fallible, "none", "traded"));
   claims.push_back(
       less("With a calibrated radar, the right sensor at the right time is the safest.",
-           kCalibratedRadar, "oracle", "blend"));
+           FogModes()[0].Case(fmt::format("{} with {}", kPerfectHuman, kCalibratedRadar)).name,
+           "oracle", "blend"));
   claims.push_back(
       less("With a false echo traded control is safer than none.", near, "traded", "none"));
   for (const std::string_view rule :
@@ -157,8 +155,20 @@ std::vector<Claim> PolicyClaims(const Comparison& comparison) {
                         near, "traded", "none + reopening gate"));
   claims.push_back(less("With a false echo isolation is smoother than traded control.", near,
                         "isolate", "traded", "max_abs_jerk_mps3"));
+  claims.push_back(less("With a missing echo the automation alone is safer than traded control.",
+                        missing, "none", "traded"));
+  const auto noisy = [](const FogMode& fog) {
+    return WithRealisticNoise(fog.Case(kPerfectHuman)).name;
+  };
+  claims.push_back(less("With realistic noise in bias fog traded control is safer than none.",
+                        noisy(FogModes()[0]), "traded", "none"));
   claims.push_back(
-      less("With a missing echo none is safer than traded control.", missing, "none", "traded"));
+      less("With realistic noise and a false echo a gate without a human is safer than traded "
+           "control.",
+           noisy(FogModes()[1]), "none + gate", "traded"));
+  claims.push_back(less(
+      "With realistic noise and a missing echo the automation alone is safer than traded control.",
+      noisy(FogModes()[2]), "none", "traded"));
   return claims;
 }
 
@@ -190,15 +200,14 @@ StudyResult RunPolicyStudy(const StudyContext& context) {
       "adapts its noise; an automation that drives again only when its track agrees with both "
       "sensors; and a driver who must be asked, while the automation leaves out the sensor that is "
       "to blame. With realistic noise the hand-back by the fusion hardly ever happens in bias fog, "
-      "because the radar's offset uses up most of its tolerance. {} "
-      "Realistic "
-      "noise: a radar with a range noise of {} m. Calibrated radar: without its mounting offset, "
+      "because the radar's offset uses up most of its tolerance. {} {} Calibrated radar: without "
+      "its mounting offset, "
       "which is subtracted from the centre of the DoC. SI is the paper's, against the run without "
       "traded control of the same seed. It is a mean of ratios of small numbers, so compromised "
       "safety in metres comes first. The paper's radar has an offset of 0.946 m, so a policy that "
       "uses only the radar drives with this error. All differences from traded control: {} "
       "comparisons, in the CSV with p-values adjusted by Holm.",
-      comparison.seeds(), FogModesText(), HumansText(), kRealisticNoise_m,
+      comparison.seeds(), FogModesText(), HumansText(), RealisticNoiseText(),
       comparison.Comparisons(comparison.VariantNamed("traded")));
   result.files = {{"policy.csv", comparison.Csv(comparison.VariantNamed("traded"))}};
   return result;

@@ -7,6 +7,7 @@
 #include "tools/study/claims.h"
 #include "tools/study/comparison.h"
 #include "tools/study/engagement/fog_modes.h"
+#include "tools/study/sensor_noise.h"
 #include "tools/study/study.h"
 
 namespace fogline::study {
@@ -61,6 +62,31 @@ std::vector<StudyVariant> TakeOverVariants() {
     }
   }
   return variants;
+}
+
+/// The variants of the main comparison, which are repeated with realistic noise.
+std::vector<StudyVariant> MainVariants() {
+  std::vector<StudyVariant> variants = TakeOverVariants();
+  std::erase_if(variants, [](const StudyVariant& one) {
+    constexpr std::array kMainLatencies_s{0, 1, 3, 5};
+    const bool is_main = std::ranges::any_of(kMainLatencies_s, [&](int latency_s) {
+      return one.name == LatencyName("stay", latency_s, false) ||
+             one.name == LatencyName("isolate", latency_s, false);
+    });
+    return !is_main && one.name != kNoTradedControl;
+  });
+  return variants;
+}
+
+/// Each fog with both humans and realistic noise.
+std::vector<StudyCase> NoisyCases() {
+  std::vector<StudyCase> cases;
+  for (const FogMode& fog : FogModes()) {
+    for (const auto& [human, overrides] : BothHumans()) {
+      cases.push_back(WithRealisticNoise(fog.Case(human, overrides)));
+    }
+  }
+  return cases;
 }
 
 /// Each fog with a perfect human, a fallible one, and a fallible one who must be more aware before
@@ -119,12 +145,13 @@ report::StudyFigure OverLatency(const Comparison& comparison, std::string_view t
   return figure;
 }
 
-/// Mean compromised safety by latency, for two things that the automation can do in each fog.
-report::StudyTable TakeOverMainTable(const Comparison& comparison) {
+/// Mean compromised safety by latency, for two things that the automation can do in each fog, with
+/// both humans side by side. @param noise the end of the names of the cases
+report::StudyTable TakeOverMainTable(const Comparison& comparison, std::string_view noise) {
   report::StudyTable table{
-      .caption = fmt::format("Perfect human: mean compromised safety in fog (m), means over {} "
-                             "seeds [95 % confidence intervals]",
-                             comparison.seeds()),
+      .caption = fmt::format("Mean compromised safety in fog{} (m), means over {} seeds [95 % "
+                             "confidence intervals]",
+                             noise, comparison.seeds()),
       .columns = {"mean time to take over"}};
   constexpr std::array<std::string_view, 2> kShown{"stay", "isolate"};
   for (const FogMode& fog : FogModes()) {
@@ -132,29 +159,38 @@ report::StudyTable TakeOverMainTable(const Comparison& comparison) {
       table.columns.push_back(fmt::format("{}: {}", fog.name, meanwhile));
     }
   }
-  const auto add_row = [&](std::string name, auto variant_of) {
+  const auto has = [&](const std::string& variant) {
+    return std::ranges::count(comparison.variants(), variant, &StudyVariant::name) > 0;
+  };
+  const auto add_row = [&](std::string name, std::string_view human, auto variant_of) {
     std::vector<std::string>& row = table.rows.emplace_back();
     row.push_back(std::move(name));
     for (const FogMode& fog : FogModes()) {
-      const std::size_t c = comparison.CaseNamed(fog.Case(kPerfectHuman).name);
+      const std::size_t c = comparison.CaseNamed(fog.Case(human).name + std::string(noise));
       for (const std::string_view meanwhile : kShown) {
-        row.push_back(
-            Text(comparison.Mean({c, comparison.VariantNamed(variant_of(meanwhile))}, kShortfall)));
+        const std::size_t v = comparison.VariantNamed(variant_of(meanwhile));
+        row.push_back(Text(comparison.Mean({c, v}, kShortfall)));
       }
     }
   };
-  add_row("no traded control", [](std::string_view) { return std::string(kNoTradedControl); });
+  // Without traded control no human drives.
+  add_row("no traded control", kPerfectHuman, [](std::string_view) { return kNoTradedControl; });
   for (const int latency_s : kLatencies_s) {
-    add_row(fmt::format("{} s", latency_s),
-            [&](std::string_view meanwhile) { return LatencyName(meanwhile, latency_s, false); });
+    const auto variant_of = [&](std::string_view meanwhile) {
+      return LatencyName(meanwhile, latency_s, false);
+    };
+    if (!has(variant_of("stay"))) continue;
+    for (const std::string_view human : {kPerfectHuman, kFallibleHuman}) {
+      add_row(fmt::format("{} s, {}", latency_s, human), human, variant_of);
+    }
   }
   return table;
 }
 
 constexpr std::string_view kTakeOverAnswer =
     "In the paper's fog a perfect driver who needs a few seconds gains nothing, and a slower one "
-    "does "
-    "harm. With a false echo the wait does harm only if the automation goes on as it is; if it "
+    "does harm; with realistic radar noise a part of the gain is left. With a false echo the wait "
+    "does harm only if the automation goes on as it is; if it "
     "leaves "
     "out the deceived sensor meanwhile, the wait costs nothing. If there is no echo at all, no "
     "driver "
@@ -162,48 +198,89 @@ constexpr std::string_view kTakeOverAnswer =
 constexpr std::string_view kTakeOverWouldChange =
     "A warning before the fog begins, or fog that lasts much longer than a request.";
 
+std::string StayFor(int latency_s) { return LatencyName("stay", latency_s, false); }
+std::string IsolateFor(int latency_s) { return LatencyName("isolate", latency_s, false); }
+
+/// The claim on the mean compromised safety of two variants in a case.
+Claim ShortfallClaim(const Comparison& comparison, std::string says, std::string_view test_case,
+                     std::string_view a, std::string_view b, Sign sign, double margin = 0) {
+  return ClaimOf(comparison, std::move(says), {test_case, a}, {test_case, b}, kShortfall, sign,
+                 margin);
+}
+
 std::vector<Claim> TakeOverClaims(const Comparison& comparison) {
-  const auto stay = [](int latency_s) { return LatencyName("stay", latency_s, false); };
-  const auto isolate = [](int latency_s) { return LatencyName("isolate", latency_s, false); };
-  const std::string none(kNoTradedControl);
+  const std::string_view none = kNoTradedControl;
   const std::string bias = FogModes()[0].Case(kPerfectHuman).name;
   const std::string fallible = FogModes()[0].Case(kFallibleHuman).name;
   const std::string near = FogModes()[1].Case(kPerfectHuman).name;
   const std::string missing = FogModes()[2].Case(kPerfectHuman).name;
   const auto claim = [&](std::string says, std::string_view test_case, std::string_view a,
                          std::string_view b, Sign sign, double margin = 0) {
-    return ClaimOf(comparison, std::move(says), {test_case, a}, {test_case, b}, kShortfall, sign,
-                   margin);
+    return ShortfallClaim(comparison, std::move(says), test_case, a, b, sign, margin);
   };
   return {
-      claim("In bias fog a wait of one second costs safety.", bias, stay(1), stay(0), Sign::kMore),
-      claim("A wait of three seconds leaves nothing of the gain.", bias, stay(3), none,
+      claim("In bias fog a wait of one second costs safety.", bias, StayFor(1), StayFor(0),
+            Sign::kMore),
+      claim("A wait of three seconds leaves nothing of the gain.", bias, StayFor(3), none,
             Sign::kEqual, kNoShortfall_m),
-      claim("A wait of five seconds does harm.", bias, stay(5), none, Sign::kMore),
-      claim("A fallible human does harm there without any wait.", fallible, stay(0), none,
+      claim("A wait of five seconds does harm.", bias, StayFor(5), none, Sign::kMore),
+      claim("A fallible human does harm there without any wait.", fallible, StayFor(0), none,
             Sign::kMore),
-      claim("With a false echo a wait of five seconds does harm.", near, stay(5), none,
+      claim("With a false echo a wait of five seconds does harm.", near, StayFor(5), none,
             Sign::kMore),
-      claim("It costs nothing if the deceived sensor is left out meanwhile.", near, isolate(5),
-            isolate(0), Sign::kEqual, kNoShortfall_m),
-      claim("That is safer than a driver without any wait.", near, isolate(5), stay(0),
+      claim("It costs nothing if the deceived sensor is left out meanwhile.", near, IsolateFor(5),
+            IsolateFor(0), Sign::kEqual, kNoShortfall_m),
+      claim("That is safer than a driver without any wait.", near, IsolateFor(5), StayFor(0),
             Sign::kLess),
-      claim("Without an echo no traded control is safer than any.", missing, none, stay(0),
-            Sign::kLess),
+      claim("Without an echo the automation alone is safer than traded control.", missing, none,
+            StayFor(0), Sign::kLess),
+  };
+}
+
+/// The same with realistic noise, as far as the answer depends on it.
+std::vector<Claim> NoisyClaims(const Comparison& noisy) {
+  const std::string_view none = kNoTradedControl;
+  const auto name = [](std::size_t fog) {
+    return WithRealisticNoise(FogModes()[fog].Case(kPerfectHuman)).name;
+  };
+  return {
+      ShortfallClaim(noisy, "With realistic noise in bias fog a wait of one second costs safety.",
+                     name(0), StayFor(1), StayFor(0), Sign::kMore),
+      ShortfallClaim(noisy, "With realistic noise in bias fog a wait of five seconds still helps.",
+                     name(0), StayFor(5), none, Sign::kLess),
+      ShortfallClaim(noisy,
+                     "With realistic noise and a false echo a wait of five seconds does harm.",
+                     name(1), StayFor(5), none, Sign::kMore),
+      ShortfallClaim(noisy,
+                     "With realistic noise it costs nothing if the deceived sensor is left out "
+                     "meanwhile.",
+                     name(1), IsolateFor(5), IsolateFor(0), Sign::kEqual, kNoShortfall_m),
+      ShortfallClaim(noisy,
+                     "With realistic noise and without an echo the automation alone is safer than "
+                     "traded control.",
+                     name(2), none, StayFor(0), Sign::kLess),
   };
 }
 
 }  // namespace
 
 StudyResult RunTakeOverStudy(const StudyContext& context) {
-  const Comparison comparison(context, TakeOverCases(), TakeOverVariants());
+  const auto units = [&](const std::vector<StudyCase>& cases) {
+    return static_cast<std::int64_t>(cases.size()) * context.seeds.count();
+  };
+  const std::int64_t first = units(TakeOverCases());
+  const std::int64_t all = first + units(NoisyCases());
+  const Comparison comparison(context.Part(0, all), TakeOverCases(), TakeOverVariants());
+  const Comparison noisy(context.Part(first, all), NoisyCases(), MainVariants());
   StudyResult result;
-  result.runs = comparison.runs();
+  result.runs = comparison.runs() + noisy.runs();
   result.claims = TakeOverClaims(comparison);
+  for (Claim& claim : NoisyClaims(noisy)) result.claims.push_back(std::move(claim));
   report::StudySection& section = result.section;
   section.answer = kTakeOverAnswer;
   section.would_change = kTakeOverWouldChange;
-  section.tables = {TakeOverMainTable(comparison)};
+  section.tables = {TakeOverMainTable(comparison, ""),
+                    TakeOverMainTable(noisy, kWithRealisticNoise)};
   for (std::size_t c = 0; c < comparison.cases().size(); ++c) {
     section.tables.push_back(comparison.TableOfCase(c, kTakeOverTable));
   }
@@ -222,10 +299,13 @@ StudyResult RunTakeOverStudy(const StudyContext& context) {
       "the driver is there, the automation stays as it is, leaves out the sensor that is to blame, "
       "refuses values outside the gate of its filter, or slows down by 0.5 m/s2. A driver who does "
       "not come within 10 s loses the car to a minimal risk manoeuvre. {} A driver who must be "
-      "aware gets the wheel at an awareness of 0.8. All differences from no traded control: {} "
+      "aware gets the wheel at an awareness of 0.8. {} The main comparison is repeated with it "
+      "(takeover-noise.csv). All differences from no traded control: {} "
       "comparisons, in the CSV with p-values adjusted by Holm.",
-      comparison.seeds(), FogModesText(), kDeviation_s, HumansText(), comparison.Comparisons(0));
-  result.files = {{"takeover.csv", comparison.Csv(comparison.VariantNamed(kNoTradedControl))}};
+      comparison.seeds(), FogModesText(), kDeviation_s, HumansText(), RealisticNoiseText(),
+      comparison.Comparisons(0));
+  result.files = {{"takeover.csv", comparison.Csv(comparison.VariantNamed(kNoTradedControl))},
+                  {"takeover-noise.csv", noisy.Csv(noisy.VariantNamed(kNoTradedControl))}};
   return result;
 }
 

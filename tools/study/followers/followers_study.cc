@@ -7,6 +7,7 @@
 #include "tools/study/claims.h"
 #include "tools/study/comparison.h"
 #include "tools/study/followers/string_runs.h"
+#include "tools/study/sensor_noise.h"
 #include "tools/study/study.h"
 
 namespace fogline::study {
@@ -52,6 +53,17 @@ std::vector<StudyCase> FollowerCases() {
   return cases;
 }
 
+/// The followers of the answer behind a host with realistic noise.
+std::vector<StudyCase> NoisyFollowers() {
+  constexpr std::array<std::string_view, 4> kNames{"bias fog: acc", "bias fog: normal human",
+                                                   "beam fog: acc", "beam fog: aggressive human"};
+  std::vector<StudyCase> cases;
+  for (const StudyCase& one : FollowerCases()) {
+    if (std::ranges::count(kNames, one.name) > 0) cases.push_back(WithRealisticNoise(one));
+  }
+  return cases;
+}
+
 constexpr std::array<std::string_view, 8> kFollowerTable{"si_pct",
                                                          "mean_compromised_safety_fog_m",
                                                          "collided",
@@ -79,6 +91,9 @@ std::vector<StudyCase> Strings() {
         {"/followers/driver=human", fmt::format("/followers/style={}", style)});
   }
   add("drawn", {"/followers/driver=drawn", "/followers/style=drawn"});
+  for (const std::string_view name : {"acc", "normal humans"}) {
+    kinds.push_back(WithRealisticNoise(*std::ranges::find(kinds, name, &StudyCase::name)));
+  }
   return kinds;
 }
 
@@ -86,10 +101,12 @@ const std::vector<StudyVariant> kVariants{{"none", {"/arbitrator/policy=none"}},
                                           {"traded", {"/arbitrator/policy=traded"}}};
 
 constexpr std::string_view kFollowersAnswer =
-    "It helps an ACC that follows the host. In the paper's fog it does nothing for a human "
+    "It helps an ACC that follows the host. In the paper's fog traded control does nothing for a "
+    "human "
     "follower, "
     "whose own fluctuations are larger than the effect; with a false echo an aggressive one comes "
-    "closer still. The last car of a string brakes less hard, whatever kind of driver the string "
+    "closer still, unless the radar has realistic noise. The last car of a string brakes less "
+    "hard, whatever kind of driver the string "
     "has.";
 constexpr std::string_view kFollowersWouldChange =
     "Followers with automatic emergency braking, or a host that brakes harder.";
@@ -99,16 +116,32 @@ std::vector<Claim> ClaimsOnFirst(const Comparison& comparison) {
     return ClaimOf(comparison, std::move(says), {name, "traded"}, {name, "none"}, kShortfall, sign,
                    margin);
   };
-  return {claim("In bias fog it helps an ACC.", "bias fog: acc", Sign::kLess),
-          claim("In beam fog it helps an ACC.", "beam fog: acc", Sign::kLess),
-          claim("In bias fog it does nothing for a normal human.", "bias fog: normal human",
-                Sign::kEqual, kNoShortfall_m),
-          claim("In bias fog it does nothing for a cautious human.", "bias fog: cautious human",
-                Sign::kEqual, kNoShortfall_m),
-          claim("In beam fog it does harm with an aggressive human.", "beam fog: aggressive human",
-                Sign::kMore),
+  return {claim("In bias fog traded control helps an ACC.", "bias fog: acc", Sign::kLess),
+          claim("In beam fog traded control helps an ACC.", "beam fog: acc", Sign::kLess),
+          claim("In bias fog traded control does nothing for a normal human.",
+                "bias fog: normal human", Sign::kEqual, kNoShortfall_m),
+          claim("In bias fog traded control does nothing for a cautious human.",
+                "bias fog: cautious human", Sign::kEqual, kNoShortfall_m),
+          claim("In beam fog traded control does harm with an aggressive human.",
+                "beam fog: aggressive human", Sign::kMore),
           claim("With RSS nothing is left to improve.", "beam fog: normal human with RSS",
                 Sign::kEqual, kNoShortfall_m)};
+}
+
+/// The same behind a host with realistic noise.
+std::vector<Claim> NoisyClaimsOnFirst(const Comparison& comparison) {
+  const auto claim = [&](std::string_view says, std::string_view name, Sign sign,
+                         double margin = 0) {
+    const std::string noisy = fmt::format("{}{}", name, kWithRealisticNoise);
+    return ClaimOf(comparison, fmt::format("With realistic noise {}", says), {noisy, "traded"},
+                   {noisy, "none"}, kShortfall, sign, margin);
+  };
+  return {claim("in bias fog traded control helps an ACC.", "bias fog: acc", Sign::kLess),
+          claim("in beam fog traded control helps an ACC.", "beam fog: acc", Sign::kLess),
+          claim("in bias fog traded control does nothing for a normal human.",
+                "bias fog: normal human", Sign::kEqual, kNoShortfall_m),
+          claim("in beam fog traded control helps an aggressive human.",
+                "beam fog: aggressive human", Sign::kLess)};
 }
 
 /// For each kind of string: the last car brakes less hard behind a host with traded control.
@@ -251,32 +284,25 @@ void AddStrings(const StudyContext& context, std::span<const StringOutcome> stri
   result.files.push_back({"followers-string.csv", StringCsv(strings)});
 }
 
-/// The context of one part of a study, whose progress counts `all` units in total.
-StudyContext Part(const StudyContext& whole, std::int64_t before, std::int64_t all) {
-  StudyContext part = whole;
-  part.progress = [&whole, before, all](std::int64_t done, std::int64_t) {
-    return !whole.progress || whole.progress(before + done, all);
-  };
-  return part;
-}
-
 }  // namespace
 
 StudyResult RunFollowersStudy(const StudyContext& context) {
-  const std::vector<StudyCase> cases = FollowerCases();
+  std::vector<StudyCase> cases = FollowerCases();
+  for (StudyCase& one : NoisyFollowers()) cases.push_back(std::move(one));
   const std::vector<StudyCase> kinds = Strings();
   const auto compared = static_cast<std::int64_t>(cases.size()) * context.seeds.count();
   const auto strung =
       static_cast<std::int64_t>(kinds.size() * kVariants.size()) * context.seeds.count();
-  const Comparison comparison(Part(context, 0, compared + strung), cases, kVariants);
+  const Comparison comparison(context.Part(0, compared + strung), cases, kVariants);
   const std::vector<StringOutcome> strings =
-      RunStrings(Part(context, compared, compared + strung), kinds, kVariants);
+      RunStrings(context.Part(compared, compared + strung), kinds, kVariants);
   StudyResult result;
   result.runs = comparison.runs();
   report::StudySection& section = result.section;
   section.answer = kFollowersAnswer;
   section.would_change = kFollowersWouldChange;
   result.claims = ClaimsOnFirst(comparison);
+  for (Claim& claim : NoisyClaimsOnFirst(comparison)) result.claims.push_back(std::move(claim));
   for (Claim& claim : ClaimsOnStrings(strings)) result.claims.push_back(std::move(claim));
   section.figures = {comparison.FigureOf("mean_compromised_safety_fog_m", "followers-cs",
                                          "Compromised safety by follower", true),
@@ -295,8 +321,8 @@ StudyResult RunFollowersStudy(const StudyContext& context) {
       "with the errors and the reaction time of the Human Driver Model. Strings: {} cars of a kind "
       "behind the host of dense_fog.json whose fog begins at 60 s, so that every gap has settled. "
       "Their measures begin a second before the fog. Braking of less than 0.01 m/s2 gives no "
-      "ratio.",
-      comparison.seeds(), kStringCars);
+      "ratio. {}",
+      comparison.seeds(), kStringCars, RealisticNoiseText());
   result.files = {{"followers.csv", comparison.Csv(0)}};
   AddStrings(context, strings, result);
   return result;

@@ -34,14 +34,6 @@ double GainAt(std::span<const CurvePoint> curve, double rhe_pct) {
   return place ? place->gain : stats::kMissing;
 }
 
-/// Gain as by BestOfAtMost(). If no point engages so little, the point with the smallest RHE
-/// counts.
-double GainOfAtMost(std::span<const CurvePoint> curve, double rhe_pct) {
-  const double least = std::ranges::min(curve, {}, &CurvePoint::rhe_pct).rhe_pct;
-  const std::optional<std::size_t> best = BestOfAtMost(curve, std::max(rhe_pct, least));
-  return best ? curve[*best].gain : stats::kMissing;
-}
-
 /// Distance of a point of the curve from the curve of the other points. nullopt at the ends, and
 /// where the RHE is constant, because nothing is interpolated there.
 std::optional<double> OffTheOthers(std::span<const CurvePoint> curve, std::size_t point) {
@@ -77,19 +69,15 @@ std::vector<AtEqualEngagement> AgainstFixed(std::span<const RuleValues> fixed,
   const std::vector<CurvePoint> curve = CurveOf(fixed, once);
   std::vector<AtEqualEngagement> all(rules.size());
   std::vector<double> values(rules.size());
-  std::vector<double> cheaper(rules.size());
   for (std::size_t r = 0; r < rules.size(); ++r) {
     const CurvePoint point = PointOf(rules[r], once);
     all[r].place = BestAt(curve, point.rhe_pct);
     if (!all[r].place) continue;
     values[r] = point.gain - all[r].place->gain;
     all[r].interpolation_error = InterpolationErrorAt(curve, *all[r].place);
-    all[r].cheaper = BestOfAtMost(curve, point.rhe_pct);
-    cheaper[r] = point.gain - GainOfAtMost(curve, point.rhe_pct);
   }
   const Resampling resampling(situations, kSituations);
   std::vector<std::vector<double>> replicates(rules.size());
-  std::vector<std::vector<double>> of_cheaper(rules.size());
   std::vector<double> weights;
   for (std::int64_t k = 0; k < kReplicates; ++k) {
     resampling.Draw(k, weights);
@@ -98,24 +86,14 @@ std::vector<AtEqualEngagement> AgainstFixed(std::span<const RuleValues> fixed,
       if (!all[r].place) continue;
       const CurvePoint point = PointOf(rules[r], weights);
       replicates[r].push_back(point.gain - GainAt(again, point.rhe_pct));
-      of_cheaper[r].push_back(point.gain - GainOfAtMost(again, point.rhe_pct));
     }
   }
   for (std::size_t r = 0; r < rules.size(); ++r) {
     if (!all[r].place) continue;
     const auto n = static_cast<std::int64_t>(situations);
     all[r].difference = FromReplicates(n, values[r], std::move(replicates[r]));
-    all[r].against_cheaper = FromReplicates(n, cheaper[r], std::move(of_cheaper[r]));
   }
   return all;
-}
-
-std::optional<std::size_t> BestOfAtMost(std::span<const CurvePoint> curve, double rhe_pct) {
-  std::optional<std::size_t> best;
-  for (std::size_t i = 0; i < curve.size(); ++i) {
-    if (curve[i].rhe_pct <= rhe_pct && (!best || curve[i].gain > curve[*best].gain)) best = i;
-  }
-  return best;
 }
 
 double InterpolationErrorAt(std::span<const CurvePoint> curve, const CurvePlace& place) {

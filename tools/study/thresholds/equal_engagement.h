@@ -47,13 +47,6 @@ struct AtEqualEngagement {
   Estimate difference;
   /// Possible error of the curve at the place (InterpolationErrorAt()), in units of gain.
   double interpolation_error = 0;
-  /// The fixed threshold with the largest gain among those with at most the rule's RHE; nullopt if
-  /// there is none. At an RHE of 0 the curve may jump, and this threshold is better than any place
-  /// of equal RHE.
-  std::optional<std::size_t> cheaper;
-  /// Gain of the rule minus gain of the best fixed threshold with at most its RHE, with an interval
-  /// as above. Each resample chooses its own threshold.
-  Estimate against_cheaper;
 
   /// Verdict at equal RHE. It is undecided if the interval comes as close to 0 as the possible
   /// error of the curve.
@@ -63,9 +56,6 @@ struct AtEqualEngagement {
 /// Compares every rule with the curve of the `fixed` ones, which are in order of threshold.
 std::vector<AtEqualEngagement> AgainstFixed(std::span<const RuleValues> fixed,
                                             std::span<const RuleValues> rules);
-
-/// The best point of the curve with at most this RHE; nullopt if there is none.
-std::optional<std::size_t> BestOfAtMost(std::span<const CurvePoint> curve, double rhe_pct);
 
 /// Possible error of the interpolation at a place of the curve. A fixed threshold at either end of
 /// the stretch has a distance from the curve of the other points, on which its neighbours are twice

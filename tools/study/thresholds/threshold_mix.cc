@@ -1,5 +1,6 @@
 #include "tools/study/thresholds/threshold_mix.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <span>
@@ -10,6 +11,7 @@
 #include "common/random.h"
 #include "tools/stats/in_order.h"
 #include "tools/study/paired_worker.h"
+#include "tools/study/sensor_noise.h"
 
 namespace fogline::study {
 namespace {
@@ -40,7 +42,7 @@ constexpr Range kMonitoring{0.1, 1.0};
 constexpr Range kLeadAmplitude_mps{0, 1.5};
 
 /// Sets the fields that vary between situations.
-Scenario Draw(Scenario scenario, std::int64_t seed) {
+Scenario Draw(Scenario scenario, std::int64_t seed, MixedHuman human, MixedRadar radar) {
   const Random random(seed, kMix);
   const auto u = [&](std::uint32_t index) { return random.Uniform2(0, index)[0]; };
   scenario.fog.model = u(0) < 0.5 ? FogModel::kBias : FogModel::kBeam;
@@ -48,21 +50,21 @@ Scenario Draw(Scenario scenario, std::int64_t seed) {
   scenario.fog.visibility_m = kVisibility_m.Log(u(2));
   scenario.fog.bias_m = kBias_m.Log(u(3));
   scenario.radar.bias_m = kMounting_m.Even(u(4));
-  scenario.radar.range_std_m = kRadarStd_m.Log(u(5));
+  if (radar == MixedRadar::kDrawn) scenario.radar.range_std_m = kRadarStd_m.Log(u(5));
   scenario.lidar.range_std_m = kLidarStd_m.Log(u(6));
   scenario.human.awareness.monitoring = kMonitoring.Even(u(7));
-  scenario.human.misjudges = scenario.human.loses_awareness = u(9) < kErringShare;
+  const bool errs =
+      human == MixedHuman::kDrawn ? u(9) < kErringShare : human == MixedHuman::kFallible;
+  scenario.human.misjudges = scenario.human.loses_awareness = errs;
+  scenario.human.sight = human == MixedHuman::kPerfect ? Sight::kPerfect : Sight::kFog;
   scenario.lead.sinusoid.amplitude_mps = kLeadAmplitude_mps.Even(u(8));
   scenario.seed = seed;
   return scenario;
 }
 
-const std::vector<std::string> kMixed{"/lead/profile=sinusoid",
-                                      "/human/sight=fog",
-                                      "/followers/driver=drawn",
-                                      "/followers/style=drawn",
-                                      "/arbitrator/missing_lidar=conflict",
-                                      "/arbitrator/adaptive/most=1"};
+const std::vector<std::string> kMixed{
+    "/lead/profile=sinusoid", "/followers/driver=drawn", "/followers/style=drawn",
+    "/arbitrator/missing_lidar=conflict", "/arbitrator/adaptive/most=1"};
 
 RuleFamily FamilyOf(std::string name, std::string_view policy, std::string_view pointer,
                     std::span<const double> values) {
@@ -77,27 +79,17 @@ RuleFamily FamilyOf(std::string name, std::string_view policy, std::string_view 
   return family;
 }
 
-std::vector<RuleFamily> Families() {
-  // The grid is dense, because other rules are compared with values between two points. It is
-  // denser where the RHE falls fastest.
-  std::vector<double> fixed;
-  for (int permille = 10; permille < 1000; permille += permille < 200 ? 5 : 10) {
-    fixed.push_back(permille / 1000.0);
+std::vector<Scenario> BasesOf(const StudyContext& context, const MixedRuns& mixed,
+                              MixedRadar radar) {
+  std::vector<std::string> overrides = kMixed;
+  if (radar == MixedRadar::kRealistic) {
+    overrides.insert(overrides.end(), RealisticNoise().begin(), RealisticNoise().end());
   }
-  constexpr std::array kBases{0.3, 0.35, 0.4, 0.45, 0.5, 0.55, 0.6, 0.7, 0.8, 0.9, 0.98};
-  constexpr std::array kCosts{0.125, 0.25, 0.5, 0.7, 1.0, 1.4, 2.0, 4.0};
-  return {FamilyOf("fixed", "traded", "/arbitrator/threshold", fixed),
-          FamilyOf("adaptive", "adaptive", "/arbitrator/threshold", kBases),
-          FamilyOf("bayes", "bayes", "/arbitrator/bayes/human_cost", kCosts),
-          FamilyOf("availability", "availability", "/arbitrator/threshold", kBases)};
-}
-
-std::vector<Scenario> BasesOf(const StudyContext& context, const MixedRuns& mixed) {
   std::vector<Scenario> bases;
-  bases.push_back(context.Load("paper.json", kMixed, {std::string(kWithoutTradedControl)}));
+  bases.push_back(context.Load("paper.json", overrides, {std::string(kWithoutTradedControl)}));
   for (const RuleFamily& family : mixed.families) {
     for (const StudyVariant& member : family.members) {
-      bases.push_back(context.Load("paper.json", kMixed, member.overrides));
+      bases.push_back(context.Load("paper.json", overrides, member.overrides));
     }
   }
   return bases;
@@ -112,20 +104,51 @@ void AddToMember(const RunValues& run, RuleMember& member) {
 
 }  // namespace
 
-MixedRuns RunMix(const StudyContext& context) {
-  MixedRuns mixed{.families = Families(), .members = {}, .situations = context.seeds.count()};
+std::vector<RuleFamily> RuleFamilies() {
+  // The grid is dense, because other rules are compared with values between two points. It is
+  // denser where the RHE falls fastest.
+  std::vector<double> fixed;
+  for (int permille = 10; permille < 1000; permille += permille < 200 ? 5 : 10) {
+    fixed.push_back(permille / 1000.0);
+  }
+  constexpr std::array kBases{0.3, 0.35, 0.4, 0.45, 0.5, 0.55, 0.6, 0.7, 0.8, 0.9, 0.98};
+  constexpr std::array kCosts{0.125, 0.25, 0.5, 0.7, 1.0, 1.4, 2.0, 4.0};
+  return {FamilyOf("fixed", "traded", "/arbitrator/threshold", fixed),
+          FamilyOf("adaptive", "adaptive", "/arbitrator/threshold", kBases),
+          FamilyOf("bayes", "bayes", "/arbitrator/bayes/human_cost", kCosts),
+          FamilyOf("availability", "availability", "/arbitrator/threshold", kBases)};
+}
+
+std::vector<RuleFamily> RulesNamed(std::span<const std::string_view> names) {
+  std::vector<RuleFamily> some;
+  for (const RuleFamily& family : RuleFamilies()) {
+    RuleFamily of_family{.name = family.name, .values = {}, .members = {}};
+    for (std::size_t i = 0; i < family.members.size(); ++i) {
+      if (std::ranges::count(names, family.members[i].name) == 0) continue;
+      of_family.values.push_back(family.values[i]);
+      of_family.members.push_back(family.members[i]);
+    }
+    if (!of_family.members.empty()) some.push_back(std::move(of_family));
+  }
+  return some;
+}
+
+MixedRuns RunMix(const StudyContext& context, std::vector<RuleFamily> families, MixedHuman human,
+                 MixedRadar radar) {
+  MixedRuns mixed{
+      .families = std::move(families), .members = {}, .situations = context.seeds.count()};
   for (std::size_t f = 0; f < mixed.families.size(); ++f) {
     for (const StudyVariant& member : mixed.families[f].members) {
       mixed.members.push_back({.family = f, .name = member.name});
     }
   }
-  const std::vector<Scenario> bases = BasesOf(context, mixed);
+  const std::vector<Scenario> bases = BasesOf(context, mixed, radar);
   stats::ComputeInOrder(
       0, mixed.situations, context.jobs, [] { return PairedWorker(); },
       [&](PairedWorker& worker, std::int64_t unit) {
         const std::int64_t seed = context.seeds.first + unit;
         std::vector<Scenario> scenarios;
-        for (const Scenario& base : bases) scenarios.push_back(Draw(base, seed));
+        for (const Scenario& base : bases) scenarios.push_back(Draw(base, seed, human, radar));
         return worker.Compute(scenarios, seed);
       },
       [&](std::int64_t unit, const std::vector<RunValues>& runs) {

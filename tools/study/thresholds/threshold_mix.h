@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -38,11 +39,29 @@ struct MixedRuns {
   std::int64_t situations = 0;
 };
 
-/// Runs all situations: one for each seed, the same for every rule. The first family is that of
-/// fixed thresholds, in ascending order. @throws InputError, StudyStopped
-MixedRuns RunMix(const StudyContext& context);
+/// Who takes over in the situations.
+enum class MixedHuman {
+  kDrawn,     // half of the humans are right and stay aware; all of them see the fog
+  kPerfect,   // the paper's
+  kFallible,  // sees the fog, misjudges distances and loses awareness
+};
+/// The noise of the radar in the situations.
+enum class MixedRadar {
+  kDrawn,
+  kRealistic,  // RealisticNoise()
+};
 
-/// Description of the situations.
+/// All rules. The first family is that of fixed thresholds, in ascending order.
+std::vector<RuleFamily> RuleFamilies();
+/// Some of them, by their names.
+std::vector<RuleFamily> RulesNamed(std::span<const std::string_view> names);
+
+/// Runs all situations: one for each seed, the same for every rule, human and radar.
+/// @throws InputError, StudyStopped
+MixedRuns RunMix(const StudyContext& context, std::vector<RuleFamily> families, MixedHuman human,
+                 MixedRadar radar);
+
+/// Description of the situations with drawn humans and radars.
 std::string MixText();
 
 }  // namespace fogline::study

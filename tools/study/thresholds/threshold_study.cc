@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <numeric>
-#include <stdexcept>
 #include <tuple>
 
 #include <fmt/format.h>
@@ -12,7 +11,10 @@
 #include "tools/study/bootstrap.h"
 #include "tools/study/claims.h"
 #include "tools/study/comparison.h"
+#include "tools/study/engagement/fog_modes.h"
+#include "tools/study/sensor_noise.h"
 #include "tools/study/study.h"
+#include "tools/study/thresholds/both_humans.h"
 #include "tools/study/thresholds/equal_engagement.h"
 #include "tools/study/thresholds/threshold_mix.h"
 
@@ -74,30 +76,11 @@ std::string ThresholdText(const MixedRuns& mixed, const CurvePlace& place) {
 constexpr std::string_view kThresholdAnswer =
     "No. In a mix of situations, whatever engages the human less in clear air is also safer, so "
     "the "
-    "best rule hardly ever hands over. At equal engagement an adaptive threshold does not beat a "
+    "best rule hardly ever hands over, even to a human who never errs. At equal engagement an "
+    "adaptive threshold does not beat a "
     "fixed one; dropping the deceived sensor gains a little.";
 constexpr std::string_view kThresholdWouldChange =
-    "Situations in which the automation is deceived for longer, or humans who never err.";
-
-/// Index of the rule of this name. @throws std::out_of_range
-std::size_t RuleNamed(const MixedRuns& mixed, std::string_view name) {
-  const auto found = std::ranges::find(mixed.members, name, &RuleMember::name);
-  if (found == mixed.members.end()) throw std::out_of_range(fmt::format("no rule {}", name));
-  return static_cast<std::size_t>(found - mixed.members.begin());
-}
-
-/// The claim that one rule has more or less SI than another one, situation by situation.
-Claim Against(const MixedRuns& mixed, std::string says, std::string_view a, std::string_view b,
-              Sign sign, double margin = 0) {
-  return {.says = std::move(says),
-          .compared = fmt::format("{} against {}, safety improvement (SI) (%)", a, b),
-          .sign = sign,
-          .difference = PairedDifference(mixed.members[RuleNamed(mixed, a)].si_pct,
-                                         mixed.members[RuleNamed(mixed, b)].si_pct),
-          .margin = margin,
-          .p = {},
-          .hindrance = {}};
-}
+    "Situations in which the automation is deceived for longer.";
 
 /// The claim that a rule has more SI than the fixed threshold of equal RHE.
 Claim AtEqualRhe(const MixedRuns& mixed, const Beside& beside, std::string says,
@@ -117,21 +100,41 @@ Claim AtEqualRhe(const MixedRuns& mixed, const Beside& beside, std::string says,
 
 std::vector<Claim> ThresholdClaims(const MixedRuns& mixed, const Beside& beside) {
   constexpr double kNothing = 3;  // points of SI, as in study transfer
+  const auto against = [&](std::string says, std::string_view a, std::string_view b, Sign sign,
+                           double margin = 0) {
+    return RuleClaim(mixed, "", std::move(says), a, b, sign, margin);
+  };
   return {
-      Against(mixed, "Hardly ever handing over is safer than the paper's threshold.", "fixed 0.99",
+      against("Hardly ever handing over is safer than the paper's threshold.", "fixed 0.99",
               "fixed 0.5", Sign::kMore),
-      Against(mixed, "The paper's threshold is safer than a low one.", "fixed 0.5", "fixed 0.3",
+      against("The paper's threshold is safer than a low one.", "fixed 0.5", "fixed 0.3",
               Sign::kMore),
-      Against(mixed, "It is safer than the adaptive rule.", "fixed 0.99", "adaptive 0.5",
-              Sign::kMore),
-      Against(mixed, "It is safer than the rule by costs.", "fixed 0.99", "bayes 1", Sign::kMore),
-      Against(mixed, "It is as safe as dropping the sensor at the same threshold.", "fixed 0.99",
+      against("It is safer than the adaptive rule.", "fixed 0.99", "adaptive 0.5", Sign::kMore),
+      against("It is safer than the rule by costs.", "fixed 0.99", "bayes 1", Sign::kMore),
+      against("It is as safe as dropping the sensor at the same threshold.", "fixed 0.99",
               "availability 0.98", Sign::kEqual, kNothing),
       AtEqualRhe(mixed, beside, "At equal engagement, dropping the deceived sensor gains a little.",
                  "availability 0.5", Sign::kMore),
       AtEqualRhe(mixed, beside, "An eager adaptive rule loses at equal engagement.",
                  "adaptive 0.35", Sign::kLess),
   };
+}
+
+/// With each human and each radar: the highest threshold against the paper's, and the paper's
+/// against a low one.
+std::vector<Claim> ClaimsOnHumans(std::span<const HumanMix> mixes) {
+  std::vector<Claim> claims;
+  for (const HumanMix& mix : mixes) {
+    const std::string name = mix.Name();
+    const auto claim = [&](std::string_view says, std::string_view a, std::string_view b) {
+      claims.push_back(
+          RuleClaim(mix.runs, name, fmt::format("With a {}, {}", name, says), a, b, Sign::kMore));
+    };
+    claim("hardly ever handing over is safer than the paper's threshold.", "fixed 0.99",
+          "fixed 0.5");
+    claim("the paper's threshold is safer than a low one.", "fixed 0.5", "fixed 0.3");
+  }
+  return claims;
 }
 
 /// The members of a family in order of RHE.
@@ -239,6 +242,10 @@ report::StudyTable TableOfRules(const MixedRuns& mixed, const Beside& beside, st
   return table;
 }
 
+std::int64_t RunsOf(const MixedRuns& mixed) {
+  return mixed.situations * static_cast<std::int64_t>(mixed.members.size() + 1);
+}
+
 std::string ThresholdMethod(const MixedRuns& mixed, const Beside& beside) {
   double widest = 0;
   for (std::size_t i = 0; i + 1 < beside.curve.size(); ++i) {
@@ -257,21 +264,30 @@ std::string ThresholdMethod(const MixedRuns& mixed, const Beside& beside) {
       "not hold. Intervals: {} resamples of the "
       "situations, each with its own curve. So they contain the noise of equal situations, the RHE "
       "of both sides and the choice of the best. SI is a mean of ratios of small numbers, so "
-      "compromised safety in metres is beside it.",
-      mixed.situations, MixText(), beside.fixed, widest, kReplicates);
+      "compromised safety in metres is beside it. Both humans: the same situations and some rules, "
+      "with each human in all of them. {} With the drawn radars, and with a realistic one in all "
+      "situations. {}",
+      mixed.situations, MixText(), beside.fixed, widest, kReplicates, HumansText(),
+      RealisticNoiseText());
 }
 
 }  // namespace
 
 StudyResult RunThresholdStudy(const StudyContext& context) {
-  const MixedRuns mixed = RunMix(context);
+  const std::int64_t situations = context.seeds.count();
+  const std::int64_t units = (1 + kHumanMixes) * situations;
+  const MixedRuns mixed =
+      RunMix(context.Part(0, units), RuleFamilies(), MixedHuman::kDrawn, MixedRadar::kDrawn);
+  const std::vector<HumanMix> humans = RunBothHumans(context.Part(situations, units));
   const Beside beside = BesideFixed(mixed);
   StudyResult result;
-  result.runs = mixed.situations * static_cast<std::int64_t>(mixed.members.size() + 1);
+  result.runs = RunsOf(mixed);
+  for (const HumanMix& mix : humans) result.runs += RunsOf(mix.runs);
   report::StudySection& section = result.section;
   section.answer = kThresholdAnswer;
   section.would_change = kThresholdWouldChange;
   result.claims = ThresholdClaims(mixed, beside);
+  for (Claim& claim : ClaimsOnHumans(humans)) result.claims.push_back(std::move(claim));
   section.figures = {
       DifferenceFigure(mixed, beside),
       FrontFigure(mixed, "threshold-front", "The price of safety in a mix of situations",
@@ -282,10 +298,13 @@ StudyResult RunThresholdStudy(const StudyContext& context) {
   std::iota(all.begin(), all.end(), std::size_t{0});
   std::vector<std::size_t> telling;
   for (const std::string_view name : kTelling) telling.push_back(RuleNamed(mixed, name));
-  section.tables = {TableOfRules(mixed, beside, "Some rules", telling),
+  section.tables = {TableOfHumans(humans, MixedRadar::kDrawn),
+                    TableOfHumans(humans, MixedRadar::kRealistic),
+                    TableOfRules(mixed, beside, "Some rules", telling),
                     TableOfRules(mixed, beside, "Every rule", all)};
   section.method = ThresholdMethod(mixed, beside);
-  result.files = {{"threshold.csv", ThresholdCsv(mixed, beside)}};
+  result.files = {{"threshold.csv", ThresholdCsv(mixed, beside)},
+                  {"threshold-humans.csv", HumansCsv(humans)}};
   return result;
 }
 

@@ -2,6 +2,8 @@
 
 #include <array>
 #include <cmath>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -14,6 +16,16 @@ namespace {
 constexpr double kArlZero_s = 400;
 constexpr double kMissed_s = 11;
 constexpr std::size_t kSeeds = 60;
+
+/// The rule of the tests, with these ranked visibilities.
+study::DetectionRule RuleOf(std::vector<std::size_t> ranked,
+                            std::optional<std::size_t> reference = {}) {
+  return {.arl_zero_s = kArlZero_s,
+          .missed_s = kMissed_s,
+          .ranked = std::move(ranked),
+          .reference = reference,
+          .jobs = 2};
+}
 
 /// Runs of 100 s with their greatest scores in the middle. These scores are uniform in (0, 1).
 std::vector<study::ClearRun> ClearAir() {
@@ -36,7 +48,7 @@ TEST(CompareDetectionTest, HasTheUncertaintyOfTheThresholdInItsIntervals) {
   const std::vector<study::ClearRun> clear = ClearAir();
   const std::vector<std::vector<study::ScoreRecords>> fog{Fog(0.1)};
   const std::array runs{study::DetectorRuns{.clear = clear, .fog = fog}};
-  const auto compared = study::CompareDetection(runs, {}, kArlZero_s, kMissed_s);
+  const auto compared = study::CompareDetection(runs, RuleOf({0}));
   const study::Estimate& delay = compared[0].detector.by_visibility[0].delay_s;
   const double threshold = study::ThresholdFinder(clear).Threshold(kArlZero_s);
   EXPECT_NEAR(delay.mean, threshold / 0.1, 0.011);
@@ -59,11 +71,15 @@ TEST(CompareDetectionTest, PairsMeasuresAndVisibilitiesByRun) {
   const std::array runs{study::DetectorRuns{.clear = clear, .fog = slow},
                         study::DetectorRuns{.clear = clear, .fog = fast},
                         study::DetectorRuns{.clear = clear, .fog = slow}};
-  const auto compared = study::CompareDetection(runs, 0, kArlZero_s, kMissed_s);
+  const auto compared = study::CompareDetection(runs, RuleOf({0, 1}, 0));
   // The same measure again, with any threshold.
-  EXPECT_EQ(compared[2].mean_delay_minus_other_s.low, 0);
-  EXPECT_EQ(compared[2].mean_delay_minus_other_s.high, 0);
-  EXPECT_EQ(study::VerdictOf(compared[1].mean_delay_minus_other_s), study::Verdict::kLess);
+  const study::Estimate again = study::DelayDifference(compared[2], compared[0]);
+  EXPECT_EQ(again.low, 0);
+  EXPECT_EQ(again.high, 0);
+  const study::Estimate faster = study::DelayDifference(compared[1], compared[0]);
+  EXPECT_EQ(study::VerdictOf(faster), study::Verdict::kLess);
+  EXPECT_NEAR(faster.mean, compared[1].detector.delay_s.mean - compared[0].detector.delay_s.mean,
+              1e-12);
   EXPECT_NEAR(compared[1].delay_minus_other_s[0].mean,
               -compared[1].detector.by_visibility[0].delay_s.mean, 0.021);
   EXPECT_NEAR(compared[0].detector.delay_s.mean,
@@ -73,11 +89,39 @@ TEST(CompareDetectionTest, PairsMeasuresAndVisibilitiesByRun) {
               1e-12);
 }
 
+TEST(CompareDetectionTest, AveragesTheRankedVisibilitiesOnly) {
+  const std::vector<study::ClearRun> clear = ClearAir();
+  const std::vector<std::vector<study::ScoreRecords>> fog{Fog(0.1), Fog(0.2), Fog(0.4)};
+  const std::array runs{study::DetectorRuns{.clear = clear, .fog = fog}};
+  const auto second = study::CompareDetection(runs, RuleOf({1}));
+  EXPECT_EQ(second[0].detector.delay_s.mean, second[0].detector.by_visibility[1].delay_s.mean);
+  EXPECT_EQ(second[0].detector.delay_s.low, second[0].detector.by_visibility[1].delay_s.low);
+  const auto none = study::CompareDetection(runs, RuleOf({}));
+  EXPECT_TRUE(std::isnan(none[0].detector.delay_s.mean));
+  EXPECT_FALSE(none[0].detector.delay_s.has_interval());
+  EXPECT_TRUE(none[0].detector.by_visibility[1].delay_s.has_interval());
+}
+
+TEST(CompareDetectionTest, DetectorsMayHaveDifferentlyManyRunsInClearAir) {
+  const std::vector<study::ClearRun> clear = ClearAir();
+  std::vector<study::ClearRun> more;
+  for (int i = 0; i < 20; ++i) more.insert(more.end(), clear.begin(), clear.end());
+  const std::vector<std::vector<study::ScoreRecords>> fog{Fog(0.1)};
+  const std::array runs{study::DetectorRuns{.clear = clear, .fog = fog},
+                        study::DetectorRuns{.clear = more, .fog = fog}};
+  const auto compared = study::CompareDetection(runs, RuleOf({0}));
+  const study::Estimate& few = compared[0].detector.delay_s;
+  const study::Estimate& many = compared[1].detector.delay_s;
+  // The same scores twenty times have the same threshold, which is known better.
+  EXPECT_EQ(many.mean, few.mean);
+  EXPECT_LT(many.high - many.low, (few.high - few.low) / 2);
+}
+
 TEST(CompareDetectionTest, ACertainDetectionHasTheIntervalOfClopperAndPearson) {
   const std::vector<study::ClearRun> clear = ClearAir();
   const std::vector<std::vector<study::ScoreRecords>> fog{Fog(1), Fog(0)};
   const std::array runs{study::DetectorRuns{.clear = clear, .fog = fog}};
-  const auto compared = study::CompareDetection(runs, {}, kArlZero_s, kMissed_s);
+  const auto compared = study::CompareDetection(runs, RuleOf({0, 1}));
   const study::Estimate& all = compared[0].detector.by_visibility[0].detection;
   const study::Estimate& none = compared[0].detector.by_visibility[1].detection;
   EXPECT_EQ(all.mean, 1);

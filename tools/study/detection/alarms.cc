@@ -1,4 +1,4 @@
-#include "tools/study/detection/detectors.h"
+#include "tools/study/detection/alarms.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,19 +11,6 @@
 
 namespace fogline::study {
 
-conflict::ConflictParameters DetectorParameters(const Scenario& scenario) {
-  conflict::ConflictParameters parameters = policies::ConflictParametersOf(scenario.arbitrator);
-  const double radar_m = scenario.radar.range_std_m;
-  const double lidar_m = scenario.lidar.range_std_m;
-  const double frame_m = parameters.bin_width_m * parameters.frame_bins;
-  parameters.bin_width_m = std::max({radar_m, lidar_m, parameters.smallest_std_m});
-  parameters.frame_bins = static_cast<int>(std::lround(frame_m / parameters.bin_width_m));
-  parameters.sprt_delta_m = 2 * parameters.cusum_kappa * std::hypot(radar_m, lidar_m);
-  return parameters;
-}
-
-std::string_view TwinOf(std::string_view measure) { return measure == "sprt" ? "cusum" : ""; }
-
 void AddScore(double score, double time_s, ScoreRecords& records) {
   if (records.empty() || score > records.back().score) records.push_back({score, time_s});
 }
@@ -32,16 +19,6 @@ std::optional<double> FirstAlarm(const ScoreRecords& records, double threshold) 
   const auto first = std::ranges::lower_bound(records, threshold, {}, &ScoreRecord::score);
   if (first == records.end()) return std::nullopt;
   return first->time_s;
-}
-
-void DetectorBench::Prepare(const Scenario& scenario) {
-  witness_.emplace(scenario);
-  const conflict::ConflictParameters parameters = DetectorParameters(scenario);
-  measures_.clear();
-  for (const conflict::ConflictMeasureRow& row : conflict::ConflictMeasures()) {
-    measures_.push_back(row.make(parameters));
-  }
-  scores_.resize(measures_.size());
 }
 
 double AlarmCount::ArlZero_s() const {

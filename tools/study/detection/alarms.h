@@ -1,64 +1,15 @@
-// Measures of conflict as detectors of fog: all measures get the evidence of the same run,
-// thresholds have an equal false-alarm rate, and the detection is compared.
+// Alarms of detectors from their scores: thresholds with an equal rate of false alarms, and the
+// share of steps in fog that a threshold finds.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <span>
-#include <string_view>
 #include <utility>
 #include <vector>
 
-#include "scenario/sections/scenario.h"
-#include "services/closed_loop/closed_loop.h"
-#include "services/decision/conflict/conflict_measures.h"
-#include "services/decision/conflict/conflict_parameters.h"
-#include "services/decision/policies/conflict_inputs.h"
-
 namespace fogline::study {
-
-/// Parameters of the measures in a scenario. Those that the scenario does not set follow the noise
-/// of its sensors, as the defaults follow the default noise. The width of bins is the larger
-/// standard deviation of the two sensors. The SPRT tests for the same shift as the CUSUM: 2 kappa
-/// standard deviations of the difference. With fixed parameters a test would be tuned to one noise
-/// of several.
-conflict::ConflictParameters DetectorParameters(const Scenario& scenario);
-
-/// The measure that is the same test as this one under DetectorParameters(), so that both count
-/// once; "" if there is none. The SPRT's ratio is held at its lower bound, and the SPRT tests for
-/// the shift of the CUSUM. So above that bound the ratio is the sum of the CUSUM times 2 kappa
-/// (Page 1954), as long as it is below its ceiling and once it has been at the bound.
-std::string_view TwinOf(std::string_view measure);
-
-/// Runs scenarios and gives every measure of conflict the evidence of each step. For use by one
-/// thread.
-class DetectorBench {
- public:
-  /// Calls `visit(truth, scores)` after each step, with the scores in the order of
-  /// ConflictMeasures().
-  template <class Visit>
-  void Run(const Scenario& scenario, std::int64_t seed, Visit&& visit) {
-    Prepare(scenario);
-    loop_.Run(scenario, seed, [&](const closed_loop::StepView& step) {
-      const conflict::Evidence evidence{
-          .radar = policies::StatedBy(step.radar),
-          .lidar = policies::StatedBy(step.lidar),
-          .prediction = witness_->Prediction(step.track, step.radar, step.lidar)};
-      for (std::size_t i = 0; i < measures_.size(); ++i) scores_[i] = measures_[i]->Step(evidence);
-      visit(step.truth, std::span<const double>(scores_));
-    });
-  }
-
- private:
-  void Prepare(const Scenario& scenario);
-
-  closed_loop::ReusedLoop loop_;
-  std::optional<policies::Witness> witness_;
-  std::vector<std::unique_ptr<conflict::ConflictMeasure>> measures_;
-  std::vector<double> scores_;
-};
 
 /// A score above all earlier ones, and its time in s after the beginning.
 struct ScoreRecord {
@@ -73,10 +24,10 @@ void AddScore(double score, double time_s, ScoreRecords& records);
 /// Time at which a threshold is first reached; nullopt if it never is.
 std::optional<double> FirstAlarm(const ScoreRecords& records, double threshold);
 
-/// Scores of a measure in a run in clear air after its warm-up.
+/// Scores of a detector in a run in clear air after its warm-up.
 struct ClearRun {
   ScoreRecords records;
-  std::vector<double> scores;  // at regular intervals of steps
+  std::vector<double> scores;  // at regular intervals of steps; empty if they are not needed
   double duration_s = 0;
 };
 

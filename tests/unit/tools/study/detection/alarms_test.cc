@@ -1,4 +1,4 @@
-#include "tools/study/detection/detectors.h"
+#include "tools/study/detection/alarms.h"
 
 #include <array>
 #include <cmath>
@@ -85,17 +85,6 @@ TEST(ThresholdFinderTest, AgreesWithCountingAlarmsAtEveryThreshold) {
     const double below = std::nextafter(threshold, -1.0);
     EXPECT_LT(study::CountAlarms(runs, below).ArlZero_s(), arl_s);
   }
-}
-
-TEST(DetectorParametersTest, FollowTheNoiseOfTheSensors) {
-  Scenario scenario;
-  scenario.radar.range_std_m = 0.3;
-  scenario.lidar.range_std_m = 0.4;
-  const conflict::ConflictParameters parameters = study::DetectorParameters(scenario);
-  // kappa 1/2: both tests look for a shift of one standard deviation of the difference, 0.5 m.
-  EXPECT_NEAR(parameters.sprt_delta_m, 0.5, 1e-12);
-  EXPECT_EQ(parameters.bin_width_m, 0.4);
-  EXPECT_EQ(parameters.frame_bins, 625) << "250 m as ever";
 }
 
 TEST(AreaUnderRocTest, IsTheShareOfPairsInOrderTiesCountedHalf) {

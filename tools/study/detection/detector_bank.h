@@ -1,0 +1,80 @@
+// The detectors of study `conflict`: every measure of conflict, and what the memory and the side of
+// the Degree of Conflict make of each measure of a single step.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "scenario/sections/scenario.h"
+#include "services/decision/conflict/conflict_measures.h"
+#include "services/decision/conflict/conflict_parameters.h"
+#include "services/decision/conflict/disagreement.h"
+#include "services/decision/conflict/window.h"
+
+namespace fogline::study {
+
+/// Parameters of the measures in a scenario. Those that the scenario does not set follow the noise
+/// of its sensors, as the defaults follow the default noise. The width of bins is the larger
+/// standard deviation of the two sensors. The SPRT tests for the same shift as the CUSUM: 2 kappa
+/// standard deviations of the difference. With fixed parameters a test would be tuned to one noise
+/// of several.
+conflict::ConflictParameters DetectorParameters(const Scenario& scenario);
+
+/// The measure abs(d) in m, with d = radar - LiDAR - offset. Window, known sign and sigmoid make
+/// the Degree of Conflict of it.
+inline constexpr std::string_view kDistance = "distance";
+
+/// The rows of ConflictMeasures(), and `distance` after them.
+std::span<const conflict::ConflictMeasureRow> ComparedMeasures();
+
+/// A measure, or what window and sign make of a measure of a single step.
+struct Detector {
+  std::string name;         // such as "nis", "nis + window", "nis + sign", "nis + window + sign"
+  std::size_t measure = 0;  // index in ComparedMeasures()
+  bool window = false;      // averages the score over the window of the Degree of Conflict
+  bool sign = false;        // negative if the LiDAR's range is too long, as fog never makes it
+  bool is_quick = false;    // needs no prediction and little time (RunClearAir())
+};
+
+/// A detector for each of ComparedMeasures(), in the same order; after them, for each measure of a
+/// single step, the three others that window and sign make of it.
+const std::vector<Detector>& Detectors();
+/// Index in Detectors(). @throws std::out_of_range
+std::size_t DetectorNamed(std::string_view name);
+/// 0, 1, 2 ... for each of Detectors(); those of the quick ones, and those of the others.
+std::vector<std::size_t> AllDetectors();
+std::vector<std::size_t> QuickDetectors();
+std::vector<std::size_t> SlowDetectors();
+
+/// Computes the scores of some detectors. For use by one thread.
+class DetectorBank {
+ public:
+  /// @param detectors indices in Detectors()
+  DetectorBank(const conflict::ConflictParameters& parameters,
+               std::span<const std::size_t> detectors);
+
+  /// The scores of this step, in the order of the detectors. Call it once per step.
+  std::span<const double> Step(const conflict::Evidence& evidence);
+  /// Back to the state after construction.
+  void Reset();
+
+ private:
+  struct Member {
+    std::size_t measure;
+    bool sign;
+    std::optional<conflict::Window> window;
+  };
+
+  conflict::DisagreementSource source_;                               // of the sign
+  std::vector<std::unique_ptr<conflict::ConflictMeasure>> measures_;  // null if no member needs it
+  std::vector<double> of_measures_;
+  std::vector<Member> members_;
+  std::vector<double> scores_;
+};
+
+}  // namespace fogline::study
