@@ -20,10 +20,10 @@ install(FILES services/algorithm.h services/graph.h services/input_state.h DESTI
 install(DIRECTORY common DESTINATION include FILES_MATCHING PATTERN "*.h")
 install(DIRECTORY services/runtime DESTINATION include/services FILES_MATCHING PATTERN "*.h")
 install(DIRECTORY scenario/ DESTINATION include/scenario
-  FILES_MATCHING PATTERN "*.h" PATTERN "bad" EXCLUDE)
+  FILES_MATCHING PATTERN "*.h" PATTERN "bad" EXCLUDE PATTERN "ensemble" EXCLUDE)
 install(FILES scenario/paper.json scenario/dense_fog.json scenario/recorded_lead.json
   scenario/scenario.schema.json DESTINATION share/fogline/scenario)
-install(DIRECTORY scenario/data DESTINATION share/fogline/scenario)
+install(DIRECTORY scenario/data scenario/ensemble DESTINATION share/fogline/scenario)
 
 set(config "${CMAKE_CURRENT_BINARY_DIR}/fogline-config")
 configure_package_config_file(cmake/fogline-config.cmake.in "${config}.cmake"

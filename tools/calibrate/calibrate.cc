@@ -2,13 +2,11 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <exception>
 #include <string>
 #include <utility>
 
-#include <nlopt.hpp>
-
 #include "common/errors.h"
+#include "tools/calibrate/minimise.h"
 
 namespace fogline::calibrate {
 namespace {
@@ -17,10 +15,6 @@ namespace {
 constexpr double kGlobalPart = 0.6;
 // The table counts as met when every number is within a thousandth of a point.
 constexpr double kMet = 1e-6;
-// The local search begins with steps of this share of each range. It ends when its steps are as
-// small as the rounding of the values.
-constexpr double kLocalStep = 0.05;
-constexpr double kSmallestStep = 1e-6;
 // A sensitivity varies a field by this share of its range to either side.
 constexpr double kHalfStep = 0.005;
 
@@ -39,52 +33,26 @@ class Search {
   /// Evaluates the point at which Run() starts as long as no better point is known.
   void Begin(std::vector<double> shares) {
     best_shares_ = std::move(shares);
-    try {
-      Try(best_shares_);
-    } catch (const nlopt::forced_stop&) {
-      // The result already says that the search was interrupted.
-    }
+    Try(best_shares_);
   }
 
-  /// Lets an algorithm of NLopt continue from the best point until `until` evaluations have been
-  /// made in total.
-  void Run(nlopt::algorithm algorithm, int until) {
+  /// Continues from the best point until `until` evaluations have been made in total.
+  void Run(Reach reach, int until) {
     const bool met = found() && result_.best.objective <= kMet;
     if (result_.interrupted || met || until <= result_.evaluations) return;
-    nlopt::opt optimizer(algorithm, static_cast<unsigned>(best_shares_.size()));
-    optimizer.set_lower_bounds(0);
-    optimizer.set_upper_bounds(1);
-    optimizer.set_min_objective(
-        [](const std::vector<double>& shares, std::vector<double>&, void* search) {
-          return static_cast<Search*>(search)->Guarded(shares);
-        },
-        this);
-    optimizer.set_stopval(kMet);
-    optimizer.set_maxeval(until - result_.evaluations);
-    optimizer.set_xtol_abs(kSmallestStep);
-    optimizer.set_initial_step(kLocalStep);
-    std::vector<double> shares = best_shares_;
-    double reached = 0;
-    try {
-      optimizer.optimize(shares, reached);
-    } catch (const nlopt::forced_stop&) {
-      if (failure_) std::rethrow_exception(failure_);
-    } catch (const nlopt::roundoff_limited&) {
-      // The precision of the numbers allows no further progress. The best point so far stays.
-    }
+    Minimise(
+        reach, [this](const std::vector<double>& shares) { return Try(shares); }, best_shares_,
+        kMet, until - result_.evaluations);
   }
 
  private:
-  /// The objective at a point. @throws nlopt::forced_stop when interrupted
-  double Try(const std::vector<double>& shares) {
-    std::vector<double> values;
-    for (std::size_t i = 0; i < shares.size(); ++i) {
-      values.push_back(objective_.problem().fields[i].ValueAt(shares[i]));
-    }
+  /// The objective at a point; nullopt when interrupted.
+  std::optional<double> Try(const std::vector<double>& shares) {
+    std::vector<double> values = objective_.ValuesAt(shares);
     std::optional<Evaluation> evaluation = objective_.Evaluate(values, go_on_);
     if (!evaluation) {
       result_.interrupted = true;
-      throw nlopt::forced_stop();
+      return std::nullopt;
     }
     const double reached = evaluation->objective;
     const bool at_start = ++result_.evaluations == 1;
@@ -102,25 +70,12 @@ class Search {
     return reached;
   }
 
-  /// NLopt lets only its own exceptions pass. This function stores any other exception in failure_.
-  double Guarded(const std::vector<double>& shares) {
-    try {
-      return Try(shares);
-    } catch (const nlopt::forced_stop&) {
-      throw;
-    } catch (...) {
-      failure_ = std::current_exception();
-      throw nlopt::forced_stop();
-    }
-  }
-
   const Objective& objective_;
   const GoOn& go_on_;
   const SearchProgress& progress_;
   Calibration result_;
   std::vector<double> best_shares_;
   std::string refusal_;
-  std::exception_ptr failure_;
 };
 
 }  // namespace
@@ -134,10 +89,8 @@ std::optional<Calibration> Calibrate(const Objective& objective, int max_evaluat
   }
   Search search(objective, go_on, progress);
   search.Begin(std::move(start));
-  // DIRECT-L (Gablonsky & Kelley 2001) divides the range and uses no random numbers. Subplex (Rowan
-  // 1990) copes with the jumps of J where the human drives one time step more or less.
-  search.Run(nlopt::GN_DIRECT_L, static_cast<int>(kGlobalPart * max_evaluations));
-  search.Run(nlopt::LN_SBPLX, max_evaluations);
+  search.Run(Reach::kWholeRange, static_cast<int>(kGlobalPart * max_evaluations));
+  search.Run(Reach::kAroundStart, max_evaluations);
   if (search.found()) return search.TakeResult();
   if (!search.refusal().empty()) throw InputError(search.refusal());
   return std::nullopt;

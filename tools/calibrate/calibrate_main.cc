@@ -1,8 +1,9 @@
 // fogline calibrate, a program of its own: finds those values of fields with which a scenario's
-// table is nearest to a target table.
+// table is nearest to a target table, or several sets of values that all meet it.
 #include <memory>
 #include <optional>
 #include <system_error>
+#include <vector>
 
 #include <fmt/core.h>
 
@@ -15,6 +16,9 @@
 #include "scenario/io/diagnostic_list.h"
 #include "scenario/io/json.h"
 #include "tools/calibrate/calibrate.h"
+#include "tools/calibrate/ensemble/ensemble.h"
+#include "tools/calibrate/ensemble/ensemble_files.h"
+#include "tools/calibrate/ensemble/ensemble_report.h"
 #include "tools/calibrate/fit.h"
 #include "tools/calibrate/scenario_text.h"
 #include "tools/cli/arguments.h"
@@ -42,7 +46,8 @@ struct CalibrateArguments {
         ->allow_extra_args(false);
     verb.add_option("--seeds", seeds, "Seeds A:B, both included, of every evaluation")
         ->capture_default_str();
-    verb.add_option("--evaluations", evaluations, "Largest number of tables to compute")
+    verb.add_option("--evaluations", evaluations,
+                    "Largest number of tables to compute; with --ensemble, from each start")
         ->check(CLI::Range(1, 1'000'000))
         ->capture_default_str();
     verb.add_option("--rhe-weight", rhe_weight, "Weight of RHE; the weight of SI is 1")
@@ -54,23 +59,59 @@ struct CalibrateArguments {
     verb.add_option("--jobs", jobs, "Threads; the result does not depend on them")
         ->check(CLI::Range(1, 1024))
         ->capture_default_str();
-    verb.add_option("--out", out, "Write the scenario with the values that were found");
+    verb.add_flag("--steady", steady,
+                  "Derive the gaps and /acc/standstill_m, so that each run begins in equilibrium");
+    verb.add_option("--out", out,
+                    "Write the scenario with the values that were found; with --ensemble, the "
+                    "folder for the scenarios");
     verb.add_flag("--force", force, "Replace the file of --out if it is a scenario");
     verb.add_flag("--json", json, "Print as JSON");
-    cli::ShowExitCodes(verb, {.interruptible = true});
+    AddEnsemble(verb);
+    cli::ShowExitCodes(verb, {.check_failed = "too few sets", .interruptible = true});
     verb.footer(
         "Minimises a weighted sum: the squared differences of mean SI and mean RHE from the\n"
         "target, in points, and SI's variance over the seeds. Equal arguments give equal\n"
         "results. Ctrl-C ends the search with the best values so far. Sensitivity is the\n"
         "change, in points, for 1 % of a field's range.\n\n"
+        "With --ensemble N it finds N sets of values that are far from each other. A set meets\n"
+        "the target if the root of the sum is at most --within, over --seeds and over --fresh.\n"
+        "It writes FOLDER/set-1.json and so on, and FOLDER/sets.csv. Ctrl-C ends the search;\n"
+        "the sets that are found by then are written.\n\n"
         "Examples:\n"
         "  fogline calibrate scenario/paper.json --free /fog/bias_m=0.2:0.5\n"
         "  fogline calibrate scenario/paper.json --free /radar/bias_m=0.92:0.98 \\\n"
         "    --free /follower/weight_distance=0.001:10:log --seeds 1:40 --out found.json\n"
         "  fogline table other.json --json > other-table.json\n"
         "  fogline calibrate scenario/paper.json --target other-table.json \\\n"
-        "    --free /fog/bias_m=0.2:0.5 --json");
+        "    --free /fog/bias_m=0.2:0.5 --json\n"
+        "  fogline calibrate scenario/paper.json --ensemble 8 --out sets --steady \\\n"
+        "    --free /fog/bias_m=0.15:0.3 --free /radar/bias_m=0.9:0.98 \\\n"
+        "    --free /acc/headway_s=1:1.8");
   }
+
+  void AddEnsemble(CLI::App& verb) {
+    CLI::Option* const sets =
+        verb.add_option("--ensemble", rules.sets,
+                        "Find this number of distinct sets of values that all meet the target")
+            ->check(CLI::Range(1, 1000));
+    const auto add = [&](const char* name, auto& value, const char* description) {
+      return verb.add_option(name, value, description)->needs(sets)->capture_default_str();
+    };
+    add("--fresh", fresh, "Seeds A:B, not among --seeds, over which each set is confirmed");
+    add("--within", rules.within, "Largest distance from the target, in points, that meets it")
+        ->check(cli::NumberIn(1e-6, 1e6));
+    add("--apart", rules.apart,
+        "Least distance of two sets: the root mean square of the differences of their fields, each "
+        "as a share of its range")
+        ->check(cli::NumberIn(0, 1));
+    add("--starts", rules.starts, "Number of points from which a search may begin")
+        ->check(CLI::Range(1, 100'000));
+    add("--search-seed", rules.seed, "Seed of these points")
+        ->check(CLI::Range(std::int64_t{0}, std::int64_t{1'000'000'000}));
+    ensemble = sets;
+  }
+
+  bool wants_ensemble() const { return ensemble->count() > 0; }
 
   std::filesystem::path scenario;
   std::vector<std::string> free;
@@ -81,9 +122,13 @@ struct CalibrateArguments {
   double rhe_weight = CalibrationProblem().rhe_weight;
   double spread_weight = CalibrationProblem().spread_weight;
   int jobs = sweep::AllCores();
+  bool steady = false;
   std::filesystem::path out;
   bool force = false;
   bool json = false;
+  CLI::Option* ensemble = nullptr;
+  EnsembleRules rules;
+  std::string fresh = "1001:1200";
 };
 
 CalibrationProblem MakeProblem(const CalibrateArguments& arguments) {
@@ -94,6 +139,7 @@ CalibrationProblem MakeProblem(const CalibrateArguments& arguments) {
                              .seeds = cli::ReadSeeds(arguments.seeds),
                              .rhe_weight = arguments.rhe_weight,
                              .spread_weight = arguments.spread_weight,
+                             .steady = arguments.steady,
                              .jobs = arguments.jobs};
   sweep::RequireThreshold(problem.scenario, arguments.scenario);
   problem.target =
@@ -115,34 +161,40 @@ bool IsScenario(const std::filesystem::path& file) {
   return object != nullptr && FindMember(*object, "version") != nullptr;
 }
 
-/// Checks before the search that its result can be written. @return the text of the scenario file
-/// with the overrides in it and everything else unchanged
-std::string PrepareOut(const CalibrateArguments& arguments, const Scenario& scenario) {
+/// The text of the scenario file for a file in another folder: with the overrides in it and
+/// everything else unchanged. Paths in it are relative to its folder.
+std::string TextIn(const std::filesystem::path& folder, const CalibrateArguments& arguments,
+                   const Scenario& scenario) {
   namespace fs = std::filesystem;
-  const auto refuse = [&](std::string_view why) {
-    throw InputError(fmt::format("{}: error: --out: {}", PathText(arguments.out), why));
-  };
-  RefuseToReplace(arguments.out, "--out", arguments.force, "scenario", IsScenario);
-  const fs::path folder = fs::absolute(arguments.out).parent_path();
-  RequireWritable(arguments.out, "--out");
   const FileText read = ReadFile(arguments.scenario, kMaxFileBytes);
-  if (!read.error.empty()) refuse(fmt::format("{} {}", PathText(arguments.scenario), read.error));
+  if (!read.error.empty()) {
+    throw InputError(fmt::format("{}: error: --out: {} {}", PathText(arguments.out),
+                                 PathText(arguments.scenario), read.error));
+  }
   std::string text = read.text;
   for (const std::string& one : arguments.overrides) text = WithOverride(text, one);
-  // The path of a recorded leader's file is relative to the scenario's folder.
+  const fs::path from = fs::absolute(arguments.scenario).parent_path();
+  text = WithSchemaIn(folder, from, std::move(text));
   const fs::path recorded = scenario.lead.recorded.file;
   if (scenario.lead.profile == LeadProfile::kRecorded && !recorded.empty() &&
       recorded.is_relative()) {
-    const fs::path there = fs::absolute(arguments.scenario).parent_path() / recorded;
-    text = WithValue(text, "/lead/recorded/file", Quote(fs::proximate(there, folder).string()));
+    text = WithValue(text, "/lead/recorded/file",
+                     Quote(fs::proximate(from / recorded, folder).string()));
   }
   return text;
 }
 
-void WriteOut(const std::filesystem::path& file, std::string text,
-              const CalibrationProblem& problem, const std::vector<double>& values) {
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    text = WithValue(text, problem.fields[i].pointer(), NumberText(values[i]));
+/// Checks before the search that its result can be written. @return TextIn() for it
+std::string PrepareOut(const CalibrateArguments& arguments, const Scenario& scenario) {
+  RefuseToReplace(arguments.out, "--out", arguments.force, "scenario", IsScenario);
+  RequireWritable(arguments.out, "--out");
+  return TextIn(std::filesystem::absolute(arguments.out).parent_path(), arguments, scenario);
+}
+
+void WriteOut(const std::filesystem::path& file, std::string text, const Objective& objective,
+              const std::vector<double>& values) {
+  for (const FieldValue& change : objective.Changes(values)) {
+    text = WithValue(text, change.pointer, NumberText(change.value));
   }
   ParseScenario(text, file.string());
   AtomicFile out(file);
@@ -184,7 +236,7 @@ int RunCalibrate(const CalibrateArguments& arguments) {
     cli::PrintBeside(arguments.out, FindingsText(objective.problem(), findings));
   }
   if (!arguments.out.empty()) {
-    WriteOut(arguments.out, text, objective.problem(), found.values);
+    WriteOut(arguments.out, text, objective, found.values);
   }
   if (WasInterrupted()) {
     throw Interrupted(fmt::format("interrupted; these are the best values of {} evaluation{}",
@@ -193,11 +245,94 @@ int RunCalibrate(const CalibrateArguments& arguments) {
   return kDone;
 }
 
+/// The command that finds the same ensemble again: without the options that do not matter for it.
+std::string CommandOf(const CalibrateArguments& arguments) {
+  std::string command = fmt::format("fogline calibrate {}", arguments.scenario.string());
+  const auto add = [&](std::string_view option, const auto& value) {
+    command += fmt::format(" {} {}", option, value);
+  };
+  if (!arguments.target.empty()) add("--target", arguments.target.string());
+  for (const std::string& one : arguments.overrides) add("--set", one);
+  add("--ensemble", arguments.rules.sets);
+  if (arguments.steady) command += " --steady";
+  add("--seeds", arguments.seeds);
+  add("--fresh", arguments.fresh);
+  add("--within", arguments.rules.within);
+  add("--apart", arguments.rules.apart);
+  add("--starts", arguments.rules.starts);
+  add("--evaluations", arguments.evaluations);
+  add("--search-seed", arguments.rules.seed);
+  const CalibrationProblem defaults;
+  if (arguments.rhe_weight != defaults.rhe_weight) add("--rhe-weight", arguments.rhe_weight);
+  if (arguments.spread_weight != defaults.spread_weight) {
+    add("--spread-weight", arguments.spread_weight);
+  }
+  for (const std::string& one : arguments.free) add("--free", one);
+  return command;
+}
+
+ParameterEnsemble SearchEnsemble(const Objective& searched, const Objective& fresh,
+                                 const EnsembleRules& rules) {
+  Progress progress("set", rules.sets);
+  int said = 0;
+  return FindEnsemble(
+      searched, fresh, rules, [] { return !WasInterrupted(); },
+      [&](int found, const EnsembleCounts& counts) {
+        if (found > said) {
+          said = found;
+          progress.Say(fmt::format("set {} of {} is found", found, rules.sets));
+        }
+        progress.Show(
+            found, counts.searches == 0
+                       ? fmt::format("start {}/{}", counts.evaluations, rules.starts)
+                       : fmt::format("search {}, table {}", counts.searches, counts.evaluations));
+      });
+}
+
+int RunEnsemble(const CalibrateArguments& arguments) {
+  if (arguments.out.empty()) throw InputError("error: --ensemble: needs --out FOLDER");
+  const Objective searched(MakeProblem(arguments));
+  const Objective fresh(WithFreshSeeds(searched.problem(), cli::ReadSeeds(arguments.fresh)));
+  EnsembleRules rules = arguments.rules;
+  rules.evaluations = arguments.evaluations;
+  EnsembleReport report{.searched = searched,
+                        .fresh = fresh,
+                        .rules = rules,
+                        .found = {},
+                        .scenario = arguments.scenario.string(),
+                        .command = CommandOf(arguments)};
+  const EnsembleFolder folder(arguments.out, arguments.force);
+  const std::string text =
+      TextIn(std::filesystem::absolute(arguments.out), arguments, searched.problem().scenario);
+  ParseScenario(WithOrigin(report, 0, text), SetFileName(0));  // before long work
+  WatchInterrupts();
+  report.found = SearchEnsemble(searched, fresh, rules);
+  if (arguments.json) {
+    cli::PrintJson(EnsembleJson(report));
+  } else {
+    fmt::print("{}", EnsembleText(report));
+  }
+  if (!report.found.sets.empty()) folder.Write(report, text);
+  if (report.found.interrupted) {
+    throw Interrupted(fmt::format("interrupted; {} of {} sets were found{}",
+                                  report.found.sets.size(), rules.sets,
+                                  report.found.sets.empty() ? "" : " and are written"));
+  }
+  if (static_cast<int>(report.found.sets.size()) == rules.sets) return kDone;
+  Complain(
+      fmt::format("fogline calibrate: only {} of {} sets were found; more --starts or "
+                  "--evaluations, or other bounds, may give more",
+                  report.found.sets.size(), rules.sets));
+  return kCheckFailed;
+}
+
 void AddCalibrate(CLI::App& app, cli::Action& action) {
   CLI::App* verb = app.add_subcommand(cli::kCalibrate.verb, cli::kCalibrate.purpose);
   const auto arguments = std::make_shared<CalibrateArguments>(*verb);
-  verb->callback(
-      [&action, arguments] { action = [arguments] { return RunCalibrate(*arguments); }; });
+  verb->callback([&action, arguments] {
+    const auto run = arguments->wants_ensemble() ? RunEnsemble : RunCalibrate;
+    action = [arguments, run] { return run(*arguments); };
+  });
 }
 
 }  // namespace

@@ -37,19 +37,6 @@ Json FieldJson(const CalibrationProblem& problem, const Findings& findings, std:
   return json;
 }
 
-Json RowJson(const TargetRow& target, const TableRow& row) {
-  return {{"threshold", target.threshold},
-          {"si_pct", OrNull(row.si_pct.mean())},
-          {"rhe_pct", OrNull(row.rhe_pct.mean())},
-          {"si_std_pct", OrNull(row.si_pct.deviation())},
-          {"rhe_std_pct", OrNull(row.rhe_pct.deviation())},
-          {"si_seeds", row.si_pct.count()},
-          {"target_si_pct", OrNull(target.si_pct)},
-          {"target_rhe_pct", OrNull(target.rhe_pct)},
-          {"si_difference_pct", OrNull(Difference(row.si_pct.mean(), target.si_pct))},
-          {"rhe_difference_pct", OrNull(Difference(row.rhe_pct.mean(), target.rhe_pct))}};
-}
-
 std::string Cell(Number value) { return value ? fmt::format("{:.2f}", *value) : "-"; }
 std::string Signed(Number value) { return value ? fmt::format("{:+.2f}", *value) : "-"; }
 
@@ -109,6 +96,19 @@ std::string SensitivitiesText(const CalibrationProblem& problem, const Sensitivi
 }
 
 }  // namespace
+
+Json RowJson(const TargetRow& target, const TableRow& row) {
+  return {{"threshold", target.threshold},
+          {"si_pct", OrNull(row.si_pct.mean())},
+          {"rhe_pct", OrNull(row.rhe_pct.mean())},
+          {"si_std_pct", OrNull(row.si_pct.deviation())},
+          {"rhe_std_pct", OrNull(row.rhe_pct.deviation())},
+          {"si_seeds", row.si_pct.count()},
+          {"target_si_pct", OrNull(target.si_pct)},
+          {"target_rhe_pct", OrNull(target.rhe_pct)},
+          {"si_difference_pct", OrNull(Difference(row.si_pct.mean(), target.si_pct))},
+          {"rhe_difference_pct", OrNull(Difference(row.rhe_pct.mean(), target.rhe_pct))}};
+}
 
 std::string FindingsText(const CalibrationProblem& problem, const Findings& findings) {
   const Calibration& found = findings.calibration;

@@ -4,6 +4,8 @@
 #include <optional>
 #include <string>
 
+#include <nlohmann/json_fwd.hpp>
+
 #include "tools/calibrate/calibrate.h"
 
 namespace fogline::calibrate {
@@ -12,6 +14,9 @@ struct Findings {
   Calibration calibration;
   std::optional<SensitivityTable> sensitivities;  // empty if the search was interrupted
 };
+
+/// A row of a table beside the target: a row of `fogline table --json` with the target added.
+nlohmann::ordered_json RowJson(const TargetRow& target, const TableRow& row);
 
 /// Values, residuals and sensitivities as tables.
 std::string FindingsText(const CalibrationProblem& problem, const Findings& findings);

@@ -1,5 +1,6 @@
 #include "tools/calibrate/objective.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <limits>
 #include <utility>
@@ -8,6 +9,7 @@
 
 #include "common/errors.h"
 #include "common/text.h"
+#include "tools/calibrate/steady_start.h"
 #include "tools/sweep/engine.h"
 #include "tools/sweep/threshold_curve.h"
 
@@ -36,12 +38,38 @@ Objective::Objective(CalibrationProblem problem)
   for (const TargetRow& row : problem_.target) {
     thresholds_.values.push_back(NumberText(row.threshold));
   }
+  for (const FreeField& field : problem_.fields) {
+    if (problem_.steady && std::ranges::find(kSteadyFields, field.pointer()) != kSteadyFields.end())
+      throw InputError(fmt::format("error: --free {}: --steady derives it", field.pointer()));
+  }
+}
+
+std::vector<double> Objective::ValuesAt(std::span<const double> shares) const {
+  std::vector<double> values;
+  for (std::size_t i = 0; i < shares.size(); ++i) {
+    values.push_back(problem_.fields[i].ValueAt(shares[i]));
+  }
+  return values;
 }
 
 Scenario Objective::With(std::span<const double> values) const {
   Scenario scenario = problem_.scenario;
   for (std::size_t i = 0; i < values.size(); ++i) problem_.fields[i].Set(scenario, values[i]);
+  if (problem_.steady) StartSteadily(scenario);
   return scenario;
+}
+
+std::vector<FieldValue> Objective::Changes(std::span<const double> values) const {
+  std::vector<FieldValue> changes;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    changes.push_back({problem_.fields[i].pointer(), values[i]});
+  }
+  if (!problem_.steady) return changes;
+  Scenario scenario = With(values);
+  for (const DerivedField& derived : StartSteadily(scenario)) {
+    changes.push_back({std::string(derived.pointer), derived.value});
+  }
+  return changes;
 }
 
 std::string Objective::NameOf(std::span<const double> values) const {
@@ -55,11 +83,11 @@ std::string Objective::NameOf(std::span<const double> values) const {
 
 std::optional<Evaluation> Objective::Evaluate(std::span<const double> values,
                                               const GoOn& go_on) const {
-  const sweep::SweepPlan plan(With(values), {thresholds_}, problem_.seeds, problem_.file);
   Evaluation evaluation;
   evaluation.rows.resize(problem_.target.size());
   bool complete = true;
   try {
+    const sweep::SweepPlan plan(With(values), {thresholds_}, problem_.seeds, problem_.file);
     sweep::RunSweep(plan, 0, plan.units(), problem_.jobs,
                     [&](std::int64_t, const std::vector<sweep::SweepRow>& results) {
                       for (std::size_t i = 0; i < results.size(); ++i) {

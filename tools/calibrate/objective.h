@@ -26,8 +26,16 @@ struct CalibrationProblem {
   /// squared residual of SI is 1.
   double rhe_weight = 1;
   double spread_weight = 0.01;
+  /// Whether the gaps follow from the other fields (steady_start.h).
+  bool steady = false;
   /// Number of threads. It does not change the result.
   int jobs = 1;
+};
+
+/// A field and its value.
+struct FieldValue {
+  std::string pointer;
+  double value = 0;
 };
 
 /// A row of the table over all seeds.
@@ -56,15 +64,21 @@ using GoOn = std::function<bool()>;
 /// compromised safety arise.
 class Objective {
  public:
-  /// @throws InputError if the scenario's policy does not use the threshold
+  /// @throws InputError if the scenario's policy does not use the threshold, or if a free field is
+  /// also derived
   explicit Objective(CalibrationProblem problem);
 
   /// The table with these values of the free fields, each within its bounds. The result is empty if
   /// `go_on` returned false.
   std::optional<Evaluation> Evaluate(std::span<const double> values, const GoOn& go_on) const;
 
-  /// The scenario with these values.
+  /// The values of the free fields at a point that gives them as shares of their ranges.
+  std::vector<double> ValuesAt(std::span<const double> shares) const;
+  /// The scenario with these values. @throws InputError as StartSteadily()
   Scenario With(std::span<const double> values) const;
+  /// All fields that With() sets: the free ones, then the derived ones. @throws InputError as
+  /// With()
+  std::vector<FieldValue> Changes(std::span<const double> values) const;
 
   const CalibrationProblem& problem() const { return problem_; }
 

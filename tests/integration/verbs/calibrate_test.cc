@@ -1,4 +1,6 @@
 // fogline calibrate finds the parameters that produced a table, and writes them into a file.
+#include <csignal>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <string>
@@ -50,7 +52,7 @@ class CalibrateTest : public testing::Test {
     std::ofstream(target_) << outcome.out;
   }
 
-  /// Calibrates the scenario to that table.
+  /// Calibrates the scenario to the target.
   json Calibrate(const std::vector<std::string>& free, const std::vector<std::string>& more) const {
     std::vector<std::string> arguments{"calibrate", scenario_, "--target", target_, "--json"};
     Append(arguments, "--free", free);
@@ -88,7 +90,7 @@ std::string TextOf(const std::string& file) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-// A search ends where every number of the table is within 0.001 points. Here the offset moves the
+// A search ends when every number of the table is within 0.001 points. Here the offset moves the
 // table by only 0.07 points for 1 % of its range. So the search finds the field within a few
 // thousandths of its range: 0.4 mm of the offset, 1.5 mm of the fog's bias, 4 ms of the headway.
 constexpr double kShareOfRange = 5e-3;
@@ -109,7 +111,7 @@ TEST_F(CalibrateTest, RecoversHeadwayAndWeightOfTheFollower) {
   const json found = Calibrate(
       {"/follower/headway_s=1.2:2", "/follower/weight_control=0.1:100:log"}, {"--seeds", "1"});
   EXPECT_NEAR(found["fields"][0]["value"], 1.43, kShareOfRange * 0.8);
-  // The range is three decades on a logarithmic scale, so kShareOfRange of it is a factor of 1.035.
+  // The range is three decades on a logarithmic scale, so kShareOfRange means a factor of 1.035.
   EXPECT_NEAR(found["fields"][1]["value"], 3, 0.035 * 3);
 }
 
@@ -118,7 +120,7 @@ TEST_F(CalibrateTest, RecoversFogAndOffsetFromMeansOverNoisySeeds) {
   std::vector<std::string> truth = noise;
   truth.insert(truth.end(), {"/fog/bias_m=0.377", "/radar/bias_m=0.9321"});
   MakeTarget(truth, "1:4");
-  // WHEN the seeds are those of the table, so that the search can meet the table to the last digit
+  // WHEN the seeds are the table's seeds, THEN the search can meet the table to the last digit
   const json found =
       Calibrate({"/fog/bias_m=0.2:0.5", "/radar/bias_m=0.9:0.98"},
                 {"--seeds", "1:4", "--spread-weight", "0", "--set", noise[0], "--set", noise[1]});
@@ -188,6 +190,99 @@ TEST_F(CalibrateTest, EndsWithTheBestSoFarOnCtrlC) {
   EXPECT_EQ(found["interrupted"], true);
   EXPECT_LE(found["objective"], found["objective_at_start"]);
   EXPECT_EQ(RunFogline({"check", out_}).code, 0);
+}
+
+class EnsembleOfCalibrateTest : public CalibrateTest {
+ protected:
+  /// A search for sets that come near to the table of this scenario.
+  std::vector<std::string> Search(const std::vector<std::string>& more) const {
+    std::vector<std::string> arguments{"calibrate",     scenario_,
+                                       "--target",      target_,
+                                       "--free",        "/fog/bias_m=0.2:0.5",
+                                       "--free",        "/radar/bias_m=0.9:0.98",
+                                       "--seeds",       "1",
+                                       "--fresh",       "2:3",
+                                       "--within",      "40",
+                                       "--apart",       "0.05",
+                                       "--evaluations", "60",
+                                       "--out",         sets_};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return arguments;
+  }
+
+  const std::string sets_ = folder_.File("sets");
+};
+
+TEST_F(EnsembleOfCalibrateTest, WritesItsSetsAndTheirTable) {
+  MakeTarget({}, "1");
+  const Outcome outcome = RunFogline(Search({"--ensemble", "2", "--json"}));
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const json found = json::parse(outcome.out, nullptr, false);
+  ASSERT_EQ(found["sets"].size(), 2U);
+  EXPECT_GE(found["least_distance"], 0.05);
+  for (const json& set : found["sets"]) {
+    // Each set is a scenario whose table is the one that calibrate reported.
+    const std::string file = sets_ + "/" + set["file"].get<std::string>();
+    EXPECT_EQ(RunFogline({"check", file}).code, 0);
+    const Outcome table = RunFogline(
+        {"table", file, "--thresholds", "0.3,0.4,0.5,0.6,0.7", "--seeds", "2:3", "--json"});
+    const json rows = json::parse(table.out)["rows"];
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      EXPECT_EQ(rows[i]["si_pct"], set["fresh"]["rows"][i]["si_pct"]);
+    }
+    EXPECT_LE(set["search"]["distance"], 40);
+    EXPECT_LE(set["fresh"]["distance"], 40);
+    EXPECT_THAT(TextOf(file), testing::HasSubstr("Made by: fogline calibrate " + scenario_));
+  }
+  EXPECT_THAT(TextOf(sets_ + "/sets.csv"), testing::StartsWith("quantity,unit,lowest,"));
+  // AND it does not replace them unless it is told to
+  const Outcome again = RunFogline(Search({"--ensemble", "1"}));
+  EXPECT_EQ(again.code, 2);
+  EXPECT_EQ(again.err, sets_ + ": error: --out: the folder has sets; --force replaces them\n");
+  const Outcome forced = RunFogline(Search({"--ensemble", "1", "--force"}));
+  EXPECT_EQ(forced.code, 0) << forced.err;
+  EXPECT_THAT(forced.out, testing::HasSubstr("1 of 1 sets, within 40 points"));
+  EXPECT_FALSE(std::filesystem::exists(sets_ + "/set-2.json"));
+}
+
+TEST_F(EnsembleOfCalibrateTest, EndsWith1IfItFindsTooFew) {
+  MakeTarget({}, "1");
+  const Outcome outcome = RunFogline(Search({"--ensemble", "50", "--starts", "4"}));
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_THAT(outcome.err, testing::ContainsRegex("only [0-4] of 50 sets were found"));
+}
+
+TEST_F(EnsembleOfCalibrateTest, KeepsOnCtrlCWhatItHasFound) {
+  MakeTarget({}, "1");
+  std::vector<std::string> command = Search({"--ensemble", "1000", "--starts", "1000"});
+  command.insert(command.begin(), Program("fogline"));
+  Background search(command);
+  ASSERT_TRUE(search.WaitForErr(" of 1000 is found")) << search.Err();
+  search.Signal(SIGINT);
+  EXPECT_EQ(search.Wait(), 130);
+  EXPECT_THAT(search.Err(), testing::ContainsRegex(
+                                "interrupted; [0-9]+ of 1000 sets were found and are written"));
+  EXPECT_EQ(RunFogline({"check", sets_ + "/set-1.json"}).code, 0);
+}
+
+TEST_F(EnsembleOfCalibrateTest, SaysWhatIsWrongWithItsArguments) {
+  MakeTarget({}, "1");
+  const auto error = [&](const std::vector<std::string>& more) {
+    const Outcome outcome = RunFogline(Search(more));
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_EQ(outcome.out, "");
+    EXPECT_FALSE(std::filesystem::exists(sets_));
+    return outcome.err;
+  };
+  EXPECT_THAT(error({"--ensemble", "0"}), testing::HasSubstr("--ensemble: Value 0 not in range"));
+  EXPECT_THAT(error({}), testing::HasSubstr("--fresh requires --ensemble"));
+  EXPECT_EQ(error({"--ensemble", "2", "--steady", "--free", "/world/host_gap_m=30:40"}),
+            "fogline calibrate: error: --free /world/host_gap_m: --steady derives it\n");
+  EXPECT_EQ(ErrorOf({"--target", target_, "--free", "/fog/bias_m=0:1", "--ensemble", "2"}),
+            "fogline calibrate: error: --ensemble: needs --out FOLDER\n");
+  EXPECT_EQ(ErrorOf({"--target", target_, "--free", "/fog/bias_m=0:1", "--ensemble", "2", "--seeds",
+                     "1:4", "--fresh", "3:9", "--out", sets_}),
+            "fogline calibrate: error: --fresh 3:9: has seeds of --seeds 1:4\n");
 }
 
 TEST_F(CalibrateTest, SaysWhatIsWrongWithItsArguments) {
