@@ -188,7 +188,11 @@ std::string TextIn(const std::filesystem::path& folder, const CalibrateArguments
 std::string PrepareOut(const CalibrateArguments& arguments, const Scenario& scenario) {
   RefuseToReplace(arguments.out, "--out", arguments.force, "scenario", IsScenario);
   RequireWritable(arguments.out, "--out");
-  return TextIn(std::filesystem::absolute(arguments.out).parent_path(), arguments, scenario);
+  // A text for stdout or a pipe has no folder of its own.
+  const std::filesystem::path folder = IsReplaceable(arguments.out)
+                                           ? std::filesystem::absolute(arguments.out).parent_path()
+                                           : std::filesystem::current_path();
+  return TextIn(folder, arguments, scenario);
 }
 
 void WriteOut(const std::filesystem::path& file, std::string text, const Objective& objective,

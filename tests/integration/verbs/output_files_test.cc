@@ -240,26 +240,31 @@ class DocumentTest : public OutputFilesTest {
     EXPECT_EQ(run.code, 0) << run.err;
   }
   std::vector<Words> Calls() const {
-    return {{"sweep", "scenario/paper.json", "--set", "/steps=20", "--seeds", "1:2", "--out"},
+    return {{"sweep", paper_, "--set", "/steps=20", "--seeds", "1:2", "--out"},
             {"report", log_, "--output"},
-            {"compare", recorded_, "scenario/data/acc_platoon_a.csv", "--out"},
-            {"calibrate", "scenario/paper.json", "--free", "/fog/bias_m=0.2:0.3", "--set",
-             "/steps=310", "--seeds", "1:1", "--evaluations", "1", "--out"}};
+            {"compare", recorded_, InTree("scenario/data/acc_platoon_a.csv"), "--out"},
+            {"calibrate", paper_, "--free", "/fog/bias_m=0.2:0.3", "--set", "/steps=310", "--seeds",
+             "1:1", "--evaluations", "1", "--out"}};
   }
-  static Outcome Call(Words words, const Words& more) {
-    words.insert(words.begin(), Program("fogline"));
-    words.insert(words.end(), more.begin(), more.end());
-    return RunCommand(words);
+  /// Runs the verb in the folder: a scenario for stdout has paths that are relative to it.
+  Outcome Call(const Words& words, const Words& more) const {
+    std::string script = "fogline";
+    for (const std::string& word : words) script += " " + word;
+    for (const std::string& word : more) script += " " + word;
+    return Bash(script);
   }
+  static std::string InTree(const char* file) { return (SourceDirectory() / file).string(); }
 
   const std::string recorded_ = folder_.File("recorded.lcm");
+  const std::string paper_ = InTree("scenario/paper.json");
 };
 
 TEST_F(DocumentTest, IsAllThatComesOutOfStdoutIfItIsToGoThere) {
   for (const Words& words : Calls()) {
     SCOPED_TRACE(words.front());
     const std::string file = folder_.File(words.front());
-    ASSERT_EQ(Call(words, {file}).code, 0);
+    const Outcome written = Call(words, {file});
+    ASSERT_EQ(written.code, 0) << written.err;
     const Outcome outcome = Call(words, {"/dev/stdout"});
     EXPECT_EQ(outcome.code, 0) << outcome.err;
     EXPECT_EQ(outcome.out, Content(file));
