@@ -175,7 +175,7 @@ class BurstRun {
     for (const Burst& burst : plan_.bursts) {
       result.back.push_back(Suffer(burst));
       if (IsAlive(run.pid())) continue;
-      result.trouble = "ended before its last burst was over: " + run.Err();
+      result.trouble = "ended before its last burst was over: " + run.Err() + run.Out();
       return result;
     }
     Judge(run, result);
@@ -187,6 +187,7 @@ class BurstRun {
   // Time for the commands that begin and end a burst on each machine, while other runs go on.
   static constexpr double kCommands_s = 1;
 
+  /// The run goes on after a collision: the cars can hit each other when each stops by itself.
   std::vector<std::string> Command() const {
     double run_s = 2 * kRest_s;
     for (const Burst& burst : plan_.bursts) run_s += burst.length_s + plan_.clean_s + kCommands_s;
@@ -199,6 +200,8 @@ class BurstRun {
             "/step_s=" + std::to_string(1.0 / plan_.rate_hz),
             "--set",
             "/steps=" + std::to_string(static_cast<int>(run_s * plan_.rate_hz)),
+            "--set",
+            "/world/end_on_collision=false",
             "--lcm-url",
             kBurstUrl,
             "--log",
