@@ -46,15 +46,15 @@ fs::path FolderOf(const fs::path& file) {
   return file.has_parent_path() ? file.parent_path() : fs::path(".");
 }
 
-/// The file to which a name leads when all its links are followed.
+/// The file to which a name refers after all symbolic links are resolved.
 struct Target {
   fs::path path;
-  std::optional<int> descriptor;  // set if the name stands for an open descriptor of this process
+  std::optional<int> descriptor;  // set if the name refers to an open descriptor of this process
   fs::file_status status;
 };
 
-/// The descriptor that a name in /proc/self/fd stands for. A file opened by this name would be
-/// written from its beginning, over the bytes that the descriptor has written so far.
+/// The descriptor to which a name in /proc/self/fd refers. If the file were opened by this name,
+/// writes would begin at byte 0 and overwrite the bytes that the descriptor has written so far.
 std::optional<int> DescriptorOf(const fs::path& link) {
   std::error_code error;
   const fs::path folder = fs::canonical(FolderOf(link), error);
@@ -108,7 +108,8 @@ int MakeNew(const fs::path& file) {
   return open(file.c_str(), O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
 }
 
-/// Makes an empty file in a folder and removes it again. @throws InputError that names `result`
+/// Creates an empty file in a folder and removes this file again. @throws InputError that names
+/// `result`
 void TryFile(const fs::path& folder, const fs::path& result, std::string_view option) {
   const fs::path file = RandomName(folder);
   const int descriptor = MakeNew(file);
@@ -128,7 +129,8 @@ int Open(const Target& target) {
     }
     return fcntl(*target.descriptor, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
   }
-  // If no process reads the pipe, open() would wait. With O_NONBLOCK it fails.
+  // Without O_NONBLOCK, open() would wait until a process reads the pipe. With O_NONBLOCK, open()
+  // fails.
   const int fd = open(target.path.c_str(), O_WRONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
   if (fd >= 0) fcntl(fd, F_SETFL, fcntl(fd, F_GETFL) & ~O_NONBLOCK);
   return fd;
@@ -251,7 +253,7 @@ void RequireWritable(const fs::path& file, std::string_view option) {
   if (const std::string why = Obstacle(file, target); !why.empty()) {
     ThrowCannotWrite(file, option, why);
   }
-  if (IsStream(target)) return;  // opening and closing a pipe would end the input of its reader
+  if (IsStream(target)) return;  // opening and closing a pipe would end its reader's input
   RequireFolderOf(file, option);
   TryFile(FolderOf(target.path), file, option);
 }

@@ -1,4 +1,4 @@
-// A file that is written whole or not at all, even if the process is killed.
+// A file that is written completely or not at all, even if the process is killed.
 #pragma once
 
 #include <deque>
@@ -11,17 +11,18 @@
 namespace fogline {
 
 /// Writes a file under a random name in the folder of the target file, and renames it at the end.
-/// So several processes can write the same file at the same time. Each writes a complete file, and
-/// the last file remains. A link to a file stays a link, and its target is replaced. A terminal,
-/// /dev/null, a pipe and /dev/stdout cannot be replaced; they get the content at the end.
+/// So several processes can write the same file at the same time. Each process writes a complete
+/// file, and the file that is renamed last remains. If the name is a link, the link stays and its
+/// target is replaced. A terminal, /dev/null, a pipe and /dev/stdout cannot be replaced; Finish()
+/// writes the content into them.
 ///
-/// A process that must leave no such file after an interrupt calls WatchInterrupts() (interrupt.h).
-/// Then only kill -9 leaves the file with the random name, ".fogline-*".
+/// A process that must leave no temporary file after an interrupt calls WatchInterrupts()
+/// (interrupt.h). Then only kill -9 leaves a file with a random name, ".fogline-*".
 class AtomicFile {
  public:
   /// @throws InputError if the file cannot be created, or a folder or block device has its name
   explicit AtomicFile(std::filesystem::path file);
-  /// Removes the written part unless Finish() has succeeded.
+  /// Removes the temporary file, except after a successful Finish().
   ~AtomicFile();
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
@@ -29,8 +30,8 @@ class AtomicFile {
   /// @throws std::runtime_error when the disk is full
   void Write(std::string_view text);
 
-  /// Path of the file before Finish(). A library or another process can write the file by this
-  /// path, in place of Write().
+  /// Path of the temporary file. A library can open this path and write the content, in place of
+  /// Write().
   std::filesystem::path part() const;
   int descriptor() const { return fd_; }
 
@@ -56,56 +57,59 @@ class AtomicFile {
 
   std::filesystem::path file_;
   std::filesystem::path target_;  // file_ with links resolved
-  std::filesystem::path part_;    // "" if the file has no name at all
+  std::filesystem::path part_;    // name of the temporary file; "" if it has no name
   int fd_ = -1;
   int device_ = -1;  // pipe or device
   std::string buffer_;
 };
 
-/// Files that belong together. No old file is replaced before all new ones are on the disk, so the
-/// old files stay as they are when the disk is full.
+/// Files that belong together. All new files are on the disk before the first old file is replaced.
+/// So the old files stay unchanged if the disk is full.
 class AtomicFiles {
  public:
-  /// Adds a file. The reference is valid as long as this object. @throws as AtomicFile()
+  /// Adds a file. The reference is valid for the lifetime of this object. @throws as AtomicFile()
   AtomicFile& Add(std::filesystem::path file) { return files_.emplace_back(std::move(file)); }
 
-  /// Removes all old files before the first new one gets its name. So a new file never stands
-  /// beside an old one, even if the process is killed. The last file is removed first and gets its
-  /// name last, so a folder that has the last file has all of them. Pipes and devices, which can
-  /// fail, get their content before any file is removed. @throws std::runtime_error, Interrupted
+  /// Removes all old files before the first new one gets its name. So the folder never contains a
+  /// new file beside an old one, even if the process is killed. The last file is removed first and
+  /// gets its name last. So a folder that contains the last file contains all files. Writes to
+  /// pipes and devices can fail, so they come before the removal of files.
+  /// @throws std::runtime_error, Interrupted
   void Finish();
 
  private:
   std::deque<AtomicFile> files_;
 };
 
-/// Folder of files without a given place, such as the log of a run.
+/// Default folder of output files, such as the log of a run.
 inline constexpr const char* kDefaultFolder = "logs";
 
 /// Whether a file of this name can be replaced. The result is false for a pipe, for a device, and
-/// for a name of an open descriptor of this process, such as /dev/stdout. Bytes are written into
-/// these.
+/// for a name of an open descriptor of this process, such as /dev/stdout. For such a name,
+/// AtomicFile writes into the existing file and renames no file.
 bool IsReplaceable(const std::filesystem::path& file);
 
-/// Opens a file that is not replaceable, for writing. @return a descriptor
+/// Opens a pipe, a device or an open descriptor for writing (not IsReplaceable()). @return a
+/// descriptor
 /// @throws InputError "FILE: error: --out: cannot write: no process reads this pipe"
 int OpenStream(const std::filesystem::path& file, std::string_view option);
 
-/// Whether the file is stdout. Then nothing else should go to stdout.
+/// Whether the file is stdout. In this case, the program should write no other text to stdout.
 bool IsStdout(const std::filesystem::path& file);
 
-/// Throws if the folder in which a file or folder is to be made does not exist, because its name is
-/// probably mistyped. Only kDefaultFolder is made if it does not exist.
-/// @param option that names the file or folder to be made, such as "--out"
+/// Throws if the parent folder of a new file or folder does not exist, because the parent's name is
+/// probably mistyped. If the missing folder is kDefaultFolder, the function creates it instead.
+/// @param option the command line option that names the new file or folder, such as "--out"
 void RequireFolderOf(const std::filesystem::path& file, std::string_view option);
 
-/// Checks before long work whether the result can be written. For this, it makes a temporary file
-/// in the folder of `file`. An existing file stays as it is.
+/// Checks before long work whether the result can be written. For this check, the function creates
+/// and removes a temporary file in the folder of `file`. An existing file stays unchanged.
 /// @throws InputError as RequireFolderOf(), or "FILE: error: --out: cannot write: ..."
 void RequireWritable(const std::filesystem::path& file, std::string_view option);
 
-/// A folder that is to hold files of any name, checked before long work. A missing folder is made,
-/// but its parent folder is not. The destructor removes a new folder that is still empty.
+/// A folder for output files of any name, checked before long work. The constructor creates a
+/// missing folder, whose parent folder must exist as in RequireFolderOf(). The destructor removes a
+/// new folder that is still empty.
 class OutputFolder {
  public:
   /// @throws InputError as RequireFolderOf(), or "FOLDER: error: --png: cannot write: ..."
@@ -121,9 +125,9 @@ class OutputFolder {
   bool is_new_ = false;
 };
 
-/// Refuses to replace an existing file unless `force` is true. Even with `force` it refuses a file
-/// of another kind, because the name may be mistyped. An empty file is replaced with `force`. A
-/// pipe and a device are always accepted.
+/// Refuses to replace an existing file unless `force` is true. Even with `force`, the function
+/// refuses a file of another kind, because the name may be mistyped. With `force`, an empty file is
+/// accepted. A pipe and a device are always accepted.
 /// @param kind such as "sweep"
 /// @throws InputError "FILE: error: --out: the file is no sweep and is not replaced, even with
 /// --force"

@@ -1,4 +1,5 @@
-// Wall-clock time for waiting and repair. No result of a run may depend on it.
+// Wall-clock time, for waiting and for the repair of lost messages. No result of a run may depend
+// on this time.
 #pragma once
 
 #include <chrono>

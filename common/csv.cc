@@ -23,7 +23,7 @@ class Lines {
  public:
   explicit Lines(std::string_view text) : text_(text), at_(SkipByteOrderMark(text)) {}
 
-  // The next line without its line end; nothing after the last line.
+  // The next line without its line end; nullopt after the last line.
   std::optional<Cell> Next() {
     if (at_ >= text_.size()) return std::nullopt;
     const std::size_t end = std::min(text_.find('\n', at_), text_.size());

@@ -21,7 +21,7 @@ struct CsvNumber {
 std::vector<std::string_view> CsvHeader(std::string_view text);
 
 /// The separator that a header line seems to use in place of ',', as text for a message: "';'" or
-/// "tabs". "" if it seems to use no other separator.
+/// "tabs". The result is "" if the header line has no such separator.
 std::string_view ForeignSeparator(std::span<const std::string_view> header);
 
 /// Called for each cell that is not a finite number, and for each row that lacks a cell.

@@ -23,14 +23,14 @@
 namespace fogline {
 namespace {
 
-// In a folder with more entries than this no file is suggested, because the search takes too long.
+// A folder with more entries gets no suggestion, because the search would take too long.
 constexpr std::size_t kMostEntries = 10'000;
 
-// Longest wait for data from a pipe. A remote shell answers in this time.
+// Longest wait for data from a pipe. A remote shell answers within this time.
 constexpr int kPipeLimit_ms = 5000;
 
-// While a pipe has no room, WriteAll() asks at this interval whether to go on. A person does not
-// notice a delay of this length.
+// While a pipe has no room, WriteAll() calls `stop` at this interval. A person does not notice a
+// delay of this length.
 constexpr int kRoomPause_ms = 100;
 
 std::string Message(int error) { return std::generic_category().message(error); }
@@ -45,7 +45,7 @@ std::string WhyNotRead(mode_t mode) {
   return S_ISREG(mode) || S_ISFIFO(mode) ? "" : "it is neither a file nor a pipe";
 }
 
-// Waits until a pipe has data or is at its end. Returns false if that takes longer than
+// Waits until a pipe has data or is at its end. Returns false if the wait takes longer than
 // kPipeLimit_ms.
 bool HasMore(int fd) {
   pollfd waited{.fd = fd, .events = POLLIN, .revents = 0};
@@ -84,8 +84,8 @@ std::vector<std::filesystem::path> FilesOf(const std::filesystem::path& folder) 
 
 std::string DidYouMeanFile(const std::filesystem::path& file, std::string_view ending) {
   const std::filesystem::path folder = file.parent_path();
-  // Names with the same ending are compared without it, because a common ending makes all names
-  // similar.
+  // Names with the same ending are compared without this ending, because a common ending makes all
+  // names similar.
   std::vector<std::string> same;
   std::vector<std::string> other;
   for (const std::filesystem::path& name : FilesOf(folder)) {
@@ -152,8 +152,9 @@ std::string WhyNoRegularFile(const std::filesystem::path& file) {
 }
 
 int WriteAll(int fd, std::string_view bytes, bool (*stop)()) {
-  // A signal may interrupt another thread than this one. So with `stop`, WriteAll() waits for room
-  // and writes at most PIPE_BUF bytes at once; then write() itself does not wait.
+  // The signal may arrive in another thread, and then it does not interrupt a waiting write(). So
+  // with `stop`, WriteAll() first waits for room. Then WriteAll() writes at most PIPE_BUF bytes at
+  // once, so write() does not wait.
   const std::size_t most = stop == nullptr ? bytes.size() : PIPE_BUF;
   while (!bytes.empty()) {
     if (stop != nullptr && !HasRoom(fd)) {

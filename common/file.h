@@ -8,11 +8,11 @@
 
 namespace fogline {
 
-/// The least number of bytes for which a call of the operating system is worth its cost. A call
-/// costs as much as copying thousands of bytes.
+/// Least number of bytes for one system call. Smaller pieces are collected in a buffer, because a
+/// system call costs as much as copying thousands of bytes.
 inline constexpr std::size_t kWorthACall = 1 << 16;
 
-/// Result of reading a file: its text or an error. `error` is empty if the file was read.
+/// Result of reading a file: its text or an error. `error` is empty after success.
 struct FileText {
   std::string text;
   std::string error;
@@ -20,7 +20,7 @@ struct FileText {
 
 /// `; did you mean "scenario/paper.json"?` for the name of a file that does not exist. Suggests a
 /// file of the same folder with a similar name; "" if there is none.
-/// @param ending of every file that may be meant, such as ".json"; "" for any
+/// @param ending the ending of suggested files, such as ".json"; "" for any ending
 std::string DidYouMeanFile(const std::filesystem::path& file, std::string_view ending = "");
 
 /// The bytes of a file or pipe of at most `max_bytes`. A shell's `<(command)` is such a pipe. Reads
@@ -35,7 +35,7 @@ FileText ReadFile(const std::filesystem::path& file, std::size_t max_bytes,
 std::string WhyNoRegularFile(const std::filesystem::path& file);
 
 /// A file that is opened for reading, and closed by the destructor. Opening a pipe does not wait
-/// for a process at its other end.
+/// for a writer.
 class OpenFile {
  public:
   explicit OpenFile(const std::filesystem::path& file);
@@ -54,9 +54,8 @@ class OpenFile {
 ///     returns EINTR
 int WriteAll(int fd, std::string_view bytes, bool (*stop)() = nullptr);
 
-/// Throws if a call failed because the process or the machine has used up descriptors, memory or
-/// disk. The run then fails (exit code 3), although the input is good. Returns after any other
-/// error.
+/// Throws if a call failed because no descriptors, no memory or no disk space is left. The run then
+/// fails (exit code 3), although the input is good. After any other error, this function returns.
 /// @param error errno of the call
 /// @param what such as the file's name
 /// @throws std::runtime_error "WHAT: Too many open files; ulimit -n 1024 allows more"

@@ -28,7 +28,7 @@ namespace {
 // If a file is removed or replaced between opening and locking, it is opened again, up to this many
 // times.
 constexpr int kTries = 10;
-// A lock that another process has is tried again at this interval.
+// While another process holds the lock, FileLock tries again at this interval.
 constexpr Duration kTryEvery = milliseconds(10);
 
 /// @throws InputError
@@ -42,7 +42,7 @@ int Open(const std::filesystem::path& path, std::string_view option) {
       fmt::format("{}: error: {}: cannot write: {}", PathText(path), option, std::strerror(errno)));
 }
 
-/// Whether a file still has the name by which it was opened.
+/// Whether `path` is still the name of the open file `fd`.
 bool IsFileOf(const std::filesystem::path& path, int fd) {
   struct stat named {};
   struct stat opened {};
@@ -50,11 +50,11 @@ bool IsFileOf(const std::filesystem::path& path, int fd) {
          named.st_dev == opened.st_dev && named.st_ino == opened.st_ino;
 }
 
-/// @return false if a lock of another process excludes this one
+/// @return false if a lock of another process prevents this lock
 bool Lock(int fd, FileLock::Kind kind) {
   const auto take = [fd](int how) { return flock(fd, how | LOCK_NB) == 0 || errno != EWOULDBLOCK; };
-  // An owner takes an exclusive lock first, to make sure that no other lock exists. Then it keeps a
-  // shared lock, so that processes that work for the owner can lock the file, too.
+  // An owner takes an exclusive lock first, to make sure that no other lock exists. Then the owner
+  // keeps only a shared lock, so that processes that work for the owner can lock the file, too.
   return (kind == FileLock::Kind::kShared || take(LOCK_EX)) && take(LOCK_SH);
 }
 
@@ -71,7 +71,7 @@ pid_t ParentOf(pid_t pid) {
 }
 
 /// The process that has locked an open file. Several processes can hold one lock: an owner, and
-/// processes that the owner has started. This function returns the owner: the holder whose parent
+/// processes that the owner has started. The function returns the owner: the process whose parent
 /// does not hold the lock. /proc/locks has lines "1: FLOCK ADVISORY READ 4711 08:01:1234 0 EOF",
 /// with the device in hexadecimal and the inode.
 std::optional<pid_t> HolderOf(int fd) {

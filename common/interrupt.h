@@ -1,5 +1,5 @@
-// The signals that ask a process to end: SIGINT (Ctrl-C), SIGTERM, SIGHUP (the terminal is gone).
-// The process notes the signal and ends at the next convenient moment.
+// The signals that ask a process to end: SIGINT (Ctrl-C), SIGTERM, SIGHUP (the terminal was
+// closed). The signal handler only sets a flag. The process ends when it next checks this flag.
 #pragma once
 
 #include <csignal>
@@ -18,8 +18,8 @@ namespace internal {
 inline volatile std::sig_atomic_t interrupts = 0;
 }
 
-/// The signals that this process obeys. It does not obey a signal that was ignored at its start
-/// (nohup ignores SIGHUP).
+/// The signals that this process obeys. A signal that was ignored at the start of the process stays
+/// ignored (nohup ignores SIGHUP).
 inline std::vector<int> EndingSignals() {
   std::vector<int> obeyed;
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
@@ -30,7 +30,7 @@ inline std::vector<int> EndingSignals() {
   return obeyed;
 }
 
-/// After this call the process only notes the signals of EndingSignals().
+/// After this call, a signal of EndingSignals() only sets the flag of WasInterrupted().
 inline void WatchInterrupts() {
   struct sigaction action {};
   action.sa_handler = [](int) { internal::interrupts = 1; };

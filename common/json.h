@@ -7,8 +7,7 @@
 
 namespace fogline {
 
-/// The product of a value and a factor, such as the factor of a change of unit; null if there is no
-/// value.
+/// The value times a factor, for example for a change of unit; null if there is no value.
 inline nlohmann::ordered_json OrNull(const std::optional<double>& value, double factor = 1) {
   return value ? nlohmann::ordered_json(factor * *value) : nlohmann::ordered_json(nullptr);
 }

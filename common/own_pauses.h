@@ -1,8 +1,8 @@
 // The times in which this process itself could not run: it was stopped (Ctrl-Z), was frozen with
-// its container, or waited for a disk. The silence of another process in such a time means nothing.
+// its container, or waited for a disk. If messages of another process are missing in such a time,
+// the other process may still be healthy.
 //
-// The time in which the machine was suspended is no such pause, because Clock stands still during
-// this time.
+// A suspend of the machine does not count, because Clock does not advance during the suspend.
 #pragma once
 
 #include <algorithm>
@@ -15,13 +15,13 @@ namespace fogline {
 
 class OwnPauses {
  public:
-  /// A longer time between two looks at the clock is a pause. Every process looks several times a
-  /// second (OwnStatus::kHeartbeat is the longest interval).
+  /// If the time between two calls of Attend() is longer, this time is a pause. Every process calls
+  /// Attend() several times a second (OwnStatus::kHeartbeat is the longest interval).
   static constexpr Duration kPause = milliseconds(500);
 
   explicit OwnPauses(TimePoint now) : looked_(now) {}
 
-  /// Notes that the process looks at the clock. @return the time of its latest look
+  /// Records that the process runs at the time `now`. @return the latest recorded time
   TimePoint Attend(TimePoint now) {
     if (now <= looked_) return looked_;
     const Duration away = now - looked_;
@@ -32,7 +32,7 @@ class OwnPauses {
     return looked_ = now;
   }
 
-  /// The part of the time from `since` to `now` in which this process could have heard a message.
+  /// The time from `since` to `now`, minus the pauses of this process.
   Duration HeldAgainst(TimePoint since, TimePoint now) const {
     Duration held = now - since;
     for (auto pause = pauses_.rbegin(); pause != pauses_.rend() && pause->to > since; ++pause) {
@@ -49,7 +49,7 @@ class OwnPauses {
     TimePoint from;
     TimePoint to;
   };
-  TimePoint looked_;           // time of the latest look
+  TimePoint looked_;           // the latest recorded time
   std::vector<Pause> pauses_;  // in the order of time
   Duration longest_{};
 };

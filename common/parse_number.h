@@ -7,8 +7,7 @@
 
 namespace fogline {
 
-/// The number of which the whole text consists; nullopt if there is none, or if it does not fit
-/// into the type.
+/// The number, if the whole text is one number that fits into the type; otherwise nullopt.
 template <class Number>
 std::optional<Number> ParseNumber(std::string_view text) {
   Number number{};

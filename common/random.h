@@ -1,5 +1,6 @@
-// Counter-based random numbers. A process can draw each number of each step without the numbers
-// before it, with the same result (Philox4x32-10, Salmon et al. 2011, by Random123).
+// Counter-based random numbers. Each number depends only on the seed, the stream, the step and the
+// index. So a process can draw any number without the earlier numbers (Philox4x32-10, Salmon et al.
+// 2011, implemented by Random123).
 #pragma once
 
 #include <array>
@@ -11,8 +12,8 @@
 
 namespace fogline {
 
-/// The purpose of random numbers. The random numbers depend on the number of their stream, so never
-/// reuse or change such a number.
+/// The purpose of random numbers. The random numbers depend on the number of their stream. So never
+/// reuse or change the number of a stream.
 enum class Stream : std::uint32_t {
   kRadar = 1,
   kLidar = 2,
@@ -21,7 +22,7 @@ enum class Stream : std::uint32_t {
   kHumanErrors = 5,
   kTakeOver = 6,
   kStyle = 7,
-  kFollowerErrors = 256,  // the numbers after it are in use, too: see FollowerErrors()
+  kFollowerErrors = 256,  // 257 and above are used, too: see FollowerErrors()
 };
 
 /// The stream of the errors of one following car; car 0 is nearest to the host. The cars' errors

@@ -21,9 +21,9 @@ constexpr std::size_t kMaxExcerpt = 100;
 // the product of the lengths.
 constexpr std::size_t kMaxCompared = 64;
 
-// A suggestion may differ by one edit for each three characters, and by one in a shorter word. If a
-// word of at least kMinBeginning bytes is the beginning of a name (for example the name without its
-// unit), the name counts as one edit away.
+// A suggestion may differ from the word by one edit for each three characters. One edit is always
+// allowed. If a word of at least kMinBeginning bytes is the beginning of a name (for example the
+// name without its unit), the distance counts as one edit.
 constexpr std::size_t kCharactersPerEdit = 3;
 constexpr std::size_t kMinBeginning = 2;
 

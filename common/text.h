@@ -10,7 +10,7 @@
 
 namespace fogline {
 
-/// The shortest text from which the same number is read. A negative zero is "-0.0".
+/// The shortest text that a reader converts back to the same number. A negative zero is "-0.0".
 std::string NumberText(double value);
 
 /// A time in s, rounded to the resolution of a run (microseconds), such as "899.9" for
@@ -22,14 +22,14 @@ std::string TimeText(double time_s);
 /// escaped as in JSON. A byte that is not UTF-8 is written as "\xff".
 std::string EscapeControls(std::string_view text);
 
-/// As EscapeControls(), but line feeds stay. A JSON text keeps its meaning.
+/// As EscapeControls(), but line feeds stay unchanged. The meaning of a JSON text does not change.
 std::string EscapeLines(std::string_view text);
 
 /// The name of a file, escaped for a terminal.
 std::string PathText(const std::filesystem::path& file);
 
-/// `text` with '?' in place of each byte other than ASCII letters, digits, signs and spaces. It is
-/// for text of unknown encoding from the network.
+/// `text` with '?' in place of each byte other than ASCII letters, digits, signs and spaces. Use
+/// this function for text of unknown encoding from the network.
 std::string Printable(std::string_view text);
 
 /// The text as a JSON string: in double quotes, with control characters escaped.
@@ -47,13 +47,13 @@ std::string WithUnit(std::string_view text, std::string_view unit);
 /// The names in double quotes: `"box", "half_sine", "triangle"`.
 std::string Names(std::span<const std::string_view> names);
 
-/// Least number of edits that turn one word into the other: insertions, deletions, substitutions
-/// and swaps of neighbours. (It is the optimal string alignment: Damerau-Levenshtein without
-/// repeated edits of one place.)
+/// Least number of edits that turn `a` into `b`: insertions, deletions, substitutions and swaps of
+/// neighbours. (This is the optimal string alignment: Damerau-Levenshtein without repeated edits of
+/// one position.)
 std::size_t EditDistance(std::string_view a, std::string_view b);
 
-/// The candidate nearest to `word`, if it is near enough for a suggestion. Of several equally near
-/// candidates the result is the first.
+/// The candidate nearest to `word`, if it is near enough for a suggestion. If several candidates
+/// are equally near, the result is the first of them.
 std::optional<std::string_view> Nearest(std::string_view word,
                                         std::span<const std::string_view> candidates);
 

@@ -1,5 +1,5 @@
 // Times in whole steps, rounded down or up. If the quotient of time and step differs from a whole
-// number only by rounding, it counts as this whole number. So 0.3 s is three steps of 0.1 s,
+// number only by rounding, the result is this whole number. So 0.3 s is three steps of 0.1 s,
 // although the quotient of these doubles is a little less than 3.
 #pragma once
 

@@ -4,13 +4,14 @@
 // An algorithm may have one more input, which it uses only in some scenarios: an input on demand.
 // An algorithm with such an input has these two functions.
 //
-//     static bool UsesOnDemandInput(const Scenario& scenario);  // whether it uses the input
-//     void SetOnDemandInput(const M& message);                  // then called before each Step
+//     static bool UsesOnDemandInput(const Scenario& scenario);  // whether the input is used
+//     void SetOnDemandInput(const M& message);                  // if so, called before each Step
 //
 // M is the message of the same step if the producer of M comes before this role in the order of
 // evaluation. If the producer comes after this role, M is the message of the previous step. At step
 // 0 all fields of this message are zero. In real time the role does not wait for M:
-// SetOnDemandInput gets the newest M that has come. Before the first M has come, it is not called.
+// SetOnDemandInput gets the newest M that has come. SetOnDemandInput is not called before the first
+// M has come.
 #pragma once
 
 #include <concepts>

@@ -1,5 +1,5 @@
-// The table of every role and every channel of Fogline. It is used by the wiring of the nodes, by
-// recorder, digest, monitors and tests, and for the tables in the README.
+// The table of every role and every channel of Fogline. The wiring of the nodes, the recorder, the
+// digest, the monitors, the tests and the tables in the README use this table.
 #pragma once
 
 #include <array>
@@ -58,7 +58,7 @@ struct RoleInfo {
   std::string_view purpose;
 };
 
-/// Every role that is a process of its own, in the order of evaluation within a step.
+/// Every role that is a separate process, in the order of evaluation within a step.
 inline constexpr std::array kRoles{
     RoleInfo{Role::kWorld, "world", "moves the cars and is the clock of the run"},
     RoleInfo{Role::kRadar, "radar", "measures range and range rate; fog hardly affects it"},
@@ -90,12 +90,12 @@ struct Channel {
   std::string_view name;
   Pace pace;
   Role from;
-  RoleSet to;  // roles that use it; the recorder receives every kStep channel, too
+  RoleSet to;  // roles that use the channel; the recorder receives every kStep channel, too
   std::string_view what;
-  RoleSet on_demand = {};  // roles that read it only in some scenarios (algorithm.h)
+  RoleSet on_demand = {};  // roles that read the channel only in some scenarios (algorithm.h)
 };
 
-/// Every channel. The kStep channels stand in an order in which a step can be evaluated.
+/// Every channel. The kStep channels are in an order in which a step can be evaluated.
 inline constexpr std::tuple kGraph{
     Channel<run_t>{"RUN", Pace::kControl, Role::kRunner, kEveryone,
                    "phase of the run; the scenario, in parts"},
@@ -166,8 +166,8 @@ struct ChannelInfo {
   std::string_view what;
   RoleSet on_demand;
 
-  /// Whether the recorder logs the channel. It logs every kStep channel, and RUN, so that a log
-  /// contains its scenario. In real time it also logs STATUS.
+  /// Whether the recorder logs the channel. The recorder logs every kStep channel, and RUN, so that
+  /// a log contains its scenario. In real time, the recorder also logs STATUS.
   constexpr bool Logged() const { return pace == Pace::kStep || name == "RUN"; }
 };
 

@@ -1,4 +1,4 @@
-// Who drives the host, by the mode and the authorities in HOST_COMMAND.
+// Which side drives the host, according to the mode and the authorities in HOST_COMMAND.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,8 @@
 namespace fogline {
 
 /// Whether the host is in a minimal risk manoeuvre, or stands after such a manoeuvre. The cause is
-/// failed inputs of a run in real time, or a request that the driver did not answer in time.
+/// failed inputs in real time, a request that the driver did not answer in time, or a severe
+/// situation during a request.
 constexpr bool InMinimalRisk(std::int8_t mode) {
   return mode == arbitration_t::MINIMAL_RISK ||
          (mode >= arbitration_t::MRM_COMFORT && mode <= arbitration_t::MRM_FAILED);
@@ -24,19 +25,19 @@ constexpr bool IsLocked(std::int8_t mode) {
   return mode == arbitration_t::MINIMAL_RISK || mode == arbitration_t::MRM_DONE;
 }
 
-/// Least authority with which the human counts as the driver. It is half of the authority. So the
-/// human also counts as the driver if both sides have half.
+/// Least authority with which the human counts as the driver. If both sides have half of the
+/// authority, the human counts as the driver.
 inline constexpr double kMainAuthority = 0.5;
 
-/// Whether the human drives: he does if he has half of the authority or more. A transfer is a
-/// change of this result. He is engaged if he has any authority.
+/// Whether the human drives, that is whether he has half of the authority or more. A transfer is a
+/// change of this result. The human is engaged if he has any authority.
 constexpr bool HumanDrives(double lambda_human) { return lambda_human >= kMainAuthority; }
 constexpr bool HumanIsEngaged(double lambda_human) { return lambda_human > 0; }
-/// Whether the mode says that the human drives; false if InEmergency(). In a run in which the human
-/// need not be asked, he then has half of the authority or more. In a run in which he must be
-/// asked, he then has a share of the authority. The mode does not say how large this share is. It
-/// can be less than half while a policy shares the authority, or while the authority changes
-/// gradually.
+/// Whether the mode says that the human drives; false if InEmergency(). If the result is true in a
+/// run without requests to the driver, the human has half of the authority or more. In a run with
+/// requests, the human has a share of the authority, and the mode does not give the size of this
+/// share. The share can be less than half while a policy shares the authority, or while the
+/// authority changes gradually.
 constexpr bool HumanDrives(std::int8_t mode) {
   return mode == arbitration_t::HUMAN || mode == arbitration_t::RECOVERING;
 }

@@ -7,7 +7,7 @@
 namespace fogline {
 
 enum class InputState : std::uint8_t {
-  kAwaited,  // has not come yet, and is not overdue
+  kAwaited,  // no message has come yet, and none is overdue
   kOk,
   kStale,  // overdue: the last value is still used
   kLost,   // overdue for so long that the last value is not used
@@ -33,8 +33,8 @@ constexpr bool Usable(InputState state) {
   return state == InputState::kOk || state == InputState::kStale;
 }
 
-/// An input for an algorithm that can work without it: the newest message that came in time, and
-/// the input's state.
+/// An input of an algorithm that also works without this input: the newest message that came in
+/// time, and the state of the input.
 template <class M>
 struct Heard {
   InputState state = InputState::kAwaited;

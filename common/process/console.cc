@@ -23,14 +23,14 @@
 namespace fogline {
 namespace {
 
-// Longest wait for a reader that takes nothing, such as a pager that waits for a key. The wait is
-// limited because a process that has failed keeps its log locked until it ends.
+// Longest wait for a reader that reads nothing, such as a pager that waits for a key. The wait is
+// limited, because a failed process keeps its log locked until the process ends.
 constexpr Duration kReaderLimit = milliseconds(5000);
 
-/// For the length of a scope, two kinds of write in this thread do not end or stop the process. One
-/// is a write to a pipe without a reader (SIGPIPE). The other is a write from the background to a
-/// terminal that stops such writers (SIGTTOU; `stty tostop`). Writes outside of such a scope behave
-/// as usual, so `fogline digest *.lcm | head` ends.
+/// While an object of this class exists, two signals do not end or stop the process when this
+/// thread writes. SIGPIPE comes when a pipe has no reader. SIGTTOU comes when a background process
+/// writes to a terminal that forbids this (`stty tostop`). All other writes behave as usual, so
+/// `fogline digest *.lcm | head` ends.
 class WithoutSignals {
  public:
   WithoutSignals() {
@@ -40,7 +40,7 @@ class WithoutSignals {
     sigpending(&pending);
     was_pending_ = sigismember(&pending, SIGPIPE) == 1;
     sigset_t both = sigpipe_;
-    sigaddset(&both, SIGTTOU);  // a process that blocks SIGTTOU gets none
+    sigaddset(&both, SIGTTOU);  // the kernel does not send a blocked SIGTTOU to a writer
     pthread_sigmask(SIG_BLOCK, &both, &before_);
   }
   ~WithoutSignals() {
@@ -61,12 +61,13 @@ class WithoutSignals {
 ///
 /// A pipe or terminal is opened a second time, by its name in /proc, so that writes to it do not
 /// wait. O_NONBLOCK on descriptor 2 itself would affect all processes to which the shell has given
-/// this descriptor. If the second open fails (a terminal of another user), poll() asks for room
-/// before each piece. A thread with a queue could replace the second open and poll(). But then each
+/// this descriptor. If the second open fails (a terminal of another user), poll() checks for room
+/// before each write. A thread with a queue could replace the second open and poll(). But then each
 /// process would have to wait at its end until its last lines are written.
 class Stderr {
  public:
-  /// The only object. It is never destroyed, because destructors of other objects may write.
+  /// The only object of this class. The object is never destroyed, because destructors of other
+  /// objects may write.
   static Stderr& Get() {
     static auto* const only = new Stderr;
     return *only;
@@ -93,7 +94,7 @@ class Stderr {
  private:
   Stderr() {
     struct stat info {};
-    if (fstat(STDERR_FILENO, &info) != 0 || S_ISREG(info.st_mode)) return;  // a write never waits
+    if (fstat(STDERR_FILENO, &info) != 0 || S_ISREG(info.st_mode)) return;  // writes do not wait
     is_socket_ = S_ISSOCK(info.st_mode);
     const int own = is_socket_ ? -1
                                : open("/proc/self/fd/2",
@@ -102,14 +103,14 @@ class Stderr {
     asks_first_ = !is_socket_ && own < 0;
   }
 
-  /// @return whether the text or its first part was written; the next write begins with the rest
+  /// @return whether the text or its beginning was written; the next call writes the rest first
   bool Write(std::string_view text, Duration limit) {
     const WithoutSignals scope;
     const TimePoint end = Clock::now() + limit;
     rest_.erase(0, Put(rest_, end));
     if (!rest_.empty()) return false;
     const std::size_t written = Put(text, end);
-    if (written > 0) rest_ = text.substr(written);  // so that no line is cut in the middle
+    if (written > 0) rest_ = text.substr(written);  // the next call writes this rest first
     return written > 0;
   }
 
@@ -130,7 +131,7 @@ class Stderr {
 
   ssize_t PutOnce(std::string_view text) const {
     if (is_socket_) return send(fd_, text.data(), text.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
-    // A pipe that has room takes at least this many bytes at once.
+    // If poll() reports room in a pipe, the pipe takes at least this many bytes at once.
     const std::size_t piece = asks_first_ ? std::size_t{_POSIX_PIPE_BUF} : text.size();
     return write(fd_, text.data(), std::min(text.size(), piece));
   }
@@ -177,8 +178,8 @@ void Draw(std::string_view text) noexcept {
 void TakeStandardDescriptors() {
   for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     if (fcntl(descriptor, F_GETFD) >= 0) continue;
-    // open() takes the lowest free descriptor, which is this one. The mode makes every use of the
-    // descriptor fail, like the use of a closed descriptor.
+    // open() returns the lowest free descriptor, which is `descriptor` here. The mode makes every
+    // use of the descriptor fail, like the use of a closed descriptor.
     open("/dev/null", descriptor == STDIN_FILENO ? O_WRONLY : O_RDONLY);
   }
 }

@@ -1,5 +1,5 @@
-// The one place where programs write to stderr. Text that cannot be written is dropped. So a run
-// goes on if the disk is full, the terminal is closed, or a pipe has no reader.
+// Programs write to stderr only with these functions. Text that cannot be written is dropped. So a
+// run continues if the disk is full, the terminal is closed, or a pipe has no reader.
 //
 // Results go to stdout with fmt::print. A result that cannot be written is an error.
 #pragma once
@@ -9,21 +9,21 @@
 namespace fogline {
 
 /// Prints a line on stderr while a run is under way. The call does not wait. If a pipe or terminal
-/// has no room, the line is dropped. The next line that finds room says how many lines are missing.
-/// Control characters other than line feeds are escaped. May be called from any thread.
+/// has no room, the line is dropped. The next printed line says how many lines are missing. Control
+/// characters other than line feeds are escaped. May be called from any thread.
 void Notice(std::string_view line) noexcept;
 
 /// Like Notice(), but for an error or a remark that a person must not miss. The call waits until a
 /// pipe or terminal has room, 5 s at most.
 void Complain(std::string_view line) noexcept;
 
-/// Prints a text as it is, without a line feed. The call does not wait, and dropped text is not
-/// reported, because the next picture of a progress bar replaces this one.
+/// Prints a text unchanged, without a line feed. The call does not wait. Dropped text is not
+/// reported, because a progress bar is drawn again soon.
 void Draw(std::string_view text) noexcept;
 
-/// Makes sure that descriptors 0 to 2 are open. Call it first in a program. Otherwise, if the
-/// program was started without stderr (2>&-), its log would become descriptor 2, and messages would
-/// be written into the log. If stdout or stderr was missing, a write to it fails.
+/// Makes sure that descriptors 0 to 2 are open. Call this function first in a program. If a program
+/// is started without stderr (2>&-), its log could otherwise become descriptor 2. Messages would
+/// then be written into the log. If stdout or stderr was missing, a write to this descriptor fails.
 void TakeStandardDescriptors();
 
 }  // namespace fogline

@@ -10,9 +10,10 @@
 
 namespace fogline {
 
-/// Waits until the file is ready for `events`, but no longer than `timeout`. With -1 as `file` it
-/// waits for the whole time.
-/// @return as ppoll(): above 0 if the file is ready, 0 if not, -1 with errno (EINTR: a signal)
+/// Waits until the file is ready for `events`, but no longer than `timeout`. If `file` is -1, the
+/// function waits for the whole time.
+/// @return as ppoll(): above 0 if the file is ready, 0 after the time limit, -1 with errno (EINTR:
+/// a signal)
 inline int PollFor(int file, short events, Duration timeout) {
   pollfd waited{.fd = file, .events = events, .revents = 0};
   const auto left = std::max(Duration::zero(), timeout);

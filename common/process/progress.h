@@ -1,5 +1,5 @@
-// A progress bar on stderr for a person at a terminal. It appears when the work takes longer than
-// two seconds.
+// A progress bar on stderr for a person at a terminal. The bar appears when the work takes longer
+// than two seconds.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +19,7 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  /// @param note text behind the bar
+  /// @param note text after the bar
   void Show(std::int64_t done, std::string_view note = "");
   /// Prints a line on stderr, in place of the bar.
   void Say(std::string_view line);

@@ -19,8 +19,8 @@ ProcessUse MeasureThisProcess();
 bool RunBeforeOthers(int priority);
 
 /// After this call, a write beyond the limit for the size of files (ulimit -f) fails like a write
-/// on a full disk. This holds for this process and for processes that it starts. Without this call
-/// the kernel kills the process (SIGXFSZ), and the process cannot report the reason.
+/// on a full disk. The call affects this process and the processes that it starts. Without the
+/// call, the kernel kills the process (SIGXFSZ), and the process cannot report the reason.
 void FailWritesBeyondTheSizeLimit();
 
 /// Why a write failed, and what to do if the limit for the size of files is the reason.

@@ -15,13 +15,13 @@
 namespace fogline {
 namespace {
 
-/// A value in the two forms that fields take: as a text, and as a number if it is a number.
+/// A value for a field, as a text, as a number, or both.
 struct Value {
   std::optional<double> number;
   std::string_view text;
 };
 
-/// Gives a field the value; returns false if the field cannot have it.
+/// Gives a field the value; returns false if the field cannot have this value.
 struct Assigner {
   const Value& value;
 

@@ -1,4 +1,4 @@
-// Sets one field of a scenario repeatedly, for grids and searches. It does not read JSON each time.
+// Sets one field of a scenario many times without parsing JSON, for grids and searches.
 #pragma once
 
 #include <string>

@@ -24,8 +24,8 @@ std::string NearestKnownPointer(std::string_view pointer);
 /// Pointer of the first field with this name in any section, except fields in items of lists.
 std::optional<std::string_view> FindName(std::string_view name);
 
-/// The field that an unknown pointer may mean: one with a similar spelling (with the same indices),
-/// or one with the same name in another section.
+/// The known pointer that an unknown pointer may mean: a pointer with a similar spelling and the
+/// same indices, or the pointer of a field with the same name in another section.
 std::optional<std::string> SuggestPointer(std::string_view pointer);
 
 }  // namespace fogline

@@ -24,8 +24,8 @@ struct Place {
   std::uint32_t offset = 0;
 };
 
-/// The mistakes found so far. The list keeps the first 1000 and drops further ones, so that a
-/// hostile file cannot use much memory or time.
+/// The mistakes found so far. The list keeps the first 1000 mistakes and drops all others, so that
+/// a hostile file cannot use much memory or time.
 class DiagnosticList {
  public:
   void Add(Place place, std::string pointer, std::string_view rule, std::string message);

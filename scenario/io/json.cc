@@ -49,8 +49,8 @@ class CountingIterator {
   std::size_t* consumed_;
 };
 
-// The message of nlohmann in a form for a person, without its excerpts of the text. nlohmann's
-// message has the form "... syntax error while parsing value - invalid literal; last read: '"a":N';
+// Rewrites a message of nlohmann for a person, without the excerpts of the text. nlohmann's message
+// has the form "... syntax error while parsing value - invalid literal; last read: '"a":N';
 // expected '['".
 std::string SyntaxDetail(std::string_view what) {
   if (what.find("number overflow") != std::string_view::npos) return "a number beyond 1.8e308";
@@ -143,8 +143,9 @@ class TreeBuilder final : public nlohmann::json_sax<nlohmann::json> {
 
   bool parse_error(std::size_t position, const std::string&,
                    const nlohmann::detail::exception& error) override {
-    // `position` is behind the byte at which the parser stopped. The start of the token is a better
-    // place for the mistake, except within a string, which may be long.
+    // `position` is one after the byte at which the parser stopped. The mistake is reported at the
+    // start of the token. In a string it is reported where the parser stopped, because a string may
+    // be long.
     const std::string detail = EscapeControls(SyntaxDetail(error.what()));
     const std::size_t last = std::max<std::size_t>(position, 1) - 1;
     const std::size_t offset =
@@ -178,7 +179,7 @@ class TreeBuilder final : public nlohmann::json_sax<nlohmann::json> {
     return &(open_.back()->As<JsonObject>()->back().value = std::move(node));
   }
 
-  // The lexer reads one byte more to see the end of a number, unless the text ends there.
+  // To find the end of a number, the lexer reads one more byte, except at the end of the text.
   template <class T>
   bool PutNumber(T value) {
     if (Put(value) == nullptr) return false;

@@ -18,7 +18,7 @@ using JsonArray = std::vector<JsonValue>;
 using JsonObject = std::vector<JsonMember>;  // in the order of the text, duplicates included
 
 /// A value and the place of its first byte. Null is std::monostate. A number without fraction and
-/// exponent is an std::int64_t if it fits into one, otherwise a double.
+/// exponent is an std::int64_t if it fits, otherwise a double.
 struct JsonValue {
   std::variant<std::monostate, bool, std::int64_t, double, std::string, JsonArray, JsonObject> data;
   Place place;
@@ -51,13 +51,13 @@ std::string JoinPointer(std::string_view base, std::string_view key);
 
 /// Parses strict JSON (RFC 8259) in UTF-8: no comments, no NaN, no lone surrogates. Limits: 64 MiB
 /// of text, 32 levels, two million values. Scenarios stay far below these limits. Because of the
-/// limits a hostile text does not overflow the stack. After a mistake of syntax or size, it reports
-/// this mistake and returns nothing. It also reports each duplicate key, but still returns the
-/// tree. `base` is the pointer of the root.
+/// limits a hostile text does not overflow the stack. After a mistake of syntax or size, the
+/// function reports this mistake and returns nothing. The function also reports each duplicate key,
+/// but still returns the tree. `base` is the pointer of the root.
 std::optional<JsonValue> ParseJson(std::string_view text, std::uint32_t source,
                                    DiagnosticList& mistakes, std::string_view base = "");
 
-/// Most bytes of a scenario file, and of a recorded leader's file.
+/// Largest size in bytes of a scenario file, and of a recorded leader's file.
 inline constexpr std::size_t kMaxFileBytes = std::size_t{64} << 20U;
 
 }  // namespace fogline

@@ -24,8 +24,8 @@ struct Diagnostic {
 
 /// A scenario that breaks rules. what() has one line for each mistake (20 at most), as
 /// `file:line:column: error: /pointer: message`. The mistakes of the file come first, in the file's
-/// order. Then come those of the overrides, and the number of mistakes. diagnostics() has an entry
-/// for each mistake, at least 1 and at most 1000.
+/// order. Then come the mistakes of the overrides, and the number of all mistakes. diagnostics()
+/// has an entry for each mistake, at least 1 and at most 1000.
 class ScenarioError : public InputError {
  public:
   ScenarioError(const std::string& text, std::vector<Diagnostic> diagnostics)
@@ -37,26 +37,26 @@ class ScenarioError : public InputError {
 };
 
 /// Reads a scenario file and applies `overrides` ("/arbitrator/threshold=0.8", as after --set)
-/// before it checks anything. If the leader is recorded and lead.recorded.speeds_mps is empty, it
-/// reads the CSV file (relative to the scenario's folder). It then fills speeds_mps with the speeds
-/// at steps 0 to steps - 1, interpolated linearly.
+/// before all checks. If the leader is recorded and lead.recorded.speeds_mps is empty, the function
+/// reads the CSV file (relative to the scenario's folder). Then the function fills speeds_mps with
+/// the speeds at steps 0 to steps - 1, interpolated linearly.
 /// @throws ScenarioError
 Scenario LoadScenario(const std::filesystem::path& file,
                       const std::vector<std::string>& overrides = {});
 
-/// As LoadScenario(), for a text in memory. `name` stands for the file in messages. Reads no CSV
+/// As LoadScenario(), for a text in memory. Messages show `name` as the file's name. Reads no CSV
 /// file.
 /// @throws ScenarioError
 Scenario ParseScenario(std::string_view text, std::string_view name = "scenario",
                        const std::vector<std::string>& overrides = {});
 
 /// The effective scenario: JSON with every default written out, and a line feed at the end. Equal
-/// scenarios give equal text, and ParseScenario(PrintScenario(s)) gives s back, bit by bit.
+/// scenarios give equal text, and ParseScenario(PrintScenario(s)) equals s bit by bit.
 /// @pre every value of `scenario` is within the range of its field
 std::string PrintScenario(const Scenario& scenario);
 
-/// JSON schema (draft-07) of scenario files, made from the descriptions of the fields. It accepts
-/// exactly the JSON documents without duplicate keys that ParseScenario accepts.
+/// JSON schema (draft-07) of scenario files, made from the descriptions of the fields. The schema
+/// accepts exactly the JSON documents without duplicate keys that ParseScenario accepts.
 std::string ScenarioSchema();
 
 /// Explanation of a field or section for a person: meaning, type, unit, range, default, source. "/"

@@ -22,8 +22,8 @@ std::string FormHint(std::string_view text) {
   return FindField(pointer) == nullptr ? "" : DidYouMean(pointer);
 }
 
-// The value as JSON, or as plain text if it is not JSON. Nothing if ParseJson() refuses the value
-// for another reason than its syntax, such as its size.
+// The value as JSON, or as plain text if it is not JSON. Returns nothing if ParseJson() refuses the
+// value for a reason other than its syntax, such as its size.
 std::optional<JsonValue> ParseValue(std::string_view text, std::uint32_t source,
                                     std::string_view pointer, DiagnosticList& mistakes) {
   DiagnosticList trial;
@@ -35,15 +35,15 @@ std::optional<JsonValue> ParseValue(std::string_view text, std::uint32_t source,
 
 bool IsList(std::string_view pointer) { return FindField(std::string(pointer) + "/*") != nullptr; }
 
-// The item of the list that a segment names, or null.
+// The item with the index `segment`, or null.
 JsonValue* FindItem(JsonArray& items, std::string_view segment) {
   const auto index = ListIndex(segment);
   return index && *index < items.size() ? &items[*index] : nullptr;
 }
 
-// The value at `pointer`, which names a known field. Adds missing sections of the path. Returns
-// null if a list has no such item (and notes this mistake), or if a section of the path has a value
-// of a wrong type (reading the tree notes this mistake).
+// The value at `pointer`, which names a known field. Adds missing sections of the path. If a list
+// has no such item, the function notes this mistake and returns null. If a section of the path has
+// a value of a wrong type, it returns null, and ReadScenario() notes this mistake.
 JsonValue* Walk(JsonValue& root, std::string_view pointer, Place place, DiagnosticList& mistakes) {
   JsonValue* at = &root;
   std::size_t begin = 0;

@@ -9,7 +9,7 @@
 
 namespace fogline {
 
-/// Puts the value of "/pointer=value" into the tree, in place of any value that is there, and adds
+/// Puts the value of "/pointer=value" into the tree, in place of any earlier value, and adds
 /// missing sections of the path. A value that is not JSON is taken as plain text. ReadScenario()
 /// checks later whether the value suits its field, as for values of the file. Places in the value
 /// have the source index `source`.

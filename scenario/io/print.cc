@@ -42,7 +42,7 @@ class Printer {
   std::string TakeText() { return std::move(out_); }
 
  private:
-  // Begins a line; returns where in `out_` it begins.
+  // Begins a line; returns the offset of this line in `out_`.
   std::size_t NewLine() {
     out_ += '\n';
     const std::size_t begin = out_.size();
@@ -78,7 +78,7 @@ void Printer::operator()(const NumbersField& numbers) {
 }  // namespace
 
 std::string PrintScenario(const Scenario& scenario) {
-  Scenario printed = scenario;  // a view needs a scenario that may change
+  Scenario printed = scenario;  // FieldsOf() needs a scenario that is not const
   Printer printer;
   printer.Block('{', FieldsOf(printed), '}');
   return printer.TakeText() + "\n";

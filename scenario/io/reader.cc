@@ -40,7 +40,7 @@ std::optional<std::int64_t> ToInteger(const JsonValue& value) {
   return static_cast<std::int64_t>(*number);
 }
 
-// The number, approximately as it stands in the file. @pre ToNumber(value)
+// The number, approximately as written in the file. @pre ToNumber(value)
 std::string TextOfNumber(const JsonValue& value) {
   if (const auto* integer = value.As<std::int64_t>()) return std::to_string(*integer);
   return NumberText(*ToNumber(value));
@@ -211,7 +211,7 @@ void Reader::CheckNeed(const JsonObject& object, const Field& section, const Nee
   if (text == nullptr || *text != need.value) return;
   if (const JsonMember* member = FindMember(object, section.name)) {
     const auto* fields = member->value.As<JsonObject>();
-    if (fields == nullptr) return;  // a wrong type, which has been noted
+    if (fields == nullptr) return;  // Read() has noted this wrong type
     const auto given = [fields](std::string_view name) {
       const JsonMember* field = FindMember(*fields, name);
       if (field == nullptr) return false;

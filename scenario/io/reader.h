@@ -1,4 +1,4 @@
-// Reads a JSON tree into the structs of a scenario, and notes every mistake on the way.
+// Reads a JSON tree into the structs of a scenario, and notes every mistake.
 #pragma once
 
 #include "scenario/io/diagnostic_list.h"
@@ -7,7 +7,7 @@
 
 namespace fogline {
 
-/// The scenario that `root` describes. It is valid only if `mistakes` stays empty.
+/// The scenario that `root` describes. The scenario is valid only if `mistakes` stays empty.
 Scenario ReadScenario(const JsonValue& root, DiagnosticList& mistakes);
 
 }  // namespace fogline

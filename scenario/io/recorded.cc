@@ -26,7 +26,7 @@ constexpr std::string_view kTimeColumn = "/lead/recorded/time_column";
 constexpr std::string_view kSpeedColumn = "/lead/recorded/speed_column";
 constexpr std::string_view kStart = "/lead/recorded/start_s";
 
-// Place of the field, or of the innermost section around it that the file has.
+// Place of the field, or of the innermost enclosing section that the file has.
 Place FindPlace(const JsonValue& root, std::string_view pointer) {
   const JsonValue* at = &root;
   while (!pointer.empty()) {
@@ -41,7 +41,7 @@ Place FindPlace(const JsonValue& root, std::string_view pointer) {
   return at->place;
 }
 
-// The range of a recorded speed, as the scenario's field allows it.
+// The range that the scenario allows for a recorded speed.
 NumberSpec SpeedRange() {
   Scenario scenario;
   return FieldAt(scenario, "/lead/recorded/speeds_mps")->As<NumbersField>()->spec;
@@ -54,7 +54,7 @@ struct Recording {
 };
 
 // Reads a recording in several stages. Each stage notes its mistakes. The next stage runs only if
-// there are none.
+// there are no mistakes.
 class RecordingReader {
  public:
   RecordingReader(const Scenario& scenario, const JsonValue& root, std::string csv_name,

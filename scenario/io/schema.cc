@@ -120,7 +120,7 @@ struct FieldSchema {
   }
 };
 
-// Where the schema of a field is in the schema of the scenario.
+// Path of a field's schema in the schema of the scenario.
 Json::json_pointer PlaceOf(std::string_view pointer) {
   std::string place;
   while (!pointer.empty()) {
@@ -131,7 +131,7 @@ Json::json_pointer PlaceOf(std::string_view pointer) {
   return Json::json_pointer(place);
 }
 
-// Adds the need of one section to the schema of the object around this section.
+// Adds to the schema of the enclosing object when a section is required.
 void AddNeed(Json& object, std::string_view section, const NeedSpec& need) {
   Json any_of = Json::array();
   for (const std::string_view field : need.fields) {

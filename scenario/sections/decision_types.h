@@ -8,16 +8,16 @@
 namespace fogline {
 
 /// Policy for the authority over the host: an index of the list in decision.h, and of the table in
-/// services/decision/policies/policies.cc. Only the two policies that other code refers to have an
-/// enumerator.
+/// services/decision/policies/policies.cc. Only two policies have an enumerator, because other code
+/// refers to them.
 enum class Policy : std::uint8_t { kNone, kTraded };
 
 /// A measure of conflict: an index of the list in decision.h, and of the first table in
 /// services/decision/conflict/conflict_measures.cc.
 enum class MeasureChoice : std::uint8_t { kDoc };
 
-/// A measure of which sensor is wrong: an index of the list in decision.h, and of the second table
-/// in the same file.
+/// A measure that tells which sensor is wrong: an index of the list in decision.h, and of the
+/// second table in conflict_measures.cc.
 enum class BlameChoice : std::uint8_t { kNis };
 
 }  // namespace fogline

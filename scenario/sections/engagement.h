@@ -120,9 +120,10 @@ struct AdaptiveSection {
 
 /// Policy bayes: the human drives while P(conflict) > C_h / (C_h + C_a). C_h = human_cost +
 /// unready_cost (1 - A) + blind_cost min(1, near_m / MOR) is the expected cost of a human who
-/// drives. C_a = automation_cost + follower_cost min(1, near_ttc_s / TTC of the follower) is that
-/// of an automation that uses a wrong distance. P is the DoC. With the paper's slope it is steep.
-/// With measure lidar_modes and measure_scale probability it is a posterior probability.
+/// drives. C_a = automation_cost + follower_cost min(1, near_ttc_s / TTC of the follower) is the
+/// expected cost of an automation that uses a wrong distance. P(conflict) is the DoC. With the
+/// paper's slope, the DoC rises steeply at its centre. With measure lidar_modes and measure_scale
+/// probability, the DoC is a posterior probability.
 struct BayesSection {
   FOGLINE_FIELD(
       double, human_cost, 1.0, {1e-6, 1e6}, "Cost of any human engagement.",
@@ -149,10 +150,10 @@ struct BayesSection {
 };
 
 /// Policy availability: like traded, but the driver gets authority only if he can take over in
-/// time. For this, the time until the follower must brake harder than comfort_mps2 must be longer
-/// than the driver's take-over time (95th percentile, longer if his readiness is below 1).
-/// Otherwise the automation keeps authority. In both cases the automation uses only the sensor that
-/// is not to blame, as with policy isolate.
+/// time. His take-over time must end before the follower has to brake harder than comfort_mps2. The
+/// policy uses the 95th percentile of the take-over time, and adds time if his readiness is below
+/// 1. Otherwise the automation keeps authority. In both cases the automation uses only the sensor
+/// that is not to blame, as with policy isolate.
 struct AvailabilitySection {
   FOGLINE_FIELD(double, comfort_mps2, 3.0, {0.5, 10, "m/s2"},
                 "Braking that a follower must not exceed (DRAC).",

@@ -1,5 +1,5 @@
-// How the sections of a scenario declare their fields. Everything about a field stands in one
-// place:
+// How the sections of a scenario declare their fields. One declaration contains everything about a
+// field:
 //
 //   struct RadarSection {
 //     FOGLINE_FIELD(double, bias_m, 0.954, {-10, 10, "m"}, "Mounting offset that ...",
@@ -7,8 +7,8 @@
 //     FOGLINE_FIELD(bool, gating, false, "Refuse measurements outside the gate.");
 //   };
 //
-// The struct has the members `double bias_m = 0.954;` and `bool gating = false;`. What comes after
-// the default depends on the type:
+// The struct has the members `double bias_m = 0.954;` and `bool gating = false;`. The arguments
+// after the default depend on the type:
 //
 //   double                      NumberSpec, meaning, source of the default
 //   std::int64_t                IntegerSpec, meaning, source of the default
@@ -17,8 +17,8 @@
 //   a std::vector of double     ListSpec, NumberSpec, meaning, source
 //   a std::vector of sections   ListSpec, meaning
 //
-// A source is a publication, a data sheet, or "our choice, because ..."; it has no full stop at its
-// end. field_view.h lists all fields for code that reads, prints, sets or explains them.
+// A source is a publication, a data sheet, or "our choice, because ...". A source has no full stop
+// at its end. field_view.h lists all fields for code that reads, prints, sets or explains them.
 #pragma once
 
 #include <array>
@@ -75,27 +75,28 @@ constexpr auto ColumnOf(const std::array<Choice, size>& choices, std::string_vie
 }
 
 /// Names and meanings of an enumeration's values in their order. Each enumeration has a function
-/// `constexpr auto ChoicesOf(Enum)` that returns them as an std::array of Choice.
+/// `constexpr auto ChoicesOf(Enum)` that returns the names and meanings as an std::array of Choice.
 template <class Enum>
 struct ChoiceNames {
   static constexpr auto kNames = ColumnOf(ChoicesOf(Enum()), &Choice::name);
   static constexpr auto kDocs = ColumnOf(ChoicesOf(Enum()), &Choice::doc);
 };
 
-/// A line of a source file. It converts to each line above it. The nearest line is the best match.
+/// A line of a source file. SourceLine converts to the type of each line above it. For overloads,
+/// the nearest line is the best match.
 template <int number>
 struct SourceLine : SourceLine<number - 1> {};
 template <>
 struct SourceLine<0> {};
 
-/// No field stands below this line of its file.
+/// Largest line number that a field may have in its file.
 inline constexpr int kLastFieldLine = 500;
 
-/// Declares a field of a section, as described above. Beside the member it defines an overload of
-/// VisitFieldsUpTo() for the field's line. This overload calls the overload of the nearest field
-/// above, and then visits its own field. So VisitFieldsUpTo(visitor, SourceLine<kLastFieldLine>())
-/// visits all fields of the section in their order. Line numbers are the same wherever the header
-/// is included.
+/// Declares a field of a section, as described above. Besides the member, the macro defines an
+/// overload of VisitFieldsUpTo() for the field's line. This overload calls the overload of the
+/// nearest field above, and then visits its own field. So VisitFieldsUpTo(visitor,
+/// SourceLine<kLastFieldLine>()) visits all fields of the section in their order. Line numbers are
+/// the same wherever the header is included.
 #define FOGLINE_FIELD(type, name, default_value, ...)                                         \
   static_assert(__LINE__ <= ::fogline::kLastFieldLine, "split this file or raise the limit"); \
   template <class Visitor>                                                                    \

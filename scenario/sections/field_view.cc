@@ -33,7 +33,8 @@ Field Item(const std::string& list, std::size_t index, std::string_view doc,
           .value = std::move(value)};
 }
 
-// Visits the fields of one section. FOGLINE_FIELD calls it with the arguments of each field.
+// Collects the fields of one section. FOGLINE_FIELD calls operator() with the arguments of each
+// field.
 class FieldLister {
  public:
   explicit FieldLister(const std::string& pointer) : pointer_(pointer) {}
@@ -155,8 +156,8 @@ std::optional<std::size_t> ListIndex(std::string_view segment) {
   const char* const last = segment.data() + segment.size();
   const auto [end, error] = std::from_chars(segment.data(), last, index);
   if (end != last || error == std::errc::invalid_argument) return std::nullopt;
-  // A number too large for size_t is a valid index, too. The largest size_t stands for it, because
-  // no list has an item there.
+  // A number too large for size_t is a valid index, too. The result is then the largest size_t, at
+  // which no list has an item.
   return error == std::errc() ? index : std::numeric_limits<std::size_t>::max();
 }
 
@@ -169,7 +170,7 @@ std::optional<Field> FieldAt(Scenario& scenario, std::string_view pointer) {
     const auto field = std::find_if(fields.begin(), fields.end(), on_the_way);
     if (field == fields.end()) return std::nullopt;
     if (field->pointer == pointer) return std::move(*field);
-    if (const auto* numbers = field->As<NumbersField>()) {  // a list may have a million numbers
+    if (const auto* numbers = field->As<NumbersField>()) {  // faster for a million numbers
       const auto index = ListIndex(pointer.substr(field->pointer.size() + 1));
       if (!index || *index >= numbers->values->size()) return std::nullopt;
       return NumberAt(*field, *index);

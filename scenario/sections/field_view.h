@@ -53,11 +53,11 @@ struct ListField {
 
 /// A section, or an item of a list of sections.
 struct SectionField {
-  NeedSpec need;  // need.choice is "" if every file may lack the section
+  NeedSpec need;  // need.choice is "" if the section is optional in every file
   std::function<FieldList(const std::string& pointer)> fields;
 };
 
-/// A field of a section, or an item of a list. It refers to the value in the scenario.
+/// A field of a section, or an item of a list. A Field refers to the value in the scenario.
 struct Field {
   std::string pointer;      // JSON pointer, such as /fog/bias_m
   std::string_view name;    // last segment of the pointer; "" for an item of a list
@@ -77,7 +77,7 @@ struct Field {
 };
 
 /// The fields of the scenario itself, in their order. A field stays valid until the scenario is
-/// destroyed or one of its lists changes its size.
+/// destroyed or a list of the scenario changes its size.
 FieldList FieldsOf(Scenario& scenario);
 /// The fields of a published row, with pointers that begin with `pointer`.
 FieldList FieldsOf(PublishedRow& row, const std::string& pointer);

@@ -1,6 +1,6 @@
-// The section of a scenario for a human driver of the host with more details than the paper's. It
-// says how he follows, what he sees, how well he judges it, and how much of the road he is aware
-// of.
+// The section of a scenario for a human driver of the host, with more details than in the paper.
+// The section says how the driver follows, what he sees, how well he judges distances and speeds,
+// and how much of the road he is aware of.
 #pragma once
 
 #include <array>

@@ -1,6 +1,6 @@
 // Sections of a scenario that only a run in real time uses: when an input counts as failed, and how
-// a car stops after both automation and human have failed. A period is step_s of the wall clock,
-// divided by the speed of the run.
+// a car stops when neither automation nor human can drive. A period is step_s divided by the speed
+// of the run, in wall-clock time.
 #pragma once
 
 #include "scenario/sections/field.h"

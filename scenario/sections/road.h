@@ -75,7 +75,7 @@ struct EmergencyBrakeSection {
                 "our choice, because an emergency stop ends at rest");
 };
 
-/// Largest number of speeds of a recorded leader. It is enough for 27 hours with steps of 0.1 s.
+/// Largest number of speeds of a recorded leader, enough for 27 hours with steps of 0.1 s.
 inline constexpr std::int64_t kMaxRecordedSpeeds = 1'000'000;
 
 /// A recorded speed. LoadScenario() reads the file and fills `speeds_mps` with the recorded speed
@@ -124,8 +124,8 @@ constexpr auto ChoicesOf(FogModel) {
         "echo of the fog, or missing"}});
 }
 
-/// Whether the fog of a model changes the visibility. Otherwise the visibility stays that of clear
-/// air.
+/// Whether a fog model changes the visibility. With all other models, the visibility is always that
+/// of clear air.
 constexpr bool HasVisibility(FogModel model) {
   return model == FogModel::kBeam || model == FogModel::kModes;
 }

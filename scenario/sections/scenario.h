@@ -19,7 +19,7 @@
 
 namespace fogline {
 
-/// One row of a published table that the scenario is compared with.
+/// One row of a published table with which the scenario is compared.
 struct PublishedRow {
   FOGLINE_FIELD(double, threshold, 0.5, {0, 1}, "DoC threshold of the row.",
                 "Sourav & Cheng 2024: 0.2, 0.5, 0.8");

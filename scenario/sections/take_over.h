@@ -42,7 +42,7 @@ struct TakeOverParameters {
 };
 
 /// Least time in s between a request to take over and the minimal risk manoeuvre, unless the
-/// situation is severe (UN R157, 5.4.4.1). No scenario can make it shorter.
+/// situation is severe (UN R157, 5.4.4.1). No scenario can set a shorter time.
 inline constexpr double kLeastLead_s = 10.0;
 
 /// Emergency fallback: request, escalation, minimal risk manoeuvre.

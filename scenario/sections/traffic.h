@@ -36,7 +36,8 @@ constexpr auto ChoicesOf(SafetyModelChoice) {
                                 {"fuzzy", "the fuzzy safety model of UN R157"}});
 }
 
-/// Greatest number of cars behind the host. It is limited because TRUTH must fit one datagram.
+/// Largest number of cars behind the host. The number is limited because TRUTH must fit one
+/// datagram.
 inline constexpr std::int64_t kMaxFollowers = 32;
 
 /// One following car that differs from the other following cars.
@@ -46,7 +47,7 @@ struct FollowerCar {
                 "For a human driver: style of driving.");
 };
 
-/// The cars behind the host. Each starts with the speed and the gap of world.follower_*.
+/// The cars behind the host. Each car starts with the speed and the gap of world.follower_*.
 struct FollowersSection {
   FOGLINE_FIELD(std::int64_t, count, 1, {1, kMaxFollowers}, "How many cars follow the host.",
                 "Sourav & Cheng 2024: 1; the upper limit is what a datagram of TRUTH holds");

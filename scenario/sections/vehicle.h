@@ -1,5 +1,4 @@
-// Sections of a scenario for the vehicles, which follow commands in different ways, and for the
-// road.
+// Sections of a scenario for the road, and for vehicles that follow commands in different ways.
 #pragma once
 
 #include <array>
@@ -30,7 +29,7 @@ constexpr auto ChoicesOf(Surface) {
       {{"dry", "friction 0.9"}, {"wet", "friction 0.65"}, {"ice", "friction 0.15"}});
 }
 
-/// The road's slope at one place. Places are those of truth_t.
+/// The road's slope at one position along the lane, as in truth_t.
 struct GradePoint {
   FOGLINE_FIELD(double, position_m, 0, {-1e6, 1e9, "m"},
                 "Place along the lane; the host starts at 0. Places must increase.",
@@ -40,8 +39,9 @@ struct GradePoint {
                 "our choice, because a road is level unless the experiment says otherwise");
 };
 
-/// The road under all cars. It has no effect on a point mass. If host or following cars have tyres
-/// (model longitudinal), it also limits the braking of the preceding car (services/world).
+/// The road under all cars. The road has no effect on a point mass. If host or following cars have
+/// tyres (model longitudinal), the road also limits the braking of the preceding car
+/// (services/world).
 struct RoadSection {
   FOGLINE_FIELD(Surface, surface, Surface::kDry,
                 "Surface of the road, which sets the friction of the tyres. It also limits the "

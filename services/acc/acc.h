@@ -10,7 +10,7 @@
 namespace fogline::acc {
 
 /// Offers the automation's acceleration a_A in every step, also while the human drives. Uses the
-/// host's own odometry and the track of the preceding car, never the truth; decides nothing about
+/// host's own odometry and the track of the preceding car, never the truth. Does not decide about
 /// authority. A track that has become too uncertain, because the sensors gave no values, counts as
 /// no track.
 class Acc {
@@ -18,8 +18,8 @@ class Acc {
   /// @throws InputError if the weights of scenario.acc make an ill-conditioned problem.
   explicit Acc(const Scenario& scenario);
 
-  /// Resets the object to the state of a new Acc(scenario). It is cheaper than a new object if the
-  /// ACC's parameters are equal.
+  /// Resets the object to the state of a new Acc(scenario). Restart() is cheaper than a new object
+  /// if the ACC's parameters are equal.
   void Restart(const Scenario& scenario);
 
   const accel_command_t& Step(const ego_t& ego, const track_t& track);

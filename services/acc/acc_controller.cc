@@ -9,9 +9,9 @@
 namespace fogline::acc {
 namespace {
 
-// A car has followed its command if its acceleration differs from the command by at most this, in
-// m/s2. It is far above the rounding of an integration over substeps, and far below any difference
-// that a person notices.
+// Tolerance in m/s2. A car has followed its command if acceleration and command differ by at most
+// this tolerance. The tolerance is far above the rounding of an integration over substeps, and far
+// below any difference that a person notices.
 constexpr double kSameAcceleration = 1e-6;
 
 QpSolver MakeSolver(const AccProgram& program, const AccSection& section) {
@@ -89,12 +89,14 @@ double AccController::CommandOf(double control, double acceleration_mps2) const 
          model.gamma(kOwnAcceleration) * control;
 }
 
-// The u from which the rate limit counts. It is the last own u if the car followed its command,
-// otherwise the u that would hold the car's acceleration. It is clamped to the limits of u, because
-// the driver may brake harder than the automation is allowed to. A longitudinal vehicle never
-// follows its command exactly. For such a vehicle it is the last own u, but its distance from the u
-// that would hold the acceleration is limited. The limit is the lead that a ramp at the jerk limit
-// has over an engine with the model's lag. So u cannot drift away while the human drives.
+// The value of u before this step, from which the rate limit of u starts. If the car followed its
+// command, this value is the u of the controller's last step. Otherwise the value is the u that
+// would keep the car's acceleration. The value is clamped to the limits of u, because the driver
+// may brake harder than the automation may. A longitudinal vehicle never follows its command
+// exactly. For such a vehicle, the value is the u of the last step, but limited to values near the
+// u that would keep the acceleration. The difference of these two u is at most the lead of a ramp
+// at the jerk limit over an engine with the model's lag. So u cannot drift away while the human
+// drives.
 double AccController::PreviousControl(double acceleration_mps2) const {
   const double holding = -acceleration_mps2 / section_.engine_gain;
   double control = holding;

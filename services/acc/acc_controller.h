@@ -13,24 +13,24 @@
 
 namespace fogline::acc {
 
-/// Model predictive adaptive cruise control: holds the safe distance d_r = T_hw v + d_0 to the
+/// Model predictive adaptive cruise control: keeps the safe distance d_r = T_hw v + d_0 to the
 /// preceding car. Uses distances and speeds, and knows nothing of sensors, messages and authority.
 ///
 /// The unconstrained optimum is linear in the situation, so its gain is computed once. If the plan
-/// of this gain meets every limit, the controller uses this plan. Otherwise it solves the quadratic
-/// program. A point mass applies its command at once. Its command is the model's acceleration one
-/// step ahead. The command starts from the acceleration that the car really has, so it is
-/// continuous after a take-over. A longitudinal vehicle has a lag of its own, in place of the
-/// model's lag. Its command is -K_e u, the acceleration to which u leads in the end. This command
-/// and the vehicle's acceleration differ by at most the lag that the model's engine has at the jerk
-/// limit.
+/// of this gain meets every limit, the controller uses this plan. Otherwise the controller solves
+/// the quadratic program. A point mass applies a command at once, so its command is the model's
+/// acceleration one step ahead. The command starts from the car's actual acceleration, so the
+/// command is continuous after a take-over. A longitudinal vehicle has its own lag, in place of the
+/// model's lag. The command of this vehicle is -K_e u, the steady acceleration that u causes. The
+/// difference between this command and the vehicle's acceleration is limited. The limit is the
+/// difference that the model's engine has on a ramp at the jerk limit.
 class AccController {
  public:
   struct Input {
     double distance_m;          // to the preceding car
     double relative_speed_mps;  // speed of the preceding car minus own speed
     double speed_mps;           // own speed
-    double acceleration_mps2;   // own, applied during the step that ended now
+    double acceleration_mps2;   // own acceleration during the step that ended now
     bool has_target;            // whether distance_m and relative_speed_mps are valid
   };
 
@@ -57,8 +57,8 @@ class AccController {
   Output Step(const Input& input);
 
   /// Resets the object to the state of a new AccController(section, step_s, vehicle). If section
-  /// and step_s are unchanged, the object keeps the results of its construction. Their computation
-  /// is most of the cost of a short run.
+  /// and step_s are unchanged, the object keeps the results of its construction. Computing these
+  /// results again would take most of the time of a short run.
   /// @throws InputError as the constructor; the object is then unchanged.
   void Restart(const AccSection& section, double step_s,
                VehicleModel vehicle = VehicleModel::kPointMass);

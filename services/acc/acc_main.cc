@@ -1,5 +1,5 @@
-// The automation agent as a process: answers HOST_EGO and TRACK with ACC_COMMAND. It does not know
-// whether its command is used. The arbitrator decides this.
+// The automation agent as a process: answers HOST_EGO and TRACK with ACC_COMMAND. The arbitrator
+// decides whether to use this command.
 #include "services/acc/acc.h"
 #include "services/runtime/process/service.h"
 

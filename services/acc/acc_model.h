@@ -8,16 +8,16 @@
 namespace fogline::acc {
 
 /// Order of the state x = [delta_d, delta_v, a]: the distance minus the safe distance
-/// d_r = T_hw v + d_0 in m, the preceding car's speed minus the own in m/s, and the own
+/// d_r = T_hw v + d_0 in m, the preceding car's speed minus the own speed in m/s, and the own
 /// acceleration in m/s2.
 enum AccState : Eigen::Index { kDeltaD = 0, kDeltaV = 1, kOwnAcceleration = 2 };
 
-/// x' = A x + B u, y = C x, while the preceding car holds its speed:
+/// x' = A x + B u, y = C x, while the preceding car keeps its speed:
 ///
 ///     A = [0 1 -T_hw; 0 0 -1; 0 0 -1/T_e]    B = [0; 0; -K_e/T_e]    C = [0 0 1]
 ///
-/// as printed by Sourav & Cheng, RTSS 2024. Because of the sign of B a positive u decelerates, and
-/// a constant u leads to the acceleration -K_e u. (Takahama & Akasaka 2018, the source of that
+/// as printed by Sourav & Cheng, RTSS 2024. Because of the sign of B, a positive u decelerates, and
+/// a constant u causes the steady acceleration -K_e u. (Takahama & Akasaka 2018, the source of this
 /// model, have +K_e/T_e.)
 struct AccModel {
   Eigen::Matrix3d a;     // 3x3, A

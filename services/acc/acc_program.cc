@@ -113,7 +113,8 @@ AccProgram::Reach AccProgram::ReachOf(const AccSituation& now) const {
   const double settled = SettledSpeed(now);
   const double fastest = settled + duration_s_ * section_.max_acceleration_mps2;
   const double slowest = settled + duration_s_ * section_.min_acceleration_mps2;
-  // The gap under the strongest acceleration is concave in time, so its minimum is at one end.
+  // The gap under the strongest acceleration is concave in time, so its minimum is at one end of
+  // the horizon.
   const double acceleration = std::max(now.state(kOwnAcceleration), section_.max_acceleration_mps2);
   const double gap = Gap(now.state, now.speed_mps + now.state(kDeltaV));
   const double last_gap =

@@ -14,12 +14,12 @@ namespace fogline::acc {
 struct AccSituation {
   Eigen::Vector3d state;    // x(k), see AccState
   double speed_mps;         // own speed
-  double previous_control;  // u of the step before, between MinControl() and MaxControl()
+  double previous_control;  // u of the previous step, between MinControl() and MaxControl()
 };
 
-/// The quadratic program over a horizon of N steps of h seconds. It is condensed. The states are
-/// eliminated, and the unknowns are z = [s, u_0, ..., u_{N-1}]. The preceding car is predicted to
-/// hold its speed.
+/// The quadratic program over a horizon of N steps of h seconds. The program is condensed: the
+/// states are eliminated, and the unknowns are z = [s, u_0, ..., u_{N-1}]. The prediction assumes
+/// that the preceding car keeps its speed.
 ///
 ///     min  sum_{j=1..N}   w_d delta_d_j^2 + w_v delta_v_j^2 + w_a a_j^2
 ///        + sum_{j=0..N-1} w_u u_j^2 + w_du (u_j - u_{j-1})^2     + w_s s^2
@@ -33,20 +33,20 @@ struct AccSituation {
 /// w = v + T_e a is the speed at which the car settles if u is 0 from now on; w' = -K_e u. Because
 /// T_e v' = w - v, the speed stays below v_max while w stays below v_max, also between the steps.
 /// In the same way the speed stays at or above 0. (Limits on v_j itself would be less cautious. But
-/// u acts on v with a delay, and an optimum that touches such limits swings from step to step.)
+/// u acts on v with a delay, and an optimum on such limits oscillates from step to step.)
 ///
 /// The fall-back plan approaches the section's fall-back deceleration (as far as the limits of u
-/// allow it) at the fastest allowed change of u. It meets the first three limits in every
-/// situation. s >= 0 can grow until the last two limits are met, so the program always has a
+/// allow it) at the fastest allowed change of u. The fall-back plan meets the first three limits in
+/// every situation. s >= 0 can grow until the last two limits are met, so the program always has a
 /// solution. If the human drove faster than v_max, the car comes back below v_max no later than
-/// with the fall-back plan. s, in m, is the shortfall of the gap that the plan allows. The allowed
-/// part of s decreases towards the end of the horizon. Otherwise a gap that is too small at the
-/// start could stay too small. The program needs no limit s >= 0, because s < 0 is never cheaper
-/// than 0.
+/// with the fall-back plan. s, in m, is the shortfall of the gap that the plan allows in its first
+/// step. The allowed shortfall decreases towards the end of the horizon. Otherwise a gap that is
+/// too small at the start could stay too small. The program needs no limit s >= 0, because s < 0 is
+/// never cheaper than 0.
 class AccProgram {
  public:
-  /// A limit that is broken by at most this (m/s2, m/s or m) counts as met. It is far above
-  /// rounding, and far below any difference that a car can make.
+  /// Tolerance (m/s2, m/s or m). A limit that is violated by at most this tolerance counts as met.
+  /// The tolerance is far above rounding, and far below any difference that a car can make.
   static constexpr double kTolerance = 1e-10;
 
   AccProgram(const AccSection& section, double step_s);
@@ -54,8 +54,8 @@ class AccProgram {
   Eigen::Index horizon() const { return horizon_; }
   const DiscreteAccModel& model() const { return model_; }
 
-  /// Cost 1/2 z'Hz + (G p)'z + constant, where p = [x(k); u_{-1}]. H is (N+1) x (N+1). Its first
-  /// row and column belong to s, and are zero except on the diagonal. G is (N+1) x 4.
+  /// Cost 1/2 z'Hz + (G p)'z + constant, where p = [x(k); u_{-1}]. H is (N+1) x (N+1). The first
+  /// row and column of H belong to s, and are zero except on the diagonal. G is (N+1) x 4.
   const Eigen::MatrixXd& hessian() const { return hessian_; }
   const Eigen::MatrixXd& gradient() const { return gradient_; }
 
@@ -75,7 +75,8 @@ class AccProgram {
   double FallbackControl(double previous_control) const;
 
  private:
-  // Whether a plan within the limits of u can reach the limits of the speed, or that of the gap.
+  // Whether a plan within the limits of u can reach the limits of the speed, or the limit of the
+  // gap.
   struct Reach {
     bool speed;
     bool gap;

@@ -16,8 +16,8 @@ using Eigen::Index;
 // fewer than three correct digits.
 constexpr double kMinReciprocalCondition = 1e-13;
 
-// A normal counts as a combination of the active ones if its part orthogonal to them is at most
-// this share of the whole normal. Rounding leaves about 1e-16.
+// A normal counts as linearly dependent on the active normals if its orthogonal part is at most
+// this share of the whole normal. Rounding leaves a share of about 1e-16.
 constexpr double kDependent = 1e-11;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -88,10 +88,10 @@ QpSolver::Result QpSolver::Solve(const Eigen::VectorXd& linear, const Eigen::Vec
   return result;
 }
 
-// Step 0 of the paper, from the last active set instead of the empty one. It finds the minimum at
-// which the limits of this set are equalities, and drops limits with negative multipliers. Let N =
-// Q R be the normals of the limits, y = L'x, and y0 the unconstrained minimum. Then y = y0 + Q t
-// with R't = b - N'y0, and R lambda = t.
+// Step 0 of the paper, but from the last active set instead of an empty set. The function finds the
+// minimum at which the limits of this set are equalities. The function drops limits with negative
+// multipliers. Let N = Q R be the normals of the limits, y = L'x, and y0 the unconstrained minimum.
+// Then y = y0 + Q t with R't = b - N'y0, and R lambda = t.
 void QpSolver::StartFromActiveSet(const Eigen::VectorXd& linear, const Eigen::VectorXd& lower,
                                   const Eigen::VectorXd& upper) {
   scaled_.noalias() = inverse_factor_.triangularView<Eigen::Lower>() * -linear;
@@ -151,7 +151,7 @@ QpSolver::StepKind QpSolver::Step(Limit& limit, double& multiplier) {
   fall = along_.head(active_);
   r_.topLeftCorner(active_, active_).triangularView<Eigen::Upper>().solveInPlace(fall);
 
-  double dual_step = kInfinity;  // size at which a multiplier becomes zero
+  double dual_step = kInfinity;  // step size at which a multiplier becomes zero
   Index blocking = 0;
   for (Index i = 0; i < active_; ++i) {
     if (fall(i) > 0 && lambda_(i) < dual_step * fall(i)) {
@@ -159,7 +159,7 @@ QpSolver::StepKind QpSolver::Step(Limit& limit, double& multiplier) {
       blocking = i;
     }
   }
-  // Size at which `limit` is met; infinite if its normal depends on the active normals.
+  // Step size at which `limit` is met; infinite if its normal depends on the active normals.
   const double primal_step = norm > 0 ? limit.violation / (norm * norm) : kInfinity;
   const double step = primal_step < dual_step ? primal_step : dual_step;
   if (step == kInfinity) return StepKind::kInfeasible;
@@ -180,7 +180,7 @@ QpSolver::StepKind QpSolver::Step(Limit& limit, double& multiplier) {
   return StepKind::kDropped;
 }
 
-// Splits the limit's normal into Q along_ + rest_. Returns |rest_|, 0 if it is only rounding.
+// Splits the limit's normal into Q along_ + rest_. Returns |rest_|, or 0 if rest_ is only rounding.
 double QpSolver::SplitNormal(const Limit& limit) {
   const Span& span = spans_[Position(limit.row)];
   const auto q = q_.leftCols(active_);
@@ -191,8 +191,8 @@ double QpSolver::SplitNormal(const Limit& limit) {
   const double whole = rest_.norm();
   along.noalias() = q.transpose() * rest_;
   rest_.noalias() -= q * along;
-  // The first pass leaves a rounding error relative to the whole normal, and the rest may be
-  // smaller than this error. A second pass is enough.
+  // The first pass leaves a rounding error relative to the whole normal, and rest_ may be smaller
+  // than this error. A second pass is enough.
   correction.noalias() = q.transpose() * rest_;
   rest_.noalias() -= q * correction;
   along += correction;

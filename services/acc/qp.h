@@ -1,5 +1,6 @@
 // A small dense solver for strictly convex quadratic programs that differ only in their linear term
-// and limits. It is not made for problems that have many hundreds of variables or no curvature.
+// and limits. The solver is not suitable for problems with many hundreds of variables or without
+// curvature.
 #pragma once
 
 #include <cstdint>
@@ -14,19 +15,20 @@ namespace fogline::acc {
 ///
 ///     min 1/2 x'Hx + g'x   subject to   lower <= C x <= upper
 ///
-/// It adds one violated limit after the other to a set of active limits, and drops active limits
-/// that block a step. It needs no feasible start, and few iterations if few limits are active.
+/// The method adds violated limits one by one to a set of active limits, and drops active limits
+/// that block a step. The method needs no feasible start. It needs few iterations if few limits are
+/// active.
 ///
 /// With the Cholesky factor H = L L', the normal of a limit is the column L^-1 c. The active
-/// normals are held as a thin QR factorisation that grows and shrinks by one column (Gram-Schmidt
+/// normals are stored as a thin QR factorisation that grows and shrinks by one column (Gram-Schmidt
 /// with reorthogonalisation and Givens rotations: J. W. Daniel, W. B. Gragg, L. Kaufman and
-/// G. W. Stewart, Mathematics of Computation 30 (1976) 772-795). An iteration costs O(n^2). Of a
-/// row of C it uses only the part between the outermost nonzeros.
+/// G. W. Stewart, Mathematics of Computation 30 (1976) 772-795). An iteration costs O(n^2). An
+/// iteration uses only the part of a row of C between its outermost nonzeros.
 ///
 /// The factors depend only on H and C. So every call except the first starts from the active set of
-/// the call before. This set is nearly right if the problems are those of successive steps. The
-/// minimum is the same from any start except for rounding; equal sequences of calls give equal
-/// bits.
+/// the previous call. This set is nearly right if the problems are those of successive steps. Every
+/// start gives the same minimum except for rounding. Equal sequences of calls give bitwise equal
+/// results.
 ///
 /// Only the constructor allocates memory.
 class QpSolver {
@@ -34,12 +36,12 @@ class QpSolver {
   enum class Status : std::uint8_t {
     kOptimal,         // solution() is the minimum
     kInfeasible,      // no x meets all limits
-    kIterationLimit,  // stopped at max_iterations; solution() breaks at least one limit
+    kIterationLimit,  // stopped at max_iterations; solution() violates at least one limit
   };
 
   struct Options {
     std::int64_t max_iterations = 1000;
-    // A limit that is broken by at most this, in the units of its row of C, counts as met.
+    // A limit counts as met if it is violated by at most `tolerance`, in the units of its row of C.
     double tolerance = 1e-10;
   };
 
@@ -53,22 +55,23 @@ class QpSolver {
   QpSolver(const Eigen::MatrixXd& hessian, const Eigen::MatrixXd& constraints,
            const Options& options);
 
-  /// `linear` (g) has n entries, `lower` and `upper` have m; an infinite limit is no limit.
+  /// `linear` (g) has n entries, `lower` and `upper` have m entries; an infinite limit is no limit.
   Result Solve(const Eigen::VectorXd& linear, const Eigen::VectorXd& lower,
                const Eigen::VectorXd& upper);
 
-  /// H^-1 times each column of `columns`. For a linear term g, it is minus the unconstrained
+  /// H^-1 times each column of `columns`. For a linear term g, H^-1 g is minus the unconstrained
   /// minimum.
   Eigen::MatrixXd SolveHessian(const Eigen::MatrixXd& columns) const;
 
-  /// Forgets the calls before. The next Solve() starts without active limits, as the first one did.
+  /// Forgets the previous calls. The next Solve() starts without active limits, like the first
+  /// Solve().
   void Restart() { active_ = 0; }
 
   /// x of the last Solve().
   const Eigen::VectorXd& solution() const { return x_; }
 
   /// After kOptimal, the Lagrange multiplier y of every row: H x + g = C' y. y > 0 only if the
-  /// lower limit is active, y < 0 only if the upper one is active, otherwise y = 0.
+  /// lower limit is active, y < 0 only if the upper limit is active, otherwise y = 0.
   const Eigen::VectorXd& multipliers() const { return multipliers_; }
 
  private:
@@ -76,7 +79,7 @@ class QpSolver {
   struct Limit {
     Eigen::Index row;
     double side;       // 1: lower, -1: upper
-    double violation;  // amount by which it is broken
+    double violation;  // amount by which it is violated
   };
 
   // The part of a row of C between its outermost nonzeros.
@@ -110,7 +113,7 @@ class QpSolver {
   Eigen::MatrixXd q_;              // n x n, orthonormal basis of the active normals
   Eigen::MatrixXd r_;              // n x n, upper triangular: active normals = Q R
 
-  // For the limit that is being added. Its normal is Q along_ + rest_.
+  // The limit that is being added has the normal Q along_ + rest_.
   Eigen::VectorXd along_;             // n, the first `active_` entries count
   Eigen::VectorXd rest_;              // n, orthogonal to Q
   Eigen::VectorXd correction_;        // n, correction of `along_`

@@ -64,7 +64,7 @@ const arbitration_t& Arbitrator::Choose(const ego_t& ego, const track_t& track,
   out_.lambda_human = state.lambda_human;
   out_.lambda_automation = 1 - state.lambda_human;
   out_.acceleration_mps2 = state.acceleration_mps2;
-  // The mode names the side with more authority. If both sides have half, it names the human.
+  // The mode names the side with more authority. If both sides have half, the mode names the human.
   out_.mode =
       state.lambda_human < kMainAuthority ? arbitration_t::AUTOMATION : arbitration_t::HUMAN;
   if (take_over_) {
@@ -109,11 +109,12 @@ bool Arbitrator::Ask(double wanted, const ego_t& ego, const track_t& track,
     return false;
   }
   if (asked.authority == take_over::Authority::kHuman) {
-    // The driver shares authority only with an automation that is there and is not off for the rest
-    // of the run.
+    // The driver shares authority only with an available automation. After a manoeuvre, the
+    // automation is off for the rest of the run.
     const bool shared = shares_ && automation_there_ && !take_over_->manoeuvred();
     granted_ = shared ? wanted : 1;
-    // On a ramp from the automation to the driver, the automation does not accelerate again.
+    // During a transfer from the automation to the driver, the limit of the automation's
+    // acceleration falls to 0.
     eased_mps2_ = std::max(0.0, eased_mps2_ - easing_per_step_);
     if (!shared) offers.automation_mps2 = std::min(offers.automation_mps2, eased_mps2_);
   } else {

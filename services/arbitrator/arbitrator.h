@@ -1,5 +1,6 @@
 // Decides in every step which side drives the host. Except in a manoeuvre and in emergency braking,
-// the command follows only from the two offers. The arbitrator does not judge the offers.
+// the command depends only on the accelerations that automation and human offer. The arbitrator
+// does not judge these offers.
 //
 //     radar, LiDAR -> ConflictMeter -> DoC                        conflict_meter.h
 //     DoC, situation -> policy -> engagement request              services/decision/policies
@@ -34,8 +35,8 @@ class Arbitrator {
  public:
   explicit Arbitrator(const Scenario& scenario);
 
-  /// Whether the scenario's policy uses the surroundings. Then SetOnDemandInput() is called before
-  /// every Step().
+  /// Whether the scenario's policy uses the surroundings. If it does, SetOnDemandInput() is called
+  /// before every Step().
   static bool UsesOnDemandInput(const Scenario& scenario);
   /// Takes from the truth of this step only the values that a perfect rear sensor and a visibility
   /// meter would give.
@@ -57,14 +58,14 @@ class Arbitrator {
   const arbitration_t& Choose(const ego_t& ego, const track_t& track,
                               const accel_command_t& automation, const driver_command_t& driver);
 
-  /// Emergency braking: may replace acceleration and mode of the command that is sent. It does not
-  /// matter which side has decided the command. The mode of a manoeuvre stays. Call it once per
-  /// decision, after Choose(). Step() calls Guard() itself.
+  /// Emergency braking: may replace acceleration and mode of the command, whichever side drives.
+  /// The mode of a manoeuvre stays unchanged. Call Guard() once per decision, after Choose().
+  /// Step() calls Guard() itself.
   void Guard(const ego_t& ego, const track_t& track, arbitration_t& command);
 
-  /// Whether the last decision wants the human to drive, also while the transfer is still under
-  /// way. If the driver must be asked: whether he has taken over and has at least half of the
-  /// authority.
+  /// Whether the last decision wants the human to drive, also while the transfer is still in
+  /// progress. For a driver who must be asked: whether he has taken over and has at least half of
+  /// the authority.
   bool wants_human() const { return granted_ >= kMainAuthority; }
   /// Whether the driver must be asked and has not taken over.
   bool must_ask() const {
@@ -76,11 +77,11 @@ class Arbitrator {
     return must_ask() && take_over_->outcome().state != take_over::TakeOverState::kAutomated;
   }
   bool in_manoeuvre() const { return take_over_ && take_over_->in_manoeuvre(); }
-  /// Says whether the automation is there. Only then it gets authority back from a driver who was
-  /// asked.
+  /// Sets whether the automation is available. Only an available automation gets authority back
+  /// from a driver who was asked.
   void SetAutomationThere(bool there) { automation_there_ = there; }
-  /// Call it if the command that was sent is not that of the last decision. The next command then
-  /// continues from the command that was sent.
+  /// Call this function if the command that was sent is not the command of the last decision. The
+  /// next command then continues from the command that was sent.
   void Overrule(const arbitration_t& sent);
 
  private:
@@ -109,7 +110,7 @@ class Arbitrator {
   double eased_mps2_ = 0;         // upper limit of the automation's acceleration after a request
   bool automation_there_ = true;
   double granted_ = 0;               // lambda_H at the end of the transfer
-  std::optional<double> sent_mps2_;  // command of the step before
+  std::optional<double> sent_mps2_;  // command of the previous step
   arbitration_t out_{};
 };
 

@@ -1,4 +1,4 @@
-// The Degree of Conflict in every step: from the sensors' values to a number in [0, 1].
+// Computes the Degree of Conflict, a number in [0, 1], from the sensors' values of every step.
 #pragma once
 
 #include <algorithm>
@@ -12,17 +12,17 @@
 
 namespace fogline::arbitrator {
 
-/// DoC = 1/(1 + exp(-slope (x - centre))). x depends on the scenario's measure. With measure `doc`
-/// it is z, as in the paper (services/decision/conflict/over_time/doc.h). With another measure it
-/// is the score of this measure (services/decision/conflict/conflict_measures.cc). With
-/// measure_scale probability the DoC is the score itself.
+/// DoC = 1/(1 + exp(-slope (x - centre))). x depends on the scenario's measure. With measure `doc`,
+/// x is z as in the paper (services/decision/conflict/over_time/doc.h). With another measure, x is
+/// the measure's score (services/decision/conflict/conflict_measures.cc). With measure_scale
+/// probability, the DoC is the score itself.
 class ConflictMeter {
  public:
   /// @throw InputError if measure_scale is probability but the measure's score is not a probability
   explicit ConflictMeter(const Scenario& scenario);
 
-  /// Adds the values of a step. `track` is the witness for measures that need one; a track of
-  /// another step than radar's is not used.
+  /// Adds the values of a step. `track` is for measures that need a prediction as witness. `track`
+  /// is used only if it belongs to the same step as `radar`.
   void Observe(const radar_t& radar, const lidar_t& lidar, const track_t& track) {
     conflict::Evidence evidence{
         .radar = policies::StatedBy(radar), .lidar = policies::StatedBy(lidar), .prediction = {}};
@@ -40,7 +40,8 @@ class ConflictMeter {
     if (is_posterior_) return std::clamp(conflict, 0.0, 1.0);
     return conflict::DegreeOfConflict(conflict, slope_, centre_);
   }
-  /// Whether the DoC is the posterior probability that a sensor is wrong, by all evidence so far.
+  /// Whether the DoC is the posterior probability that a sensor is wrong, given all evidence so
+  /// far.
   bool is_posterior() const { return is_posterior_; }
 
  private:

@@ -5,9 +5,10 @@
 namespace fogline::arbitrator {
 namespace {
 
-// The automation can drive if three things are there: its command, the track from which the command
-// is computed, and values of both sensors in pairs of one step. Without pairs there is no Degree of
-// Conflict, which says whether to trust the automation. The result is the worst of the three.
+// The automation can drive if three things are available: its command, the track from which the
+// command is computed, and values of both sensors in pairs of one step. Without pairs there is no
+// Degree of Conflict, which says whether to trust the automation. The result is the worst state of
+// these inputs.
 Offer AutomationOffer(const ArbitratorInputs& inputs, InputState pairs) {
   return std::max({OfferOf(inputs.radar.state), OfferOf(inputs.lidar.state), OfferOf(pairs),
                    OfferOf(inputs.track.state), OfferOf(inputs.automation.state)});
@@ -40,7 +41,7 @@ const arbitration_t& FailsafeArbitrator::Step(const header_t& header,
                                               const ArbitratorInputs& inputs) {
   const std::int64_t known = pairs_.newest();
   const InputState pairs = pairs_.Update(header.step, inputs.radar.newest, inputs.lidar.newest);
-  // A pair counts only once, also if it stays the newest for several steps.
+  // A pair counts only once, even if it is the newest pair for several steps.
   if (pairs_.newest() > known) {
     arbitrator_.Observe(pairs_.radar(), pairs_.lidar(), OrNone(inputs.track));
   }
@@ -71,8 +72,8 @@ const arbitration_t& FailsafeArbitrator::Step(const header_t& header,
   return out_;
 }
 
-// The regular decision, from the pairs so far. It uses 0 for a missing offer. Judge() ensures that
-// a command with such an offer is not sent.
+// The regular decision, from the pairs so far. A missing acceleration counts as 0. Judge() ensures
+// that a command with a missing acceleration is not sent.
 void FailsafeArbitrator::Regular(const ArbitratorInputs& inputs, Offer automation) {
   arbitrator_.SetAutomationThere(automation != kGone);
   out_ = arbitrator_.Choose(*inputs.ego.newest, OrNone(inputs.track),

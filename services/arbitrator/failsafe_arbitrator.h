@@ -1,5 +1,5 @@
-// The arbitrator in real time: it decides in every step with the inputs that are there. If all
-// inputs are there, it computes the same as Arbitrator, bit by bit. If some are missing, the table
+// The arbitrator in real time: it decides in every step with the available inputs. If all inputs
+// are available, its result equals that of Arbitrator, bit by bit. If inputs are missing, the table
 // of failsafe_table.h decides.
 #pragma once
 
@@ -16,8 +16,8 @@
 
 namespace fogline::arbitrator {
 
-/// Everything that the arbitrator reads, as far as it has come. The odometry triggers the decision
-/// of a step, so it is always there.
+/// The inputs of the arbitrator that have arrived. The odometry triggers the decision of a step, so
+/// `ego` has always arrived.
 struct ArbitratorInputs {
   Heard<ego_t> ego;
   Heard<radar_t> radar;
@@ -31,24 +31,24 @@ class FailsafeArbitrator {
  public:
   explicit FailsafeArbitrator(const Scenario& scenario);
 
-  /// As in Arbitrator. If SetOnDemandInput() is not called, the last values stay in force.
+  /// As in Arbitrator. If SetOnDemandInput() is not called, the last values apply.
   static bool UsesOnDemandInput(const Scenario& scenario) {
     return Arbitrator::UsesOnDemandInput(scenario);
   }
   void SetOnDemandInput(const truth_t& truth) { arbitrator_.SetOnDemandInput(truth); }
 
-  /// The host's command for the step of `header`. Call it once per decision; steps may be left out.
-  /// The result is valid until the next call. In the minimal risk manoeuvre mode is MINIMAL_RISK
-  /// and both authorities are 0. The conflict is that of the last pairs of sensor values, of any
-  /// age.
+  /// The host's command for the step of `header`. Call Step() once per decision; steps may be
+  /// skipped. The result is valid until the next call. In the minimal risk manoeuvre, `mode` is
+  /// MINIMAL_RISK and both authorities are 0. The conflict comes from the last pairs of sensor
+  /// values, even if these are old.
   const arbitration_t& Step(const header_t& header, const ArbitratorInputs& inputs);
 
-  /// Makes the manoeuvre begin at the next step, whatever the inputs are. Call it if the vehicle,
-  /// or an earlier instance of this role, is already in a manoeuvre.
+  /// Starts the manoeuvre at the next step, independently of the inputs. Call it if the vehicle, or
+  /// an earlier instance of this role, is already in a manoeuvre.
   void DemandMinimalRisk() { demanded_ = true; }
 
-  /// Text about what the arbitrator does in place of its regular work; "" if it does its regular
-  /// work.
+  /// Text about the fallback that replaces the arbitrator's regular decision; "" if there is no
+  /// fallback.
   std::string_view fallback() const { return FallbackText(decision_); }
   /// Cars that are in a minimal risk manoeuvre that no command ends, as bits of status_t.
   std::int8_t minimal_risk() const { return IsLocked(out_.mode) ? status_t::HOST : std::int8_t{0}; }
@@ -66,7 +66,7 @@ class FailsafeArbitrator {
   models::MinimalRisk minimal_risk_;
   bool demanded_ = false;
   Decision decision_ = Decision::kHold;
-  // Of the last decision, before emergency braking.
+  // Acceleration and mode of the last decision, before emergency braking.
   std::optional<double> last_mps2_;
   std::int8_t last_mode_ = arbitration_t::AUTOMATION;
   arbitration_t out_{};

@@ -12,10 +12,10 @@
 namespace fogline::arbitrator {
 
 /// Availability of the automation or of the human, from best to worst. The values are bits, so that
-/// a row of the table can name several.
+/// a row of the table can name several values.
 enum Offer : std::uint8_t {
-  kThere = 1,   // may be used; while STALE, the last value holds
-  kNotYet = 2,  // has never come, and is not overdue
+  kThere = 1,   // usable; while the input is STALE, its last value is used
+  kNotYet = 2,  // has not arrived yet, and is not overdue
   kGone = 4,    // LOST
 };
 
@@ -24,15 +24,15 @@ constexpr Offer OfferOf(InputState state) {
   return state == InputState::kLost ? kGone : kNotYet;
 }
 
-/// Whether in the regular decision the human would drive (kDisputed). The values are bits, too.
+/// Whether the human would drive after the regular decision (kDisputed). The values are bits, too.
 enum Conflict : std::uint8_t { kCalm = 1, kDisputed = 2, kAnyConflict = kCalm | kDisputed };
 
 enum class Decision : std::uint8_t {
   kRegular,      // both can drive, as in lockstep
   kAutomation,   // the human cannot drive, and there is no conflict
   kHuman,        // the automation cannot drive
-  kHold,         // an input has not come yet, so the last command holds
-  kMinimalRisk,  // the human has failed; the automation has failed or is disputed
+  kHold,         // an input has not arrived yet, so the last command is repeated
+  kMinimalRisk,  // the human has failed, and the automation has failed or is disputed
 };
 
 struct FailsafeRow {
@@ -65,7 +65,7 @@ constexpr bool Applies(const FailsafeRow& row, Offer automation, Offer human, Co
          (row.conflict & conflict) != 0;
 }
 
-/// The decision of the row that applies; exactly one row does.
+/// The decision of the row that applies; exactly one row applies.
 constexpr Decision Decide(Offer automation, Offer human, Conflict conflict) {
   return std::ranges::find_if(
              kFailsafeTable,
@@ -90,8 +90,8 @@ static_assert(
     }(),
     "exactly one row of kFailsafeTable applies to each case");
 
-/// Text for STATUS about what the arbitrator does in place of its regular work; "" if it does its
-/// regular work.
+/// Text for STATUS about the fallback that replaces the arbitrator's regular decision; "" if there
+/// is no fallback.
 constexpr std::string_view FallbackText(Decision decision) {
   switch (decision) {
     case Decision::kRegular:

@@ -1,4 +1,4 @@
-// Whether the track has recovered from a deceived sensor.
+// Decides whether the track has recovered after a sensor was deceived.
 #pragma once
 
 #include <cstdint>
@@ -20,10 +20,10 @@ class FusionRecovery {
  public:
   explicit FusionRecovery(const Scenario& scenario);
 
-  /// Call it for each step that has values, in order.
+  /// Call it once for each step that has values, in the order of steps.
   void Observe(const radar_t& radar, const lidar_t& lidar, const track_t& track);
 
-  /// Whether the last steps have agreed for at least hand_back_s, without a break.
+  /// Whether all steps of the last hand_back_s have agreed.
   bool recovered() const { return agreeing_steps_ >= required_steps_; }
 
  private:
@@ -33,7 +33,7 @@ class FusionRecovery {
   std::int64_t required_steps_;
   double radar_offset_m_;
   double lidar_offset_m_;
-  std::int64_t agreeing_steps_ = 0;  // without a break; at most required_steps_
+  std::int64_t agreeing_steps_ = 0;  // consecutive steps that agree; at most required_steps_
 };
 
 }  // namespace fogline::arbitrator

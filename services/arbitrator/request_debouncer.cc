@@ -9,8 +9,8 @@
 namespace fogline::arbitrator {
 namespace {
 
-// ln(p/(1 - p)). A p that is less than 1e-12 away from 0 or 1 counts as 1e-12 away, because such a
-// small difference is only rounding.
+// ln(p/(1 - p)). p is limited to [1e-12, 1 - 1e-12], because a smaller difference from 0 or 1 is
+// only rounding.
 double LogOdds(double probability) {
   constexpr double kNearest = 1e-12;
   const double p = std::clamp(probability, kNearest, 1 - kNearest);

@@ -18,7 +18,7 @@ namespace fogline::arbitrator {
 ///     sprt  Wald's test (1945) of log odds: L += logit(DoC) - logit(threshold);
 ///           the human is wanted from L >= ln((1 - beta)/alpha) on,
 ///           the automation from L <= ln(beta/(1 - alpha)) on;
-///           with every decision a new test begins from L = 0
+///           after every decision, a new test begins from L = 0
 ///
 /// Then a change waits until min_dwell_s since the last change has passed. The test's probabilities
 /// of error are alpha and beta if the DoC is a probability and its steps are independent. A DoC of
@@ -27,7 +27,7 @@ namespace fogline::arbitrator {
 /// logit(threshold), so that evidence does not count twice.
 ///
 /// With hand_back fusion, a return to the automation also waits until the track has recovered
-/// (fusion_recovery.h). A firm request passes without delay.
+/// (fusion_recovery.h). A firm request is never delayed.
 class RequestDebouncer {
  public:
   /// @param posterior whether the DoC is a posterior probability of all evidence so far
@@ -40,7 +40,7 @@ class RequestDebouncer {
     return plain_ ? request.lambda_human : PutOff(request, doc, recovered);
   }
 
-  /// With hysteresis sprt: L of the current test; if the DoC is a posterior, L of the last step.
+  /// With hysteresis sprt: L of the current test, or L of the last step if the DoC is a posterior.
   double evidence() const { return evidence_; }
 
  private:
@@ -57,7 +57,7 @@ class RequestDebouncer {
 
   double evidence_ = 0;         // L
   bool decided_human_ = false;  // result of the hysteresis
-  bool wanted_human_ = false;   // after the wait for min_dwell_s and for the track
+  bool wanted_human_ = false;   // result after the waits for min_dwell_s and for the track
   std::int64_t steps_since_change_;
 };
 

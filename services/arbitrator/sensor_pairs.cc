@@ -29,7 +29,7 @@ void SensorPairs::Match() {
   }
 }
 
-// The age of a pair is 0 at the decision of its own step. If there has been no pair, the age counts
+// The age of a pair is 0 at the decision of its own step. Before the first pair, the age counts
 // from the step before the first decision.
 void SensorPairs::Judge(std::int64_t step) {
   const auto age = static_cast<double>(step - (has_pair() ? pair_step_ : began_ - 1));

@@ -1,7 +1,7 @@
-// Pairs of radar and LiDAR values of the same step, in real time, where one of the values may come
-// late or not at all. The difference of values of two steps would count relative motion as
-// conflict. At a closing speed of 10 m/s the range changes by 1 m in a step of 0.1 s. This 1 m is
-// the centre of the DoC.
+// Pairs of radar and LiDAR values of the same step. In real time, one of the two values may come
+// late or not at all. A difference between values of two different steps would count relative
+// motion as conflict. At a closing speed of 10 m/s the range changes by 1 m in a step of 0.1 s.
+// This 1 m is the centre of the DoC.
 #pragma once
 
 #include <array>
@@ -14,14 +14,13 @@
 
 namespace fogline::arbitrator {
 
-/// The newest pair and its health. The limits are those of other inputs (HealthSection), in steps
-/// instead of time.
+/// The newest pair and its health. The limits are those of HealthSection, in steps instead of time.
 class SensorPairs {
  public:
   explicit SensorPairs(const HealthSection& section);
 
-  /// Takes the newest message of each sensor, nullptr if none has come. A message that it has
-  /// already taken changes nothing. Call it once per decision.
+  /// Takes the newest message of each sensor; nullptr if none has come. A message that was already
+  /// taken has no effect. Call Update() once per decision.
   /// @param step at which the arbitrator decides
   /// @return the health of the pair
   InputState Update(std::int64_t step, const radar_t* radar, const lidar_t* lidar);
@@ -34,8 +33,8 @@ class SensorPairs {
   const lidar_t& lidar() const { return lidar_; }
 
  private:
-  // A sensor may be kDepth - 1 steps behind the other sensor. A pair of this age is LOST by
-  // default.
+  // A sensor may be kDepth - 1 steps behind the other sensor. With the default limits, a pair of
+  // this age is LOST.
   static constexpr std::size_t kDepth = 4;
 
   void Match();

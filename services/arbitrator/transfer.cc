@@ -11,8 +11,8 @@
 namespace fogline::arbitrator {
 namespace {
 
-// k of the sigmoid. It is the paper's slope of the DoC, but per duration instead of per metre. The
-// steepest change of the sigmoid is 2.53 times that of the linear ramp.
+// k of the sigmoid. k equals the paper's slope of the DoC, but per duration instead of per metre.
+// The steepest change of the sigmoid is 2.53 times that of the linear ramp.
 constexpr double kSteepness = 10;
 
 double Logistic(double x) { return 1 / (1 + std::exp(-x)); }
@@ -29,7 +29,7 @@ double InverseSigmoid(double authority) {
   return 0.5 + std::log(p / (1 - p)) / kSteepness;
 }
 
-// `from` moved towards `to` by at most `change`; exactly `to` if it is no further away.
+// `from` moved towards `to` by at most `change`; exactly `to` if the distance is at most `change`.
 double Towards(double from, double to, double change) {
   if (std::abs(to - from) <= change) return to;
   return to > from ? from + change : from - change;

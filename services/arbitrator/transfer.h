@@ -8,7 +8,7 @@
 
 namespace fogline::arbitrator {
 
-/// Moves the human's authority lambda_H towards the wanted one, and computes the command
+/// Moves the human's authority lambda_H towards the wanted authority, and computes the command
 /// a = lambda_H a_H + lambda_A a_A. Profiles:
 ///
 ///     step          lambda_H is the wanted authority at once (as in the paper)
@@ -17,13 +17,13 @@ namespace fogline::arbitrator {
 ///                   S(p) = (s(k (p - 1/2)) - s(-k/2))/(s(k/2) - s(-k/2)), s the logistic function
 ///     jerk_limited  as step, but the command changes by no more than jerk until it reaches a
 ///
-/// With every profile, the gate limits the command itself for gate_s after the begin of a transfer.
-/// It also limits the change of the command until the command reaches a. A transfer begins when the
-/// main authority (kMainAuthority) is wanted for the other side. A braking that is harder than
-/// yield_mps2 is exempt from both limits and ends them.
+/// With every profile, the gate limits the command itself for gate_s after the beginning of a
+/// transfer. The gate also limits the change of the command until the command reaches a. A transfer
+/// begins when the wanted main authority (kMainAuthority) changes sides. Braking that is harder
+/// than yield_mps2 ends both limits at once.
 ///
-/// If lambda_H is 0 or 1 and no limit is in force, the command is that side's offer, bit by bit. On
-/// the automation's return see services/arbitrator/README.md.
+/// If lambda_H is 0 or 1 and no limit applies, the command is the offer of the side with authority,
+/// bit by bit. services/arbitrator/README.md describes the return to the automation.
 class Transfer {
  public:
   struct Offers {
@@ -44,8 +44,8 @@ class Transfer {
     return Smooth(wanted, offers, applied_mps2);
   }
 
-  /// Call it if authority and command of this step were decided elsewhere. Later steps continue
-  /// from `actual`.
+  /// Call this function if other code has decided authority and command of this step. Later steps
+  /// continue from `actual`.
   void Overrule(const State& actual);
 
  private:
@@ -65,7 +65,7 @@ class Transfer {
   std::int64_t gate_steps_;
 
   double progress_ = 0;
-  bool to_human_ = false;  // the human was wanted in the last step
+  bool to_human_ = false;  // whether the human was wanted in the last step
   bool limiting_ = false;
   std::int64_t gate_left_ = 0;
   std::optional<double> previous_mps2_;  // commanded

@@ -1,6 +1,6 @@
 // The whole experiment in one process without transport of messages, for sweeps, calibration and
-// tests. It calls the same Step functions in the order of the graph table. Its results equal those
-// of the distributed run.
+// tests. ClosedLoop calls the same Step functions as the processes, in the order of the graph
+// table. The results equal those of the distributed run.
 #pragma once
 
 #include <cstdint>
@@ -56,14 +56,14 @@ class ClosedLoop {
   /// @throws InputError if the weights of an ACC make an ill-conditioned problem.
   explicit ClosedLoop(const Scenario& scenario);
 
-  /// Resets the object for another run, which equals that of a new ClosedLoop(scenario) bit by bit.
-  /// It is cheaper than a new object, because an ACC with an unchanged section keeps its
-  /// precomputed gains.
+  /// Resets the object for another run. This run equals the run of a new ClosedLoop(scenario) bit
+  /// by bit. Restart() is cheaper than a new object, because an ACC with an unchanged section keeps
+  /// its precomputed gains.
   /// @throws as the constructor; Restart() must then succeed before the next Run()
   void Restart(const Scenario& scenario);
 
-  /// Computes the steps from 0 to the last, and calls `visit(const StepView&)` after each. Call it
-  /// once after construction, and once after each Restart().
+  /// Computes all steps, and calls `visit(const StepView&)` after each step. Call Run() once after
+  /// construction, and once after each Restart().
   template <class Visit>
   void Run(std::int64_t run_id, Visit&& visit) {
     static const arbitration_t kBeforeTheRun{};
@@ -119,7 +119,7 @@ class ClosedLoop {
   follower::Follower follower_;
 };
 
-/// Runs one scenario after the other. For use by one thread.
+/// Runs one scenario after another. Only one thread may use an object.
 class ReusedLoop {
  public:
   /// One run; `visit` as in ClosedLoop::Run(). @throws as the constructor of ClosedLoop

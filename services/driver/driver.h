@@ -1,6 +1,6 @@
-// The human driver of the host. He sees the road as far as fog allows, and does not use the
-// sensors. He makes an offer in every step. The arbitrator decides whether the host follows this
-// offer.
+// The human driver of the host. The driver sees the road as far as fog allows, and does not use the
+// sensors. The driver offers an acceleration in every step. The arbitrator decides whether the host
+// follows this offer.
 #pragma once
 
 #include <cstdint>
@@ -15,9 +15,9 @@
 
 namespace fogline::driver {
 
-/// By default he is the driver of Sourav & Cheng 2024: the Intelligent Driver Model on the ground
-/// truth. He perceives the truth perfectly and without delay, also in fog. His readiness is that of
-/// the scenario. Each switch of scenario section `human` replaces a part of this driver by a more
+/// By default, the driver is that of Sourav & Cheng 2024: the Intelligent Driver Model on the
+/// ground truth. He perceives the truth perfectly and without delay, also in fog. The scenario sets
+/// his readiness. Each switch of scenario section `human` replaces a part of this driver by a more
 /// realistic model (services/models/driver).
 class Driver {
  public:
@@ -26,7 +26,7 @@ class Driver {
 
   /// Whether the driver needs HOST_COMMAND, because his awareness depends on who drives.
   static bool UsesOnDemandInput(const Scenario& scenario) { return scenario.human.loses_awareness; }
-  /// Takes the host's command of the step before, which says which side drove.
+  /// Takes the host's command of the previous step. The command's mode says which side drove.
   void SetOnDemandInput(const arbitration_t& host);
 
   /// The acceleration that the driver offers. Call it in the order of steps. The driver has a

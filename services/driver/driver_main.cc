@@ -1,5 +1,5 @@
-// The process of the human driver (TRUTH to DRIVER_COMMAND). It offers an acceleration in every
-// step, also while the automation drives.
+// The process of the human driver: answers TRUTH with DRIVER_COMMAND. The driver offers an
+// acceleration in every step, also while the automation drives.
 #include "services/driver/driver.h"
 #include "services/runtime/process/service.h"
 

@@ -10,8 +10,8 @@
 
 namespace fogline::follower {
 
-/// The same ACC as the host's (services/acc), with its own parameters and with perfect sensors. The
-/// car may have emergency braking, on the same sensors.
+/// The same ACC as in the host (services/acc), with its own parameters and with perfect sensors.
+/// Emergency braking, if the car has it, uses the same sensors.
 class AccDriver final : public CarDriver {
  public:
   /// @throws InputError if the section's weights make an ill-conditioned problem.
@@ -19,8 +19,8 @@ class AccDriver final : public CarDriver {
       : controller_(scenario.follower, scenario.step_s, scenario.follower_vehicle.model),
         aeb_(AebOf(scenario.followers)) {}
 
-  /// Resets the object to the state of a new one. It is cheaper than a new object if the ACC's
-  /// parameters are equal.
+  /// Resets the object to the state of a new AccDriver(scenario). Restart() is cheaper than a new
+  /// object if the ACC's parameters are equal.
   /// @throws as the constructor
   void Restart(const Scenario& scenario) {
     controller_.Restart(scenario.follower, scenario.step_s, scenario.follower_vehicle.model);

@@ -1,4 +1,5 @@
-// Chooses the driver of each following car: as the scenario says, or drawn with its seed.
+// Chooses the driver of each following car. The scenario names the driver, or the driver is drawn
+// with the scenario's seed.
 #pragma once
 
 #include <cstddef>
@@ -14,9 +15,9 @@ struct DriverAssignment {
   models::Style style = models::Style::kNormal;  // style of a person; without effect for an ACC
 };
 
-/// The driver of this following car; the car behind the host has number 0. Random choices are drawn
-/// for each car independently. So a further car, or other parameters of a car, do not change the
-/// drivers of the other cars.
+/// The driver of a following car; the car directly behind the host has number 0. Each car has its
+/// own random draw. So an additional car, or a change to one car, does not change the drivers of
+/// the other cars.
 DriverAssignment AssignmentOf(const Scenario& scenario, std::size_t car);
 
 }  // namespace fogline::follower

@@ -28,7 +28,7 @@ std::unique_ptr<CarDriver> MakePerson(const Scenario& scenario, std::size_t car,
   }
 }
 
-/// The driver of this car. If `before` and this driver are both an ACC, the result is `before`,
+/// The driver of this car. If this driver and `before` are both ACCs, the result is `before`,
 /// restarted. Otherwise the result is a new object.
 std::unique_ptr<CarDriver> MakeDriver(const Scenario& scenario, std::size_t car,
                                       std::unique_ptr<CarDriver> before) {

@@ -12,18 +12,18 @@
 
 namespace fogline::follower {
 
-/// Drives each following car behind the car in front of it, with the same ACC as the host's
-/// (acc_driver.h) or as a person (person.h). Each driver receives the truth: the gap, and the
-/// speeds of both cars. The following cars represent the traffic that a host endangers if it slows
-/// down for no reason. They are not part of the host's automation.
+/// Drives the following cars. The driver of each car is the same ACC as in the host (acc_driver.h),
+/// or a person (person.h). Each driver receives the truth: the gap, and the speeds of both cars.
+/// The following cars represent the traffic that a host endangers if it slows down for no reason.
+/// The following cars are not part of the host's automation.
 class Follower {
  public:
   /// @throws InputError if the weights of scenario.follower make an ill-conditioned problem, or a
   ///     person's reaction time is more than 254 steps
   explicit Follower(const Scenario& scenario) { Restart(scenario); }
 
-  /// Resets the object to the state of a new Follower(scenario). It is cheaper than a new object if
-  /// an ACC's parameters are equal.
+  /// Resets the object to the state of a new Follower(scenario). Restart() is cheaper than a new
+  /// object if an ACC's parameters are equal.
   /// @throws as the constructor; Restart() must then succeed before the next Step()
   void Restart(const Scenario& scenario);
 

@@ -1,5 +1,5 @@
-// The following cars as a process: answers TRUTH with FOLLOWER_COMMAND. They are traffic, not a
-// part of the host's automation.
+// The following cars as a process: answers TRUTH with FOLLOWER_COMMAND. The following cars are
+// traffic, not a part of the host's automation.
 #include "services/follower/follower.h"
 #include "services/runtime/process/service.h"
 

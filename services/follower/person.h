@@ -13,19 +13,20 @@
 
 namespace fogline::follower {
 
-/// The IDM with the parameters of his style (services/models/follower/style.h), inside the Human
-/// Driver Model with its errors and reaction time (services/models/driver/human_driver.h). With a
-/// safety model he applies the smaller one of the model's acceleration and his own. The safety
-/// model has no errors, and has a reaction time of its own
-/// (services/models/follower/safety_response.h). With sight fog both models receive only what he
-/// sees in fog, as the host's driver (services/models/driver/fog_sight.h). So does the emergency
-/// braking of his car, if the car has it. Emergency braking has no errors and no reaction time.
+/// The IDM with the parameters of a driving style (services/models/follower/style.h), inside the
+/// Human Driver Model with its errors and reaction time (services/models/driver/human_driver.h).
+/// With a safety model, the person applies the smaller of two accelerations: that of the safety
+/// model and his own. The safety model has no errors, and has its own reaction time
+/// (services/models/follower/safety_response.h). With sight fog, both models receive only what the
+/// person sees in fog, like the host's driver (services/models/driver/fog_sight.h). Emergency
+/// braking, if the car has it, also receives what the person sees. Emergency braking has no errors
+/// and no reaction time.
 class Person final : public CarDriver {
  public:
-  /// @param sight nullopt if he sees perfectly
-  /// @param errors random numbers for his errors; each person has his own stream
-  /// @param aeb the emergency braking of his car
-  /// @throw std::invalid_argument if his reaction time has too many steps (HumanDriver)
+  /// @param sight nullopt if the person sees perfectly
+  /// @param errors random numbers for the person's errors; each person has a separate stream
+  /// @param aeb the emergency braking of the person's car
+  /// @throw std::invalid_argument if the reaction time has too many steps (HumanDriver)
   Person(models::Style style, const std::optional<models::FogSight>& sight,
          SafetyModelChoice safety, const Random& errors, double step_s,
          const std::optional<models::Aeb>& aeb = std::nullopt);

@@ -24,9 +24,10 @@ struct CorrectionTrace {
 /// P- H' + R, the variance of e is R^2 / S, and H P+ H' is R - R^2 / S.
 ///
 /// R never falls below the assumed variance R_0, for three reasons. The term of the innovation may
-/// be negative. A sensor that is wrong but steady pulls the estimate to its side. Then its
-/// innovations are small, and without the limit the filter would trust this sensor more and more.
-/// And the assumed variance covers errors that are not white, such as a constant offset.
+/// be negative. A sensor that is wrong but steady pulls the estimate to its side. Then the
+/// innovations of this sensor are small, and without the limit the filter would trust this sensor
+/// more and more. And the assumed variance covers errors that are not white, such as a constant
+/// offset.
 class AdaptiveNoise {
  public:
   /// @param assumed_variance R_0, above 0
@@ -36,8 +37,8 @@ class AdaptiveNoise {
   /// R for the next correction.
   double variance() const { return variance_; }
 
-  /// Call it after each correction by the value, and only then. A value that the filter does not
-  /// use says nothing about the noise of the values that it uses.
+  /// Call Learn() after each correction by this value, and only then. A value that the filter does
+  /// not use says nothing about the noise of the values that it uses.
   void Learn(const CorrectionTrace& correction);
 
  private:

@@ -40,8 +40,8 @@ void Ekf::Correct(const Jacobian& jacobian, double innovation, double noise_vari
   SetCovariance(keep * covariance_ * keep.transpose() + gain * noise_variance * gain.transpose());
 }
 
-// Rounding differs between an element and its mirror image. Both get their mean, so that the
-// covariance is symmetric to the last bit.
+// Rounding differs between an element and its mirror image. Both elements get their mean, so that
+// the covariance is symmetric to the last bit.
 void Ekf::SetCovariance(const Covariance& covariance) {
   covariance_ = (covariance + covariance.transpose()) / 2;
 }

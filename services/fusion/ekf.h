@@ -14,11 +14,11 @@ namespace fogline::fusion {
 ///     dv+  =       dv + T     (a_p - a_h)
 ///     a_p+ =                   a_p
 ///
-/// which is exact if both accelerations are constant within a step. White-noise jerk of power
-/// spectral density q drives a_p (Bar-Shalom, Li & Kirubarajan 2001, section 6.2.3).
+/// This prediction is exact if both accelerations are constant within a step. White-noise jerk of
+/// power spectral density q drives a_p (Bar-Shalom, Li & Kirubarajan 2001, section 6.2.3).
 ///
 /// The prediction is linear. Only the lateral offset of a sensor makes a measurement nonlinear;
-/// without lateral offsets this is a Kalman filter in the strict sense.
+/// without lateral offsets, the filter is a Kalman filter in the strict sense.
 class Ekf {
  public:
   using State = Eigen::Vector3d;
@@ -37,9 +37,9 @@ class Ekf {
   /// Variance H P H' + R of the innovation of a value with Jacobian H and noise variance R.
   double InnovationVariance(const Jacobian& jacobian, double noise_variance) const;
 
-  /// Corrects the estimate by one measured value. `innovation` is measured minus predicted. It uses
-  /// Joseph's form, P = (I - K H) P (I - K H)' + K R K', which keeps P positive definite in spite
-  /// of rounding in K (Bucy & Joseph 1968).
+  /// Corrects the estimate by one measured value. `innovation` is measured minus predicted. The
+  /// function uses Joseph's form, P = (I - K H) P (I - K H)' + K R K'. This form keeps P positive
+  /// definite in spite of rounding in K (Bucy & Joseph 1968).
   void Correct(const Jacobian& jacobian, double innovation, double noise_variance);
 
   const State& state() const { return state_; }

@@ -12,13 +12,13 @@
 namespace fogline::fusion {
 namespace {
 
-// The filter does not start from a range of at most this many lateral offsets, because the distance
-// ahead is then too uncertain. At 2 the cosine is 0.87.
+// The filter starts only from a range of more than this many lateral offsets. At a smaller range,
+// the distance ahead is too uncertain. At 2 offsets, the cosine is 0.87.
 constexpr double kStartRangePerOffset = 2.0;
 
 constexpr double Square(double x) { return x * x; }
 
-// Distance ahead of a target at `range_m`, if the filter can start from it.
+// Distance ahead of a target at `range_m`; nullopt if the filter cannot start from this range.
 std::optional<double> StartDistance(double range_m, double lateral_offset_m) {
   if (range_m <= kStartRangePerOffset * std::abs(lateral_offset_m)) return std::nullopt;
   return std::sqrt(Square(range_m) - Square(lateral_offset_m));
@@ -77,7 +77,7 @@ const track_t& Fusion::Step(const ego_t& ego, const radar_t& radar, const lidar_
   return out_;
 }
 
-// Starts with the state that exactly explains the radar's two values. The covariance is that of the
+// Starts with the state that exactly explains the radar's two values. The covariance comes from the
 // noise of these values: P = J^-1 R J^-T, J the Jacobian of both values. The values contain no
 // acceleration.
 bool Fusion::StartFromRadar(const radar_t& radar) {
@@ -173,8 +173,7 @@ void Fusion::Record(Value value, double innovation, double variance, std::int8_t
   out_.usage[value] = usage;
 }
 
-// The host's acceleration is known, so subtracting it from that of the preceding car does not
-// change the covariance.
+// The host's acceleration is known, so its subtraction does not change the covariance.
 void Fusion::Report(double host_acceleration_mps2) {
   const Ekf::State& state = ekf_.state();
   out_.valid = 1;

@@ -1,6 +1,6 @@
-// Fuses radar and LiDAR into one estimate of the car ahead. It knows the geometry of the sensors,
-// but not whether there is fog. So it trusts the LiDAR in fog, too (unless gating is on). The
-// experiment is about this weakness.
+// Fuses radar and LiDAR into one estimate of the car ahead. The fusion knows the geometry of the
+// sensors, but does not know whether there is fog. So the fusion trusts the LiDAR in fog, too
+// (unless gating is on). The experiment is about this weakness.
 #pragma once
 
 #include <array>
@@ -18,31 +18,31 @@
 namespace fogline::fusion {
 
 /// Extended Kalman filter (ekf.h) over radar range, radar range rate and LiDAR range, corrected by
-/// one value after the other in this order. Each value is compared with the state that the values
-/// before it have corrected. The noises of the values are independent, so without lateral offsets
-/// the result is that of a joint correction. Values that are missing or that the gate refuses are
+/// one value after another in this order. Each value is compared with the state that the earlier
+/// values have corrected. The noises of the values are independent, so without lateral offsets the
+/// result is that of a joint correction. Missing values and values that the gate refuses are
 /// skipped.
 ///
 /// The assumed noise is that of the scenario's section `fusion`. The filter does not use the
 /// standard deviations that the sensors state (range_std_m and the like), because a sensor does not
-/// know when fog deceives it. If the scenario says so, the filter estimates the noise of each value
-/// by itself (adaptive_noise.h), from the values that have corrected it.
+/// know when fog deceives it. With fusion.adaptive_noise, the filter itself estimates the noise of
+/// each value from the corrections by this value (adaptive_noise.h).
 ///
 /// A policy that selects sensors (services/decision/policies) first judges each step's values
-/// against the prediction. The values of a sensor that it does not select are compared with the
-/// prediction, but correct nothing.
+/// against the prediction. The values of a sensor that the policy does not select are compared with
+/// the prediction, but do not correct the filter.
 class Fusion {
  public:
   explicit Fusion(const Scenario& scenario);
 
-  /// Whether the scenario's policy needs the truth. Then SetOnDemandInput() is called before every
-  /// Step().
+  /// Whether the scenario's policy needs the truth. If it does, SetOnDemandInput() is called before
+  /// every Step().
   static bool UsesOnDemandInput(const Scenario& scenario);
   /// Takes only the gap from the truth. Only the policy uses this gap.
   void SetOnDemandInput(const truth_t& truth) { true_gap_m_ = truth.host_gap_m; }
 
-  /// The track of this step. Call it once per step, in the order of steps, beginning with the
-  /// first. `ego` has the host's acceleration during the step that ended here. The result is valid
+  /// The track of this step. Call it once per step, in the order of steps, beginning with the first
+  /// step. `ego` has the host's acceleration during the step that ended here. The result is valid
   /// until the next call.
   const track_t& Step(const ego_t& ego, const radar_t& radar, const lidar_t& lidar);
 
@@ -50,7 +50,7 @@ class Fusion {
   /// Values in order of use; index of track_t's innovation, innovation_variance and usage.
   enum Value : std::size_t { kRadarRange, kRadarRangeRate, kLidarRange, kNumValues };
 
-  /// A measured value as the present estimate predicts it.
+  /// The prediction of a measured value from the present estimate.
   struct Expectation {
     double value;
     Ekf::Jacobian jacobian;
@@ -68,7 +68,7 @@ class Fusion {
   void CorrectByLidar(const lidar_t& lidar);
   Expectation Expect(Value value) const;
   void Correct(Value value, double measured);
-  /// Whether a value is used, if gate or policy may refuse values.
+  /// Usage of a value (see track_t), if gate or policy may refuse values.
   std::int8_t UsageOf(Value value, double normalised_innovation_squared);
   void Record(Value value, double innovation, double variance, std::int8_t usage);
   void Report(double host_acceleration_mps2);

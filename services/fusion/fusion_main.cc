@@ -1,5 +1,5 @@
-// The process that fuses radar and LiDAR into a track of the car ahead (RADAR, LIDAR, HOST_EGO to
-// TRACK). It does not know whether there is fog.
+// The process that fuses radar and LiDAR into a track of the car ahead. The process reads RADAR,
+// LIDAR and HOST_EGO, and sends TRACK. The process does not know whether there is fog.
 #include "services/fusion/fusion.h"
 #include "services/runtime/process/service.h"
 

@@ -5,11 +5,11 @@
 
 namespace fogline::fusion {
 
-/// Gate on the normalised innovation squared of one measured value, nu^2 / S. It is chi-square
-/// distributed with one degree of freedom while the filter's model holds (Bar-Shalom, Li &
-/// Kirubarajan 2001, section 5.4). After `reopen_after` refusals in a row a change of the scene is
-/// more likely than failed measurements. So the gate then stays open until a value is inside it
-/// again. A gate that never reopens refuses every value outside of it.
+/// Gate on the normalised innovation squared of one measured value, nu^2 / S. This value is
+/// chi-square distributed with one degree of freedom while the filter's model is valid (Bar-Shalom,
+/// Li & Kirubarajan 2001, section 5.4). After `reopen_after` refusals in a row, a change of the
+/// scene is more likely than failed measurements. So the gate then stays open until a value is
+/// inside the gate again. A gate that never reopens refuses every value outside of it.
 class Gate {
  public:
   /// @param probability probability that a good value is inside the gate, in (0, 1)
@@ -25,8 +25,8 @@ class Gate {
  private:
   double limit_;
   std::int64_t reopen_after_;
-  // Number of refusals in a row. It stays at reopen_after_ while the gate is open, and at 0 if the
-  // gate never reopens.
+  // Number of refusals in a row. The number stays at reopen_after_ while the gate is open, and at 0
+  // if the gate never reopens.
   std::int64_t refusals_ = 0;
 };
 

@@ -12,9 +12,9 @@ namespace fogline::fusion {
 ///     range        r = sqrt(d^2 + y^2)        dr/dd = d / r
 ///     range rate     = dv d / r               d/dd = dv y^2 / r^3,   d/ddv = d / r
 ///
-/// With y = 0 both are linear: r = d, and the range rate is dv. If an estimate has d < 0, the range
-/// counts as negative. Then the next measurement pulls the estimate back to the front. With a
-/// positive range the estimate could stay at the mirror image behind the sensor.
+/// With y = 0, range and range rate are linear: r = d, and the range rate is dv. If an estimate has
+/// d < 0, the range counts as negative. The next measurement then pulls the estimate back to the
+/// front. With a positive range the estimate could stay at the mirror image behind the sensor.
 class LineOfSight {
  public:
   LineOfSight(double distance_m, double lateral_offset_m) {
@@ -38,7 +38,7 @@ class LineOfSight {
   }
 
  private:
-  // At a smaller range rounding dominates the direction; the target then counts as straight ahead.
+  // At a smaller range, the direction is mostly rounding, so the target counts as straight ahead.
   static constexpr double kTouching_m = 1e-9;
 
   double range_m_ = 0;

@@ -10,8 +10,8 @@
 
 namespace fogline::lidar {
 
-/// Powers as ln(P / P_min), P_min being the detection threshold. An echo above 0 is detected. The
-/// value is minus infinity if there is no echo.
+/// Powers as ln(P / P_min), where P_min is the detection threshold. An echo above 0 is detected.
+/// The value is minus infinity if there is no echo.
 struct EchoPowers {
   double target;
   double fog;
@@ -20,8 +20,8 @@ struct EchoPowers {
 
 class EchoModel {
  public:
-  /// For extinctions from `from_pm` to `to_pm` in 1/m. At an extinction outside of this range, the
-  /// shape of the fog's echo is that at the nearer end.
+  /// For extinctions from `from_pm` to `to_pm` in 1/m. At an extinction outside of this interval,
+  /// the fog's echo has the shape that it has at the nearer end.
   EchoModel(const LidarBeamSection& beam, double from_pm, double to_pm);
 
   /// Echoes of a target at `range_m` in air of this visibility (both > 0 m):
@@ -31,13 +31,13 @@ class EchoModel {
   /// by g(R)/g(r*). Up to R1 the beam is blind, and there is no echo.
   EchoPowers At(double range_m, double visibility_m) const;
 
-  /// Power relative to that of the target in clear air at `range_m`, the distance of the echo. It
-  /// is 1 for the target itself in clear air at any distance, and a few per mille for fog.
+  /// Power of an echo at `range_m`, relative to the power of the target in clear air at this
+  /// distance. The result is 1 for the target itself in clear air, and a few per mille for fog.
   double Intensity(double log_power, double range_m) const;
 
  private:
   // Nodes of the table. Linear interpolation has an error of 0.2 % in J and 2 cm in r*, up to the
-  // densest fog of scenarios (5 m).
+  // densest fog of scenarios (visibility 5 m).
   static constexpr std::size_t kNodes = 33;
 
   struct LogPeak {
@@ -50,7 +50,7 @@ class EchoModel {
 
   BeamOptics optics_;
   double log_target_m2_;    // ln(Gamma / Gamma_c R_c^2)
-  double log_backscatter_;  // ln(pi beta V / Gamma_c R_c^2), beta V being constant
+  double log_backscatter_;  // ln(pi beta V / Gamma_c R_c^2); beta V is constant
   double from_pm_;
   double to_pm_;
   std::array<LogPeak, kNodes> peaks_;  // at equally spaced extinctions

@@ -37,8 +37,8 @@ double FoldedPulse(const BeamOptics& optics, double extinction_pm, double end_m)
 }
 
 // Range at which g is largest: d/dr ln g = 1 / (r - R1) - 2 / r - 2 alpha = 0 below R2, or R2
-// itself. The root of 2 alpha r^2 + (1 - 2 alpha R1) r - 2 R1 = 0 is computed in a form that holds
-// for alpha = 0, too.
+// itself. The root of 2 alpha r^2 + (1 - 2 alpha R1) r - 2 R1 = 0 is computed in a form that is
+// also valid for alpha = 0.
 double StrongestGainRange(const BeamOptics& optics, double extinction_pm) {
   const double start_m = optics.overlap_start_m;
   const double b = 1.0 - 2.0 * extinction_pm * start_m;
@@ -65,9 +65,9 @@ double ChannelGain(const BeamOptics& optics, double extinction_pm, double range_
 }
 
 FogPeak FindFogPeak(const BeamOptics& optics, double extinction_pm) {
-  // g has one maximum, and so has g folded with the pulse. The folded pulse rises until the pulse
-  // reaches the maximum of g, and falls after the pulse has passed this maximum. So the maximum of
-  // the folded pulse lies between these two places.
+  // g has one maximum. g folded with the pulse has one maximum, too. The folded pulse rises until
+  // the pulse reaches the maximum of g, and falls after the pulse has passed this maximum. So the
+  // maximum of the folded pulse lies between these two positions.
   const double from_m = StrongestGainRange(optics, extinction_pm);
   const auto negative = [&](double end_m) { return -FoldedPulse(optics, extinction_pm, end_m); };
   const auto [end_m, value] = boost::math::tools::brent_find_minima(

@@ -9,8 +9,8 @@
 //   J = max over R' of  integral over [R' - L, R'] of  sin^2(pi (R' - r) / L) g(r) dr      in 1/m
 //
 // K is the same in both formulas, because the target's delta pulse has the factor 2/c here. Hahner
-// et al. include this factor in their Gamma (their 1e-6 is 150 here). The maximum of the fog's echo
-// lies at r* = R' - L / 2.
+// et al. include this factor in their Gamma (their Gamma of 1e-6 is 150 here). The maximum of the
+// fog's echo lies at r* = R' - L / 2.
 #pragma once
 
 #include "scenario/sections/sensing.h"
@@ -32,19 +32,20 @@ double Overlap(const BeamOptics& optics, double range_m);
 /// g(r) in 1/m2.
 double ChannelGain(const BeamOptics& optics, double extinction_pm, double range_m);
 
-/// Strongest echo of fog without a target in it.
+/// Strongest echo of fog, if no target is in the fog.
 struct FogPeak {
   double strength_pm;  // J
   double range_m;      // r*
 };
 
-/// J and r* by quadrature and maximisation, which takes some microseconds. (A short pulse has J = L
-/// g(r*) / 2 with r* where g is largest.) extinction_pm >= 0.
+/// J and r* by quadrature and maximisation. The computation takes some microseconds. (For a short
+/// pulse, J is L g(r*) / 2, and g is largest at r*.) extinction_pm >= 0.
 FogPeak FindFogPeak(const BeamOptics& optics, double extinction_pm);
 
-/// Beta(2, 20) distributed number from two uniform ones in (0, 1): the second smallest of 21
-/// uniform numbers. The smallest is 1 - u^(1/21). The next one divides the rest of the interval
-/// like the smallest of 20 numbers (Devroye 1986, V.3). The method is exact and needs no rejection.
+/// Beta(2, 20) distributed number from two uniform numbers in (0, 1): the second smallest of 21
+/// uniform numbers. The smallest number is 1 - u^(1/21). The second smallest divides the rest of
+/// the interval like the smallest of 20 numbers (Devroye 1986, V.3). The method is exact and needs
+/// no rejection.
 double Beta2And20(double u, double v);
 
 }  // namespace fogline::lidar

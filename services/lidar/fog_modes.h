@@ -8,7 +8,7 @@
 
 namespace fogline::lidar {
 
-/// What the LiDAR's value is in one step.
+/// Kind of the LiDAR's value in one step.
 enum class FogMode : std::uint8_t {
   kRight,
   kBiased,    // too short by fog.bias_m

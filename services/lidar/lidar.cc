@@ -79,8 +79,8 @@ std::optional<Lidar::Echo> Lidar::ModalEcho(const truth_t& truth, double target_
   return PlainEchoAt(target_m, 0.0);
 }
 
-// The place of the echo is that of model beam. If the car is so near that the beam is blind, the
-// car hides the fog.
+// The echo has the range that model beam gives for an echo of the fog. If the car is so near that
+// the beam is blind, the car hides the fog.
 Lidar::Echo Lidar::NearEcho(const truth_t& truth, double target_m) const {
   const LidarBeamSection& beam = lidar_.beam;
   if (target_m <= beam.overlap_start_m) {
@@ -98,8 +98,8 @@ Lidar::Echo Lidar::NearEcho(const truth_t& truth, double target_m) const {
 std::optional<Lidar::Echo> Lidar::MedianEcho(const truth_t& truth, double target_m) {
   CollectEchoes(truth, target_m);
   if (2 * static_cast<std::int64_t>(echoes_.size()) < lidar_.beam.beams) return std::nullopt;
-  // If the number of echoes is even, the median is the nearer of the middle two, so that the range
-  // is that of an echo.
+  // If the number of echoes is even, the median is the nearer of the two middle echoes. So the
+  // range is always that of one echo.
   const auto median = echoes_.begin() + static_cast<std::ptrdiff_t>((echoes_.size() - 1) / 2);
   std::nth_element(echoes_.begin(), median, echoes_.end());
   // The variance of the time of arrival has a part proportional to 1 / SNR. At the detection

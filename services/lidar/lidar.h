@@ -1,5 +1,6 @@
-// The host's LiDAR. In each step it measures one distance of the preceding car, or none. It tracks
-// nothing, filters nothing, and cannot distinguish an echo of the fog from an echo of the car.
+// The host's LiDAR. In each step, the LiDAR measures one distance of the preceding car, or none.
+// The LiDAR does not track or filter, and cannot distinguish an echo of the fog from an echo of the
+// car.
 #pragma once
 
 #include <compare>
@@ -16,18 +17,18 @@
 
 namespace fogline::lidar {
 
-/// With x the gap and y the lateral offset, the target is at r = sqrt(x^2 + y^2), and the LiDAR
-/// reports range = d + bias + noise with Gaussian white noise. The scenario's fog model gives d:
+/// With the gap x and the lateral offset y, the target is at r = sqrt(x^2 + y^2). The LiDAR reports
+/// range = d + bias + noise with Gaussian white noise. The scenario's fog model gives d:
 ///     none   d = r
 ///     bias   d = r - fog.bias_m * fog level              (Sourav & Cheng 2024)
 ///     beam   d = median over the beams' echoes           (services/lidar/fog_beam.h)
 ///     modes  d = r, or r - fog.bias_m, or an echo of the fog, or none, each in a share of the
 ///            steps                                       (services/lidar/fog_modes.h)
-/// On each beam the echo powers of target and fog are lognormal and independent. The stronger one
-/// is the beam's echo if it exceeds the detection threshold. The fog's echo lies at r* plus a
-/// Beta(2, 20) distributed scatter, never behind the target. At least half of the beams must have
-/// an echo. So the range at which a single beam detects with probability 1/2 is also that of the
-/// LiDAR, for any number of beams. A minority of the beams cannot determine the result.
+/// On each beam the echo powers of target and fog are lognormal and independent. The stronger of
+/// the two is the beam's echo if it exceeds the detection threshold. The fog's echo lies at r* plus
+/// a Beta(2, 20) distributed scatter, never behind the target. At least half of the beams must have
+/// an echo. So a single beam and the LiDAR have the same range at which they detect with
+/// probability 1/2, for any number of beams. A minority of the beams cannot determine the result.
 class Lidar {
  public:
   /// Indices of the draws of stream kLidar within a step.
@@ -42,8 +43,8 @@ class Lidar {
   /// @throw InputError if the shares of fog model modes add up to more than 1
   explicit Lidar(const Scenario& scenario);
 
-  /// The measurement in the step of `truth`. It depends only on scenario and truth, not on the
-  /// steps before.
+  /// The measurement in the step of `truth`. The measurement depends only on scenario and truth,
+  /// not on earlier steps.
   const lidar_t& Step(const truth_t& truth);
 
  private:

@@ -1,5 +1,5 @@
-// The process `lidar`: measures the distance of the preceding car once per step. In fog it
-// sometimes measures the distance of the fog. It does not receive the radar's values.
+// The process `lidar`: measures the distance of the preceding car once per step. In fog, the LiDAR
+// sometimes measures the distance of the fog. The process does not receive the radar's values.
 // services/runtime/process/service.h connects the process to its channels.
 #include "services/lidar/lidar.h"
 #include "services/runtime/process/service.h"

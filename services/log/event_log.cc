@@ -26,8 +26,8 @@ namespace fogline::log {
 namespace {
 
 constexpr std::uint32_t kSyncWord = 0xEDA1DA01;
-// At most this many bytes of a mapped log stay in memory. This is little memory for a process. Each
-// call of madvise() can still release many pages.
+// At most this many bytes of a mapped log stay in memory. This amount is small for a process, but
+// large enough for a call of madvise() to release many pages.
 constexpr std::size_t kMostMapped = 4 << 20;
 
 std::uint32_t ReadUint32(runtime::Bytes bytes, std::size_t offset) {

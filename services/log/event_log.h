@@ -22,11 +22,11 @@ namespace fogline::log {
 /// The bytes before an event's channel: sync word (4), number (8), time (8), and the lengths of
 /// channel and data (4 each).
 inline constexpr std::size_t kEventHeader = 28;
-/// The most bytes that an event takes besides its data.
+/// Largest size of an event without its data, in bytes.
 inline constexpr std::size_t kMostEventOverhead = kEventHeader + runtime::kLongestChannel;
 
 /// The beginning of a log: its first bytes, and the number of whole events in them. A writer that
-/// continues a log keeps its beginning.
+/// continues a log does not change this beginning.
 struct LogHead {
   std::int64_t bytes = 0;
   std::int64_t events = 0;
@@ -40,17 +40,17 @@ struct WrittenLog {
   std::uint32_t checksum = 0;
 };
 
-/// A killed recorder leaves at most kRingSteps incomplete steps and a torn event behind the last
-/// complete step. It has not reported these bytes. They fit into this number of bytes at the end of
-/// the log.
+/// A killed recorder leaves at most kRingSteps incomplete steps and a torn event after the last
+/// complete step. The recorder has not reported these bytes. All these bytes lie within the last
+/// kTailBytes of the log.
 inline constexpr std::int64_t kTailBytes = 1 << 20;
 
-/// Appends events to a new file, or to an old file of which only the beginning is kept.
+/// Appends events to a new file, or continues an old file after a given LogHead.
 class EventLogWriter {
  public:
-  /// Opens the file for writing and replaces an existing one. @throws InputError if that fails
+  /// Opens the file for writing and replaces an existing file. @throws InputError if that fails
   explicit EventLogWriter(const std::filesystem::path& file);
-  /// Cuts off an existing file behind `head`, and continues the file there. @throws InputError if
+  /// Truncates an existing file after `head`, and continues the file there. @throws InputError if
   /// that fails
   EventLogWriter(const std::filesystem::path& file, const LogHead& head);
   ~EventLogWriter();
@@ -67,17 +67,17 @@ class EventLogWriter {
   std::int64_t size() const { return size_; }
   /// The bytes of all events so far (size()), and the number of these events.
   LogHead head() const { return {.bytes = size_, .events = events_}; }
-  /// The part of the log that the operating system has. In a continued log this part begins with
-  /// the last kTailBytes of the old log, as they were found in the file. The earlier writer has
-  /// reported the bytes before this part.
+  /// The part of the log that was handed to the operating system. In a continued log this part
+  /// begins with the last kTailBytes of the old log, as they were found in the file. The earlier
+  /// writer has reported the bytes before this part.
   const WrittenLog& written() const { return written_; }
 
  private:
   bool WriteOut();
-  /// Adds bytes to written_. The operating system has these bytes.
+  /// Counts bytes in written_ after they were handed to the operating system.
   void CountWritten(runtime::Bytes bytes);
   /// Reads the last kTailBytes of the head and adds them to written_.
-  /// @return false, with errno, if they cannot be read
+  /// @return false, with errno, if these bytes cannot be read
   bool CountHead(std::int64_t bytes);
   [[noreturn]] void FailToWrite() const;
 
@@ -96,7 +96,7 @@ void AppendEvent(std::int64_t number, std::string_view channel, std::int64_t uti
 /// Whether the file begins like an event log or is empty, so that a log may replace it.
 bool IsEventLogOrEmpty(const std::filesystem::path& file);
 
-/// One event; views into the mapped file.
+/// One event. `channel` and `data` are views into the mapped file.
 struct Event {
   std::int64_t number;
   std::int64_t utime;
@@ -107,17 +107,17 @@ struct Event {
 /// The event at the beginning of `bytes`; nullopt if there is none.
 /// @param why is set to the reason if there is no event
 std::optional<Event> ParseEvent(runtime::Bytes bytes, std::string_view& why);
-/// The bytes that an event takes in a file.
+/// The size of an event in a file, in bytes.
 std::size_t SizeInFile(const Event& event);
 
-/// The place of the first event in `bytes`, from `offset` on, that `accept` recognises; nullopt if
-/// there is no such event. Other bytes may stand before this event, such as the end of another
-/// event.
+/// The offset of the first event in `bytes`, from `offset` on, for which `accept` returns true;
+/// nullopt if there is no such event. Other bytes may precede this event, such as the end of
+/// another event.
 std::optional<std::size_t> FindEvent(runtime::Bytes bytes, std::size_t offset,
                                      const std::function<bool(const Event&)>& accept);
 
-/// Reads a log from front to back without copying. A torn tail (an incomplete last event, which a
-/// kill or a full disk leaves) ends the log. torn() describes the torn tail.
+/// Reads a log from its beginning to its end without copying. A torn tail (an incomplete last
+/// event, which a kill or a full disk leaves) ends the log. torn() describes the torn tail.
 class EventLogReader {
  public:
   /// @throws InputError if the file cannot be read or does not begin like an event log
@@ -128,7 +128,7 @@ class EventLogReader {
 
   /// The next event; nullopt at the end or at a torn tail.
   std::optional<Event> Next();
-  /// Next() then continues behind `head`.
+  /// After this call, Next() continues after `head`.
   void GoTo(const LogHead& head);
   /// What is wrong with the end of the file; "" if nothing is wrong. Known once Next() has reached
   /// the end.
@@ -147,8 +147,8 @@ class EventLogReader {
                    const std::function<void(runtime::Bytes)>& use) const;
 
  private:
-  /// Releases the memory of the bytes that have been read. Otherwise the mapped file would stay in
-  /// memory.
+  /// Releases the memory of the bytes that have been read. Without this call, the mapped file would
+  /// stay in memory.
   void Release();
 
   runtime::Bytes content_;

@@ -29,13 +29,14 @@ bool IsInVain(const std::filesystem::path& log) {
   }
 }
 
-/// The name of the log that was in `place` before a run began to replace it. A later run finds the
-/// older log by this name. @param place without symbolic links
+/// The name that the older log in `place` gets while a run replaces it. A later run finds the older
+/// log by this name. @param place without symbolic links
 std::filesystem::path OlderOf(const std::filesystem::path& place) {
   return place.parent_path() / (".fogline-older-" + place.filename().string());
 }
 
-/// Makes an empty file with the name of an older log. It has the same rights as `file`.
+/// Makes an empty file with the name of an older log. The new file has the same permissions as
+/// `file`.
 std::optional<std::filesystem::path> EmptyFileBeside(const std::filesystem::path& file) {
   struct stat info {};
   std::filesystem::path name = OlderOf(file);
@@ -88,7 +89,7 @@ LogOfRun::~LogOfRun() {
   } else if (!older_.empty()) {
     std::filesystem::remove(older_, ignored);
   } else if (in_vain) {
-    // A link to the log stays.
+    // A link to the log is not removed.
     std::filesystem::remove(std::filesystem::canonical(path_, ignored), ignored);
   }
 }
@@ -107,8 +108,8 @@ std::string TakeBackOlder(const std::filesystem::path& log, std::string_view opt
   const std::filesystem::path older = OlderOf(place);
   if (error || !IsOlderLog(older)) return "";
   const FileLock lock(log, FileLock::Kind::kOwn, option, "run", patience);
-  if (!IsOlderLog(older)) return "";              // its run was alive, and has ended
-  if (std::filesystem::is_empty(older, error)) {  // its run was killed before it moved the log
+  if (!IsOlderLog(older)) return "";              // its run has ended normally
+  if (std::filesystem::is_empty(older, error)) {  // its run was killed before the exchange
     std::filesystem::remove(older, error);
     return "";
   }

@@ -11,12 +11,12 @@
 
 namespace fogline::log {
 
-/// Keeps a log locked against other runs as long as this object exists. The destructor removes a
-/// log without a step, because its run never began. If this log has replaced an older log, the
-/// older log comes back.
+/// Locks a log against other runs for the lifetime of this object. The destructor removes a log
+/// without a step, because its run never began. If this log has replaced an older log, the
+/// destructor restores the older log.
 class LogOfRun {
  public:
-  /// A run without a log.
+  /// For a run without a log.
   LogOfRun() = default;
   /// @throws InputError if another run is writing the log, or if the log cannot be written
   explicit LogOfRun(const std::filesystem::path& log);
@@ -24,7 +24,7 @@ class LogOfRun {
   LogOfRun(std::filesystem::path log, std::unique_ptr<FileLock> lock);
   /// Puts an empty log in the place of an older log. The older log stays in the same folder as
   /// ".fogline-older-NAME" until RemoveOlder() or the end of this object. If the file system cannot
-  /// exchange two files, or cannot make a file of this name, the run writes over the older log.
+  /// exchange two files, or cannot make a file of this name, the run overwrites the older log.
   /// @param lock the lock on the older log
   static LogOfRun InPlaceOf(const std::filesystem::path& log, std::unique_ptr<FileLock> lock);
   ~LogOfRun();
@@ -32,7 +32,7 @@ class LogOfRun {
   LogOfRun(const LogOfRun&) = delete;
   LogOfRun& operator=(const LogOfRun&) = delete;
 
-  /// Removes the older log. Call it when the log has its first step: then a run that is killed
+  /// Removes the older log. Call it when the log has its first step. From then on, a killed run
   /// leaves one log and no other file. Later calls do nothing.
   void RemoveOlder();
 
@@ -45,8 +45,9 @@ class LogOfRun {
   std::filesystem::path older_;  // the older log; "" if there was none
 };
 
-/// Looks for the older log that a killed run has left beside `log`. If that run had not begun to
-/// write `log`, the older log comes back: the result is the same as if the run had ended by itself.
+/// Looks for the older log that a killed run has left beside `log`. If that run has written no step
+/// into `log`, the function restores the older log. The files are then the same as after a normal
+/// end of the run.
 /// @param option the command line option that names the log, such as "--log"
 /// @param patience how long to wait until the processes of the killed run have ended
 /// @return one line that says what was found; "" if there is no older log

@@ -74,7 +74,7 @@ void SealLog(const std::filesystem::path& log, const LogHead& before, log_seal_t
   const int error =
       fd < 0 ? errno : WriteAll(fd, {reinterpret_cast<const char*>(event.data()), event.size()});
   // If only a part of the seal is written, this part is removed. Otherwise the log would look like
-  // one that was cut off.
+  // a log that was cut off.
   const bool left = error != 0 && fd >= 0 && ftruncate(fd, before.bytes) != 0;
   if (fd >= 0) close(fd);
   if (error == 0) return;

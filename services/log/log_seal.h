@@ -1,7 +1,7 @@
 // The seal of a log: its last event, which describes the log at the end of the run
-// (lcmtypes/log_seal_t.lcm). It shows whether the log was changed since the end of the run. Without
-// a key a person can change the log and make another seal. With a key only a person who has the key
-// can do this. The seal is not part of the run and not in its digest.
+// (lcmtypes/log_seal_t.lcm). The seal shows whether the log was changed after the end of the run.
+// Without a key, any person can change the log and make a new seal. With a key, only a person who
+// has the key can make a new seal. The seal is not part of the run and not in its digest.
 #pragma once
 
 #include <cstdint>
@@ -16,23 +16,23 @@
 
 namespace fogline::log {
 
-/// The channel of log_seal_t. It is not part of kGraph, because no process publishes it.
+/// The channel of log_seal_t. The channel is not part of kGraph, because no process publishes it.
 inline constexpr std::string_view kLogSealChannel = "FOGLINE_SEAL";
 
-/// An event that is a seal, or was one before it was changed.
+/// An event that is a seal, or that was a seal before it was changed.
 struct LogSeal {
-  bool whole = false;               // the event itself was not changed
+  bool whole = false;               // whether the event itself is unchanged
   log_seal_t says{};                // the contents of the event, if it is whole
-  bool copied = false;              // the log is a copy that was played and recorded again
+  bool copied = false;              // whether the log is a copy that was played and recorded again
   LogHead before{};                 // the log before the event
   std::vector<std::uint8_t> event;  // the event's data, with the signature if there is one
 };
 
-/// Whether an event is meant to be a seal, by its channel or by its type. So no single change makes
-/// a seal look like another event.
+/// Whether an event has the channel or the type of a seal. So a single change cannot make a seal
+/// look like another event.
 bool IsLogSeal(const Event& event);
 /// @pre IsLogSeal(event)
-/// @param before the events before this one
+/// @param before the events before this event
 LogSeal ReadLogSeal(const Event& event, const LogHead& before);
 
 /// Fills in `seal.check`, and appends the seal to a log.
@@ -43,9 +43,10 @@ LogSeal ReadLogSeal(const Event& event, const LogHead& before);
 void SealLog(const std::filesystem::path& log, const LogHead& before, log_seal_t seal,
              const runtime::SigningKey* key);
 
-/// Why a file is not the sealed file; "" if it is. A copy (LogSeal::copied) has other event times,
-/// so its bytes differ from the sealed bytes: the result is "". Equal bytes in a copy mean that the
-/// time of the seal was changed: the result says so.
+/// Why a file is not the sealed file; "" if it is the sealed file. A copy (LogSeal::copied) has
+/// other event times, so its bytes differ from the sealed bytes, and the result is "". If the bytes
+/// of a copy are equal to the sealed bytes, the time of the seal was changed. The result then says
+/// so.
 std::string WhyNotSealedFile(const LogSeal& seal, const EventLogReader& file);
 
 /// The result of verifying a seal's signature.

@@ -9,7 +9,7 @@ namespace fogline::log {
 void RealtimeAccumulator::Add(const status_t& status) {
   if (!runtime::IsPossible(status)) return;  // a file may contain any numbers
   status_t& last = last_[{status.role, status.instance}];
-  if (status.sequence <= last.sequence) return;  // a newer STATUS has overtaken it
+  if (status.sequence <= last.sequence) return;  // a newer STATUS came earlier
   last = status;
   fallbacks_.Add(status);
 }
@@ -21,7 +21,7 @@ void RealtimeAccumulator::AddStep(const runtime::ChannelSet& there) {
 
 std::int64_t RealtimeAccumulator::Unlogged(std::size_t channel) const {
   const Role from = kChannels[channel].from;
-  // The world leaves no step out, even if several processes of it compute the steps.
+  // The world skips no step, even if several processes of the world compute the steps.
   if (from == Role::kWorld) return steps_ - logged_[channel];
   std::int64_t published = 0;
   int processes = 0;
@@ -51,14 +51,14 @@ RealtimeFigures RealtimeAccumulator::Result() const {
     figures.unlogged_messages += Unlogged(i);
   }
   for (const auto& [process, status] : last_) {
-    if (process.first == NameOf(Role::kRecorder)) continue;  // no role waits for it
+    if (process.first == NameOf(Role::kRecorder)) continue;  // no role waits for the recorder
     figures.deadline_misses += status.deadline_misses;
     for (const std::int64_t late : status.input_late) figures.late_messages += late;
     if (process.first != NameOf(Role::kWorld)) continue;
     figures.ticks += status.ticks;
     figures.ticks_late += status.ticks_late;
     figures.ticks_missed += status.ticks_missed;
-    // Quantiles of several processes cannot be added, so the largest one counts.
+    // Quantiles of several processes cannot be added, so the largest quantile counts.
     figures.jitter_p99_us = std::max(figures.jitter_p99_us, status.jitter_p99_us);
     figures.latency_p50_us = std::max(figures.latency_p50_us, status.latency_p50_us);
     figures.latency_p99_us = std::max(figures.latency_p99_us, status.latency_p99_us);

@@ -1,4 +1,4 @@
-// How well a run in real time kept its time, by the STATUS messages in its log.
+// How well a run in real time met its due times, according to the STATUS messages in its log.
 #pragma once
 
 #include <array>
@@ -17,21 +17,21 @@ struct RealtimeFigures {
   double speed = 1;               // simulated seconds per second
   std::int64_t ticks = 0;         // steps that the world has begun
   std::int64_t ticks_late = 0;    // steps that the world has begun more than 5 ms late
-  std::int64_t ticks_missed = 0;  // ticks at which the world's process stood still
+  std::int64_t ticks_missed = 0;  // ticks that the world's process skipped
   // 99 % quantile of the time between a step's due time and its beginning by the world.
   std::int64_t jitter_p99_us = 0;
   // The time from sending TRUTH to receiving HOST_COMMAND, on the world's clock.
   std::int64_t latency_p50_us = 0;
   std::int64_t latency_p99_us = 0;
   std::int64_t latency_max_us = 0;
-  // Steps that a role left out, or computed without an input that was due.
+  // Steps that a role skipped, or computed without a due input.
   std::int64_t deadline_misses = 0;
   std::int64_t late_messages = 0;    // messages that came too late to be used
   std::int64_t missed_messages = 0;  // messages that are not in the log, published or not
   // At least this number of the missed messages was published. Messages that came too late for the
   // recorder do not count here.
   std::int64_t unlogged_messages = 0;
-  // The first fallbacks (FallbackLog::kMaxKept at most), and the number of later ones.
+  // The first fallbacks (FallbackLog::kMaxKept at most), and the number of later fallbacks.
   std::vector<runtime::Fallback> fallbacks;
   std::int64_t fallbacks_left_out = 0;
 };
@@ -66,16 +66,16 @@ class RealtimeAccumulator {
   RealtimeFigures Result() const;
 
  private:
-  /// At least this number of messages of a channel were published but are not in the log. Messages
-  /// that came too late for the recorder do not count here.
+  /// Lower bound of the number of messages of a channel that were published but are not in the log.
+  /// Messages that came too late for the recorder do not count here.
   std::int64_t Unlogged(std::size_t channel) const;
 
   double speed_;
   runtime::FallbackLog fallbacks_;
   std::int64_t steps_ = 0;                           // number of steps in the log
   std::array<std::int64_t, kNumChannels> logged_{};  // number of logged messages of each channel
-  // The last STATUS of each process, by role and instance. Its counters begin at the start of the
-  // process.
+  // The last STATUS of each process, by role and instance. The counters of a STATUS begin at the
+  // start of the process.
   std::map<std::pair<std::string, std::int64_t>, status_t> last_;
 };
 

@@ -13,15 +13,15 @@ namespace fogline::log {
 namespace {
 
 static_assert(kTailBytes > (runtime::kRingSteps + 3) * kMostStepBytes);
-// While a log is read from front to back, a STATUS is sent after each piece of this many bytes.
-// Even a slow disk reads such a piece in less than two heartbeats.
+// While a whole log is read, a STATUS is sent after each piece of this many bytes. Even a slow disk
+// reads such a piece in less than two heartbeats.
 constexpr std::int64_t kAliveEvery = 8 << 20;
-// The most steps in a row that a log in real time can lack. A run that loses more steps has ended
-// for another reason.
+// Largest number of consecutive steps that a log in real time can lack. A run that loses more steps
+// has already ended for another reason.
 constexpr std::int64_t kLongestGap = 1'000'000;
 
-/// Follows the events of a log in the order in which the recorder writes them. In lockstep these
-/// are whole steps, in real time the messages that came.
+/// Follows the events of a log in the order in which the recorder writes them. In lockstep, these
+/// are the events of whole steps. In real time, these are the messages that have arrived.
 class Follower {
  public:
   /// @param steps number of steps that have ended
@@ -59,8 +59,8 @@ class Follower {
     return true;
   }
 
-  /// In real time steps may lack messages, and STATUS stands between the steps. A step ends when it
-  /// has all its messages, or where a later step begins.
+  /// In real time, steps may lack messages, and STATUS messages come between the steps. A step ends
+  /// when it has all its messages, or when a later step begins.
   bool TakeRealtime(const Event& event, std::int64_t step, const LogHead& head) {
     if (!IsStepChannel(event.channel)) return false;
     if (step < remains_.steps || step > remains_.steps + kLongestGap) return false;
@@ -84,7 +84,7 @@ class Follower {
 
   const LogFront& front_;
   Remains remains_;
-  // Place in kStepNames of the next message; in real time, number of messages of the step so far.
+  // Index of the next message in kStepNames. In real time: number of messages of the step so far.
   std::size_t next_ = 0;
   truth_t truth_{};
   bool last_ = false;
@@ -108,8 +108,9 @@ Remains Follow(EventLogReader& reader, const LogFront& front, std::int64_t steps
   return follower.remains();
 }
 
-/// A place in a log at which reading can begin. In lockstep it is the first event of a step. In
-/// real time it is any event of a step, because an event does not show which event came before it.
+/// A position in a log at which reading can begin. In lockstep, the position is the first event of
+/// a step. In real time, the position is any event of a step, because an event does not show which
+/// event came before.
 struct Start {
   std::int64_t step;
   LogHead head;
@@ -132,8 +133,8 @@ std::optional<Start> StartIn(runtime::Bytes content, std::int64_t from, const Lo
   return Start{.step = step, .head = {.bytes = static_cast<std::int64_t>(*at), .events = number}};
 }
 
-/// What the log contains, by its last `tail` bytes; nullopt if these bytes do not show where the
-/// last complete step is.
+/// What the log contains, found from its last `tail` bytes; nullopt if these bytes do not show
+/// where the last complete step is.
 std::optional<Remains> ReadTail(EventLogReader& reader, const LogFront& front, std::int64_t tail) {
   const std::int64_t from = std::ssize(reader.content()) - tail;
   if (from <= front.head.bytes) return std::nullopt;

@@ -21,7 +21,7 @@ struct LogFront {
   LogHead head;  // the part with the scenario; step 0 follows
 };
 
-/// Reads the scenario of a log, or the part of the scenario that is there.
+/// Reads the scenario of a log, or the part of the scenario that the log contains.
 /// @throws InputError if the file is no event log
 LogFront ReadFront(const std::filesystem::path& file);
 
@@ -34,20 +34,20 @@ struct Remains {
 };
 
 /// Finds the last complete step of a log that a recorder was writing. Usually the end of the file
-/// shows this step. Otherwise the function reads the log from front to back, up to the first event
-/// that does not continue the log.
-/// @param front of the log, with its whole scenario
+/// shows this step. Otherwise the function reads the log from its beginning to the first event that
+/// does not continue the log.
+/// @param front the front of the log, with the whole scenario
 /// @param alive is called with the number of steps so far, from time to time while the function
 ///     reads the whole log
-/// @param tail the function first looks at this number of bytes at the end of the file
+/// @param tail number of bytes at the end of the file that the function reads first
 /// @throws InputError if it is no event log
 Remains ReadRemains(const std::filesystem::path& file, const LogFront& front,
                     const std::function<void(std::int64_t steps)>& alive = {},
                     std::int64_t tail = kTailBytes);
 
-/// An interrupted run leaves some incomplete steps, a torn event or a seal behind the complete
-/// steps of its log. For a log in lockstep, this function describes any other bytes there; "" if
-/// there are no other bytes.
+/// An interrupted run leaves some incomplete steps, a torn event or a seal after the complete steps
+/// of its log. For a log in lockstep, this function describes any other bytes after the complete
+/// steps; "" if there are no other bytes.
 /// @throws InputError if it is no event log
 std::string OddEnd(const std::filesystem::path& file, const LogFront& front,
                    const Remains& remains);

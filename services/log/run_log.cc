@@ -44,8 +44,8 @@ class RunLogReader::Assembler {
   const RunLog& run() const { return run_; }
 
  private:
-  // In real time, a message may stand in the log behind messages of later steps, but at most this
-  // many steps later.
+  // In real time, a message may come in the log after messages of later steps. The later steps are
+  // at most this many steps ahead.
   static constexpr std::int64_t kLongestOverdue = 64;
 
   struct Pending {
@@ -53,7 +53,8 @@ class RunLogReader::Assembler {
     std::size_t count = 0;
   };
 
-  /// Whether the next step is complete, or (in real time) no further message of it is expected.
+  /// Whether the next step is complete, or (in real time) no further message of this step is
+  /// expected.
   bool Ready() const {
     if (pending_.empty()) return false;
     const auto& [step, next] = *pending_.begin();
@@ -61,7 +62,7 @@ class RunLogReader::Assembler {
     return realtime_ && (ended_ || pending_.rbegin()->first > run_.steps + kLongestOverdue);
   }
 
-  /// The messages of the next step. In real time there may be none.
+  /// The messages of the next step. In real time, the step may have no messages.
   StepMessages TakeStep() {
     const auto next = pending_.begin();
     StepMessages messages{};
@@ -91,7 +92,7 @@ class RunLogReader::Assembler {
       return;
     }
     const std::int64_t step = runtime::ReadInt64(data, runtime::kStepOffset);
-    if (step < run_.steps) return;  // a repetition
+    if (step < run_.steps) return;  // a repeated message
     if (realtime_ && step >= steps_) return;
     Pending& pending = pending_[step];
     if (!pending.messages[channel].empty()) {
@@ -126,7 +127,7 @@ class RunLogReader::Assembler {
     if (realtime_) run_.realtime = realtime_->Result();
     const std::string alteration = Alteration();
     run_.altered = !alteration.empty();
-    // In real time the TRUTH that says so may be missing.
+    // In real time, the TRUTH message that has `last` may be missing.
     if (realtime_ && (run_.steps == steps_ || run_.steps == end_)) last_ = true;
     run_.ended =
         last_ && pending_.empty() && conflict_.empty() && reader_.torn().empty() && !run_.altered;

@@ -15,7 +15,7 @@
 
 namespace fogline::log {
 
-/// The messages of one step, by place in kChannels. A message that is not there is empty.
+/// The messages of one step, by index in kChannels. A missing message is empty.
 using StepMessages = std::array<runtime::Bytes, kNumChannels>;
 
 /// The contents of a log, apart from its steps.
@@ -26,13 +26,13 @@ struct RunLog {
   std::string scenario_hash;
   std::int64_t steps = 0;  // number of complete steps
   std::string digest;      // digest of these steps
-  // Whether four conditions hold: the log ends with the last step of the run, it was not changed
-  // since it was sealed, no event is torn, and no two messages of one step and channel differ. In
-  // lockstep, all messages must be there, too.
+  // Whether four conditions are met: the log ends with the last step of the run, the log was not
+  // changed after it was sealed, no event is torn, and no two messages of one step and channel
+  // differ. In lockstep, all messages must be in the log, too.
   bool ended = false;
-  // Whether the log has ended and, in real time, lacks no message that was published.
+  // Whether `ended` is true and, in real time, no published message is known to be missing.
   bool complete = false;
-  // Why the log is not complete, or what was ignored; "" if there is nothing to say.
+  // Why the log is not complete, or what was ignored; "" if there is no such remark.
   std::string note;
   LogHead events{};                         // all whole events of the file
   std::optional<LogSeal> seal;              // none in a log of lcm-logger or of an interrupted run
@@ -41,7 +41,7 @@ struct RunLog {
 };
 
 /// Reads a run step by step from a log that the recorder or lcm-logger wrote. The events may be in
-/// any order. If they are in order, the memory is bounded.
+/// any order. If the events are in order, the memory use is bounded.
 class RunLogReader {
  public:
   /// The part of a log that is compared with its seal.
@@ -55,7 +55,7 @@ class RunLogReader {
   ~RunLogReader();
 
   /// The next complete step, from 0 on; nullptr at the end. In real time the step may be
-  /// incomplete. Its bytes are valid as long as the reader exists.
+  /// incomplete. The bytes of the step are valid for the lifetime of the reader.
   /// @throws InputError at the end, when the log has no scenario of a run
   const StepMessages* Next();
 

@@ -1,6 +1,6 @@
-// The order of the steps in a log of the recorder. In lockstep the messages of a step stand
-// together, in the order of the graph table, and none is missing. So the number of an event gives
-// its step and channel. In real time messages may be missing, and STATUS stands between the steps.
+// The order of the steps in a log of the recorder. In lockstep, all messages of a step are next to
+// each other, in the order of the graph table. So the number of an event determines its step and
+// channel. In real time, messages may be missing, and STATUS messages come between the steps.
 #pragma once
 
 #include <algorithm>
@@ -29,7 +29,7 @@ inline constexpr std::array<std::string_view, kStepChannels> kStepNames = [] {
   return names;
 }();
 
-/// The most bytes that a step takes in a log.
+/// Largest size of a step in a log, in bytes.
 inline constexpr std::int64_t kMostStepBytes =
     kStepChannels * (kMostEventOverhead + runtime::kMaxMessageBytes);
 
@@ -47,7 +47,7 @@ inline std::int64_t StepOf(const Event& event, std::int64_t run_id) {
   return IsOfRun(event, run_id) ? runtime::ReadInt64(event.data, runtime::kStepOffset) : -1;
 }
 
-/// The step of a run in lockstep that begins with this event; nullopt if none does.
+/// The step of a run in lockstep that begins with this event; nullopt if no step begins here.
 /// @param front_events number of events before step 0
 inline std::optional<std::int64_t> StepBegunBy(const Event& event, std::int64_t front_events,
                                                std::int64_t run_id) {

@@ -12,11 +12,11 @@ namespace fogline::metrics {
 ///
 ///     |a(t) - a(t - 1 s)| / 1 s
 ///
-/// A change within one step, such as a hand-over, has the same value for every length of the step.
-/// (The change divided by the length of the step grows as the step shrinks.)
+/// For a change within one step, such as a hand-over, this value does not depend on the length of
+/// the step. (The change divided by the length of the step grows as the step shrinks.)
 class AveragedJerk {
  public:
-  /// Adds the acceleration that was applied from the sample before to this one. Times ascend.
+  /// Adds the acceleration that was applied from the previous sample to this sample. Times ascend.
   /// @return |jerk| in m/s3, averaged over the second that ends now; nullopt before the
   ///     accelerations of a whole second are known
   std::optional<double> Add(double time_s, double acceleration_mps2);
@@ -26,8 +26,8 @@ class AveragedJerk {
     double time_s;
     double acceleration_mps2;
   };
-  /// A second has at most 1000 steps, because a step lasts at least 0.001 s (Scenario::step_s).
-  /// Only the points since the last second's begin are kept, in a ring buffer.
+  /// A second has at most 1000 steps, because a step lasts at least 0.001 s (Scenario::step_s). A
+  /// ring buffer keeps only the points of the last second.
   static constexpr std::size_t kMostPoints = 1002;
 
   const Point& Oldest() const { return points_[begin_]; }

@@ -11,29 +11,29 @@
 namespace fogline::metrics {
 
 /// In a step the LiDAR is *deceived* if it has a value with an error (LidarError) of more than a
-/// tolerance. Otherwise it is *right*; a LiDAR without a value counts as right. An *alarm* lasts
-/// while the Degree of Conflict is at least the threshold in force, under any policy.
+/// tolerance. Otherwise the LiDAR is *right*; a LiDAR without a value counts as right. An *alarm*
+/// lasts while the Degree of Conflict is at least the threshold of the step, under any policy.
 struct DetectionMetrics {
-  /// Time under the wrong controller, s: time of the human while the LiDAR is right, weighted by
-  /// his authority.
+  /// Time in which the human is the wrong driver, s: the human's time while the LiDAR is right,
+  /// weighted by his authority.
   double wrong_human_s = 0;
   /// Time of the automation, s, weighted by its authority, while the track is wrong (TrackJudge).
-  /// So a policy that does not use the deceived LiDAR has no such time. A policy that returns the
-  /// car to a filter that has not settled has such time.
+  /// So this time is 0 for a policy that does not use the deceived LiDAR. This time is above 0 for
+  /// a policy that returns authority before the filter has settled.
   double wrong_automation_s = 0;
-  /// Time from the first step in which the LiDAR is deceived to the first step with an alarm from
-  /// then on, s. 0 if the alarm is already there, for example if fog raises the Degree of Conflict
+  /// Time from the first step in which the LiDAR is deceived to the next step with an alarm, s. The
+  /// time is 0 if the alarm has already begun, for example if fog raises the Degree of Conflict
   /// before the LiDAR's error exceeds the tolerance. nullopt if the LiDAR is never deceived, or if
-  /// no alarm follows. `fogline study conflict` has delays that count from the begin of the fog.
+  /// no alarm follows. `fogline study conflict` reports delays since the beginning of the fog.
   std::optional<double> deception_to_alarm_s;
   /// Alarms that begin in clear air while the LiDAR is right, per hour of such time; nullopt
   /// without such time.
   std::optional<double> false_alarms_ph;
 };
 
-/// Error of the LiDAR's value, m. It is the difference to the value without noise and fog for the
-/// true gap, with the LiDAR's bias and lateral offset. Below 0 if the value is too short. NaN
-/// without a value.
+/// Error of the LiDAR's value, m. The error is the value minus the correct value. The correct value
+/// has no noise and no fog, but has the LiDAR's bias and lateral offset. The error is below 0 if
+/// the value is too short, and NaN without a value.
 double LidarError(const Sample& sample, const LidarSection& lidar);
 
 /// Collects the measures, step by step.
@@ -46,7 +46,7 @@ class DetectionAccumulator {
 
  private:
   bool IsDeceived(const Sample& sample) const;
-  /// Adds the findings of the step before, which hold for `duration_s`.
+  /// Adds the results of the previous step, which apply for `duration_s`.
   void Pass(double duration_s);
 
   double tolerance_m_;
@@ -54,7 +54,7 @@ class DetectionAccumulator {
   TrackJudge track_;
 
   bool begun_ = false;
-  // Values of the step before.
+  // Values of the previous step.
   double time_s_ = 0;
   bool alarm_ = false;
   bool quiet_ = false;  // clear air, and the LiDAR is right

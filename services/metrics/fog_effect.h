@@ -1,5 +1,5 @@
-// What the fog does to the traffic, in metres and m/s. Percentages such as SI are shown beside
-// these values.
+// Effects of the fog on the traffic, in m and m/s. Reports show these values beside percentages
+// such as SI.
 #pragma once
 
 #include <optional>

@@ -44,8 +44,8 @@ void VisitFollowerMetrics(const FollowerMetrics& m, Visitor&& visit) {
 /// Collects the measures of all following cars, step by step. Add() allocates no memory.
 class FollowerAccumulator {
  public:
-  /// Adds a step. If `commands` of a run in real time are missing (no followers in them), safe
-  /// distances are unknown, and only the other measures count the step.
+  /// Adds a step. In real time, `commands` may be missing (without followers). Safe distances are
+  /// then unknown, and the step counts only for the other measures.
   void Add(const truth_t& truth, const follower_command_t& commands);
 
   /// One entry for each following car, nearest to the host first.

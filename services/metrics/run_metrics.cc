@@ -93,7 +93,7 @@ void MetricsAccumulator::AddTransfer(const Sample& sample) {
   transferred_s_ = sample.time_s;
 }
 
-// The acceleration at step 0 is a convention; none was applied.
+// The acceleration at step 0 is a convention; no acceleration was applied.
 void MetricsAccumulator::AddMotion(const Sample& sample) {
   if (sample.step == 0) return;
   Raise(metrics_.max_abs_acceleration_mps2, std::abs(sample.host_acceleration_mps2));

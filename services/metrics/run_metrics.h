@@ -1,5 +1,5 @@
-// Measures of a run, computed from its samples alone, in one pass and constant memory. They are the
-// same for a run in this process and for a log of a million messages.
+// Measures of a run, computed from its samples alone, in one pass and constant memory. A run in
+// this process and the log of the same run give equal measures.
 #pragma once
 
 #include <array>
@@ -21,9 +21,9 @@
 
 namespace fogline::metrics {
 
-/// Measures of one run. The values of a step count for the time until the next one. "Fog" is the
-/// fog window; "clear air" is every step outside it. nullopt: the run has no step that is relevant
-/// for the measure.
+/// Measures of one run. The values of a step count for the time until the next step. "Fog" is the
+/// fog window; "clear air" is every step outside this window. nullopt: the run has no step that is
+/// relevant for the measure.
 struct RunMetrics {
   /// Number of samples.
   std::int64_t steps = 0;
@@ -42,8 +42,8 @@ struct RunMetrics {
   std::optional<double> max_compromised_safety_m;
   /// Mean of CS over the steps in fog, m.
   std::optional<double> mean_compromised_safety_fog_m;
-  /// The largest CS and the mean CS, m. They begin with the first step in fog, and end with the
-  /// last step that is in fog or has a wrong track (UntilRecovery). nullopt without fog.
+  /// The largest CS and the mean CS, m, from the first step in fog to the last step that is in fog
+  /// or has a wrong track (UntilRecovery). nullopt without fog.
   std::optional<double> max_compromised_safety_until_recovery_m;
   std::optional<double> mean_compromised_safety_until_recovery_m;
   /// Largest drop of the host's speed in fog below its speed when the fog began, m/s.
@@ -54,17 +54,17 @@ struct RunMetrics {
   std::optional<double> collision_time_s;
 
   /// Redundant human engagement: share of the steps in clear air in which the human is engaged, %.
-  /// Sourav & Cheng 2024 define it in other words. With these words, the 0 % that they print beside
-  /// an SI of 80.79 % would be impossible. Engaged means lambda_H > 0, as HumanIsEngaged() in
-  /// services/host_modes.h. In traded control an engaged human drives. In shared control he may
-  /// have a small part of the authority.
+  /// Sourav & Cheng 2024 define this measure differently. With their definition, the 0 % that they
+  /// print beside an SI of 80.79 % would be impossible. Engaged means lambda_H > 0, as
+  /// HumanIsEngaged() in services/host_modes.h. In traded control an engaged human drives. In
+  /// shared control, an engaged human may have only a small part of the authority.
   std::optional<double> rhe_pct;
-  /// Time during which the human is engaged, s. It ends when the last step begins, because the
-  /// command of that step is never carried out.
+  /// Time during which the human is engaged, s. This time ends when the last step begins, because
+  /// the command of the last step is never carried out.
   double human_time_s = 0;
-  /// Number of hand-overs in either direction. At a hand-over the human drives in only one of two
-  /// successive steps, by HumanDrives(lambda_H) in services/host_modes.h. `fogline events` lists
-  /// the same hand-overs, in the same steps.
+  /// Number of hand-overs in either direction. A hand-over is a change of HumanDrives(lambda_H)
+  /// (services/host_modes.h) from one step to the next. `fogline events` lists the same hand-overs,
+  /// in the same steps.
   std::int64_t transfers = 0;
   /// Hand-overs per minute of the run, 1/min; nullopt for a run without duration.
   std::optional<double> transfers_pmin;
@@ -74,13 +74,13 @@ struct RunMetrics {
   /// the hand-over, m/s2; 0 without a hand-over.
   double max_handover_jump_mps2 = 0;
   /// Largest |jerk| of the host within `handover_s` after a change of the authorities, m/s3;
-  /// nullopt without a change. For a ramp of the authorities, the interval lasts from its first
-  /// step until `handover_s` after its last step.
+  /// nullopt without a change. For a ramp of the authorities, the interval lasts from the ramp's
+  /// first step until `handover_s` after the ramp's last step.
   std::optional<double> max_handover_jerk_mps3;
   /// As max_handover_jerk_mps3, but for the jerk averaged over 1 s (AveragedJerk). The averaged
   /// second may begin before the change.
   std::optional<double> max_handover_jerk_1s_mps3;
-  /// Time under the wrong controller, time from deception to alarm, false alarms.
+  /// Time in which the wrong side drives, time from deception to alarm, false alarms.
   DetectionMetrics detection;
 
   /// Largest applied |acceleration| of the host, m/s2. Step 0 has no applied acceleration.
@@ -90,8 +90,8 @@ struct RunMetrics {
   /// the step shrinks.
   std::optional<double> max_abs_jerk_mps3;
   /// Largest |jerk| of the host, averaged over 1 s as in ISO 15622, m/s3 (AveragedJerk): the
-  /// largest change of the applied acceleration within 1 s. It does not depend on the length of a
-  /// step.
+  /// largest change of the applied acceleration within 1 s. This value does not depend on the
+  /// length of a step.
   std::optional<double> max_abs_jerk_1s_mps3;
   /// Root of the mean square of the jerk from one step to the next, m/s3.
   std::optional<double> rms_jerk_mps3;
@@ -108,7 +108,7 @@ struct RunMetrics {
   double minimal_risk_s = 0;
 };
 
-/// Calls `visit(name, value, unit, description)` for every measure in order; `name` carries the
+/// Calls `visit(name, value, unit, description)` for every measure in order; `name` contains the
 /// unit. `value` is std::int64_t or std::optional<double>. The other arguments are
 /// std::string_view. JSON, tables and reports use these calls.
 template <class Visitor>

@@ -10,8 +10,8 @@ namespace fogline::metrics {
 /// Times are whole microseconds. Two times that differ by less than this count as equal.
 inline constexpr double kSameTime_s = 0.5e-6;
 
-/// Sets `least` to `value` if `value` is smaller or is the first one. A missing value (NaN) changes
-/// nothing.
+/// Sets `least` to `value` if `value` is smaller or is the first value. A missing value (NaN) has
+/// no effect.
 inline void Lower(std::optional<double>& least, double value) {
   if (!std::isnan(value) && (!least || value < *least)) least = value;
 }

@@ -1,4 +1,4 @@
-// Measures of a run with traded control that need the paired run without it.
+// Measures of a run with traded control that need the paired run without traded control.
 #pragma once
 
 #include <array>
@@ -31,16 +31,17 @@ class MeanImprovement {
   std::int64_t steps_ = 0;
 };
 
-/// A reading of "compromised safety". d_f is the gap of the first following car, d_r,f its dynamic
-/// safe distance, and t_0 the first step in fog. Fogline measures kBelowSafeDistance, and computes
-/// the two others only to show how far SI depends on the reading.
+/// An interpretation of "compromised safety". d_f is the gap of the first following car, d_r,f its
+/// dynamic safe distance, and t_0 the first step in fog. Fogline measures kBelowSafeDistance. The
+/// two other interpretations are computed only to show how much SI depends on the interpretation.
 enum class SafetyReading {
   kBelowSafeDistance,  // max(0, d_r,f - d_f)
   kGapLost,            // max(0, d_f(t_0) - d_f)
   kSafeDistanceLost,   // max(0, d_r,f(t_0) - d_r,f)
 };
 
-/// Compromised safety of one run by a reading, m. Takes the steps of the run in their order.
+/// Compromised safety of one run under one interpretation, m. Takes the steps of the run in their
+/// order.
 class CompromisedSafetyOfRun {
  public:
   explicit CompromisedSafetyOfRun(SafetyReading reading) : reading_(reading) {}
@@ -59,8 +60,8 @@ class CompromisedSafetyOfRun {
 ///
 ///     SI = 100/n sum (CS_baseline - CS_traded) / CS_baseline
 ///
-/// over the n relevant steps, those in fog with CS_baseline > floor. The floor is a free parameter
-/// of SI, because the paper has none.
+/// The sum has the n relevant steps: the steps in fog with CS_baseline > floor. The floor is a free
+/// parameter of SI, because the paper has none.
 class SafetyImprovement {
  public:
   /// @param floor_m at least 0; avoids the ratio 0/0
@@ -82,7 +83,7 @@ class SafetyImprovement {
   MeanImprovement mean_;
 };
 
-/// A choice with which SI has another value.
+/// A choice of interpretation and floor, on which the value of SI depends.
 struct SafetyChoice {
   std::string_view name;  // name in JSON
   std::string_view text;  // text for readers
@@ -99,8 +100,8 @@ inline constexpr std::array<SafetyChoice, 7> kSafetyChoices{{
     {"safe_distance_lost", "d_r,f lost", SafetyReading::kSafeDistanceLost, std::nullopt},
 }};
 
-/// SI of two whole runs. If one of them ended early (a collision), SI counts only the steps that
-/// both runs have.
+/// SI of two whole runs. If one run ended early (a collision), SI counts only the steps that both
+/// runs have.
 /// @throws std::invalid_argument if the runs do not begin at the same step, or skip different
 /// steps.
 std::optional<double> SafetyImprovementPct(std::span<const Sample> baseline,
@@ -110,10 +111,10 @@ std::optional<double> SafetyImprovementPct(std::span<const Sample> baseline,
 struct PairedMetrics {
   /// SI, %.
   std::optional<double> si_pct;
-  /// SI over more steps with CS_baseline > floor, %. They begin with the first step in fog, and end
-  /// with the last step in which one of the runs is in fog or has a wrong track (UntilRecovery). SI
-  /// uses only steps in fog. But the automation returns at the end of the fog, to a filter that may
-  /// not have settled.
+  /// SI over a longer interval, %. The interval begins with the first step in fog. The interval
+  /// ends with the last step in which one of the runs is in fog or has a wrong track
+  /// (UntilRecovery). Only steps with CS_baseline > floor count. si_pct uses only steps in fog. But
+  /// at the end of the fog the automation returns, and the filter may not have settled.
   std::optional<double> si_until_recovery_pct;
   /// SI with other choices, %, in the order of kSafetyChoices. `fogline table` shows them.
   std::array<std::optional<double>, kSafetyChoices.size()> other_si_pct;

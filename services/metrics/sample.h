@@ -1,5 +1,5 @@
-// One step of a run as a flat struct, for measures, reports and exports. It is made from the
-// messages of the step, which come from a log or from a run in this process.
+// One step of a run as a flat struct, for measures, reports and exports. A Sample is made from the
+// messages of the step. The messages come from a log or from a run in this process.
 #pragma once
 
 #include <cstdint>
@@ -42,8 +42,8 @@ struct Sample {
   bool last = false;
 };
 
-/// The sample of a step from its messages. Of the following cars, the sample has only the first
-/// one. Without a following car the values of this car are NaN.
+/// The sample of a step from its messages. The sample has the values of the first following car
+/// only. Without a following car, these values are NaN.
 inline Sample MakeSample(const truth_t& truth, const radar_t& radar, const lidar_t& lidar,
                          const track_t& track, const accel_command_t& acc,
                          const driver_command_t& driver, const arbitration_t& host,

@@ -1,5 +1,5 @@
-// Decodes the messages of a step into its Sample. In a log of a run in real time messages may be
-// missing. Their values are then NaN.
+// Decodes the messages of a step into its Sample. In a log of a run in real time, messages may be
+// missing. The values of missing messages are NaN.
 #pragma once
 
 #include "services/metrics/sample.h"

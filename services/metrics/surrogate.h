@@ -1,6 +1,6 @@
-// Surrogate measures of safety between a car and the car ahead of it. They say how near a collision
-// is. Gaps are bumper to bumper, speeds along the lane. The car ahead is assumed to keep its speed
-// unless a measure says otherwise.
+// Surrogate measures of safety between a car and the car ahead of it. The measures say how near a
+// collision is. Gaps are bumper to bumper, speeds along the lane. The car ahead is assumed to keep
+// its speed, except where a measure states another assumption.
 #pragma once
 
 #include <optional>
@@ -28,16 +28,16 @@ double TimeToCollision(const CarPair& pair);
 double DecelerationToAvoidCrash(const CarPair& pair);
 
 /// Possibility index for collision with urgent deceleration in m, d + (v_l^2 - v^2)/(2 b) - v t_r.
-/// It is the gap that remains if both cars brake now, the car behind after its reaction time (Uno
-/// et al. 2002). A value below 0 is dangerous.
+/// PICUD is the gap that remains if the car ahead brakes now and the car behind brakes after its
+/// reaction time (Uno et al. 2002). A value below 0 is dangerous.
 double UrgentDecelerationGap(const MeasuresSection& section, const CarPair& pair);
 
-/// Probability that a car's maximum available deceleration is below `drac_mps2`. This deceleration
-/// has a truncated normal distribution (Cunto & Saccomanno 2008).
+/// Probability that a car's maximum available deceleration is below `drac_mps2`. The maximum
+/// available deceleration has a truncated normal distribution (Cunto & Saccomanno 2008).
 double CrashProbability(const MeasuresSection& section, double drac_mps2);
 
 /// Compromised safety CS in m: the shortfall of a car's gap d below its driver's dynamic safe
-/// distance d_r, max(0, d_r - d) (Sourav & Cheng 2024). NaN if one of them is NaN.
+/// distance d_r, max(0, d_r - d) (Sourav & Cheng 2024). The result is NaN if d or d_r is NaN.
 double CompromisedSafety(double safe_distance_m, double gap_m);
 
 /// Measures of a pair of cars over a run. nullopt: the run has no step that is relevant for the
@@ -74,19 +74,19 @@ class PairAccumulator {
  public:
   explicit PairAccumulator(const MeasuresSection& section);
 
-  /// Adds a step. `since_s` is the time since the step before, for which the values of that step
-  /// count; 0 at the first step. A pair with NaN does not count.
+  /// Adds a step. `since_s` is the time since the previous step; 0 at the first step. The values of
+  /// the previous step count for this time. A pair with NaN does not count.
   void Add(const CarPair& pair, double since_s);
 
   PairMetrics Result() const;
 
  private:
-  /// Adds the findings of the step before, which hold for `duration_s`.
+  /// Adds the results of the previous step, which apply for `duration_s`.
   void Pass(double duration_s);
 
   MeasuresSection section_;
   models::RssParameters rss_;
-  std::optional<double> ttc_s_;  // TTC in the step before; nullopt if that step had no pair
+  std::optional<double> ttc_s_;  // TTC in the previous step; nullopt if that step had no pair
   double crash_probability_ = 0;
   bool met_ = false;
 

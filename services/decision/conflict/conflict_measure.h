@@ -1,14 +1,14 @@
 // Interface of the measures of conflict between radar and LiDAR: the inputs of a step, and the
-// result. The arbitrator decides what follows from a conflict.
+// result. The arbitrator decides how the host reacts to a conflict.
 #pragma once
 
 namespace fogline::conflict {
 
 /// A range with its stated standard deviation. All numbers are finite, also if `valid` is false.
 struct StatedRange {
-  bool valid = false;  // false: no value in this step, and the other fields have no meaning
+  bool valid = false;  // false: no value in this step; other fields have no meaning
   double range_m = 0;  // m
-  double std_m = 0;    // m, above 0; nominal, because a value that grows with bias hides conflict
+  double std_m = 0;    // m, above 0; nominal: a value that grows with bias hides conflict
 };
 
 /// The evidence of one step: two sensors, and a third witness.
@@ -44,8 +44,8 @@ struct Blame {
   friend bool operator==(const Blame&, const Blame&) = default;
 };
 
-/// Finds the sensor that is wrong. For this it needs more than the values of radar and LiDAR. The
-/// contract is that of ConflictMeasure.
+/// Finds the sensor that is wrong. The values of radar and LiDAR alone are not sufficient for this.
+/// The rules of ConflictMeasure apply.
 class BlameMeasure {
  public:
   virtual ~BlameMeasure() = default;

@@ -18,7 +18,7 @@ struct MetricRow {
   std::string_view range;    // range of the score, with the unit if there is one
   std::string_view missing;  // treatment of a step without radar or LiDAR value
   std::unique_ptr<Measure> (*make)(const ConflictParameters& parameters);
-  bool posterior = false;  // the score is the posterior probability of conflict by all evidence
+  bool posterior = false;  // the score is the posterior probability of conflict, given all evidence
 };
 
 using ConflictMeasureRow = MetricRow<ConflictMeasure>;
@@ -26,7 +26,7 @@ using BlameMeasureRow = MetricRow<BlameMeasure>;
 
 /// All measures of conflict, in the order of services/decision/conflict/README.md.
 std::span<const ConflictMeasureRow> ConflictMeasures();
-/// All measures of which sensor is wrong.
+/// All measures that tell which sensor is wrong.
 std::span<const BlameMeasureRow> BlameMeasures();
 
 }  // namespace fogline::conflict

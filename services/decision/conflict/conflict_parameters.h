@@ -15,12 +15,12 @@ inline constexpr int kLidarModes = 3;
 struct ConflictParameters {
   // ---- Difference ----
 
-  /// Mean of radar - LiDAR without a fault, m, any finite value. It is the offset of the mounting
-  /// points that calibration has not removed. Every measure except `doc` subtracts it. The paper
-  /// defines `doc` without an offset.
+  /// Mean of radar - LiDAR without a fault, m, any finite value. This offset of the mounting points
+  /// remains after calibration. Every measure except `doc` subtracts the offset. The paper defines
+  /// `doc` without an offset.
   double offset_m = 0;
   /// Rule for a step without radar or LiDAR value, for every measure except those of LiDAR modes.
-  /// Such a step repeats the last difference, is left out, or counts as a difference of
+  /// Such a step repeats the last difference, is skipped, or counts as a difference of
   /// `missing_conflict_m`.
   MissingLidar missing = MissingLidar::kHold;
   /// Difference of a missing value that counts as conflict, m, above 0. The default is that of the
@@ -30,8 +30,8 @@ struct ConflictParameters {
   /// has stated a standard deviation. Sources: Continental ARS408 far range; Velodyne VLP-16.
   double nominal_radar_std_m = 0.4;
   double nominal_lidar_std_m = 0.03;
-  /// Lower limit of stated standard deviations, m, above 0; it keeps every quotient finite. A
-  /// millimetre is finer than any automotive ranging sensor.
+  /// Lower limit of stated standard deviations, m, above 0. The limit keeps every quotient finite.
+  /// A millimetre is finer than any automotive ranging sensor.
   double smallest_std_m = 1e-3;
 
   // ---- DoC (Sourav & Cheng 2024) ----
@@ -46,10 +46,10 @@ struct ConflictParameters {
   /// paper.json.
   int window_steps = 8;
   /// Number of steps that the GLR test looks back for a jump, at least 1; 20 steps are 2 s at 10
-  /// Hz. Basseville & Nikiforov 1993, 2.4.3, also limit it because of the cost.
+  /// Hz. Basseville & Nikiforov 1993, 2.4.3, also limit this number, because of the computing cost.
   int glr_window_steps = 20;
-  /// Steps of the signed mean from which the NIS blame is computed, at least 1; 1 is the NIS of the
-  /// step.
+  /// Steps of the signed mean from which the NIS blame is computed, at least 1. With 1, the blame
+  /// follows the NIS of the step.
   int blame_window_steps = 1;
 
   // ---- Beliefs on bins ----
@@ -65,17 +65,17 @@ struct ConflictParameters {
   // ---- Consonant beliefs ----
 
   /// Number of nested intervals of equal mass that replace the belief density, at least 1, at most
-  /// kMostLevels. With 20 the scores are within 0.03 of those with 40.
+  /// kMostLevels. The scores with 20 levels differ from those with 40 levels by at most 0.03.
   int levels = 20;
 
   // ---- Sequential tests ----
 
-  /// CUSUM reference value kappa in standard deviations of d, at least 0. It is half of the shift
-  /// that the test detects best (Page 1954).
+  /// CUSUM reference value kappa in standard deviations of d, at least 0. kappa is half of the
+  /// shift that the test detects best (Page 1954).
   double cusum_kappa = 0.5;
   /// Upper limit of the sum in standard deviations, above any threshold in use. Without this limit,
-  /// a long fog bank would make the sum so large that it would decrease only long after the fog
-  /// bank.
+  /// the sum would grow during a long fog bank, and fall below the threshold only long after the
+  /// fog bank.
   double cusum_ceiling = 50;
   /// SPRT: shift delta that the test distinguishes from no shift, m, above 0. The default is half
   /// the centre of the DoC.
@@ -84,20 +84,21 @@ struct ConflictParameters {
   double sprt_alpha = 0.01;
   double sprt_beta = 0.01;
   /// Multiple of ln((1 - beta)/alpha) at which the log likelihood ratio stops growing, at least 1.
-  /// The reason is that of cusum_ceiling.
+  /// The limit has the same reason as cusum_ceiling.
   double sprt_ceiling = 4;
 
   // ---- LiDAR modes (IMM, Blom & Bar-Shalom 1988) ----
 
   /// Probability of mode j in the next step given mode i in this step, in the order of LidarMode.
-  /// The rows add up to 1; each entry is above 0. Our choice: at 10 Hz mode clean lasts 10 s on
-  /// average, the other modes 1 s.
+  /// The rows add up to 1; each entry is above 0. Our choice: at 10 Hz, mode clean lasts 10 s on
+  /// average, and the other modes last 1 s.
   std::array<std::array<double, kLidarModes>, kLidarModes> mode_transition{
       {{0.99, 0.005, 0.005}, {0.05, 0.9, 0.05}, {0.05, 0.05, 0.9}}};
   /// Probability of an echo in each mode, in (0, 1). Our choice.
   std::array<double, kLidarModes> echo_probability{0.98, 0.9, 0.02};
-  /// r*, the range at which the echo of the fog is strongest, m, above 0. For a pulse of 5 ns it is
-  /// 4.0 m at 600 m of visibility, and 3.1 m at 20 m (services/lidar/fog_beam.h).
+  /// r*, the range at which the echo of the fog is strongest, m, above 0. For a pulse of 5 ns, r*
+  /// is 4.0 m at a visibility of 600 m, and 3.1 m at a visibility of 20 m
+  /// (services/lidar/fog_beam.h).
   double fog_return_m = 3.5;
   /// Length in m, above 0. A fog echo lies beyond r* by this length times a random number of
   /// Beta(2, 20) (Hahner et al. 2021).

@@ -1,5 +1,5 @@
-// The difference of the two sensors, and its substitute if one of them has no value. All measures
-// of two sensors use this class, so that they treat their evidence in the same way.
+// The difference of the two sensors, and its substitute if a sensor has no value. All measures of
+// two sensors use this class, so that all treat missing values in the same way.
 #pragma once
 
 #include <optional>
@@ -30,7 +30,8 @@ class DisagreementSource {
   explicit DisagreementSource(const ConflictParameters& parameters,
                               Offset offset = Offset::kSubtracted);
 
-  /// The disagreement of this step. For a step without radar or LiDAR value the rule says:
+  /// The disagreement of this step. The result for a step without radar or LiDAR value depends on
+  /// the rule:
   ///   hold      the last measured disagreement; before the first one nullopt
   ///   skip      nullopt
   ///   conflict  d = missing_conflict_m with the last stated standard deviations

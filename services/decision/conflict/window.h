@@ -7,9 +7,9 @@
 
 namespace fogline::conflict {
 
-/// The values of the last W steps. A step without a value adds an empty place. After W steps this
-/// place drops out of the window, as any other place does. A measure computes the whole sum again
-/// in every step, so its result depends only on the contents of the window.
+/// The values of the last W steps. A step without a value adds an empty entry. Every entry, also an
+/// empty one, leaves the window after W steps. A measure computes the whole sum again in every
+/// step, so its result depends only on the contents of the window.
 class Window {
  public:
   /// @param steps W, at least 1
@@ -25,7 +25,7 @@ class Window {
     oldest_ = 0;
   }
 
-  /// Calls visit(value) for each value, oldest first; leaves out empty places.
+  /// Calls visit(value) for each value, oldest first; skips empty entries.
   template <class Visitor>
   void ForEach(Visitor&& visit) const {
     const auto visit_places = [&](std::size_t begin, std::size_t end) {
@@ -37,7 +37,7 @@ class Window {
     visit_places(0, oldest_);
   }
 
-  /// Calls visit(value) for each value, newest first; leaves out empty places.
+  /// Calls visit(value) for each value, newest first; skips empty entries.
   template <class Visitor>
   void ForEachBackwards(Visitor&& visit) const {
     for (std::size_t i = values_.size(); i > 0; --i) {

@@ -10,8 +10,8 @@ namespace fogline::policies {
 /// DoC_th(k) = clip(DoC_th + k_A (1 - A) - k_M/MOR - k_C/TTC - k_B max(0, -a), least, most) with
 /// the driver's readiness A, the visibility MOR, the follower's time to collision TTC and the
 /// host's acceleration a. The threshold is higher for a driver who is not ready, and lower if the
-/// fog is dense, the follower close, or the host already braking. The formula is ours, after a
-/// suggestion of the paper (future work 3).
+/// fog is dense, if the follower is close, or if the host already brakes. The formula is ours; the
+/// paper suggests such a threshold (future work 3).
 class Adaptive final : public EngagementPolicy {
  public:
   static constexpr bool kNeedsSurroundings = true;

@@ -5,25 +5,26 @@
 
 namespace fogline::policies {
 
-/// Time in s until a follower has to brake harder than `limit_mps2` to avoid the host, while the
-/// follower keeps its speed and the host brakes with `host_braking_mps2` >= 0:
+/// Time in s until a follower has to brake harder than `limit_mps2` to avoid the host. Until then,
+/// the follower keeps its speed, and the host brakes with `host_braking_mps2` >= 0:
 ///
 ///     DRAC(t) = (w + b t)^2 / (2 (s - w t - b t^2/2)) = limit
 ///
-/// with gap s and closing speed w. 0 if the follower already has to; infinite if it never has to.
+/// with gap s and closing speed w. The time is 0 if the follower already has to brake so hard, and
+/// infinite if the follower never has to.
 double TimeUntilHardBraking(double gap_m, double closing_mps, double host_braking_mps2,
                             double limit_mps2);
 
-/// The paper's rule, if the driver is available. He is available if he already drives, or if his
-/// take-over time is less than the time until the follower has to brake harder than comfort_mps2.
-/// His take-over time is the 95th percentile of its distribution plus unready_s (1 - A). If he is
-/// not available, the automation stays, with one sensor less. Marberger et al. 2018: availability
-/// is the time budget minus the required time.
+/// The paper's rule, if the driver is available. The driver is available if he already drives, or
+/// if his take-over time is less than the time until the follower has to brake harder than
+/// comfort_mps2. The take-over time here is the 95th percentile of its distribution plus unready_s
+/// (1 - A). If the driver is not available, the automation keeps authority, and the sensor to blame
+/// is not used. Marberger et al. 2018 define availability as the time budget minus the required
+/// time.
 ///
-/// The fusion always leaves out the sensor that is to blame, as with Isolate, also while the driver
-/// is available. The fusion does not know whether he is available, and does not need to know this.
-/// While he drives, the track is not used. When the automation drives again, it has a usable track
-/// from the first step on.
+/// The fusion never uses the sensor that is to blame, as with Isolate. The fusion does not know
+/// whether the driver is available. While the driver drives, the track is not used. When the
+/// automation drives again, it has a usable track from the first step on.
 class Availability final : public EngagementPolicy {
  public:
   static constexpr bool kNeedsSurroundings = true;

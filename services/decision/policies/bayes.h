@@ -7,17 +7,17 @@
 
 namespace fogline::policies {
 
-/// The human drives while P C_a >= (1 - P) C_h, that is while P >= C_h/(C_h + C_a), the threshold
-/// in force. P is the probability that the automation is deceived; the policy uses the DoC as P.
-/// The DoC is a probability with measure lidar_modes and measure_scale probability
-/// (services/decision/conflict/over_time/lidar_modes.h). With the paper's z it is only a steep
-/// function of the conflict. With readiness A, visibility MOR and the follower's time to collision
-/// TTC the expected costs are
+/// The human drives while P C_a >= (1 - P) C_h. This condition is equivalent to P >= C_h/(C_h +
+/// C_a). The quotient is the threshold of the step. P is the probability that the automation is
+/// deceived; the policy uses the DoC as P. The DoC is a probability with measure lidar_modes and
+/// measure_scale probability (services/decision/conflict/over_time/lidar_modes.h). With the paper's
+/// z, the DoC is only a steep function of the conflict. The expected costs depend on the readiness
+/// A, the visibility MOR and the follower's time to collision TTC:
 ///
 ///     C_h = human + unready (1 - A) + blind min(1, near_m/MOR)      of a human who drives
 ///     C_a = automation + follower min(1, near_ttc/TTC)              of a deceived automation
 ///
-/// This is Bayes' decision between two actions (Berger 1985, 4.4); the costs are our choice.
+/// The rule is Bayes' decision between two actions (Berger 1985, 4.4); the costs are our choice.
 class Bayes final : public EngagementPolicy {
  public:
   static constexpr bool kNeedsSurroundings = true;

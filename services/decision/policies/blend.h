@@ -8,7 +8,7 @@
 namespace fogline::policies {
 
 /// lambda_H = clip((DoC - from)/width, 0, 1): both drive, the human in proportion to the conflict.
-/// The threshold in force is the DoC at which he has half of the authority.
+/// The reported threshold is the DoC at which the human has half of the authority.
 class Blend final : public EngagementPolicy {
  public:
   static constexpr bool kShares = true;

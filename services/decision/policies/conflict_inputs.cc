@@ -15,7 +15,7 @@ constexpr std::size_t kLidarRange = 2;
 double Square(double x) { return x * x; }
 
 // Variance in m2 of the distance that the filter predicts for the next step, from its covariance
-// P. It is element (0, 0) of F P F' + Q (services/fusion/ekf.h).
+// P. The variance is element (0, 0) of F P F' + Q (services/fusion/ekf.h).
 double NextDistanceVariance(const double (&covariance)[3][3], double step_s,
                             double jerk_density_m2ps5) {
   const std::array<double, 3> row{1, step_s, step_s * step_s / 2};  // of F
@@ -89,7 +89,8 @@ double Witness::VarianceOf(const track_t& track, const Sensor& sensor, double ra
   if (!last_.valid || last_.header.step + 1 != track.header.step) return 0;
   const double variance_m2 = NextDistanceVariance(last_.covariance, step_s_, jerk_density_m2ps5_);
   if (sensor.lateral_offset_m == 0) return variance_m2;
-  // The range of a target at distance d and offset y is sqrt(d^2 + y^2), its slope d / range.
+  // The range of a target at distance d and offset y is sqrt(d^2 + y^2). The derivative of this
+  // range by d is d / range.
   return variance_m2 * std::max(0.0, 1 - Square(sensor.lateral_offset_m / range_m));
 }
 

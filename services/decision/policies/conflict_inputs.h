@@ -10,8 +10,8 @@
 
 namespace fogline::policies {
 
-/// Parameters of the measures from section `arbitrator` and its `transfer`. Parameters that the
-/// scenario does not have are the defaults of services/decision/conflict/conflict_parameters.h.
+/// Parameters of the measures from section `arbitrator` and its `transfer`. All other parameters
+/// have the defaults of services/decision/conflict/conflict_parameters.h.
 conflict::ConflictParameters ConflictParametersOf(const ArbitratorSection& section);
 
 /// The rows that the scenario has chosen.
@@ -26,25 +26,26 @@ inline conflict::StatedRange StatedBy(const lidar_t& lidar) {
   return {.valid = lidar.valid != 0, .range_m = lidar.range_m, .std_m = lidar.range_std_m};
 }
 
-/// The filter's prediction before it used the values of the step. Its range is the measured value
-/// minus the innovation. Its variance is the innovation's variance minus the sensor noise that the
-/// filter assumes. The prediction is computed from the radar's value, or from the LiDAR's value in
-/// a step without radar value. It is not valid in the step that starts a track, and in a step
-/// without any value.
+/// The filter's prediction before the filter used the values of the step. The predicted range is
+/// the measured value minus the innovation. The variance of the prediction is the innovation's
+/// variance minus the sensor noise that the filter assumes. The prediction is computed from the
+/// radar's value, or from the LiDAR's value in a step without radar value. The prediction is not
+/// valid in the step that starts a track, and in a step without any value.
 ///
-/// If the filter estimates the noise by itself (fusion.adaptive_noise), TRACK does not say which
-/// noise it has used. The variance is then computed from the covariance of the step before, as the
-/// filter predicts it. So there is no prediction if the track of the step before is missing.
+/// If the filter estimates the noise itself (fusion.adaptive_noise), TRACK does not contain the
+/// noise that the filter has used. The variance is then predicted from the covariance of the
+/// previous step, as in the filter. So there is no prediction if the track of the previous step is
+/// missing.
 class Witness {
  public:
   explicit Witness(const Scenario& scenario);
 
-  /// Call it in the order of steps; steps may be missing.
+  /// Call this function in the order of steps; steps may be missing.
   conflict::StatedRange Prediction(const track_t& track, const radar_t& radar,
                                    const lidar_t& lidar);
 
  private:
-  /// The range of a sensor, as the filter sees it.
+  /// How the filter uses the range of a sensor.
   struct Sensor {
     std::size_t value;  // index in track_t's arrays
     double noise_m2;    // variance of the noise that the filter assumes

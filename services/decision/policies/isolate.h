@@ -1,12 +1,12 @@
-// Policy `isolate`: it rejects the sensor that is to blame, and keeps the automation. Every policy
-// with hand-overs should be better than `isolate`.
+// Policy `isolate`: the automation drives without the sensor that is to blame. Every policy with
+// hand-overs should be better than `isolate`.
 #pragma once
 
 #include "services/decision/policies/isolation.h"
 
 namespace fogline::policies {
 
-/// Fault isolation: the fusion goes on without the sensor that is to blame, and the human never
+/// Fault isolation: the fusion continues without the sensor that is to blame, and the human never
 /// drives.
 class Isolate final : public EngagementPolicy {
  public:

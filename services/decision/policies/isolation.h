@@ -1,4 +1,4 @@
-// Decides which sensor is not used, because it is wrong.
+// Decides which sensor the fusion does not use, because this sensor seems to be wrong.
 #pragma once
 
 #include <memory>

@@ -1,4 +1,4 @@
-// Policy `oracle`: the best possible isolation. It uses the true gap, which no car knows.
+// Policy `oracle`: the best possible isolation. The policy uses the true gap, which no car knows.
 #pragma once
 
 #include <cmath>
@@ -8,8 +8,8 @@
 namespace fogline::policies {
 
 /// Selects the best sensor by the truth, as in the fusion-fault test of Zhong et al. (FusED, ISSTA
-/// 2022). Of two values the fusion uses the one nearer to the true gap, or the radar's if they are
-/// equally near. The automation always drives.
+/// 2022). If both sensors have a value, the fusion uses only the value nearer to the true gap. If
+/// both values are equally near, it uses the radar's value. The automation always drives.
 class Oracle final : public EngagementPolicy {
  public:
   static constexpr bool kNeedsTrueGap = true;

@@ -1,7 +1,8 @@
 // Interface of the policies of engagement: their inputs and decisions. A policy decides in two
-// processes. In the fusion, it decides which sensors are used. In the arbitrator, it decides which
-// side should drive. Each process has its own instance, and the two exchange only the messages of
-// the run. The arbitrator decides how authority then changes (services/arbitrator/README.md).
+// processes. In the fusion, the policy decides which sensors are used. In the arbitrator, the
+// policy decides which side should drive. Each process has its own instance. The two instances
+// exchange only the messages of the run. The arbitrator decides how authority then changes
+// (services/arbitrator/README.md).
 #pragma once
 
 #include <algorithm>
@@ -16,7 +17,7 @@
 namespace fogline::policies {
 
 /// Which sensors the fusion uses in this step. The values of a sensor that is not selected are
-/// compared with the prediction, but correct nothing.
+/// compared with the prediction, but do not correct the filter.
 struct SensorSelection {
   bool radar = true;
   bool lidar = true;
@@ -52,7 +53,7 @@ struct Surroundings {
 struct ArbitratorView {
   double doc;           // Degree of Conflict in this step, in [0, 1]
   double threshold;     // DoC_th of the scenario
-  double lambda_human;  // the human's authority in the step before
+  double lambda_human;  // the human's authority in the previous step
   const ego_t& ego;
   const track_t& track;
   const accel_command_t& automation;
@@ -63,7 +64,7 @@ struct ArbitratorView {
 /// A policy's decision in the arbitrator.
 struct EngagementRequest {
   double lambda_human = 0;  // wanted authority of the human, in [0, 1]
-  double threshold = 1;     // threshold in force: the DoC from which on the human is wanted
+  double threshold = 1;     // the human is wanted while DoC >= threshold
   /// true: the request passes without delay. false: the request is the result of the comparison of
   /// DoC and threshold, and a hysteresis may delay it.
   bool firm = true;
@@ -79,39 +80,40 @@ inline EngagementRequest StayAutomated(double threshold) {
   return {.lambda_human = 0, .threshold = threshold, .firm = true};
 }
 
-/// The rule that a policy's Decide() follows. The arbitrator follows the simple rules without a
-/// call of Decide(), which saves 6 ns of a step's 400 (AMD EPYC, GCC 12). The rules of the policies
-/// `none` and `traded` are simple.
+/// The rule that a policy's Decide() follows. The arbitrator applies the simple rules without
+/// calling Decide(). This saves 6 ns of the 400 ns of a step (AMD EPYC, GCC 12). The rules of the
+/// policies `none` and `traded` are simple.
 enum class Rule : std::uint8_t {
   kOwn,        // a rule of the policy itself: Decide() is called
   kNever,      // StayAutomated() with the scenario's threshold
   kThreshold,  // Compare() with the scenario's threshold
 };
 
-/// A policy. It is made from a scenario and called in every step, in the order of steps. It reads
+/// A policy, made from a scenario and called in every step, in the order of steps. A policy reads
 /// no clock, shares no state, and allocates memory only in its constructor.
 class EngagementPolicy {
  public:
-  /// Inputs that the policy needs beyond the regular ones. A policy that needs them redefines these
-  /// constants.
+  /// Inputs that the policy needs in addition to the regular inputs. A policy that needs such
+  /// inputs redefines these constants.
   static constexpr bool kNeedsTrueGap = false;
   static constexpr bool kNeedsSurroundings = false;
-  /// Whether the policy shares authority, that is whether its requests can lie between 0 and 1. A
-  /// driver who must be asked is asked for any share, and has this share after he has taken over.
+  /// Whether the policy shares authority, that is whether its requests can lie between 0 and 1. If
+  /// the driver must be asked, he is asked for any share above 0. After he has taken over, he has
+  /// this share.
   static constexpr bool kShares = false;
-  /// Whether its decisions depend on the scenario's threshold. A policy whose own rule does not
-  /// depend on the threshold redefines this constant.
+  /// Whether the policy's decisions depend on the scenario's threshold. A policy with its own rule
+  /// that does not use the threshold redefines this constant.
   static constexpr bool kUsesThreshold = true;
   /// The rule of Decide(). A policy with a simple rule redefines this constant.
   static constexpr Rule kRule = Rule::kOwn;
 
   virtual ~EngagementPolicy() = default;
 
-  /// Decision in the fusion, once per step, after the prediction if there is a track. It is called
-  /// only for a policy that overrides it.
+  /// Decision in the fusion, once per step, after the prediction if there is a track. The fusion
+  /// calls this function only if the policy overrides it.
   virtual SensorSelection SelectSensors(const FusionView& /*view*/) { return {}; }
 
-  /// Decision in the arbitrator, once per decision. Called only with Rule::kOwn.
+  /// The policy's decision in the arbitrator. Called once per decision, and only with Rule::kOwn.
   virtual EngagementRequest Decide(const ArbitratorView& view) = 0;
 };
 

@@ -92,7 +92,7 @@ void TakeOver::Enter(const TakeOverRow& row, std::int64_t step, const TakeOverIn
   if (stage) BeginStage(row.authority, step, inputs);
 }
 
-// Draws the driver's answer once. Later events do not change it.
+// Draws the driver's answer once. Later events do not change the answer.
 void TakeOver::Ask(std::int64_t step) {
   request_ = TakeOverRequest{.requested = step};
   const double time_s = time_.Draw(random_, step);

@@ -1,5 +1,5 @@
 // Take-over on request: the policy's engagement request for the human becomes a request to the
-// driver. He may answer late or never; then a manoeuvre stops the car.
+// driver. If the driver answers late or never, a manoeuvre stops the car.
 #pragma once
 
 #include <cstdint>
@@ -18,12 +18,12 @@ namespace fogline::take_over {
 
 /// Inputs of the decision of a step.
 struct TakeOverInputs {
-  bool human_wanted = false;   // the policy's engagement request
-  double automation_mps2 = 0;  // the automation's offer
-  double human_mps2 = 0;       // the driver's
-  double readiness = 0;        // the driver's readiness, in [0, 1]
-  double speed_mps = 0;        // speed of the host
-  double applied_mps2 = 0;     // command sent in the step before; at first the applied acceleration
+  bool human_wanted = false;       // the policy's engagement request
+  double automation_mps2 = 0;      // the automation's offer
+  double human_mps2 = 0;           // the driver's offer
+  double readiness = 0;            // the driver's readiness, in [0, 1]
+  double speed_mps = 0;            // speed of the host
+  double applied_mps2 = 0;         // last sent command; at first the applied acceleration
   const track_t* track = nullptr;  // nullptr if no preceding car is known
 };
 
@@ -34,22 +34,24 @@ struct TakeOverOutcome {
   double acceleration_mps2 = 0;  // command of the side that has authority, or of the manoeuvre
 };
 
-/// Below this speed in m/s the host counts as standing, unless it is about to drive off. Our
+/// Below this speed in m/s, the host counts as standing if its command does not accelerate. Our
 /// choice: 1 cm/s, which wheel sensors cannot measure.
 inline constexpr double kStandstill_mps = 0.01;
 
-/// A stage of the manoeuvre is overdue after this multiple of the time that its brake needs on a
-/// level road. Our choice: with 2, a stage is not overdue if a descent of 7 % and slow brakes take
-/// away half of a comfortable 1.5 m/s2.
+/// A stage of the manoeuvre is overdue after this multiple of the time that the brake needs on a
+/// level road. Our choice: with 2, a stage is not overdue if a descent of 7 % and slow brakes
+/// reduce a comfortable 1.5 m/s2 by half.
 inline constexpr double kOverdueFactor = 2.0;
 
 /// Runs the state machine of take_over_table.h. t is the time in s since the request:
 ///
-///     acknowledgement: t >= T, T drawn in the step of the request (take_over_time.h), never with
-///                      absent_probability            transfer: and readiness >= required_readiness
-///     escalation:      t >= escalation_s             deadline: t >= lead_s
-///     easing:          a = min(a_A, max(0, a' - j h))   a' the command of the step before
-///     manoeuvre:       services/models/minimal_risk with jerk j and the decelerations
+///     acknowledgement  t >= T, if T <= lead_s. T is drawn in the step of the request
+///                      (take_over_time.h). With absent_probability, T is infinite.
+///     transfer         t >= T and readiness >= required_readiness
+///     escalation       t >= escalation_s
+///     deadline         t >= lead_s
+///     easing           a = min(a_A, max(-slow_down_mps2, a' - j h)), a' the last sent command
+///     manoeuvre        services/models/minimal_risk with jerk j and the decelerations
 ///                      clip(-a_A, comfort, emergency) and emergency of its two stages
 ///
 /// So the manoeuvre brakes at least as hard as the automation would, up to the emergency's
@@ -61,16 +63,17 @@ class TakeOver {
   /// @throw std::invalid_argument if lead_s is below kLeastLead_s, or if TakeOverTime throws it
   explicit TakeOver(const Scenario& scenario);
 
-  /// Decides the step of `header`. Call it in the order of steps; some steps may be left out. The
-  /// result is valid until the next call.
+  /// Decides the step of `header`. Call Step() in the order of steps; some steps may be skipped.
+  /// The result is valid until the next call.
   const TakeOverOutcome& Step(const header_t& header, const TakeOverInputs& inputs);
 
   const TakeOverOutcome& outcome() const { return out_; }
-  /// The last request, if there has been one. Its field `effective` is always empty.
+  /// The last request, if there has been a request. The field `effective` of this request is always
+  /// empty.
   const std::optional<TakeOverRequest>& request() const { return request_; }
-  /// A manoeuvre is running, has failed, or has ended in standstill.
+  /// Whether a manoeuvre is running, has failed, or has ended in standstill.
   bool in_manoeuvre() const { return out_.authority >= Authority::kComfort; }
-  /// A manoeuvre has begun in this run; the driver may have ended it.
+  /// Whether a manoeuvre has begun in this run, even if the driver has ended this manoeuvre.
   bool manoeuvred() const { return manoeuvre_.begun(); }
 
  private:
@@ -92,7 +95,7 @@ class TakeOver {
 
   std::optional<TakeOverRequest> request_;
   std::int64_t answer_step_ = 0;   // step of this request's acknowledgement
-  bool in_time_ = false;           // the driver answers within lead_s
+  bool in_time_ = false;           // whether the driver answers within lead_s
   std::int64_t overdue_step_ = 0;  // last step before this stage of the manoeuvre is overdue
   TakeOverOutcome out_;
 };

@@ -15,8 +15,8 @@ const TakeOverStateInfo* StateOf(std::int8_t mode) {
   return info == kTakeOverStates.end() ? nullptr : info;
 }
 
-/// The text of the table for this change of state. A change that is not in the table (the driver
-/// need not be asked, or inputs have failed in real time) gets a text of its own.
+/// The text of the table for this change of state. Some changes are not in the table: the driver
+/// need not be asked, or inputs have failed in real time. Such a change gets a separate text.
 std::string_view LoggedOf(std::int8_t from, std::int8_t to) {
   const TakeOverStateInfo* a = StateOf(from);
   const TakeOverStateInfo* b = StateOf(to);

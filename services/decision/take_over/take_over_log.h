@@ -1,6 +1,6 @@
-// The events of a run as a data recorder would keep them (UN R157, 8: DSSAD). They are read from
-// the commands of the host, which every log has. Every change of mode is an event, also in runs
-// whose driver need not be asked.
+// The events of a run as a data recorder would store them (UN R157, 8: DSSAD). The events are
+// computed from the commands of the host, which every log contains. Every change of mode is an
+// event, also in runs whose driver need not be asked.
 #pragma once
 
 #include <cstdint>
@@ -18,28 +18,29 @@ std::string_view NameOfMode(std::int8_t mode);
 
 /// An event of a step. If a driver's input became effective, or lambda_H passed one half on a ramp,
 /// `from` and `to` are the same mode. If emergency braking or its warning begins or ends, `from`
-/// and `to` are the modes of the commands. For other events they are the modes that the commands
-/// would have without emergency braking.
+/// and `to` are the modes of the commands. For other events, `from` and `to` are the modes that the
+/// commands would have without emergency braking.
 struct TakeOverEntry {
   std::int64_t step = 0;
   std::int64_t utime = 0;
   std::int8_t from = 0;  // mode before the event
   std::int8_t to = 0;
-  bool transfer = false;  // the main authority changed, as the measures count it
+  bool transfer = false;  // whether the main authority changes (as in the measures)
   std::string_view logged;
 };
 
-/// Reads commands in the order of steps; some may be missing.
+/// Reads commands in the order of steps; some commands may be missing.
 ///
-/// The state says whether the driver has a share of the authority, and lambda_H how large this
-/// share is. It may be small, even 0, and it may be growing. So there are two different events: the
-/// driver gets a share, and the transfer, at which lambda_H passes kMainAuthority. If both happen
-/// in one step, one entry covers both. The driver's input is effective if it changes the command
-/// enough. This change is lambda_H (a_H - a), where a is the command before he got his share. The
-/// automation's part of the command does not count.
+/// The state says whether the driver has a share of the authority, and lambda_H is this share. The
+/// share may be 0 at first, and may grow later. So there are two different events. First, the
+/// driver gets a share. Second, lambda_H passes kMainAuthority: this is the transfer. If both
+/// events happen in one step, one entry covers both. The driver's input is effective if it changes
+/// the command by at least kEffectiveInput_mps2. This change is lambda_H (a_H - a), where a is the
+/// command before the driver got his share. The automation's part of the command does not count.
 ///
-/// The modes of emergency braking hide the state. Until these modes end, the last state before them
-/// counts. In a run without requests, the state of the side with more authority counts.
+/// The modes of emergency braking hide the state. Until these modes end, the last state before the
+/// emergency braking counts. In a run without requests, the state of the side with more authority
+/// counts.
 class TakeOverLog {
  public:
   /// @param human_mps2 a_H, the driver's offer; nullopt if a_H is not known
@@ -56,10 +57,10 @@ class TakeOverLog {
   void Transfer(const arbitration_t& command);
   void Drive(const arbitration_t& command, double human_mps2);
 
-  std::optional<arbitration_t> last_;                  // its mode is that without emergency braking
+  std::optional<arbitration_t> last_;                  // its mode ignores emergency braking
   std::int8_t last_sent_ = arbitration_t::AUTOMATION;  // mode of the last command
-  // If the driver has a share of the authority: the command before he got it (empty after his first
-  // effective input), and whether he was asked.
+  // If the driver has a share of the authority: the command before he got the share (empty after
+  // his first effective input), and whether he was asked.
   std::optional<double> before_share_mps2_;
   bool asked_ = false;
   std::vector<TakeOverEntry> entries_;

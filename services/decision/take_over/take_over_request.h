@@ -9,7 +9,7 @@
 
 namespace fogline::take_over {
 
-/// Least change of the command by the driver alone for which an input counts as effective, in m/s2.
+/// Smallest change of the command by the driver alone that counts as an effective input, in m/s2.
 /// Our choice: 0.1 % of g, half of the command's jump at a transfer in the paper's experiment. No
 /// brake or engine has a finer setting.
 inline constexpr double kEffectiveInput_mps2 = 0.01;
@@ -20,9 +20,9 @@ inline bool IsEffective(double lambda_human, double human_mps2, double before_mp
   return std::abs(lambda_human * (human_mps2 - before_mps2)) >= kEffectiveInput_mps2;
 }
 
-/// The times of one request, as steps. A field is empty if its event has not happened. For the
-/// state machine `transferred` is the step in which the driver gets a share of the authority, and
-/// `effective` stays empty. TakeOverLog finds both from the authorities and commands
+/// The times of one request, as steps. A field is empty if its event has not happened. In the state
+/// machine, `transferred` is the step in which the driver gets a share of the authority, and
+/// `effective` stays empty. TakeOverLog computes both fields from the authorities and commands
 /// (take_over_log.h).
 struct TakeOverRequest {
   std::int64_t requested = 0;
@@ -30,14 +30,14 @@ struct TakeOverRequest {
   std::optional<std::int64_t> acknowledged;
   std::optional<std::int64_t> transferred;
   std::optional<std::int64_t> effective;  // first effective input
-  std::optional<std::int64_t> manoeuvre;  // begin of the manoeuvre
+  std::optional<std::int64_t> manoeuvre;  // beginning of the manoeuvre
   std::optional<std::int64_t> standstill;
 
   /// Notes that the state has changed to `state` in this step.
   void Enter(TakeOverState state, std::int64_t step) {
     using enum TakeOverState;
     if (state == kUrgentDemand) escalated = step;
-    // A driver who takes over during the manoeuvre thereby answers the request.
+    // A driver who takes over during the manoeuvre also answers the request.
     if (!acknowledged && (state == kHandover || state == kRecovering)) acknowledged = step;
     if (state == kRecovering) transferred = step;
     if (!manoeuvre && (state == kMrmComfort || state == kMrmEmergency)) manoeuvre = step;

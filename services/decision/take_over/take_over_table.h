@@ -24,14 +24,14 @@ enum class TakeOverState : std::uint8_t {
   kMrmFailed,     // the brake does not bring the car to a standstill
 };
 
-/// Conditions of a step. Several may hold in one step. Then the first row of the table that applies
-/// decides.
+/// Conditions of a step. Several conditions may be true in one step. The first row of the table
+/// that applies then decides.
 enum class TakeOverEvent : std::uint8_t {
   kWanted,        // the policy wants the human to drive
   kCalm,          // the policy does not want the human to drive
   kEscalation,    // escalation_s after the request
   kAcknowledged,  // the driver has answered within lead_s
-  kReady,         // he has answered, maybe late, and his readiness is at least required_readiness
+  kReady,         // the driver has answered, maybe late; readiness is at least required_readiness
   kDeadline,      // lead_s after the request
   kSevere,        // time to collision with the tracked car is below severe_ttc_s
   kRecovered,     // recovery_s after the transfer
@@ -50,10 +50,10 @@ enum class TakeOverGuard : std::uint8_t {
   kFresh,  // there has been no minimal risk manoeuvre in this run
 };
 
-/// Which side has authority. This determines the acceleration that is applied.
+/// Which side has authority. The authority determines the applied acceleration.
 enum class Authority : std::uint8_t {
   kAutomation,  // the automation's offer
-  kEasing,      // the automation's offer, limited so that the car slows down by slow_down_mps2
+  kEasing,      // the automation's offer, limited to -slow_down_mps2 after a ramp
   kHuman,       // the human's offer
   kComfort,     // no side: the manoeuvre with comfort_deceleration_mps2
   kHard,        // no side: the manoeuvre with emergency_deceleration_mps2
@@ -76,19 +76,20 @@ using enum TakeOverGuard;
 using enum Authority;
 using Row = TakeOverRow;
 
-/// The rows of a state are tried in this order. If no row applies, state and authority stay.
-/// Sources, by paragraph of UN R157:
+/// The rows of a state are tried in this order. If no row applies, state and authority do not
+/// change. Sources, by paragraph of UN R157:
 ///   - Only deactivation or the manoeuvre ends a request to take over (5.4.4); a change of the
 ///     policy's engagement request does not.
-///   - No manoeuvre within lead_s of the request (5.4.4.1) unless the situation is severe
+///   - The manoeuvre begins within lead_s of the request (5.4.4.1) only in a severe situation
 ///     (5.4.4.1.1).
-///   - A driver who is late ends the manoeuvre, in either stage, while the car moves (5.5.2,
-///     5.5.3), because a driver who is there and able may always drive. SUMO's ToC device has the
-///     same rule.
-///   - After any manoeuvre, also one that the driver has ended, the automation is not activated
-///     again before the next run cycle (5.5.5). A car that stands remains there, because driving
-///     off (5.5.4) is a new run.
-///   - The manoeuvre never goes back from its second stage to its first (Autoware's mrm_handler).
+///   - A late driver ends the manoeuvre, in either stage, while the car moves (5.5.2, 5.5.3). The
+///     reason is that a present and able driver may always drive. SUMO's ToC device has the same
+///     rule.
+///   - After any manoeuvre, the automation is not activated again before the next run cycle
+///     (5.5.5). The rule also applies if the driver has ended the manoeuvre. A car at standstill
+///     does not drive off, because driving off (5.5.4) is a new run.
+///   - The manoeuvre never returns from its second stage to its first stage (Autoware's
+///     mrm_handler).
 inline constexpr std::array kTakeOverTable{
     //  state          event          guard   next           authority    logged
     Row{kAutomated,    kWanted,       kAny,   kDemand,       kEasing,     "request to take over"},
@@ -127,7 +128,7 @@ inline constexpr std::array kTakeOverTable{
 
 using internal::kTakeOverTable;
 
-/// The row that applies in `state`; nullptr if the state stays.
+/// The row that applies in `state`; nullptr if the state does not change.
 /// @param manoeuvred whether there has been a minimal risk manoeuvre in this run
 constexpr const TakeOverRow* TakeOverRowOf(TakeOverState state, TakeOverEvents events,
                                            bool manoeuvred) {
@@ -138,7 +139,7 @@ constexpr const TakeOverRow* TakeOverRowOf(TakeOverState state, TakeOverEvents e
   return row == kTakeOverTable.end() ? nullptr : row;
 }
 
-/// Name of a state, and the mode of HOST_COMMAND that stands for it.
+/// Name of a state, and the mode of HOST_COMMAND that represents this state.
 struct TakeOverStateInfo {
   TakeOverState state;
   std::int8_t mode;
@@ -162,7 +163,7 @@ constexpr const TakeOverStateInfo& InfoOf(TakeOverState state) {
   return kTakeOverStates[static_cast<std::size_t>(state)];
 }
 
-/// The authority in a state, as given by the rows that lead to it.
+/// The authority in a state, as given by the rows that lead to this state.
 constexpr Authority AuthorityOf(TakeOverState state) {
   return std::ranges::find(kTakeOverTable, state, &TakeOverRow::next)->authority;
 }

@@ -1,19 +1,20 @@
-// Sums over the steps from the first one in fog until the track has recovered.
+// Sums over the steps from the first step in fog until the track has recovered.
 #pragma once
 
 namespace fogline::metrics {
 
 /// The fog does harm after its end, too. A deceived filter needs time to settle, and the automation
-/// drives on this filter. This class keeps sums over the steps from the first one in fog to the
-/// last one that is in fog or has a wrong track (TrackJudge). After that step the fused distance
-/// stays right. If it is not right at the end of the run, the sums have all steps up to the end.
+/// drives on this filter. This class computes sums from the first step in fog to the last step that
+/// is in fog or has a wrong track (TrackJudge). After this last step, the fused distance stays
+/// right. If the fused distance is wrong at the end of the run, the sums contain all steps up to
+/// the end.
 ///
-/// Only later steps show which step was the last one. So the class has two sums, one over all steps
-/// so far, and one over the steps that surely count.
+/// Only later steps show which step was the last step to count. So the class has two sums: one over
+/// all steps so far, and one over the steps that certainly count.
 template <class Sums>
 class UntilRecovery {
  public:
-  /// Next step. `add(Sums&)` adds its values.
+  /// Adds the next step. `add(Sums&)` adds the values of this step to the sums.
   template <class Add>
   void Step(bool fog, bool wrong_track, Add&& add) {
     begun_ = begun_ || fog;
@@ -22,7 +23,7 @@ class UntilRecovery {
     if (fog || wrong_track) sums_ = so_far_;
   }
 
-  /// The sums. They are as constructed if the run has no fog.
+  /// The sums. If the run has no fog, the sums have their initial values.
   const Sums& sums() const { return sums_; }
 
  private:

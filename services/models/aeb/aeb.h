@@ -1,5 +1,5 @@
-// Advanced emergency braking: the state machine that warns, brakes and releases, on what a car
-// knows of the car ahead.
+// Advanced emergency braking: the state machine that warns, brakes and releases. The state machine
+// uses only what a car knows of the car ahead.
 #pragma once
 
 #include <cstdint>
@@ -16,15 +16,15 @@ enum class AebState : std::uint8_t {
 };
 
 /// Emergency braking after UN Regulation No. 152, 5.2.1 (car to car). With gap s and closing speed
-/// c > 0, a collision is imminent if
+/// c > 0, there are two conditions for an imminent collision:
 ///
 ///     ttc           s <= ttc_s c
 ///     deceleration  c^2 >= 2 required_mps2 s
 ///
-/// as the scenario's trigger says, and if the own speed is in the range of the system. A warning
-/// begins if this holds for the gap that the cars have after warning_s, s - warning_s c. The
-/// braking goes on, at any own speed, until c <= release_closing_mps, until no car ahead is seen,
-/// or until the own car stands.
+/// The scenario's trigger says which conditions must be met. The own speed must also be in the
+/// range of the system. A warning begins if the collision would be imminent with the gap after
+/// warning_s, s - warning_s c. The braking continues at any own speed. The braking ends if c is at
+/// most release_closing_mps, if no car ahead is seen, or if the own car stands.
 class Aeb {
  public:
   explicit Aeb(const AebSection& section) : section_(section) {}

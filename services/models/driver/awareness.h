@@ -10,8 +10,8 @@
 namespace fogline::models {
 
 enum class DriverTask {
-  kMonitors,  // the automation drives and has not asked him to take over
-  kDrives,    // he drives, or has been asked to drive and may still take over
+  kMonitors,  // the automation drives and has not asked the driver to take over
+  kDrives,    // the driver drives, or has been asked to drive and may still take over
 };
 
 /// Awareness A in [0, 1], integrated exactly from step to step:
@@ -19,8 +19,9 @@ enum class DriverTask {
 ///     monitors:  dA/dt = (A_mon - A) / tau            drives:  dA/dt = r, up to 1
 ///
 /// The reaction time is T_r0 + k (1 - A). The size of the errors follows SUMO's driver state. The
-/// relative error of the gap is 0.75, the error of the closing speed 0.15 per second and gap. Each
-/// is multiplied by a process of standard deviation 0.2 (1 - A).
+/// factor of the relative gap error is 0.75. The factor of the closing speed's error is 0.15 per
+/// second, times the gap. Each factor is multiplied by a random process. Its standard
+/// deviation is 0.2 (1 - A).
 class Awareness {
  public:
   /// @throw std::invalid_argument for a parameter out of its range.
@@ -32,7 +33,7 @@ class Awareness {
     if (!valid) throw std::invalid_argument("awareness: a parameter is out of its range");
   }
 
-  /// A after this duration of the task.
+  /// A at the end of this duration, in which the driver has this task.
   double Step(DriverTask task, double duration_s) {
     if (task == DriverTask::kDrives) {
       awareness_ = std::min(1.0, awareness_ + parameters_.recovery_ps * duration_s);

@@ -1,6 +1,6 @@
-// Sight of a human in fog. He sees the outline of the car ahead if the car is near, and only its
-// lamps if it is further away. Beyond the range of the lamps he sees nothing. The model also gives
-// the distance and closing speed that he perceives.
+// Sight of a driver in fog. The driver sees the outline of the car ahead if the car is near, and
+// only the lamps if the car is further away. Beyond the range of the lamps, the driver sees
+// nothing. The model also gives the distance and closing speed that the driver perceives.
 #pragma once
 
 #include "scenario/sections/human.h"
@@ -14,9 +14,10 @@ enum class Seen { kOutline, kLamps, kNothing };
 ///
 ///     outline:  C_0 e^(-sigma d) >= eps           up to d_o = ln(C_0 / eps) / sigma (Koschmieder)
 ///     lamps:    I e^(-sigma d) / d^2 >= E_t       up to d_l                       (Allard 1876)
-///     closing:  W |v - v_l| / d^2 > threshold     otherwise he perceives v_l = v
-/// and acceleration 0 of the car ahead.
+///     closing:  W |v - v_l| / d^2 > threshold
 ///
+/// If the closing is not visible, the driver perceives v_l = v and acceleration 0 of the car
+/// ahead.
 /// The perceived distance is d up to a share of d_o, and kappa d from d_o on. Between these
 /// distances the factor grows linearly from 1 to kappa. d_l = (2 / sigma) W_0(sigma / 2 sqrt(I /
 /// E_t)) with Lambert's W.
@@ -25,13 +26,13 @@ class FogSight {
   /// @throw std::invalid_argument for a parameter out of its range.
   explicit FogSight(const FogSightParameters& parameters);
 
-  /// The distance up to which the driver sees outline or lamps of the car ahead, m. `visibility_m`
-  /// is the meteorological optical range, above 0; infinity is clear air.
+  /// The distance up to which the driver sees the outline or the lamps of the car ahead, m.
+  /// `visibility_m` is the meteorological optical range, above 0; infinity is clear air.
   double OutlineRange(double visibility_m) const;
   double LampRange(double visibility_m) const;
   Seen At(double gap_m, double visibility_m) const;
 
-  /// The situation that the driver perceives. He knows his own speed.
+  /// The situation that the driver perceives. The driver knows his own speed.
   Situation Perceive(const Situation& truth, double visibility_m) const;
 
  private:

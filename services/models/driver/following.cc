@@ -10,8 +10,8 @@ namespace {
 
 constexpr double kFreeRoad_m = std::numeric_limits<double>::infinity();
 
-// Limit of the exponent of z^(2 a / a_free), which goes to infinity as v goes to v_0. A z below 1
-// to this power is practically 0.
+// Upper limit of the exponent in z^(2 a / a_free). The exponent goes to infinity as v goes to v_0.
+// A z below 1, raised to this limit, is nearly 0.
 constexpr double kLargestExponent = 100;
 
 }  // namespace

@@ -89,7 +89,7 @@ Situation HumanDriver::Remembered(double reaction_time_s) const {
   const Situation& newer = SeenAgo(steps);
   const Situation& older = SeenAgo(steps + 1);
   // If a car appeared or vanished between the two situations, the situation that is nearer in time
-  // decides whether the car is there.
+  // decides whether there is a car ahead.
   Situation then = rest < 0.5 ? newer : older;
   then.speed_mps = Mix(newer.speed_mps, older.speed_mps, rest);
   then.acceleration_mps2 = Mix(newer.acceleration_mps2, older.acceleration_mps2, rest);

@@ -1,4 +1,4 @@
-// A driver with errors of perception, reaction time and anticipation, around any car-following
+// A driver with errors of perception, reaction time and anticipation, who uses any car-following
 // model.
 #pragma once
 
@@ -26,31 +26,34 @@ struct Attention {
 ///     s_est   = s e^(V_s w_s)                  w_s, w_l: Ornstein-Uhlenbeck of variance 1
 ///     v_l,est = v_l - s r_c w_l
 ///
-/// He acts on the situation of T_r ago, interpolated linearly between two steps. If he anticipates,
-/// he assumes that his own acceleration and the closing speed have been constant since then:
+/// The driver acts on the situation at the time t - T_r, interpolated linearly between two steps.
+/// If he anticipates, he assumes that his own acceleration and the closing speed have been constant
+/// since then:
 ///
 ///     v'   = v + T_r a             s' = s_est - T_r (v - v_l,est)
 ///     v_l' = v' - (v - v_l,est)                    with all values of t - T_r
 ///
-/// The equations are those that the literature quotes from the paper. Of the paper itself, only the
-/// abstract was checked. Without errors and reaction time this equals the car-following model, bit
-/// by bit.
+/// The equations come from other literature that quotes the paper. Only the abstract of the paper
+/// itself was checked. Without errors and reaction time, the result equals that of the
+/// car-following model, bit by bit.
 class HumanDriver {
  public:
   /// Longest reaction time in steps.
   static constexpr std::size_t kMaxReactionSteps = 254;
 
-  /// @param human its reaction time is the longest that the driver will have
-  /// @param random for the driver's errors; each driver has a stream of its own
-  /// @throw std::invalid_argument for a parameter out of its range or a reaction time too long.
+  /// @param human its reaction time is the longest possible reaction time of the driver
+  /// @param random random numbers for the driver's errors; each driver has a separate stream
+  /// @throw std::invalid_argument for a parameter out of its range or a reaction time that is too
+  /// long.
   HumanDriver(const HumanParameters& human, const Following& model, const Random& random,
               double step_s);
 
   /// The acceleration in this step. Call it once per step, in the order of steps, because errors
-  /// and memory continue from step to step. Until T_r has passed, he acts on the first situation.
+  /// and memory continue from step to step. Until T_r has passed, the driver acts on the first
+  /// situation.
   double Step(std::int64_t step, const Situation& seen);
   /// The acceleration of a driver whose attention changes. A reaction time above that of the
-  /// constructor is lowered to that of the constructor.
+  /// constructor is reduced to that of the constructor.
   double Step(std::int64_t step, const Situation& seen, const Attention& attention);
 
  private:

@@ -13,14 +13,14 @@ namespace fogline::models {
 /// with v the own speed, dv = v - v_preceding the closing speed and s the gap, bumper to bumper.
 /// a = 0 at the gap (s_0 + v T) / sqrt(1 - (v / v_0)^delta) behind a car of equal speed.
 ///
-/// The formula has no lower limit as s goes to 0. Here the limit is -max_deceleration_mps2, which
-/// is also the result for s <= 0, where the formula has no value.
+/// The formula has no lower limit as s goes to 0. Here the limit is -max_deceleration_mps2. The
+/// formula has no value for s <= 0, and the result is then this limit.
 class Idm {
  public:
   explicit Idm(const DriverSection& driver);
 
   /// Acceleration in m/s2, in [-max_deceleration_mps2, a_max]; finite for any finite input.
-  /// @param speed_mps v, taken as 0 if negative.
+  /// @param speed_mps v; a negative value counts as 0
   double Acceleration(double speed_mps, double preceding_speed_mps, double gap_m) const;
 
   /// s* in m. @param speed_mps at least 0

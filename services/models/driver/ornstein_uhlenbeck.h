@@ -5,12 +5,12 @@
 
 namespace fogline::models {
 
-/// Ornstein-Uhlenbeck process of mean 0, variance 1 and correlation e^(-t / tau). Its steps are
+/// Ornstein-Uhlenbeck process of mean 0, variance 1 and correlation e^(-t / tau). The steps are
 /// exact (Gillespie, Physical Review E 54:2084, 1996):
 ///
 ///     w' = e^(-h / tau) w + sqrt(1 - e^(-2 h / tau)) eta          eta ~ N(0, 1)
 ///
-/// It begins with w = eta, in the stationary distribution.
+/// The process begins with w = eta, in the stationary distribution.
 class OrnsteinUhlenbeck {
  public:
   /// @param correlation_time_s tau, above 0

@@ -16,17 +16,18 @@ namespace fogline::models {
 ///     by lead:     log-normal with mean m and P(T > t) = P(late):
 ///                  s = z - sqrt(z^2 - 2 ln(t / m))
 ///
-/// SUMO (MSDevice_ToC) draws negative values again, up to 100 times, and then takes the mean. So
-/// for a lead time of minutes P(T > t) is larger than P(late). SUMO has a table for (t - m) / z.
+/// SUMO (MSDevice_ToC) draws again if a value is negative. After 100 negative values, SUMO takes
+/// the mean. So P(T > t) is larger than P(late) for a lead time of minutes. SUMO itself has a table
+/// for (t - m) / z.
 class TakeOverTime {
  public:
   /// @param lead_s t, above 0
   /// @throw std::invalid_argument for a parameter out of its range, or if no log-normal
-  /// distribution has this P(late), because z^2 < 2 ln(t / m). This happens if P(late) is above
-  /// 19.9 % for t up to 8.2 s, or above 5 % for t = 60 s.
+  /// distribution has this P(late), because z^2 < 2 ln(t / m). No such distribution exists if
+  /// P(late) is above 19.9 % for t up to 8.2 s, or above 5 % for t = 60 s.
   TakeOverTime(const TakeOverParameters& parameters, double lead_s);
 
-  /// T in s for a request in this step. It depends only on `random` and the step, not on the order
+  /// T in s for a request in this step. T depends only on `random` and the step, not on the order
   /// of calls.
   double Draw(const Random& random, std::int64_t step) const;
 

@@ -1,4 +1,5 @@
-// Three rules for the safe distance behind a car: that of RSS, and two of the fuzzy safety model.
+// Three rules for the safe distance behind a car: the rule of RSS, and two rules of the fuzzy
+// safety model.
 #pragma once
 
 #include "services/models/driver/situation.h"
@@ -6,8 +7,8 @@
 namespace fogline::models {
 
 /// Responsibility-Sensitive Safety (Shalev-Shwartz, Shammah & Shashua, arXiv 1708.06374, 2017).
-/// Defaults: the values from which ad-rss-lib starts (its appendix "Parameter Discussion"), with
-/// the response time of its ego vehicle. They are for the vehicle behind.
+/// Defaults: the values that ad-rss-lib suggests for the vehicle behind (its appendix "Parameter
+/// Discussion"), with the response time of its ego vehicle.
 struct RssParameters {
   double response_s = 1.0;          // rho, at least 0
   double acceleration_mps2 = 3.5;   // a_acc during the response, at least 0
@@ -31,17 +32,17 @@ struct FuzzyParameters {
   double safe_margin_m = 2;             // d_2, extra distance that is entirely safe, at least 0
 };
 
-/// Proactive fuzzy surrogate PFS. It assumes that the car ahead brakes with b_l. PFS is 0 if
-/// comfortable braking is enough then, 1 if hard braking is not enough, and linear in the distance
-/// s - d_1 between them:
+/// Proactive fuzzy surrogate PFS. PFS assumes that the car ahead brakes with b_l. PFS is 0 if
+/// comfortable braking is then sufficient, and 1 if hard braking is not sufficient. Between these
+/// cases, PFS is linear in the distance s - d_1:
 ///
 ///     d_safe   = v rho + v^2 / (2 b_c) - v_l^2 / (2 b_l) + d_2
 ///     d_unsafe = v rho + v^2 / (2 b_h) - v_l^2 / (2 b_l)
 double ProactiveFuzzy(const FuzzyParameters& fuzzy, const Situation& seen);
 
-/// Critical fuzzy surrogate CFS. It assumes that the car ahead keeps its speed, and that the own
-/// acceleration a, at least -b_c, lasts during the response. The closing speed after the response
-/// is c' = v + a rho - v_l. CFS is computed as PFS, but from the gap s:
+/// Critical fuzzy surrogate CFS. CFS assumes that the car ahead keeps its speed, and that the own
+/// acceleration a, at least -b_c, stays constant during the response. The closing speed after the
+/// response is c' = v + a rho - v_l. CFS is computed as PFS, but from the gap s:
 ///
 ///     d_safe   = (v + a rho / 2 - v_l) rho + c'^2 / (2 b_c)         d_unsafe: with b_h
 ///

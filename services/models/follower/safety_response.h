@@ -1,5 +1,5 @@
-// Response of a careful driver to the car ahead, by one of three definitions. It is a reference for
-// followers; a follower may also apply it in addition to his car-following model.
+// Response of a careful driver to the car ahead, by one of three definitions. This response is a
+// reference for followers. A follower may also apply it in addition to his car-following model.
 #pragma once
 
 #include "services/models/driver/situation.h"
@@ -10,10 +10,10 @@ namespace fogline::models {
 enum class SafetyModel { kReferenceHuman, kRss, kFuzzy };
 
 /// Parameters of a driver's response. Defaults: the competent and careful human driver of UN R157
-/// (Annex 4, appendix 3, by the JRC's implementation and secondary sources; the text was not
-/// available).
+/// (Annex 4, appendix 3, after the JRC's implementation and secondary sources; the original text
+/// was not available).
 struct ResponseParameters {
-  double perception_s = 0.4;        // time until he perceives the danger, at least 0
+  double perception_s = 0.4;        // time until the driver perceives the danger, at least 0
   double delay_s = 0.75;            // time from the perception until he brakes, at least 0
   double lift_off_mps2 = 0.4;       // deceleration during the delay, at least 0
   double jerk_mps3 = 12.65;         // jerk of the brake, above 0: 0.774 g in 0.6 s
@@ -24,19 +24,19 @@ struct ResponseParameters {
   double lead_braking_mps2 = 5.0;   // the car ahead brakes hard above this deceleration
 };
 
-/// After the danger appears, the driver does nothing for the perception time. Then his foot is off
-/// the throttle for the delay. Then the braking grows at the jerk limit to the deceleration that
-/// the model demands:
+/// After the danger appears, the driver does nothing for the perception time. Then the driver's
+/// foot is off the throttle for the delay. After the delay, the braking grows at the jerk limit to
+/// the deceleration that the model demands:
 ///
-/// - reference human: full braking from the danger that ResponseParameters defines until the
+/// - reference human: full braking from the beginning of the danger (ResponseParameters) until the
 ///   closing speed is 0
 /// - RSS: full braking while the gap is below the safe distance. The response time rho of RSS
 ///   replaces the perception time, and there is no delay.
 /// - fuzzy safety model: FuzzyDeceleration(). The response time of this model replaces the
 ///   perception time, and there is no delay.
 ///
-/// If the model demands nothing, the response ends. At the next danger the response starts from the
-/// beginning.
+/// If the model demands no braking, the response ends. At the next danger the response starts from
+/// the beginning.
 class SafetyResponse {
  public:
   /// @throw std::invalid_argument for a parameter out of its range.

@@ -1,36 +1,36 @@
 // The minimal risk manoeuvre: a car without automation and human comes to a standstill in its lane.
-// It uses only the state of the car itself, because every other input may have failed.
+// The manoeuvre uses only the state of the car itself, because every other input may have failed.
 #pragma once
 
 #include "scenario/sections/scenario.h"
 
 namespace fogline::models {
 
-/// Brakes to standstill within limits on deceleration d and jerk j, starting from the acceleration
-/// that is applied. a is the command of the step before, v > 0 the speed, h the length of a step.
-/// The command of the step is
+/// Brakes to standstill within limits on deceleration d and jerk j, starting from the applied
+/// acceleration. a is the previous command, v > 0 is the speed, and h is the length of a step. The
+/// command of the step is
 ///
-///     a'   = max(a - j h, -d, -r(v))           or a + j h, if that is less
+///     a'   = max(a - j h, -d, -r(v))           but at most a + j h
 ///     r(v) = v/(n h) + (n - 1) j h/2          n = ceil((sqrt(1 + 8 v/(j h^2)) - 1)/2)
 ///
 /// r(v) is the braking that can still be released at the rate j, one step at a time, so that the
-/// car stands exactly when a step ends. The n steps of r, r - j h, r - 2 j h, ... add up to v, and
-/// the last of them is at most j h. So the end is as smooth as the beginning. Two cases exceed a
-/// limit, each as little as possible:
+/// car comes to rest exactly at the end of a step. In n steps, the brakings r, r - j h, ... reduce
+/// the speed by v, and the last braking is at most j h. So the end is as smooth as the beginning.
+/// Two cases exceed a limit, each as little as possible:
 ///
 /// - A car that brakes harder than d at the start releases the brake at the rate j, down to d.
-/// - A car that brakes harder than r(v) at the start (it is about to stand) stops before the brake
-///   is released. Its acceleration then jumps to 0.
+/// - A car that brakes harder than r(v) at the start (a car that is about to stand) stops before
+///   the brake is released. The car's acceleration then jumps to 0.
 ///
 /// The manoeuvre lasts until the end of the process, because UN R157, 5.5.5, allows another
-/// activation only after a new run cycle. A car that stands is held with the command 0 and does not
+/// activation only after a new run cycle. At standstill, the command is 0, and the car does not
 /// roll backwards.
 class MinimalRisk {
  public:
   /// @param step_s h, above 0
   MinimalRisk(const MinimalRiskSection& limits, double step_s);
 
-  /// Begins at this applied acceleration. Only the first call has an effect.
+  /// Begins the manoeuvre with this applied acceleration. Only the first call has an effect.
   void Begin(double acceleration_mps2);
   bool begun() const { return begun_; }
 
@@ -38,7 +38,7 @@ class MinimalRisk {
   /// @param speed_mps measured at the beginning of the step, at least 0
   double Step(double speed_mps) { return Step(speed_mps, limits_.deceleration_mps2); }
   /// The acceleration with another deceleration d, which may change from step to step. The limit on
-  /// jerk stays in force.
+  /// jerk still applies.
   /// @param deceleration_mps2 above 0, at most that of the limits
   double Step(double speed_mps, double deceleration_mps2);
 

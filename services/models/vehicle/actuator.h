@@ -12,6 +12,7 @@ namespace fogline::models {
 ///
 /// solved exactly for a demand u that is constant within a step. D may be any time, not only whole
 /// steps, so the demand that arrives may change once within the step. For each piece of length t
+/// with a constant arriving demand u:
 ///
 ///     F(t) = u + (F(0) - u) e^(-t/tau)        integral = u t + (F(0) - u) tau (1 - e^(-t/tau))
 ///

@@ -14,8 +14,8 @@ class GradeProfile {
  public:
   GradeProfile() = default;
 
-  /// @throw std::invalid_argument if positions do not increase or a number is not finite; its text
-  ///     names the point as a field of the scenario
+  /// @throw std::invalid_argument if positions do not increase or a number is not finite; the error
+  ///     text names the point as a field of the scenario
   explicit GradeProfile(std::vector<GradePoint> points);
 
   /// Rise per horizontal length: tan(theta).

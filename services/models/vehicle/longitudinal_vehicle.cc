@@ -62,7 +62,7 @@ double LongitudinalVehicle::Step(double command_mps2, const Motion& now) {
                    now.speed_mps);
   };
   // The inner call uses the limits and the slope at the beginning of the step, to find the middle
-  // of the step. The outer call uses those of the middle for the whole step.
+  // of the step. The outer call uses the limits and the slope in the middle for the whole step.
   last_mps2_ = respond(Middle(now, respond(now)));
   return last_mps2_;
 }

@@ -30,7 +30,7 @@ inline constexpr double kAirDensity_kgpm3 = 1.225;
 ///
 /// Within a step the mean forces act, so that v(t) has a closed form (tanh or tan). Slope and power
 /// limit are those of the middle of the step. The remaining error is of second order in the step.
-/// Cars do not roll backwards, because at rest the brakes hold them.
+/// Cars do not roll backwards, because the brakes hold a car at rest.
 ///
 /// Not thread-safe. Only the constructor allocates memory.
 class LongitudinalVehicle {

@@ -10,11 +10,11 @@ struct PedalDemand {
   double brake_n = 0;     // at least 0
 };
 
-/// One foot uses only one pedal at a time. It goes from the throttle to the brake when the demanded
-/// force falls below -band, and back when the force rises above band. Between these limits it stays
-/// on its pedal. If this pedal cannot give the demanded force, the car coasts. So a demand that
-/// changes sign within the band moves the foot at most once. While the car coasts for this reason,
-/// the force has an error of at most the band.
+/// One foot uses only one pedal at a time. The foot goes from the throttle to the brake when the
+/// demanded force falls below -band. The foot goes back when the force rises above band. Between
+/// these limits, the foot stays on its pedal. If this pedal cannot give the demanded force, the car
+/// coasts. So a demand that changes sign within the band moves the foot at most once. While the car
+/// coasts for this reason, the force has an error of at most the band.
 class Pedals {
  public:
   /// @param band_n at least 0
@@ -28,7 +28,7 @@ class Pedals {
     return {.brake_n = force_n < 0.0 ? -force_n : 0.0};
   }
 
-  /// Puts the foot on the throttle, its place before the first demand.
+  /// Puts the foot on the throttle, as before the first demand.
   void Release() { pedal_ = Pedal::kThrottle; }
 
   Pedal pedal() const { return pedal_; }

@@ -9,11 +9,11 @@
 namespace fogline::conflict {
 namespace {
 
-// Greatest number of bins of one belief. It covers 6 standard deviations on each side if the
-// standard deviation is at most 5 widths. With a larger standard deviation, the outermost bins
-// contain the probability beyond them.
+// Largest number of bins of one belief. The bins cover 6 standard deviations on each side if the
+// standard deviation is at most 5 bin widths. With a larger standard deviation, the outermost bins
+// contain the probability beyond these bins.
 constexpr std::int64_t kMostBins = 64;
-constexpr double kReach = 6;  // standard deviations; the probability beyond is 2e-9
+constexpr double kReach = 6;  // standard deviations; the probability outside is 2e-9
 
 // Probabilities of the bins first, first + 1, ..., which add up to 1.
 struct Bins {
@@ -46,7 +46,7 @@ Bins OnBins(double mean_m, double std_m, double width_m) {
   return bins;
 }
 
-// c_ab, the product under Jousselme's D, of bodies with `common` = sum over bins of m_a m_b.
+// c_ab, the product of two bodies under Jousselme's D. `common` is the sum of m_a m_b over bins.
 double JaccardProduct(double common, double eta_a, double eta_b, double n) {
   const double theta_a = 1 - eta_a;
   const double theta_b = 1 - eta_b;

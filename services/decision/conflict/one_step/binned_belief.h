@@ -1,5 +1,5 @@
-// Readings as bodies of evidence on bins of range, and the measures of evidence theory between two
-// of them.
+// Sensor readings as bodies of evidence on bins of range, and measures of evidence theory for two
+// bodies.
 #pragma once
 
 #include <array>
@@ -9,8 +9,8 @@
 
 namespace fogline::conflict {
 
-/// Sums over two bodies of evidence m1, m2, sufficient for all measures below. Focal sets are
-/// single bins, and the whole frame Theta of n bins, which has the mass 1 - eta.
+/// Sums over two bodies of evidence m1, m2, sufficient for all measures below. Focal sets are the
+/// single bins and the whole frame Theta of n bins. Theta has the mass 1 - eta.
 struct BinnedPair {
   double common = 0;         // sum over bins of m1 m2
   double square_1 = 0;       // sum over bins of m1^2
@@ -23,14 +23,15 @@ struct BinnedPair {
 };
 
 /// Radar (1) and LiDAR (2) on bins of `bin_width_m`: m({bin}) = eta P(bin), m(Theta) = 1 - eta
-/// (Shafer's discounting), P being the sensor's Gaussian. The radar's reading is an edge of the
-/// grid, so that the pair depends on the difference alone; mirrored differences give equal pairs. A
-/// reading within a bin and a reading on an edge give different evidence, though their precision is
-/// the same. So the measures grow from one multiple of the width to the next, but not at every |d|.
+/// (Shafer's discounting), where P is the sensor's Gaussian. The radar's reading is an edge of the
+/// grid, so that the pair depends only on the difference. Mirrored differences give equal pairs. A
+/// reading within a bin and a reading on an edge give different evidence, even with equal
+/// precision. So the measures grow from one multiple of the width to the next, but are not
+/// monotonic between them.
 BinnedPair PairOnBins(const Disagreement& disagreement, const ConflictParameters& parameters);
 
-/// Dempster's conflict k = sum of m1(A) m2(B) over disjoint A, B, in [0, 1] (Dempster 1967). It has
-/// a known defect: k is above 0 for equal evidence.
+/// Dempster's conflict k = sum of m1(A) m2(B) over disjoint A, B, in [0, 1] (Dempster 1967). k has
+/// a known defect: it is above 0 for equal evidence.
 double DempsterConflict(const BinnedPair& pair);
 
 /// d_J = sqrt((m1 - m2)' D (m1 - m2)/2), D(A, B) = |A and B|/|A or B|, in [0, 1] (Jousselme,

@@ -59,8 +59,8 @@ double ConsonantPignisticDistance(const Disagreement& disagreement) {
   const double a = 1 / (s1 * s1) - 1 / (s2 * s2);
   const double b = 2 * d / (s2 * s2);
   const double c = -d * d / (s2 * s2) - 2 * std::log(s2 / s1);
-  // As b >= 0, q has no cancellation. The roots are q/a, which is infinite for equal precisions,
-  // and c/q.
+  // b >= 0, so q has no cancellation. The roots are q/a and c/q. For equal precisions, q/a is
+  // infinite.
   const double q = -(b + std::sqrt(std::max(0.0, b * b - 4 * a * c))) / 2;
   if (q == 0) return 0;  // equal readings
   const auto [low, high] = std::minmax({q / a, c / q});

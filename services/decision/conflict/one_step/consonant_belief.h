@@ -1,5 +1,5 @@
-// Readings as least-committed consonant beliefs, and the measures of evidence theory between two of
-// them.
+// Sensor readings as least-committed consonant beliefs, and measures of evidence theory for two
+// beliefs.
 #pragma once
 
 #include <array>
@@ -9,9 +9,9 @@
 namespace fogline::conflict {
 
 /// The least-committed of all belief densities whose pignistic probability is the sensor's Gaussian
-/// N(mu, s^2). Its focal sets are the nested intervals [mu - y s, mu + y s], with the Maxwell
+/// N(mu, s^2). The focal sets are the nested intervals [mu - y s, mu + y s], with the Maxwell
 /// density f(y) = sqrt(2/pi) y^2 exp(-y^2/2) (Smets 2005; Ristic & Smets 2004; Caron et al. 2008).
-/// It does not need a frame with bins or a reliability.
+/// This belief does not need a frame with bins or a reliability.
 ///
 /// Dempster's k and the pignistic distance are computed from the density itself. The other measures
 /// need sums over pairs of focal sets. For these measures, `levels` intervals of mass 1/levels each
@@ -26,10 +26,10 @@ class ConsonantBeliefs {
   /// c12 = sum of m1(A) m2(B) |A and B|/|A or B|, in [0, 1]: the product under Jousselme's D.
   /// @param distance_m at least 0, between the means.  @param std1_m, std2_m above 0
   double JaccardProduct(double distance_m, double std1_m, double std2_m) const;
-  /// c11, the same for every reading.
+  /// c11, which is the same for every reading.
   double JaccardSquare() const { return jaccard_square_; }
 
-  /// Integral over x of pl1(x) pl2(x), in m. pl is the plausibility of single points (contour); it
+  /// Integral over x of pl1(x) pl2(x), in m. pl is the plausibility of single points (contour). pl
   /// determines a consonant belief completely.
   double ContourProduct(double distance_m, double std1_m, double std2_m) const;
 
@@ -54,13 +54,13 @@ double MaxwellBelow(double y);
 /// k(d) = P(s1 Y1 + s2 Y2 < |d|), Y1 and Y2 independent with density f: the probability that two
 /// intervals have no point in common,
 ///     k = integral over [0, |d|/s1] of f(y) F((|d| - s1 y)/s2) dy,
-/// in [0, 1], with k(0) = 0. It is computed by quadrature, to 1e-9.
+/// in [0, 1], with k(0) = 0. The integral is computed by quadrature, to 1e-9.
 double ConsonantConflict(const Disagreement& disagreement);
 
 /// difBetP, in [0, 1]. The pignistic probabilities are the Gaussians themselves. The largest
-/// difference of the two probabilities over all sets is the total variation of the Gaussians. It is
-/// the difference between the points of equal density. At d = 0 it is above 0 if the precisions
-/// differ.
+/// difference of the two probabilities over all sets is the total variation of the Gaussians. This
+/// maximum is reached on the interval between the points of equal density. At d = 0, difBetP is
+/// above 0 if the precisions differ.
 double ConsonantPignisticDistance(const Disagreement& disagreement);
 
 }  // namespace fogline::conflict

@@ -8,9 +8,8 @@
 
 namespace fogline::conflict {
 
-/// A measure that is a function of the disagreement of the step alone: double(Disagreement). A
-/// skipped step scores 0. With rule `hold`, a missing value before the first measured value scores
-/// 0, too.
+/// A measure that depends only on the disagreement of the step: double(Disagreement). A skipped
+/// step scores 0. With rule `hold`, a missing value before the first measured value scores 0, too.
 template <class Score>
 class Momentary final : public ConflictMeasure {
  public:

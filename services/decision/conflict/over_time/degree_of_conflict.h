@@ -11,13 +11,13 @@ namespace fogline::conflict {
 double DegreeOfConflict(double conflict_m, double slope_per_m, double centre_m);
 
 /// The differences radar - LiDAR of the last W steps; z >= 0 is their average. Before step W, the
-/// average is over the steps so far. A step without a difference has an empty place.
+/// average is over all steps so far. A step without a difference adds an empty entry.
 class ConflictWindow : public Window {
  public:
   using Window::Window;
 
-  /// z according to `reading`: the mean of the absolute differences, or the absolute value of their
-  /// mean; 0 if no step in the window has a difference.
+  /// z according to `reading`: the mean of the absolute differences, or the absolute value of the
+  /// mean difference. z is 0 if no step in the window has a difference.
   double Conflict(ConflictReading reading) const;
 };
 

@@ -8,9 +8,9 @@ namespace fogline::conflict {
 
 /// DoC = 1/(1 + exp(-slope (z - centre))) of the windowed z, in [0, 1] (Sourav & Cheng 2024;
 /// services/decision/conflict/over_time/degree_of_conflict.h). If z is the mean of absolute
-/// differences, its expectation without a fault is sqrt(2 S/pi). Only this measure has a scale in
-/// metres. The offset of the sensors is not subtracted. Skipped steps leave their place in the
-/// window empty.
+/// differences, the expected z without a fault is sqrt(2 S/pi). Only this measure has a scale in
+/// metres. The offset of the sensors is not subtracted. A skipped step adds an empty entry to the
+/// window.
 class Doc final : public ConflictMeasure {
  public:
   explicit Doc(const ConflictParameters& parameters);

@@ -10,18 +10,18 @@
 namespace fogline::conflict {
 
 /// Posterior probabilities of LiDAR modes that change as a Markov chain, as in the IMM (Blom &
-/// Bar-Shalom 1988), with modes of measurement instead of motion:
+/// Bar-Shalom 1988). Here the modes are modes of measurement, not of motion:
 ///
 ///     c_j = sum_i p_ij mu_i        mu_j = c_j Lambda_j / sum
 ///
-/// The reference range r is the radar's, or the prediction's if the radar has none. The likelihood
-/// of an echo at z is Lambda_j = P_echo,j times
+/// The reference range r is the radar's range, or the predicted range if the radar has no value.
+/// The likelihood of an echo at z is Lambda_j = P_echo,j times
 ///     clean       N(r - z; offset, S)
 ///     fog return  (1 - e) N(z; r* + E, s_z^2 + V) + e/R     E, V: mean, variance of a Beta(2, 20)
 ///     dropout     1/R                                       an echo can be anywhere
 /// with share e of stray echoes over the range R. The likelihood of no echo is 1 - P_echo,j. A
-/// missing LiDAR value is evidence of a mode, so the rule for missing values does not apply. After
-/// an echo without any reference, only the Markov chain advances.
+/// missing LiDAR value is evidence of a mode, so the rule for missing values does not apply. If
+/// there is an echo but no reference range, only the Markov chain advances.
 class LidarModes {
  public:
   using Probabilities = std::array<double, kLidarModes>;  // order of LidarMode; add up to 1

@@ -17,9 +17,9 @@ double StandardisedMean(const Window& window);
 using WindowedNis = Windowed<NormalisedSquare, Mean, &ConflictParameters::window_steps>;
 
 /// T = sum u_i / sqrt(n) with u = d/sqrt(S) over the n differences of the window, any real number.
-/// Without a fault T is standard normal; it is mean(d) sqrt(n/S) while S is constant. T is above 0
-/// if the LiDAR's range is too short; a range that is too long makes T negative. T is best for a
-/// constant bias.
+/// Without a fault, T is standard normal. While S is constant, T is mean(d) sqrt(n/S). T is above 0
+/// if the LiDAR's range is too short, and below 0 if this range is too long. T detects a constant
+/// bias best.
 using SignedNis =
     Windowed<&Disagreement::standardised, StandardisedMean, &ConflictParameters::window_steps>;
 

@@ -5,15 +5,15 @@
 
 namespace fogline::conflict {
 
-/// Cumulative sum of u = d/sqrt(S) (Page 1954). It is one-sided, because fog shortens the LiDAR's
-/// range:
+/// Cumulative sum of u = d/sqrt(S) (Page 1954). The sum is one-sided, because fog shortens the
+/// LiDAR's range:
 ///
 ///     g+ = min(ceiling, max(0, g + u - kappa)),        in [0, ceiling]
 ///
 /// in standard deviations. Two such tests of opposite sign with kappa = 0.5 and a threshold of 4
 /// have a mean run length of 168 steps to a false alarm. After a shift by one standard deviation,
 /// the mean run length to the alarm is 8.4 steps. With a threshold of 5 these run lengths are 465
-/// and 10.4 steps. A skipped step changes nothing.
+/// and 10.4 steps. A skipped step does not change g.
 class Cusum final : public ConflictMeasure {
  public:
   explicit Cusum(const ConflictParameters& parameters);
@@ -46,13 +46,13 @@ struct SprtBounds {
 };
 SprtBounds WaldBounds(double alpha, double beta);
 
-/// SPRT of "the LiDAR's range is too short by delta" against "it is not":
+/// SPRT of the hypothesis "the LiDAR's range is too short by delta" against "the range is correct":
 ///
 ///     L+ = L + (delta/S)(d - delta/2),        in [accept_agreement, ceiling accept_conflict]
 ///
-/// At the lower bound the test accepts agreement and begins again, so L never falls below this
-/// bound. The two bounds are a hysteresis with known errors. A score of at least accept_conflict
-/// accepts the conflict. A skipped step changes nothing.
+/// At the lower bound, the test accepts agreement and begins again. So L never falls below this
+/// bound. The two bounds are a hysteresis with known error probabilities. A score of at least
+/// accept_conflict accepts the conflict. A skipped step does not change L.
 class Sprt final : public ConflictMeasure {
  public:
   explicit Sprt(const ConflictParameters& parameters);

@@ -65,8 +65,8 @@ void SensorResidual::Reset() {
 
 NisBlame::NisBlame(const ConflictParameters& parameters)
     : offset_m_(parameters.offset_m),
-      // With d = radar - LiDAR = missing_conflict_m the radar's range is too long, or the LiDAR's
-      // range is too short.
+      // A difference radar - LiDAR of missing_conflict_m means that the radar's range is too long,
+      // or that the LiDAR's range is too short.
       radar_(parameters, parameters.nominal_radar_std_m, parameters.missing_conflict_m),
       lidar_(parameters, parameters.nominal_lidar_std_m, -parameters.missing_conflict_m) {}
 
@@ -96,7 +96,7 @@ Support DengSupport(const BeliefProducts& products) {
 }
 
 Support MurphySupport(const BeliefProducts& products) {
-  // |m_i - (m_j + m_k)/2|^2 = 3/2 c11 - c_ij - c_ik + c_jk/2, of which d_J^2 is half.
+  // |m_i - (m_j + m_k)/2|^2 = 3/2 c11 - c_ij - c_ik + c_jk/2, and d_J^2 is half of this.
   const auto support = [square = products.square](double to_one, double to_other, double between) {
     const double distance = (1.5 * square - to_one - to_other + between / 2) / 2;
     return 1 - std::sqrt(std::clamp(distance / square, 0.0, 1.0));

@@ -1,9 +1,11 @@
-// Finds the sensor that is wrong. The values of radar and LiDAR are not enough for this, so a third
-// value, the witness, is needed. It is the filter's prediction of the range from all earlier steps.
+// Finds the sensor that is wrong. The values of radar and LiDAR alone cannot show this, so a third
+// value, the witness, is needed. The witness is the filter's prediction of the range from all
+// earlier steps.
 //
 // All measures here first subtract the offset of the sensors from the radar's range. Without a
-// prediction there is no witness, and the blame of both sensors is 0. The witness depends on its
-// earlier input. After it has followed a slowly drifting sensor, the other sensor is blamed.
+// prediction there is no witness, and the blame of both sensors is 0. The witness depends on
+// earlier values of the sensors. After the witness has followed a slowly drifting sensor, the other
+// sensor is blamed.
 #pragma once
 
 #include <array>
@@ -18,8 +20,8 @@
 namespace fogline::conflict {
 
 /// T of one sensor against the prediction: sum of u_i/sqrt(n) over the last n residuals
-/// u = (z - prediction)/sqrt(s^2 + s_p^2), with n at most blame_window_steps. With one step T^2 is
-/// the NIS. The prediction's error correlates the residuals of several steps, so T of a long window
+/// u = (z - prediction)/sqrt(s^2 + s_p^2), with n at most blame_window_steps. If n is 1, T^2 is the
+/// NIS. The prediction's error correlates the residuals of several steps, so T of a long window
 /// scatters more than a standard normal number.
 class SensorResidual {
  public:
@@ -28,8 +30,8 @@ class SensorResidual {
   SensorResidual(const ConflictParameters& parameters, double nominal_std_m,
                  double missing_error_m);
 
-  /// T after this step; 0 without a prediction or a residual. A missing value repeats the last
-  /// residual, leaves its place empty, or counts as conflict, by the rule of the parameters.
+  /// T after this step; 0 without a prediction or a residual. As the rule of the parameters says, a
+  /// missing value repeats the last residual, adds no residual, or counts as conflict.
   double Step(const StatedRange& sensor, const StatedRange& prediction, double offset_m);
   void Reset();
 
@@ -46,17 +48,17 @@ class SensorResidual {
   Window residuals_;
 };
 
-/// Blame = P(chi-square with one degree of freedom < T^2) = erf(abs(T)/sqrt(2)). This is 1 minus
-/// the smallest level at which the test of T would reject the sensor. For a sensor without fault it
-/// is uniformly distributed over [0, 1].
+/// Blame = P(chi-square with one degree of freedom < T^2) = erf(abs(T)/sqrt(2)). Blame is 1 minus
+/// the smallest significance level at which the test of T would reject the sensor. For a sensor
+/// without fault, blame is uniformly distributed over [0, 1].
 class NisBlame final : public BlameMeasure {
  public:
   explicit NisBlame(const ConflictParameters& parameters);
 
   Blame Step(const Evidence& evidence) override;
   void Reset() override;
-  /// max T^2 of the two sensors in the last step, at least 0. It still distinguishes large T for
-  /// which the blame rounds to 1.
+  /// max T^2 of the two sensors in the last step, at least 0. This square still distinguishes large
+  /// values of T, for which the blame rounds to 1.
   double largest_square() const { return largest_square_; }
 
  private:
@@ -87,7 +89,7 @@ struct BeliefProducts {
   double lidar_prediction;
 };
 
-/// Support of each body of evidence by the others, at least 0, in any unit.
+/// Support of each body of evidence by the other bodies, at least 0, in any unit.
 struct Support {
   double radar;
   double lidar;
@@ -97,20 +99,19 @@ struct Support {
 /// Sim = 1 - d_J/sqrt(c11). (sqrt(c11) is the largest d_J of consonant beliefs. Without this
 /// divisor disjoint bodies of evidence would still support each other.)
 Support DengSupport(const BeliefProducts& products);
-/// Murphy 2000 averages the evidence. Here the support of a body is 1 - d_J/sqrt(c11), with d_J its
-/// distance from the average of the two others.
+/// Murphy 2000 averages the evidence. Here the support of a body is 1 - d_J/sqrt(c11). d_J is the
+/// distance of the body from the average of the two other bodies.
 Support MurphySupport(const BeliefProducts& products);
 /// As Deng's support, but Sim is the cosine of the angle between two bodies as vectors under
-/// Jousselme's metric, by the law of cosines. It is our reading of the published description of
-/// Zhang et al. 2014 (vector space, cosine theorem, degree of mutual support, an extension of
-/// Deng's rule); their equations were not available.
+/// Jousselme's metric, by the law of cosines. This formula is our interpretation of the published
+/// description of Zhang et al. 2014 (vector space, cosine theorem, degree of mutual support, an
+/// extension of Deng's rule). The authors' equations were not available.
 Support MutualSupport(const BeliefProducts& products);
 
 /// Blame = 1 - support/support0, at least 0. support0 is the support that the sensor would have
-/// with the same precisions if all three means were equal. So a sensor that agrees with the others
-/// is not blamed because the precisions differ. For a missing value,
-/// rule hold gives the last blame, rule skip gives no blame, and rule conflict gives all the blame
-/// to the sensor without value.
+/// with the same precisions if all three means were equal. So different precisions alone do not
+/// cause blame. For a missing value, rule hold gives the last blame, and rule skip gives no blame.
+/// Rule conflict gives all the blame to the sensor without value.
 class BeliefBlame final : public BlameMeasure {
  public:
   using SupportFunction = Support (*)(const BeliefProducts&);
