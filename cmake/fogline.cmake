@@ -1,8 +1,8 @@
 # fogline_add_library(NAME [SUBFOLDER...]): builds *.cc of this folder and of these subfolders as
 # the static library fogline_NAME. The caller adds the libraries that this library links.
 function(fogline_add_library name)
-  # No path has "/./" in it: CMake finds the properties of a source file only by the same spelling
-  # of its path.
+  # CMake finds the properties of a source file only if its path is spelled the same everywhere. So
+  # no path contains "/./".
   list(TRANSFORM ARGN PREPEND "${CMAKE_CURRENT_SOURCE_DIR}/" OUTPUT_VARIABLE subfolders)
   set(sources)
   set(folders)
@@ -21,8 +21,9 @@ function(fogline_add_library name)
   set_property(GLOBAL APPEND PROPERTY FOGLINE_LIBRARIES fogline_${name})
 endfunction()
 
-# fogline_write_links(FILE): writes one line "LIBRARY FOLDER,FOLDER... LINKED..." for each library of
-# fogline_add_library(): its name, the folders of its sources, and the libraries of Fogline that it links.
+# fogline_write_links(FILE): writes one line "LIBRARY FOLDER,FOLDER... LINKED..." for each library
+# of fogline_add_library(). LIBRARY is the name of the library, FOLDER a folder of its sources, and
+# LINKED a library of Fogline that it links.
 function(fogline_write_links file)
   get_property(libraries GLOBAL PROPERTY FOGLINE_LIBRARIES)
   set(lines)
@@ -31,7 +32,7 @@ function(fogline_write_links file)
     list(JOIN folders "," folders)
     get_target_property(own ${library} LINK_LIBRARIES)
     get_target_property(passed_on ${library} INTERFACE_LINK_LIBRARIES)
-    # Generator expressions around a name, such as $<LINK_ONLY:...>, do not matter.
+    # The pattern also finds a name inside a generator expression such as $<LINK_ONLY:...>.
     string(REGEX MATCHALL "fogline_[a-z0-9_]+" linked "${own};${passed_on}")
     list(REMOVE_DUPLICATES linked)
     list(JOIN linked " " linked)
@@ -40,8 +41,8 @@ function(fogline_write_links file)
   file(WRITE "${file}" "${lines}")
 endfunction()
 
-# fogline_add_role(NAME): builds *.cc of this folder as the library fogline_NAME, a role's algorithm, and
-# NAME_main.cc as the program fogline-NAME. Every role's folder has this shape.
+# fogline_add_role(NAME): builds *.cc of this folder as the library fogline_NAME (the algorithm of a
+# role), and NAME_main.cc as the program fogline-NAME. Every role's folder has this shape.
 function(fogline_add_role name)
   fogline_add_library(${name})
   target_link_libraries(fogline_${name} PUBLIC fogline_lcmtypes fogline_scenario)
@@ -53,9 +54,9 @@ endfunction()
 function(fogline_add_test_program name)
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS "${CMAKE_CURRENT_SOURCE_DIR}/${name}/*_test.cc")
   add_executable(${name}_tests ${sources})
-  # Strips the symbols, which are a quarter of a program.
+  # Strips the symbols: they are a quarter of the program's size.
   target_link_options(${name}_tests PRIVATE $<$<CONFIG:Release>:-s>)
-  # All test programs share one precompiled header, because it takes 100 MB.
+  # All test programs share one precompiled header, because a precompiled header takes 100 MB.
   get_property(precompiled GLOBAL PROPERTY FOGLINE_PRECOMPILED_TESTS)
   if(precompiled)
     target_precompile_headers(${name}_tests REUSE_FROM ${precompiled})

@@ -1,5 +1,5 @@
 # `cmake --install build --prefix DIR` installs into DIR: the programs, the message types (C++
-# headers, and the jar if there is one), and the package for C++ roles of other projects.
+# headers, and the jar if it was built), and the package for C++ roles of other projects.
 # find_package(fogline) gives these projects the target fogline::runtime.
 include(CMakePackageConfigHelpers)
 

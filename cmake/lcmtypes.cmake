@@ -1,6 +1,6 @@
-# lcm_add_types(TARGET DIR) makes C++ headers of every DIR/*.lcm at build time, as an interface
-# library. Debian's LCM has no CMake package that would do this. If a JDK and LCM's jar are
-# installed, TARGET_java makes lib/TARGET.jar, which lcm-spy needs to decode the messages.
+# lcm_add_types(TARGET DIR) makes C++ headers from every DIR/*.lcm at build time, as an interface
+# library. Debian's LCM has no CMake package for this task. If a JDK and LCM's jar are installed,
+# TARGET_java makes lib/TARGET.jar, which lcm-spy needs to decode the messages.
 find_program(LCM_GEN lcm-gen REQUIRED)
 
 function(lcm_add_types target dir)

@@ -11,8 +11,8 @@ if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
   set(CMAKE_BUILD_TYPE Release CACHE STRING "Debug, Release, RelWithDebInfo" FORCE)
 endif()
 
-# Compiles several source files as one, because the headers take most of the compiler's time. With OFF, a
-# change of one file compiles only that file.
+# Compiles several source files as one, because the headers take most of the compiler's time. If the
+# option is OFF, a change of one file compiles only that file.
 option(FOGLINE_UNITY "Compile several source files at once" ON)
 set(CMAKE_UNITY_BUILD ${FOGLINE_UNITY})
 set(CMAKE_UNITY_BUILD_BATCH_SIZE 10)
@@ -22,15 +22,15 @@ if(CCACHE_PROGRAM AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
   set(CMAKE_CXX_COMPILER_LAUNCHER "${CCACHE_PROGRAM}")
 endif()
 
-# Debug, release and -march=native builds give the same results: the compiler uses no fused
-# multiply-add (it would round once instead of twice), and Eigen does not vectorise (it would add in
-# another order).
+# Debug, release and -march=native builds give the same results. The compiler uses no fused
+# multiply-add, because it rounds once instead of twice. Eigen does not vectorise, because vector
+# code adds in another order.
 add_compile_options(-ffp-contract=off)
 add_compile_definitions(EIGEN_DONT_VECTORIZE)
 add_compile_options(-Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-missing-field-initializers)
 
-# A warning ends the build only with the compiler that Fogline is developed with (Debian 12's). Other
-# compilers warn of other things.
+# By default, a warning is an error only with Debian 12's compiler, the compiler that the developers
+# use. Other compilers have other warnings.
 set(werror_default OFF)
 if(PROJECT_IS_TOP_LEVEL AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND
    CMAKE_CXX_COMPILER_VERSION VERSION_GREATER_EQUAL 12 AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)

@@ -1,11 +1,11 @@
 # cmake -DOUT=FILE -DLCM_FILES="a.lcm;b.lcm" -P type_fingerprint.cmake
-# Writes a header with TypeFingerprint() over all message types of a run. So a program that uses
-# only the types, and nothing else of Fogline, can report which types it was built with.
+# Writes a header with TypeFingerprint(), a number computed from all message types of a run. With
+# this header, a program that uses only Fogline's types can report the types that it was built with.
 set(includes "")
 set(hashes "")
 foreach(file IN LISTS LCM_FILES)
   get_filename_component(type "${file}" NAME_WE)
-  # No role sends or receives these types. A role that was built without them can take part in a
+  # No role sends or receives these two types. A role that was built without them can take part in a
   # run.
   if(type STREQUAL "beacon_t" OR type STREQUAL "log_seal_t")
     continue()

@@ -13,12 +13,13 @@ struct RainCoefficients {
 };
 
 /// Liquid water in fog, in g/m3: M = 0.5 (50 m / visibility)^1.285, the power law through both
-/// pairs of ITU-R P.840: 0.05 g/m3 at 300 m and 0.5 g/m3 at 50 m. The true value also depends on
-/// the drops, so published laws differ by a factor of two.
+/// pairs of values in ITU-R P.840: 0.05 g/m3 at 300 m and 0.5 g/m3 at 50 m. The true value also
+/// depends on the drops, so published formulas differ by a factor of two.
 double LiquidWater_gpm3(double visibility_m);
 
-/// K_l in (dB/km) / (g/m3): ITU-R P.840-8, equations 2 to 11. Rayleigh absorption of droplets, with
-/// the permittivity of water by the double Debye model. Valid up to 200 GHz.
+/// K_l in (dB/km) / (g/m3): ITU-R P.840-8, equations 2 to 11. These equations describe Rayleigh
+/// absorption by droplets. They take the permittivity of water from the double Debye model, and are
+/// valid up to 200 GHz.
 double FogCoefficient(double frequency_ghz, double temperature_c);
 
 /// ITU-R P.838-3, equations 2 and 3, valid from 1 to 1000 GHz, for a horizontal path.
@@ -27,10 +28,11 @@ RainCoefficients RainCoefficientsOf(double frequency_ghz, Polarization polarizat
 /// Specific attenuation in dB/km by rain of this rate: ITU-R P.838-3, equation 1.
 double RainAttenuation_dbpkm(double rain_mmph, const RainCoefficients& rain);
 
-/// Maximum range under this one-way attenuation gamma >= 0. Without attenuation it is R_c =
-/// `clear_range_m`. The radar equation with the loss of the way there and back,
+/// Maximum range under this one-way attenuation gamma >= 0. Without attenuation, the maximum range
+/// is R_c = `clear_range_m`. The radar equation, with the loss on the way to the target and back,
+/// is
 ///     R^-4 10^(-2 gamma R / 10) = R_c^-4,
-/// that is R e^(q R) = R_c with q = gamma ln(10) / 20, has the solution R = W(q R_c) / q, W being
+/// or R e^(q R) = R_c with q = gamma ln(10) / 20. Its solution is R = W(q R_c) / q, where W is
 /// Lambert's function.
 double MaxRange_m(double clear_range_m, double attenuation_dbpkm);
 

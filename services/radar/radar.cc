@@ -25,7 +25,7 @@ Radar::Radar(const Scenario& scenario)
 const radar_t& Radar::Step(const truth_t& truth) {
   output_ = {};
   output_.header = truth.header;
-  // The gap is negative if the cars have collided; their bumpers then count as touching.
+  // If the cars have collided, the gap is negative. The radar then measures a gap of 0.
   const double x = std::max(truth.host_gap_m, 0.0);
   const double r = std::sqrt(x * x + radar_.lateral_offset_m * radar_.lateral_offset_m);
   if (r > MaxRange(truth) || DropsOut(truth.header.step)) return output_;

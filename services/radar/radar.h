@@ -1,5 +1,5 @@
-// The host's radar. In each step it measures distance and rate of distance of the preceding car. It
-// tracks nothing, filters nothing and measures one target only.
+// The host's radar. In each step it measures the distance of the preceding car, and the rate of
+// this distance. It tracks nothing, filters nothing and measures one target only.
 #pragma once
 
 #include <cstdint>
@@ -11,12 +11,12 @@
 
 namespace fogline::radar {
 
-/// With x the gap and y the lateral offset, a target at r = sqrt(x^2 + y^2) is measured as
+/// Here x is the gap and y the lateral offset. A target at r = sqrt(x^2 + y^2) is measured as
 ///     range = r + bias + noise,   range rate = x x' / r + noise
-/// where noise is Gaussian and white. There is no detection beyond the maximum range, and none in
-/// steps that drop out. Rain shortens the maximum range. With fog models beam and modes, fog
-/// shortens it, too. With fog models none and bias, fog has no effect on the radar, as in the paper
-/// (Sourav & Cheng 2024).
+/// where noise is Gaussian and white. There is no detection beyond the maximum range, and none in a
+/// step with a dropout. Rain shortens the maximum range. Fog shortens the maximum range with the
+/// fog models beam and modes. With the fog models none and bias, fog has no effect on the radar, as
+/// in the paper (Sourav & Cheng 2024).
 class Radar {
  public:
   /// Indices of the draws of stream kRadar within a step.
@@ -25,8 +25,8 @@ class Radar {
 
   explicit Radar(const Scenario& scenario);
 
-  /// The measurement in the step of `truth`. It depends only on scenario and truth, not on the
-  /// steps before.
+  /// The measurement in the step of `truth`. It depends only on scenario and truth, not on earlier
+  /// steps.
   const radar_t& Step(const truth_t& truth);
 
  private:

@@ -11,26 +11,25 @@ namespace fogline::recorder {
 
 /// A set of steps, and for each step the requested channels. A repeated request adds nothing, so
 /// many repetitions get only one answer. Take() goes through the steps in their order, because
-/// roles that catch up need the steps in this order. After the last step it begins again at the
-/// first one, so every request is answered.
+/// roles that catch up need the steps in this order. After the last step, Take() begins again at
+/// the first step, so every request is answered.
 class AskedSteps {
  public:
-  /// A bit for each channel, by place in kChannels.
+  /// One bit for each channel, at the channel's index in kChannels.
   using Channels = std::uint32_t;
   struct Asked {
     std::int64_t step;
     Channels channels;
   };
 
-  /// The most steps that are remembered. A role whose request is dropped asks again. If all roles
-  /// of a run ask at once, each at a different place of the log, they ask for a seventh of this
-  /// number.
+  /// The largest number of steps in the set. A role whose request is dropped asks again. Even if
+  /// all roles of a run ask at once for different steps, they ask for a seventh of this number.
   static constexpr std::size_t kMost = 4096;
 
   void Add(std::int64_t step, Channels channels) {
     if (steps_.size() < kMost || steps_.contains(step)) steps_[step] |= channels;
   }
-  /// Removes and returns the next step and its channels; nullopt if no step is asked for.
+  /// Removes and returns the next step and its channels; nullopt if no step is requested.
   std::optional<Asked> Take() {
     if (steps_.empty()) return std::nullopt;
     auto next = steps_.lower_bound(from_);
@@ -44,7 +43,7 @@ class AskedSteps {
 
  private:
   std::map<std::int64_t, Channels> steps_;
-  std::int64_t from_ = 0;  // Take() returns the first step from here on
+  std::int64_t from_ = 0;  // Take() returns the first step that is not before this one
 };
 
 }  // namespace fogline::recorder

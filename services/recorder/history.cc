@@ -16,7 +16,8 @@
 namespace fogline::recorder {
 namespace {
 
-// More than twice the size of any step, so that a step begins in every piece of this many bytes.
+// The number of bytes that Look() reads. It is more than twice the size of any step, so a step
+// begins in every piece of this size.
 constexpr std::int64_t kLook = 32 << 10;
 static_assert(kLook > 2 * log::kMostStepBytes);
 
@@ -65,7 +66,7 @@ void History::ForEachMessage(
     }
     rest = rest.subspan(log::SizeInFile(*event));
   }
-  if (realtime_) return;  // the messages that are missing were never recorded
+  if (realtime_) return;  // the missing messages were never recorded
   if (messages < log::kStepChannels) {
     throw std::runtime_error(fmt::format("cannot read {} again: step {} at byte {} is damaged",
                                          file_.string(), step, begin));
@@ -80,8 +81,8 @@ std::int64_t History::Find(std::int64_t step) {
   if (const Place& known = found_[runtime::RingSlot(step)]; known.step == step) return known.begin;
   Place low{.step = 0, .begin = front_.bytes};  // the wanted step is this one or a later one
   std::int64_t high = end_;                     // the wanted step begins before this byte
-  // Steps have nearly the same size, so the step's number gives a guess of its byte. The guess aims
-  // at the step before, because Look() searches forwards.
+  // All steps have nearly the same size, so the byte at which a step begins can be guessed from its
+  // number. The guess is for the previous step, because Look() searches forwards.
   const double share = static_cast<double>(std::max<std::int64_t>(0, step - 1)) /
                        static_cast<double>(std::max<std::int64_t>(1, steps_ - 1));
   std::int64_t guess =

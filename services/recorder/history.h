@@ -15,8 +15,8 @@
 
 namespace fogline::recorder {
 
-/// Finds the steps in the recorder's own log, in which the messages of a step stand together. It
-/// reads the bytes on request, as they were written, and decodes nothing. There is no index,
+/// Finds the steps in the recorder's own log, in which the messages of a step are adjacent. The
+/// class reads the bytes on request, as they were written, and decodes nothing. There is no index,
 /// because an index would grow with the run. A search reads the event numbers in the file instead.
 /// In real time messages may be missing, so only the last step can be found.
 class History {
@@ -50,7 +50,8 @@ class History {
   /// @return the last of these steps that is not later than `step`; if all are later, the first of
   ///     them; nullopt if no step begins there
   std::optional<Place> Look(std::int64_t from, std::int64_t limit, std::int64_t step);
-  /// Reads bytes of the file, fewer if the file ends before. They are valid until the next call.
+  /// Reads bytes of the file, fewer if the file ends earlier. The bytes are valid until the next
+  /// call.
   /// @throws std::runtime_error
   runtime::Bytes Read(std::int64_t from, std::int64_t size);
 
@@ -62,7 +63,7 @@ class History {
   std::int64_t steps_;
   std::int64_t last_;  // byte at which the last step begins
   std::int64_t end_;   // byte at which the last step ends
-  // Steps that were found lately and the steps behind them, which are usually asked for next.
+  // Recently found steps, and the step after each of them: it is usually requested next.
   std::array<Place, runtime::kRingSteps> found_{};
   std::vector<std::uint8_t> chunk_;
 };

@@ -11,10 +11,11 @@ namespace {
 constexpr double kOverduePeriods = 1.5;
 constexpr int kAsks = 4;
 constexpr Duration kAskEvery = milliseconds(20);
-// At most this many steps may be incomplete: half of the steps that producers keep. The other half
-// leaves time for the producers' answers.
+// At most this many steps may be incomplete: half of the number of steps that a producer stores.
+// The other half leaves time for the producers' answers.
 constexpr std::int64_t kMaxOpen = runtime::kRingSteps / 2;
-// At most this many STATUS messages may wait to be written: several of each role in each open step.
+// At most this many STATUS messages may wait to be written: several from each role in each open
+// step.
 constexpr std::size_t kMaxHeard = 4096;
 
 }  // namespace
@@ -57,8 +58,8 @@ void RecordRule::OnInput(std::size_t input, std::int64_t step, runtime::Arrival&
 
 void RecordRule::CountRefused(std::size_t input, std::int64_t step) {
   const runtime::StepRing& ring = parts_.inputs.all()[input].ring;
-  // If the ring has this step of the input, the log has it, too. For a step that is older than the
-  // ring, this is not known.
+  // If the ring has the input's message of this step, the log has the message, too. If the step is
+  // older than the ring, the recorder does not know whether the log has the message.
   if (ring.Has(step) || step <= ring.newest() - runtime::kRingSteps) return;
   Refused& refused = refused_[input];
   if (std::exchange(refused.steps[runtime::RingSlot(step)], step + 1) != step + 1) ++refused.count;
@@ -128,7 +129,7 @@ bool RecordRule::GivenUp(std::int64_t step, TimePoint now) {
 void RecordRule::AskForHoles(TimePoint now) {
   ask_at_ = now + kAskEvery;
   const std::int64_t newest = watch_.horizon().newest();
-  std::int64_t end = parts_.steps.next();  // the step after the last one to ask for
+  std::int64_t end = parts_.steps.next();  // the step after the last step to ask for
   while (end <= newest && now >= OpenAt(end, now).seen + overdue_) ++end;
   std::int64_t first = parts_.steps.next();
   while (first < end && OpenAt(first, now).asked >= kAsks) ++first;

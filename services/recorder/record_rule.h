@@ -1,9 +1,9 @@
 // The recorder's rule in real time: the world does not wait for the recorder. The recorder writes
-// steps in order as soon as they are complete. It asks for a missing message as long as the
-// producer can still have the message. A step that stays incomplete is written without the missing
-// messages. RUN tells the recorder that a step is under way, even if none of its messages has come.
-// Each STATUS goes into the log as well, behind the step in which it came, because the states of
-// the roles are part of the record.
+// steps in order as soon as they are complete. The recorder asks for a missing message as long as
+// the producer can still have the message. A step that stays incomplete is written without the
+// missing messages. RUN tells the recorder that a step is under way, even if none of its messages
+// has come. Each STATUS is also written into the log, after the step in which it came, because the
+// states of the roles are part of the record.
 #pragma once
 
 #include <array>
@@ -69,7 +69,7 @@ class RecordRule final : public runtime::FireRule {
   runtime::RealtimeWatch watch_;
   Duration overdue_;  // how long the recorder waits before it asks for a message
   std::array<Open, runtime::kRingSteps> open_{};
-  std::array<Refused, kNumChannels> refused_{};  // by place in Inputs::all()
+  std::array<Refused, kNumChannels> refused_{};  // by index in Inputs::all()
   std::deque<Heard> heard_;
   TimePoint ask_at_{};
   bool listening_ = false;

@@ -15,13 +15,13 @@ namespace {
 // Number of steps between two acknowledgements: a quarter of the world's kMaxAhead.
 constexpr std::int64_t kAcknowledgeEvery = runtime::kMaxAhead / 4;
 // The limits for messages that are sent again, per second and in one burst. At these limits the
-// answers take about a fifth of a processor. Every role that starts again asks for its inputs of 63
-// steps at a time. A role with six inputs asks for 378 messages.
+// answers take about a fifth of one processor's time. Every role that starts again asks for its
+// inputs of 63 steps at a time. A role with six inputs asks for 378 messages.
 constexpr double kAnswersPerSecond = 30'000;
 constexpr double kAnswersAtOnce = 3'000;
 constexpr double kNoLimit = 1e9;
-// A request within this time after an answer gets no second answer, because the role receives the
-// first answer.
+// A request within this time after an answer gets no second answer, because the role that asks
+// receives the first answer.
 constexpr Duration kAnswerHolds = milliseconds(2);
 // The last STATUS is sent this number of times, because the runner cannot ask a recorder that has
 // left. If a third of all messages is lost, all six messages are lost in only one of 700 cases.
@@ -36,7 +36,7 @@ constexpr Duration kLimiterRetry = milliseconds(1);
 Recorder::Recorder(runtime::Bus& bus, std::optional<std::int64_t> run_id,
                    const std::filesystem::path& file, Existing existing)
     : node_(bus, Role::kRecorder, run_id, *this), file_(file), existing_(existing) {
-  // In memory no other process can send a flood of requests.
+  // On a bus in memory, no other process can send a flood of requests.
   const double at_most = bus.url().starts_with("memq:") ? kNoLimit : 1;
   node_.outputs().limiter() =
       runtime::RateLimiter(at_most * kAnswersPerSecond, at_most * kAnswersAtOnce);
@@ -146,8 +146,8 @@ void Recorder::Compute(std::int64_t step) {
   Write(step);
   if (recording_ != nullptr) WriteStatus(step);
   history_->Add(log_->size());
-  // In real time each step is flushed, and there is enough time for it. A recorder that is started
-  // again can ask the roles for the newest 32 steps only.
+  // In real time, the recorder flushes each step, because a restarted recorder can ask the roles
+  // for only the newest 32 steps. There is enough time to flush.
   if (recording_ != nullptr) log_->Flush();
   const bool last = step == final_;
   if (last || (step + 1) % kAcknowledgeEvery == 0) {
@@ -168,8 +168,9 @@ void Recorder::OnStatusAsked(std::int64_t step) {
 
 void Recorder::OnAsked(std::string_view channel, runtime::StepRange steps, TimePoint now) {
   if (recording_ != nullptr) return AnswerRecent(channel, steps, now);
-  // Answers only for steps that are at least kMaxAhead old. These steps are acknowledged, so they
-  // can be read from the file. Newer steps are in the rings of their producers.
+  // The recorder answers only for steps that are at least kMaxAhead steps old. These steps are
+  // acknowledged, so they can be read from the file. Newer steps are in the rings of their
+  // producers.
   static_assert(kAcknowledgeEvery <= runtime::kMaxAhead);
   steps.count = std::min(steps.count, parts_.steps.next() - runtime::kMaxAhead - steps.first);
   const std::size_t place = ChannelNamed(channel);

@@ -1,9 +1,9 @@
 // The recorder: writes every per-step message of a run, and its scenario, into an LCM event log. It
 // takes part in the lockstep: the world runs at most kMaxAhead steps ahead of the log on disk, so a
-// fast run loses nothing. Events stand in the order of the steps, and within a step in the order of
-// the graph table. The order of arrival does not matter. So equal runs have equal logs except for
-// the run id. The recorder also answers requests for recorded steps, from roles that have been
-// started again. If the recorder itself is killed, another recorder continues its log.
+// fast run loses no message. The log has the events in the order of the steps, and within a step in
+// the order of the graph table. The order of arrival does not matter. So the logs of equal runs
+// differ only in the run id. The recorder also answers requests for recorded steps, from roles that
+// have been started again. If the recorder itself is killed, another recorder continues its log.
 #pragma once
 
 #include <filesystem>

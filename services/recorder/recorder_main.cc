@@ -37,7 +37,7 @@ int main(int argc, char** argv) {
         if (shared) {
           lock.emplace(file, FileLock::Kind::kShared, "--log", "run");
         } else {
-          log.reset();  // gives up the lock that an earlier call took
+          log.reset();  // releases the lock that an earlier call took
           log = std::make_unique<LogOfRun>(file);
         }
         return std::make_unique<Recorder>(

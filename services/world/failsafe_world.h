@@ -1,4 +1,4 @@
-// The world in real time: it moves the cars at every tick with the commands that are there. A car
+// The world in real time: it moves the cars at every tick with the commands that have come. A car
 // without a command follows the fallback of vehicle_fallback.h.
 #pragma once
 
@@ -11,7 +11,7 @@
 
 namespace fogline::world {
 
-/// Everything that the world reads, as far as it has come.
+/// All inputs of the world, each with its newest message, if any has come.
 struct WorldInputs {
   Heard<arbitration_t> host;
   Heard<follower_command_t> followers;
@@ -25,12 +25,13 @@ class FailsafeWorld {
 
   const Output& Start(std::int64_t run_id) { return world_.Start(run_id); }
   /// Continues after a step that an earlier process published.
-  /// @param minimal_risk cars that were in the manoeuvre (bits of status_t), and stay in it
+  /// @param minimal_risk cars that were in the minimal risk manoeuvre (bits of status_t), and stay
+  ///     in it
   void Resume(const truth_t& truth, std::int8_t minimal_risk);
   /// The next step.
   const Output& Step(const WorldInputs& inputs);
 
-  /// Text about what cars without a command do; "" if every car has one.
+  /// Describes what the cars without a command do; "" if every car has a command.
   const std::string& fallback() const { return fallback_; }
   /// Cars that are in a minimal risk manoeuvre, as bits of status_t.
   std::int8_t minimal_risk() const;

@@ -14,12 +14,12 @@ struct Fog {
   double visibility_m = 0;
 };
 
-/// Level of a profile at x in [0, 1). x is the part of the fog window that has passed.
+/// Level of a profile at x in [0, 1). x is the share of the fog window that has passed.
 double FogLevel(FogProfile profile, double x);
 
 /// The fog of a scenario. Times are compared in whole microseconds, so that the binary rounding of
 /// 0.1 does not decide whether a step belongs to the fog window. The end of the window does not
-/// belong to it.
+/// belong to the window.
 class FogSchedule {
  public:
   explicit FogSchedule(const FogSection& fog);

@@ -16,7 +16,8 @@ class Leader {
   explicit Leader(const LeadSection& lead);
 
   /// Speed in m/s at a step, `time_s` after the start; never negative. Profile `recorded` uses the
-  /// step, the others use the time. A profile that ends keeps its last speed.
+  /// step, the other profiles use the time. After the end of a profile, the car keeps the profile's
+  /// last speed.
   double SpeedAt(std::int64_t step, double time_s) const;
 
  private:

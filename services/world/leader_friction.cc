@@ -33,7 +33,7 @@ double StrongestAnywhere(const RoadSection& road, double friction) {
   return StrongestBraking(friction, steepest);
 }
 
-// A braking that a profile states, and the field that states it.
+// A braking that a profile states, and the field that states this braking.
 struct StatedBraking {
   double braking_mps2 = 0;
   std::string field;
@@ -60,7 +60,7 @@ StatedBraking HardestBreakpoint(const LeadSection& lead) {
 StatedBraking HardestStated(const LeadSection& lead) {
   switch (lead.profile) {
     case LeadProfile::kConstant:
-    case LeadProfile::kRecorded:  // its braking is known only step by step
+    case LeadProfile::kRecorded:  // the braking of a recording is known only step by step
       break;
     case LeadProfile::kBreakpoints:
       return HardestBreakpoint(lead);
@@ -73,7 +73,7 @@ StatedBraking HardestStated(const LeadSection& lead) {
     }
     case LeadProfile::kEmergencyBrake: {
       const EmergencyBrakeSection& brake = lead.emergency_brake;
-      if (brake.final_speed_mps >= lead.speed_mps) break;  // it does not brake
+      if (brake.final_speed_mps >= lead.speed_mps) break;  // the car does not brake
       return {brake.deceleration_mps2, "/lead/emergency_brake/deceleration_mps2",
               fmt::format("{} m/s2", NumberText(brake.deceleration_mps2))};
     }

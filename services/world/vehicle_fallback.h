@@ -1,5 +1,5 @@
-// Fallback of the cars in real time if their commands are missing: the last command holds for a
-// short time, then the car stops. The world does this without any other process.
+// What the cars do in real time if their commands are missing: a car follows its last command for a
+// short time, and then stops. The world needs no other process for this fallback.
 #pragma once
 
 #include <cstddef>
@@ -28,13 +28,13 @@ class CarFallback {
  public:
   CarFallback(const MinimalRiskSection& limits, double step_s) : minimal_risk_(limits, step_s) {}
 
-  /// The acceleration for the step that begins here. Call it once per step.
+  /// The acceleration for the step that begins now. Call it once per step.
   /// @param command_mps2 the newest command, if any has come
   /// @param speed_mps, applied_mps2 of the car at the beginning of the step
   double Step(InputState state, std::optional<double> command_mps2, double speed_mps,
               double applied_mps2);
 
-  /// Begins the manoeuvre, unless it has begun already.
+  /// Begins the minimal risk manoeuvre, unless it has begun already.
   void BeginMinimalRisk(double applied_mps2) { minimal_risk_.Begin(applied_mps2); }
   bool in_minimal_risk() const { return minimal_risk_.begun(); }
 
@@ -47,11 +47,11 @@ class CarFallback {
 /// following car has its own fallback. If messages lack the acceleration of one car, only this car
 /// stops.
 ///
-/// Once the arbitrator has commanded the host's minimal risk manoeuvre, the vehicle remembers it.
-/// It follows the arbitrator's commands while they continue the manoeuvre. If the commands stop
-/// coming, or if another arbitrator commands something else, the vehicle makes the manoeuvre by
-/// itself. Only a driver who was asked and has taken over ends the manoeuvre (mode RECOVERING, or
-/// EMERGENCY_BRAKING with authority of the human).
+/// Once the arbitrator has commanded the host's minimal risk manoeuvre, the vehicle remembers the
+/// manoeuvre. The vehicle follows the arbitrator's commands while they continue the manoeuvre. If
+/// no further commands come, or if another arbitrator commands something else, the vehicle carries
+/// out the manoeuvre by itself. Only a driver who was asked and has taken over ends the manoeuvre
+/// (mode RECOVERING, or EMERGENCY_BRAKING with authority of the human).
 class VehicleFallback {
  public:
   explicit VehicleFallback(const Scenario& scenario);
@@ -61,7 +61,8 @@ class VehicleFallback {
   void Step(const truth_t& now, const Heard<arbitration_t>& host,
             const Heard<follower_command_t>& followers);
 
-  /// Puts the host into the manoeuvre, because it was in the manoeuvre under an earlier process.
+  /// Puts the host into the manoeuvre, because the host was in the manoeuvre under an earlier
+  /// process.
   void ResumeHost(const truth_t& now) { host_.BeginMinimalRisk(now.host_acceleration_mps2); }
   /// Puts all following cars into the manoeuvre, because it is not known which cars were in the
   /// manoeuvre under the earlier process.
@@ -72,17 +73,17 @@ class VehicleFallback {
   const arbitration_t& host() const { return host_out_; }
   const follower_command_t& followers() const { return followers_out_; }
 
-  /// Whether the host is in a manoeuvre that no command ends: its own, or one that the arbitrator
-  /// has commanded.
+  /// Whether the host is in a manoeuvre that no command ends. The vehicle began this manoeuvre by
+  /// itself, or the arbitrator has commanded it.
   bool host_in_minimal_risk() const {
     return host_.in_minimal_risk() || (commanded_ && IsLocked(host_out_.mode));
   }
-  /// Whether the vehicle makes the manoeuvre by itself; the arbitrator has to know this.
+  /// Whether the vehicle carries out the manoeuvre by itself; the arbitrator has to know this.
   bool host_stops_by_itself() const { return host_.in_minimal_risk(); }
   /// Whether any of the following cars is in the manoeuvre.
   bool follower_in_minimal_risk() const;
-  /// State of the followers' commands: the worst of all cars. A message without an acceleration for
-  /// a car counts as missing for this car.
+  /// State of the followers' commands: the worst state of all following cars. A message without an
+  /// acceleration for a car counts as missing for this car.
   InputState follower_state() const { return follower_state_; }
 
  private:
@@ -95,7 +96,7 @@ class VehicleFallback {
   void StepFollower(std::size_t car, const truth_t& now,
                     const Heard<follower_command_t>& followers);
 
-  /// State of a command that the last `steps` messages lacked, by the limits for inputs.
+  /// State of a command that is missing in the last `steps` messages, by the limits for inputs.
   InputState StateAfter(std::int64_t steps) const;
 
   HealthSection health_;

@@ -27,7 +27,7 @@ models::GradeProfile RoadOf(const Scenario& scenario) {
   }
 }
 
-// The vehicle model; nothing for a point mass. @param section name of `vehicle` in the scenario
+// The vehicle model; nullopt for a point mass. @param section name of `vehicle` in the scenario
 std::optional<models::LongitudinalVehicle> VehicleOf(const VehicleSection& vehicle,
                                                      const char* section, const Scenario& scenario,
                                                      const models::GradeProfile& road,

@@ -1,5 +1,5 @@
-// The road: it moves the cars, keeps the time of the run and has the complete state. The preceding
-// car follows its profile, the others follow their commands.
+// The road: it moves the cars, counts the time of the run and has the complete state. The preceding
+// car follows its profile, the other cars follow their commands.
 #pragma once
 
 #include <cstddef>
@@ -23,11 +23,12 @@ namespace fogline::world {
 
 /// The preceding car, the host and the cars that follow it, in one lane. The preceding car has the
 /// speed of its profile. While the profile brakes harder than friction allows, the car is faster
-/// (leader_friction.h). Each other car is a point mass, which has exactly the commanded
-/// acceleration, or a vehicle that follows the command as far as it can (services/models/vehicle).
-/// The acceleration of every car is constant within a step (services/models/vehicle/motion.h). Cars
-/// that have collided do not push each other. Unless the run ends, they continue to follow their
-/// commands, and the gap between them is negative.
+/// than its profile (leader_friction.h). Each other car is a point mass or a vehicle. A point mass
+/// has exactly the commanded acceleration. A vehicle follows the command as far as it can
+/// (services/models/vehicle). The acceleration of every car is constant within a step
+/// (services/models/vehicle/motion.h). Cars that have collided do not push each other. If the run
+/// does not end, these cars continue to follow their commands, and the gap between them is
+/// negative.
 class World {
  public:
   using Output = std::tuple<truth_t, ego_t>;
@@ -41,17 +42,18 @@ class World {
   /// Step 0: the state that the scenario describes. Begins a new run.
   const Output& Start(std::int64_t run_id);
 
-  /// Continues after a step that another instance published. With point masses the steps are the
-  /// same as those of the other instance. TRUTH does not contain the state of a vehicle's engine
-  /// and brakes, so a vehicle begins as if it had kept its acceleration for a long time.
+  /// Continues after a step that another instance published. With point masses, this instance
+  /// computes the same steps that the other instance would compute. TRUTH does not contain the
+  /// state of a vehicle's engine and brakes, so a vehicle begins as if it had kept its acceleration
+  /// for a long time.
   /// @throw std::invalid_argument if that instance had another number of cars
   void Resume(const truth_t& truth);
 
   /// Computes step k + 1 from the commands of step k. The acceleration that truth and ego report is
-  /// the command, or a vehicle's response to it. For a car that came to rest within the step it is
-  /// (v(k+1) - v(k)) / step_s.
-  /// @pre Start() or Resume() was called; `host` and `followers` are those of the last published
-  /// step.
+  /// the command, or a vehicle's response to the command. For a car that came to rest within the
+  /// step, the reported acceleration is (v(k+1) - v(k)) / step_s.
+  /// @pre Start() or Resume() was called; `host` and `followers` are the commands of the last
+  ///     published step
   /// @throw std::invalid_argument if a command is not finite, or if there are more or fewer
   ///     commands than following cars.
   const Output& Step(const arbitration_t& host, const follower_command_t& followers);
@@ -66,7 +68,7 @@ class World {
     double acceleration_mps2 = 0;  // constant during the step, or until the car rests
     double applied_mps2 = 0;       // mean acceleration over the step that ended
   };
-  // In the order of the lane, from the front. The car at index i follows the one at i - 1.
+  // In the order of the lane, from the front. The car at index i follows the car at index i - 1.
   enum : std::size_t { kPreceding, kHost, kFirstFollower };
 
   double TimeOf(std::int64_t step) const;

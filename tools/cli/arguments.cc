@@ -54,7 +54,7 @@ log::LogOfRun PrepareLog(const std::filesystem::path& log, bool force) {
   if (std::filesystem::exists(log, ignored) && !std::filesystem::is_regular_file(log, ignored)) {
     throw InputError(fmt::format("{}: error: --log: not a file", PathText(log)));
   }
-  // /dev/stdout and /proc/self/fd/1 are other files for the recorder than for this process.
+  // For the recorder, /dev/stdout and /proc/self/fd/1 are other files than for this process.
   if (!IsReplaceable(log)) {
     throw InputError(fmt::format(
         "{}: error: --log: the name of an open file of this process is no log", PathText(log)));

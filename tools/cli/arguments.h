@@ -51,10 +51,10 @@ class ScenarioArguments {
   std::string seed_;  // checked together with all other fields
 };
 
-/// Prepares a log file for writing. It refuses a log that another run is writing, and a non-empty
-/// file unless `force` is true. Even with `force` it refuses a file that is no event log. It
-/// requires the folder as RequireFolderOf() does. If a killed run has left an older log of this
-/// name, the function takes it back and says so on stderr.
+/// Prepares a log file for writing. The function refuses a log that another run is writing. It
+/// refuses a non-empty file if `force` is false. Even with `force`, it refuses a file that is no
+/// event log. RequireFolderOf() checks the folder. If a killed run has left an older log of this
+/// name, the function restores the older log and says so on stderr.
 /// @throws InputError
 log::LogOfRun PrepareLog(const std::filesystem::path& log, bool force);
 
@@ -77,19 +77,20 @@ bool ForEachReadable(const std::vector<std::filesystem::path>& logs, const Work&
   return readable;
 }
 
-/// The seeds of --seeds. A single number, which the user may have meant as a count, is explained on
-/// stderr.
+/// The seeds of --seeds. If the user gives a single number and may have meant a count, the function
+/// explains the meaning on stderr.
 /// @throws InputError
 sweep::SeedRange ReadSeeds(const std::string& text);
 
 /// Prints --json output: a document and a newline on stdout. In a name that is not UTF-8, U+FFFD
-/// replaces the bytes that JSON cannot have. Control characters for terminals are escaped.
+/// replaces the bytes that are not allowed in JSON. Control characters for terminals are escaped.
 void PrintJson(const nlohmann::ordered_json& json, int indent = 2);
 void PrintJson(const std::string& text);
 
 /// Refuses --json if the verb's document goes to stdout: the reader could not separate the two
 /// texts.
-/// @param option the option that says where the document goes, such as "--out"; "" for nowhere
+/// @param document the file of the document; "" if there is no document
+/// @param option the option that names this file, such as "--out"
 /// @throws InputError
 void RefuseJsonBeside(const std::filesystem::path& document, std::string_view option, bool json);
 

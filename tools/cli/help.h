@@ -15,7 +15,7 @@ inline constexpr std::size_t kHelpColumns = 100;
 /// A validator for a real number in a closed range; it refuses NaN.
 CLI::Validator NumberIn(double least, double most);
 
-/// CLI11's help with the descriptions of options wrapped.
+/// CLI11's formatter of help texts, with wrapped descriptions of options.
 class HelpFormatter : public CLI::Formatter {
  public:
   HelpFormatter();

@@ -22,9 +22,9 @@ inline constexpr std::array kOwnPrograms{kCalibrate, kStudy};
 /// Adds these verbs to the list of verbs, for help and spelling hints. These verbs get no action.
 void AddOwnPrograms(CLI::App& app, Action& action);
 
-/// Replaces this process by the program of the verb argv[1], or argv[2] after "help". It returns if
-/// this verb has no program of its own. If the program cannot be started, it prints an error on
-/// stderr and ends the process with kRunFailed.
+/// Replaces this process by the program of the verb argv[1], or argv[2] after "help". The function
+/// returns if this verb has no program of its own. If the program cannot be started, the function
+/// prints an error on stderr and ends the process with kRunFailed.
 void BecomeOwnProgram(int argc, char** argv);
 
 }  // namespace fogline::cli

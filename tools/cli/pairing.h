@@ -1,4 +1,4 @@
-// Finds the paired run without traded control of each run. The measures of a pair, such as the
+// For each run, finds the paired run without traded control. The measures of a pair, such as the
 // safety improvement SI, need both runs.
 #pragma once
 
@@ -11,7 +11,7 @@
 
 namespace fogline::cli {
 
-/// The scenario of the paired run: lambda_A = 1 throughout, everything else the same.
+/// The scenario of the paired run: lambda_A is always 1, and everything else is the same.
 Scenario WithoutTradedControl(Scenario scenario);
 
 /// The results that need the paired run. All of them are empty if there is no paired run.

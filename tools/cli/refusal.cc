@@ -20,7 +20,7 @@ std::vector<std::string> OptionsOf(const CLI::App& command) {
   return names;
 }
 
-/// The verbs that have this option, such as "fogline run, table"; "" if there is none.
+/// The verbs that have this option, such as "fogline run, table"; "" if no verb has this option.
 std::string VerbsWith(const CLI::App& app, const std::string& option) {
   std::string verbs;
   for (const CLI::App* verb : app.get_subcommands({})) {
@@ -31,7 +31,7 @@ std::string VerbsWith(const CLI::App& app, const std::string& option) {
 }
 
 /// The value for `field` from the words "--threshold=0.8", or "--threshold" and "0.8"; "VALUE" if
-/// they have none.
+/// the words contain no value.
 std::string ValueFor(const Field& field, const std::vector<std::string>& words) {
   const std::string& option = words.front();
   if (const std::size_t at = option.find('='); at != std::string::npos) {
@@ -47,8 +47,8 @@ std::string ValueFor(const Field& field, const std::vector<std::string>& words) 
   return "VALUE";
 }
 
-/// A hint for an unknown option that resembles fields of the scenario: it says how to set these
-/// fields. "" if there is no such field.
+/// A hint for an unknown option that resembles fields of the scenario. The hint says how to set
+/// these fields. "" if the option resembles no field.
 std::string FieldHint(const std::string& option, const std::vector<std::string>& words) {
   std::string word = option.substr(std::min(option.find_first_not_of('-'), option.size()));
   std::ranges::replace(word, '-', '_');
@@ -72,7 +72,8 @@ std::string FieldHint(const std::string& option, const std::vector<std::string>&
   return hint;
 }
 
-/// A hint for a word such as "-run.lcm", which may be meant as a file. "" if it looks like options.
+/// A hint for a word such as "-run.lcm", which may be meant as a file. "" if the word looks like
+/// options.
 std::string FileHint(const std::string& word) {
   const bool is_name = !word.starts_with("--") && word.find_first_of("./") != std::string::npos;
   return is_name ? fmt::format("; a file of this name is {}", QuoteShort("./" + word)) : "";
@@ -152,7 +153,8 @@ std::vector<std::string> SeparateEmptyValues(const std::vector<std::string>& wor
 std::string Refusal(const CLI::App& app, const CLI::ParseError& error) {
   const std::vector<CLI::App*> verbs = app.get_subcommands();
   const bool is_extra = error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError);
-  // A wrong word before the verb is an error of the program's command line, not of the verb's.
+  // A wrong word before the verb is an error of the program's command line, not of the verb's
+  // command line.
   const bool is_verb = !verbs.empty() && !(is_extra && verbs.front()->remaining().empty());
   const CLI::App& command = is_verb ? *verbs.front() : app;
   const std::vector<std::string> misfits = command.remaining();

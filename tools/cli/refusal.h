@@ -18,8 +18,8 @@ std::string UnknownVerb(const CLI::App& app);
 /// An error text, such as `no verb "tabel"; did you mean "table"?`
 std::string NoSuchVerb(const CLI::App& app, const std::string& word);
 
-/// Makes every option and argument of the verbs of `app` refuse an empty text. Such a text is often
-/// that of a shell's variable that is not set, as in --log "$UNSET". Without a refusal the verb
+/// Makes every option and argument of the verbs of `app` refuse an empty text. An empty text often
+/// comes from a shell variable that is not set, as in --log "$UNSET". Without a refusal the verb
 /// would ignore the option.
 void RefuseEmptyTexts(CLI::App& app);
 

@@ -33,7 +33,7 @@ nlohmann::ordered_json VerificationJson(const replay::Verification& verification
   return json;
 }
 
-/// The roles that were computed again, and the roles that were not.
+/// The roles that were computed again, and the roles that were not computed again.
 std::string VerificationText(const replay::Verification& verification) {
   std::string text;
   for (const Role role : verification.roles) text += fmt::format(" {}", NameOf(role));

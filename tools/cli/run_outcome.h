@@ -14,14 +14,14 @@ namespace fogline::cli {
 
 struct RunOutcome {
   std::filesystem::path file;  // the file with the scenario
-  std::int64_t steps = 0;      // of the scenario; a collision ends a run earlier
+  std::int64_t steps = 0;      // steps of the scenario; a collision ends a run earlier
   runner::ExperimentResult result;
   std::optional<std::int64_t> resumed;  // number of steps that the log already had
   bool computed = true;                 // whether this process computed the other steps
 };
 
 nlohmann::ordered_json ToJson(const RunOutcome& outcome);
-/// Several lines, the most important one first.
+/// Several lines, the most important line first.
 std::string ToText(const RunOutcome& outcome);
 
 }  // namespace fogline::cli

@@ -13,8 +13,8 @@ namespace fogline::cli {
 /// The options --transport, --lcm-url, --external, --wait, --same-build, --verify, --key, --faults.
 class TransportArguments {
  public:
-  /// @param transport default transport. If it starts the roles as processes and $LCM_DEFAULT_URL
-  ///     is set, that URL is the default instead.
+  /// @param transport default transport. If this transport starts the roles as processes, and
+  ///     $LCM_DEFAULT_URL is set, the URL in $LCM_DEFAULT_URL is the default instead.
   TransportArguments(CLI::App& verb, std::string transport);
 
   /// Sets the transport, the options of its traffic, and the roles that are started elsewhere.

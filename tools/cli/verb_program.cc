@@ -26,7 +26,7 @@ namespace {
 
 constexpr const char* kNoStdout = "standard output cannot be written (a full disk?)";
 
-/// Runs a verb and prints its error if there is one. @return its exit code
+/// Runs a verb and prints the verb's error, if any. @return the exit code of the verb
 int Run(const CLI::App& app, const Action& action) {
   const std::string name = CommandName(app);
   try {
@@ -36,7 +36,8 @@ int Run(const CLI::App& app, const Action& action) {
     }
     return code;
   } catch (const InputError& error) {
-    // An error in a file begins with its place, an error in the arguments with "error:".
+    // The text of an error in a file begins with the place of the error. The text of an error in
+    // the arguments begins with "error:".
     const std::string_view what = error.what();
     Complain(what.starts_with("error:") ? fmt::format("{}: {}", name, EscapeControls(what))
                                         : std::string(what));

@@ -13,7 +13,7 @@ namespace fogline::cli {
 /// Adds a verb to the command line; see tools/fogline/verbs.h.
 using AddVerb = void (*)(CLI::App& app, Action& action);
 
-/// Reads the command line "fogline VERB ...", runs the verb, and prints its error if there is one.
+/// Reads the command line "fogline VERB ...", runs the verb, and prints the verb's error, if any.
 /// @return the exit code
 int RunVerbs(int argc, char** argv, std::initializer_list<AddVerb> verbs);
 

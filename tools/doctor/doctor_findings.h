@@ -16,7 +16,7 @@ struct Finding {
     kWarning,  // works, but slower, less exact or less convenient
     kProblem,  // runs over this network will fail
   };
-  std::string check;  // the examined item: a key for programs
+  std::string check;  // key of the examined item, for programs that read the findings
   Level level = Level::kOk;
   std::string what;
   std::string remedy;  // "" if no remedy is needed
@@ -29,7 +29,7 @@ std::string_view NameOf(Finding::Level level);
 /// Examines route, multicast, socket filter and receive buffer, or the relay of a tcpq:// URL.
 void ExamineNetwork(const std::string& url, Findings& findings);
 
-/// Finds the runs on the network, and the runs that are announced on it, within a second.
+/// Finds the runs on the network, and the runs that are announced on the network, within a second.
 void ExamineTraffic(const std::string& url, Findings& findings);
 
 /// Examines clock, wake-up time, synchronisation, processors and disk.
@@ -39,7 +39,8 @@ void ExamineMachine(Findings& findings);
 /// @param programs folder of this program
 void ExamineTools(const std::filesystem::path& programs, Findings& findings);
 
-/// Examines whether fogline-ROLE programs exist beside this program and are of the same build.
+/// Examines whether fogline-ROLE programs exist beside this program, and whether they print the
+/// same version and message types.
 void ExaminePrograms(const std::filesystem::path& programs, Findings& findings);
 
 /// Finds processes of Fogline that run on this machine. The function does not disturb them.

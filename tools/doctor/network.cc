@@ -26,7 +26,7 @@ namespace {
 
 using Level = Finding::Level;
 
-/// The number that a URL's option has; `otherwise` if the URL lacks the option.
+/// The value of a URL's numeric option; `otherwise` if the URL lacks the option.
 int UrlOption(const std::string& url, const std::string& name, int otherwise) {
   const std::size_t at = url.find(name + "=");
   if (at == std::string::npos) return otherwise;
@@ -97,7 +97,7 @@ bool ExamineRoute(const std::string& group, int ttl, Findings& findings) {
   return true;
 }
 
-/// Sends a message forth and back between two connections. @return the time that the message took;
+/// Sends a message back and forth between two connections. @return the time that the message took;
 /// zero if it was lost
 Duration RoundTrip(runtime::Bus& here, runtime::Bus& there, bool& back) {
   constexpr Duration kLimit = milliseconds(300);
@@ -112,7 +112,7 @@ Duration RoundTrip(runtime::Bus& here, runtime::Bus& there, bool& back) {
   return back ? Clock::now() - began : Duration::zero();
 }
 
-/// Sends a real LCM message on a port that no other process uses, along the route of this ttl.
+/// Sends real LCM messages on a port that no other process uses, over the route for this ttl.
 void ExamineLoopback(const std::string& group, int ttl, Findings& findings) {
   constexpr int kRounds = 50;
   const runtime::MulticastAddress fresh = *runtime::ParseMulticastUrl(runtime::FreshMulticastUrl());
@@ -253,7 +253,7 @@ void ExamineNetwork(const std::string& url, Findings& findings) {
   const auto group = runtime::GroupOf(url);
   if (group && ExamineGroup(url, *group, findings)) {
     const int ttl = UrlOption(url, "ttl", 0);
-    // mpudpm uses the route with any ttl.
+    // mpudpm uses the route with every ttl.
     const bool here = ttl == 0 && url.starts_with("udpm://");
     if (here ? ExamineOwnMachine(url, *group, findings) : ExamineRoute(*group, ttl, findings)) {
       ExamineLoopback(*group, std::min(ttl, 1), findings);

@@ -57,7 +57,7 @@ void ExamineSpy(const fs::path& programs, Findings& findings) {
                       "ninja -C build fogline_lcmtypes_java (needs default-jdk)"});
 }
 
-/// Output of each program when it is asked for its version, by role.
+/// First line of the output of each role's program when it is called with --version.
 std::map<Role, std::string> AskVersions(const fs::path& programs) {
   constexpr Duration kLimit = milliseconds(5000);
   std::map<Role, std::string> versions;

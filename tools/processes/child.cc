@@ -20,8 +20,9 @@
 namespace fogline::processes {
 namespace {
 
-/// Turns the child into the program. It runs between fork and exec, so it makes only
-/// async-signal-safe calls. If the program cannot be started, it writes errno to `failure`.
+/// Turns the child into the program. This function runs between fork and exec, so it makes only
+/// async-signal-safe calls. If the program cannot be started, the function writes errno to
+/// `failure`.
 [[noreturn]] void Become(const char* program, char* const* arguments, int output, int error_output,
                          int failure, pid_t parent) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
@@ -30,7 +31,8 @@ namespace {
   dup2(open("/dev/null", O_RDONLY), STDIN_FILENO);
   dup2(output, STDOUT_FILENO);
   if (error_output >= 0) dup2(error_output, STDERR_FILENO);
-  // LCM's sockets and pipes lack the close-on-exec flag. A kernel before 5.11 leaves them open.
+  // LCM's sockets and pipes lack the close-on-exec flag. A kernel before 5.11 leaves these files
+  // open in the program.
   close_range(STDERR_FILENO + 1, ~0U, CLOSE_RANGE_CLOEXEC);
   execv(program, arguments);
   const int error = errno;

@@ -14,11 +14,12 @@ namespace fogline::processes {
 
 /// Starts a program of Fogline as a child. The kernel kills the child when the runner dies. The
 /// terminal's Ctrl-C does not reach the child; the runner turns Ctrl-C into an orderly end. The
-/// child's stdin is /dev/null, and its stdout is `output`. Of the runner's files it inherits only
-/// stderr.
+/// child's stdin is /dev/null, and its stdout is `output`. Of the runner's open files, the child
+/// inherits only stderr.
 /// @param error_output the child's stderr; -1: the runner's stderr
-/// @return its process id @throws std::runtime_error if the system cannot start it. This may be
-///     temporary: the system is short of processes, or the program is being replaced
+/// @return the child's process id @throws std::runtime_error if the system cannot start the child.
+///     The reason may be temporary: the system is short of processes, or the program is being
+///     replaced
 pid_t StartChild(const std::filesystem::path& program, const std::vector<std::string>& arguments,
                  int output, int error_output = -1);
 

@@ -22,8 +22,8 @@ class ExternalRoles {
   /// The command that starts a role for this run, such as
   /// "fogline-driver --lcm-url 'udpm://239.255.76.67:7700?ttl=0'".
   std::string Command(Role role) const;
-  /// A line for each role, without the last line feed. It says that the run waits for the role, how
-  /// long, and which command starts it.
+  /// A line for each role, without the last line feed. The line says that the run waits for the
+  /// role, for how long, and which command starts the role.
   std::string Text(const std::vector<Role>& roles) const;
 
   /// Ends the run after the time limit, with the names of the missing roles.

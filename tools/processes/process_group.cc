@@ -66,8 +66,8 @@ void ProcessGroup::Signal(int signal) {
 }
 
 void ProcessGroup::ReadOutput(Process& process) {
-  // This number of reads takes the capacity of a pipe (see pipe(7)). Without a limit, a process
-  // that prints without end would keep the runner in this loop for ever.
+  // This number of reads empties a full pipe (see pipe(7)). Without a limit, a process that prints
+  // without end would keep the runner in this loop for ever.
   constexpr int kReads = 16;
   std::array<char, 4096> buffer{};
   for (int i = 0; i < kReads; ++i) {

@@ -31,10 +31,11 @@ class ProcessGroup {
     Role role;
     pid_t pid;
     std::string how;                 // such as "exited with code 3" or "was killed by signal 9"
-    bool killed;                     // by a signal; the process then printed no reason
-    std::vector<std::string> lines;  // the last lines that it printed
+    bool killed;                     // ended by a signal; the process then printed no reason
+    std::vector<std::string> lines;  // the last lines that the process printed
   };
-  /// Reads the output of the processes and collects those that have ended since the last call.
+  /// Reads the output of the processes and collects the processes that have ended since the last
+  /// call.
   std::vector<Exit> Collect();
 
   bool empty() const { return processes_.empty(); }

@@ -22,7 +22,8 @@ constexpr Duration kListenLimit = milliseconds(5000);
 
 constexpr std::string_view kHere = "127.0.0.1";
 
-/// The first line that the relay prints, when it listens; "" if it does not listen in time.
+/// The first line of the relay, which the relay prints when it listens; "" if it does not listen in
+/// time.
 std::string FirstLine(int output) {
   std::string text;
   const TimePoint end = Clock::now() + kListenLimit;

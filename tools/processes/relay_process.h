@@ -1,5 +1,5 @@
 // A relay for one run: fogline-relay on a free port of this machine. A relay that dies is restarted
-// at the same address. The destructor ends it.
+// at the same address. The destructor ends the relay.
 #pragma once
 
 #include <sys/types.h>

@@ -1,5 +1,5 @@
-// Rate limiter for lines on stderr. Without it, a program that connects again and again and is
-// refused each time would fill a disk with messages.
+// Rate limiter for lines on stderr. Without a limit, a program whose connections are refused again
+// and again would fill a disk with messages.
 #pragma once
 
 #include <cstdint>

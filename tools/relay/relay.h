@@ -1,9 +1,10 @@
-// The relay takes messages from its clients. It gives each message to the clients that subscribed
-// to its channel, in the order of arrival. The sender is included, as with LCM's own relay.
+// The relay takes messages from its clients. It sends each message to the clients that have
+// subscribed to the message's channel, in the order of arrival. A sender that has subscribed gets
+// its own messages, too, as with LCM's own relay.
 //
-// The relay has one thread, and nothing blocks it. Each client has its own queue for bytes that it
-// has not taken yet. A client whose queue is full is disconnected. So no client can delay another
-// one.
+// The relay has one thread, and nothing blocks it. Each client has its own queue for bytes that the
+// client has not accepted yet. A client whose queue is full is disconnected. So no client can delay
+// another client.
 #pragma once
 
 #include <cstddef>
@@ -24,9 +25,9 @@ namespace fogline::relay {
 
 struct RelayOptions {
   runtime::tcpq::Limits limits;
-  std::size_t queue_bytes = 16 << 20;  // of each client; an empty queue takes any message
+  std::size_t queue_bytes = 16 << 20;  // limit for each client; an empty queue accepts any message
   std::size_t clients = 128;
-  std::size_t subscriptions = 1000;  // of each client
+  std::size_t subscriptions = 1000;  // limit for each client
 };
 
 class RelayClient;
@@ -35,12 +36,13 @@ class Relay {
  public:
   using tcp = boost::asio::ip::tcp;
 
-  /// Listens, and accepts while the context runs. @throws boost::system::system_error
+  /// Listens, and accepts clients while the context runs. @throws boost::system::system_error
   Relay(boost::asio::io_context& context, const tcp::endpoint& endpoint,
         const RelayOptions& options);
   ~Relay();
 
-  /// The address on which the relay listens. For port 0 it has the port that the system has chosen.
+  /// The address on which the relay listens. If port 0 was requested, the address has the port that
+  /// the system has chosen.
   tcp::endpoint endpoint() const { return acceptor_.local_endpoint(); }
 
   /// Ends all connections. The context then has no more work.

@@ -30,7 +30,7 @@ std::string AddressOf(const boost::asio::ip::tcp::socket& socket) {
 }
 
 /// Acknowledges received data at once. LCM's client sends a message in five pieces, and waits for
-/// the acknowledgement of the first piece before it sends the second. The kernel delays an
+/// the acknowledgement of the first piece before it sends the second piece. The kernel delays an
 /// acknowledgement by up to 40 ms unless this option is set again after each read.
 void AcknowledgeAtOnce(boost::asio::ip::tcp::socket& socket) {
   const int on = 1;
@@ -50,7 +50,7 @@ RelayClient::RelayClient(Relay& relay, std::uint64_t id, tcp::socket socket)
       read_(kWorthACall) {}
 
 void RelayClient::Start() {
-  error_code ignored;  // a closed socket reports that at the next read
+  error_code ignored;  // if the socket is closed, the next read reports this
   socket_.set_option(tcp::no_delay(true), ignored);
   socket_.set_option(asio::socket_base::keep_alive(true), ignored);
   greeting_.expires_after(kGreetingLimit);

@@ -53,7 +53,7 @@ class RelayClient : public std::enable_shared_from_this<RelayClient> {
   std::vector<std::uint8_t> sending_;  // the socket is sending these bytes
   std::vector<std::uint8_t> waiting_;  // the bytes to send next
   bool greeted_ = false;
-  bool deaf_ = false;  // writing to the client failed; its messages are still read
+  bool deaf_ = false;  // whether writing has failed; the client's messages are still read
   bool gone_ = false;
 };
 

@@ -11,21 +11,22 @@
 namespace fogline::relay {
 namespace {
 
-// Matching results that are kept for each client. A testbed has tens of channels. Names that change
-// all the time would fill the memory without this limit.
+// The largest number of matching results that are stored for each client. A testbed has tens of
+// channels. Without this limit, names that change all the time would fill the memory.
 constexpr std::size_t kMaxKnown = 1000;
 // Limit for the bytes of all expressions: kMeanBytes for each allowed expression, and kSpareBytes
-// for a few long ones. Boost takes up to 320 bytes of memory for each byte of an expression.
+// for a few long expressions. Boost takes up to 320 bytes of memory for each byte of an expression.
 constexpr std::size_t kMeanBytes = 32;
 constexpr std::size_t kSpareBytes = 256;
-// Budget of processor time for new channel names, seconds. It is full at first, and an empty budget
-// is full again after ten seconds. Boost gives up a match that takes too many steps. A match below
-// that limit takes up to a fifth of a second, and a client may have many expressions.
+// Budget of processor time for new channel names, seconds. The budget is full at first, and an
+// empty budget is full again after ten seconds. Boost gives up a match that takes too many steps. A
+// match below this limit of Boost takes up to a fifth of a second, and a client may have many
+// expressions.
 constexpr double kBudgetS = 0.1;
 constexpr double kRefillPerS = kBudgetS / 10;
-// Time that is free for each name. Tens of simple expressions take no longer, so a flood of names
-// does not disconnect a client with such expressions. To receive a name takes the relay about as
-// long.
+// Time for each name that is not charged to the budget. Tens of simple expressions take no longer.
+// So a flood of names does not disconnect a client with simple expressions. The relay needs about
+// the same time to receive a name.
 constexpr double kFreeS = 50e-6;
 
 double ProcessorTimeS() {
@@ -44,8 +45,8 @@ std::string Subscriptions::Add(std::string_view pattern) {
   if (bytes_ + pattern.size() > most)
     return fmt::format("more than {} bytes of subscriptions", most);
   try {
-    // A copy that ends with a zero, because Boost 1.81 reads one character beyond the end of "["
-    // and the like.
+    // A copy that ends with a zero, because Boost 1.81 reads one character beyond the end of
+    // expressions such as "[".
     std::string text(pattern);
     boost::regex expression(text, boost::regex::perl);
     entries_.push_back({std::move(text), std::move(expression)});

@@ -19,8 +19,9 @@ class Subscriptions {
  public:
   explicit Subscriptions(std::size_t limit);
 
-  /// Adds an expression; the same one may be added several times. The number and the total length
-  /// of the expressions are limited. @return what is wrong with the expression; "" if it was added
+  /// Adds an expression; the same expression may be added several times. The number and the total
+  /// length of the expressions are limited. @return what is wrong with the expression; "" if it was
+  /// added
   std::string Add(std::string_view pattern);
 
   /// Removes one copy of an expression; does nothing if it was not added.
@@ -29,8 +30,8 @@ class Subscriptions {
   /// Whether one of the expressions matches this channel. The time to match a new name is charged
   /// to a budget of processor time. A short time for each name is free, and a few simple
   /// expressions take no longer. The budget fills again slowly (a token bucket). Without a budget,
-  /// a client that publishes ever new names could stop the relay by the slow expressions of another
-  /// client.
+  /// a client that publishes new names all the time could block the relay by the slow expressions
+  /// of another client.
   /// @throws std::runtime_error if the budget is spent
   bool Match(std::string_view channel, TimePoint now);
 
@@ -42,10 +43,10 @@ class Subscriptions {
     boost::regex expression;
   };
   std::size_t limit_;
-  std::size_t bytes_ = 0;  // of all expressions together
+  std::size_t bytes_ = 0;  // number of bytes of all expressions
   std::vector<Entry> entries_;
   std::map<std::string, bool, std::less<>> known_;  // matching results by channel
-  double budget_s_;                                 // processor time left
+  double budget_s_;                                 // remaining processor time, seconds
   TimePoint filled_{};
 };
 

@@ -18,8 +18,9 @@ struct Difference {
   std::string b;
 };
 
-/// The first difference between two messages of a channel (an index in kChannels). It ignores the
-/// run ids, as the digest does. Empty bytes stand for a missing message, which occurs in real time.
+/// The first difference between two messages of a channel (an index in kChannels). The function
+/// ignores the run ids, as the digest does. Empty bytes stand for a missing message, which occurs
+/// in real time.
 std::optional<Difference> FirstDifference(std::size_t channel, std::int64_t step, runtime::Bytes a,
                                           runtime::Bytes b);
 

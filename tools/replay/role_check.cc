@@ -21,7 +21,7 @@ std::vector<RoleCheck> MakeRoleChecks(const log::RunLog& run) {
 }
 
 void CheckRoles(log::RunLogReader& reader, std::vector<RoleCheck>& roles) {
-  log::StepMessages before{};  // the bytes live as long as the reader
+  log::StepMessages before{};  // the bytes are valid as long as the reader exists
   std::int64_t step = 0;
   for (; const log::StepMessages* messages = reader.Next(); ++step) {
     for (RoleCheck& one : roles) {

@@ -1,6 +1,6 @@
 // Checks whether the algorithms of this program compute the same messages as the roles of a run.
-// Each step takes its inputs from the log, so a difference in one role does not carry over to
-// another role.
+// Each step takes its inputs from the log, so a difference in one role does not affect another
+// role.
 #pragma once
 
 #include <cstdint>
@@ -26,7 +26,8 @@ struct RoleCheck {
 /// The roles of a run in lockstep that compute messages, in their initial state.
 std::vector<RoleCheck> MakeRoleChecks(const log::RunLog& run);
 /// Computes every step of a log again.
-/// @throws InputError for a step that cannot be computed; the text lacks the log's name
+/// @throws InputError for a step that cannot be computed; the error text does not contain the log's
+///     name
 void CheckRoles(log::RunLogReader& reader, std::vector<RoleCheck>& roles);
 
 /// Result of the check of a run's own log.
@@ -42,15 +43,15 @@ struct Verification {
     Difference first;  // `a` in the log, `b` computed here
   };
   std::optional<Failure> failure;  // the earliest difference
-  std::string broken;              // why a step could not be computed; "" if all steps could
+  std::string broken;              // why a step could not be computed; "" if no step failed
 
   bool Holds() const { return !failure && broken.empty(); }
   /// The difference or the broken step, in one line; "" if the verification holds.
   std::string Trouble() const;
 };
 
-/// The roles whose build is unknown in the seal of a log, or differs from that of the programs
-/// here. The list is empty for a log without a seal.
+/// The roles whose build is unknown in the seal of a log, or differs from the build of the role's
+/// program in the folder of this program. The list is empty for a log without a seal.
 std::vector<runtime::OtherBuild> OtherBuildsIn(const log::RunLog& run);
 
 /// @param others roles of another build; their algorithms are not in this program

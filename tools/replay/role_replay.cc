@@ -82,7 +82,7 @@ class ReplayOf final : public RoleReplay {
   void PassOnDemandInput(std::int64_t step, const log::StepMessages& messages,
                          const log::StepMessages& before) {
     using M = std::tuple_element_t<kInputs, AllInputs>;
-    // Before the run the message is all zero (services/algorithm.h).
+    // The message of a step before the run is all zero (services/algorithm.h).
     if (step >= LagOf(ChannelOf<M>().from, Traits::kRole)) Read<kInputs>(step, messages, before);
     algorithm_.SetOnDemandInput(std::get<kInputs>(inputs_));
   }

@@ -1,6 +1,6 @@
-// Feeds one role with the inputs from a log, and compares its messages with those in the log. A run
-// in lockstep is a function of its scenario. So the messages must be equal bit by bit, as long as
-// the role still computes as it did when the log was made.
+// Passes the inputs from a log to one role, and compares the role's messages with the messages in
+// the log. A run in lockstep is a function of its scenario. So the messages must be equal bit by
+// bit, if the role computes in the same way as when the log was made.
 #pragma once
 
 #include <cstdint>
@@ -20,9 +20,9 @@ class RoleReplay {
 
   /// Computes a step. Call it for every step in order, from 0 on.
   /// @param messages the messages of the step
-  /// @param before the messages of the step before; step 0 does not use them
+  /// @param before the messages of the previous step; step 0 does not use them
   /// @return the first difference, `a` in the log and `b` computed here
-  /// @throws InputError for an invalid message, or one that the role refuses
+  /// @throws InputError for an invalid message, or for a message that the role refuses
   virtual std::optional<Difference> Step(std::int64_t step, const log::StepMessages& messages,
                                          const log::StepMessages& before) = 0;
 };

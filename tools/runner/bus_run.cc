@@ -49,11 +49,12 @@ constexpr Duration kJoinLimit = milliseconds(10'000);
 constexpr Duration kLookEvery = milliseconds(20);
 // Interval at which the runner checks whether awaited roles belong to other runs.
 constexpr Duration kLookForExternal = milliseconds(100);
-// A process that is silent for this long hangs. In this time it would have sent ten signs of life.
+// A process without a STATUS for this long counts as hanging. A living process sends ten STATUS
+// messages in this time.
 constexpr Duration kHangLimit = milliseconds(2000);
-// In real time the limit is half of kHangLimit, because by then the readers of the process have
-// long worked without it. The limit still covers five signs of life, because a lost STATUS is not
-// repaired.
+// In real time the limit is half of kHangLimit, because the roles that read the process's messages
+// continue without them long before. The limit still covers five STATUS messages, because a lost
+// STATUS is not sent again.
 constexpr Duration kRealtimeHangLimit = milliseconds(1000);
 
 /// The builds of the runner's own programs; a role that is started elsewhere may have another
@@ -69,7 +70,7 @@ runtime::RoleBuilds OwnBuilds(bool in_memory) {
 
 /// First sequence number of a runner that replaces another runner. Roles of the old runner may
 /// still be alive, and they obey the newest runner. A runner sends less than one message per
-/// microsecond, so the present time in microseconds exceeds every number of the old runner.
+/// microsecond, so the current time in microseconds exceeds every number of the old runner.
 std::int64_t NewerThanEveryRunner() {
   using std::chrono::microseconds;
   const auto now = std::chrono::system_clock::now().time_since_epoch();
@@ -79,7 +80,8 @@ std::int64_t NewerThanEveryRunner() {
 runtime::RunCoordinatorOptions MakeCoordinatorOptions(const Scenario& scenario,
                                                       const ExperimentOptions& options,
                                                       bool in_memory) {
-  // A slow pace is not a stall: at this pace a step takes this time.
+  // The duration of a step at this pace. The stall limit is longer by this time, because a slow
+  // pace is not a stall.
   const std::chrono::duration<double> step(options.pace > 0 ? scenario.step_s / options.pace : 0.0);
   const auto& resume = options.resume;
   return {.run_id = resume ? resume->front.run_id : DrawRunId(),
@@ -99,7 +101,7 @@ runtime::RunCoordinatorOptions MakeCoordinatorOptions(const Scenario& scenario,
 }
 
 /// Calls options.on_logged_step if the log has a step. The recorder's STATUS names only steps that
-/// the operating system has.
+/// the recorder has handed to the operating system.
 void TellLoggedStep(const runtime::RunCoordinator& coordinator, const ExperimentOptions& options) {
   const auto& recorder = coordinator.member(Role::kRecorder).status;
   if (recorder && recorder->header.step >= 0) options.on_logged_step();
@@ -149,7 +151,7 @@ std::vector<status_t> LastWords(const runtime::RunCoordinator& coordinator, Role
   return words;
 }
 
-/// The processes, dead ones included, whose build differs from the runner's.
+/// The processes, including dead processes, whose build differs from the runner's build.
 std::vector<runtime::OtherBuild> OtherBuilds(const runtime::RunCoordinator& coordinator) {
   std::vector<runtime::OtherBuild> others;
   for (const RoleInfo& info : kRoles) {
@@ -284,14 +286,15 @@ std::vector<Restarts> RunAsProcesses(runtime::Bus& bus, runtime::RunCoordinator&
       if (WasInterrupted()) break;
     }
   } catch (const std::exception& error) {
-    coordinator.Fail(error.what());  // the code below still ends the processes in order
+    coordinator.Fail(error.what());  // the code below still ends the processes properly
   }
   supervisor.End();
   return supervisor.restarts();
 }
 
 /// The reports of a run's recorders about the log. All recorders but the last one are dead. In real
-/// time a recorder drops the part that its predecessor wrote, so only the last report counts.
+/// time, a recorder may remove the end of the log that its predecessor wrote. So only the last
+/// report counts.
 std::vector<log::WrittenLog> WrittenBy(const runtime::RunCoordinator& coordinator, bool realtime) {
   std::vector<log::WrittenLog> written;
   for (const status_t& status : LastWords(coordinator, Role::kRecorder)) {
@@ -360,7 +363,7 @@ BusRun RunOnBus(const Scenario& scenario, const ExperimentOptions& options,
     keeper.SealCutOff(run.written, run.builds, key ? &*key : nullptr);
   }
   const std::string kept = KeptLog(conducting.run_id, options);
-  // These peers are printed for every outcome, because a missing role may be bound to another run.
+  // These peers are printed for every outcome, because a missing role may take part in another run.
   const std::string foreign_peers = coordinator.foreign_peers().Text();
   if (options.announce && !foreign_peers.empty()) Notice(foreign_peers);
   if (coordinator.phase() == runtime::RunCoordinator::Phase::kFailed) {

@@ -20,15 +20,15 @@ struct BusRun {
   std::vector<runtime::SendTrouble> send_troubles;
   std::vector<runtime::ForeignPeer> foreign_peers;
   std::vector<Restarts> restarts;
-  runtime::RoleBuilds builds{};                   // as each role has reported its own
-  std::vector<runtime::OtherBuild> other_builds;  // the builds that differ from the runner's
+  runtime::RoleBuilds builds{};                   // as each role has reported it
+  std::vector<runtime::OtherBuild> other_builds;  // the builds that differ from the runner's build
   std::vector<log::WrittenLog> written;           // the last report of each recorder about the log
 };
 
 /// A run id that no other run has.
 std::int64_t DrawRunId();
 
-/// Runs a scenario to its end and leaves its log.
+/// Runs a scenario to its end and leaves the log of the run.
 /// @param keeper seals the log of a run that ends early
 /// @throws InputError, Interrupted, std::runtime_error as RunExperiment()
 BusRun RunOnBus(const Scenario& scenario, const ExperimentOptions& options,

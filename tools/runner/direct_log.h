@@ -16,8 +16,8 @@
 
 namespace fogline::runner {
 
-/// Writes the messages of a run into a log, and seals it. For a resumed run it compares the
-/// messages with those that the log already has: they must be the same.
+/// Writes the messages of a run into a log, and seals it. For a resumed run, this class compares
+/// the messages with the messages that the log already has: both must be equal.
 class DirectLog {
  public:
   /// @throws InputError if the file cannot be written
@@ -37,11 +37,11 @@ class DirectLog {
  private:
   const runtime::SigningKey* key() const { return key_ ? &*key_ : nullptr; }
   void WriteScenario(const std::string& text);
-  /// Compares a message with the next one of the log.
+  /// Compares a message with the next message of the log.
   void Compare(std::int64_t step, const ChannelInfo& channel, runtime::Bytes message);
 
   const std::filesystem::path file_;
-  std::optional<log::EventLogReader> old_;  // nullopt if it has no more steps to compare
+  std::optional<log::EventLogReader> old_;  // nullopt if the old log has no more steps to compare
   log::Remains remains_;
   std::optional<log::EventLogWriter> log_;
   std::optional<LogKeeper> keeper_;

@@ -136,7 +136,8 @@ LoggedRun ReadSteps(const std::filesystem::path& log, const Use& use) {
     const bool holes = std::ranges::any_of(kChannels, [&](const ChannelInfo& channel) {
       return channel.pace == Pace::kStep && (*messages)[PlaceOf(channel)].empty();
     });
-    // Only a run in real time has holes. Without TRUTH the state of the step is unknown.
+    // Only the log of a run in real time can lack messages. Without TRUTH the state of the step is
+    // unknown.
     if (holes && (*messages)[IndexOf<truth_t>()].empty()) continue;
     const metrics::Sample* sample =
         holes ? decoder.DecodeWithHoles(*messages) : decoder.Decode(*messages);
@@ -184,7 +185,7 @@ LoggedRun ReadOwnLog(const LogKeeper& keeper, const std::filesystem::path& log, 
       fmt::format("{}: the log is not complete: {}", PathText(log), logged.note));
 }
 
-/// Reads the log of a run that has ended, verifies and seals it.
+/// Reads, verifies and seals the log of a run that has ended.
 ExperimentResult ReadResult(const LogKeeper& keeper, const std::filesystem::path& log, BusRun run,
                             const Scenario& scenario, const ExperimentOptions& options) {
   LoggedRun logged = ReadOwnLog(keeper, log, run, scenario, options);

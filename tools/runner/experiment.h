@@ -25,7 +25,7 @@
 
 namespace fogline::runner {
 
-/// The run of a log that is to be resumed.
+/// The run that is to be resumed, as read from its log.
 struct Resumption {
   log::LogFront front;
   log::Remains remains;
@@ -36,21 +36,22 @@ struct ExperimentOptions {
   /// for each role, a multicast port for this run), tcpq (a process for each role, a TCP relay for
   /// this run), or an LCM URL (a process for each role on that network).
   std::string transport = "udpm";
-  /// Event log to write. If empty: a temporary log, or no log with direct.
+  /// Event log to write. If the path is empty, the run writes a temporary log, or no log with
+  /// transport direct.
   std::filesystem::path log;
   /// The part of the run that the log already has, if the run is resumed.
   std::optional<Resumption> resume;
   double pace = 0;                       // simulated seconds per second; 0: no limit
-  bool realtime = false;                 // at this pace by the wall clock, without waiting for slow
-                                         // roles
+  bool realtime = false;                 // run at this pace by the wall clock, and do not wait for
+                                         // slow roles
   std::vector<Role> external;            // roles that are started elsewhere
-  Duration wait = milliseconds(60'000);  // for these roles to be ready; 0: forever
+  Duration wait = milliseconds(60'000);  // longest wait until these roles are ready; 0: forever
   Duration stall_limit = milliseconds(4000);
-  int restarts = 10;  // of each role that is killed or hangs; 0: its end also ends the run
-  /// Whether to compute the roles' steps again from the log, and compare. By default this is done
-  /// if roles are started elsewhere or the run is resumed.
+  int restarts = 10;  // most restarts of each role that is killed or hangs; 0: its end ends the run
+  /// Whether to compute the roles' steps again from the log, and compare the results. By default,
+  /// the steps are computed again if roles are started elsewhere or the run is resumed.
   std::optional<bool> verify;
-  bool same_build = false;  // end the run if a role is of another build than the runner's
+  bool same_build = false;  // end the run if a role's build differs from the runner's build
   runtime::TrafficOptions traffic;
   bool announce = false;         // print on stderr the network of the run and its processes
   bool samples = false;          // keep the samples of every step in the result
@@ -63,7 +64,7 @@ struct ExperimentOptions {
 struct Restarts {
   std::string role;  // or "relay", the relay of the run
   int count;
-  std::string last;  // how the process before the current one ended
+  std::string last;  // how the previous process ended
 };
 
 struct ExperimentResult {
@@ -75,12 +76,12 @@ struct ExperimentResult {
   std::int64_t repairs = 0;  // requests to publish a message again
   runtime::Refusals refused{};
   std::vector<runtime::SendTrouble> send_troubles;
-  std::vector<runtime::ForeignPeer> foreign_peers;  // of other runs, on the same network
+  std::vector<runtime::ForeignPeer> foreign_peers;  // processes of other runs on the same network
   std::vector<Restarts> restarts;
   std::vector<runtime::OtherBuild> other_builds;  // roles whose build differs from the runner's
   std::optional<replay::Verification> verification;
   bool checked = true;        // every byte of the log agrees with the recorder's reports
-  std::filesystem::path log;  // empty if there is none
+  std::filesystem::path log;  // empty if there is no log
   metrics::RunMetrics measures;
   std::vector<metrics::FollowerMetrics> followers;  // nearest to the host first
   std::vector<metrics::Sample> samples;             // if requested

@@ -12,8 +12,8 @@ namespace fogline::runner {
 /// without a log.
 std::string KeptLog(std::int64_t run_id, const ExperimentOptions& options);
 
-/// The command that resumes the log of a run. It has those options of the run that the log does not
-/// contain. It is "" for a run in real time, or without a log.
+/// The command that resumes the log of a run. The command has the options of the run that the log
+/// does not contain. The result is "" for a run in real time, or for a run without a log.
 std::string CommandToGoOn(const ExperimentOptions& options);
 
 }  // namespace fogline::runner

@@ -100,7 +100,7 @@ void LogKeeper::SealCutOff(const std::vector<log::WrittenLog>& written,
     log::RunLogReader reader(log_);
     while (reader.Next() != nullptr) {
     }
-    // After a torn event a reader would take a seal for the rest of this event.
+    // If a log ends with a torn event, a reader would mistake a seal for the rest of this event.
     if (!std::cmp_equal(reader.run().events.bytes, std::filesystem::file_size(log_))) return;
     Seal(reader.run(), written, builds, key);
   } catch (const std::exception&) {  // the reason why the run ended matters more

@@ -1,5 +1,6 @@
-// Keeps the log of a run for its runner. It checks that the file on the disk has the bytes that the
-// run's recorder has written, and seals the file so that a later change is noticed.
+// Protects the log of a run. The log keeper of the runner checks that the file on the disk has the
+// bytes that the run's recorder has written. Then it seals the file, so that a later change is
+// noticed.
 #pragma once
 
 #include <sys/types.h>
@@ -26,14 +27,14 @@ class LogKeeper {
   bool HasAllTold(const std::vector<log::WrittenLog>& written) const;
 
   /// Checks the file again and seals it.
-  /// @param run read from the whole file
+  /// @param run the run as read from the whole file
   /// @param builds the build that each role has reported
   /// @param key signs the seal; nullptr: no signature
   /// @throws std::runtime_error as Check(), or if the seal cannot be written
   void Seal(const log::RunLog& run, const std::vector<log::WrittenLog>& written,
             const runtime::RoleBuilds& builds, const runtime::SigningKey* key) const;
-  /// Seals the log of a run that ended early; the log has not been read. If the log cannot be
-  /// sealed, it stays as it is.
+  /// Reads and seals the log of a run that ended early. If the log cannot be sealed, the file stays
+  /// as it is.
   void SealCutOff(const std::vector<log::WrittenLog>& written, const runtime::RoleBuilds& builds,
                   const runtime::SigningKey* key) const noexcept;
 
@@ -44,7 +45,7 @@ class LogKeeper {
     bool operator==(const Identity&) const = default;
   };
   std::optional<Identity> Find() const;
-  /// @throws std::runtime_error if the log is gone or is no event log
+  /// @throws std::runtime_error if the log was removed or is no event log
   log::EventLogReader Open() const;
   /// Checks the bytes on the disk. @throws std::runtime_error as Check()
   void Check(const log::EventLogReader& file, const std::vector<log::WrittenLog>& written) const;

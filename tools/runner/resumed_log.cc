@@ -16,16 +16,16 @@
 namespace fogline::runner {
 namespace {
 
-// The roles of a killed runner are killed with it, which takes the kernel a moment. Their recorder
-// keeps the lock of the log until then.
+// When a runner is killed, the kernel also kills the runner's roles. This takes a moment, in which
+// the run's recorder still has the lock of the log.
 constexpr Duration kEndOfOthers = milliseconds(2000);
 
 [[noreturn]] void Refuse(const std::filesystem::path& log, std::string_view why) {
   throw InputError(fmt::format("{}: error: --resume: {}", PathText(log), why));
 }
 
-/// Takes back an older log that the killed run was to replace, and checks that the file exists and
-/// is an event log. @return its path @throws InputError
+/// Restores an older log that the killed run was to replace, and checks that the file exists and is
+/// an event log. @return the path of the log @throws InputError
 const std::filesystem::path& Readable(const std::filesystem::path& log) {
   const std::string older = log::TakeBackOlder(log, "--resume", kEndOfOthers);
   if (!older.empty()) Complain(older);

@@ -10,13 +10,14 @@
 
 namespace fogline::runner {
 
-/// A log of a run in lockstep that has ended early, or is complete. Its lock keeps other runs away
-/// until the end of this object. The constructor does not change the file, also if it refuses the
-/// log. Only if a killed run was to replace an older log, and has not begun, the older log comes
-/// back, and the constructor says so on stderr.
+/// A log of a run in lockstep that has ended early, or is complete. A lock keeps other runs from
+/// using the log while this object exists. The constructor does not change the file, even if it
+/// refuses the log. There is one exception: a killed run was to replace an older log, and had not
+/// begun. Then the constructor restores the older log, and says so on stderr.
 class ResumedLog {
  public:
-  /// @param key must have signed the seal, if there is a seal; nullptr: the seal has no signature
+  /// @param key the key that must have signed the seal, if there is a seal; nullptr: a seal must
+  ///     have no signature
   /// @throws InputError with the reason why the log cannot be resumed
   ResumedLog(const std::filesystem::path& log, const runtime::SigningKey* key);
 

@@ -15,18 +15,18 @@ namespace {
 // Time in which the roles must leave after STOP.
 constexpr Duration kLeaveLimit = milliseconds(1500);
 constexpr Duration kLookEvery = milliseconds(20);
-// Number of STOP messages for roles that run elsewhere, because the supervisor cannot see them
-// leave.
+// Number of STOP messages for roles that run elsewhere. The supervisor repeats STOP, because it
+// cannot see these roles leave.
 constexpr int kStopRepeats = 5;
-// A process hangs if it has sent nothing for this long after its start.
+// A process counts as hanging if it has sent no STATUS for this long after its start.
 constexpr Duration kStartLimit = milliseconds(5000);
 // A silent process that still runs is killed only if the probability that all its messages were
-// lost is below this value. With this value a process is killed by mistake in one of some thousand
-// runs on a network that loses many messages.
+// lost is below this value. With this value, on a network that loses many messages, a process is
+// killed by mistake in one of a few thousand runs.
 constexpr double kUnlikely = 1e-6;
 
 /// Number of context switches of a process, voluntary or not; nullopt if unknown. A live process
-/// has many of them each second.
+/// has many context switches each second.
 std::optional<std::int64_t> ActivityOf(pid_t pid) {
   std::ifstream status(fmt::format("/proc/{}/status", pid));
   std::int64_t sum = 0;
@@ -58,8 +58,8 @@ void Supervisor::Start(Child& child, TimePoint now) {
   arguments.insert(arguments.end(), options_.arguments.begin(), options_.arguments.end());
   if (child.role == Role::kRecorder) {
     arguments.insert(arguments.end(), {"--log", options_.log.string(), "--shared-log"});
-    // Only a log of this run may be resumed. Before the recorder was met, the file may be an old
-    // log that is to be replaced.
+    // Only a log of this run may be resumed. Before the first STATUS of the recorder, the file may
+    // be an old log that is to be replaced.
     if (options_.resume || coordinator_.Met(Role::kRecorder)) arguments.emplace_back("--resume");
   }
   child.pid = group_.Start(child.role, processes::ProgramOf(child.role), arguments);
@@ -75,7 +75,7 @@ void Supervisor::Look(TimePoint now) {
   coordinator_.Attend(now);
   const std::vector<processes::ProcessGroup::Exit> exits = group_.Collect();
   if (!exits.empty()) {
-    // The last messages of the processes are handled before their end.
+    // Handles the last messages of the processes first, and then the ends of the processes.
     bus_.Wait(kLookEvery);
     bus_.Drain();
   }
@@ -95,7 +95,7 @@ void Supervisor::StartAgain(Child& child, TimePoint now) {
   const pid_t before = child.pid;
   try {
     Start(child, now);
-  } catch (const std::runtime_error& error) {  // perhaps temporary: the stall timeout decides
+  } catch (const std::runtime_error& error) {  // tries again: the error may be temporary
     child.start_at = now + child.policy.OnFailedStart();
     coordinator_.Hinder(child.role, error.what());
     return;
@@ -185,7 +185,7 @@ void Supervisor::End() {
     coordinator_.Stop();
     ++said;
     const TimePoint pause = Clock::now() + kLookEvery;
-    // Wait until then even if many messages arrive: a flood must not delay the end.
+    // Waits until `pause` even if many messages arrive: a flood must not delay the end.
     while (Clock::now() < pause) bus_.Wait(pause - Clock::now());
     group_.Collect();
   }
@@ -203,8 +203,8 @@ std::vector<Restarts> Supervisor::restarts() const {
                           .count = child->policy.restarts(),
                           .last = child->death});
     } else if (const int elsewhere = member.replaced + (member.rival ? 1 : 0); elsewhere > 0) {
-      // The newest process may have come so late in the run that the predecessor's death was not
-      // proven before the end.
+      // The newest process may have come so late that the death of its predecessor was not certain
+      // before the end of the run.
       const status_t& dead = member.rival ? *member.status : member.dead.back();
       restarts.push_back({.role = std::string(info.name),
                           .count = elsewhere,

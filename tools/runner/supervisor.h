@@ -1,6 +1,6 @@
-// The roles of a run as processes on this machine. It starts and watches them, and restarts those
-// that are killed, hang or are deaf. A process that exits by itself has printed the reason, and its
-// exit ends the run.
+// The supervisor of a run's processes on this machine. It starts and watches the processes, and
+// restarts processes that are killed, hang or are deaf. A process that exits by itself has printed
+// the reason, and its exit ends the run.
 #pragma once
 
 #include <functional>
@@ -25,7 +25,7 @@ class Supervisor {
     bool resume = false;                 // the log already belongs to this run
     std::vector<std::string> arguments;  // further arguments for every process
     std::vector<Role> external;          // roles that are started elsewhere
-    int restarts = 0;                    // of each role; 0: the first death ends the run
+    int restarts = 0;                    // limit for each role; 0: the first death ends the run
     Duration silence{};  // time without a STATUS after which a process counts as hanging and is
                          // killed
     std::function<void(const std::string&)> say;  // prints a line for the user
@@ -34,11 +34,12 @@ class Supervisor {
   /// Starts every role. @throws std::runtime_error
   Supervisor(runtime::Bus& bus, runtime::RunCoordinator& coordinator, Options options);
 
-  /// Checks for dead and hanging processes, and restarts those whose delay is over. Call it every
-  /// few tens of milliseconds.
+  /// Checks for dead and hanging processes, and restarts processes whose delay is over. Call it
+  /// every few tens of milliseconds.
   void Look(TimePoint now);
 
-  /// Sends STOP until every process has left, then kills the rest.
+  /// Sends STOP until every process has left, but only for a limited time. The destructor kills the
+  /// remaining processes.
   void End();
 
   /// The roles that were restarted, on this machine or elsewhere.
@@ -51,21 +52,22 @@ class Supervisor {
     runtime::RestartPolicy policy;
     pid_t pid = 0;
     TimePoint started{};
-    std::optional<std::int64_t> activity{};  // measured in the middle of the process's silence
-    std::string killed_for{};                // the reason why the supervisor killed it
-    bool deaf = false;                       // whether that reason was deafness
-    std::string death{};                     // how its last process ended
+    std::optional<std::int64_t> activity{};  // measured when half of the silence limit has passed
+    std::string killed_for{};                // the reason why the supervisor killed the process
+    bool deaf = false;                       // whether this reason was deafness
+    std::string death{};                     // how the role's last process ended
     std::optional<TimePoint> start_at{};
-    bool gone = false;  // ended and is not started again, while the run continues
+    bool gone = false;  // whether the process has ended for good while the run continues
   };
   void Start(Child& child, TimePoint now);
-  /// Restarts the process; if that fails, a later call tries again.
+  /// Restarts the process; if the restart fails, a later call tries again.
   void StartAgain(Child& child, TimePoint now);
   void OnExit(const processes::ProcessGroup::Exit& exit, TimePoint now);
   void KillIfItHangs(Child& child, TimePoint now);
   void KillIfItIsDeaf(Child& child);
   void Kill(Child& child, std::string why);
-  /// Reports deaf roles that are not restarted here, once each time that they become deaf.
+  /// Reports deaf roles that the supervisor does not restart. A role is reported once each time
+  /// that it becomes deaf.
   void NameTheDeaf();
 
   runtime::Bus& bus_;

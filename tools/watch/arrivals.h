@@ -1,5 +1,5 @@
 // Arrivals of messages of one kind: count, rate, jitter, bandwidth. The caller passes times and
-// sizes in.
+// sizes as arguments.
 #pragma once
 
 #include <cstdint>
@@ -11,23 +11,23 @@ namespace fogline::watch {
 
 /// Statistics of arrivals at the end of an interval of observation.
 struct ArrivalView {
-  std::int64_t messages = 0;            // since the first message
+  std::int64_t messages = 0;            // number since the first message
   double rate_hz = 0;                   // messages of the interval / its length
   double bandwidth_bytes_per_s = 0;     // payload only: without the bytes that LCM, UDP and IP add
   std::optional<double> jitter_s;       // of the gaps that end in the interval; needs two gaps
-  std::optional<double> longest_gap_s;  // of these gaps; nullopt without a gap
-  double age_s = 0;                     // since the last message
+  std::optional<double> longest_gap_s;  // the longest of these gaps; nullopt without a gap
+  double age_s = 0;                     // time since the last message
 };
 
 /// Counts arrivals, interval by interval. Jitter is the sample standard deviation of the times
-/// between successive arrivals, computed by the recurrence of Welford (Technometrics 4, 1962). It
-/// needs no clock of the sender, unlike RFC 3550's interarrival jitter. A paced run, or a log that
-/// is played fast, has no clock that runs like the receiver's.
+/// between successive arrivals, computed by the recurrence of Welford (Technometrics 4, 1962). This
+/// jitter needs no clock of the sender, unlike RFC 3550's interarrival jitter. The clock of a paced
+/// run, or of a log that is played fast, differs in speed from the receiver's clock.
 class Arrivals {
  public:
   void Add(std::size_t bytes, TimePoint now);
 
-  /// Ends an interval of observation and begins the next one.
+  /// Ends an interval of observation and begins the next interval.
   /// @param interval length of the ended interval
   ArrivalView Observe(TimePoint now, Duration interval);
 
@@ -41,7 +41,7 @@ class Arrivals {
   std::int64_t new_bytes_ = 0;
   std::int64_t gaps_ = 0;  // times between arrivals whose second arrival is in the interval
   double mean_gap_s_ = 0;
-  double sum_of_squares_ = 0;  // of deviations from the mean
+  double sum_of_squares_ = 0;  // sum of squared deviations from the mean
   double longest_gap_s_ = 0;
 };
 

@@ -1,5 +1,5 @@
 // Counts which steps of a channel were seen, lost, late or repeated. The caller passes steps and
-// times in.
+// times as arguments.
 #pragma once
 
 #include <bitset>
@@ -10,15 +10,15 @@
 
 namespace fogline::watch {
 
-/// The steps of one channel of one run, as they arrive. Steps before the first seen one do not
+/// The steps of one channel of one run, as they arrive. Steps before the first seen step do not
 /// count: an observer that starts in the middle of a run has not lost the beginning of this run.
 class StepSequence {
  public:
   struct Counts {
     std::int64_t newest = -1;
-    std::int64_t lost = 0;       // left the window without having been seen
+    std::int64_t lost = 0;       // left the window before they were seen
     std::int64_t missing = 0;    // in the window, not seen yet; a repair may still bring them
-    std::int64_t late = 0;       // seen for the first time after a newer one
+    std::int64_t late = 0;       // seen for the first time after a newer step
     std::int64_t duplicate = 0;  // seen before, or older than the window
     std::int64_t stray = 0;      // impossible, or too far ahead to be believed
   };
@@ -26,13 +26,13 @@ class StepSequence {
   void Add(std::int64_t step, TimePoint now);
   Counts counts() const;
 
-  /// Only the recorder can repeat a step that is older than the newest one by this many steps.
+  /// Only the recorder can repeat a step that is older than the newest step by this many steps.
   static constexpr std::int64_t kWindow = runtime::kRingSteps;
-  /// No run has this many steps. The limit keeps the arithmetic below from overflowing.
+  /// No run has this many steps. Below this limit, the arithmetic of this class does not overflow.
   static constexpr std::int64_t kMaxStep = std::int64_t{1} << 62;
   /// A step that is further ahead than this counts only when its successor follows at once. The
   /// rule and the number (MAX_DROPOUT) are from the algorithm for sequence numbers of RTP (RFC
-  /// 3550, appendix A.1). The steps between are not counted as lost, because it is unknown whether
+  /// 3550, appendix A.1). The skipped steps are not counted as lost, because it is unknown whether
   /// they were ever sent.
   static constexpr std::int64_t kMaxJump = 3000;
   /// Old steps restart the sequence if no new step has come for this long. This happens when a log
@@ -46,8 +46,8 @@ class StepSequence {
   Counts counts_;              // without `missing`, which counts() computes
   std::int64_t first_ = 0;     // first step of the sequence
   std::bitset<kWindow> seen_;  // bit i: step newest - i
-  std::int64_t awaited_ = -1;  // successor of a step too far ahead
-  TimePoint progressed_{};     // when `newest` grew last
+  std::int64_t awaited_ = -1;  // successor of a step that was too far ahead
+  TimePoint progressed_{};     // when `newest` last grew
 };
 
 }  // namespace fogline::watch

@@ -65,7 +65,7 @@ std::optional<char> Terminal::Key() {
   if (!has_keys_ || poll(&keys, 1, 0) <= 0) return std::nullopt;
   const ssize_t size = read(fd_, &key, 1);
   if (size == 1) return key;
-  // At the end of stdin poll() would report it as readable forever.
+  // At the end of stdin, poll() would report stdin as readable forever.
   if (size == 0 || (errno != EINTR && errno != EAGAIN)) has_keys_ = false;
   return std::nullopt;
 }

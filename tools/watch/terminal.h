@@ -27,7 +27,7 @@ class Terminal {
   /// Whether output to the terminal fails, for example because its window was closed.
   bool gone() const { return gone_; }
 
-  /// Descriptor to wait on for keys; -1 if there are none.
+  /// Descriptor to wait on for keys; -1 if no keys can come.
   int fd() const { return has_keys_ ? fd_ : -1; }
   /// The next key that was pressed, if any.
   std::optional<char> Key();

@@ -31,7 +31,7 @@ const auto& KnownTypes() {
   return types;
 }
 
-/// Name of the type whose fingerprint the message has; "" if it is no type of Fogline.
+/// Name of the message's type, by the fingerprint; "" if Fogline has no type with this fingerprint.
 std::string_view TypeNameOf(runtime::Bytes bytes) {
   if (bytes.size() < runtime::kRunIdOffset) return "";
   for (const KnownType& type : KnownTypes()) {
@@ -60,7 +60,7 @@ bool IsHousekeeping(std::string_view channel) {
 
 void TrafficStatistics::Add(std::string_view channel, runtime::Bytes bytes, TimePoint now) {
   if (runtime::LooksSigned(bytes))
-    bytes = runtime::WithoutSignature(bytes);  // shown, but not verified
+    bytes = runtime::WithoutSignature(bytes);  // the signature is not verified
   const std::size_t index = ChannelNamed(channel);
   if (index < kNumChannels && bytes.size() >= runtime::kHeaderEnd) {
     const std::int64_t run_id = runtime::ReadInt64(bytes, runtime::kRunIdOffset);
@@ -115,7 +115,7 @@ void TrafficStatistics::AddStatus(RunRecord& run, runtime::Bytes bytes, TimePoin
   if (!runtime::Decode(bytes, status)) return;
   for (RoleRecord& role : run.roles) {
     if (role.status.instance != status.instance || role.status.role != status.role) continue;
-    if (status.sequence <= role.status.sequence) return;  // a copy, or overtaken by a newer one
+    if (status.sequence <= role.status.sequence) return;  // a copy, or older than the last one
     role.status = std::move(status);
     role.heard = now;
     return;

@@ -1,6 +1,6 @@
 // Statistics of the traffic on an LCM network, by run, channel and role. The caller passes messages
-// and times in. No code in this file subscribes to a channel or reads a clock. traffic_text and
-// traffic_json show the result.
+// and times as arguments. No code in this file subscribes to a channel or reads a clock.
+// traffic_text and traffic_json show the result.
 #pragma once
 
 #include <array>
@@ -21,7 +21,7 @@
 namespace fogline::watch {
 
 /// The number of messages that could not be decoded, by the type that their fingerprint names, or
-/// by "unknown". If the fingerprint names a type, the channel or the size is wrong.
+/// by "unknown". If the fingerprint names a type, the channel or the size of the message is wrong.
 using Undecodable = std::map<std::string, std::int64_t>;
 
 struct ChannelView {
@@ -37,15 +37,15 @@ struct ChannelView {
 /// A role according to its last STATUS.
 struct RoleView {
   status_t status;
-  std::optional<double> cpu_percent;  // of one processor; nullopt before the second reading
-  double age_s = 0;                   // of the last STATUS
-  bool silent = false;                // older than kSilent
+  std::optional<double> cpu_percent;  // use of one processor; nullopt before the second reading
+  double age_s = 0;                   // age of the last STATUS
+  bool silent = false;                // whether the last STATUS is older than kSilent
 };
 
 struct RunView {
   std::int64_t run_id = 0;
-  std::int64_t step = -1;            // newest on all channels
-  std::optional<std::int8_t> phase;  // of run_t; nullopt before the first RUN message
+  std::int64_t step = -1;            // newest step on all channels
+  std::optional<std::int8_t> phase;  // phase of the last RUN; nullopt before the first RUN
   double pace = 0;
   std::string scenario_hash;
   std::vector<ChannelView> channels;  // in the order of kGraph
@@ -65,15 +65,15 @@ struct TrafficView {
 /// mpudpm), or has the beacons of runs. Such a channel carries no traffic of programs.
 bool IsHousekeeping(std::string_view channel);
 
-/// Statistics of everything that arrives. Its memory is bounded for any input: when there is no
-/// room, it forgets the entry that has been silent longest.
+/// Statistics of all messages that arrive. The memory is bounded for any input: if there is no
+/// room, the entry whose last message is oldest is forgotten.
 class TrafficStatistics {
  public:
   explicit TrafficStatistics(TimePoint now) : observed_(now) {}
 
   void Add(std::string_view channel, runtime::Bytes bytes, TimePoint now);
 
-  /// The current statistics. It ends an interval of observation and begins the next one.
+  /// Returns the current statistics. Ends an interval of observation and begins the next interval.
   TrafficView Observe(TimePoint now);
 
   /// Number of messages on channels whose names were unknown or forgotten.
@@ -81,11 +81,11 @@ class TrafficStatistics {
 
   /// A role that has sent no STATUS for this long is silent. This is the time of five heartbeats.
   static constexpr Duration kSilent = milliseconds(1000);
-  /// A replaced instance of a role is forgotten after this time of silence.
+  /// A replaced instance of a role is forgotten after this time without a STATUS.
   static constexpr Duration kFollowed = milliseconds(10'000);
   static constexpr std::size_t kMaxRuns = 8;
   static constexpr std::size_t kMaxOthers = 64;
-  static constexpr std::size_t kMaxRoles = 32;  // of one run, restarted ones included
+  static constexpr std::size_t kMaxRoles = 32;  // limit for one run, including restarted roles
 
  private:
   struct ChannelRecord {
@@ -98,7 +98,7 @@ class TrafficStatistics {
   struct RoleRecord {
     status_t status;
     TimePoint heard;
-    // The last reading of processor time; the next one is compared with it.
+    // The last reading of processor time; the next reading is compared with it.
     std::int64_t base_cpu_ms = 0;
     TimePoint base;
     std::optional<double> cpu_percent;

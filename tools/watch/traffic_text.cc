@@ -14,15 +14,15 @@ namespace {
 constexpr double kMilli = 1e-3;
 constexpr double kKilo = 1e3;
 constexpr double kMega = 1e6;
-// Number of characters of a scenario's hash that are shown. They suffice to distinguish two
-// scenarios.
+// Number of characters of a scenario's hash that are shown. These characters suffice to distinguish
+// two scenarios.
 constexpr std::size_t kHashShown = 12;
 
 std::string Number(const std::optional<double>& value, double unit, int decimals) {
   return value ? fmt::format("{:.{}f}", *value / unit, decimals) : "-";
 }
 
-/// The name of a message's constant; "?" for an unknown one.
+/// The name of a message's constant; "?" for an unknown constant.
 std::string_view NameIn(std::initializer_list<std::pair<std::int8_t, std::string_view>> names,
                         std::int8_t value) {
   for (const auto& [constant, name] : names) {

@@ -11,14 +11,14 @@ namespace fogline::runtime {
 namespace {
 
 // If the network loses the inputs of a role, the role recovers within a second. The limit is twice
-// this time, or kDeafPeriods periods if these last longer.
+// this time or kDeafPeriods periods, whichever is longer.
 constexpr Duration kDeaf = milliseconds(2000);
 constexpr int kDeafPeriods = 5;
 // Three times the longest interval between two STATUS messages. If two STATUS messages of a role
-// are further apart, the time between them is not judged.
+// are further apart, the time between them is not counted.
 constexpr Duration kSteady = milliseconds(600);
-// A role may be ahead of the last known step of its producer by this many steps. A STATUS is on its
-// way for less than 100 ms, which is five steps at 50 Hz.
+// A role may be ahead of the last known step of its producer by this many steps. A STATUS arrives
+// within 100 ms; these are five steps at 50 Hz.
 constexpr std::int64_t kAhead = 5;
 
 }  // namespace
@@ -43,13 +43,14 @@ void DeafRoles::Heard(Role role, const status_t& status, TimePoint now) {
     Ear& ear = speaker.ears[channel];
     const Duration age =
         std::chrono::microseconds(std::clamp<std::int64_t>(status.input_age_us[i], 0, kMaxStep));
-    // The age of an input grows on the role's own clock until a message comes. It does not depend
-    // on when the STATUS is read. An input that never came has no age.
+    // The role measures the age of an input on its own clock. The age grows until a message comes,
+    // and does not depend on the time at which the STATUS is read. An input that never came has no
+    // age.
     const bool awaited = status.input_state[i] == status_t::INPUT_AWAITED;
     const Duration silent = awaited ? since : std::max(Duration::zero(), age - ear.age);
     const Role from = kChannels[channel].from;
-    // If this role is ahead of the producer, all messages of the producer come late: the role hears
-    // them but cannot use them.
+    // If this role is ahead of the producer, all messages of the producer come late: the role
+    // receives them but cannot use them.
     const bool late = status.input_late[i] > ear.late && !IsAheadOf(from, status.header.step, now);
     if (late) {
       ear.missed = ear.unsure = {};
@@ -57,11 +58,11 @@ void DeafRoles::Heard(Role role, const status_t& status, TimePoint now) {
       ear.unsure = {};
     } else {
       if (silent <= kSteady && !first) ear.unsure += silent;
-      // Nothing is missing after the last step that the producer has computed.
+      // After the last step that the producer has computed, no message is missing.
       const bool computed = speakers_[static_cast<std::size_t>(from)].advanced > speaker.heard;
       if (computed) ear.missed += std::exchange(ear.unsure, {});
     }
-    // A message that came has ended the silence before it.
+    // If a message has come, only the time since this message counts as missed.
     if (!awaited) {
       ear.missed = std::min(ear.missed, age);
       ear.unsure = std::min(ear.unsure, age - ear.missed);

@@ -1,7 +1,7 @@
-// Which roles of a run in real time are deaf, by their STATUS. A deaf process is alive and reports
-// its state. But for a long time it has heard nothing on a channel that another role publishes all
-// the time. Such a role does not recover by itself. A network that loses many messages for a while
-// makes no role deaf.
+// Finds the deaf roles of a run in real time by their STATUS. A deaf process is alive and reports
+// its state. But for a long time, it has received nothing on a channel to which another role
+// publishes all the time. Such a role does not recover by itself. A network that loses many
+// messages for a while makes no role deaf.
 #pragma once
 
 #include <array>
@@ -19,8 +19,8 @@ class status_t;
 namespace fogline::runtime {
 
 struct Deafness {
-  std::size_t channel;  // what the role does not hear, a place in kChannels
-  Duration missed;      // for how long, as far as the producer is known to publish
+  std::size_t channel;  // the channel that the role does not receive, an index in kChannels
+  Duration missed;      // how long; counts only time in which the producer is known to publish
 };
 
 /// "has heard no TRUTH for 2.1 s, although the world has published it".
@@ -32,16 +32,16 @@ class DeafRoles {
   ///     counts as deaf
   explicit DeafRoles(Duration period);
 
-  /// Takes note of an accepted STATUS of the role.
+  /// Evaluates an accepted STATUS of the role.
   void Heard(Role role, const status_t& status, TimePoint now);
-  /// Forgets what is known of the role, because its process is dead.
+  /// Forgets everything about the role, because its process is dead.
   void Forget(Role role) { speakers_[static_cast<std::size_t>(role)] = {}; }
 
   /// The input that the role has missed for the longest time; nullopt if this time is not yet long
   /// enough to be sure.
   std::optional<Deafness> Of(Role role) const { return Missing(role, limit_); }
-  /// Of() for a run that is over. Half of the time is enough then, because no further message will
-  /// come.
+  /// Like Of(), but for a run that is over. Half of the time is enough, because no further message
+  /// will come.
   std::optional<Deafness> AtTheEnd(Role role) const { return Missing(role, limit_ / 2); }
 
  private:
@@ -60,7 +60,7 @@ class DeafRoles {
   };
 
   std::optional<Deafness> Missing(Role role, Duration limit) const;
-  /// Whether the role computes step after step, by its STATUS.
+  /// Whether the role's STATUS messages show that it computes one step after another.
   bool Computes(Role role, TimePoint now) const;
   /// Whether `step` is later than any step that the role can have computed by `now`.
   bool IsAheadOf(Role role, std::int64_t step, TimePoint now) const;

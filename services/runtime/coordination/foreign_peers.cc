@@ -34,7 +34,7 @@ void ForeignPeers::Hear(const status_t& status) {
     return;
   }
   if (watched_.size() == kMaxWatched) {
-    // Forgets the oldest of the processes that were heard least.
+    // Forgets the oldest of the processes with the fewest messages.
     watched_.erase(std::ranges::min_element(watched_, {}, &Watched::heard));
     forgotten_ = true;
   }

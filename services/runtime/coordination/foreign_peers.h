@@ -1,6 +1,6 @@
-// Processes that speak on a run's network but are not part of the run (foreign peers). They are
-// roles of another run, or processes that are left of an earlier run. Their messages are refused.
-// This class only records which processes they are.
+// Processes that send on a run's network but are not part of the run (foreign peers). They are
+// roles of another run, or processes that are left over from an earlier run. Their messages are
+// refused. This class only records which processes they are.
 #pragma once
 
 #include <cstdint>
@@ -21,24 +21,24 @@ struct ForeignPeer {
 /// "fusion (pid 4711 on lab2) of run 123"
 std::string Describe(const ForeignPeer& peer);
 
-/// The foreign processes that were heard most often. A flood of invented names does not fill the
-/// memory. It also does not hide a process that continues to speak. A name that was heard once is
-/// forgotten before a name that was heard again.
+/// The foreign processes that sent the most STATUS messages. A flood of invented names does not
+/// fill the memory, and does not hide a process that continues to send. A name that came once is
+/// forgotten before a name that came again.
 class ForeignPeers {
  public:
-  /// The most processes that are reported.
+  /// The largest number of processes that are reported.
   static constexpr std::size_t kMax = 32;
-  /// The most processes that are watched. A role sends a STATUS at least five times a second. So
-  /// its process is heard again before it is forgotten, unless a flood has more than 5,000 invented
-  /// names a second.
+  /// The largest number of processes that are remembered. A role sends a STATUS at least five times
+  /// a second. If a flood has at most 5,000 invented names a second, the role's next STATUS comes
+  /// before its process is forgotten.
   static constexpr std::size_t kMaxWatched = 1024;
 
-  /// Takes note of a STATUS of another run. A STATUS whose role does not exist is ignored. Host
-  /// names are shortened and made safe to print.
+  /// Counts a STATUS of another run. A STATUS whose role does not exist is ignored. Host names are
+  /// shortened and made safe to print.
   void Hear(const status_t& status);
 
-  /// The processes that were heard most often, at most kMax, in the order in which they were first
-  /// heard.
+  /// The processes that sent the most STATUS messages, at most kMax, in the order of their first
+  /// STATUS.
   std::vector<ForeignPeer> known() const;
   /// A line "ignored: ..." for each process, and one more line if there were more than kMax
   /// processes; "" if there are none.
@@ -49,7 +49,7 @@ class ForeignPeers {
     ForeignPeer peer;
     std::int64_t heard;
   };
-  std::vector<Watched> watched_;  // in the order in which they were first heard
+  std::vector<Watched> watched_;  // in the order of their first STATUS
   bool forgotten_ = false;
 };
 

@@ -1,5 +1,5 @@
-// When a role that has died is started again. The first restart comes soon. While restarts do not
-// help, the wait before each further restart is longer. The number of restarts in a run is limited.
+// Decides when a dead role is started again. The first restart comes soon. If a restart does not
+// help, the wait before the next restart is longer. The number of restarts in a run is limited.
 #pragma once
 
 #include <algorithm>
@@ -12,11 +12,11 @@ namespace fogline::runtime {
 class RestartPolicy {
  public:
   /// The shortest and the longest wait before a restart. The wait doubles with each restart that
-  /// does not help. The figures are those of procman, LCM's process manager.
+  /// does not help. The values are those of procman, LCM's process manager.
   static constexpr Duration kShortest = milliseconds(10);
   static constexpr Duration kLongest = milliseconds(1000);
 
-  /// @param limit the most restarts of the role in one run
+  /// @param limit the largest number of restarts of the role in one run
   explicit RestartPolicy(int limit) : limit_(limit) {}
 
   /// Notes that the role has died when the run was at this step.

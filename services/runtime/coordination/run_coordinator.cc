@@ -15,16 +15,15 @@ namespace fogline::runtime {
 namespace {
 
 constexpr Duration kAnnounceEvery = milliseconds(50);
-// The interval of RUN while the run goes on. Roles that were started elsewhere take RUN as a sign
-// that the runner lives.
+// The interval between two RUN messages while the run goes on. For roles that were started
+// elsewhere, each RUN shows that the runner is alive.
 constexpr Duration kRepeatEvery = milliseconds(200);
-// Requests for parts of the scenario that come within this time get one answer.
+// All requests for parts of the scenario within this time get one answer.
 constexpr Duration kPartsEvery = milliseconds(10);
 // If the recorder's report of the last step was lost, the runner asks for it at this interval.
 constexpr Duration kAskRecorderEvery = milliseconds(5);
-// In real time a role may be ahead of the runner's clock by two steps. One step, because the clock
-// may rest on a tick that was late by less than a period. One more step, because the world takes a
-// step at the start.
+// In real time, a role may be two steps ahead of the runner's count of periods. A tick may be late
+// by less than a period, and the world takes a step as soon as it starts.
 constexpr std::int64_t kEarly = 2;
 
 std::optional<Role> RoleNamed(std::string_view name) {
@@ -69,7 +68,7 @@ TimePoint RunCoordinator::Poll(TimePoint now) {
     progressed_ = now;
     going_since_ = now;
   }
-  // The limit also counts from progressed_, because a recorder that reads a long log reports its
+  // A recorder that reads a long log reports its progress. So the join limit counts from the last
   // progress.
   if (phase_ == Phase::kJoining && options_.join_limit > Duration::zero() &&
       HeldAgainst(std::max(began_, progressed_), now) > options_.join_limit) {
@@ -114,8 +113,7 @@ void RunCoordinator::FinishWhenRecorded(TimePoint now) {
 
 void RunCoordinator::AnnounceWhenDue(TimePoint now) {
   if (now < announce_at_) return;
-  // At the beginning and after each restart, the message is PREPARE until every role is ready. Then
-  // it is GO, which comes at the shorter interval until the world has started.
+  // RUN is sent at the shorter interval until every role is ready and the world has started.
   const auto& world = member(Role::kWorld).status;
   const bool going = ready_ && world && world->state != status_t::READY;
   Announce(0);
@@ -219,13 +217,14 @@ void RunCoordinator::OnStatus(const status_t& heard) {
   status.send_error = EscapeControls(heard.send_error);
   const auto role = RoleNamed(status.role);
   if (!role) return Refuse(&status_t::malformed);
-  // After the end only the recorder's STATUS counts, because it reports what was written last.
+  // After the end of the run, only the recorder's STATUS counts, because it reports how much of the
+  // log is written.
   const bool over = phase_ != Phase::kJoining && phase_ != Phase::kRunning;
   if (over && role != Role::kRecorder) return;
   Attend(now);
   if (!Admit(*role, status, now)) return;
   Member& member = members_[static_cast<std::size_t>(*role)];
-  if (member.status && status.sequence <= member.status->sequence) return;  // a newer one is known
+  if (member.status && status.sequence <= member.status->sequence) return;  // not the newest
   const bool joined = status.state == status_t::READY || status.state == status_t::RUNNING;
   if (joined && status.scenario_hash != hash_) {
     return Fail(fmt::format("{} (pid {} on {}) has another scenario", status.role, status.pid,
@@ -289,7 +288,8 @@ void RunCoordinator::OnResend(Bytes bytes) {
   if (const RefusalCounter wrong = Examine(bytes, resend)) return Refuse(wrong);
   if (resend.header.run_id != options_.run_id) return Refuse(&status_t::foreign);
   if (resend.channel != ChannelOf<run_t>().name) return;
-  // A role that misses one part usually misses most parts, so all parts from this one on are sent.
+  // A role that misses one part usually misses most parts, so this part and all later parts are
+  // sent.
   const TimePoint now = Clock::now();
   if (now < parts_at_ || resend.header.step < 0) return;
   parts_at_ = now + kPartsEvery;
@@ -299,8 +299,8 @@ void RunCoordinator::OnResend(Bytes bytes) {
 }
 
 void RunCoordinator::Announce(std::size_t part, std::int64_t answer_to) {
-  // A run in real time that has started does not wait for all roles. With GO a late role joins at
-  // once.
+  // A run in real time that has started does not wait for all roles. A late role joins at once if
+  // RUN says GO.
   const bool go = ready_ || (options_.realtime && phase_ == Phase::kRunning);
   Announce(go ? run_t::GO : run_t::PREPARE, part, answer_to);
 }
@@ -336,7 +336,7 @@ std::string RunCoordinator::HindranceOf(Role role) const {
 
 std::string RunCoordinator::Culprit(TimePoint now) const {
   // Follow the chain of waiting roles from the world to the first role that does not say what it
-  // waits for. `stuck` is the step that the present role of the chain cannot complete.
+  // waits for. `stuck` is the step that the current role of the chain cannot complete.
   std::int64_t stuck = step() + 1;
   Role waiting = Role::kWorld;
   for (std::size_t hops = 0; hops < kRoles.size(); ++hops) {
@@ -361,8 +361,8 @@ std::string RunCoordinator::Culprit(TimePoint now) const {
       waiting = producer;
       continue;
     }
-    // The consumer's STATUS says when the consumer last heard the channel. For the log, the last
-    // STATUS of the recorder counts.
+    // The consumer's STATUS says when the consumer last received a message of the channel. For the
+    // log, the time of the recorder's last STATUS counts.
     using Known = std::tuple<std::string_view, std::int64_t, Duration>;
     const auto [what, last, age] =
         channel != nullptr

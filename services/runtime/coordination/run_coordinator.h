@@ -1,6 +1,6 @@
-// The runner's side of a run, its coordinator. It announces the scenario, waits until every role is
-// ready, lets the world start and follows the STATUS of every role. It tells a role that joins late
-// how far the run is. If a step does not complete, the coordinator names the culprit.
+// The coordinator of a run, a part of the runner. It announces the scenario, waits until every role
+// is ready, and lets the world start. It follows the STATUS of every role, and tells a role that
+// joins late how far the run is. If a step does not complete, the coordinator names the culprit.
 #pragma once
 
 #include <array>
@@ -40,7 +40,7 @@ struct RunCoordinatorOptions {
   Duration join_limit{};                      // longest wait until all roles are ready; 0: no limit
   Duration stall_limit = milliseconds(4000);  // longest time without a completed step of any role
   std::vector<Role> external;                 // roles that are started elsewhere
-  int restarts = 0;                           // most restarts of each external role
+  int restarts = 0;                           // largest number of restarts of each external role
   RoleBuilds builds{};                        // expected builds of the roles
   bool same_build = false;                    // whether a role of another build ends the run
 };
@@ -55,28 +55,29 @@ class RunCoordinator {
   /// next call
   TimePoint Poll(TimePoint now);
 
-  /// Notes that the runner looks at the clock. If two looks are far apart, the runner itself was
-  /// held up (a frozen container, a disk, Ctrl-Z). That time does not count against any role.
+  /// Notes that the runner reads the clock. If two readings are far apart, the runner itself was
+  /// held up, for example by a slow disk or Ctrl-Z. The time between these readings does not count
+  /// against any role.
   void Attend(TimePoint now) { pauses_.Attend(now); }
-  /// The time since `since` in which this process could have heard a message.
+  /// The time since `since` in which this process could have received a message.
   Duration HeldAgainst(TimePoint since, TimePoint now) const {
     return pauses_.HeldAgainst(since, now);
   }
-  /// The probability that a living role is silent for this time, because the network loses all its
-  /// messages.
+  /// The probability that no message of a living role comes during the time `silence`, because the
+  /// network loses all of the role's messages.
   double ChanceOfLife(Role role, Duration silence) const {
     return signs_of_life_.ChanceOfLife(role, silence);
   }
-  /// In real time, a channel that the role has not heard for a long time although its producer
-  /// publishes it.
+  /// In real time, a channel from which the role has received nothing for a long time, although the
+  /// producer publishes to it.
   std::optional<Deafness> Deaf(Role role) const { return deaf_.Of(role); }
   /// The longest time for which the runner was held up since the last call; 0 if it was not held
   /// up.
   Duration TakeLongestPause() { return pauses_.TakeLongest(); }
 
   Phase phase() const { return phase_; }
-  /// What went wrong; one line, and more lines if keys or sends cause trouble. "" unless phase() is
-  /// kFailed.
+  /// The error that ended the run, in one line, or in more lines if keys or sends cause trouble.
+  /// The text is "" if phase() is not kFailed.
   const std::string& error() const { return error_; }
   /// Last step that is known to have begun; -1: none.
   std::int64_t step() const { return progress_; }
@@ -84,10 +85,10 @@ class RunCoordinator {
   std::string Where() const;
   /// Names of the roles that have not reported ready.
   std::string NotReady() const;
-  /// External roles that the run waits for: they are not ready, or are silent while the run goes
-  /// on.
+  /// External roles that the run waits for: roles that are not ready, and roles that send nothing
+  /// while the run goes on.
   std::vector<Role> Awaited(TimePoint now) const;
-  /// The sum of a counter of status_t over the processes of all roles, also those that are dead.
+  /// The sum of a counter of status_t over the processes of all roles, including dead processes.
   std::int64_t Total(std::int64_t status_t::*counter) const;
   /// Messages that the roles and the runner have refused.
   Refusals Refused() const;
@@ -96,12 +97,12 @@ class RunCoordinator {
   std::vector<SendTrouble> SendTroubles() const;
   /// What is wrong with keys and signatures; "" if no trouble is known.
   std::string KeyTrouble() const;
-  /// The processes of other runs that speak on this network.
+  /// The processes of other runs that send on this network.
   const ForeignPeers& foreign_peers() const { return foreign_peers_; }
   /// The expected builds of the roles.
   const RoleBuilds& builds() const { return options_.builds; }
-  /// Whether the run goes on after the final loss of this role. In real time it goes on, unless the
-  /// role is the world (the road) or the recorder (the log).
+  /// Whether the run goes on after the final loss of this role. In real time, the run goes on
+  /// without any role except the world (the road) and the recorder (the log).
   bool GoesOnWithout(Role role) const {
     return options_.realtime && phase_ == Phase::kRunning && role != Role::kWorld &&
            role != Role::kRecorder;
@@ -111,18 +112,18 @@ class RunCoordinator {
   /// Ends the run with an error from outside, such as the death of a process.
   void Fail(std::string error);
   /// Notes that the role's process on this machine is dead and will be started again. From now on
-  /// late messages of that process are ignored, and another instance may take its place.
+  /// late messages of that process are ignored, and another instance may take the role.
   void MarkDead(Role role, std::int32_t pid, TimePoint now);
   /// Stores why the role cannot be started again at present, for the error message of a stall.
   void Hinder(Role role, std::string why);
   /// Notes that the role has been started again, as this process on this machine.
   void Launched(Role role, std::int32_t pid, TimePoint now);
-  /// Calls `handler` for every STATUS that is accepted. A STATUS that a newer one has overtaken is
-  /// not accepted.
+  /// Calls `handler` for every STATUS that is accepted. A STATUS that comes after a newer STATUS of
+  /// the same process is not accepted.
   void OnEveryStatus(std::function<void(const status_t&)> handler) {
     on_status_ = std::move(handler);
   }
-  /// Whether a process of the role has been heard.
+  /// Whether a STATUS of any process of the role has been accepted.
   bool Met(Role role) const { return member(role).status || !member(role).dead.empty(); }
 
   /// A role's process as its STATUS describes it.
@@ -134,8 +135,8 @@ class RunCoordinator {
     std::optional<status_t> rival;   // another instance that claims this role
     TimePoint rival_since{};
     TimePoint rival_heard{};
-    // `undead`: since when an instance that counts as dead has spoken; `undead_heard`: when it was
-    // last heard.
+    // `undead` is the time at which an instance that counts as dead began to send again;
+    // `undead_heard` is the time of its last STATUS.
     std::optional<TimePoint> undead;
     std::int64_t undead_instance = 0;
     TimePoint undead_heard{};
@@ -154,9 +155,10 @@ class RunCoordinator {
   /// The newest step that a role can have computed by now.
   std::int64_t NewestPossible(TimePoint now) const;
   /// Ends the run when the world is done and, in lockstep, the recorder's report includes the last
-  /// step. The caller then compares the log with this report.
+  /// step. The runner then compares the log with this report.
   void FinishWhenRecorded(TimePoint now);
-  /// Ends the run after its last step is recorded. The run fails if a role is deaf at its end.
+  /// Ends the run after its last step is recorded. The run fails if a role is deaf at the end of
+  /// the run.
   void OnDone();
   /// Handles a role's report of its failure.
   void OnFailure(Role role, const status_t& status);
@@ -167,19 +169,19 @@ class RunCoordinator {
   bool IsExternal(Role role) const;
   /// Whether to accept the STATUS; false if it comes from a dead or second instance of the role.
   bool Admit(Role role, const status_t& status, TimePoint now);
-  /// Admit() for a STATUS that does not come from the role's present process.
+  /// Admit() for a STATUS of a process that is not the role's current process.
   bool AdmitOther(Role role, const status_t& status, TimePoint now);
   /// Handles a STATUS of a process that counts as dead.
   void OnUndead(Role role, const status_t& status, TimePoint now);
   void FailForTwo(const status_t& one, const status_t& other);
   bool HasRival(Role role, TimePoint now) const;
-  /// Instance of the process that has an external role; 0 if no process has it, or the process is
-  /// silent.
+  /// Instance of the process that has an external role; 0 if no process has the role, or the role's
+  /// process is silent.
   std::int64_t HolderOf(Role role, TimePoint now) const;
   void AnnounceWhenDue(TimePoint now);
   void Announce(std::size_t part, std::int64_t answer_to = 0);
   void Announce(std::int8_t phase, std::size_t part, std::int64_t answer_to = 0);
-  /// Why the role is not there, as the end of an error text; "" if nothing is known.
+  /// Why the role is missing, as the end of an error text; "" if no reason is known.
   std::string HindranceOf(Role role) const;
   /// The line that says which role holds up the run.
   std::string Culprit(TimePoint now) const;

@@ -1,5 +1,5 @@
-// Which process has which role of a run: living instances, dead ones, and two that claim the same
-// role.
+// Decides which process has which role of a run. A role can have a living instance, dead instances,
+// and a second living instance that claims the role, too.
 #include <algorithm>
 #include <utility>
 
@@ -10,11 +10,12 @@
 namespace fogline::runtime {
 namespace {
 
-// The longest time that a STATUS is on its way. If another process claims a role, and the first
-// process is still heard after this time, the first process is alive.
+// The longest time between the sending and the arrival of a STATUS. Suppose that another process
+// claims a role. If a STATUS of the first process comes more than this time later, the first
+// process is alive.
 constexpr Duration kOnItsWay = milliseconds(100);
-// A process that has lost its place leaves within this time. Five RUN in this time say that another
-// process has the place (Membership).
+// A process that has lost its role leaves the run within this time. In this time, five RUN messages
+// say that another process has the role (Membership).
 constexpr Duration kLeaves = milliseconds(1000);
 
 }  // namespace
@@ -69,7 +70,7 @@ void RunCoordinator::OnUndead(Role role, const status_t& status, TimePoint now) 
       HeldAgainst(member.replaced_at, now) <= kOnItsWay) {
     return;
   }
-  announce_at_ = now;  // tells the process that another one has its place
+  announce_at_ = now;  // tells the process that another process has its role
   const bool speaks_on = member.undead && member.undead_instance == status.instance &&
                          HeldAgainst(member.undead_heard, now) <= kSilent;
   if (!speaks_on) member.undead = now;
@@ -89,7 +90,7 @@ bool RunCoordinator::AdmitOther(Role role, const status_t& status, TimePoint now
   if (!speaks_on) {
     member.rival = status;
     member.rival_since = now;
-    announce_at_ = now;  // tells the process that another one has its place
+    announce_at_ = now;  // tells the process that another process has its role
   }
   member.rival_heard = now;
   if (!IsExternal(role)) return false;
@@ -128,7 +129,7 @@ void RunCoordinator::MarkDead(Role role, std::int32_t pid, TimePoint now) {
     deaf_.Forget(role);
   }
   member.rival.reset();
-  progressed_ = now;  // the restart is under way, so the stall limit counts from here
+  progressed_ = now;  // the restart is under way, so the stall limit counts from now
 }
 
 void RunCoordinator::Hinder(Role role, std::string why) {

@@ -13,7 +13,8 @@
 namespace fogline::runtime {
 namespace {
 
-// The runner and the listener read the same clock, but it may be set between the two readings.
+// The runner and the listener read the same clock, but the clock may be set between the two
+// readings.
 constexpr std::int64_t kClockSlack_us = 1'000'000;
 
 /// The roles with these names; nullopt if a name is unknown or occurs twice.
@@ -88,7 +89,7 @@ bool Announcements::Take(Bytes bytes, TimePoint now, std::int64_t wall_us) {
 
 void Announcements::Keep(Announcement announcement, TimePoint now) {
   if (entries_.size() == kMax) {
-    // Forgets the oldest of the runs that were heard least.
+    // Forgets the oldest of the runs with the fewest beacons.
     entries_.erase(std::ranges::min_element(entries_, {}, &Entry::times));
   }
   entries_.push_back({.announcement = std::move(announcement), .heard = now, .times = 1});

@@ -1,5 +1,6 @@
 // The runs that announce themselves at the meeting address. Programs that were given no URL listen
-// there. This class has no subscription and no clock: its caller passes messages and times to it.
+// at this address. This class has no subscription and no clock: its caller passes messages and
+// times to it.
 #pragma once
 
 #include <cstdint>
@@ -13,10 +14,10 @@
 
 namespace fogline::runtime {
 
-/// The channel of beacon_t. It is no part of kGraph, because no run uses it.
+/// The channel of beacon_t. The channel is not in kGraph, because no run uses the channel.
 inline constexpr std::string_view kBeaconChannel = "FOGLINE_BEACON";
-/// The interval at which a run announces itself. It is short, so that a person who looks for the
-/// run need not wait.
+/// The interval at which a run announces itself. The interval is short, so that a person who looks
+/// for the run need not wait.
 inline constexpr Duration kBeaconEvery = milliseconds(500);
 
 /// A run as its beacon describes it. Its texts are safe to print.
@@ -55,8 +56,8 @@ class Announcements {
 
   /// A run without a beacon for this long (six beacons) counts as ended.
   static constexpr Duration kGone = 6 * kBeaconEvery;
-  /// The most runs that are remembered. If there is no room, the run that was heard least is
-  /// forgotten. So invented runs that are heard once do not displace a run that continues to
+  /// The largest number of runs that are remembered. A further run replaces the run with the fewest
+  /// beacons. So invented runs with one beacon each do not displace a run that continues to
   /// announce itself.
   static constexpr std::size_t kMax = 256;
   /// The longest title, in bytes.
@@ -72,7 +73,7 @@ class Announcements {
   void Keep(Announcement announcement, TimePoint now);
 
   std::string host_;
-  std::vector<Entry> entries_;  // in the order in which they were heard first
+  std::vector<Entry> entries_;  // in the order of their first beacons
   std::int64_t refused_ = 0;
 };
 

@@ -22,7 +22,7 @@ std::int64_t WallMicroseconds() {
   return duration_cast<microseconds>(std::chrono::system_clock::now().time_since_epoch()).count();
 }
 
-/// The title as a beacon carries it. A title that is too long is cut between two characters.
+/// The title as a beacon contains it. A title that is too long is cut between two characters.
 std::string TitleOf(const std::string& scenario) {
   const auto continues = [](char c) { return (static_cast<unsigned char>(c) & 0xc0U) == 0x80U; };
   std::string title = EscapeControls(scenario);

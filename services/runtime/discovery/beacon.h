@@ -15,18 +15,19 @@ struct _lcm_t;
 
 namespace fogline::runtime {
 
-/// The runner's side. If a beacon cannot be sent, the run goes on without it. A beacon stays on
-/// this machine (ttl=0), also if the meeting address has another ttl. It is never signed, even if
-/// the run has a key. A beacon tells only where to look, and the messages of the run itself are
-/// verified.
+/// Sends the beacons of a run. If a beacon cannot be sent, the run goes on without it. A beacon
+/// stays on this machine (ttl=0), even if the meeting address has another ttl. A beacon is never
+/// signed, even if the run has a key. A beacon tells only where the run is, and the messages of the
+/// run itself are verified.
 class Beacon {
  public:
-  /// Announces nothing if the run is at the meeting address itself, if programs may not follow a
-  /// beacon to the run's URL (MayBeAnnounced()), or if the meeting address is no multicast group or
-  /// has no route.
-  /// @param run without host, process and time of beginning, which the constructor fills in
+  /// Announces nothing in three cases: the run is at the meeting address itself; programs must not
+  /// follow a beacon to the run's URL (MayBeAnnounced()); the meeting address is no multicast group
+  /// or has no route.
+  /// @param run the run; the constructor fills in its host, its process and the time of its
+  ///     beginning
   explicit Beacon(Announcement run);
-  /// Says that the run is over.
+  /// Announces that the run is over.
   ~Beacon();
   Beacon(const Beacon&) = delete;
   Beacon& operator=(const Beacon&) = delete;
@@ -46,10 +47,10 @@ class Beacon {
   std::vector<std::uint8_t> buffer_;
 };
 
-/// The side of a program that looks for a run.
+/// Receives beacons, for a program that looks for a run.
 class BeaconListener {
  public:
-  /// Hears nothing if the address is no multicast group.
+  /// Receives nothing if the address is no multicast group.
   explicit BeaconListener(const std::string& meeting_url);
 
   /// Reads the beacons that have come.

@@ -20,30 +20,31 @@ class RunSeeker {
       : role_(role), listener_(meeting_url), began_(Clock::now()), pauses_(began_) {}
 
   /// Call it while the role has no run, or its runner is silent.
-  /// @return the run to join now: the newest that waits for this role and was not tried in vain;
-  ///     nullopt if there is none
+  /// @return the run to join now: the newest run that waits for this role and was not tried in
+  ///     vain; nullopt if there is no such run
   std::optional<Announcement> Look(TimePoint now);
 
   /// Whether the role has gone to the network of an announced run.
   bool Tries() const { return tried_.has_value(); }
-  /// Whether the announced run is over, or the role has heard nothing of it for kSilentLimit. The
-  /// role then goes back to the meeting address.
+  /// Whether the announced run is over, or the role has received nothing from this run for
+  /// kSilentLimit. The role then goes back to the meeting address.
   bool InVain(TimePoint now);
-  /// Excludes the run that was tried last from Look() for kTryAgain, so that a run at the meeting
-  /// address comes first. The exclusion ends earlier if an announcement says that the run does not
-  /// wait for the role. If the run waits for the role after that, the place has become free.
+  /// For the time kTryAgain, Look() does not return the run that was tried last. So a run at the
+  /// meeting address comes first. The exclusion ends earlier if an announcement says that the run
+  /// does not wait for the role. If the run waits for the role again after that, the role has
+  /// become free.
   void GiveUp(TimePoint now);
-  /// Excludes this run from Look(), because the role already takes part in it.
+  /// From now on, Look() does not return this run, because the role already takes part in it.
   void Ignore(std::int64_t run_id) { own_ = run_id; }
-  /// Notes that the role has left this run and is still at its network.
+  /// Notes that the role has left this run and is still at the run's network.
   void Stay(std::int64_t run_id, TimePoint now) { tried_ = {.run_id = run_id, .at = now}; }
 
  private:
-  // A runner that waits speaks 20 times a second. A busy machine or a bad network delays its
-  // messages by less than kSilentLimit.
+  // A runner that waits for roles sends 20 messages a second. A busy machine or a bad network
+  // delays the runner's messages by less than kSilentLimit.
   static constexpr Duration kSilentLimit = milliseconds(5000);
   // After this time a run that was tried in vain is tried again. A busy machine may have held up
-  // the run, or the port of the run's network may have been taken for a moment.
+  // the run, or the port of the run's network may have been in use by another program for a moment.
   static constexpr Duration kTryAgain = milliseconds(5000);
   // A limit, so that invented runs do not fill the memory.
   static constexpr std::size_t kMaxInVain = 64;

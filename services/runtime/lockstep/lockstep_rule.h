@@ -1,16 +1,16 @@
-// The rule in lockstep. A node keeps a ring of messages per input. It computes step k exactly once,
-// when all its inputs for step k are there, in any order of arrival. It encodes its outputs once
-// and keeps the bytes. No message is sent again without a request: a node that lacks an input asks
-// for it (RESEND). If a node cannot compute a requested output yet, it asks for its own inputs. So
-// any loss below 100 % only costs time.
+// The rule in lockstep. A node stores a ring of messages per input. It computes step k exactly
+// once, when all its inputs for step k have come, in any order. It encodes its outputs once and
+// stores the bytes. No message is sent again without a request: a node that lacks an input asks for
+// it (RESEND). If a node cannot compute a requested output yet, it asks for its own inputs. So any
+// loss below 100 % only costs time.
 //
-// Catching up. RUN says how far the world is. A node that joins late (its predecessor was killed)
-// computes all steps from step 0 on, and asks for the inputs of many steps at a time. The recorder
-// sends old inputs, and their producers send the newest. The node does not publish old outputs,
-// because the recorder has them.
+// Catching up. RUN says which step the world has reached. A node that joins late, for example
+// because its predecessor was killed, computes all steps from step 0 on, and asks for the inputs of
+// many steps at a time. The recorder sends old inputs, and their producers send the newest inputs.
+// The node does not publish old outputs, because the recorder has them.
 //
-// The role that begins the steps (the world) also waits for GO, keeps to the pace, and stays near
-// the log on disk (step_gate.h).
+// The role that begins the steps (the world) also waits for GO, keeps to the pace, and stays at
+// most kMaxAhead steps ahead of the log on disk (step_gate.h).
 #pragma once
 
 #include <algorithm>
@@ -41,7 +41,7 @@ class LockstepRule final : public FireRule {
  private:
   std::int64_t next() const { return parts_.steps.next(); }
   StepRing::Verdict Judge(const Input& input, std::int64_t step, Bytes bytes) const;
-  /// The first input that the next step waits for; nullptr if there is none.
+  /// The first input that the next step waits for; nullptr if no input is missing.
   const Input* FirstMissing() const;
   /// The first step of an input that the role still needs.
   std::int64_t FirstNeeded(const Input& input) const;

@@ -37,7 +37,8 @@ class RetryTimer {
 
   /// Notes that the step has been computed.
   void Computed(TimePoint now) {
-    // Steps with a repair do not show how long a step takes (Karn & Partridge 1987).
+    // The duration of a step with a repair does not show how long a step usually takes (Karn &
+    // Partridge 1987).
     if (computed_ != TimePoint{} && asked_ < computed_) {
       const Duration took = now - computed_;
       step_time_ += (took - step_time_) / (took < step_time_ ? kDown : kUp);
@@ -46,7 +47,7 @@ class RetryTimer {
     since_.reset();
   }
 
-  /// Since when the next step is known to lack an input; nullopt if it lacks none.
+  /// The time since which the next step is known to lack an input; nullopt if no input is missing.
   const std::optional<TimePoint>& since() const { return since_; }
   TimePoint asked() const { return asked_; }
 

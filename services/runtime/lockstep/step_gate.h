@@ -1,6 +1,6 @@
 // A step gate says when the role that begins the steps (the world) may begin the next step. The
 // runner must have said GO, and the step must be due at the run's pace. The step may be at most
-// kMaxAhead steps ahead of the recorder's log on disk, and not after the run's last step.
+// kMaxAhead steps ahead of the recorder's log on disk, and must not come after the run's last step.
 #pragma once
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace fogline::runtime {
 
 class StepGate {
  public:
-  /// Listens to the recorder's STATUS on `bus`. Counts the messages that it refuses in `own`.
+  /// Listens to the recorder's STATUS on `bus`. Counts refused messages in `own`.
   StepGate(Bus& bus, status_t& own);
 
   void Configure(const Scenario& scenario, std::int64_t run_id);

@@ -1,5 +1,5 @@
-// When a role computes a step, and what it does about missing inputs. A role in lockstep
-// (lockstep_rule.h) and a role in real time (realtime_rule.h) differ only in this rule.
+// Decides when a role computes a step, and what the role does about missing inputs. A role in
+// lockstep (lockstep_rule.h) and a role in real time (realtime_rule.h) differ only in this rule.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,7 @@ class FireRule {
 
   /// The runner says GO. May be called repeatedly.
   virtual void OnGo(const run_t& /*run*/, TimePoint /*now*/) {}
-  /// A message of `input`, a place in Inputs::all(), has come. The message is of this run and of a
+  /// A message of `input` (an index in Inputs::all()) has come. The message is of this run and of a
   /// step of the scenario. The rule judges it and passes it to Inputs::Keep().
   virtual void OnInput(std::size_t input, std::int64_t step, Arrival& arrival) = 0;
   /// Does what is due. @return the latest time for the next call

@@ -12,7 +12,7 @@
 namespace fogline::runtime {
 namespace {
 
-/// Why the bytes are not a valid message of a channel; nullptr if they are.
+/// Why the bytes are not a valid message of a channel; nullptr if they are valid.
 RefusalCounter WrongOn(std::size_t channel, Arrival& arrival) {
   static const auto wrong = std::apply(
       [](const auto&... each) {

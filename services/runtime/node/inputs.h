@@ -21,7 +21,7 @@ namespace fogline::runtime {
 
 /// One channel that a role reads.
 struct Input {
-  std::size_t channel;       // place in kChannels
+  std::size_t channel;       // index in kChannels
   std::int64_t fingerprint;  // fingerprint of the channel's message type
   std::int64_t lag;          // step k uses this input's step k - lag
   bool on_demand;            // whether this is an input on demand (algorithm.h)
@@ -48,14 +48,14 @@ class Inputs {
   /// until the next ReadOnDemand().
   std::span<Input> all() { return inputs_; }
   std::span<const Input> all() const { return inputs_; }
-  /// The input of a channel (its place in kChannels). @pre the role reads it
+  /// The input of a channel (an index in kChannels). @pre the role reads the channel
   Input& Of(std::size_t channel);
   /// Reads this channel, too. Call it in Work::Join().
   Input& ReadOnDemand(std::size_t channel);
 
   /// Carries out the rule's verdict on a message of an input, and counts the message if it is
-  /// refused. In lockstep, a second message of a step with other bytes ends the role's part in the
-  /// run.
+  /// refused. In lockstep, the role fails if two messages of the same step and channel have
+  /// different bytes.
   /// @return true if the message is new and sound; the input then has it
   bool Keep(std::size_t input, std::int64_t step, Arrival& arrival, StepRing::Verdict verdict);
   /// Stores a message that is known from the log of a predecessor.

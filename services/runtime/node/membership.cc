@@ -15,7 +15,7 @@ constexpr Duration kPartRetry = milliseconds(20);
 // The shortest time between two answers to announcements (PREPARE) that are repeated.
 constexpr Duration kAnnouncedRetry = milliseconds(20);
 // If the runner is silent for this time, a role that has not received the whole scenario yet leaves
-// the run and looks for another one.
+// the run and looks for another run.
 constexpr Duration kAnnouncerSilence = milliseconds(5'000);
 
 }  // namespace
@@ -52,8 +52,8 @@ TimePoint Membership::Poll(TimePoint now) {
 
 void Membership::CheckSends(TimePoint now) {
   const Bus::FailedSends& failed = parts_.bus.failed_sends();
-  // In real time the other roles go on without this role, and the runner judges how long its
-  // silence may last.
+  // In real time the other roles go on without this role, and the runner decides how long this role
+  // may be silent.
   if (own_.left() || run_.realtime || !failed.since || !runner_.Stalled(*failed.since, now)) return;
   own_.Fail(fmt::format("nothing could be sent for {:.1f} s: {}", Seconds(now - *failed.since),
                         failed.error));
@@ -124,7 +124,7 @@ bool Membership::TakeNews(const run_t& run, TimePoint now) {
   } else if (!own_.Waits() && run.phase == run_t::PREPARE && run.header.step == 0 &&
              now >= announced_at_ + kAnnouncedRetry) {
     announced_at_ = now;
-    own_.Publish();  // the announcement is repeated: the runner may not have heard this role
+    own_.Publish();  // repeated announcement: perhaps the runner has no STATUS of this role
   }
   return true;
 }

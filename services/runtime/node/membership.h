@@ -1,5 +1,5 @@
-// How a role joins a run and leaves it: it hears RUN, collects the scenario, and watches its
-// runner.
+// How a role joins and leaves a run: the role listens to RUN, collects the scenario, and watches
+// its runner.
 #pragma once
 
 #include <cstdint>
@@ -22,7 +22,7 @@ class Membership {
   Membership(Parts& parts, std::optional<std::int64_t> run_id, Work& work,
              std::unique_ptr<FireRule>& rule);
 
-  /// Does what is due: asks for the scenario, leaves a runner that is gone.
+  /// Does what is due: asks for the scenario, or leaves the run if the runner is gone.
   /// @return the latest time for the next call
   TimePoint Poll(TimePoint now);
   /// Whether the role's runner has been silent for so long that the role may join another run.
@@ -32,15 +32,15 @@ class Membership {
   void OnRun(Bytes bytes);
   /// Handles a RUN of another run.
   void OnOtherRun(const run_t& run, TimePoint now);
-  /// Whether the runner has sent this RUN now, so that it is no repetition from an old run. If this
-  /// is not known, asks the runner.
+  /// Whether the runner has just sent this RUN. Otherwise the RUN may be a repetition from an old
+  /// run. If the answer is not known yet, asks the runner.
   bool IsFresh(const run_t& run, TimePoint now);
   /// Asks a runner for a RUN that answers this process.
   void AskWhetherThere(const run_t& run, TimePoint now);
   /// In lockstep the role fails if nothing could be sent for longer than the run's stall limit.
   void CheckSends(TimePoint now);
-  /// Takes a RUN's news about the whole run. @return whether this RUN is newer than all earlier
-  /// ones
+  /// Takes a RUN's news about the whole run. @return whether this RUN is newer than all earlier RUN
+  /// messages
   bool TakeNews(const run_t& run, TimePoint now);
   /// Forgets a run whose runner fell silent before the whole scenario had come.
   void Unbind();
@@ -57,7 +57,8 @@ class Membership {
   TimePoint part_at_{};             // when to ask for the next part of the scenario
   TimePoint announced_at_{};        // when a repeated announcement was last answered
   RunnerWatch runner_{Clock::now()};
-  // Whether the runner has started this process. The kernel then ends both together.
+  // Whether the runner has started this process. The kernel then ends this process when the runner
+  // ends.
   const bool ends_with_runner_;
 };
 

@@ -1,4 +1,4 @@
-// One role's part in a run. Membership joins the run, Inputs and Outputs hold messages, a FireRule
+// One role's part in a run. Membership joins the run, Inputs and Outputs store messages, a FireRule
 // decides when a step is computed, and Work computes the step.
 //
 // Everything happens on the one thread that calls Bus::Wait() and Poll().

@@ -8,14 +8,13 @@
 namespace fogline::runtime {
 namespace {
 
-// All roles receive each answer. If another role asks for the same step within this time, it gets
-// no second answer: it has received the first one, or will ask again.
+// All roles receive each answer. If another role asks for the same step within this time, that role
+// gets no second answer. The role has received the first answer, or will ask again.
 constexpr Duration kAnswerHolds = milliseconds(1);
-// Requests for this number of newest steps are always answered, because the run waits for these
-// steps.
+// Requests for the newest kNewest steps are always answered, because the run waits for these steps.
 constexpr std::int64_t kNewest = 2;
 
-/// The requests that a role can answer: those for its own channels. The recorder can answer
+/// The requests that a role can answer: requests for its own channels. The recorder can answer
 /// requests for all channels.
 Contents RequestsTo(Role role) {
   Contents requests{.offset = kHeaderEnd, .texts = {}};
@@ -50,8 +49,8 @@ void Outputs::Publish(std::size_t channel, std::int64_t step, Bytes bytes) {
     if (output.channel != channel) continue;
     output.ring.Store(step, bytes);
     output.answered[RingSlot(step)] = {};
-    // A step that is old enough to be on disk is not published, because the recorder answers for
-    // it. In real time every output is published.
+    // A step that is old enough to be on disk is not published, because the recorder answers
+    // requests for this step. In real time every output is published.
     if (parts_.run.realtime || step > parts_.run.progress - 2 * kMaxAhead) {
       parts_.bus.Publish(output.topic, bytes);
     }

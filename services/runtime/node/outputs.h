@@ -1,5 +1,5 @@
-// The outputs of a role. This class publishes each step once (unless the recorder answers for the
-// step), keeps the last steps, and answers requests for them.
+// The outputs of a role. This class publishes each step once, stores the last steps, and answers
+// requests for them. It does not publish a step if the recorder answers requests for the step.
 #pragma once
 
 #include <array>
@@ -25,8 +25,8 @@ class Outputs {
   /// @param rule the role's rule, null until the role has joined
   Outputs(Parts& parts, Role role, Work& work, const std::unique_ptr<FireRule>& rule);
 
-  /// Publishes the output of a step on one of the role's channels (its place in kChannels) and
-  /// keeps it. A step that the recorder answers for is only kept.
+  /// Publishes the output of a step on one of the role's channels (an index in kChannels), and
+  /// stores the output. If the recorder answers requests for the step, the output is only stored.
   /// @throws std::runtime_error if the output is too large
   void Publish(std::size_t channel, std::int64_t step, Bytes bytes);
   /// The limit for answers to requests for older steps.

@@ -15,7 +15,7 @@ namespace {
 // The longest error text. It must fit into a STATUS together with all other fields.
 constexpr std::size_t kMaxErrorBytes = 700;
 // After a failed send the next STATUS does not wait for the heartbeat, because the run may be over
-// by then. It is sent when this time has passed since the last STATUS.
+// by then. This STATUS is sent when this time has passed since the last STATUS.
 constexpr Duration kTellSends = milliseconds(20);
 
 }  // namespace
@@ -77,7 +77,7 @@ void OwnStatus::Publish() {
   const Bus::Unverified unverified = bus_.TakeUnverified();
   message_.not_signed += unverified.not_signed;
   message_.badly_signed += unverified.badly_signed;
-  if (now >= use_at_) {  // a call of the kernel takes longer than some steps
+  if (now >= use_at_) {  // this system call takes longer than some steps
     use_at_ = now + kHeartbeat;
     const ProcessUse use = MeasureThisProcess();
     message_.cpu_ms = use.cpu_ms;

@@ -24,7 +24,7 @@ class OwnStatus {
   OwnStatus(Bus& bus, Role role, const RunNews& run, Work& work,
             const std::unique_ptr<FireRule>& rule);
 
-  /// The next STATUS. All parts of the role write their counts into it.
+  /// The next STATUS. All parts of the role write their counts into this message.
   status_t& message() { return message_; }
   const status_t& message() const { return message_; }
   /// Counts a message that is refused.
@@ -36,7 +36,8 @@ class OwnStatus {
   bool Running() const {
     return !left_ && (message_.state == status_t::READY || message_.state == status_t::RUNNING);
   }
-  /// Whether the role's part in the run is over: STOP, a signal, or a failure that it has reported.
+  /// Whether the role's part in the run is over, because of STOP, a signal, or a failure that the
+  /// role has reported.
   bool left() const { return left_; }
   /// Whether the role has left its run, so that this process may take part in another run.
   bool released() const { return message_.state == status_t::LEFT; }
@@ -52,10 +53,10 @@ class OwnStatus {
 
   /// Publishes a STATUS now. While the role knows no run id, nothing is published.
   void Publish();
-  /// Publishes a STATUS if one is due. @return when the next one is due
+  /// Publishes a STATUS if one is due. @return when the next STATUS is due
   TimePoint Poll(TimePoint now);
   /// If there are failed sends to report, makes the next STATUS due soon. @return whether there are
-  /// such sends
+  /// failed sends to report
   bool HastensForFailedSends();
 
  private:

@@ -1,4 +1,4 @@
-// The common parts of a node. Its rule, its work and its other parts use them.
+// The common parts of a node. The node's rule, its work and its other members use these parts.
 #pragma once
 
 #include <memory>

@@ -1,5 +1,5 @@
-// What a role knows of its runner: whether the runner is there, how long to wait for it, and
-// whether its run has a place for the role.
+// What a role knows about its runner: whether the runner is alive, how long to wait for the runner,
+// and whether the runner's run has a place for the role.
 #pragma once
 
 #include <algorithm>
@@ -28,22 +28,23 @@ inline Seat SeatIn(const run_t& run, std::string_view role, std::int64_t instanc
 
 class RunnerWatch {
  public:
-  /// A runner speaks five times a second. After this silence (ten missing messages) a role joins
-  /// another run that waits for it. On a machine that is not overloaded, a runner is never held up
-  /// for so long. If a person stops a runner (Ctrl-Z), it may continue too late.
+  /// A runner sends RUN five times a second. If no RUN comes for this time (ten missing messages),
+  /// a role joins another run that waits for the role. On a machine that is not overloaded, a
+  /// runner is never held up for so long. If a person stops a runner (Ctrl-Z), the role may join
+  /// another run before the runner continues.
   static constexpr Duration kSilent = milliseconds(2000);
-  /// If no other run waits for the role, the role leaves after the stall limit and this time. After
-  /// the stall limit the run has ended, unless the runner itself is paused (Ctrl-Z). This time is
-  /// meant for such a pause.
+  /// If no other run waits for the role, the role leaves its run after the sum of the stall limit
+  /// and this time. After the stall limit the run has ended, except if the runner itself is paused
+  /// (Ctrl-Z). The additional time is meant for a pause of the runner.
   static constexpr Duration kGone = milliseconds(15'000);
-  /// The stall limit if the runner does not give one: the default of `fogline run`.
+  /// The stall limit if RUN contains no stall limit: the default of `fogline run`.
   static constexpr Duration kStallLimit = milliseconds(4000);
 
   explicit RunnerWatch(TimePoint now) : pauses_(now) {}
 
-  /// Notes that the process looks at the clock. Call it before Silence(), Silent(), Gone() and
+  /// Notes that the process reads the clock. Call it before Silence(), Silent(), Gone() and
   /// Stalled().
-  /// @return the time of its latest look
+  /// @return the time of its latest reading
   TimePoint Attend(TimePoint now) { return pauses_.Attend(now); }
   /// Notes that the runner has sent a new RUN.
   void Heard(const run_t& run, TimePoint now) {
@@ -54,8 +55,8 @@ class RunnerWatch {
   /// Notes that the role has no runner.
   void Forget() { heard_ = {}; }
 
-  /// How long the runner has been silent, without the time in which this process was held up. Zero
-  /// if there is no runner.
+  /// The time since the last RUN, without the time in which this process was held up; zero if the
+  /// role has no runner.
   Duration Silence(TimePoint now) const {
     return heard_ == TimePoint{} ? Duration::zero() : pauses_.HeldAgainst(heard_, now);
   }

@@ -21,8 +21,8 @@ class Steps {
     next_ = step;
     own_.message().header.step = step - 1;
   }
-  /// Computes a step now. The next step is then the one after it.
-  /// @return false if the computation failed; the role has then reported this
+  /// Computes a step now. next() is then the following step.
+  /// @return false if the computation failed; the role has then reported the failure
   bool Compute(std::int64_t step) {
     try {
       work_.Compute(step);

@@ -28,18 +28,18 @@ class Work {
   /// @return the rule that decides when steps are computed
   /// @throws std::exception that says what is wrong
   virtual std::unique_ptr<FireRule> Join(const Scenario& scenario) = 0;
-  /// Computes a step, and publishes all its outputs (Outputs). The inputs that the rule demands are
-  /// there.
+  /// Computes a step, and publishes all its outputs (Outputs). The inputs that the rule demands
+  /// have come.
   /// @throws std::exception that says what is wrong
   virtual void Compute(std::int64_t step) = 0;
-  /// Does the work that is due beside the steps. Called before the rule's Poll(), while the role is
-  /// READY or RUNNING. @return the latest time for the next call
+  /// Does the work that is due apart from the steps. Called before the rule's Poll(), while the
+  /// role is READY or RUNNING. @return the latest time for the next call
   virtual TimePoint Poll(TimePoint /*now*/) { return TimePoint::max(); }
   /// Called before every STATUS. The role finishes the work that the STATUS reports as done; the
   /// recorder, for example, flushes its log.
   virtual void BeforeStatus() {}
   /// Called once when the role's part in its run ends (OwnStatus::left()). OwnStatus::Release()
-  /// does not call it.
+  /// does not call this function.
   virtual void OnLeave() {}
   /// Another process asks for a STATUS that shows at least this step.
   virtual void OnStatusAsked(std::int64_t /*step*/) {}

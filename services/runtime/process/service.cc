@@ -23,13 +23,14 @@
 namespace fogline::runtime {
 namespace {
 
-// Priorities in real time: the world, which is the clock of the run, goes first, then the other
-// roles, then the rest of the machine.
+// Priorities in real time. The world is the clock of the run and has the highest priority. Then
+// come the other roles, then all other processes of the machine.
 constexpr int kWorldPriority = 2;
 constexpr int kPriority = 1;
 // If a network cannot be joined, the process tries again at this interval.
 constexpr Duration kTryAgain = milliseconds(500);
-// A process of a run that waits for its network looks this often. A whole run may wait for it.
+// A process of a run that waits for its network tries to join the network at this interval. The
+// interval is short, because the whole run may wait for this process.
 constexpr Duration kLookEvery = milliseconds(50);
 
 struct Arguments {
@@ -97,10 +98,11 @@ class Service {
   void Say(const std::string& what) const { Notice(fmt::format("{}: {}", arguments_.name, what)); }
 
   OwnStatus& own() { return work_->node().parts().own; }
-  /// What the role knows of its run.
+  /// What the role knows about its run.
   const RunNews& news() { return work_->node().parts().run; }
 
-  /// Joins a network. If that fails, the process stays on its present network. @throws as Bus()
+  /// Joins a network. If the process cannot join the network, it stays on its current network.
+  /// @throws as Bus()
   void Join(const std::string& url, std::optional<std::int64_t> run_id) {
     auto bus = std::make_unique<Bus>(url);
     Apply(arguments_.traffic, arguments_.role, *bus);
@@ -109,9 +111,9 @@ class Service {
     starts_over_ = false;
   }
 
-  /// Joins the network for the first time. A process with the id of a run was started by a runner
-  /// on this network. If the network is away, the process waits for it: until the runner kills the
-  /// process, at most for the time of --wait.
+  /// Joins the network for the first time. A process with the option --run-id was started by a
+  /// runner on this network. If the network cannot be reached, this process tries again until the
+  /// runner kills it, but at most for the time of --wait.
   /// @throws as Join(), and Interrupted
   void JoinAtFirst(const std::string& url) {
     for (bool waits = false;; waits = true) {
@@ -159,8 +161,8 @@ class Service {
                     arguments_.wait_s, bus_->url(), HowToStartOne()));
   }
 
-  /// Whether the process may look for a run elsewhere: the command line names no network and no
-  /// run.
+  /// Whether the process may look for a run on other networks: true if the command line names no
+  /// network and no run.
   bool MaySeek() const { return arguments_.url.empty() && !arguments_.run_id; }
 
   /// Opens the seeker if the network of the meeting address can be joined. @return whether there is
@@ -177,8 +179,8 @@ class Service {
     return true;
   }
 
-  /// Goes to the network of a run that waits for the role. Goes back if nothing is heard of that
-  /// run.
+  /// Goes to the network of a run that waits for the role. Goes back if no message of that run
+  /// comes.
   /// @throws std::runtime_error after the time of --wait
   void Seek(TimePoint now) {
     LimitWait(now);
@@ -198,8 +200,8 @@ class Service {
     }
   }
 
-  /// Called while the runner is silent. If another run waits for the role, the process goes there.
-  /// (The node itself hears runs on the present network.)
+  /// Called while the runner is silent. If another run waits for the role, the process goes to that
+  /// run's network. (The node itself finds runs on the current network.)
   void SeekAnother(TimePoint now) {
     if (!MaySeek() || !OpenSeeker(now)) return;
     seeker_->Ignore(*news().id);
@@ -210,8 +212,8 @@ class Service {
     GoTo(*run);
   }
 
-  /// Called after the node has given up its place. Joins the present network again, as soon as this
-  /// is possible, and waits for a run on it. @throws std::runtime_error after the time of --wait
+  /// Called after the node has left its run. Joins the current network again as soon as possible,
+  /// and waits for a run on this network. @throws std::runtime_error after the time of --wait
   void StartOver(TimePoint now) {
     if (!std::exchange(starts_over_, true)) {
       Say(own().message().error);
@@ -235,7 +237,7 @@ class Service {
     seeker_->GiveUp(Clock::now());
     try {
       Join(MeetingUrl(), std::nullopt);
-    } catch (const std::exception&) {  // stays on the present network
+    } catch (const std::exception&) {  // stays on the current network
     }
     Say(fmt::format("{}; waiting for a run on {} again", why, bus_->url()));
   }
@@ -249,7 +251,7 @@ class Service {
 
   void PreferIfRealtime() {
     if (!news().realtime || std::exchange(preferred_, true)) return;
-    // If the kernel does not grant the priority, the process runs with the usual one.
+    // If the kernel does not grant the priority, the process runs with the usual priority.
     RunBeforeOthers(arguments_.role == Role::kWorld ? kWorldPriority : kPriority);
   }
 

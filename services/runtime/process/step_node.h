@@ -1,10 +1,10 @@
 // An algorithm as the work of a node. StepNode connects the typed inputs and outputs of the
 // algorithm with the bytes of Inputs and Outputs.
 //
-// In real time two roles go on when inputs fail: the role that begins the steps (the world), and
-// the one that decides in every step (the arbitrator). Each has a second algorithm for this,
-// Failsafe, which takes each input as a Heard<M>. The other roles leave out a step that lacks an
-// input.
+// In real time, two roles continue to compute when inputs fail: the role that begins the steps (the
+// world), and the role that decides in every step (the arbitrator). Each of these two roles has a
+// second algorithm for this case, Failsafe, which takes each input as a Heard<M>. The other roles
+// leave out a step that lacks an input.
 #pragma once
 
 #include <algorithm>
@@ -65,7 +65,7 @@ class StepNode final : public Work {
       !kFailsafe || Traits::kHasOnDemand == requires { &InRealtime::SetOnDemandInput; },
       "an algorithm and its failsafe have the same input on demand");
 
-  /// Makes an input store its messages, decoded, in rings_.
+  /// Makes an input store its decoded messages in rings_.
   template <std::size_t I>
   void KeepMessagesOf(Input& input) {
     input.keep = [this](std::int64_t step, Arrival& arrival) {
@@ -126,7 +126,7 @@ class StepNode final : public Work {
     return algorithm_->Step(std::get<I>(rings_)[RingSlot(step - kLag<I>)]...);
   }
 
-  /// Passes the input on demand to the algorithm before each step, if the scenario uses it.
+  /// Passes the input on demand to the algorithm before each step, if the scenario uses this input.
   template <class A>
   void PassOnDemandInput(A& algorithm, std::int64_t step) {
     if constexpr (Traits::kHasOnDemand) {
@@ -138,8 +138,8 @@ class StepNode final : public Work {
     }
   }
 
-  /// The newest message of an input up to step `step`; nullptr if no message has come. In lockstep
-  /// it is the message of `step`.
+  /// The newest message of an input up to step `step`; nullptr if no message has come. In lockstep,
+  /// the result is the message of `step`.
   template <std::size_t I>
   const std::tuple_element_t<I, AllInputs>* NewestOf(std::int64_t step) {
     const StepRing& ring = parts_.inputs.Of(kPlace<I>).ring;
@@ -185,8 +185,8 @@ class StepNode final : public Work {
   /// The header of the first input, which is the world's tick.
   header_t HeaderOf(std::int64_t step) { return std::get<0>(rings_)[RingSlot(step)].header; }
 
-  /// Takes over from a world that was killed. Computes again the steps after the last recorded one,
-  /// up to the known progress. Does not publish them, so no step is published twice.
+  /// Takes over from a world that was killed. Computes again the steps after the last recorded
+  /// step, up to the known progress. Does not publish these steps, so no step is published twice.
   void Resume(const truth_t& truth) {
     if constexpr (kFailsafe && Traits::kStarts) {
       failsafe_->Resume(truth, parts_.run.minimal_risk);

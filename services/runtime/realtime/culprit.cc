@@ -5,7 +5,7 @@
 namespace fogline::runtime {
 namespace {
 
-// The first channel of the set; kNumChannels if it is empty.
+// The first channel of the set; kNumChannels if the set is empty.
 std::size_t First(const ChannelSet& set) {
   std::size_t channel = 0;
   while (channel < kNumChannels && !set[channel]) ++channel;

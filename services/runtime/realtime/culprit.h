@@ -1,5 +1,6 @@
-// Which role is to blame when inputs are lost. If a role falls silent, all roles that depend on it
-// fall silent, too. So the channel that a role misses first is rarely a channel of the failed role.
+// Finds the role that is to blame for lost inputs. If a role stops publishing, all roles that
+// depend on this role stop publishing, too. So the channel that a role misses first is rarely a
+// channel of the failed role.
 #pragma once
 
 #include <array>
@@ -12,24 +13,24 @@
 
 namespace fogline::runtime {
 
-/// Channels by their place in kChannels.
+/// Channels by their index in kChannels.
 using ChannelSet = std::bitset<kNumChannels>;
 
-/// The lost inputs that each role reports, by its place in kRoles. A silent role has an empty set,
-/// whatever it reported before.
+/// The lost inputs that each role reports, by the role's index in kRoles. The set of a silent role
+/// is empty, even if the role reported lost inputs before.
 using LostByRole = std::array<ChannelSet, kRoles.size()>;
 
 struct Culprit {
-  Role role;            // role that fell silent
-  std::size_t channel;  // the lost channel of this role, a place in kChannels
+  Role role;            // role that stopped publishing
+  std::size_t channel;  // the lost channel of this role, an index in kChannels
 
   bool operator==(const Culprit&) const = default;
 };
 
-/// Blames the producer of the first lost input in the order of the graph table, which is an order
-/// of evaluation. If this producer has reported lost inputs itself, the blame passes to the
-/// producer of the first of these inputs, and so on. In a circle the blame stays at the role where
-/// the circle closes.
+/// Blames the producer of the first lost input. The inputs are in the order of the graph table, and
+/// this order is an order of evaluation. If this producer has reported lost inputs itself, the
+/// blame passes to the producer of the first of these inputs, and so on. If the blame would pass to
+/// a channel that was blamed before, it stays at the current producer.
 /// @return nullopt if `lost` is empty
 std::optional<Culprit> FindCulprit(const ChannelSet& lost, const LostByRole& reported);
 

@@ -46,7 +46,7 @@ const Fallback* FallbackLog::Add(const status_t& status) {
   if (role == kRoles.size() || kRoles[role].role == Role::kRecorder) return nullptr;
   if (status.header.utime / step_us_ >= steps_ - 1) return nullptr;
   Known& known = roles_[role];
-  known.lost.reset();  // forgets what this process or its predecessor said before
+  known.lost.reset();  // forgets what this process or its predecessor reported before
   known.utime = status.header.utime;
   std::string lost;
   std::string back;
@@ -97,8 +97,8 @@ bool FallbackLog::IsSilent(const Known& known, std::int64_t utime) const {
 }
 
 // `status` names the first of the role's own lost inputs. The last STATUS of each other role says
-// which lost inputs make that role silent. The world is never silent because of a lost input. The
-// arbitrator is silent only because of lost channels of the world.
+// which lost inputs keep that role from publishing. No lost input keeps the world from publishing.
+// Only lost channels of the world keep the arbitrator from publishing.
 std::string FallbackLog::Culprit(const status_t& status) const {
   const std::size_t channel = ChannelNamed(status.waiting_for);
   if (channel == kNumChannels) return "";

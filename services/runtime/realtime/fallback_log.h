@@ -1,5 +1,5 @@
-// The failures in a run in real time and the reactions of its roles, by the STATUS of the roles. A
-// person reads these texts during the run, and afterwards from the log.
+// Collects the failures in a run in real time, and the reactions of its roles, from the STATUS of
+// the roles. A person reads these texts during the run, or later from the log.
 #pragma once
 
 #include <array>
@@ -14,14 +14,14 @@
 
 namespace fogline::runtime {
 
-/// A change in the run: a role reacts to its inputs in another way, or an input is lost, or it
-/// comes again. (An input that is only stale is reported if the role reacts to it.)
+/// A change in the run: a role reacts to its inputs in another way, an input is lost, or a lost
+/// input comes again. (A stale input is reported only if the role reacts to it.)
 struct Fallback {
   std::int64_t step = 0;  // step that was under way at the change
   std::string role;
   std::string what;     // "TRACK, ACC_COMMAND lost: the human drives"
-  std::string culprit;  // role that fell silent, "" if none is
-  double age_s = 0;     // how long ago the role last heard the culprit
+  std::string culprit;  // role that stopped publishing, "" if there is none
+  double age_s = 0;     // age of the role's first lost (or else stale) input
 
   /// "step 217: arbitrator: TRACK lost (culprit: fusion, last heard 0.25 s ago): the human drives"
   std::string Text() const;
@@ -32,7 +32,7 @@ struct Fallback {
 
 class FallbackLog {
  public:
-  /// At most this many changes are kept. Further changes would tell a reader little, and must not
+  /// At most this many changes are stored. Further changes would tell a reader little, and must not
   /// fill the memory.
   static constexpr std::size_t kMaxKept = 1000;
 
@@ -41,9 +41,9 @@ class FallbackLog {
   /// @param steps number of steps of the run; silence after the last step is not reported
   FallbackLog(std::int64_t step_us, double speed, std::int64_t steps);
 
-  /// Takes the next STATUS of a role.
-  /// @return the change since the last STATUS of this role, nullptr if there is none; valid until
-  ///     the next call
+  /// Evaluates the next STATUS of a role.
+  /// @return the change since the last STATUS of this role, nullptr if nothing has changed; valid
+  ///     until the next call
   const Fallback* Add(const status_t& status);
 
   /// The first changes, kMaxKept at most.
@@ -66,7 +66,7 @@ class FallbackLog {
 
   std::int64_t step_us_;
   std::int64_t steps_;
-  double silent_us_;  // a role is silent after this simulated time
+  double silent_us_;  // a role is silent after this simulated time without a STATUS
   std::array<Known, kRoles.size()> roles_;
   Fallback newest_;
   std::vector<Fallback> all_;

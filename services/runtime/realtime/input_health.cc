@@ -16,7 +16,7 @@ InputHealth::InputHealth(const HealthSection& section, Duration period, TimePoin
       lost_(std::max(stale_, Periods(section.lost_periods, period))),
       recover_steps_(section.recover_steps),
       // n steps take n - 1 periods. If the first step came late (by up to stale_periods - 1
-      // periods), this delay makes the time shorter.
+      // periods), the n steps take less time by this delay.
       recover_time_(std::max(
           Duration::zero(),
           Periods(static_cast<double>(section.recover_steps) - section.stale_periods, period))),
@@ -64,7 +64,7 @@ InputState InputHealth::Update(TimePoint now) {
 }
 
 TimePoint InputHealth::NextChange() const {
-  // The limit itself is still allowed, so the state changes one tick of the clock after it.
+  // An age equal to the limit is still allowed, so the state changes one tick of the clock later.
   switch (state_) {
     case InputState::kOk:
       return heard_ + stale_ + Duration(1);

@@ -1,5 +1,5 @@
-// The health of one input in real time, by the arrival times of its steps on the receiver's own
-// clock. Callers pass the time as an argument. This class reads no clock, and the clocks of the
+// Judges the health of one input in real time by the arrival times of its steps on the receiver's
+// own clock. Callers pass the time as an argument. This class reads no clock, and the clocks of the
 // senders do not matter.
 #pragma once
 
@@ -21,10 +21,10 @@ namespace fogline::runtime {
 ///
 /// The age is the time since the last new step arrived, or since the beginning. The limits are
 /// inclusive: an age of exactly `stale` is OK. An input is OK again after `recover_steps` new
-/// steps. Each of these steps except the first must come within `stale` after the one before.
-/// Together they must take at least the time that these steps take at the normal rate. So an input
-/// does not recover while its sender, after a stop, sends a backlog. It recovers when the sender is
-/// back in its rhythm.
+/// steps. Each of these steps except the first must come within `stale` after the previous step.
+/// Together, the steps must take at least the time that they take at the normal rate. So an input
+/// does not recover while its sender sends a backlog after a stop. The input recovers when the
+/// sender sends at its normal rate again.
 ///
 /// The loss of an input is detected `lost` periods after its last step. This is at most `lost`
 /// periods after the death of the sender, plus the time until the receiver calls Update() (see
@@ -35,8 +35,8 @@ class InputHealth {
   /// @param began the time from which on the input is expected
   InputHealth(const HealthSection& section, Duration period, TimePoint began);
 
-  /// Takes note of a message of step `step`. A repetition of the newest step changes nothing. An
-  /// older step is late and counted.
+  /// Evaluates a message of step `step`. A repetition of the newest step changes nothing. An older
+  /// step counts as late.
   void Arrived(std::int64_t step, TimePoint now);
 
   /// Updates the state to the time `now`. @return the state
@@ -49,8 +49,8 @@ class InputHealth {
   std::int64_t newest() const { return newest_; }
   /// Time since the newest step arrived, or since the beginning.
   Duration Age(TimePoint now) const { return now - heard_; }
-  /// Steps per second over the last kRateSteps arrivals. The rate falls while no step comes. It is
-  /// 0 before two steps have come.
+  /// Steps per second over the last kRateSteps arrivals. The rate falls while no step comes. The
+  /// rate is 0 before two steps have come.
   double RateHz(TimePoint now) const;
   /// Messages that came after a newer message of the same input.
   std::int64_t late() const { return late_; }

@@ -1,4 +1,4 @@
-// How well a role keeps its time in a run in real time, and how STATUS reports it.
+// Measures how punctual a role is in a run in real time, and writes the results into STATUS.
 #pragma once
 
 #include <cstdint>
@@ -14,10 +14,10 @@ class status_t;
 
 namespace fogline::runtime {
 
-/// A tick is the beginning of a step. At the world it is due when a period begins, at another role
-/// when an input arrives. The latency of a step begins when the world has sent the TRUTH of this
-/// step, and ends when the HOST_COMMAND of this step reaches the world. Both times are on the
-/// world's clock, so no clocks of two hosts are compared.
+/// A tick is the beginning of a step. A tick of the world is due when a period begins; a tick of
+/// another role is due when an input arrives. The latency of a step begins when the world has sent
+/// the TRUTH of this step, and ends when the HOST_COMMAND of this step reaches the world. Both
+/// times are on the world's clock, so the clocks of two hosts are never compared.
 class RealtimeStatistics {
  public:
   /// A tick that is later than this counts as late.
@@ -27,13 +27,13 @@ class RealtimeStatistics {
   void Tick(TimePoint due, TimePoint now);
   /// Counts the latency of a step.
   void Latency(Duration duration) { latency_.Add(duration); }
-  /// Counts a step that lacked an input that was due.
+  /// Counts a step that was left out, or was computed although an input was missing.
   void Miss() { ++deadline_misses_; }
 
   std::int64_t ticks() const { return jitter_.count(); }
   std::int64_t ticks_late() const { return ticks_late_; }
   std::int64_t deadline_misses() const { return deadline_misses_; }
-  /// The time between a tick and its due time, early or late.
+  /// The absolute difference between the time of a tick and its due time.
   const DurationHistogram& jitter() const { return jitter_; }
 
   /// Writes all figures into a STATUS.

@@ -7,14 +7,14 @@
 namespace fogline::runtime {
 namespace {
 
-// The part of a period by which a call may be late. RunClock has the same limit for the world's
-// ticks.
+// The share of a period by which a call of Poll() may be late. RunClock has the same limit for the
+// world's ticks.
 constexpr double kLateCall = 0.25;
 // The longest interval, in periods, between two messages of an input that comes again. By default
-// an input counts as lost only after a longer silence.
+// an input counts as lost only after a longer time without messages.
 constexpr int kSpeaks = 2;
 
-/// The input that brings the world's ticks; the number of inputs if there is none.
+/// The input that brings the world's ticks; the number of inputs if no input brings them.
 std::size_t TickInputOf(std::span<const Input> inputs) {
   const auto tick = std::ranges::find(
       inputs, Role::kWorld, [](const Input& input) { return kChannels[input.channel].from; });
@@ -80,7 +80,7 @@ void RealtimeWatch::Begun(std::int64_t step, TimePoint now) {
 
 TimePoint RealtimeWatch::Poll(TimePoint now, const std::function<TimePoint(TimePoint now)>& fire) {
   NoticeOwnPause(std::max(now, Clock::now()));
-  parts_.bus.Drain();  // handles a backlog as a whole
+  parts_.bus.Drain();  // handles the whole backlog
   if (!parts_.own.Running()) return now;
   now = std::max(now, Clock::now());  // handling a backlog takes time
   const TimePoint health_at = UpdateHealth(now);
@@ -144,7 +144,7 @@ void RealtimeWatch::WriteStatus(TimePoint now) {
     status.input_late.back() += late_[i].count;
   }
   statistics_.Write(status);
-  // The time of the newest step of the run; the role itself may be behind.
+  // The time of the newest step of the run; the role itself may be at an earlier step.
   const std::int64_t newest = std::max(horizon_.newest(), parts_.steps.next() - 1);
   status.header.utime = std::max<std::int64_t>(0, newest) * step_us_;
   NameCulprit(now);

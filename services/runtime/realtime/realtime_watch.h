@@ -4,8 +4,8 @@
 // A message that comes after the end of its step is late: it is counted and never used. A message
 // of a step that cannot be under way is refused (step_horizon.h). An input on demand has no state.
 //
-// STATUS reports the state of each input, the culprit, and how well the role keeps its time. A
-// change of a state is reported at once.
+// STATUS reports the state of each input, the culprit, and how punctual the role is. A change of a
+// state is reported at once.
 #pragma once
 
 #include <algorithm>
@@ -37,13 +37,14 @@ class RealtimeWatch {
   StepRing::Verdict Judge(std::size_t input, std::int64_t step, Bytes bytes);
   /// Notes that an input has a new message of a step (Inputs::Keep()).
   void Heard(std::size_t input, std::int64_t step, TimePoint time);
-  /// Judge(), Inputs::Keep() and Heard() in one, for a rule that adds nothing to them.
+  /// Calls Judge(), Inputs::Keep() and Heard(), for a rule that does nothing else between these
+  /// calls.
   void Take(std::size_t input, std::int64_t step, Arrival& arrival) {
     const auto verdict = Judge(input, step, arrival.bytes());
     if (parts_.inputs.Keep(input, step, arrival, verdict)) Heard(input, step, arrival.time());
   }
-  /// Reads the messages that wait and judges the inputs. Then, if the role still runs, calls
-  /// `fire`, which computes the steps that are due and returns the latest time for the next call.
+  /// Reads the waiting messages and judges the inputs. Then, if the role still runs, calls `fire`,
+  /// which computes the steps that are due and returns the latest time for the next call.
   /// @return the latest time for the next call
   TimePoint Poll(TimePoint now, const std::function<TimePoint(TimePoint now)>& fire);
   /// Notes the progress that a RUN has reported.
@@ -53,22 +54,22 @@ class RealtimeWatch {
 
   InputState StateOf(std::size_t input) const { return health_[input].state(); }
   /// The state of an input for an algorithm that computes a step without some of its inputs. The
-  /// world's tick of this step counts as OK if it is there, however long the world was silent
-  /// before.
+  /// world's tick counts as OK if the tick of this step has come, even if no tick came for a long
+  /// time before.
   InputState StateFor(std::size_t input, std::int64_t step) const;
-  /// Whether a message of the input has come lately, in time or too late to be used.
+  /// Whether a message of the input has come recently, either in time or too late to be used.
   bool Speaks(std::size_t input, TimePoint now) const;
 
   /// The inputs that a step needs: all inputs except those on demand.
   std::span<const Input> awaited() const { return parts_.inputs.all().first(health_.size()); }
-  /// The input that brings the world's ticks; the number of inputs if there is none.
+  /// The input that brings the world's ticks; the number of inputs if no input brings them.
   std::size_t tick_input() const { return tick_input_; }
   /// The first step up to `newest` that may still be computed.
   std::int64_t Oldest(std::int64_t newest) const {
     return std::max(parts_.steps.next(), newest - kRingSteps + 1);
   }
-  /// Computes a step that was due at `due`. Steps between the last computed step and this one are
-  /// counted as missed.
+  /// Computes a step that was due at `due`. The steps between the last computed step and this step
+  /// are counted as missed.
   void ComputeDue(std::int64_t step, TimePoint due, TimePoint now);
 
   /// Notes that the world has begun this step now.
@@ -97,9 +98,9 @@ class RealtimeWatch {
   /// Updates the states to the time `now`. @return when a state may next change although no message
   /// comes
   TimePoint UpdateHealth(TimePoint now);
-  /// The time `now` on the clock by which an input is judged. For the world's ticks this is the
-  /// wall clock without the pauses of this process, in which it could not hear ticks. For all other
-  /// inputs it is the clock of the run (RunClock).
+  /// The time `now` on the clock by which an input is judged. The world's ticks are judged by the
+  /// wall clock without the pauses of this process, because the process receives no ticks during a
+  /// pause. All other inputs are judged by the clock of the run (RunClock).
   TimePoint ClockOf(std::size_t input, TimePoint now) const {
     return input == tick_input_ && clock_.started() ? now - pause_.sum : clock_.At(now);
   }

@@ -1,6 +1,6 @@
-// The clock on which a role judges its inputs in real time: the wall clock without the world's
-// pauses. When the world's process stops, every role falls silent a step later, and only the world
-// is to blame. During its own pause the world cannot hear its inputs.
+// The clock by which a role judges its inputs in real time: the wall clock without the world's
+// pauses. If the world's process pauses, all other roles stop publishing a step later, although
+// only the world is to blame. During its own pause, the world receives none of its inputs.
 #pragma once
 
 #include <algorithm>
@@ -10,18 +10,19 @@
 
 namespace fogline::runtime {
 
-/// The clock runs with the wall clock while the run goes on. It stands still when the next step is
-/// overdue by more than kGrace periods, and goes on with the next step that is heard of. If steps
-/// were skipped in between, the clock advances by their periods as well. A message may also come
-/// late without a pause of the world (a TRUTH that was lost and sent again). The clock then stands
-/// still, too, until the next message in time corrects it. The clock never goes backwards, and it
-/// is never ahead of the wall clock. Before the first step it stands still at `began`.
+/// The clock runs with the wall clock while the run goes on. It stops when the next step is overdue
+/// by more than kGrace periods, and continues when a message of the next step comes. If steps were
+/// skipped in between, the clock advances by the periods of these steps, too. A message may also
+/// come late without a pause of the world (a TRUTH that was lost and sent again). The clock then
+/// also stops, until the next message in time corrects it. The clock never goes backwards, and is
+/// never ahead of the wall clock. Before the first step, the clock stands at `began`.
 class RunClock {
  public:
   RunClock(Duration period, TimePoint began)
       : period_(period), heard_(began), then_(began), due_(began), limit_(began) {}
 
-  /// Takes note of a message of this step, which says that the world has begun the step.
+  /// Notes that a message of this step has come. The message shows that the world has begun the
+  /// step.
   void Heard(std::int64_t step, TimePoint now) {
     if (step <= step_) return;
     then_ = At(now);
@@ -32,21 +33,21 @@ class RunClock {
     heard_ = now;
   }
 
-  /// @pre `now` is not before the last step
+  /// @pre `now` is not before the last call of Heard()
   TimePoint At(TimePoint now) const { return std::min(then_ + (now - heard_), limit_); }
-  /// The wall-clock time at which At() reaches `at`; TimePoint::max() if At() does not reach it
+  /// The wall-clock time at which At() reaches `at`; TimePoint::max() if At() does not reach `at`
   /// before the next step.
   TimePoint Wall(TimePoint at) const {
     return at > limit_ ? TimePoint::max() : heard_ + (at - then_);
   }
 
   bool started() const { return step_ >= 0; }
-  /// The time since the newest step was first heard of.
+  /// The time since the first message of the newest step.
   Duration Silence(TimePoint now) const { return now - heard_; }
 
  private:
-  /// The part of a period by which a tick may be late: well above its usual variation, well below
-  /// the delay that makes an input stale.
+  /// The share of a period by which a tick may be late. It is well above the usual variation of
+  /// ticks, and well below the delay that makes an input stale.
   static constexpr double kGrace = 0.25;
   /// Longer than any run. The sum of two such times does not overflow.
   static constexpr double kLongest_ns = 1e18;
@@ -57,11 +58,11 @@ class RunClock {
   }
 
   Duration period_;
-  std::int64_t step_ = -1;  // newest step that was heard of
-  TimePoint heard_;         // when step_ was heard of, on the wall clock
+  std::int64_t step_ = -1;  // newest step of which a message has come
+  TimePoint heard_;         // when the first message of step_ came, on the wall clock
   TimePoint then_;          // heard_ on this clock
   TimePoint due_;           // when step_ was due, on this clock
-  TimePoint limit_;         // the time at which this clock stands still
+  TimePoint limit_;         // the time at which this clock stops
 };
 
 }  // namespace fogline::runtime

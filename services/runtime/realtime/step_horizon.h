@@ -1,12 +1,12 @@
-// The newest step that a run in real time can have reached, by the reader's own clock. A message of
-// a later step must be wrong.
+// Estimates the newest step that a run in real time can have reached, by the receiver's own clock.
+// A message of a later step must be wrong.
 //
 // A message of a step proves that the world has begun this step. The world never runs faster than
-// its clock, so each proof gives an upper bound of the steps at all later times. A proof that comes
-// late (a TRUTH that was lost and sent again) gives a bound that is too low. So the highest
-// (loosest) bound counts, which comes from the message with the shortest delay. If the world stands
-// still, the bound becomes higher than necessary. If two clocks drift apart, newer proofs are
-// better, so old proofs are forgotten.
+// its clock, so each proof gives an upper bound for the steps at all later times. A proof that
+// comes late (a TRUTH that was lost and sent again) gives a bound that is too low. So the highest
+// (loosest) bound counts. It comes from the message with the shortest delay. If the world stands
+// still, the bound becomes higher than necessary. If the clocks of the world and the receiver drift
+// apart, newer proofs are better, so old proofs are forgotten.
 #pragma once
 
 #include <algorithm>
@@ -23,11 +23,11 @@ class StepHorizon {
   /// @param period of the steps on the wall clock, above 0
   /// @param slack steps by which the world can be ahead of the best proof
   /// @param remembered a proof counts for this time at least, and for twice this time at most. In
-  ///     any period of this length at least one proof must come without delay.
+  ///     every interval of this length, at least one proof must come without delay.
   StepHorizon(Duration period, std::int64_t slack, Duration remembered)
       : period_(period), slack_(slack), remembered_(remembered) {}
 
-  /// Takes note of a proof that the world had begun `step` by `now`.
+  /// Adds a proof that the world had begun `step` by `now`.
   void Heard(std::int64_t step, TimePoint now) {
     const Proof proof{.step = step, .time = now};
     if (known_ && now - recent_since_ >= remembered_) {
@@ -52,7 +52,7 @@ class StepHorizon {
     TimePoint time{};
   };
 
-  /// Whether the bound of the newer proof is the higher one, or both bounds are equal.
+  /// Whether the newer proof's bound is at least as high as the older proof's bound.
   bool Allows(const Proof& newer, const Proof& older) const {
     const double periods = static_cast<double>((newer.time - older.time).count()) /
                            static_cast<double>(period_.count());
@@ -68,13 +68,14 @@ class StepHorizon {
   TimePoint recent_since_{};
 };
 
-/// The newest step of a run, by its messages and by what the runner reports.
+/// Estimates the newest step of a run from its messages and from the runner's reports.
 ///
-/// The progress that the runner reports always limits the steps. The steps that were heard give a
-/// second limit, which counts only while new steps are heard. So a role that is wrong about the
-/// progress corrects itself soon (for example a role that was started in the middle of the run and
-/// heard an old message first). One false message can mislead a role by the slack of two steps.
-/// Many false messages can mislead it by one second, because the runner's report allows no more.
+/// The progress that the runner reports always limits the steps. The messages of steps give a
+/// second limit, which counts only while messages of new steps come. So a role that is wrong about
+/// the progress corrects itself soon. An example is a role that was started in the middle of the
+/// run and first received an old message. One false message can mislead a role by two steps
+/// (kSlack). Many false messages can mislead a role by one second at most, because the runner's
+/// report allows no more.
 class RunHorizon {
  public:
   /// @param period of the steps on the wall clock, above 0
@@ -90,13 +91,13 @@ class RunHorizon {
   }
   /// Notes that the runner has reported this progress.
   void Told(std::int64_t progress, TimePoint now) { told_.Heard(progress, now); }
-  /// Notes that this step is under way. The runner or a message of the step says so.
+  /// Notes that this step is under way, as the runner or a message of the step shows.
   void KnowOf(std::int64_t step) { newest_ = std::max(newest_, step); }
 
   /// Newest step that is known to be under way, -1 if none.
   std::int64_t newest() const { return newest_; }
   /// Newest step that can be under way. @pre the runner has reported its progress
-  /// @param silence the time since the newest step was first heard of
+  /// @param silence the time since the first message of the newest step
   std::int64_t NewestPossible(TimePoint now, Duration silence) const {
     const std::int64_t told = told_.Newest(now);
     const bool hears = heard_.known() && silence <= kUnheard * period_;
@@ -104,23 +105,23 @@ class RunHorizon {
   }
 
  private:
-  /// The world may be ahead of the estimate by two steps. One step, because the estimate may rest
-  /// on a tick that was late by less than a period. One more step, because a message is on its way
-  /// for a moment.
+  /// The world may be ahead of the estimate by two steps. One step is needed because the estimate
+  /// may be based on a tick that was late by less than a period. The second step is needed because
+  /// a message takes some time to arrive.
   static constexpr std::int64_t kSlack = 2;
   /// The progress that the runner reports is at most this old. In this time a role sends five
   /// STATUS messages, of which some may be lost.
   static constexpr Duration kHearsay = milliseconds(1000);
   /// How long a proof of the run's progress counts. A message that is sent again comes late, but a
-  /// message that is older than a ring is not sent again. The runner reports old progress while it
-  /// hears nothing itself, which lasts less than a minute in a run that goes on.
+  /// message that has left its producer's ring is not sent again. The runner reports old progress
+  /// while it receives no STATUS itself. In a run that goes on, this lasts less than a minute.
   static constexpr std::int64_t kHeardPeriods = kRingSteps;
   static constexpr Duration kToldFor = milliseconds(60'000);
   /// After this many periods without a newer step, the runner's progress alone limits the steps.
   static constexpr int kUnheard = 3;
 
   Duration period_;
-  StepHorizon heard_;  // the limit by the steps that were heard
+  StepHorizon heard_;  // the limit by the messages of steps
   StepHorizon told_;   // the limit by the runner's progress
   std::int64_t newest_ = -1;
 };

@@ -6,8 +6,8 @@
 namespace fogline::runtime {
 namespace {
 
-// How long the recorder may take to write the last steps. It may wait for repairs or be started
-// again itself.
+// How long the recorder may take to write the last steps. The recorder may wait for repairs, or be
+// started again itself.
 constexpr Duration kEndLimit = milliseconds(3000);
 // A world that is started again asks the recorder at this interval. The world takes the newest
 // answer that comes within kAnswersLast after the first answer.
@@ -17,8 +17,9 @@ constexpr Duration kAnswersLast = milliseconds(5);
 constexpr std::int64_t kProgressAge = 8;
 // A tick that is later than this, in periods, was held up by more than the usual jitter.
 constexpr double kHeldUp = 0.05;
-// Such a tick waits until the other roles have finished the previous step, but at most this long.
-// They usually need a fraction of this time. The next tick comes at least kApart periods later.
+// A tick that was held up waits until the other roles have finished the previous step, but at most
+// this long. The roles usually need a fraction of this time. The next tick comes at least kApart
+// periods later.
 constexpr Duration kFinish = milliseconds(3);
 constexpr double kApart = 0.25;
 

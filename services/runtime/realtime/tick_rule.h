@@ -3,10 +3,10 @@
 //
 // Step k is due k periods after the start, on a grid that does not drift. While the process or its
 // machine is held up, ticks pass without a step. Only the last of these ticks begins a step. If the
-// whole machine was held up, the other roles may not have finished the previous step. They then get
-// a moment to finish it, and the next tick keeps a distance from the late tick. Simulated time is
-// the number of steps. So it stands still together with the world's process, and no step is ever
-// left out. Missed ticks are counted.
+// whole machine was held up, the other roles may not have finished the previous step. The late tick
+// then waits a moment for these roles, and the next tick keeps a distance from the late tick.
+// Simulated time is counted in steps. So simulated time stops while the world's process is stopped,
+// and no step is ever left out. Missed ticks are counted.
 //
 // A world that is started again continues after the last TRUTH that the recorder has.
 #pragma once
@@ -56,7 +56,7 @@ class TickRule final : public FireRule {
   /// Measures the latency of a step's command, which may come in time or late. Each step counts
   /// once.
   void TakeLatency(std::size_t input, std::int64_t step, TimePoint time);
-  /// Whether the commands for the next step are there, or this step needs none.
+  /// Whether the commands for the next step have come, or this step needs no commands.
   bool Answered() const;
   /// When tick `n` of the grid is due.
   TimePoint Due(std::int64_t n) const;
@@ -87,7 +87,7 @@ class TickRule final : public FireRule {
   TakeOver take_over_;
   Phase phase_ = Phase::kWaiting;
   Grid grid_;
-  // Until when a late tick waits for the roles to finish the previous step.
+  // The time until which a late tick waits for the roles to finish the previous step.
   std::optional<TimePoint> finish_by_{};
   std::array<Sent, kRingSteps> sent_{};
   std::optional<TimePoint> give_up_at_{};  // end of the wait for the recorder at the end of the run

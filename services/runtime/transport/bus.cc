@@ -30,15 +30,16 @@ namespace fogline::runtime {
 namespace {
 
 /// Whether a socket of this machine receives UDP messages on the port. The kernel delivers a
-/// multicast message to every socket on its port, whichever group the socket has joined.
+/// multicast message to every socket on the message's port, even if the socket has joined another
+/// group.
 bool IsTaken(std::uint16_t port) {
   const int probe = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-  if (probe < 0) return false;  // the caller's own socket will fail with the reason
+  if (probe < 0) return false;  // the caller's own socket will report the error
   sockaddr_in address{};
   address.sin_family = AF_INET;
   address.sin_port = htons(port);
   // LCM sets SO_REUSEADDR, but this socket does not. So bind() fails with EADDRINUSE if another
-  // socket has the port. Another error does not mean that the port is taken.
+  // socket has the port. Any other error does not mean that the port is taken.
   const bool taken =
       bind(probe, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) != 0 &&
       errno == EADDRINUSE;
@@ -46,9 +47,8 @@ bool IsTaken(std::uint16_t port) {
   return taken;
 }
 
-/// Adds options to a udpm URL that does not give them. A larger buffer survives bursts (a default
-/// buffer loses 88 % of 5,000 messages that are sent in one burst). ttl=0 keeps traffic on this
-/// machine.
+/// Adds options to a udpm URL that does not give them. A larger buffer loses fewer messages: the
+/// default buffer loses 88 % of a burst of 5,000 messages. ttl=0 keeps traffic on this machine.
 std::string WithDefaults(std::string url) {
   if (!url.starts_with("udpm://")) return url;
   const auto add = [&url](std::string_view option, std::string_view value) {
@@ -60,7 +60,7 @@ std::string WithDefaults(std::string url) {
   return url;
 }
 
-/// LCM reads channel names as regular expressions.
+/// Escapes a channel name, because LCM treats channel names as regular expressions.
 std::string Escaped(std::string_view channel) {
   std::string escaped;
   for (const char c : channel) {
@@ -70,10 +70,10 @@ std::string Escaped(std::string_view channel) {
   return escaped;
 }
 
-/// LCM gets at most the receive buffer that every user may have (net.core.rmem_max). On a plain
-/// system this buffer holds a hundred datagrams, which a flood of 20,000 a second sends in 5 ms. A
-/// process with CAP_NET_ADMIN may have a larger buffer, which has room for the messages that come
-/// while a busy machine does something else.
+/// LCM's receive buffer cannot exceed net.core.rmem_max. With the kernel's default value, the
+/// buffer holds a hundred datagrams; a flood of 20,000 datagrams a second fills it in 5 ms. A
+/// process with CAP_NET_ADMIN may have a larger buffer. That buffer has room for the messages that
+/// come while a busy machine runs other processes.
 void WidenBuffer(int socket) {
   constexpr int kBytes = 8 * 1024 * 1024;
   setsockopt(socket, SOL_SOCKET, SO_RCVBUFFORCE, &kBytes, sizeof(kBytes));
@@ -81,7 +81,7 @@ void WidenBuffer(int socket) {
 
 /// errno if this process cannot open the descriptors that LCM needs for a network, otherwise 0.
 int LackOfDescriptors() {
-  // LCM uses ten descriptors at most: sockets, pipes and those of its self-test.
+  // LCM uses ten descriptors at most: sockets, pipes, and the descriptors of its self-test.
   std::array<int, 16> descriptors{};
   int error = 0;
   for (int& descriptor : descriptors) {
@@ -104,7 +104,7 @@ void RequireMulticast(const std::string& url) {
   throw InputError(error);
 }
 
-// A bus that hears nothing for this long renews its membership of the group. In this time every
+// A bus that receives nothing for this long renews its membership of the group. In this time every
 // process of a run sends five messages.
 constexpr Duration kJoinAgainEvery = milliseconds(1000);
 
@@ -117,14 +117,14 @@ Bus::Bus(const std::string& url) : url_(WithDefaults(url)), in_memory_(url.start
     fd_ = tcpq_->fd();
     return;
   }
-  // LCM would use its own default URL, which Fogline has not checked.
+  // If the URL is empty, LCM uses its own default URL, which Fogline has not checked.
   if (url_.empty()) throw InputError("error: the LCM URL is empty");
   RequireMulticast(url_);
   bool routed = false;
   {
     // Until LCM's self-test is over, each socket accepts only the messages of this test. The filter
-    // is attached before the socket can receive its first datagram. mpudpm gets no such filter,
-    // because it announces its ports on a channel of its own.
+    // is attached before the socket can receive its first datagram. mpudpm gets no filter, because
+    // it announces its ports on a channel of its own.
     std::optional<LcmSockets> sockets;
     if (url_.starts_with("udpm://")) {
       const LcmSockets::Reach reach = ReachOf(url_);
@@ -143,7 +143,7 @@ Bus::Bus(const std::string& url) : url_(WithDefaults(url)), in_memory_(url.start
   if (fd_ < 0) {
     if (lcm_ != nullptr) lcm_destroy(lcm_);
     ThrowIfExhausted(LackOfDescriptors(), url_);  // LCM does not say why
-    RequireMulticast(url_);                       // the route may be away since the first look
+    RequireMulticast(url_);                       // the route may have vanished meanwhile
     throw InputError(fmt::format("error: LCM cannot open \"{}\"", url_));
   }
   // LCM's self-test is over. From now on the filter drops messages on channels without a
@@ -196,7 +196,7 @@ void Bus::Subscribe(std::string_view channel, Handler handler, const Contents& c
   lcm_subscription_t* handle =
       lcm_subscribe(lcm_, Escaped(channel).c_str(), &Bus::OnMessage, &topic);
   if (handle == nullptr) throw std::runtime_error(fmt::format("cannot subscribe to {}", channel));
-  lcm_subscription_set_queue_capacity(handle, 0);  // 0: no limit (LCM's limit: 30)
+  lcm_subscription_set_queue_capacity(handle, 0);  // 0: no limit (LCM's default: 30)
   FilterSockets();
 }
 
@@ -309,7 +309,7 @@ bool Bus::Readable(Duration timeout) {
 void Bus::Drain() {
   for (int i = 0; i < kDrained; ++i) {
     if (waiting_ > 0) {
-      Handle();  // needs no call of the kernel and no look at the clock
+      Handle();  // needs no system call and no reading of the clock
     } else if (!Wait(Duration::zero())) {
       return;
     }
@@ -363,9 +363,9 @@ std::optional<Bytes> Bus::Verified(const Topic& topic, Bytes bytes) {
     ++(not_taken_.*kind);
   };
   if (!signer_) {
-    // The bytes go to the decoder as they are. The decoder refuses a message with a signature
-    // behind its payload. An unsigned payload may by chance end like a signature, and must still be
-    // read.
+    // The bytes go to the decoder as they are. The decoder refuses a message with a signature after
+    // its payload. By chance, an unsigned payload may end like a signature. This payload must still
+    // be read.
     count(&Unverified::no_key);
     return bytes;
   }
@@ -392,8 +392,8 @@ std::string SignatureTrouble(const Bus::Unverified& unverified) {
 }
 
 std::string FreshMulticastUrl() {
-  // The ports lie above LCM's own port 7667 and below 32768. From 32768 on, Linux gives ports to
-  // sockets that ask for no port (ip(7)). The group is LCM's own.
+  // The ports lie above LCM's own port 7667 and below 32768. Linux gives the ports from 32768 on to
+  // sockets that ask for no particular port (ip(7)). The group is LCM's own.
   constexpr std::uint32_t kFirstPort = 20000;
   constexpr std::uint32_t kPorts = 12000;
   constexpr int kTries = 20;  // if all tries find a taken port, the last port is used

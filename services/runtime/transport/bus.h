@@ -31,8 +31,8 @@ class Client;
 
 namespace fogline::runtime {
 
-/// A network that is not there, perhaps only for a time: this machine has no route for the
-/// multicast of its URL.
+/// The error that a network cannot be reached, perhaps only for a time: this machine has no route
+/// for the multicast of the network's URL.
 class NetworkAway : public InputError {
  public:
   using InputError::InputError;
@@ -44,23 +44,24 @@ class Bus {
  public:
   using Handler = std::function<void(Arrival&)>;
 
-  /// @param url as LCM takes it. Unless the URL says otherwise, udpm gets ttl=0 (this machine only)
-  ///     and asks for a receive buffer of 2 MiB (the kernel grants at most net.core.rmem_max). The
-  ///     host of tcpq may be a name; url() then has the host's address in numbers.
+  /// @param url in LCM's syntax. If the URL gives no other values, udpm gets ttl=0 (this machine
+  ///     only) and asks for a receive buffer of 2 MiB (the kernel grants at most
+  ///     net.core.rmem_max). The host of tcpq may be a name; url() then contains the host's address
+  ///     in numbers.
   /// @throws NetworkAway, InputError if LCM cannot open the URL
-  /// @throws std::runtime_error if there is no tcpq relay
+  /// @throws std::runtime_error if the tcpq relay cannot be reached
   explicit Bus(const std::string& url);
   ~Bus();
   Bus(const Bus&) = delete;
   Bus& operator=(const Bus&) = delete;
 
-  /// From now on signs the messages that it sends, and refuses messages without a correct
+  /// From now on, the bus signs the messages that it sends, and refuses messages without a correct
   /// signature.
   /// @throws InputError with mpudpm, or if the kernel accepts no filter. Unfiltered messages would
   ///     reach LCM's parser before their signature is checked.
   void Secure(const MessageSigner& signer);
   bool secured() const { return signer_.has_value(); }
-  /// From now on receives messages as over a bad network.
+  /// From now on, the bus receives messages as over a bad network.
   void Impair(const Faults& faults) { faults_ = faults; }
 
   /// Calls `handler` from Wait() for every message on exactly this channel. Handlers of one channel
@@ -70,7 +71,7 @@ class Bus {
   ///     messages of the channel
   void Subscribe(std::string_view channel, Handler handler, const Contents& contents = {});
 
-  /// Takes only a share of a channel's messages, if the kernel can choose messages. The share is in
+  /// Receives only a share of a channel's messages, if the kernel accepts a filter. The share is in
   /// [0, 1]; 1 means all messages.
   void SetSampleRate(std::string_view channel, double share);
 
@@ -84,7 +85,7 @@ class Bus {
   /// @throws std::runtime_error if the message is larger than kMaxMessageBytes
   void Publish(std::string_view channel, Bytes bytes) { Publish(TopicOf(channel), bytes); }
 
-  /// A channel on this bus, for callers that publish often, because a search by name takes time.
+  /// A channel on this bus. Callers that publish often use it, because a search by name takes time.
   struct Topic;
   Topic& TopicOf(std::string_view channel);
   void Publish(const Topic& topic, Bytes bytes);
@@ -101,22 +102,22 @@ class Bus {
   /// Handles one message. Waits up to `timeout` for the message. @return whether a message came
   bool Wait(Duration timeout);
 
-  /// Handles the messages that are there, but at most kDrained. The limit is for memq: a message
-  /// that a handler publishes is there immediately. Without the limit, Drain() would not return
-  /// before the end of a run in memory.
+  /// Handles the messages that have come, but at most kDrained. The limit is for memq, where a
+  /// message that a handler publishes comes immediately. Without the limit, Drain() would not
+  /// return before the end of a run in memory.
   void Drain();
   static constexpr int kDrained = 1000;
 
   /// Messages whose signature was not verified.
   struct Unverified {
-    std::int64_t not_signed = 0;    // refused, because there is a key here
+    std::int64_t not_signed = 0;    // refused, because this process has a key
     std::int64_t badly_signed = 0;  // refused
     std::int64_t no_key = 0;        // signed, but this process has no key: the decoder refuses them
   };
   /// The counts since the beginning.
   const Unverified& unverified() const { return unverified_; }
-  /// The counts since the last call. If several users of a bus call this, each gets a part of the
-  /// counts.
+  /// The counts since the last call. If several users of a bus call this function, each user gets a
+  /// part of the counts.
   Unverified TakeUnverified() { return std::exchange(not_taken_, {}); }
 
   /// This descriptor is readable when Wait(0) would handle a message. With tcpq this is true only
@@ -137,7 +138,7 @@ class Bus {
   void CallHandlers(Topic& topic, Bytes bytes);
   void FilterSockets();
   /// @throws std::runtime_error if the kernel refuses a filter although it has accepted earlier
-  ///     ones
+  ///     filters
   void Filter(const std::vector<sock_filter>& program);
   static void OnMessage(const _lcm_recv_buf_t* buffer, const char* channel, void* topic);
   static void Deliver(Bytes bytes, Topic& topic);
@@ -160,7 +161,7 @@ class Bus {
   TimePoint now_{};            // when Wait() last handled a message
   std::deque<Topic> topics_;   // stable addresses: LCM keeps pointers to them
   Watcher watcher_;            // called for messages on all channels; may be empty
-  std::exception_ptr parked_;  // an exception of a handler; it may not pass through LCM's C code
+  std::exception_ptr parked_;  // an exception of a handler; it must not pass through LCM's C code
   std::optional<MessageSigner> signer_;
   std::optional<Faults> faults_;
   Unverified unverified_;
@@ -181,8 +182,7 @@ struct Bus::Topic {
   double share = 1;
 };
 
-/// A multicast URL of this machine only, on a port drawn at random, so that two runs hardly ever
-/// share a port.
+/// A multicast URL for this machine only. The port is random, so two runs hardly ever share a port.
 std::string FreshMulticastUrl();
 
 }  // namespace fogline::runtime

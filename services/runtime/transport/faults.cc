@@ -15,7 +15,7 @@ namespace {
 
 /// The delay of a message that is overtaken: a few steps of a run over udpm.
 constexpr Duration kOvertaken = milliseconds(2);
-/// A longer delay leads to stalls, which other tests cause.
+/// The largest value of delay_ms. A longer delay leads to stalls, which have tests of their own.
 constexpr double kMaxDelayMs = 1000;
 
 struct ChanceField {
@@ -66,7 +66,7 @@ void Set(std::string_view name, std::string_view text, FaultRates& rates) {
   throw FaultsError(fmt::format("\"{}\" is no kind of fault", name));
 }
 
-/// A random place in [0, size).
+/// A random index in [0, size).
 std::size_t Place(double uniform, std::size_t size) {
   return static_cast<std::size_t>(uniform * static_cast<double>(size));
 }

@@ -1,6 +1,7 @@
-// A bad network on request. Messages that a process receives are lost, doubled, delayed, overtaken
-// or damaged before the process reads them. This works on any bus, in memory too. The fate of the
-// n-th message that a role receives depends only on the seed, the role and n.
+// Simulates a bad network on request. Messages that a process receives are lost, doubled, delayed,
+// overtaken or damaged before the process reads them. The simulation works on any bus, also on a
+// bus in memory. The fate of the n-th message that a role receives depends only on the seed, the
+// role and n.
 #pragma once
 
 #include <array>
@@ -27,7 +28,7 @@ struct FaultRates {
   double delay_ms = 0;  // delay of every message
   std::int64_t seed = 1;
 
-  /// Whether messages may arrive with changed contents. Only a signature detects that.
+  /// Whether messages may arrive with changed contents. Only a signature detects a change.
   bool Damage() const { return truncate > 0 || flip > 0; }
 };
 

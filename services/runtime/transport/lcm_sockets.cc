@@ -64,14 +64,14 @@ int LcmSockets::OnOption(int socket, int level, int name, const void* value, soc
   const int result = SetOption(socket, level, name, value, size);
   if (level == IPPROTO_IP && name == IP_ADD_MEMBERSHIP) members_.push_back(socket);
   if (reach_ != Reach::kLoopback || level != IPPROTO_IP) return result;
-  if (name == IP_MULTICAST_TTL) {  // LCM sets this on the socket that sends
+  if (name == IP_MULTICAST_TTL) {  // LCM sets this option on the socket that sends
     const in_addr loopback = Loopback();
     return SetOption(socket, IPPROTO_IP, IP_MULTICAST_IF, &loopback, sizeof(loopback));
   }
   if (name == IP_ADD_MEMBERSHIP && size >= sizeof(ip_mreq)) {
     ip_mreq membership = *static_cast<const ip_mreq*>(value);
     membership.imr_interface = Loopback();
-    // If the route leads over loopback, LCM has already joined the group there.
+    // If the route leads over loopback, LCM has already joined the group on loopback.
     const bool joined =
         SetOption(socket, IPPROTO_IP, IP_ADD_MEMBERSHIP, &membership, sizeof(membership)) == 0 ||
         errno == EADDRINUSE;
@@ -119,8 +119,8 @@ void GroupMembership::Renew() {
 
 }  // namespace fogline::runtime
 
-// These functions replace those of the C library, also in LCM's code. So a filter is attached
-// before bind(), and no datagram arrives before the filter.
+// These functions replace the functions of the C library with the same names, also in LCM's code.
+// So a filter is attached before bind(), and no datagram arrives before the filter.
 extern "C" int bind(int socket, const sockaddr* address, socklen_t size) noexcept {
   return fogline::runtime::in_charge != nullptr
              ? fogline::runtime::in_charge->OnBind(socket, address, size)

@@ -1,9 +1,10 @@
 // Controls LCM's UDP sockets, to which LCM gives no access. A filter is attached before the first
-// datagram arrives. A network of this machine alone uses the loopback interface.
+// datagram arrives. A network that is limited to this machine uses the loopback interface.
 //
 // LCM uses the interface of the route to the group, even if all messages stay on the machine
-// (ttl=0). Such traffic ends when that interface, its address or its route goes away, for example
-// when a cable is pulled, a Wi-Fi is lost or a lease ends. Loopback does not depend on them.
+// (ttl=0). Traffic of this kind ends when the interface, its address or its route disappears, for
+// example when a cable is pulled, a Wi-Fi is lost or a lease ends. The loopback interface does not
+// depend on any of these.
 #pragma once
 
 #include <linux/filter.h>
@@ -19,9 +20,10 @@ namespace fogline::runtime {
 class LcmSockets {
  public:
   enum class Reach {
-    /// Sends over loopback; hears messages from loopback, and from the route if there is one.
+    /// Sends over loopback; receives messages from loopback, and over the route if there is a
+    /// route.
     kLoopback,
-    kRoute,  ///< sends and hears over the route to the group
+    kRoute,  ///< sends and receives over the route to the group
   };
 
   /// @param filter for each socket that receives, from its start; empty: no filter
@@ -52,22 +54,22 @@ class LcmSockets {
   bool refused_ = false;
 };
 
-/// Whether loopback is up. In some containers it is not.
+/// Whether loopback is up. In some containers loopback is down.
 bool LoopbackIsUp();
 
 /// How far a udpm:// URL reaches: kLoopback if ttl is 0 and loopback is up, otherwise kRoute.
 LcmSockets::Reach ReachOf(const std::string& url);
 
 /// Keeps sockets in the group of a udpm:// URL, on the interface to which the route to the group
-/// leads. This interface may change. An interface that goes away or loses its last address also
+/// leads. This interface may change. An interface that disappears or loses its last address also
 /// loses its groups.
 class GroupMembership {
  public:
   /// @param sockets LCM's sockets, which have just joined the group on the interface of the route
   GroupMembership(std::vector<int> sockets, const std::string& url);
-  /// Joins the group again, on the interface of the present route, if the route leads to another
-  /// interface or the interface has lost the group. The sockets first leave the group where they
-  /// joined it. Prints on stderr why a socket cannot join.
+  /// Joins the group again, on the interface of the current route, if the route leads to another
+  /// interface or the interface has lost the group. The sockets first leave the group on the
+  /// interface where they joined it. Prints on stderr why a socket cannot join.
   void Renew();
 
  private:

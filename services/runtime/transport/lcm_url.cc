@@ -65,10 +65,10 @@ bool IsOfThisMachine(in_addr numeric) {
   return found;
 }
 
-/// The place of a relay in a tcpq:// URL, with LCM's defaults for missing parts.
+/// The host and port of a relay in a tcpq:// URL, with LCM's defaults for missing parts.
 struct RelayPlace {
   std::string_view host;
-  std::optional<std::uint16_t> port;  // nullopt if it is no number
+  std::optional<std::uint16_t> port;  // nullopt if the port is no number
 
   bool operator==(const RelayPlace&) const = default;
 };

@@ -1,4 +1,5 @@
-// Which LCM network a program uses: one rule for every program. Also reads the URLs of networks.
+// Decides which LCM network a program uses, by one rule for every program. Also reads the URLs of
+// networks.
 #pragma once
 
 #include <cstdint>
@@ -34,7 +35,7 @@ struct MulticastAddress {
   bool operator==(const MulticastAddress&) const = default;
 };
 
-/// The contents of a udpm:// URL; nullopt if it is no udpm:// URL, has a host that is no IPv4
+/// The contents of a udpm:// URL; nullopt if the text is no udpm:// URL, has a host that is no IPv4
 /// address in numbers, or has an option that LCM does not know.
 std::optional<MulticastAddress> ParseMulticastUrl(std::string_view url);
 
@@ -42,10 +43,10 @@ std::optional<MulticastAddress> ParseMulticastUrl(std::string_view url);
 /// port, otherwise the whole URL without its options.
 bool SameNetwork(std::string_view a, std::string_view b);
 
-/// Whether a program may go to this network because a message names it. The URL must name a
-/// multicast group whose traffic ends at the next router or before (ttl 0 or 1), or a relay of this
-/// machine with its address in numbers. mpudpm is refused, because nothing filters the messages
-/// that reach LCM's parser.
+/// Whether a program may join this network if the program knows it only from a message. The URL
+/// must name a multicast group whose traffic ends at the next router or before (ttl 0 or 1), or a
+/// relay of this machine with its address in numbers. mpudpm is refused, because nothing filters
+/// the messages that reach LCM's parser.
 bool MayBeAnnounced(std::string_view url);
 
 }  // namespace fogline::runtime

@@ -1,6 +1,6 @@
-// A limit for floods of messages. A process lets in only a share of the messages, so that it can
-// handle them. The kernel drops the other messages before they fill the receive buffer, which costs
-// the process nothing.
+// A limit for floods of messages. A process accepts only a share of the messages, so that it can
+// handle them. The kernel drops the other messages before they fill the receive buffer. These
+// messages cost the process nothing.
 #pragma once
 
 #include <algorithm>
@@ -16,7 +16,7 @@ class LoadShedder {
   /// @param per_second messages that the process can handle
   explicit constexpr LoadShedder(double per_second) : per_second_(per_second) {}
 
-  /// Counts a message that has come. @return the share of messages to let in from now on; nullopt
+  /// Counts a message that has come. @return the share of messages to accept from now on; nullopt
   /// if the share does not change
   std::optional<double> Count(TimePoint now) {
     ++count_;
@@ -27,8 +27,8 @@ class LoadShedder {
     since_ = now;
     count_ = 0;
     const double share = std::clamp(per_second_ / sent, kLeast, 1.0);
-    // A change costs a system call, so the share is kept if it differs from the wanted share by
-    // less than a fifth.
+    // A change costs a system call, so the share stays the same if it differs from the wanted share
+    // by less than a fifth.
     if (share > 0.8 * share_ && share < 1.2 * share_ && !(share == 1 && share_ < 1)) {
       return std::nullopt;
     }

@@ -1,6 +1,6 @@
-// Whether this machine has a route for multicast. Fogline checks this before it calls LCM. Without
-// a route LCM's error message names an address that the user has not given, and a command that few
-// systems have.
+// Checks whether this machine has a route for multicast. Fogline makes this check before it calls
+// LCM. Without a route, LCM's error message names an address that the user has not given, and a
+// command that few systems have.
 #pragma once
 
 #include <optional>
@@ -12,18 +12,18 @@ namespace fogline::runtime {
 /// A command that lets LCM work on a machine without a network. Needs root.
 inline constexpr std::string_view kLoopbackRoute = "ip route add 239.0.0.0/8 dev lo";
 
-/// The multicast group of a udpm:// or mpudpm:// URL, LCM's own if the URL names none; nullopt for
-/// other URLs.
+/// The multicast group of a udpm:// or mpudpm:// URL, LCM's own group if the URL names no group;
+/// nullopt for other URLs.
 std::optional<std::string> GroupOf(std::string_view url);
 
-/// Whether an IPv4 address is that of a multicast group.
+/// Whether an IPv4 address is the address of a multicast group.
 bool IsMulticast(const std::string& address);
 
 /// Advice for a udpm:// or mpudpm:// URL that has the address of one machine: the URL to write
 /// instead.
 std::string InPlaceOfUnicast(std::string_view url);
 
-/// The kernel's error for a route to an IPv4 address; "" if it has a route.
+/// The kernel's error for a route to an IPv4 address; "" if there is a route.
 std::string RouteError(const std::string& address);
 
 /// The interface of the route to an IPv4 address; "" if there is no such route or `address` is no

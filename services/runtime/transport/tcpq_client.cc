@@ -21,20 +21,20 @@
 namespace fogline::runtime::tcpq {
 namespace {
 
-// A relay must answer within the first limit, and accept a byte within the second.
+// A relay must answer within kAnswerLimit, and accept a byte within kStallLimit.
 constexpr Duration kAnswerLimit = milliseconds(5000);
 constexpr Duration kStallLimit = milliseconds(5000);
-// The limit in place of kAnswerLimit when the client connects to a relay again. It is short,
-// because the process does nothing else in this time.
+// The limit in place of kAnswerLimit when the client connects to a relay again. This limit is
+// short, because the process does nothing else in this time.
 constexpr Duration kSecondAnswerLimit = milliseconds(200);
-// At most this many bytes from the relay are kept while the relay takes nothing.
+// The client stores at most this many bytes from the relay while the relay accepts no data.
 constexpr std::size_t kMaxReceived = 64 << 20;
 // After publishing this many bytes without reading, the client reads: a relay disconnects clients
 // that read nothing.
 constexpr std::size_t kReadEvery = 256 << 10;
 
-/// A file that is never readable. It takes the place of a lost connection, so that it does not wake
-/// a program that polls the descriptor.
+/// Opens a file that is never readable. The file replaces a lost connection, so that a program that
+/// polls the descriptor does not wake up.
 int QuietFile() { return eventfd(0, EFD_CLOEXEC); }
 
 }  // namespace

@@ -1,7 +1,7 @@
 // A client of a tcpq relay, in place of LCM's own client. LCM's client aborts when the relay ends,
-// waits without limit for a server that says nothing, takes five system calls and packets for a
-// message, and loses its connection when a signal comes. This client speaks the same protocol with
-// the same relays.
+// and waits without limit for a server that sends nothing. It takes five system calls and packets
+// for a message, and loses its connection when a signal comes. Fogline's client uses the same
+// protocol with the same relays.
 #pragma once
 
 #include <cstdint>
@@ -28,16 +28,16 @@ class ConnectionLost : public std::runtime_error {
 
 /// One connection, for one thread.
 ///
-/// Readable() makes a lost connection again as soon as the relay is back. All messages in the
-/// meantime are lost. If the relay is not back after kTries tries, Readable() throws ConnectionLost
-/// once. After that it only waits, so that the process can end a run in order.
+/// Readable() restores a lost connection as soon as the relay is back. All messages in the meantime
+/// are lost. If the relay is not back after kTries tries, Readable() throws ConnectionLost once.
+/// After that, Readable() only waits, so that the process can end a run properly.
 class Client {
  public:
   using Handler = std::function<void(Bytes)>;
 
-  /// The interval and the number of tries to make a lost connection again: 10 s in all. A killed
-  /// relay of a run is started again within a second, unless the machine has no room for a process.
-  /// A person needs more time to restart a relay than any role waits.
+  /// The interval and the number of tries to restore a lost connection: 10 s in all. A killed relay
+  /// of a run is started again within a second, if the machine can start a process. A person needs
+  /// more time to restart a relay than any role waits.
   static constexpr Duration kTryEvery = milliseconds(50);
   static constexpr int kTries = 200;
 
@@ -49,7 +49,7 @@ class Client {
   Client& operator=(const Client&) = delete;
 
   /// Calls `handler` from Handle() for every message on exactly this channel that is published
-  /// after the relay has got the subscription. The relay gives a publisher its own messages, too.
+  /// after the relay has got the subscription. The relay also sends a publisher its own messages.
   /// @param pattern the regular expression for this channel
   void Subscribe(std::string_view channel, std::string_view pattern, Handler handler);
 
@@ -58,18 +58,19 @@ class Client {
   using Watcher = std::function<void(std::string_view channel, Bytes)>;
   void SubscribeAll(Watcher watcher);
 
-  /// Sends a message. While the relay takes nothing, the client keeps the bytes that the relay
-  /// sends, so that the two do not wait for each other. @return false if the connection is lost
+  /// Sends a message. While the relay accepts no data, the client stores the bytes that the relay
+  /// sends, so that client and relay do not wait for each other. @return false if the connection is
+  /// lost
   bool Publish(std::string_view channel, Bytes bytes);
 
   /// Waits up to `timeout` for a message, or less if only a part of a message comes.
-  /// @return whether a message is there
+  /// @return whether a message has come
   bool Readable(Duration timeout);
 
-  /// Handles the message that is there, if any.
+  /// Handles the message that has come, if any.
   void Handle();
 
-  /// The descriptor stays the same when the connection is made again.
+  /// The descriptor stays the same when the connection is restored.
   int fd() const { return fd_; }
   /// Why the connection was last lost.
   const std::string& trouble() const { return trouble_; }

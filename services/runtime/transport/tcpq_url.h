@@ -25,7 +25,8 @@ struct Endpoint {
 /// @throws InputError that names `what` if there is no such host or port
 Endpoint Resolve(std::string_view host_and_port, std::string_view what);
 
-/// Resolve() for a URL: "tcpq://" and such a text. @throws InputError also for port 0
+/// Resolve() for a URL, which is "tcpq://" and a text for Resolve(). @throws InputError also for
+/// port 0
 Endpoint ResolveUrl(std::string_view url);
 
 }  // namespace fogline::runtime::tcpq

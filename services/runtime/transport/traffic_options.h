@@ -1,5 +1,5 @@
-// The options for the messages of a process: a key and faults. They are the same for `fogline run`
-// and for every service.
+// The options for the messages of a process: a key and faults. These options are the same for
+// `fogline run` and for every service.
 #pragma once
 
 #include <optional>
@@ -22,8 +22,8 @@ struct TrafficOptions {
 /// Adds --key and --faults to a command line.
 void AddTrafficOptions(CLI::App& app, TrafficOptions& options);
 
-/// The key; nullopt if the options name none.
-/// @throws InputError when its file is wrong, or FOGLINE_KEY is set but empty
+/// The key; nullopt if the options name no key.
+/// @throws InputError when the key's file is wrong, or FOGLINE_KEY is set but empty
 std::optional<SigningKey> KeyOf(const TrafficOptions& options);
 
 /// Applies the options to a bus.

@@ -1,4 +1,4 @@
-// A message that has come. All its readers on one bus share it.
+// A message that has come. All readers of a message on one bus share the same object.
 #pragma once
 
 #include <any>
@@ -21,8 +21,8 @@ class Arrival {
   }
 
   Bytes bytes() const { return bytes_; }
-  /// When the message was handled. The bus does not read its clock for every message, so the time
-  /// may be that of a message shortly before.
+  /// When the message was handled. The bus does not read its clock for every message. So this may
+  /// be the time of a slightly earlier message.
   TimePoint time() const { return time_; }
   /// For readers that need only the bytes.
   operator Bytes() const { return bytes_; }
@@ -33,7 +33,7 @@ class Arrival {
     const Reading<M>& reading = Read<M>();
     return reading.wrong == nullptr ? &reading.message : nullptr;
   }
-  /// Why the bytes are not a valid M; nullptr if they are.
+  /// Why the bytes are not a valid M; nullptr if they are valid.
   template <class M>
   RefusalCounter Wrong() {
     return Read<M>().wrong;

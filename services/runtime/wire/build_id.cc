@@ -16,10 +16,10 @@
 namespace fogline::runtime {
 namespace {
 
-// Linkers put the program headers behind the file's header, and the notes behind the program
-// headers. So the first kilobytes contain everything that is read here.
+// Linkers put the program headers after the file's header, and the notes after the program headers.
+// So the first kilobytes contain everything that is read here.
 constexpr std::size_t kBeginning = 1 << 16;
-// A note's name and content each begin at a multiple of this.
+// A note's name and content each begin at a multiple of this number of bytes.
 constexpr std::size_t kNoteAlignment = 4;
 constexpr std::string_view kNoteOwner("GNU\0", 4);
 
@@ -32,7 +32,7 @@ std::optional<T> At(Bytes bytes, std::size_t offset) {
   return value;
 }
 
-/// `size` bytes from `offset` on, or fewer if the bytes end before.
+/// `size` bytes from `offset` on, or fewer if the bytes end earlier.
 Bytes Part(Bytes bytes, std::size_t offset, std::size_t size) {
   const Bytes rest = bytes.subspan(std::min(offset, bytes.size()));
   return rest.first(std::min(size, rest.size()));

@@ -1,7 +1,7 @@
-// The build of the program that a process runs. The linker writes a hash of everything that it
-// links into the program (its GNU build id). So two programs of the same name have the same build
-// id only if they have the same code. The build id distinguishes builds but proves nothing: a
-// process may report any number.
+// The build of the program that a process runs. The linker computes a hash of everything that it
+// links, and writes this hash into the program (its GNU build id). So two programs of the same name
+// have the same build id only if they have the same code. The build id distinguishes builds but
+// proves nothing: a process may report any number.
 #pragma once
 
 #include <cstdint>
@@ -22,7 +22,8 @@ inline constexpr BuildId kUnknownBuild = 0;
 BuildId BuildIdIn(Bytes file);
 /// The build id of a program's file.
 BuildId BuildIdOf(const std::filesystem::path& program);
-/// The build id of this process, even if its file has been replaced since its start.
+/// The build id of this process, even if the program's file has been replaced since the start of
+/// the process.
 BuildId OwnBuildId();
 
 /// 16 hexadecimal digits, or "unknown".

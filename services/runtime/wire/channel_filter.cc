@@ -87,7 +87,7 @@ void AppendText(std::string_view text, std::size_t at, std::size_t then,
 }
 
 /// Appends instructions for one wanted channel: they take or drop a datagram of this channel. For a
-/// datagram of another channel, the program goes on behind these instructions.
+/// datagram of another channel, the program continues after these instructions.
 void AppendWanted(const Wanted& wanted, std::vector<sock_filter>& program) {
   const std::string_view name(wanted.channel.c_str(), wanted.channel.size() + 1);  // with the 0
   std::vector<sock_filter> contents;
@@ -114,7 +114,7 @@ std::vector<sock_filter> WholeMessages() {
       BPF_STMT(BPF_LD | BPF_W | BPF_LEN, 0),
       BPF_JUMP(BPF_JMP | BPF_JGT | BPF_K, kMaxDatagram, 2, 0),  // drops longer datagrams
       Load(4, kMagicOffset),
-      SkipIf(kSmallMessage, 1),  // goes on with the channels
+      SkipIf(kSmallMessage, 1),  // continues with the channels
       Take(kNothing),
   };
 }
@@ -133,8 +133,8 @@ std::vector<sock_filter> ChannelFilter(std::vector<Wanted> wanted) {
 
 std::vector<sock_filter> AnyChannelFilter() {
   std::vector<sock_filter> program = WholeMessages();
-  // Looks for the 0 behind the name. If the filter reads beyond the end of a datagram, the datagram
-  // is dropped.
+  // Looks for the 0 after the channel's name. If the filter reads beyond the end of a datagram, the
+  // datagram is dropped.
   constexpr std::size_t kPlaces = kLongestChannel + 1;
   for (std::size_t i = 0; i < kPlaces; ++i) {
     program.push_back(Load(1, kChannelOffset + i));

@@ -2,7 +2,7 @@
 //
 // Every process of an LCM network receives every message. LCM's receiving thread wakes up for each
 // message, and throws most messages away. With ten processes and nine messages a step, two thirds
-// of a machine's work for a step goes into waking threads that then have nothing to do. With a
+// of a machine's work for a step is spent on waking threads that then have nothing to do. With a
 // socket filter (socket(7)) the kernel reads the channel's name when a datagram arrives, and wakes
 // no thread for an unwanted datagram. Nothing else changes: subscribed messages arrive in the same
 // order.
@@ -20,14 +20,14 @@
 
 namespace fogline::runtime {
 
-/// Which messages of a channel are wanted: those whose data has one of `texts` at `offset`.
+/// Which messages of a channel are wanted: messages whose data has one of `texts` at `offset`.
 struct Contents {
   std::size_t offset = 0;
   std::vector<std::string> texts;
 };
 
-/// A wanted channel. Without texts in `contents` all its messages are wanted. `share`, in [0, 1],
-/// limits a flood: the kernel takes that share of the messages, drawn at random.
+/// A wanted channel. If `contents` has no texts, all messages of the channel are wanted. `share`,
+/// in [0, 1], limits a flood: the kernel accepts this share of the messages, chosen at random.
 struct Wanted {
   std::string channel;
   Contents contents{};
@@ -45,7 +45,7 @@ std::vector<sock_filter> ChannelFilter(std::vector<Wanted> wanted);
 /// and whose channel name ends with a 0.
 std::vector<sock_filter> AnyChannelFilter();
 
-/// Attaches a filter to the socket, in place of an earlier one.
+/// Attaches a filter to the socket, in place of an earlier filter.
 /// @return false if the kernel refuses; the socket then works as before
 /// @throws std::logic_error if the program is longer than the kernel allows (BPF_MAXINSNS)
 [[nodiscard]] bool AttachFilter(int socket, std::vector<sock_filter> program);

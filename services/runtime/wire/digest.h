@@ -27,7 +27,7 @@ class Hash {
 };
 
 /// BLAKE2b-256 of the payloads of all kStep channels in the order of the graph table, step by step.
-/// The run id is not included, because it names a run but does not describe it.
+/// The run id is not included, because the id names a run but does not describe the run.
 class Digest {
  public:
   /// Adds one encoded message (at least kHeaderEnd bytes).

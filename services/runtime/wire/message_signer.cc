@@ -23,8 +23,8 @@ constexpr std::size_t kKeyIdOffset = kSignatureMagic.size();
 constexpr std::size_t kSenderOffset = kKeyIdOffset + 2;
 constexpr std::size_t kTagOffset = kSenderOffset + 2;
 
-/// The role that a STATUS names as its sender. It is the first field behind the header. LCM encodes
-/// this text as an int32 length with the final 0, then the characters.
+/// The role that a STATUS names as its sender. This name is the first field after the header. LCM
+/// encodes the name as an int32 length, which includes the final 0, and then the characters.
 std::string_view RoleNamedIn(Bytes status) {
   constexpr std::size_t kLengthBytes = 4;
   constexpr std::size_t kText = kHeaderEnd + kLengthBytes;
@@ -53,7 +53,8 @@ std::optional<Role> ProducerOf(std::string_view channel, Bytes payload) {
 }
 
 /// Whether a role may send this message. A role may send its own messages. The recorder may also
-/// send steps of other roles, because it answers for steps that their producers have forgotten.
+/// send steps of other roles, because it answers requests for steps that their producers have
+/// forgotten.
 bool MaySend(Role sender, std::string_view channel, Bytes payload) {
   const auto* found = std::ranges::find(kChannels, channel, &ChannelInfo::name);
   const bool step = found != kChannels.end() && found->pace == Pace::kStep;
@@ -84,7 +85,7 @@ constexpr std::size_t kKeyDigits = 2 * std::tuple_size_v<SigningKey::Secret>;
 using KeyText = Wiped<char, kKeyDigits + 3>;
 
 /// Reads a file into `text`, at most until `text` is full.
-/// @return the number of bytes; -1 with errno if it cannot be read
+/// @return the number of bytes; -1 with errno if the file cannot be read
 ssize_t ReadAll(int fd, KeyText& text) {
   std::size_t size = 0;
   while (size < text.size()) {
@@ -104,7 +105,7 @@ bool IsFile(int fd) {
   return fstat(fd, &info) == 0 && S_ISREG(info.st_mode);
 }
 
-/// Why an open file is not a secret of this user; "" if it is one.
+/// Why an open file is not a secret of this user; "" if it is a secret.
 std::string WhyNoSecret(int fd, const std::filesystem::path& file) {
   struct stat info {};
   if (fstat(fd, &info) != 0) return std::strerror(errno);

@@ -1,13 +1,14 @@
-// Signed traffic (a message signer): a trailer behind the LCM payload proves that the sender has
-// the key. Generated decoders do not look behind a payload, so lcm-spy, lcm-logger and
+// Signed traffic (a message signer): a trailer after the LCM payload proves that the sender has the
+// key. Generated decoders ignore the bytes after a payload, so lcm-spy, lcm-logger and
 // lcm-logplayer still work.
 //
 //   payload | "FLS1" | key id, 2 bytes | sender's role, 2 bytes | tag, 16 bytes
 //
-// The tag is BLAKE2b (RFC 7693) with the key, of the channel's name, a 0, the sender and the
+// The tag is the keyed BLAKE2b hash (RFC 7693) of the channel's name, a 0, the sender and the
 // payload. The payload's own header contains run id and step. So a message is not valid in another
 // run, in another step, on another channel or from another role. All processes share one key: a
-// process that has it can sign as any role. The key id distinguishes keys and protects nothing.
+// process that has the key can sign as any role. The key id distinguishes keys and protects
+// nothing.
 #pragma once
 
 #include <array>
@@ -24,7 +25,8 @@
 
 namespace fogline::runtime {
 
-/// 32 secret bytes. A key file has them as 64 hexadecimal digits. A line end may follow.
+/// 32 secret bytes. A key file contains these bytes as 64 hexadecimal digits. A line end may
+/// follow.
 class SigningKey {
  public:
   using Secret = std::array<std::uint8_t, 32>;
@@ -34,9 +36,9 @@ class SigningKey {
   SigningKey(const SigningKey&) = default;
   SigningKey& operator=(const SigningKey&) = default;
 
-  /// @throws InputError when the file cannot be read, holds no key, or is not a secret of this
-  ///     user. It is no secret if it belongs to another user (except root), or if other users can
-  ///     read or change it.
+  /// @throws InputError when the file cannot be read, contains no key, or is not a secret of this
+  ///     user. A file is no secret if it belongs to another user (except root), or if other users
+  ///     can read or change it.
   static SigningKey Load(const std::filesystem::path& file);
   /// Writes a random key into a new file that only its owner can read.
   /// @throws InputError when the file exists or cannot be created; std::runtime_error when the disk
@@ -79,7 +81,7 @@ class MessageSigner {
   enum class Verdict {
     kGood,
     kNotSigned,    // without a trailer
-    kBadlySigned,  // another key, altered bytes, or a sender that may not publish this
+    kBadlySigned,  // another key, altered bytes, or a sender without the right to publish
   };
   struct Opened {
     Verdict verdict;

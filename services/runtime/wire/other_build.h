@@ -1,4 +1,4 @@
-// Whether the roles of a run are of the runner's build. Programs built from other sources may
+// Checks whether the roles of a run have the runner's build. Programs built from other sources may
 // compute other results, even if their message types agree.
 #pragma once
 
@@ -13,24 +13,24 @@
 
 namespace fogline::runtime {
 
-/// The build of each role's program in the runner's folder, by place in kRoles.
+/// The build of each role's program in the runner's folder, by index in kRoles.
 using RoleBuilds = std::array<BuildId, kRoles.size()>;
 
-/// A process whose build is not the runner's or is not known.
+/// A process whose build differs from the runner's build or is not known.
 struct OtherBuild {
   Role role;
   std::int32_t pid;
   std::string host;
-  BuildId build;  // the build that it reports
+  BuildId build;  // the build that the process reports
   BuildId ours;   // build of the role's program in the runner's folder
 
   /// "driver (pid 4711 on lab2) is of build 1f..., but the runner is of build 2e...". If one of the
-  /// builds is not known, the text says which one.
+  /// builds is not known, the text says which build.
   std::string Text() const;
 };
 
-/// The build of a role's process if it differs from the expected one or is unknown; nullopt if they
-/// are equal.
+/// The build of a role's process if it differs from the expected build or is unknown; nullopt if
+/// both builds are equal.
 std::optional<OtherBuild> OtherBuildOf(Role role, const status_t& status, const RoleBuilds& ours);
 
 }  // namespace fogline::runtime

@@ -26,7 +26,7 @@ inline constexpr std::array kRefusals{
     RefusalKind{"badly_signed", &status_t::badly_signed, "with a wrong signature"},
 };
 
-/// The counter of a kind of refusal; nullptr means that nothing is refused.
+/// The counter of a kind of refusal; nullptr means that the message is not refused.
 using RefusalCounter = std::int64_t status_t::*;
 
 /// Decodes a message.

@@ -1,5 +1,5 @@
-// A scenario as it travels over LCM: in parts that fit one datagram each. The receiver puts them
-// together.
+// How a scenario is sent over LCM: in parts, each of which fits into one datagram. The receiver
+// puts the parts together.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@ namespace fogline::runtime {
 /// of RUN.
 inline constexpr std::size_t kPartBytes = 1000;
 
-/// The range of simulated seconds per second that a run may have: a step of 0.1 s takes between 0.1
+/// The range of a run's speed, in simulated seconds per second: a step of 0.1 s takes between 0.1
 /// ms and 100 s. The range keeps all times that are computed from the speed finite.
 inline constexpr double kMinSpeed = 1e-3;
 inline constexpr double kMaxSpeed = 1000;
@@ -31,7 +31,7 @@ inline std::vector<std::string> SplitScenario(std::string_view text) {
   return parts;
 }
 
-/// The RUN message that carries part `part` of a scenario.
+/// The RUN message that contains part `part` of a scenario.
 inline run_t MakeRunPart(std::int64_t run_id, std::int8_t phase, double pace,
                          const std::string& hash, const std::vector<std::string>& parts,
                          std::size_t part) {
@@ -51,11 +51,12 @@ inline run_t MakeRunPart(std::int64_t run_id, std::int8_t phase, double pace,
 /// Collects the parts of one run's scenario, in any order and with repetitions.
 class ScenarioParts {
  public:
-  /// The most parts that a sender may announce. With kPartBytes each, they are 200 MB of text.
+  /// The largest number of parts that a sender may announce. With kPartBytes each, these parts are
+  /// 200 MB of text.
   static constexpr std::int32_t kMaxParts = 200'000;
 
-  /// Takes the part in a run_t.
-  /// @return false if the part is impossible or contradicts an earlier one
+  /// Stores the part in a run_t.
+  /// @return false if the part is impossible or contradicts an earlier part
   [[nodiscard]] bool Add(const run_t& run) {
     if (run.num_parts < 1 || run.num_parts > kMaxParts) return false;
     if (run.header.step < 0 || run.header.step >= run.num_parts || run.text.empty()) return false;

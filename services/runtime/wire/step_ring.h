@@ -10,9 +10,9 @@
 
 namespace fogline::runtime {
 
-/// How many steps a ring remembers. The world runs at most kMaxAhead steps ahead of the recorder.
-/// So any step that a role asks for is either in the ring of its producer, or older than a ring. An
-/// older step is on disk, and the recorder answers for it.
+/// The number of steps that a ring stores. The world runs at most kMaxAhead steps ahead of the
+/// recorder. So any step that a role asks for is either in the ring of its producer, or older than
+/// a ring. An older step is on disk, and the recorder answers requests for it.
 inline constexpr std::int64_t kRingSteps = 64;
 inline constexpr std::int64_t kMaxAhead = 32;
 static_assert(2 * kMaxAhead <= kRingSteps, "some steps would be neither in a ring nor on disk");

@@ -1,5 +1,5 @@
 // The frames of LCM's tcpq protocol. FrameParser cuts a received byte stream into frames;
-// AppendFrame() writes a frame. There is no socket here.
+// AppendFrame() writes a frame. This file uses no socket.
 //
 // All words are 32 bits, big endian. Each side begins with two words: its magic and the version.
 // Then frames follow:
@@ -39,12 +39,12 @@ struct Limits {
 struct Frame {
   FrameType type;
   std::string_view name;  // channel, or regular expression
-  Bytes payload;          // only of PUBLISH
+  Bytes payload;          // only for PUBLISH
   Bytes wire;             // the whole frame as received
 };
 
 /// Cuts a byte stream into frames. If the caller takes all frames after every Append(), the parser
-/// holds at most the bytes of one frame and of the last Append().
+/// stores at most the bytes of one frame and of the last Append().
 class FrameParser {
  public:
   /// @param magic the word that the other side must begin with
@@ -69,7 +69,7 @@ class FrameParser {
   std::uint32_t magic_;
   Limits limits_;
   std::vector<std::uint8_t> buffer_;
-  std::size_t begin_ = 0;  // where the bytes that are not taken yet begin
+  std::size_t begin_ = 0;  // index of the first byte that is not parsed yet
   bool greeted_ = false;
   std::string error_;
 };

@@ -21,8 +21,8 @@ namespace fogline::runtime {
 
 using Bytes = std::span<const std::uint8_t>;
 
-/// The largest message. With the headers of UDP and LCM, the channel's name and a signature, such a
-/// message fits into one Ethernet frame. So it is not fragmented.
+/// The largest message. With the headers of UDP and LCM, the channel's name and a signature, a
+/// message of this size fits into one Ethernet frame. So the message is not fragmented.
 inline constexpr std::size_t kMaxMessageBytes = 1400;
 /// LCM's longest channel name (LCM_MAX_CHANNEL_NAME_LENGTH), in bytes.
 inline constexpr std::size_t kLongestChannel = 63;
@@ -40,7 +40,8 @@ inline std::int64_t ReadInt64(Bytes bytes, std::size_t offset) {
   return static_cast<std::int64_t>(value);
 }
 
-/// A text as LCM encodes it: the length with the final 0, big endian, and the characters.
+/// A text as LCM encodes it: the length including the final 0, big endian, and then the characters
+/// and the 0.
 inline std::string EncodedText(std::string_view text) {
   const std::size_t size = text.size() + 1;
   std::string encoded;
@@ -50,7 +51,7 @@ inline std::string EncodedText(std::string_view text) {
 }
 
 /// The fingerprint with which the messages of a channel begin.
-/// @param channel its place in kChannels
+/// @param channel index in kChannels
 inline std::int64_t FingerprintOf(std::size_t channel) {
   static const auto fingerprints = std::apply(
       [](const auto&... each) {
@@ -61,7 +62,7 @@ inline std::int64_t FingerprintOf(std::size_t channel) {
 }
 
 // LCM's generated code works byte by byte. If all of it is inlined (flatten), its offsets are
-// constants, and the compiler makes one load and one byte swap of each number.
+// constants, and the compiler makes one load and one byte swap for each number.
 
 /// Encodes a message into `buffer`, which keeps its capacity.
 template <class M>
