@@ -28,10 +28,10 @@ namespace {
 constexpr unsigned kPayloadBytes = 120;
 using Payload = std::array<std::uint8_t, kPayloadBytes>;
 
-// Steps before the measurement starts. After them every process has joined the network.
+// Steps before the measurement starts. Every process joins the network during these steps.
 constexpr int kWarmUpSteps = 200;
-// A bare network repairs no loss. So the first process sends a step's message again if no message
-// has come for this time.
+// A bare network does not send lost messages again. So the first process repeats a step's messages
+// if it has received no message for this time.
 constexpr int kRepeatAfter_ms = 100;
 
 /// One process of a bare network.
@@ -60,7 +60,8 @@ class BareProcess {
     return std::ranges::all_of(inputs_, [step](const auto& input) { return input->step == step; });
   }
 
-  /// Begins a step, and waits until its messages have come on all inputs of this process.
+  /// Begins a step, and waits until messages of this step have arrived on all inputs of this
+  /// process.
   void Lead(std::int64_t step) {
     answers_ = false;
     Publish(step);
@@ -149,8 +150,8 @@ std::vector<BareRole> BareGraph() {
 }
 
 double BareNetworkStepSeconds(const std::vector<BareRole>& roles, int steps) {
-  // The URL in the form in which Fogline opens it: with a private port and a receive buffer that
-  // bursts do not overflow.
+  // Fogline also opens LCM with such a URL: it has a private port, and a receive buffer that is
+  // large enough for bursts.
   const std::string url = runtime::Bus(runtime::FreshMulticastUrl()).url();
   Children children;
   for (std::size_t i = 1; i < roles.size(); ++i) children.Start(url, roles[i]);

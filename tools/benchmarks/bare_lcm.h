@@ -1,5 +1,6 @@
-// The cost of LCM itself: processes that only receive and send, and a reader of logs, all with
-// LCM's own library alone. They are the references for Fogline's lockstep and log reading.
+// Measures the cost of LCM itself, with processes that only receive and send, and with a reader of
+// logs. These processes and this reader use only LCM's own library. The benchmarks compare
+// Fogline's lockstep and log reading with them.
 #pragma once
 
 #include <filesystem>
@@ -8,8 +9,8 @@
 
 namespace fogline::benchmarks {
 
-/// A process that publishes one message on each of its outputs as soon as the newest messages on
-/// all its inputs belong to the same step.
+/// A process that publishes one message on each output as soon as the newest messages on all inputs
+/// belong to the same step.
 struct BareRole {
   std::vector<std::string> inputs;
   std::vector<std::string> outputs;
@@ -18,17 +19,18 @@ struct BareRole {
 /// The roles of a ring of `hops` processes, this process among them. A message goes round the ring.
 std::vector<BareRole> BareRing(int hops);
 
-/// The roles of Fogline's graph with the same channels, recorder included.
+/// One bare role for each role of Fogline's graph, recorder included, with the channels of the
+/// graph.
 std::vector<BareRole> BareGraph();
 
 /// Seconds per step of a network of bare processes over udpm. This process is the first role. It
-/// begins a step when all its inputs of the step before have arrived.
+/// begins a step when all its inputs of the previous step have arrived.
 double BareNetworkStepSeconds(const std::vector<BareRole>& roles, int steps);
 
-/// Seconds for `hops` messages published and handled one after another over bare memq.
+/// Seconds per step over bare memq. A step publishes and handles `hops` messages one after another.
 double BareMemqStepSeconds(int hops, int steps);
 
-/// Seconds in which LCM's own reader reads all events of a log.
+/// Seconds that LCM's own reader needs to read all events of a log.
 double BareLogReadSeconds(const std::filesystem::path& log);
 
 }  // namespace fogline::benchmarks

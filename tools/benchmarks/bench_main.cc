@@ -34,7 +34,7 @@ std::vector<Comparison> AllComparisons(Effort effort) {
   return all;
 }
 
-/// The error text for a name that no comparison has; "" if a comparison has it.
+/// The error text for a name that no comparison has; "" if a comparison has this name.
 std::string WhyNoComparison(const std::string& name) {
   const std::vector<Comparison> all = AllComparisons(Effort::kQuick);
   if (std::ranges::find(all, name, &Comparison::name) != all.end()) return "";

@@ -1,5 +1,5 @@
-// A side-by-side measurement: two ways to do one thing, in one run, in alternating rounds, so that
-// a disturbance of the machine affects both. The result is the ratio of each round.
+// Measures two ways to do one thing, in one run and in alternating rounds. So a disturbance of the
+// machine affects both ways. The result is the ratio of each round.
 #pragma once
 
 #include <functional>
@@ -13,13 +13,14 @@ namespace fogline::benchmarks {
 enum class Bound { kAtMost, kAtLeast };
 
 /// The two sides of a comparison, and the expected result. Both functions measure once and return
-/// the same quantity. An exception from one of them ends only this comparison, with a note.
+/// the same quantity. An exception from a function ends only this comparison. The text of the
+/// exception becomes the note of the finding.
 struct Comparison {
   std::string name;       // short, for --only
   std::string quantity;   // returned by both functions, such as "time per step"
   std::string unit;       // of the quantity, such as "us"
   std::string ours;       // Fogline's side
-  std::string reference;  // the other side
+  std::string reference;  // the side that Fogline is compared with
   Bound bound = Bound::kAtMost;
   double goal = 1;
   std::optional<double> bar;  // an intermediate goal
@@ -51,7 +52,7 @@ struct Finding {
   std::string Verdict() const;
 };
 
-/// Measures both sides in each round. The side that goes first changes from round to round.
+/// Measures both sides in each round. The side that is measured first changes from round to round.
 Finding Compare(const Comparison& comparison, int rounds);
 
 }  // namespace fogline::benchmarks

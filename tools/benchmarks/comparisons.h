@@ -1,4 +1,4 @@
-// All comparisons, with one file for each family.
+// All comparisons. Each family of comparisons has its own file.
 #pragma once
 
 #include <vector>
@@ -10,7 +10,7 @@ namespace fogline::benchmarks {
 /// How long the measurements take.
 enum class Effort { kQuick, kFull };
 
-/// The lockstep over udpm and memq, compared with bare LCM processes and hops.
+/// The lockstep over udpm and memq, compared with bare LCM over udpm and memq.
 std::vector<Comparison> LockstepComparisons(Effort effort);
 
 /// Runs in one process, compared with other programs for the same purpose.

@@ -18,8 +18,8 @@ ProgramResult Sweep(int rows, int jobs) {
                      ScratchFolder() / ("sweep-" + std::to_string(rows) + ".csv")});
 }
 
-/// Rows (a run and its paired run without traded control) per second. Removes old sweep files
-/// first, because a sweep would resume them.
+/// Rows per second. A row is a run and its paired run without traded control. This function removes
+/// the files of earlier sweeps first, because a sweep would resume an earlier one.
 double SweepRowsPerSecond(int rows, int jobs) {
   for (const auto& entry : std::filesystem::directory_iterator(ScratchFolder())) {
     if (entry.path().filename().string().starts_with("sweep-")) {
@@ -34,8 +34,8 @@ double SweepPeakMemory_mb(int rows) {
   return Sweep(rows, 2).peak_memory_mb;
 }
 
-/// A log of a run of a million messages, made once. This function also reads it once, so that the
-/// log is in the page cache for both sides.
+/// The log of a run with a million messages. The first call makes the log. It also reads the log
+/// once, so that the log is in the page cache for both sides.
 const std::filesystem::path& LargeLog() {
   static const std::filesystem::path file = [] {
     const std::filesystem::path log = ScratchFolder() / "large.lcm";

@@ -1,20 +1,20 @@
-// Cost of the lockstep compared with the cost of LCM itself.
+// Compares the cost of the lockstep with the cost of LCM itself.
 //
-// Which bare chain is a fair reference? A step of Fogline sends nine messages. Five of them must
-// follow one another: TRUTH, RADAR (or LIDAR), TRACK, ACC_COMMAND, HOST_COMMAND. So the shortest
-// possible step is a message that goes round a ring of five processes. The goal refers to this
-// ring. It is a hard reference, because it sends four messages less and wakes five processes
-// instead of nine. On a machine with few cores, waking processes is most of the work: LCM's
-// multicast wakes every process for every message on the network, whether the process has
-// subscribed or not.
+// Which chain of bare LCM processes is a fair reference? A step of Fogline sends nine messages.
+// Five of these messages must follow one another: TRUTH, RADAR (or LIDAR), TRACK, ACC_COMMAND,
+// HOST_COMMAND. So the shortest possible step is a message that goes round a ring of five
+// processes. The goal refers to this ring. The ring is a hard reference, because it sends four
+// messages fewer and wakes five processes instead of nine. On a machine with few cores, waking
+// processes is most of the work. LCM's multicast wakes every process for every message on the
+// network, even if the process has not subscribed to the message's channel.
 //
-// Two more references show where the time goes. The ring of nine hops sends as many messages as a
-// step, but all one after another. The bare graph has Fogline's own wiring, recorder included, with
-// processes that only count steps. The difference between Fogline and this graph is the lockstep's
-// own work (decoding, checking, remembering, computing, logging).
+// Two more references show which work takes the time. The ring of nine hops sends as many messages
+// as a step, but all one after another. The bare graph has the same roles and channels as Fogline,
+// recorder included, but its processes only count steps. The difference between Fogline and this
+// graph is the lockstep's own work (decoding, checking, remembering, computing, logging).
 //
 // memq has one process and no parallel work. It handles all nine messages one after another, so
-// nine bare hops are the cost of a step in LCM.
+// nine bare hops have the cost of a step in LCM.
 #include <filesystem>
 
 #include <nlohmann/json.hpp>
@@ -54,8 +54,8 @@ double RunSeconds(const Options& options, int steps) {
   return nlohmann::json::parse(RunProgram(command).out)["wall_s"];
 }
 
-/// Microseconds per step. They are computed from a long and a short run, so that the cost of
-/// starting and ending cancels out.
+/// Microseconds per step. They are computed from a long and a short run, so that the cost of the
+/// start and the end of a run cancels out.
 double LockstepStepMicros(const Options& options, int steps) {
   constexpr int kShort = 500;
   const double more_s = RunSeconds(options, kShort + steps) - RunSeconds(options, kShort);

@@ -1,5 +1,5 @@
-// Runs in one process, compared with other programs for the same purpose: a GNU Octave script of
-// the paper, and SUMO with three cars. tests/campaign/peers makes both peers.
+// Compares runs in one process with two other programs for the same purpose: a GNU Octave script of
+// the paper, and SUMO with three cars. The files of both programs are in tests/campaign/peers.
 #include <cstdint>
 #include <fstream>
 #include <stdexcept>
@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kCars = 3;
 
-/// Runs of the paper's experiment per second, measured on the single core of this thread.
+/// Runs of the paper's experiment per second, measured in this thread, which uses one core.
 double ClosedLoopRunsPerSecond(double duration_s) {
   Scenario scenario = LoadScenario("scenario/paper.json");
   closed_loop::ClosedLoop loop(scenario);
@@ -62,8 +62,8 @@ double SumoSeconds(int steps) {
       .wall_s;
 }
 
-/// Updates of a car per second. They are computed from a long and a short run, so that the cost of
-/// loading cancels out.
+/// Updates of single cars per second. They are computed from a long and a short run, so that the
+/// cost of loading cancels out.
 double SumoUpdatesPerSecond(int steps) {
   constexpr int kShort = 1'000;
   return kCars * steps / (SumoSeconds(kShort + steps) - SumoSeconds(kShort));

@@ -8,7 +8,7 @@
 
 namespace fogline::benchmarks {
 
-/// Place and time of a measurement.
+/// Machine and date of a measurement.
 struct Occasion {
   std::string cpu;  // model name, as the kernel gives it
   unsigned cores = 0;

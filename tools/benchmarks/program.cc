@@ -23,7 +23,7 @@ constexpr int kCannotStart = 127;
 class Scratch {
  public:
   Scratch() {
-    // tools/test removes old folders from Testing/tmp.
+    // The folder is in Testing/tmp, because tools/test removes old folders from there.
     const auto build = std::filesystem::read_symlink("/proc/self/exe").parent_path().parent_path();
     std::filesystem::create_directories(build / "Testing" / "tmp");
     std::string name = (build / "Testing" / "tmp" / "bench-XXXXXX").string();

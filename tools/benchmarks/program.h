@@ -8,7 +8,7 @@
 
 namespace fogline::benchmarks {
 
-/// A program of this build, such as "fogline".
+/// The path of a program of this build, such as "fogline".
 std::string ProgramPath(const std::string& name);
 
 /// Result of a program that ended with exit code 0.
@@ -19,10 +19,11 @@ struct ProgramResult {
 };
 
 /// Runs a program to its end. A name without a slash is looked up in PATH.
-/// @throws std::runtime_error with the end of its stderr if it cannot start or does not exit with 0
+/// @throws std::runtime_error if the program cannot start, or if its exit code is not 0; then the
+/// text contains the last line of its stderr
 ProgramResult RunProgram(const std::vector<std::string>& command);
 
-/// A folder of this process, removed when the process ends.
+/// A folder for the files of this process. The end of the process removes the folder.
 const std::filesystem::path& ScratchFolder();
 
 /// Wall-clock seconds that `work` takes.

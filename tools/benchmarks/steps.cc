@@ -1,5 +1,6 @@
-// fogline-bench-steps: cost of each Step function, and of the whole closed loop. The inputs are
-// those of a recorded run, repeated in a loop. The algorithms keep their state between the calls.
+// fogline-bench-steps: measures the cost of each Step function, and of the whole closed loop. The
+// inputs come from a recorded run and are repeated in a loop. The algorithms keep their state
+// between the calls.
 #include <benchmark/benchmark.h>
 
 #include <vector>
@@ -37,7 +38,7 @@ const Scenario& Paper() {
   return scenario;
 }
 
-/// Fog as a physical model, with a LiDAR of many beams.
+/// A scenario with a physical fog model and a LiDAR with many beams.
 const Scenario& DenseFog() {
   static const Scenario scenario = LoadScenario("scenario/dense_fog.json");
   return scenario;
@@ -48,7 +49,8 @@ const std::vector<Recorded>& PaperSteps() {
   return steps;
 }
 
-/// Steps in which the ACC's solver had to work: the car ahead brakes hard and then stands.
+/// Steps in which the ACC needed its active-set solver, because the car ahead brakes hard and then
+/// stands still.
 const std::vector<Recorded>& HardSteps(const Scenario& scenario) {
   static const std::vector<Recorded> steps = [&scenario] {
     std::vector<Recorded> hard = Record(scenario);
@@ -60,7 +62,7 @@ const std::vector<Recorded>& HardSteps(const Scenario& scenario) {
   return steps;
 }
 
-/// Measures the time of `call` on one recorded step after another, in a loop.
+/// Measures the time of `call` on each recorded step in turn, and then starts again.
 template <class Call>
 void Replay(benchmark::State& state, const std::vector<Recorded>& steps, Call&& call) {
   if (steps.empty()) return state.SkipWithError("no such step in the recorded run");

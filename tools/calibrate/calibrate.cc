@@ -11,11 +11,12 @@
 namespace fogline::calibrate {
 namespace {
 
-// The search of the whole range gets this share of the evaluations.
+// The search in the whole range gets this share of the evaluations.
 constexpr double kGlobalPart = 0.6;
-// The table counts as met when every number is within a thousandth of a point.
+// A table with at most this objective meets the target: each number differs by at most 0.001
+// points.
 constexpr double kMet = 1e-6;
-// A sensitivity varies a field by this share of its range to either side.
+// To find its sensitivity, a field is changed by this share of its range in both directions.
 constexpr double kHalfStep = 0.005;
 
 /// One search. It evaluates points and keeps the best one. A point gives each field as a share of
@@ -26,11 +27,11 @@ class Search {
       : objective_(objective), go_on_(go_on), progress_(progress) {}
 
   bool found() const { return !result_.values.empty(); }
-  /// Reason of the first scenario that cannot run; "" if there is none.
+  /// The reason why the first refused scenario cannot run; "" if no scenario was refused.
   const std::string& refusal() const { return refusal_; }
   Calibration TakeResult() { return std::move(result_); }
 
-  /// Evaluates the point at which Run() starts as long as no better point is known.
+  /// Evaluates the first point. Run() starts at this point or at a better point found since.
   void Begin(std::vector<double> shares) {
     best_shares_ = std::move(shares);
     Try(best_shares_);
@@ -98,7 +99,8 @@ std::optional<Calibration> Calibrate(const Objective& objective, int max_evaluat
 
 namespace {
 
-/// The value below and the value above: half a percent of the range away, or one for an integer.
+/// A value below and a value above `value`. They differ from `value` by half a percent of the
+/// range, or by one for an integer.
 std::pair<double, double> Around(const FreeField& field, double value) {
   if (field.is_integer()) {
     return {std::max(field.lowest(), value - 1), std::min(field.highest(), value + 1)};

@@ -1,4 +1,4 @@
-// Finds those values of a scenario's free fields with which the scenario's table is nearest to a
+// Finds the values of a scenario's free fields with which the scenario's table is nearest to a
 // target. Also finds the influence of each field on the table.
 #pragma once
 
@@ -15,17 +15,17 @@ using SearchProgress = std::function<void(int evaluations, double best)>;
 
 /// Result of a search.
 struct Calibration {
-  std::vector<double> values;  // of the free fields, the best so far
+  std::vector<double> values;  // best values of the free fields so far
   Evaluation best;
-  std::optional<double> objective_at_start;  // none if the scenario could not run there
+  std::optional<double> objective_at_start;  // at the first point; empty if no run is possible
   int evaluations = 0;
   bool interrupted = false;
 };
 
-/// Searches from the scenario's own values (moved into the bounds where they are outside): first in
-/// the whole range, then around the best point. It ends early when the table is met. The result
-/// depends only on the problem and on the number of evaluations. It is empty if `go_on` returned
-/// false before the first evaluation was complete.
+/// Starts at the scenario's own values. A value outside its bounds is moved to the bound. Searches
+/// first in the whole range, then around the best point. The search ends early when the table meets
+/// the target. The result depends only on the problem and on the number of evaluations. The result
+/// is empty if `go_on` returned false before the first evaluation was complete.
 /// @param max_evaluations at least 1
 /// @throws InputError if the scenario can run at no evaluated point
 std::optional<Calibration> Calibrate(const Objective& objective, int max_evaluations,
@@ -37,12 +37,13 @@ struct Change {
   std::optional<double> rhe_pct;
 };
 
-/// For each free field the change of each row.
+/// For each free field, the change of each row.
 using SensitivityTable = std::vector<std::vector<Change>>;
 
-/// Central differences between half a percent of a field's range below and above `values`. An
-/// integer changes by one to either side, and the difference is scaled to 1 %. At a bound the
-/// difference is one-sided. The result is empty if `go_on` returned false.
+/// Central differences at `values`. A number is changed by half a percent of its range in both
+/// directions. An integer is changed by one in both directions, and the difference is scaled to a
+/// change by 1 %. At a bound the difference is one-sided. The result is empty if `go_on` returned
+/// false.
 std::optional<SensitivityTable> Sensitivities(const Objective& objective,
                                               const std::vector<double>& values, const GoOn& go_on);
 

@@ -1,5 +1,5 @@
-// fogline calibrate, a program of its own: finds those values of fields with which a scenario's
-// table is nearest to a target table, or several sets of values that all meet it.
+// fogline calibrate, a program of its own. It finds the values of fields with which a scenario's
+// table is nearest to a target table, or several sets of values that all meet the target table.
 #include <memory>
 #include <optional>
 #include <system_error>
@@ -152,7 +152,7 @@ CalibrationProblem MakeProblem(const CalibrateArguments& arguments) {
   return problem;
 }
 
-/// Whether a file has the form of a scenario; its values may be invalid.
+/// Whether a file has the form of a scenario. The scenario's values may be invalid.
 bool IsScenario(const std::filesystem::path& file) {
   const FileText read = ReadFile(file, kMaxFileBytes);
   DiagnosticList diagnostics;
@@ -161,8 +161,9 @@ bool IsScenario(const std::filesystem::path& file) {
   return object != nullptr && FindMember(*object, "version") != nullptr;
 }
 
-/// The text of the scenario file for a file in another folder: with the overrides in it and
-/// everything else unchanged. Paths in it are relative to its folder.
+/// The text of the scenario file for a file in `folder`. The text contains the overrides. Relative
+/// paths in the text are changed, so that they lead to the same files from `folder`. Everything
+/// else is unchanged.
 std::string TextIn(const std::filesystem::path& folder, const CalibrateArguments& arguments,
                    const Scenario& scenario) {
   namespace fs = std::filesystem;
@@ -184,7 +185,8 @@ std::string TextIn(const std::filesystem::path& folder, const CalibrateArguments
   return text;
 }
 
-/// Checks before the search that its result can be written. @return TextIn() for it
+/// Checks before the search that the result can be written. @return TextIn() for the result's
+/// folder
 std::string PrepareOut(const CalibrateArguments& arguments, const Scenario& scenario) {
   RefuseToReplace(arguments.out, "--out", arguments.force, "scenario", IsScenario);
   RequireWritable(arguments.out, "--out");
@@ -249,7 +251,8 @@ int RunCalibrate(const CalibrateArguments& arguments) {
   return kDone;
 }
 
-/// The command that finds the same ensemble again: without the options that do not matter for it.
+/// The command that finds the same ensemble again. It omits options that do not change the
+/// ensemble.
 std::string CommandOf(const CalibrateArguments& arguments) {
   std::string command = fmt::format("fogline calibrate {}", arguments.scenario.string());
   const auto add = [&](std::string_view option, const auto& value) {
@@ -308,7 +311,7 @@ int RunEnsemble(const CalibrateArguments& arguments) {
   const EnsembleFolder folder(arguments.out, arguments.force);
   const std::string text =
       TextIn(std::filesystem::absolute(arguments.out), arguments, searched.problem().scenario);
-  ParseScenario(WithOrigin(report, 0, text), SetFileName(0));  // before long work
+  ParseScenario(WithOrigin(report, 0, text), SetFileName(0));  // throws before the long search
   WatchInterrupts();
   report.found = SearchEnsemble(searched, fresh, rules);
   if (arguments.json) {

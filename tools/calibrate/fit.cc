@@ -54,7 +54,7 @@ std::string FieldsText(const CalibrationProblem& problem, const std::vector<doub
   return text;
 }
 
-/// Target, mean reached, difference and standard deviation of one measure.
+/// Target, reached mean, difference and standard deviation of one measure.
 std::string Measure(const stats::Statistics& reached, Number target) {
   return fmt::format("{:>10}{:>10}{:>12}{:>8}", Cell(target), Cell(reached.mean()),
                      Signed(Difference(reached.mean(), target)), Cell(reached.deviation()));

@@ -15,13 +15,13 @@ struct Findings {
   std::optional<SensitivityTable> sensitivities;  // empty if the search was interrupted
 };
 
-/// A row of a table beside the target: a row of `fogline table --json` with the target added.
+/// A row as `fogline table --json` prints it, with the target added.
 nlohmann::ordered_json RowJson(const TargetRow& target, const TableRow& row);
 
 /// Values, residuals and sensitivities as tables.
 std::string FindingsText(const CalibrationProblem& problem, const Findings& findings);
 
-/// The same as JSON. "rows" are those of `fogline table --json`, each with the target added.
+/// The findings as JSON. "rows" has the rows of `fogline table --json`, each with the target added.
 /// @param scenario name of the scenario's file
 std::string FindingsJson(const CalibrationProblem& problem, const Findings& findings,
                          const std::string& scenario);

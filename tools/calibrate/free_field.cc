@@ -123,8 +123,8 @@ double FreeField::ValueAt(double share) const {
   const double exact = is_logarithmic_ ? lowest_ * std::pow(highest_ / lowest_, share)
                                        : lowest_ + share * (highest_ - lowest_);
   if (is_integer_) return std::clamp(std::round(exact), lowest_, highest_);
-  // Goes through decimal digits, so that the number is the nearest one to a short text and prints
-  // as that text.
+  // Prints the number with few decimal digits and reads this text again. So the result always
+  // prints as this short text.
   const int decimals = kLinearDigits - static_cast<int>(std::floor(std::log10(highest_ - lowest_)));
   const std::string rounded = is_logarithmic_
                                   ? fmt::format("{:.{}g}", exact, kLogarithmicDigits)

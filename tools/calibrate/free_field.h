@@ -10,14 +10,15 @@
 
 namespace fogline::calibrate {
 
-/// A number or integer outside lists, with its bounds and its scale. A search gives a value as its
-/// share of the range, in [0, 1]. On a logarithmic scale equal shares are equal factors.
+/// A number or integer that is not in a list, with its bounds and its scale. A search gives a value
+/// as its share of the range, in [0, 1]. On a logarithmic scale, equal differences of the share are
+/// equal factors of the value.
 class FreeField {
  public:
   /// "/pointer=lowest:highest", or "/pointer=lowest:highest:log" for a field that spans orders of
   /// magnitude.
-  /// @throws InputError if the pointer names no such field, if the bounds are not in ascending
-  /// order, or if they are outside the field's own range
+  /// @throws InputError if the pointer names no number or integer, if the bounds are not in
+  /// ascending order, or if they are outside the field's own range
   explicit FreeField(const std::string& text);
 
   const std::string& pointer() const { return assignment_.pointer(); }
@@ -28,10 +29,11 @@ class FreeField {
   bool is_logarithmic() const { return is_logarithmic_; }
 
   /// The rounded value at a share of the range. An integer is rounded to an integer. A number on a
-  /// linear scale is rounded to 1e-5 of the range or finer, on a logarithmic scale to six digits.
-  /// So the value in a file is short, and it is exactly the value of the evaluation.
+  /// linear scale is rounded to 1e-5 of the range or finer. A number on a logarithmic scale is
+  /// rounded to six digits. So a file has a short text for the value, and this text is exactly the
+  /// evaluated value.
   double ValueAt(double share) const;
-  /// The share at which a value lies; 0 or 1 if the value is outside the bounds.
+  /// The share of the range that belongs to a value; 0 or 1 if the value is outside the bounds.
   double ShareOf(double value) const;
 
   double Get(const Scenario& scenario) const;

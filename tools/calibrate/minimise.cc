@@ -13,12 +13,13 @@ constexpr double kFirstStep = 0.05;
 constexpr double kSmallestStep = 1e-6;
 
 // DIRECT-L (Gablonsky & Kelley 2001) divides the range and uses no random numbers. Subplex (Rowan
-// 1990) copes with the jumps of an objective where the human drives one time step more or less.
+// 1990) tolerates jumps of the objective. A jump occurs where the human drives one time step more
+// or less.
 nlopt::algorithm AlgorithmFor(Reach reach) {
   return reach == Reach::kWholeRange ? nlopt::GN_DIRECT_L : nlopt::LN_SBPLX;
 }
 
-/// NLopt lets only its own exceptions pass. Guarded stores any other exception.
+/// NLopt passes on only its own exceptions. So Guarded stores any other exception.
 struct Guarded {
   const FunctionOfShares& function;
   std::exception_ptr failure;

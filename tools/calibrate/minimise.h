@@ -7,8 +7,8 @@
 
 namespace fogline::calibrate {
 
-/// A function of a point. A point gives each field as a share of the field's range, in [0, 1]. No
-/// value stops a search.
+/// A function of a point. A point gives each field as a share of the field's range, in [0, 1]. The
+/// result nullopt stops a search.
 using FunctionOfShares = std::function<std::optional<double>(const std::vector<double>& shares)>;
 
 enum class Reach {
@@ -17,8 +17,9 @@ enum class Reach {
 };
 
 /// Searches from `start`. The search ends after `most` evaluations, at a value of at most `enough`,
-/// or when its steps are as small as the rounding of values. It uses no random numbers. It returns
-/// nothing, because `function` sees each point. It passes on exceptions of `function`.
+/// or when its steps are as small as the rounding of values. The search uses no random numbers.
+/// Minimise() returns nothing, because `function` gets each point. Minimise() passes on exceptions
+/// of `function`.
 /// @param most at least 1
 void Minimise(Reach reach, const FunctionOfShares& function, std::vector<double> start,
               double enough, int most);

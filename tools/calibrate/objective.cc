@@ -16,7 +16,8 @@
 namespace fogline::calibrate {
 namespace {
 
-// Residual of a seed whose runs do not have the measure: the published SI lies in [-1000, 100] %.
+// Residual of a seed whose runs do not have the measure. It is the largest magnitude of a published
+// SI, which is in [-1000, 100] %.
 constexpr double kMissingResidualPts = 1000;
 
 double Square(double x) { return x * x; }
@@ -100,8 +101,7 @@ std::optional<Evaluation> Objective::Evaluate(std::span<const double> values,
                       return complete = go_on();
                     });
   } catch (const InputError& error) {
-    // Fields whose values are valid one by one can be invalid together, such as the weights of an
-    // ACC.
+    // Values that are valid one by one can be invalid together, such as the weights of an ACC.
     return Evaluation{.rows = {},
                       .objective = std::numeric_limits<double>::max(),
                       .refusal = fmt::format("{} with {}", error.what(), NameOf(values))};

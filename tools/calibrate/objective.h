@@ -1,4 +1,4 @@
-// Distance of a scenario's table from a target table. A calibration minimises it.
+// Distance of a scenario's table from a target table. A calibration minimises this distance.
 #pragma once
 
 #include <functional>
@@ -22,11 +22,11 @@ struct CalibrationProblem {
   std::vector<FreeField> fields;
   std::vector<TargetRow> target;
   sweep::SeedRange seeds;
-  /// Weight of a squared residual of RHE, and of the variance of SI over the seeds. The weight of a
-  /// squared residual of SI is 1.
+  /// `rhe_weight` is the weight of a squared residual of RHE. `spread_weight` is the weight of the
+  /// variance of SI over the seeds. The weight of a squared residual of SI is 1.
   double rhe_weight = 1;
   double spread_weight = 0.01;
-  /// Whether the gaps follow from the other fields (steady_start.h).
+  /// Whether the gaps are computed from the other fields (steady_start.h).
   bool steady = false;
   /// Number of threads. It does not change the result.
   int jobs = 1;
@@ -41,12 +41,12 @@ struct FieldValue {
 /// A row of the table over all seeds.
 struct TableRow {
   stats::Statistics
-      si_pct;  // only of seeds that have SI: it needs compromised safety in the paired run
+      si_pct;  // only of seeds that have SI; SI needs compromised safety in the paired run
   stats::Statistics rhe_pct;
 };
 
 struct Evaluation {
-  std::vector<TableRow> rows;  // as many as the target has
+  std::vector<TableRow> rows;  // one for each row of the target
   double objective = 0;        // square points
   std::string refusal;         // why the scenario cannot run; then `rows` is empty
 };
@@ -60,12 +60,12 @@ using GoOn = std::function<bool()>;
 ///
 /// in square points; a star marks the target's values. Every evaluation uses the same seeds (common
 /// random numbers), so J changes only with the fields. A seed without SI counts with a residual of
-/// 1000 points, the largest magnitude of SI. So the search gains nothing from fields that let no
-/// compromised safety arise.
+/// 1000 points, the largest magnitude of SI. So the search gains nothing from values of fields that
+/// prevent all compromised safety.
 class Objective {
  public:
   /// @throws InputError if the scenario's policy does not use the threshold, or if a free field is
-  /// also derived
+  /// also a derived field
   explicit Objective(CalibrationProblem problem);
 
   /// The table with these values of the free fields, each within its bounds. The result is empty if
@@ -76,14 +76,14 @@ class Objective {
   std::vector<double> ValuesAt(std::span<const double> shares) const;
   /// The scenario with these values. @throws InputError as StartSteadily()
   Scenario With(std::span<const double> values) const;
-  /// All fields that With() sets: the free ones, then the derived ones. @throws InputError as
+  /// All fields that With() sets: the free fields, then the derived fields. @throws InputError as
   /// With()
   std::vector<FieldValue> Changes(std::span<const double> values) const;
 
   const CalibrationProblem& problem() const { return problem_; }
 
  private:
-  /// "/fog/bias_m=0.3": the values of the free fields, for messages.
+  /// The values of the free fields for messages, such as "/fog/bias_m=0.3".
   std::string NameOf(std::span<const double> values) const;
   double Sum(const std::vector<TableRow>& rows) const;
 

@@ -9,11 +9,11 @@
 
 namespace fogline::calibrate {
 
-/// Error of the fused distance in clear air, m: the sensors' offsets, in proportion to the filter's
-/// trust in their ranges, the inverse variances.
+/// Error of the fused distance in clear air, m: the weighted mean of the sensors' offsets. The
+/// weight of a sensor is the inverse variance of its range in the filter.
 double TrackOffset(const Scenario& scenario);
 
-/// A field that follows from other fields.
+/// A field whose value is computed from other fields.
 struct DerivedField {
   std::string_view pointer;
   double value = 0;
@@ -23,18 +23,18 @@ struct DerivedField {
 inline constexpr std::array<std::string_view, 3> kSteadyFields{
     "/world/host_gap_m", "/acc/standstill_m", "/world/follower_gap_m"};
 
-/// Sets the gaps with which neither automation, human nor follower accelerates at step 0 in clear
-/// air. All cars have the host's speed v.
+/// Sets the gaps so that automation, human and follower do not accelerate at step 0 in clear air.
+/// All cars have the host's speed v.
 ///
 /// - The host's gap is the equilibrium of the driver's IDM: (s_0 + v T) / sqrt(1 - (v/v_0)^delta).
-/// - The ACC's standstill gap makes this gap the ACC's own, d_r = T_hw v + d_0. The ACC sees the
-///   fused distance, with its TrackOffset().
-/// - The follower's gap is that of its own ACC.
+/// - The ACC's standstill gap d_0 makes the ACC's desired gap, d_r = T_hw v + d_0, equal to the
+///   fused distance. The fused distance is the host's gap plus TrackOffset().
+/// - The follower's gap is the desired gap of the follower's own ACC.
 ///
 /// Values are rounded to 0.1 mm.
 /// @return the fields, in the order of kSteadyFields
 /// @throws InputError if the cars differ in speed, if the driver's model is not the IDM or has no
-/// such gap, or if a value is outside its field's range
+/// equilibrium gap, or if a value is outside its field's range
 std::vector<DerivedField> StartSteadily(Scenario& scenario);
 
 }  // namespace fogline::calibrate

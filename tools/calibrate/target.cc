@@ -26,8 +26,8 @@ std::optional<double> AsNumber(const JsonValue& value) {
   return std::nullopt;
 }
 
-/// Reads a field of a published row; a target's row has the same ranges. A missing number becomes
-/// NaN.
+/// Reads a number of a target row into the field of a published row. Both kinds of rows have the
+/// same ranges. A missing number becomes NaN.
 void ReadField(const JsonObject& object, const Field& field, DiagnosticList& diagnostics) {
   const auto& [value, spec] = *field.As<NumberField>();
   *value = std::nan("");
@@ -82,8 +82,8 @@ std::vector<TargetRow> ReadRows(const JsonValue& root, DiagnosticList& diagnosti
   return target;
 }
 
-/// Throws all diagnostics, each with its place as in a scenario, but without the hints about fields
-/// of scenarios.
+/// Throws all diagnostics. Each diagnostic has its position in the file, but no hint about the
+/// fields of scenarios.
 [[noreturn]] void Throw(DiagnosticList& diagnostics, const std::vector<Source>& sources) {
   std::string text;
   try {

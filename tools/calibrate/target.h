@@ -16,10 +16,9 @@ struct TargetRow {
   std::optional<double> rhe_pct;
 };
 
-/// The rows of {"rows": [{"threshold": 0.5, "si_pct": 80.79, "rhe_pct": 0}]}, which is also the
-/// form that `fogline table --json` prints. Other keys are ignored. null stands for a missing
-/// number.
-/// @throws InputError with every mistake and its place
+/// The rows of {"rows": [{"threshold": 0.5, "si_pct": 80.79, "rhe_pct": 0}]}. `fogline table
+/// --json` prints the same form. Other keys are ignored. null marks a missing number.
+/// @throws InputError with every mistake and its position in the file
 std::vector<TargetRow> ReadTarget(const std::filesystem::path& file);
 
 /// The published rows of a scenario.

@@ -17,7 +17,7 @@ namespace fogline::exports {
 namespace {
 
 constexpr std::string_view kScenarioFile = "scenario.json";
-// Text goes to the file in pieces of about this size, so that it takes little memory.
+// Text is written in pieces of about this size, so that it needs little memory.
 constexpr std::size_t kPieceBytes = 1 << 16;
 
 std::filesystem::path FileOf(std::string_view channel, const std::filesystem::path& folder) {
@@ -91,7 +91,8 @@ std::vector<std::filesystem::path> CsvFiles(const std::filesystem::path& folder)
 
 bool IsCsvExport(const std::filesystem::path& file) {
   if (file.filename() != kScenarioFile) return IsChannel(file);
-  // Other scenarios also begin like this. So the files beside scenario.json must be exports, too.
+  // Scenarios that are no exports also begin with this text. So the files beside scenario.json must
+  // be exports, too.
   if (!BeginsWith(file, "{\n  \"version\": ")) return false;
   const std::vector<std::filesystem::path> files = CsvFiles(file.parent_path());
   return std::all_of(files.begin(), files.end() - 1, IsChannel);

@@ -1,4 +1,4 @@
-// Tables as CSV: one file for each channel, with a header line.
+// Writes tables as CSV: one file for each channel, with a header line.
 #pragma once
 
 #include <filesystem>
@@ -15,9 +15,9 @@ std::vector<std::filesystem::path> CsvFiles(const std::filesystem::path& folder)
 /// Whether WriteCsv() could have written the file, judged by its beginning.
 bool IsCsvExport(const std::filesystem::path& file);
 
-/// Writes the files of CsvFiles() as AtomicFiles, scenario.json last. So, even if the process is
-/// killed, no folder has files of two logs, and a folder with scenario.json has all files of one
-/// log. The old files stay as they are when the disk is full. Columns have the names of fields. The
+/// Writes the files of CsvFiles() as AtomicFiles, scenario.json last. So a folder never has files
+/// of two logs, even if the process is killed. A folder with scenario.json has all files of one
+/// log. If the disk is full, the old files do not change. Columns have the names of fields. The
 /// columns of a list are "state.0", "state.1" and so on. Numbers have enough digits to restore
 /// every bit.
 /// @throws InputError if a file cannot be created in the folder; std::runtime_error when the disk

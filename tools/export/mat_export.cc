@@ -24,10 +24,10 @@
 namespace fogline::exports {
 namespace {
 
-// Beginning of a file of level 5. Readers evaluate only its first word. It has no time of day,
-// which matio would add.
+// Beginning of a MAT-file of level 5. Readers evaluate only the first word. This beginning has no
+// time of day, unlike matio's default.
 constexpr const char* kHeader = "MATLAB 5.0 MAT-file, Fogline";
-// MAT-files have sizes of 32 bits, and readers take them as signed numbers.
+// MAT-files have sizes of 32 bits, and readers interpret these sizes as signed numbers.
 constexpr std::size_t kMaxBytes = std::numeric_limits<std::int32_t>::max();
 constexpr std::string_view kHeaderStruct = "header";
 
@@ -37,7 +37,7 @@ struct Free {
 };
 using Variable = std::unique_ptr<matvar_t, Free>;
 
-/// The names of a type of numbers in a MAT-file.
+/// matio's two names for one type of numbers.
 struct MatType {
   matio_classes class_type;
   matio_types data_type;
@@ -63,7 +63,7 @@ Variable MatrixOf(const FieldTable& field, std::size_t messages) {
       field.values);
 }
 
-/// A struct with these fields. The names of the header's fields lose the prefix "header.".
+/// A struct with these fields, which have no values yet.
 Variable StructOf(const char* name, const std::vector<std::string>& names) {
   std::vector<const char*> pointers;
   for (const std::string& one : names) pointers.push_back(one.c_str());
@@ -72,6 +72,7 @@ Variable StructOf(const char* name, const std::vector<std::string>& names) {
   return Variable(Mat_VarCreateStruct2(name, size.size(), size.data(), pointers.data()));
 }
 
+/// The struct of a channel. The names of the header's fields lose the prefix "header.".
 Variable StructOf(const ChannelTable& table) {
   const std::string prefix = std::string(kHeaderStruct) + '.';
   std::vector<std::string> of_header;
@@ -104,12 +105,12 @@ std::size_t BytesOf(const ChannelTable& table) {
   return bytes;
 }
 
-/// Fails with the reason why matio could not write the tables, which matio does not tell. Whatever
-/// kept matio from writing also keeps this function from writing as many bytes in the same place.
+/// Throws the reason why matio could not write the tables. matio does not report the reason. So
+/// this function writes as many bytes to the same file, and fails for the same reason.
 /// @throws std::runtime_error
 [[noreturn]] void Fail(const RunTables& tables, const std::filesystem::path& path,
                        AtomicFile& file) {
-  constexpr std::size_t kMostOfField = 1024;  // its name and the descriptions of its matrix
+  constexpr std::size_t kMostOfField = 1024;  // bytes of a field's name and matrix description
   const std::string zeros(1 << 20, '\0');
   std::size_t bytes = tables.scenario.size();
   for (const ChannelTable& table : tables.channels) {
@@ -126,9 +127,9 @@ Variable TextVariable(const char* name, std::string text) {
       Mat_VarCreate(name, MAT_C_CHAR, MAT_T_UINT8, size.size(), size.data(), text.data(), 0));
 }
 
-/// Whether the file has this number of variables, and all of them are whole. Their sizes must lead
-/// from the first variable to the end of the file. matio does not report every failed write to a
-/// full disk.
+/// Whether the file has this number of variables, and all of them are complete. The sizes of the
+/// variables must add up to the end of the file. This check is necessary because matio does not
+/// report every failed write to a full disk.
 bool IsWhole(const std::filesystem::path& file, std::size_t variables) {
   constexpr std::streamoff kHeaderBytes = 128;
   std::ifstream in(file, std::ios::binary);

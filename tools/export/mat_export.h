@@ -10,11 +10,11 @@ namespace fogline::exports {
 /// Whether WriteMat() has written the file, judged by its beginning.
 bool IsMatExport(const std::filesystem::path& file);
 
-/// Writes the file, whole or not at all. Each channel is one struct, such as TRUTH, with one column
+/// Writes the complete file or nothing. Each channel is one struct, such as TRUTH, with one column
 /// vector for each field. A field that is a list is a matrix with one row for each message. The
-/// header is a struct within the struct (TRUTH.header.step). Types are those of the fields: int64,
-/// int32, int8 and double. The variable `scenario` is the scenario's text. Equal logs give equal
-/// files.
+/// header is a struct within the struct (TRUTH.header.step). Values have the types of the fields:
+/// int64, int32, int8 and double. The variable `scenario` is the scenario's text. Equal logs give
+/// equal files.
 /// @throws InputError if the file cannot be created, or a channel is larger than the format can
 ///     hold; std::runtime_error when the disk is full; Interrupted
 void WriteMat(const RunTables& tables, const std::filesystem::path& file);

@@ -20,7 +20,7 @@ namespace {
 template <class M>
 class Tabulator {
  public:
-  /// @throws InputError without the log's name, which the caller adds to the text
+  /// @throws InputError whose text lacks the log's name; the caller adds the name
   void Add(runtime::Bytes bytes) {
     if (bytes.empty()) return;  // a run in real time may lack a message
     if (!runtime::Decode(bytes, message_)) {

@@ -35,7 +35,7 @@ struct CompareArguments {
   bool json = false;
 };
 
-/// Recorded data of the real car, and of its leader if the file has them.
+/// Recorded data of the real car, and of its leader if the file has data of the leader.
 struct Recording {
   std::vector<CsvNumber> times_s;
   std::vector<CsvNumber> speeds_mps;
@@ -43,11 +43,12 @@ struct Recording {
   std::vector<CsvNumber> leader_mps;
 };
 
-// Limits for a car on a road. A value beyond these limits is another quantity or unit, or marks a
-// missing value.
+// Limits for a car on a road. A value beyond these limits belongs to another quantity or unit, or
+// marks a missing value.
 constexpr double kFastest_mps = 150;
 constexpr double kFarthest_m = 10'000;
-// The run's leader counts as the recorded one if their speeds never differ by more than this value.
+// The run's leader counts as the recorded leader if their speeds differ by at most this value at
+// all times.
 constexpr double kSameLeader_mps = 0.5;
 
 [[noreturn]] void Refuse(const std::filesystem::path& file, const std::string& why) {
@@ -115,7 +116,7 @@ Recording ReadRecording(const CompareArguments& arguments, const RecordedSection
           std::move(numbers[3])};
 }
 
-/// @throws InputError unless the recording's times ascend and cover those of the run
+/// @throws InputError if the recording's times do not ascend, or do not cover the times of the run
 void CheckTimes(const std::vector<CsvNumber>& times_s, double begin_s, double end_s,
                 const std::filesystem::path& file) {
   if (times_s.empty()) Refuse(file, "no rows");
@@ -165,8 +166,8 @@ class Differences {
   double mean() const { return ours_ / Count(); }
   double recorded_mean() const { return recorded_ / Count(); }
   double rmse() const { return std::sqrt(squares_ / Count()); }
-  /// Root mean square of the differences from their mean. (The choice of a time gap causes a mean
-  /// difference.)
+  /// Standard deviation of the differences. It leaves out the mean difference, which depends on the
+  /// chosen time gap.
   double spread() const {
     const double bias = mean() - recorded_mean();
     return std::sqrt(std::max(0.0, squares_ / Count() - bias * bias));

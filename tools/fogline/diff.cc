@@ -1,4 +1,4 @@
-// fogline diff: the first step and field in which two runs differ.
+// fogline diff: names the first step and field in which two runs differ.
 #include <memory>
 #include <optional>
 

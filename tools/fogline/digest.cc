@@ -1,4 +1,4 @@
-// fogline digest: the digest of a run from its log.
+// fogline digest: prints the digest of a run from its log.
 #include <algorithm>
 #include <iterator>
 #include <memory>
@@ -32,7 +32,7 @@ struct Signature {
   std::string trouble;  // "" if there is none
 };
 
-/// @param key the key with which a log must be signed; nullptr: any key or none
+/// @param key the key with which the log must be signed; nullptr: the signature is not checked
 Signature SignatureOf(const log::RunLog& run, const runtime::SigningKey* key) {
   const bool is_signed = run.seal && runtime::LooksSigned(run.seal->event);
   if (key == nullptr) return {is_signed ? "not checked" : "none", ""};
@@ -49,7 +49,7 @@ Signature SignatureOf(const log::RunLog& run, const runtime::SigningKey* key) {
 }
 
 /// {"world": "0123456789abcdef", ...}, with null for a role that has not reported its build. The
-/// result is null without a seal.
+/// result is null if the log has no complete seal.
 nlohmann::ordered_json BuildsJson(const log::RunLog& run) {
   if (!run.seal || !run.seal->whole) return nullptr;
   nlohmann::ordered_json json = nlohmann::ordered_json::object();
@@ -73,7 +73,8 @@ std::string_view SealState(const log::RunLog& run) {
   return run.seal->copied ? "copy" : "holds";
 }
 
-/// In real time the results are in STATUS, which the seal of a copy does not cover.
+/// Whether the log is a copy of a run in real time. The results of such a run are in STATUS
+/// messages, but the seal of a copy does not cover STATUS messages.
 bool IsUnprovenCopy(const log::RunLog& run) { return run.realtime && SealState(run) == "copy"; }
 
 int RunDigest(const DigestArguments& arguments) {

@@ -40,7 +40,7 @@ struct DoctorArguments {
   bool json = false;
 };
 
-/// Runs an examination. An exception becomes a finding, too.
+/// Runs an examination. An exception (except InputError) becomes a finding, too.
 void Attempt(const char* check, doctor::Findings& findings, const std::function<void()>& examine) {
   try {
     examine();

@@ -1,5 +1,5 @@
-// fogline events: which side drove when, the outcome of every request to take over, and every
-// emergency braking, from logs alone.
+// fogline events: lists the times at which each side drove, the outcome of every request to take
+// over, and every emergency braking. It reads only logs.
 #include <array>
 #include <memory>
 #include <optional>
@@ -45,7 +45,7 @@ RunEvents ReadEvents(const std::filesystem::path& file) {
   return events;
 }
 
-// A time of a request, with its name.
+// The name of a time of a request, and the time.
 using RequestTime = std::pair<const char*, std::optional<std::int64_t>>;
 std::array<RequestTime, 7> TimesOf(const take_over::TakeOverRequest& request) {
   return {{{"requested", request.requested},

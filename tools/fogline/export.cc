@@ -29,8 +29,8 @@ struct ExportArguments {
 
 bool IsMat(const std::filesystem::path& out) { return out.extension() == ".mat"; }
 
-/// The files to be written. Without --force none of them may exist. With --force an existing file
-/// must be an export. @throws InputError
+/// The files to be written. Without --force none of these files may exist. With --force an existing
+/// file must be an export. @throws InputError
 std::vector<std::filesystem::path> FilesOf(const ExportArguments& arguments) {
   const bool is_mat = IsMat(arguments.out);
   const std::vector<std::filesystem::path> files =

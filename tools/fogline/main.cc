@@ -1,4 +1,4 @@
-// fogline: the main program for users. Every verb is in a file of its own.
+// fogline: the main program for users. Every verb has a file of its own.
 #include "tools/cli/own_program.h"
 #include "tools/cli/verb_program.h"
 #include "tools/fogline/verbs.h"

@@ -1,5 +1,5 @@
-// fogline report: the figures and measures of runs as one HTML file, and as PNG, SVG or PDF files
-// for papers.
+// fogline report: writes the figures and measures of runs as one HTML file, and the figures as PNG,
+// SVG or PDF files for papers.
 #include "tools/report/report.h"
 
 #include <algorithm>
@@ -101,7 +101,7 @@ std::string NameOf(const ArbitratorSection& arbitrator) {
   return name + fmt::format("threshold {:g}", arbitrator.threshold);
 }
 
-/// Names that tell the runs apart: by the drivers, then by the seed, then by the log.
+/// Names that distinguish the runs: by the drivers, then by the seed, then by the log.
 std::vector<std::string> NamesOf(std::span<const runner::LoggedRun> runs) {
   const bool with_seed = !HaveOneSeed(runs);
   std::vector<std::string> names;
@@ -136,8 +136,8 @@ std::vector<report::ReportMetric> MetricsOf(const metrics::RunMetrics& measures)
   return out;
 }
 
-/// The table from the logs alone: one row for each run that has a pair; nullopt if no run has a
-/// pair.
+/// The table, from the logs alone. It has one row for each run that has a paired run with SI. The
+/// result is nullopt if no run has such a pair.
 std::optional<report::ReportTable> TableOf(std::span<const runner::LoggedRun> runs,
                                            std::span<const cli::Pairing> pairs) {
   const bool one_seed = HaveOneSeed(runs);
@@ -180,7 +180,7 @@ std::vector<runner::LoggedRun> ReadRuns(std::span<const std::filesystem::path> l
   return runs;
 }
 
-/// The content of a run on the page. It takes the samples out of `run`.
+/// The content of a run on the page. PageOf() moves the samples out of `run`.
 report::ReportRun PageOf(runner::LoggedRun& run, const std::string& name,
                          const metrics::PairedMetrics& paired) {
   return {.name = name,
@@ -234,7 +234,8 @@ nlohmann::ordered_json ToJson(const ReportArguments& arguments,
   return json;
 }
 
-/// Writes the page and the files of figures. If one of them cannot be written, all old files stay.
+/// Writes the page and the files of figures. If one of these files cannot be written, no old file
+/// changes.
 void WriteFiles(const ReportArguments& arguments, std::span<const report::ReportRun> pages,
                 const std::optional<report::ReportTable>& table,
                 const std::optional<report::ReportCurves>& curves) {

@@ -1,4 +1,4 @@
-// fogline run: one run of a scenario.
+// fogline run: makes one run of a scenario.
 #include <cstddef>
 #include <memory>
 #include <optional>
@@ -57,13 +57,13 @@ Examples:
   fogline-driver & fogline run scenario/paper.json --external driver
   fogline run scenario/paper.json --external driver --lcm-url 'udpm://239.255.76.67:7700?ttl=0')";
 
-// The shortest step on the wall clock. Nine processes must pass on a step in this time, and their
-// signs of life must arrive within 64 steps.
+// The shortest step in wall-clock time. In this time nine processes must send and receive the
+// messages of a step. The signs of life of these processes must arrive within 64 steps.
 constexpr double kMinPeriodS = 0.005;
 
 struct RunArguments {
   explicit RunArguments(CLI::App& verb) : scenario(verb), transport(verb, "udpm") {
-    verb.get_option("SCENARIO")->required(false);  // with --resume the log has the scenario
+    verb.get_option("SCENARIO")->required(false);  // --resume takes the scenario from the log
     verb.add_option("--resume", resume, "Go on with the run in this log; the log has the scenario");
     verb.add_option("--log", options.log, "Event log to write");
     verb.add_flag("--force", force, "Replace the log if it exists");
@@ -182,8 +182,9 @@ int RunNew(RunArguments& arguments) {
                            .resumed = std::nullopt});
 }
 
-/// The builds of the roles that a verification has computed again. This process has computed them
-/// with equal results, so they have its build. The other roles are of an unknown build.
+/// The builds of the roles that a verification has computed again. This process has computed these
+/// roles with equal results, so the build of this process counts as theirs. The builds of the other
+/// roles are unknown.
 runtime::RoleBuilds BuildsOf(const replay::Verification& verification) {
   runtime::RoleBuilds builds{};
   for (const Role role : verification.roles) {
@@ -192,9 +193,9 @@ runtime::RoleBuilds BuildsOf(const replay::Verification& verification) {
   return builds;
 }
 
-/// Continues the run of a log to its end. If the log already has the whole run, no step is added.
-/// If such a log has no seal, it is verified, and sealed if the verification holds; --no-verify
-/// omits verification and seal.
+/// Continues the run of a log to its end. If the log already has the whole run, no step is added. A
+/// log with the whole run but without a seal is verified. The log is sealed if the verification
+/// succeeds. --no-verify omits verification and seal.
 int Resume(RunArguments& arguments) {
   runner::ExperimentOptions& options = arguments.options;
   const auto key = runtime::KeyOf(options.traffic);
@@ -219,7 +220,7 @@ int Resume(RunArguments& arguments) {
     throw InputError(fmt::format("{}: error: --resume: {}", PathText(options.log), run.note));
   }
   outcome.result = std::move(run.result);
-  // If there is no seal, the runner ended after the last step and before it sealed the log.
+  // Without a seal, an earlier runner ended after the last step and before it sealed the log.
   const bool to_seal = !run.seal;
   auto& verification = outcome.result.verification;
   if (options.verify.value_or(to_seal)) {

@@ -1,6 +1,6 @@
-// fogline spy: LCM's own lcm-spy with Fogline's message types. Debian's /usr/bin/lcm-spy cannot
-// show these types. It passes an option that Java removed in version 14, and its class path lacks
-// the types.
+// fogline spy: starts LCM's own lcm-spy with Fogline's message types. Debian's /usr/bin/lcm-spy
+// cannot show these types. It passes an option that Java removed in version 14, and its class path
+// lacks the types.
 #include <unistd.h>
 
 #include <cerrno>
@@ -111,7 +111,7 @@ std::vector<std::string> SpyCommand(const SpyArguments& arguments) {
           fmt::format("{}:{}:{}", lcm.string(), charts.string(), types.string()), "lcm.spy.Spy"};
 }
 
-/// Waits until there is traffic to show. @return the network of this traffic
+/// Waits for traffic that can be shown. @return the network of this traffic
 /// @throws Interrupted; std::runtime_error if no traffic came
 std::string FindNetwork(const SpyArguments& arguments) {
   // An announced run is found within this time, and takes precedence over other traffic.
@@ -150,10 +150,10 @@ std::string FindNetwork(const SpyArguments& arguments) {
   throw Interrupted("interrupted before a run came");
 }
 
-/// Lets lcm-spy hear traffic that stays on this machine.
+/// Lets lcm-spy receive traffic that stays on this machine.
 void PreloadHearLoopback() {
   const fs::path library = spy::HearLoopback(fs::read_symlink("/proc/self/exe").parent_path());
-  if (library.empty()) return;  // lcm-spy still hears traffic over other interfaces
+  if (library.empty()) return;  // lcm-spy still receives traffic over other interfaces
   std::string preload = library.string();
   if (const char* others = std::getenv("LD_PRELOAD")) preload += fmt::format(":{}", others);
   setenv("LD_PRELOAD", preload.c_str(), 1);

@@ -1,4 +1,4 @@
-// fogline sweep: a scenario over a grid of fields and a range of seeds, on all cores.
+// fogline sweep: runs a scenario over a grid of fields and a range of seeds, on all cores.
 #include <algorithm>
 #include <memory>
 
@@ -87,8 +87,8 @@ void PrintSummary(const std::filesystem::path& out, const std::string& text) {
   fmt::print("{}\n{}\n", text, PathText(out));
 }
 
-/// The default file for the rows. A repeated sweep finds its own file again, and the file of
-/// another sweep stays.
+/// The default file for the rows. A repeated sweep finds its own file again. The file of another
+/// sweep is not changed.
 std::filesystem::path DefaultOut(const SweepArguments& arguments, const sweep::SweepPlan& plan,
                                  const sweep::Shard& shard) {
   const std::string stem = arguments.scenario.stem().native() + "-sweep";

@@ -1,4 +1,4 @@
-// fogline table: safety improvement and redundant human engagement for each threshold.
+// fogline table: prints safety improvement and redundant human engagement for each threshold.
 #include <algorithm>
 #include <iterator>
 #include <memory>
@@ -88,7 +88,7 @@ runner::ExperimentResult RunOne(const TableArguments& arguments, runner::Experim
   return result;
 }
 
-/// Runs every pair on a transport, with logs if requested.
+/// Runs every pair of runs on a transport, with logs if requested.
 std::vector<sweep::ThresholdRow> RowsByRuns(const TableArguments& arguments,
                                             const runner::ExperimentOptions& options,
                                             Scenario scenario, std::span<const double> thresholds,

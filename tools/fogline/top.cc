@@ -1,4 +1,4 @@
-// fogline top: a text view of the traffic on an LCM network.
+// fogline top: shows the traffic on an LCM network as text.
 #include <poll.h>
 #include <unistd.h>
 
@@ -65,18 +65,18 @@ struct TopArguments {
   bool json = false;
 };
 
-// A flood may leave messages that poll() does not report. So top looks for such messages at this
-// interval.
+// After a flood of messages, poll() may not report the messages that remain. So top looks for such
+// messages at this interval.
 constexpr Duration kLookEvery = milliseconds(50);
-// Interval at which top checks whether another run should be followed. It is not shorter, because
-// opening a network takes time.
+// Interval at which top checks whether it should follow another run. The interval is not shorter,
+// because opening a network takes time.
 constexpr Duration kFollowEvery = milliseconds(100);
 // Every run of this machine announces itself within this time.
 constexpr Duration kDiscovery = 2 * runtime::kBeaconEvery;
-// LCM keeps every channel name that it hears while a network is open, at about 300 bytes each.
-// After this many unknown names top closes the network and opens it again.
+// While a network is open, LCM stores every channel name that it receives, with about 300 bytes for
+// each name. After this many unknown names top closes the network and opens it again.
 constexpr std::int64_t kMostNames = 10'000;
-// Number of announced runs with unreachable networks that are remembered.
+// Largest number of announced runs that top remembers because their networks are unreachable.
 constexpr std::size_t kMaxUnreachable = 64;
 
 Duration FromSeconds(double seconds) {
@@ -101,7 +101,7 @@ class Top {
     if (terminal_) Show();
     for (TimePoint next = began + interval; Clock::now() < end; next += interval) {
       const bool whole = Listen(std::min(next, end));
-      if (!whole && !WasInterrupted()) return kDone;  // q
+      if (!whole && !WasInterrupted()) return kDone;  // the user pressed q
       if (!whole && arguments_.once) throw Interrupted("interrupted before the interval was over");
       if (!whole) return kInterrupted;
       Show();
@@ -119,7 +119,7 @@ class Top {
     names_ = statistics_.unknown_names();
   }
 
-  /// Makes LCM forget the names of channels when there are too many. Follow() then opens the
+  /// Makes LCM forget the names of channels when there are too many names. Follow() then opens the
   /// network of the run again.
   void ForgetNames() {
     if (statistics_.unknown_names() - names_ < kMostNames) return;
@@ -133,7 +133,8 @@ class Top {
     });
   }
 
-  /// Waits until a run is announced, so that the first interval has all of its traffic.
+  /// Waits at most kDiscovery for the announcement of a run, so that the first interval has all
+  /// traffic of the run.
   void Discover() {
     const TimePoint end = Clock::now() + kDiscovery;
     while (listener_ && !followed_ && Clock::now() < end && Listen(Clock::now() + kLookEvery)) {
@@ -169,12 +170,12 @@ class Top {
     if (!followed_) return;
     try {
       followed_->Drain();
-    } catch (const std::exception&) {  // its relay has ended
+    } catch (const std::exception&) {  // the relay of the run has ended
       Leave(runs_.front().run_id);
     }
   }
 
-  /// Stops following this run.
+  /// Stops following this run, and remembers it as unreachable.
   void Leave(std::int64_t run_id) {
     followed_.reset();
     if (unreachable_.size() == kMaxUnreachable) unreachable_.clear();
@@ -213,7 +214,7 @@ class Top {
     std::fflush(stdout);
   }
 
-  /// The network of the followed run, or else the given network.
+  /// The network of the followed run, or the given network if no run is followed.
   const std::string& url() const { return followed_ ? followed_->url() : bus_->url(); }
 
   std::vector<watch::Line> Lines(const watch::TrafficView& view) const {

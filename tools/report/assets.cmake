@@ -1,5 +1,5 @@
-# cmake -DOUT=FILE.cc -DDIR=FOLDER -P assets.cmake: writes the definitions of assets.h, each file as a raw
-# string. With them the program contains its page and needs no path to it at run time.
+# cmake -DOUT=FILE.cc -DDIR=FOLDER -P assets.cmake: writes the definitions for assets.h. Each file
+# becomes a raw string. So the program contains its page, and needs no path to the page at run time.
 set(uplot ../../node_modules/uplot)
 set(assets
   kPageHtml=page.html

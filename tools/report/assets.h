@@ -1,4 +1,4 @@
-// The files of the page, built into the program (assets.cmake writes the definitions).
+// The files of the page, as texts in the program. assets.cmake writes the definitions.
 #pragma once
 
 #include <string_view>

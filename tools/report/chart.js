@@ -2,7 +2,7 @@
 // along the middle of a line.
 
 const TICK_SPACE = {time: 56, value: 34, stripValue: 18};  // smallest distance of ticks, in pixels
-const VALUE_AXIS_WIDTH = 50;               // the same in all charts, so that their time axes line up
+const VALUE_AXIS_WIDTH = 50;               // the same in all charts, so that time axes are aligned
 const TOP = 8;                             // above the plot, in pixels
 const STRIP_HEIGHT = 96;
 const LANE = {height: 4, gap: 2};          // bars above the plot for the time in which the human drives
@@ -33,7 +33,7 @@ function runCore(run) {
   return [null, surface, ink][Math.floor(run.index / PALETTE_SIZE) % CORES];
 }
 
-/** Lines of a run on shared axes: one in its colour and, if the run has a core, the core on top. */
+/** Lines of a run on shared axes: one in the run's colour, and the run's core (if any) on top. */
 function runLines(run, curve, width) {
   const line = {run, curve, stroke: runColour(run), dash: curve.dash, width};
   const core = runCore(run);
@@ -41,7 +41,7 @@ function runLines(run, curve, width) {
   return [{...line, width: 2 * width}, {...line, stroke: core, width: 0.8 * width, isCore: true}];
 }
 
-/** Columns for uPlot: one time axis for all runs, also if their lengths and steps differ. */
+/** Columns for uPlot: one time axis for all runs, even if their lengths and steps differ. */
 function panelData(curves) {
   if (curves.length === 0) return [state.span.slice()];
   return uPlot.join(curves.map(({run, curve}) => [run.columns.time_s, run.columns[curve.column]]));
@@ -106,7 +106,7 @@ function laneSpace(figure, runs) {
   return runs.filter((run) => run.human.length).length * (LANE.height + LANE.gap);
 }
 
-/** Shades areas in which one curve is below another. */
+/** Shades areas in which one curve is below another curve. */
 function drawShortfall(chart, {below, limit}, runs) {
   for (const run of runs) {
     const {time_s: times, [below]: gaps, [limit]: limits} = run.columns;
@@ -129,7 +129,7 @@ function drawShortfall(chart, {below, limit}, runs) {
   }
 }
 
-/** Draws everything that lies under the curves. */
+/** Draws everything that is under the curves. */
 function drawShades(chart, figure, runs) {
   const {ctx, bbox} = chart;
   ctx.save();

@@ -57,7 +57,7 @@ std::string CurveFigureElement(const CurveFigure& figure, const std::string& cap
       caption, fmt::format("{} <span class=\"unit\">%</span>", figure.axis));
 }
 
-/// The number of seeds without SI; "" if all seeds have one.
+/// A sentence with the number of seeds without SI; "" if all seeds have SI.
 std::string MissingText(const ReportCurves& curves) {
   const auto least = std::ranges::min_element(
       curves.points, {}, [](const ReportCurves::Point& point) { return point.si_pct.count; });

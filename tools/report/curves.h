@@ -10,23 +10,24 @@
 
 namespace fogline::report {
 
-/// A point in the plane of mean RHE and mean SI. Thresholds with equal values of both share one
+/// A point in the plane of mean RHE and mean SI. Thresholds with equal RHE and equal SI share one
 /// point.
 struct FrontPoint {
   double rhe_pct = 0;
   double si_pct = 0;
-  std::vector<std::size_t> rows;  // indices of its thresholds in the curves, ascending
+  std::vector<std::size_t> rows;  // ascending indices of the point's thresholds in the curves
   std::string thresholds;  // such as "0.36", or "0.01–0.27" for all thresholds of the curves in
                            // this range
   bool on_front = false;
-  bool beside = true;  // whether a label has room on the right, where the front may be flat
+  bool beside = true;  // whether a label has room to the right of the point; false on a flat front
 };
 
 /// All points, by ascending RHE, then SI. Thresholds without SI or RHE have no point.
 std::vector<FrontPoint> FrontPoints(const ReportCurves& curves);
 
-/// Indices of the points that deserve a label, the most important first: points with a multiple of
-/// 0.1 among their thresholds (those with more thresholds first), then points on the front.
+/// Indices of the points that may get a label, the most important first. Points with a multiple of
+/// 0.1 among their thresholds come first, in descending number of thresholds. The other points on
+/// the front follow.
 std::vector<std::size_t> LabelOrder(const ReportCurves& curves, std::span<const FrontPoint> points);
 
 /// The seeds as text, such as "seeds 1 to 200" or "seed 7".

@@ -1,5 +1,6 @@
-// Figure A: safety improvement and redundant human engagement as functions of the threshold, with bands over
-// the seeds. It also has the state that figures A and B share: the threshold at the reader's cursor.
+// Figure A: safety improvement and redundant human engagement as functions of the threshold, with
+// bands over the seeds. This file also has the state that figures A and B share: the threshold at
+// the reader's cursor.
 
 const {curves} = report;
 
@@ -45,7 +46,7 @@ function curveHeight(width) {
   return Math.round(Math.min(340, Math.max(240, width * 0.5)));
 }
 
-/** The point of figure B whose thresholds include this one, if any. */
+/** The point of figure B whose thresholds include the threshold of this row, if there is one. */
 function pointOf(row) {
   return curves.points.find(({rows}) => rows.includes(row));
 }

@@ -1,4 +1,4 @@
-// The table of figures, from which the page and the figure files for papers are drawn.
+// The table of figures. The page and the figure files for papers are drawn from this table.
 #pragma once
 
 #include <array>
@@ -18,28 +18,29 @@ struct Column {
   double (*value)(std::span<const metrics::Sample> samples, std::size_t index);
 };
 
-/// Colours on paper, as in page.css. RunStyle() distinguishes runs beyond the last colour. Under
-/// simulated protanopia and deuteranopia (Machado, Oliveira & Fernandes 2009) any two of the first
-/// five colours are at least 25 apart in CIELAB, and any two of all eight at least 15. On white
-/// each colour has a contrast of 3 or more.
+/// Colours on white paper, as in page.css. RunStyle() distinguishes runs beyond the last colour.
+/// The colours are tested under simulated protanopia and deuteranopia (Machado, Oliveira &
+/// Fernandes 2009). Any two of the first five colours are at least 25 apart in CIELAB, and any two
+/// of all eight colours at least 15. On white each colour has a contrast of 3 or more.
 inline constexpr std::array<std::string_view, 8> kPalette{
     "#0059a1", "#bd3a29", "#00997f", "#65184c", "#d38003", "#00a0d9", "#5e6572", "#a6484b"};
 inline constexpr std::size_t kPaletteSize = kPalette.size();
 
-/// Classes of page.css for the elements of the run with this index: its colour and, from the ninth
-/// run on, a second colour along the middle of its lines (a core). They distinguish 24 runs.
+/// Classes of page.css for the elements of the run with this index. They set the run's colour and,
+/// from the ninth run on, a second colour along the middle of the run's lines (a core). The classes
+/// distinguish 24 runs.
 std::string RunStyle(std::size_t index);
 
 /// Course of a curve between two samples.
 enum class Hold {
   kLinear,
-  kSince,  // the value holds since the sample before, like an applied acceleration
-  kUntil,  // the value holds until the next sample, like a command
+  kSince,  // the value is constant since the previous sample, like an applied acceleration
+  kUntil,  // the value is constant until the next sample, like a command
 };
 
 enum class Dash { kSolid, kDashed, kDotted, kDashDot, kLong };
 
-/// What a curve shows: a quantity of the run (main or detail), or a limit for it (always dashed).
+/// A curve shows a quantity of the run (main or detail), or a limit for a quantity (always dashed).
 enum class Part { kMain, kDetail, kLimit };
 
 struct Curve {
@@ -51,10 +52,10 @@ struct Curve {
   Part part;   // a detail is hidden at first if several runs share the axes
 };
 
-/// A shaded area with a meaning: one curve is below another one.
+/// An area that is shaded where one curve is below another curve.
 struct Shade {
   std::string_view below;  // column of the lower curve; "" for no area
-  std::string_view limit;  // column of the other curve
+  std::string_view limit;  // column of the upper curve
   std::string_view meaning;
 };
 
@@ -64,16 +65,16 @@ struct Figure {
   std::string_view caption;
   std::string_view quantity;
   std::string_view unit;  // "" if none
-  int decimals;           // of a value at the reader's cursor
+  int decimals;           // decimals of a value at the reader's cursor
   double least_span;      // smallest range of an axis, so that noise does not look like an event
   std::span<const Curve> curves;
   Shade shade = {};
-  /// Whether each run always has a low panel of its own (a strip), also if runs share the axes of
-  /// other figures. Curves of noise are unreadable on top of each other.
+  /// Whether each run always has a low panel of its own (a strip), even if runs share the axes of
+  /// other figures. Noisy curves are unreadable on top of each other.
   bool strips = false;
 };
 
-/// The change of the host's acceleration since the sample before, per second.
+/// The change of the host's acceleration since the previous sample, per second.
 double HostJerk(std::span<const metrics::Sample> samples, std::size_t index);
 
 namespace internal {
@@ -108,10 +109,10 @@ inline constexpr std::array kColumns{
     Column{"host_jerk_mps3", HostJerk},
 };
 
-/// Figures in their order. A figure's number is its index plus 1.
+/// All figures in order. A figure's number is its index plus 1.
 std::span<const Figure> Figures();
 
-/// The column of that name.
+/// The column with this name.
 /// @throws std::out_of_range
 const Column& ColumnNamed(std::string_view name);
 
@@ -127,7 +128,7 @@ struct Window {
 /// Time spans with fog. A step lasts until the next sample.
 std::vector<Window> FogWindows(std::span<const metrics::Sample> samples);
 
-/// Time spans in which the human drives, that is, has any authority, as in run_metrics.h.
+/// Time spans in which the human drives: the human has any authority, as in run_metrics.h.
 std::vector<Window> HumanWindows(std::span<const metrics::Sample> samples);
 
 }  // namespace fogline::report

@@ -1,4 +1,4 @@
-// Figure B: safety improvement, and what it costs in human engagement. It has one point for each
+// Figure B: safety improvement, and its cost in human engagement. The figure has one point for each
 // threshold, the Pareto front, and the published points.
 
 /** Index of the point nearest to the cursor. */
@@ -39,7 +39,7 @@ function drawLabels(chart) {
   }
 }
 
-/** Makes a ring around the point at the reader's cursor, with its thresholds. */
+/** Makes a ring around the point at the reader's cursor, with the thresholds of this point. */
 function makeSpot(chart) {
   const text = make("span");
   const spot = make("div", {class: "spot", "aria-hidden": "true"}, text);

@@ -14,7 +14,7 @@ std::string EscapeHtml(std::string_view text);
 /// JSON text for a script element: it contains no "<".
 std::string EscapeScript(std::string_view json);
 
-/// `page` with every {{name}} replaced by its value. Placeholders within values stay as they are.
+/// `page` with every {{name}} replaced by its value. Placeholders within values are not replaced.
 /// @throws std::out_of_range if a name has no value
 std::string Fill(std::string_view page,
                  std::initializer_list<std::pair<std::string_view, std::string>> values);
@@ -26,7 +26,7 @@ std::string FigureElement(std::string_view id, std::string_view heading, std::st
 /// A number with this many decimals and a true minus sign; "–" for NaN and infinity.
 std::string Decimal(double value, int decimals);
 
-/// Decimal() in a data element, which also has the exact number.
+/// Decimal() in a data element. The element also has the exact number.
 std::string DataElement(double value, int decimals);
 
 /// A data element for a measure, formatted by MetricText().

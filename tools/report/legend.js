@@ -1,5 +1,5 @@
-// The legend of a figure: one row for each curve, one column for each run, with the values at the cursor's
-// time. It also has the keys of the shades.
+// The legend of a figure: one row for each curve, one column for each run, with the values at the
+// cursor's time. The legend also has the keys of the shades.
 
 function make(tag, attributes = {}, ...children) {
   const element = document.createElement(tag);

@@ -15,7 +15,7 @@ namespace {
 constexpr int kSignificant = 4;
 constexpr std::string_view kPercent = "%";
 
-/// Largest number of decimals that are meaningful for a measure of this unit in traffic.
+/// Largest number of decimals that are meaningful in traffic for a measure with this unit.
 int DecimalsOfUnit(std::string_view unit) {
   constexpr int kOther = 3;  // a millimetre, a millimetre per second ...
   // Percentages have the decimals of the paper.

@@ -11,18 +11,18 @@
 namespace fogline::report {
 
 /// The longest time to collision that is printed as a number, s. The time grows without bound as
-/// two speeds become equal. At a gap of 36 m, 1000 s correspond to a closing speed of 4 cm/s, which
-/// is as small as the noise of a radar's range rate. Critical times are below 4 s
+/// two speeds become equal. At a gap of 36 m, 1000 s correspond to a closing speed of 4 cm/s. This
+/// speed is as small as the noise of a radar's range rate. Critical times are below 4 s
 /// (measures.critical_ttc_s).
 inline constexpr double kLongestTtc_s = 1000;
 
-/// Whether a measure of that name is a time to collision.
+/// Whether the measure with this name is a time to collision.
 bool IsTimeToCollision(std::string_view name);
 
-/// A finite value with its meaningful digits: at most those of the unit (a millimetre, a hundredth
-/// of a second), and, except for percentages, at most four significant digits. A whole number
-/// without unit has no decimals. 0 is "0". Another value that rounds to 0 is "< 0.001" or ">
-/// -0.001". A time to collision above kLongestTtc_s is "> 1000".
+/// A finite value with its meaningful digits. The unit limits the decimals: to a millimetre, or to
+/// a hundredth of a second. Except for percentages, a value has at most four significant digits. A
+/// whole number without unit has no decimals. 0 is "0". Any other value that rounds to 0 becomes
+/// "< 0.001" or "> -0.001". A time to collision above kLongestTtc_s is "> 1000".
 /// @param name as in VisitMetrics()
 std::string MetricText(std::string_view name, double value, std::string_view unit);
 

@@ -16,9 +16,9 @@ const state = {
   runs: report.runs,  // runs that the figures show
   apart: true,        // whether each run has a panel of its own
   hidden: new Map(),  // names of the columns that a figure hides, by figure id
-  time: 0,            // of the cursor, in s
+  time: 0,            // time of the cursor, in s
   span: [0, 1],       // range of the time axes, in s
-  zoomed: false,      // whether the range is less than the whole
+  zoomed: false,      // whether `span` is shorter than the runs
   fromZero: new Set(),  // ids of the figures whose value axes begin at zero
   theme: null,
 };
@@ -42,7 +42,7 @@ function readTheme() {
   };
 }
 
-/** Index of the last value that is at most `x`; 0 if there is none. `values` ascend. */
+/** Index of the last value that is at most `x`; 0 if all values are larger. `values` ascend. */
 function placeOf(values, x) {
   let low = 0;
   let high = values.length;
@@ -83,8 +83,9 @@ function wholeSpan() {
 }
 
 /**
- * The time in fog at which the follower's gap is furthest below its safe distance. If it is never
- * below, the middle of the first fog; without fog, the first time.
+ * The time in fog at which the follower's gap is furthest below its safe distance. If the gap is
+ * never below the safe distance, the result is the middle of the first fog. Without fog, the result
+ * is the first time.
  */
 function tellingTime() {
   let worst = 0;
@@ -100,12 +101,12 @@ function tellingTime() {
   return time ?? (fog ? (fog[0] + fog[1]) / 2 : wholeSpan()[0]);
 }
 
-/** Whether several runs are drawn on top of each other, in the figures that allow it. */
+/** Whether several runs are drawn on top of each other, in all figures without strips. */
 function sharesAxes() {
   return state.runs.length > 1 && !state.apart;
 }
 
-/** Whether runs share the figure's axes. Colours then distinguish runs, and dashes curves. */
+/** Whether runs share the figure's axes. Then runs differ in colours, and curves in dashes. */
 function isOverlaid(figure) {
   return sharesAxes() && !figure.strips;
 }

@@ -1,17 +1,17 @@
 // The page: builds the figures for the reader's choices. All figures show the same time.
 
 const page = {
-  charts: [],   // of all figures
+  charts: [],   // charts of all figures
   legends: [],  // functions that show the values at a time
-  panels: new Map(),  // chart, its figure and its runs, by its element
-  notes: [],    // functions that show what the value axes span
+  panels: new Map(),  // by the chart's element: the chart, its figure and its runs
+  notes: [],    // functions that show the notes on the value axes
   toolbar: document.getElementById("toolbar"),
   slider: document.getElementById("time"),
   sliderText: document.getElementById("time-text"),
   whole: document.getElementById("whole"),
 };
 
-/** Runs `work` once before the next frame, however often it is requested. */
+/** Runs `work` once before the next frame, even if it is requested several times. */
 function oncePerFrame(work) {
   let asked = false;
   return () => {
@@ -52,7 +52,10 @@ function setSpan([from, to]) {
   showTime();
 }
 
-/** Begins a figure's value axes at zero, or fits them to its values again. Its panels have equal axes. */
+/**
+ * Lets a figure's value axes begin at zero, or fits the axes to the figure's values again. All
+ * panels of a figure have equal axes.
+ */
 function switchAxis(figure) {
   if (!state.fromZero.delete(figure.id)) state.fromZero.add(figure.id);
   for (const {chart, figure: other} of page.panels.values()) {
@@ -62,8 +65,8 @@ function switchAxis(figure) {
 }
 
 /**
- * A line above a panel: a text if the value axis spans little of the values (axisNote()), and a box
- * that makes the axis begin at zero.
+ * A line above a panel. It has a text if the value axis spans a small part of the values
+ * (axisNote()), and a box that makes the axis begin at zero.
  */
 function axisLine(figure, number, id) {
   const text = make("span");
@@ -92,7 +95,7 @@ const fitCharts = oncePerFrame(() => {
 
 const sizes = new ResizeObserver(fitCharts);
 
-/** One panel for all runs if they are overlaid, otherwise one for each run. */
+/** One panel for all runs if they are overlaid, otherwise one panel for each run. */
 function panelsOf(figure) {
   return isOverlaid(figure) ? [state.runs] : state.runs.map((run) => [run]);
 }
@@ -157,7 +160,7 @@ function draw() {
   buildCurves();
 }
 
-/** Applies a change of the compared runs. */
+/** Calls `change`, which changes the compared runs, and draws the figures again. */
 function compare(change) {
   const shared = sharesAxes();
   change();

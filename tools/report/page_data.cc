@@ -21,13 +21,13 @@ std::string Dump(const json& value) {
   return value.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
-/// Rounds to six decimals (a micrometre), so that the text has a third of the bytes. Beyond 1e9 a
-/// double has no more decimals than these.
+/// Rounds to six decimals (a micrometre), so that the text has a third of the bytes. A value beyond
+/// 1e9 is not rounded, because such a double has no more than six decimals.
 double Rounded(double value) {
   constexpr double kGrid = 1e6;
   constexpr double kLargest = 1e9;
   if (!(std::fabs(value) < kLargest)) return value;
-  return std::round(value * kGrid) / kGrid + 0.0;  // + 0.0: no negative zero
+  return std::round(value * kGrid) / kGrid + 0.0;  // + 0.0 changes -0.0 into 0.0
 }
 
 /// Columns as JSON texts, each text stored once.

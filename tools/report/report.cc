@@ -54,13 +54,13 @@ std::string OriginElement(const ReportRun& run) {
   return fmt::format("<span class=\"origin\">{}seed {}</span>", parts, run.seed);
 }
 
-/// Where an incomplete log ends; "" for a complete one.
+/// The part that an incomplete log lacks; "" for a complete log.
 std::string ShortageElement(const ReportRun& run) {
   if (run.shortage.empty()) return "";
   return fmt::format("<span class=\"origin\">{}</span>", EscapeHtml(run.shortage));
 }
 
-/// A badge for an incomplete log; "" for a complete one.
+/// A badge for an incomplete log; "" for a complete log.
 std::string BadgeElement(const ReportRun& run) {
   if (run.shortage.empty()) return "";
   return fmt::format(" <span class=\"badge\" title=\"{}\">{}</span>", EscapeHtml(run.shortage),
@@ -126,7 +126,7 @@ std::string CurvesSection(const std::optional<ReportCurves>& curves) {
   return Section("curves", "Every threshold, over seeds", CurvesContent(*curves));
 }
 
-/// A number of all runs: "7", or "7 to 9" if the runs differ.
+/// The values of a number in all runs: "7", or "7 to 9" if the runs differ.
 template <class Get>
 std::string RangeOf(std::span<const ReportRun> runs, Get get) {
   const auto [first, last] = std::ranges::minmax(std::views::transform(runs, get));

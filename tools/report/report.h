@@ -1,5 +1,5 @@
 // The report of runs: one self-contained HTML page, and figures as files for a paper. This library
-// only draws its input: it reads no log and runs nothing.
+// only draws its input. It reads no log and starts no run.
 #pragma once
 
 #include <cstdint>
@@ -17,30 +17,29 @@
 
 namespace fogline::report {
 
-/// A number that rates a run.
+/// The value of a measure in a run.
 struct ReportMetric {
   std::string name;
-  double value = 0;  // NaN if the run has none
-  std::string unit;  // "" if it has none
+  double value = 0;  // NaN if the run has no value
+  std::string unit;  // "" if the measure has no unit
   std::string description;
 };
 
 /// A run for the report. Every text may contain any characters; the library escapes it.
 struct ReportRun {
-  std::string name;        // such as "threshold 0.5", or the name of its log
-  std::string log;         // name of its log; "" if there is none
-  std::string shortage;    // the part that its log lacks; "" if the log is complete
-  bool ended = false;      // its log goes to the last step
-  Scenario scenario = {};  // the effective one, for the LiDAR's mounting, the arbitrator and the
-                           // number of steps
+  std::string name;        // such as "threshold 0.5", or the name of the run's log
+  std::string log;         // name of the run's log; "" if there is no log
+  std::string shortage;    // the part that the log lacks; "" if the log is complete
+  bool ended = false;      // whether the log has the last step
+  Scenario scenario = {};  // the effective scenario
   std::string scenario_title;
   std::string scenario_json;  // the effective scenario; shown folded, and compared between runs
   std::int64_t seed = 0;
   std::string digest;
   std::vector<metrics::Sample> samples;  // in order of time
   std::vector<ReportMetric> measures;
-  // Safety improvement over the paired run without traded control, in fog, and until the track has
-  // recovered (metrics::PairedMetrics).
+  // Safety improvement compared with the paired run without traded control: in fog, and until the
+  // track has recovered (metrics::PairedMetrics).
   std::optional<double> si_pct = {};
   std::optional<double> si_until_recovery_pct = {};
 };
@@ -49,16 +48,16 @@ struct ReportRun {
 struct ReportTable {
   struct Row {
     double threshold = 0;
-    std::optional<std::int64_t> seed = {};  // if rows have different seeds
-    double si_pct = 0;                      // NaN if no seed has one
+    std::optional<std::int64_t> seed = {};  // set if rows have different seeds
+    double si_pct = 0;                      // NaN if no seed has SI
     double rhe_pct = 0;
     std::optional<double> si_std_pct = {};
     std::optional<double> rhe_std_pct = {};
     std::optional<double> published_si_pct = {};
     std::optional<double> published_rhe_pct = {};
-    // The effect of the fog in metres and m/s, which stands beside the percentages.
+    // The effect of the fog in metres and m/s. The table shows it beside the percentages.
     metrics::FogEffect effect = {};
-    metrics::FogEffect without = {};  // without traded control
+    metrics::FogEffect without = {};  // the effect without traded control
   };
   std::vector<Row> rows;
   std::string note;  // such as "mean and standard deviation over seeds 1 to 200"; "" if none
@@ -74,7 +73,7 @@ struct ReportCurves {
   std::string scenario_title;
   std::int64_t first_seed = 1;
   std::int64_t last_seed = 1;
-  std::vector<Point> points;  // in ascending order of thresholds, which are distinct
+  std::vector<Point> points;  // in ascending order of distinct thresholds
   std::vector<PublishedRow> published;
 };
 
@@ -85,8 +84,9 @@ std::string MakeReport(std::span<const ReportRun> runs, const std::optional<Repo
 /// File format of a figure: pixels (PNG), or scalable lines (SVG, PDF).
 enum class FigureFormat { kPng, kSvg, kPdf };
 
-/// Draws one file for each figure with gnuplot, and adds it to `files`: one panel for each run, all
-/// with the same axes. File names in the folder are figure-1-speeds.png and so on.
+/// Draws one file for each figure with gnuplot, and adds the file to `files`. A figure has one
+/// panel for each run, and all panels have the same axes. File names in the folder are
+/// figure-1-speeds.png and so on.
 /// @throws InputError if a file cannot be created in the folder; Interrupted; std::runtime_error
 ///     when the disk is full, or with gnuplot's own message if gnuplot fails or is not installed
 void DrawFigures(const std::filesystem::path& dir, FigureFormat format,

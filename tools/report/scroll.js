@@ -1,6 +1,6 @@
-// Marks tables that are wider than their containers: a shade at the hidden side, and a line below.
+// Marks tables that are wider than their containers by a shade at the hidden side and a line below.
 
-/** Marks a table's container by whether it can be scrolled, and whether more is on the right. */
+/** Marks whether a table's container can be scrolled, and whether it hides columns on the right. */
 function markScroll(element) {
   const {scrollWidth, clientWidth, scrollLeft} = element;
   const slack = 2;  // pixels, because widths are rounded
@@ -8,13 +8,13 @@ function markScroll(element) {
   element.classList.toggle("more", scrollWidth > clientWidth + scrollLeft + slack);
 }
 
-// Marks change the size of the observed element, so they are set in the next frame.
+// Marks change the size of the observed element. So the marks are set in the next frame.
 const scrollSizes = new ResizeObserver((entries) => {
   const changed = new Set(entries.map(({target}) => target.closest(".scroll")));
   requestAnimationFrame(() => changed.forEach(markScroll));
 });
 
-/** Keeps the marks of all tables below an element up to date. */
+/** Keeps the marks of all tables inside an element up to date. */
 function watchScrolls(root) {
   for (const element of root.querySelectorAll(".scroll")) {
     element.addEventListener("scroll", () => markScroll(element), {passive: true});

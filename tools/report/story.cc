@@ -20,7 +20,7 @@
 namespace fogline::report {
 namespace {
 
-constexpr std::size_t kMostSituations = 3;  // situations with a sentence of their own
+constexpr std::size_t kMostSituations = 3;  // situations that have a sentence of their own
 constexpr std::size_t kMostRuns = 3;        // runs with traded control that a sentence names
 
 /// A run with the values that the story uses.
@@ -92,7 +92,7 @@ std::string FogText(std::span<const metrics::Sample> samples) {
 
 /// Errors of the LiDAR in fog, over all runs of a group.
 struct Deception {
-  double short_m = 0;  // largest length by which the LiDAR read short
+  double short_m = 0;  // largest length by which the LiDAR's range was too short
   double far_m = 0;
   double lost_s = 0;  // longest time without an echo in a run
 };
@@ -116,7 +116,7 @@ Deception DeceptionOf(const Group& group) {
   return worst;
 }
 
-/// "In fog from 19 s to 30 s the LiDAR read up to 0.22 m short".
+/// A text such as "In fog from 19 s to 30 s the LiDAR read up to 0.22 m short".
 std::string FogSentence(const Group& group) {
   const auto length = [](const Told& told) { return told.run->samples.size(); };
   const std::string fog = FogText(std::ranges::max_element(group, {}, length)->run->samples);
@@ -165,7 +165,7 @@ std::string LeftText(double compromised_m) {
   return compromised_m > 0 ? LengthText(compromised_m) + " on average" : "nothing";
 }
 
-/// Safety of a run by itself.
+/// The safety of a run as text, without a comparison.
 std::string SafetyText(const metrics::RunMetrics& measures) {
   if (std::string collision = CollisionText(measures); !collision.empty()) return collision;
   if (!measures.max_compromised_safety_m) return "no car collided";
@@ -174,8 +174,8 @@ std::string SafetyText(const metrics::RunMetrics& measures) {
                      LengthText(*measures.max_compromised_safety_m));
 }
 
-/// Whether a run's safety improvement covers the whole baseline. If a log or a run ends early, the
-/// improvement covers only the steps before the end.
+/// Whether a run's safety improvement covers all steps of the baseline. If a log or a run ends
+/// early, the improvement covers only the steps before the end.
 bool IsComparable(const Told& told, const Told* baseline) {
   const auto is_whole = [](const Told& run) {
     return run.run->shortage.empty() && !run.measures.collision_time_s;
@@ -183,14 +183,14 @@ bool IsComparable(const Told& told, const Told* baseline) {
   return baseline != nullptr && told.run->si_pct && is_whole(told) && is_whole(*baseline);
 }
 
-/// Outcome of a run, compared with its paired run without traded control, if there is one.
+/// Outcome of a run, compared with its paired run without traded control, if it has a paired run.
 std::string OutcomeText(const Told& told, const Told* baseline) {
   if (!IsComparable(told, baseline)) {
     const bool saved = baseline != nullptr && baseline->measures.collision_time_s &&
                        !told.measures.collision_time_s;
     return saved ? "no car collided" : SafetyText(told.measures);
   }
-  const double si_pct = std::round(*told.run->si_pct) + 0.0;  // + 0.0: no negative zero
+  const double si_pct = std::round(*told.run->si_pct) + 0.0;  // + 0.0 changes -0.0 into 0.0
   std::string text = si_pct >= 0 ? fmt::format("{:.0f} % of that was avoided", si_pct)
                                  : fmt::format("that got {:.0f} % worse", -si_pct);
   if (const auto left_m = told.measures.mean_compromised_safety_fog_m) {
@@ -214,7 +214,7 @@ std::string TradedText(const Told& told, const Told* baseline) {
                      told.name, comma, DrivingText(told), OutcomeText(told, baseline));
 }
 
-/// "10 to 100", or "7", for values in the form of `text`.
+/// The range of a value over runs: "10 to 100", or "7". `text` formats a number.
 template <class Value, class Text>
 std::string RangeText(const std::vector<const Told*>& runs, Value value, Text text) {
   double least = std::numeric_limits<double>::infinity();
@@ -233,7 +233,7 @@ std::string HumanTimes(const std::vector<const Told*>& runs) {
   return fmt::format("the human drove for {} s", RangeText(runs, time, TimeText));
 }
 
-/// Summary of more runs than a sentence can name.
+/// Summary of runs that are too many to name them all in one sentence.
 std::string ManyText(const std::vector<const Told*>& runs, const Told* baseline) {
   std::string text =
       fmt::format("in {} runs with traded control {}", runs.size(), HumanTimes(runs));
@@ -287,7 +287,7 @@ std::string HeadingOf(const Group& group, bool with_title) {
                     : fmt::format("Seed {}: ", run.seed);
 }
 
-/// Summary of more situations than the story can list one by one.
+/// Summary of situations that are too many to describe each of them.
 std::string SummedUp(const std::vector<Group>& situations) {
   std::vector<const Told*> runs;
   for (const Group& group : situations) {

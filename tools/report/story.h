@@ -1,5 +1,5 @@
-// Tells the runs in one sentence for each situation: how the fog deceived the LiDAR, the outcome
-// without traded control, and the outcome with traded control.
+// Describes the runs with one sentence for each situation: how the fog deceived the LiDAR, the
+// outcome without traded control, and the outcome with traded control.
 #pragma once
 
 #include <span>
@@ -11,7 +11,7 @@ namespace fogline::report {
 
 /// Plain text, "" without runs. Runs that differ only in their arbitrator belong to one situation
 /// and share a sentence. More than three situations are summarised in one sentence. Every number
-/// comes from the samples, except the safety improvement, which is the run's `si_pct`.
+/// comes from the samples. Only the safety improvement is the run's `si_pct`.
 std::string StoryOf(std::span<const ReportRun> runs);
 
 }  // namespace fogline::report

@@ -1,7 +1,7 @@
 "use strict";
-// The figures of a page of studies: lines with bands over a quantity, or rows of points with whiskers, one
-// row for each category. Each figure has a legend that shows and hides series, and prints the values at the
-// cursor.
+// The figures of a page of studies: lines with bands over a quantity, or rows of points with
+// whiskers, one row for each category. Each figure has a legend. A reader can show and hide series
+// there, and the legend prints the values at the cursor.
 
 const figures = JSON.parse(document.getElementById("study-data").textContent);
 
@@ -9,7 +9,7 @@ const COLOURS = 8;
 const DASHES = [[], [7, 4], [2, 3], [9, 3, 2, 3]];  // one pattern for each round through the colours
 const SPREAD = 0.6;  // share of a category's row in which its series lie
 const ROW = {point: 11, line: 14, gap: 10, names: 0.44};  // in pixels; names: share of the width
-const MOST_IN_LEGEND = 8;  // series; "more" unfolds the others
+const MOST_IN_LEGEND = 8;  // with more series, the legend folds the series that are hidden at first
 
 let theme = null;
 let charts = [];
@@ -33,7 +33,7 @@ function make(tag, attributes = {}, ...children) {
   return element;
 }
 
-/** A number for a reader: four significant digits, a true minus sign. */
+/** A number for a reader, with four significant digits and a true minus sign. */
 function numberText(value) {
   if (value == null) return "–";
   const text = String(Number(Math.abs(value).toPrecision(4)));
@@ -51,7 +51,7 @@ const yAtPlace = (figure, place) => figure.logY ? 10 ** place : place;
 const isBeyond = (figure, y) => figure.most != null && y > figure.most;
 
 /**
- * Columns for uPlot, and in the same order the values themselves and the intervals:
+ * Columns for uPlot, and in the same order the unchanged values and the ends of the intervals:
  * {data, values, low, high}.
  */
 function columnsOf(figure) {
@@ -114,8 +114,9 @@ function axisNote(figure, range) {
 }
 
 /**
- * A line above a chart: a text if the value axis spans little of the values (axisNote()), and a box
- * that makes the axis begin at zero. Returns the line, and a function that shows it for a range.
+ * A line above a chart. It has a text if the value axis spans a small part of the values
+ * (axisNote()), and a box that makes the axis begin at zero. Returns the line, and a function that
+ * updates the line for a range.
  */
 function makeAxisLine(figure, onSwitch) {
   const text = make("span");
@@ -134,7 +135,7 @@ function makeAxisLine(figure, onSwitch) {
   }];
 }
 
-/** The whole x axis. */
+/** The range of the whole x axis. */
 function placeSpan(figure, xs) {
   if (figure.categories.length) return [-0.6, figure.categories.length - 0.4];
   if (xs.length === 0) return [0, 1];
@@ -179,7 +180,7 @@ function drawWhiskers(chart, xs, low, high, colour) {
   });
 }
 
-/** Draws an arrow and the value at the end of the axis for each point beyond it. */
+/** Draws an arrow and the value at the end of the axis for each point beyond the axis. */
 function drawBeyond(chart, figure, {data, values}) {
   const {ctx} = chart;
   const pixel = devicePixelRatio;
@@ -221,7 +222,7 @@ function drawIntervals(chart, figure, {data, low, high}) {
   ctx.restore();
 }
 
-/** The legend's list: the initially shown series, and the others folded if they are many. */
+/** The legend's lists: the initially shown series, and the others, folded if there are many. */
 function legendList(figure, items) {
   const list = (parts) => make("ul", {}, ...parts);
   if (items.length <= MOST_IN_LEGEND) return [list(items)];
@@ -235,7 +236,10 @@ function legendList(figure, items) {
   return [list(first), more];
 }
 
-/** Makes a legend with a button for each series. Returns a function that shows the values at a place. */
+/**
+ * Makes a legend with a button for each series. Returns a function that shows the values at a
+ * position on the x axis, given its index.
+ */
 function makeLegend(element, figure, chart, columns) {
   const at = make("p", {class: "at"});
   const values = [];
@@ -267,7 +271,7 @@ function makeLegend(element, figure, chart, columns) {
     const category = figure.categories[Math.round(x)];
     at.textContent = category ?? `${figure.xLabel}: ${numberText(xAtPlace(figure, x))}`;
     figure.series.forEach((_, i) => {
-      // In a category each series has a position of its own.
+      // In a category each series has its own position on the x axis.
       const own = figure.categories.length
           ? columns.data[0].findIndex((other, k) => Math.round(other) === Math.round(x) &&
                                                     columns.values[i][k] != null)
@@ -278,7 +282,7 @@ function makeLegend(element, figure, chart, columns) {
   };
 }
 
-/** The name of a category in lines no wider than `room`, unless a single word is wider. */
+/** The name of a category in lines of at most `room` pixels. A single word may be wider. */
 function linesOf(name, room) {
   const pen = document.createElement("canvas").getContext("2d");
   pen.font = `12px ${theme.font}`;
@@ -315,7 +319,7 @@ function axis(more) {
           ticks: {...lines, size: 4}, gap: 5, ...more};
 }
 
-/** Ticks at the existing values of x, except values whose texts would touch. */
+/** Ticks at the existing values of x, except values whose texts would overlap. */
 function loggedTicks(figure, chart) {
   const room = 34;  // pixels
   let last = -Infinity;
@@ -422,7 +426,7 @@ function drawMissing() {
   figures.filter((figure) => isUnfolded(figure) && !drawn.has(figure)).forEach(makeChart);
 }
 
-/** Whether a figure has a width: the content of a closed <details> has none. */
+/** Whether a figure has a width. The content of a closed <details> element has no width. */
 function isUnfolded({id}) {
   return document.getElementById(id).closest("details:not([open])") == null;
 }
@@ -438,7 +442,7 @@ new ResizeObserver(() => {
     }
   }
 }).observe(document.body);
-/** Sets the properties that stay the same when the reader shows and hides series. */
+/** Sets the properties that do not change when the reader shows and hides series. */
 function prepare(figure) {
   const names = ({series}) => series.map(({name}) => name).join();
   const alike = figures.filter((other) => names(other) === names(figure));

@@ -24,7 +24,7 @@ constexpr int kDigits = 6;
 json Numbers(const std::vector<double>& values) {
   json numbers = json::array();
   for (const double value : values) {
-    // The number is printed and read again, so that it has only these digits.
+    // The number is printed and read again, so that it has only kDigits digits.
     numbers.push_back(std::isfinite(value) ? json(std::stod(fmt::format("{:.{}g}", value, kDigits)))
                                            : json(nullptr));
   }

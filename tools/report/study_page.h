@@ -1,5 +1,5 @@
-// One self-contained HTML page of studies: each study's question, and its answer in words, figures
-// with intervals, and tables. This file only draws its input and runs nothing.
+// One self-contained HTML page of studies. Each study has its question, and its answer in words,
+// figures with intervals, and tables. This file only draws its input. It starts no run.
 #pragma once
 
 #include <limits>
@@ -10,14 +10,14 @@
 
 namespace fogline::report {
 
-/// One quantity of a figure. NaN marks a missing value; an interval may be missing too.
+/// One quantity of a figure. NaN marks a missing value or a missing end of an interval.
 struct StudySeries {
   std::string name;
   std::vector<double> x;  // ascending
   std::vector<double> y;
   std::vector<double> low;  // lower ends of the intervals around y; empty if there are none
   std::vector<double> high;
-  bool shown = true;  // at first; the reader can show and hide each series
+  bool shown = true;  // whether the page shows the series at first; the reader can change this
 };
 
 struct StudyFigure {
@@ -30,9 +30,9 @@ struct StudyFigure {
   /// whiskers. Without names, the figure has lines with bands.
   std::vector<std::string> categories;
   bool log_x = false;
-  bool log_y = false;  // for times to collision, which range from seconds to half an hour
-  /// Values of y above this limit are marked at the end of the axis, so that they do not flatten
-  /// the others.
+  bool log_y = false;  // set for times to collision: they range from seconds to half an hour
+  /// Values of y above this limit are only marked at the end of the axis. Otherwise the smaller
+  /// values would look flat.
   double most = std::numeric_limits<double>::infinity();
   std::vector<StudySeries> series;
 };
@@ -49,7 +49,7 @@ enum class ClaimState {
   kOpen,  // too few runs to decide
 };
 
-/// A statement that supports an answer, and whether the runs confirm it.
+/// A statement that supports an answer, and whether the runs confirm the statement.
 struct StudyClaim {
   std::string says;
   std::string compared;
@@ -60,8 +60,8 @@ struct StudyClaim {
 /// "holds", "fails" or "open".
 std::string_view Text(ClaimState state);
 
-/// Content of one study. Every text may contain any characters; it is escaped. A reader sees
-/// question, answer, claims, first figure and first table at once. The other parts are folded.
+/// Content of one study. Every text may contain any characters; the library escapes it. A reader
+/// sees question, answer, claims, first figure and first table at once. The other parts are folded.
 struct StudySection {
   std::string name;  // such as "policy"
   std::string title;
@@ -77,8 +77,8 @@ struct StudySection {
 /// The page. @param command the command that makes the page, such as "fogline study all"
 std::string MakeStudyPage(const std::string& command, std::span<const StudySection> sections);
 
-/// The page in Markdown without figures, for places that do not show HTML. It has the first table
-/// of each study only.
+/// The page in Markdown without figures, for programs that do not show HTML. Of each study it has
+/// only the first table.
 std::string MakeStudyText(const std::string& command, std::span<const StudySection> sections);
 
 }  // namespace fogline::report

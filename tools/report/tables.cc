@@ -22,7 +22,7 @@ namespace {
 
 constexpr int kPercentDecimals = 2;  // as in the paper
 
-/// A table in a container that scrolls sideways by itself, so that the page never does.
+/// A table in a container that scrolls sideways, so that the page never scrolls sideways.
 std::string Scrolling(std::string_view label, std::string_view head, std::string_view body) {
   return fmt::format(
       "<div class=\"scroll\" role=\"region\" tabindex=\"0\" aria-label=\"{}\">\n<table>\n"
@@ -48,7 +48,7 @@ std::string EffectCell(const std::optional<double>& value) {
   return fmt::format("<td>{}</td>", DataElement(value.value_or(stats::kMissing), kDecimals));
 }
 
-/// Cells for our own value and its standard deviation, if it has one.
+/// Cells for our own value, and for its standard deviation if there is one.
 std::string OwnCells(double value, const std::optional<double>& deviation) {
   const std::string spread =
       deviation ? fmt::format("± {}", DataElement(*deviation, kPercentDecimals)) : "";

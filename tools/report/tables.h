@@ -10,10 +10,10 @@
 
 namespace fogline::report {
 
-/// The reproduced table next to the published one.
+/// The reproduced table next to the published table.
 std::string ThresholdTable(const ReportTable& table);
 
-/// All values of the curves, one row for each threshold; `points` says which thresholds are on the
+/// All values of the curves, one row for each threshold. `points` shows which thresholds are on the
 /// front.
 std::string CurveTable(const ReportCurves& curves, std::span<const FrontPoint> points);
 
@@ -24,10 +24,11 @@ std::string MetricTable(std::span<const ReportRun> runs);
 /// none.
 std::string DifferenceTable(std::span<const ReportRun> runs);
 
-/// Name of a run, or its number if it has none.
+/// Name of a run, or its number if it has no name.
 std::string RunName(std::span<const ReportRun> runs, std::size_t index);
 
-/// A badge for a run whose log is not complete, with the end of the log; "" for a complete log.
+/// Text of a badge for a run whose log is not complete. It says where the log ends if the last step
+/// is missing. "" for a complete log.
 std::string BadgeOf(const ReportRun& run);
 
 }  // namespace fogline::report

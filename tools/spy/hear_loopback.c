@@ -1,11 +1,12 @@
-// Lets a Java program hear LCM traffic that stays on this machine (ttl=0):
+// Lets a Java program receive LCM traffic that stays on this machine (ttl=0):
 //
 //   LD_PRELOAD=.../libfogline_hear_loopback.so java ...
 //
-// Fogline sends that traffic over loopback (services/runtime/transport/lcm_sockets.h). On Linux a socket hears a
-// multicast group on every interface where any process has joined it, unless the socket has IP_MULTICAST_ALL
-// switched off (see ip(7)). Java switches it off for each of its sockets, and LCM's Java library has no way
-// to name an interface. So this library ignores Java's call.
+// Fogline sends this traffic over loopback (services/runtime/transport/lcm_sockets.h). On Linux the
+// socket option IP_MULTICAST_ALL is on by default (see ip(7)). With this option a socket receives a
+// multicast group on every interface where any process has joined the group. Java switches the
+// option off for each of its sockets, and LCM's Java library cannot choose an interface. So this
+// library ignores Java's call.
 #include <netinet/in.h>
 #include <sys/socket.h>
 #include <sys/syscall.h>

@@ -6,8 +6,8 @@
 
 namespace fogline::stats {
 
-/// Holm's adjustment (1979). A null hypothesis is refused if its adjusted p-value is below a level.
-/// The probability that any true null hypothesis is refused then stays below this level.
+/// Holm's adjustment (1979). A null hypothesis is rejected if its adjusted p-value is below a
+/// level. Then the probability that any true null hypothesis is rejected is at most this level.
 std::vector<double> Holm(std::span<const double> p);
 
 }  // namespace fogline::stats

@@ -35,7 +35,7 @@ void ComputeInOrder(std::int64_t begin, std::int64_t end, int jobs, const MakeWo
   struct Batch {
     std::int64_t unit;
     std::optional<Result> result;
-    std::exception_ptr failure;  // instead of the result
+    std::exception_ptr failure;  // set instead of the result
   };
   using Item = std::shared_ptr<Batch>;
   const tbb::global_control threads(tbb::global_control::max_allowed_parallelism,
@@ -50,7 +50,7 @@ void ComputeInOrder(std::int64_t begin, std::int64_t end, int jobs, const MakeWo
     }
     return std::make_shared<Batch>(Batch{next++, std::nullopt, nullptr});
   };
-  // A unit that cannot be computed fails when its turn comes, so that the result does not depend on
+  // The exception of a unit is thrown when the unit is delivered. So the result does not depend on
   // `jobs`.
   const auto work = [&](Item batch) {
     if (!go_on) return batch;

@@ -1,4 +1,4 @@
-// Selects the thresholds worth considering, by safety improvement and redundant human engagement.
+// Selects the thresholds on the Pareto front of safety improvement and redundant human engagement.
 #pragma once
 
 #include <cstddef>
@@ -14,9 +14,9 @@ struct TradeOff {
 };
 
 /// Indices of the points that no other point dominates, in order of ascending RHE. Equal points
-/// keep the given order. A point dominates another one if it is better in one quantity and not
-/// worse in the other. So equal points are all on the front. A point with NaN is not on the front
-/// and dominates no point.
+/// keep the given order. A point dominates another point if it is better in one quantity and equal
+/// or better in the other quantity. So equal points are all on the front. A point with NaN is not
+/// on the front and dominates no point.
 std::vector<std::size_t> ParetoFront(std::span<const TradeOff> points);
 
 }  // namespace fogline::stats

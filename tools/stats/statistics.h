@@ -19,8 +19,8 @@ struct Summary {
   /// Standard deviation of the values, with n - 1.
   std::optional<double> deviation;
   /// Half the width of the 95 % confidence interval of the mean, t deviation / sqrt(n) with
-  /// Student's t of n - 1 degrees of freedom. It says how well the mean is known. It does not
-  /// describe the spread of the values.
+  /// Student's t of n - 1 degrees of freedom. The interval describes the uncertainty of the mean,
+  /// and not the spread of the values.
   std::optional<double> ci95;
   /// 5th and 95th percentile of the values, which need not be normally distributed: linear
   /// interpolation between the two nearest values (Hyndman & Fan 1996, definition 7).
@@ -28,8 +28,8 @@ struct Summary {
   std::optional<double> p95;
 };
 
-/// Collects values. It keeps them all, 8 bytes each, because percentiles need them: a hundred
-/// thresholds over 10,000 seeds take 8 MB for each measure.
+/// Collects values. It stores all values, 8 bytes each, because percentiles need all of them. A
+/// hundred thresholds over 10,000 seeds need 8 MB for each measure.
 class Statistics {
  public:
   void Add(double value);

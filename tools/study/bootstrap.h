@@ -11,17 +11,18 @@
 
 namespace fogline::study {
 
-/// Number of replicates for an interval. With it the ends are known to a tenth of its width or
-/// better.
+/// Number of replicates for an interval. With this number, the error of the interval's ends is at
+/// most a tenth of the interval's width.
 inline constexpr std::int64_t kReplicates = 1000;
 
-/// Resamples a number of runs: as many draws from the runs, with replacement. The draws are the
+/// Resamples runs. A replicate draws as many runs as there are, with replacement. The draws are the
 /// same on every machine. Statistics computed with equal weights are paired, run by run.
 class Resampling {
  public:
   Resampling(std::size_t runs, Stream stream) : runs_(runs), stream_(stream) {}
 
-  /// Sets `weights[run]` to the count of each run in a replicate; the sum is the number of runs.
+  /// Sets `weights[run]` to the number of times that the replicate contains the run. The sum is the
+  /// number of runs.
   void Draw(std::int64_t replicate, std::vector<double>& weights) const;
 
  private:
@@ -29,7 +30,7 @@ class Resampling {
   Stream stream_;
 };
 
-/// Weighted mean of the present values (not NaN); NaN if there is none.
+/// Weighted mean of the values that are not NaN; NaN if all values are NaN.
 double WeightedMean(std::span<const double> values, std::span<const double> weights);
 
 /// A value over n runs with the interval from the 2.5th to the 97.5th percentile of its replicates

@@ -1,5 +1,6 @@
-// A claim: a statement on which the answer of a study rests. A person writes it. It names a
-// difference and its sign, and each run of the study checks it against the numbers (claims.h).
+// A claim: a statement on which the answer of a study is based. A person writes the claim. The
+// claim names a difference and its sign. Whenever the study is computed, it checks the claim
+// against the numbers (claims.h).
 #pragma once
 
 #include <optional>
@@ -9,7 +10,7 @@
 
 namespace fogline::study {
 
-/// What a claim says of a difference.
+/// The sign that a claim states for a difference.
 enum class Sign {
   kLess,   // below 0
   kMore,   // above 0
@@ -21,9 +22,9 @@ struct Claim {
   std::string compared;  // "beam fog: traded against none, mean compromised safety in fog (m)"
   Sign sign = Sign::kLess;
   Estimate difference;
-  double margin = 0;        // for kEqual: the largest difference that does not matter
-  std::optional<double> p;  // of a test for the sign that needs no interval, such as McNemar's
-  std::string hindrance;    // why the difference proves nothing; "" if it does
+  double margin = 0;        // for kEqual: the largest difference that is too small to matter
+  std::optional<double> p;  // p-value of a test of the sign without an interval, such as McNemar's
+  std::string hindrance;    // why the difference cannot support the claim; "" if it can
 };
 
 }  // namespace fogline::study

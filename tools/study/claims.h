@@ -13,19 +13,21 @@
 
 namespace fogline::study {
 
-/// A difference of compromised safety that does not matter, m: our choice, because it is an eighth
-/// of the effect of the fog in paper.json, 0.015 m, and far below what a driver notices.
+/// A difference of compromised safety that is too small to matter, m. The value is our choice. It
+/// is an eighth of the effect of the fog in paper.json, 0.015 m, and far less than a driver
+/// notices.
 inline constexpr double kNoShortfall_m = 0.002;
 
-/// A variant in a case, by their names.
+/// The names of a case and of a variant.
 struct CellName {
   std::string_view test_case;
   std::string_view variant;
 };
 
 /// The claim that a measure's mean difference a - b, paired seed by seed, has this sign. For the
-/// measure "collided" its p-value is that of McNemar's exact test (1947). A claim on any other
-/// measure fails if pairs of runs end early, because their sums and means over time lack the rest.
+/// measure "collided" the p-value of the claim comes from McNemar's exact test (1947). A claim on
+/// any other measure cannot hold if pairs of runs end early, because sums and means over time then
+/// lack the steps after the end.
 /// @param margin for kEqual, in the unit of the measure
 /// @throws std::out_of_range if there is no such case, variant or measure
 Claim ClaimOf(const Comparison& comparison, std::string says, CellName a, CellName b,
@@ -35,11 +37,12 @@ Claim ClaimOf(const Comparison& comparison, std::string says, CellName a, CellNa
 Claim LevelClaim(const Comparison& comparison, std::string says, CellName cell,
                  std::string_view measure, Sign sign, double level, double margin = 0);
 
-/// p-value of the claim, not adjusted; 1 if something hinders the comparison.
+/// p-value of the claim, not adjusted; 1 if the claim has a hindrance.
 double PValueOf(const Claim& claim);
 
-/// Checks the claims of one study together. A claim holds if the difference has its sign and the
-/// p-value adjusted by Holm is below 5 %. Otherwise it fails; with `few_runs` it stays open.
+/// Checks the claims of one study together. A claim holds if the difference has the claimed sign
+/// and the p-value adjusted by Holm is below 5 %. Otherwise the claim fails, or is open if
+/// `few_runs` is true.
 std::vector<report::StudyClaim> CheckClaims(std::span<const Claim> claims, bool few_runs);
 
 /// "policy: 2 of 9 claims fail"; "" if none does.

@@ -32,7 +32,7 @@ std::vector<ComparedMetric> AllMetrics() {
   return all;
 }
 
-/// Index of the element of this name.
+/// Index of the element with this name.
 template <class Named>
 std::size_t PlaceOf(const std::vector<Named>& all, std::string_view name, std::string_view kind) {
   const auto found = std::ranges::find(all, name, &Named::name);
@@ -253,8 +253,8 @@ report::StudyFigure Comparison::FigureOf(std::string_view measure, std::string i
       .y_label = info.unit.empty() ? NameForReaders(measure)
                                    : fmt::format("{} ({})", NameForReaders(measure), info.unit),
       .log_y = report::IsTimeToCollision(measure)};
-  // No car brakes harder than this (MADR, Cunto & Saccomanno 2008). A larger value amounts to a
-  // collision.
+  // Maximum available deceleration (MADR, Cunto & Saccomanno 2008): no car brakes harder. A larger
+  // value of the measure amounts to a collision.
   if (measure.ends_with("drac_mps2")) figure.most = MeasuresSection{}.madr_most_mps2;
   const std::size_t series = cases_on_axis ? variants_.size() : cases_.size();
   const std::size_t places = cases_on_axis ? cases_.size() : variants_.size();

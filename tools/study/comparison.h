@@ -1,6 +1,6 @@
-// Compares variants of the arbitrator in several cases over many seeds; most studies consist of
-// this. All variants of a case have the same noise, seed by seed. They are paired with the same run
-// without traded control.
+// Compares variants of the arbitrator in several cases over many seeds. Most studies consist of
+// such comparisons. For each seed, all variants of a case have the same noise, and are paired with
+// the same run without traded control.
 #pragma once
 
 #include <cstddef>
@@ -24,11 +24,11 @@ struct StudyCase {
   std::string name;
   std::string file;
   std::vector<std::string> overrides;  // in the form of --set
-  std::string group;  // of cases that differ in one respect only, such as those in the same fog
+  std::string group;  // name of the cases that differ in one respect only, such as cases in one fog
 };
 
-/// A rule for who drives. Its overrides concern only the arbitrator, so all variants of a case
-/// share the run without traded control.
+/// A rule that decides who drives. Its overrides change only the arbitrator, so all variants of a
+/// case share the run without traded control.
 struct StudyVariant {
   std::string name;
   std::vector<std::string> overrides;
@@ -40,7 +40,7 @@ inline constexpr std::string_view kWithoutTradedControl = "/arbitrator/policy=no
 /// The measure of safety in most findings.
 inline constexpr std::string_view kShortfall = "mean_compromised_safety_fog_m";
 
-/// Whether a run ends in a collision: 1 or 0.
+/// The measure that is 1 if a run ends in a collision, and otherwise 0.
 inline constexpr std::string_view kCollided = "collided";
 
 /// A measure of a run: one of VisitPairedMetrics(), "collided" (1 or 0), or one of
@@ -69,7 +69,7 @@ struct NamedCell {
 class Comparison {
  public:
   /// Runs all cells. @throws InputError, StudyStopped; std::invalid_argument if a name has a comma,
-  /// which separates the cells of a CSV file
+  /// because commas separate the cells of a CSV file
   Comparison(const StudyContext& context, std::vector<StudyCase> cases,
              std::vector<StudyVariant> variants);
   /// Uses finished runs. @param values by case, variant, measure and seed
@@ -90,28 +90,29 @@ class Comparison {
   Estimate Difference(Cell a, Cell b, std::string_view measure) const;
   /// Share of runs with a collision.
   metrics::EventShare Collisions(Cell cell) const;
-  /// A measure with its interval, for figures and files: as Mean(), but the interval of "collided"
-  /// is that of Collisions().
+  /// A measure with its interval, for figures and files. It is Mean(), but the interval of
+  /// "collided" comes from Collisions().
   Estimate Point(Cell cell, std::string_view measure) const;
-  /// Number of pairs of runs in which at least one run ends early: it collides, or the two runs
-  /// differ in length. Sums and means over time then lack the part after the end.
+  /// Number of pairs of runs that end early: at least one run collides, or the two runs differ in
+  /// length. Sums and means over time then lack the part after the end.
   std::int64_t PairsCutShort(Cell a, Cell b) const;
   /// p-value of the difference of `collided`, by the exact test of McNemar over the pairs.
   double PValueOfCollisions(Cell a, Cell b) const;
-  /// Index of the case, or of the variant, of this name. @throws std::out_of_range
+  /// Index of the case, or of the variant, with this name. @throws std::out_of_range
   std::size_t CaseNamed(std::string_view name) const;
   std::size_t VariantNamed(std::string_view name) const;
 
   /// Number of differences from variant `reference` that have a p-value.
   std::int64_t Comparisons(std::size_t reference) const;
-  /// A summary of every measure of every cell, and its difference from variant `reference`: with
-  /// its interval, its effect size (mean by standard deviation of the paired differences, Cohen's
-  /// d_z), and its p-value, also adjusted by Holm for all differences of the file. The p-value of
-  /// `collided` is that of McNemar, any other that of the t test. If pairs of runs are cut short,
-  /// their number is there, and the other measures have no p-value.
+  /// A summary of every measure of every cell, and the measure's difference from variant
+  /// `reference`. A difference has an interval, an effect size (mean divided by standard deviation
+  /// of the paired differences, Cohen's d_z), and a p-value. The p-value is also adjusted by Holm
+  /// for all differences of the file. The p-value of `collided` comes from McNemar's test, and all
+  /// other p-values come from the t test. If pairs of runs are cut short, the file has their
+  /// number, and measures other than `collided` have no p-value.
   std::string Csv(std::size_t reference) const;
-  /// Points with intervals: either the variants are on the x axis and each case is a series, or the
-  /// other way round.
+  /// Points with intervals. Either the variants are on the x axis and each case is a series, or the
+  /// cases are on the x axis and each variant is a series.
   report::StudyFigure FigureOf(std::string_view measure, std::string id, std::string title,
                                bool cases_on_axis = false) const;
   /// A row with means and intervals for each of these cells.
@@ -124,14 +125,14 @@ class Comparison {
                                     std::span<const std::string_view> measures) const;
 
  private:
-  /// A difference from the reference, and what it proves.
+  /// A difference from the reference, and the result of its test.
   struct PairedTest {
     Estimate difference;
     std::int64_t cut_short = 0;  // number of pairs (PairsCutShort())
     std::optional<double> p;
   };
-  /// The tests against variant `reference`, by case, variant and measure; those of the reference
-  /// itself are empty.
+  /// The tests against variant `reference`, by case, variant and measure. The tests of the
+  /// reference itself are empty.
   std::vector<PairedTest> TestsAgainst(std::size_t reference) const;
 
   std::vector<StudyCase> cases_;

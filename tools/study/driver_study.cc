@@ -25,7 +25,7 @@ const std::vector<std::string> kSeesFog{"/human/sight=fog"};
 const std::vector<std::string> kWholeHuman{"/human/sight=fog", "/human/misjudges=true",
                                            "/human/loses_awareness=true"};
 
-/// HumanKinds of drivers in the fog of dense_fog.json.
+/// Kinds of drivers in the fog of dense_fog.json.
 std::vector<StudyCase> HumanKinds() {
   return {{std::string(kPaperName), "dense_fog.json", {}},
           {"IIDM", "dense_fog.json", {"/human/following=iidm"}},
@@ -38,8 +38,8 @@ std::vector<StudyCase> HumanKinds() {
           {std::string(kWholeName), "dense_fog.json", kWholeHuman}};
 }
 
-/// The paper's driver and a complete human model in fog of every density: pairs of cases that
-/// follow HumanKinds().
+/// The paper's driver and a complete human model in fog of every density. Each density has a pair
+/// of cases. These cases follow the cases of HumanKinds().
 std::vector<StudyCase> Densities() {
   std::vector<StudyCase> cases;
   for (const double visibility_m : kDensities_m) {
@@ -106,7 +106,7 @@ constexpr std::string_view kDriverWouldChange =
     "A driver who needs time to take over (study takeover), or larger errors of the human.";
 
 std::vector<Claim> DriverClaims(const Comparison& comparison) {
-  // A tenth of a millimetre: far below any difference that a driver could make.
+  // A tenth of a millimetre: far less than any difference that a driver could cause.
   constexpr double kNothing_m = 1e-4;
   std::vector<Claim> claims;
   for (const StudyCase& kind : HumanKinds()) {
@@ -128,7 +128,7 @@ std::vector<Claim> DriverClaims(const Comparison& comparison) {
   return claims;
 }
 
-/// The claims of the answer with realistic noise.
+/// The claims with realistic noise on which the answer depends.
 std::vector<Claim> NoisyDriverClaims(const Comparison& comparison) {
   const auto noisy = [](std::string_view name) {
     return fmt::format("{}{}", name, kWithRealisticNoise);

@@ -42,7 +42,7 @@ class Collection {
 
 /// P(T > distance / standard error) with Student's t.
 double ProbabilityAbove(const Estimate& estimate, double distance) {
-  constexpr double kHalfLevel = 0.025;  // of the interval
+  constexpr double kHalfLevel = 0.025;  // probability beyond each end of the interval
   if (!estimate.has_interval() || estimate.infinite > 0 || estimate.n < 2) return 1;
   const boost::math::students_t t(static_cast<double>(estimate.n - 1));
   const double error = (estimate.high - estimate.low) / 2 /

@@ -14,9 +14,10 @@ inline constexpr double kPercent = 100;
 /// Probability at each end of an interval of 95 %.
 inline constexpr double kTail = 0.025;
 
-/// Mean over n runs with its 95 % confidence interval (Student's t). NaN if n is too small: the
-/// mean needs 1, the interval 2. A time to a collision that never happens is infinite. Such runs
-/// are not among the n, because a mean cannot include them; they are counted separately.
+/// Mean over n runs with its 95 % confidence interval (Student's t). The mean is NaN without a run,
+/// and the interval is NaN with fewer than two runs. A time to a collision that never happens is
+/// infinite. A mean cannot include infinite values. So runs with an infinite value do not count in
+/// n, but in `infinite`.
 struct Estimate {
   std::int64_t n = 0;
   double mean = stats::kMissing;
@@ -32,8 +33,9 @@ struct Estimate {
 Estimate EstimateOf(std::span<const double> values);
 
 /// Estimate of the differences a[i] - b[i] for which both values exist. Runs of equal seeds have
-/// equal noise, so their difference is known better than either value. If both values are infinite,
-/// the difference is 0. If one is infinite, so is the difference. @pre equal sizes
+/// equal noise, so their difference is known better than each of the two values. If both values are
+/// infinite, the difference is 0. If only one value is infinite, the difference is infinite. @pre
+/// equal sizes
 Estimate PairedDifference(std::span<const double> a, std::span<const double> b);
 
 /// Verdict from an estimate of a difference.
@@ -45,15 +47,17 @@ enum class Verdict {
 };
 Verdict VerdictOf(const Estimate& difference);
 
-/// p-value that a mean has its sign by chance: the two-sided t test. The standard error is that of
-/// the interval, so that the interval may also come from a bootstrap. 1 without an interval.
+/// p-value of the hypothesis that a mean is 0, by the two-sided t test. The standard error is
+/// computed from the interval, so that the interval may also come from a bootstrap. The p-value is
+/// 1 without an interval.
 double PValueOfSign(const Estimate& estimate);
-/// p-value that a mean lies farther from 0 than `margin`: two one-sided t tests (Schuirmann 1987).
+/// p-value of the hypothesis that a mean is farther from 0 than `margin`, by two one-sided t tests
+/// (Schuirmann 1987).
 double PValueOfEqual(const Estimate& estimate, double margin);
 
 /// "12.3 [12.0, 12.6]"; "–" without a mean; "12.3 [12.0, 12.6], ∞ in 3 of 100 runs".
 std::string Text(const Estimate& estimate, int decimals);
-/// The same with 2 to 6 decimals, so that the interval has two digits.
+/// Text() with 2 to 6 decimals, so that the interval has two digits.
 std::string Text(const Estimate& estimate);
 /// "2 of 100 runs, 2.0 % [0.2 %, 7.0 %]".
 std::string Text(const metrics::EventShare& share);

@@ -1,5 +1,5 @@
-// Runs for comparison with one another: equal seeds give equal noise, and all share one run without
-// traded control.
+// Makes runs that are compared with each other. The runs have the same seed and so the same noise,
+// and all runs share one run without traded control.
 #pragma once
 
 #include <cstdint>
@@ -15,11 +15,11 @@ namespace fogline::study {
 /// The measures of a run in the order of ComparedMetrics(); NaN for a missing measure.
 using RunValues = std::vector<double>;
 
-/// For use by one thread; it keeps its buffers.
+/// Computes the values of runs. Only one thread may use a worker. A worker keeps its buffers.
 class PairedWorker {
  public:
-  /// Runs all `scenarios` with this seed. The first scenario is the run without traded control,
-  /// with which the others are paired. It is not in the result.
+  /// Runs all `scenarios` with this seed. The first scenario has no traded control. The other runs
+  /// are paired with its run. The result does not contain the first run.
   std::vector<RunValues> Compute(std::span<const Scenario> scenarios, std::int64_t seed);
 
  private:

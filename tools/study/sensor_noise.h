@@ -1,4 +1,4 @@
-// Realistic noise of the radar, which the scenarios of the studies do not have.
+// Realistic noise of the radar. The scenarios of the studies have less noise.
 #pragma once
 
 #include <string>
@@ -11,14 +11,14 @@ namespace fogline::study {
 
 /// Standard deviation of a real radar's range, m (data sheet of a Continental ARS408: 0.1 to 0.4).
 inline constexpr double kRealisticNoise_m = 0.25;
-/// Added to the names of cases that have it.
+/// Added to the names of cases with realistic noise.
 inline constexpr std::string_view kWithRealisticNoise = " with realistic noise";
 
-/// Overrides for a radar with this noise, which the filter knows.
+/// Overrides for a radar with this noise, and for a filter that knows this noise.
 const std::vector<std::string>& RealisticNoise();
-/// The case with these overrides as well.
+/// The case with the overrides of RealisticNoise() added.
 StudyCase WithRealisticNoise(StudyCase one);
-/// What realistic noise is, for the method of a study.
+/// Explains realistic noise in the method of a study.
 std::string RealisticNoiseText();
 
 }  // namespace fogline::study

@@ -1,5 +1,6 @@
-// A study: a question, runs that answer it, and the answer in words, claims, figures and files. A
-// person writes the answer, without numbers. The claims tie it to the numbers (claims.h).
+// A study: a question, runs that answer the question, and the answer in words, claims, figures and
+// files. A person writes the answer, without numbers. The claims check the answer against the
+// numbers (claims.h).
 #pragma once
 
 #include <cstdint>
@@ -36,7 +37,7 @@ struct StudyContext {
   /// A scenario of the folder with `overrides` and then `more` applied. @throws InputError
   Scenario Load(std::string_view file, std::vector<std::string> overrides,
                 const std::vector<std::string>& more = {}) const;
-  /// The context of one part of the study, whose progress begins after `before` of `all` units.
+  /// The context of one part of the study. The part begins after `before` of `all` units.
   StudyContext Part(std::int64_t before, std::int64_t all) const;
   /// @throws StudyStopped
   void Show(std::int64_t done, std::int64_t total) const;
@@ -49,7 +50,7 @@ struct StudyFile {
 
 /// Result of a study. It does not depend on the number of threads, the clock or the machine.
 struct StudyResult {
-  report::StudySection section;  // without its claims, until they are checked
+  report::StudySection section;  // the section's claims are empty until they are checked
   std::vector<Claim> claims;
   std::vector<StudyFile> files;
   std::int64_t runs = 0;
@@ -68,7 +69,7 @@ struct Study {
 /// the report use it.
 std::span<const Study> Studies();
 
-/// The study of that name; nullptr if there is none.
+/// The study with this name; nullptr if there is none.
 const Study* FindStudy(std::string_view name);
 
 // Each of these functions has a file of its own.

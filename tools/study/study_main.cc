@@ -1,4 +1,4 @@
-// fogline study, a program of its own: the paper's open questions, answered with numbers.
+// fogline study, a program of its own. It answers the paper's open questions with numbers.
 #include "tools/study/study.h"
 
 #include <memory>
@@ -45,7 +45,7 @@ struct Made {
   StudyResult result;
 };
 
-// Every run of a study stays in memory until the study ends.
+// Limit of the seeds, because every run of a study stays in memory until the study ends.
 constexpr std::int64_t kMostSeeds = 100'000;
 
 /// @throws InputError
@@ -54,7 +54,7 @@ void RequireFew(const sweep::SeedRange& seeds, const std::string& text) {
   throw InputError(fmt::format("error: --seeds {}: more than {} seeds", text, kMostSeeds));
 }
 
-/// Checks before long work that the scenarios of the studies exist. @throws InputError
+/// Checks before the runs that the scenarios of the studies exist. @throws InputError
 void RequireScenarios(const std::filesystem::path& folder) {
   for (const char* name : {"paper.json", "dense_fog.json"}) {
     const std::filesystem::path file = folder / name;
@@ -117,8 +117,8 @@ void Write(const std::filesystem::path& path, const std::string& content) {
   file.Finish();
 }
 
-/// The command that makes the same files again. It has neither the folder nor the number of
-/// threads, because the files do not depend on them.
+/// The command that makes the same files again. It omits the folder and the number of threads,
+/// because the files do not depend on them.
 std::string CommandOf(const StudyArguments& arguments) {
   std::string command = fmt::format("fogline study {}", arguments.name);
   if (!arguments.seeds.empty()) command += fmt::format(" --seeds {}", arguments.seeds);

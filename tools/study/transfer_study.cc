@@ -11,11 +11,13 @@
 namespace fogline::study {
 namespace {
 
-/// Limit of ISO 15622 above 20 m/s for the jerk averaged over 1 s, and the limit of comfort: m/s3.
+/// Limit of ISO 15622 for the jerk averaged over 1 s at speeds above 20 m/s. It is also the limit
+/// of comfort. The unit is m/s3.
 constexpr double kComfortableJerk_mps3 = 2.5;
-/// The measure to which the limit belongs. The jerk of single steps grows as the step shrinks.
+/// The measure to which the limit belongs. It is not the jerk of single steps, because that jerk
+/// grows as the step shrinks.
 constexpr std::string_view kTransferJerk = "max_handover_jerk_1s_mps3";
-/// A loss of safety that does not matter, points of SI.
+/// A loss of safety that is too small to matter, in points of SI.
 constexpr double kTolerableLoss = 3;
 
 constexpr std::string_view kPaperFog = "bias fog";

@@ -18,14 +18,14 @@ std::vector<std::string> Cars(std::string_view car, std::string_view surface) {
           fmt::format("/road/surface={}", surface)};
 }
 
-/// Overrides for a slope along the whole road. A loaded truck has 330 kW and needs 260 kW to keep
-/// 20 m/s on it; the rest allows an acceleration of 0.08 m/s2.
+/// Overrides for a slope along the whole road. A loaded truck has 330 kW, and needs 260 kW to keep
+/// 20 m/s on this slope. The remaining power allows an acceleration of 0.08 m/s2.
 std::vector<std::string> Uphill(std::vector<std::string> overrides) {
   overrides.emplace_back(R"(/road/grade=[{"position_m":0,"grade":0.02}])");
   return overrides;
 }
 
-/// The leader is on the same ice, which holds 1.47 m/s2.
+/// The leader is on the same ice, and brakes less hard than the limit of the ice, 1.47 m/s2.
 std::vector<std::string> SedanOnIce() {
   std::vector<std::string> overrides = Cars("sedan", "ice");
   overrides.emplace_back("/lead/emergency_brake/deceleration_mps2=1.4");
@@ -43,12 +43,12 @@ struct Ground {
   std::string_view name;
   std::string_view file;
   std::vector<std::string> overrides;
-  bool is_dense;  // the scenario demands more than a little of engine and brakes
-  bool brakes;    // the scenario demands hard braking
+  bool is_dense;  // whether the cars need more than a little of their engines and brakes
+  bool brakes;    // whether the cars must brake hard
 };
 
-/// In the hard-braking case the leader brakes in the middle of the dense fog to a third of its
-/// speed, as hard as in ASAM OSC-ALKS scenario 4.3_2.
+/// In the hard-braking case, the leader brakes to a third of its speed in the middle of the dense
+/// fog. It brakes as hard as in ASAM OSC-ALKS scenario 4.3_2.
 std::vector<Ground> Grounds() {
   return {{"bias fog", "paper.json", {}, false, false},
           {"beam fog", "dense_fog.json", {}, true, false},
@@ -60,8 +60,8 @@ std::vector<Ground> Grounds() {
            true}};
 }
 
-/// VehicleCases in which the limit that their name mentions takes effect. Cars of a kind whose
-/// limits are never reached give equal runs, so they are left out; VehicleMethod() names them.
+/// The cases of the study. If a kind of car never reaches its limits in a case, the case has the
+/// same runs as another case, and is left out. VehicleMethod() names the omitted cases.
 std::vector<StudyCase> VehicleCases() {
   std::vector<StudyCase> cases;
   for (const Ground& ground : Grounds()) {
@@ -154,7 +154,7 @@ std::vector<Claim> VehicleClaims(const Comparison& comparison) {
   return claims;
 }
 
-/// Each kind of car with traded control, where its limits matter.
+/// Each kind of car with traded control, in the cases in which the car's limits matter.
 report::StudyTable VehicleMainTable(const Comparison& comparison) {
   std::vector<NamedCell> rows;
   for (std::size_t c = 0; c < comparison.cases().size(); ++c) {

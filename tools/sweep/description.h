@@ -1,6 +1,6 @@
-// Description of a sweep file, in "FILE.json" beside it: grid, seeds, scenario, and the shard that
-// the file has. By the description a sweep recognises its own file, and a merge recognises shards
-// of one sweep.
+// Description of a sweep file: grid, seeds, scenario, and the shard that the file has. It is in
+// "FILE.json" beside the sweep file. A sweep recognises its own file by the description, and a
+// merge recognises the shards of one sweep.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@ namespace fogline::sweep {
 
 struct Description {
   std::string sweep;          // everything except the shard, as JSON; equal sweeps have equal text
-  Shard shard;                // of that sweep
+  Shard shard;                // the shard that the file has
   std::int64_t rows = 0;      // number of rows in the shard's complete file
   std::int64_t all_rows = 0;  // number of rows of the whole sweep
 
@@ -25,14 +25,14 @@ Description Describe(const SweepPlan& plan, const Shard& shard);
 /// The path "FILE.json".
 std::filesystem::path DescriptionFile(const std::filesystem::path& csv);
 
-/// Whether a file belongs to a sweep, that is, whether a description lies beside it.
+/// Whether a file belongs to a sweep: there is a description beside it.
 bool IsSweep(const std::filesystem::path& csv);
 
 /// The description beside a sweep's file.
 /// @throws InputError if there is no description, or it is damaged
 Description ReadDescription(const std::filesystem::path& csv);
 
-/// Writes the description beside a sweep's file, whole or not at all.
+/// Writes the complete description beside a sweep's file, or nothing.
 /// @throws InputError if the file cannot be created, std::runtime_error when the disk is full
 void WriteDescription(const std::filesystem::path& csv, const Description& description);
 

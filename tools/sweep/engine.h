@@ -19,20 +19,21 @@ namespace fogline::sweep {
 struct SweepRow {
   metrics::RunMetrics measures;
   /// Measures of this run and its paired run together. They are empty for a run that is its own
-  /// pair, and for a paired run without compromised safety.
+  /// pair, and if the paired run has no compromised safety.
   metrics::PairedMetrics paired;
   /// The effect of the fog in the paired run without traded control; empty for a run that is its
   /// own pair.
   metrics::FogEffect without;
 };
 
-/// Runs a scenario. `baseline` has the samples of the paired run without traded control; it is
-/// empty for a run that is its own pair. If one run of the pair ends early, the pair has only the
-/// steps that both have. @throws as ReusedLoop::Run()
+/// Runs a scenario. `baseline` has the samples of the paired run without traded control. It is
+/// empty for a run that is its own pair. If one run of the pair ends early, the measures of the
+/// pair use only the steps that both runs have. @throws as ReusedLoop::Run()
 SweepRow RunPaired(closed_loop::ReusedLoop& loop, const Scenario& scenario,
                    std::span<const metrics::Sample> baseline);
 
-/// Computes units of a plan, one after another. One thread uses it. It keeps its buffers.
+/// Computes units of a plan, one after another. Only one thread may use a worker. A worker keeps
+/// its buffers.
 class SweepWorker {
  public:
   explicit SweepWorker(const SweepPlan& plan) : plan_(plan), scenario_(plan.base()) {}
@@ -42,24 +43,24 @@ class SweepWorker {
   void Compute(std::int64_t unit, std::vector<SweepRow>& rows);
 
  private:
-  /// The row of scenario_. Before the first row of a unit it runs the paired run without traded
-  /// control.
+  /// The row of scenario_. Before the first row of a unit, ComputeRow() makes the paired run
+  /// without traded control.
   SweepRow ComputeRow();
 
   const SweepPlan& plan_;
   Scenario scenario_;
   closed_loop::ReusedLoop loop_;
   std::vector<metrics::Sample> baseline_;
-  metrics::FogEffect effect_;  // of the baseline
+  metrics::FogEffect effect_;  // effect of the fog in the baseline
 };
 
 /// Takes the rows of a unit, in order of units. It returns false to stop.
 using UnitConsumer = std::function<bool(std::int64_t unit, const std::vector<SweepRow>& rows)>;
 
 /// Computes the units from `begin` up to, but not including, `end` on `jobs` threads. The consumer
-/// sees the same rows for every `jobs`. RunSweep() passes on the consumer's exceptions, and the
-/// exception of the first row that cannot be computed, after it has delivered the units before that
-/// row.
+/// gets the same rows for every `jobs`. RunSweep() passes on the consumer's exceptions. If a row
+/// cannot be computed, RunSweep() first delivers the units before this row, and then passes on the
+/// exception of the row.
 void RunSweep(const SweepPlan& plan, std::int64_t begin, std::int64_t end, int jobs,
               const UnitConsumer& consume);
 

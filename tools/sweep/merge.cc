@@ -74,8 +74,8 @@ void RequireSum(RowChecker& checker, const std::string& line, const std::filesys
                       : "the row has no checksum; run its sweep again to compute the row again"));
 }
 
-/// Copies the rows of a shard, with the header if it is the first one. @return false if the shard
-/// has rows but no checksums
+/// Copies the rows of a shard. Also copies the header if the shard is the first one. @return false
+/// if the shard has rows but no checksums
 bool Copy(const ShardFile& shard, std::string& header, AtomicFile& out, AtomicFile* sums) {
   std::ifstream in(shard.path, std::ios::binary);
   RowChecker checker(shard.path);
@@ -137,7 +137,7 @@ Merged MergeShards(const std::vector<std::filesystem::path>& shards,
     if (!checked) result.unchecked.push_back(shard.path);
   }
   if (replaceable) {
-    // The old file is removed first, so that it never lies beside the description of the new one.
+    // The old file is removed first, so that it is never beside the description of the new file.
     out.RemoveOld();
     WriteDescription(merged, whole);
     sums->Finish();

@@ -13,8 +13,8 @@ namespace {
 /// Largest number of points of an axis "first:last:count".
 constexpr std::int64_t kMaxPoints = 1'000'000;
 
-/// Largest number of rows of a sweep: more rows would take one core for years. Products with the
-/// number of a shard stay far within 64 bits.
+/// Largest number of rows of a sweep. More rows would take one core for years. The product of this
+/// limit and the number of a shard is far within 64 bits.
 constexpr std::int64_t kMaxRows = 100'000'000'000;
 
 /// Largest number of shards of a sweep.
@@ -36,8 +36,8 @@ std::vector<std::string_view> Split(std::string_view text, char separator) {
   }
 }
 
-/// The values of "first:last:count"; empty if the text has another form. A double keeps fifteen
-/// decimal digits, so 0.3 is printed as 0.3 and not as 0.30000000000000004.
+/// The values of "first:last:count"; empty if the text has another form. Values are printed with
+/// fifteen decimal digits, so 0.3 is printed as 0.3 and not as 0.30000000000000004.
 std::vector<std::string> Spaced(std::string_view text) {
   const std::vector<std::string_view> parts = Split(text, ':');
   double first = 0;
@@ -56,8 +56,8 @@ std::vector<std::string> Spaced(std::string_view text) {
   return values;
 }
 
-/// Checks a value of a field by the rules of scenario files. `argument` is the source of the value,
-/// for messages.
+/// Checks a value of a field by the rules of scenario files. `argument` names the source of the
+/// value in messages.
 /// @throws InputError
 void CheckSetting(const std::string& argument, const std::string& base, const std::string& pointer,
                   const std::string& value) {

@@ -30,7 +30,7 @@ Axis ParseAxis(const std::string& text);
 /// @throws InputError
 std::vector<double> ParseThresholds(const std::string& text);
 
-/// Largest seed of a scenario, and of every other seed that a user chooses.
+/// Largest seed of a scenario, and largest value of every other seed that a user chooses.
 inline constexpr std::int64_t kMaxSeed = 9'007'199'254'740'991;
 
 /// First and last seed of "A:B", or of "A".
@@ -52,9 +52,9 @@ struct Shard {
 Shard ParseShard(const std::string& text);
 
 /// The rows of a sweep. Axes of the arbitrator do not change a run without traded control. So rows
-/// that differ only in these axes share their paired run; they are next to each other and form one
-/// unit of work. Rows are ordered by the other axes (in the order in which they were given), then
-/// by seed, then by the arbitrator's axes.
+/// that differ only in these axes share their paired run. Such rows follow each other and form one
+/// unit of work. Rows are ordered by the other axes (in the given order), then by seed, then by the
+/// arbitrator's axes.
 class SweepPlan {
  public:
   /// @param file source of the scenario, for messages
@@ -87,7 +87,7 @@ class SweepPlan {
 
  private:
   void AddAxis(const std::string& base, const Axis& axis);
-  /// Index of an axis' value in a row.
+  /// Index of the value that an axis has in a row.
   std::size_t ValueIndex(std::size_t axis, std::int64_t unit, std::int64_t row) const;
 
   Scenario base_;
@@ -96,7 +96,7 @@ class SweepPlan {
   SeedRange seeds_;
   std::vector<FieldAssignment> fields_;  // one for each axis
   std::vector<bool> inner_;              // for each axis: whether it belongs to the arbitrator
-  std::vector<std::int64_t> stride_;     // of each axis among the axes of its kind
+  std::vector<std::int64_t> stride_;     // stride of each axis among the axes of the same kind
   std::int64_t outer_points_ = 1;
   std::int64_t inner_points_ = 1;
 };

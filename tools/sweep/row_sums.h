@@ -1,7 +1,7 @@
-// Checksums of the rows in a sweep's file, one line for each row in "FILE.sums" beside it. With
-// them a continued sweep and a merge detect a row that differs from the written one, for example
-// because a digit was edited or a power cut has damaged the file. Checksums do not protect against
-// deliberate changes.
+// Checksums of the rows in a sweep's file. "FILE.sums" beside the file has one line for each row.
+// With the checksums a continued sweep and a merge detect a row that differs from the written row,
+// for example because a digit was edited or a power cut has damaged the file. Checksums do not
+// protect against deliberate changes.
 #pragma once
 
 #include <cstdint>
@@ -15,14 +15,14 @@ namespace fogline::sweep {
 /// The path "FILE.sums".
 std::filesystem::path SumsFile(const std::filesystem::path& csv);
 
-/// The line of a row: its CRC-32 (that of zlib and POSIX's gzip) in hexadecimal digits.
+/// The line of a row: the row's CRC-32 (as in zlib and gzip) in hexadecimal digits.
 /// @param row without the line feed
 std::string SumLine(std::string_view row);
-/// Bytes of such a line.
+/// Number of bytes of the line of a row.
 inline constexpr std::int64_t kSumLineBytes = 9;
 
-/// Whether a file has the checksums of rows and nothing else. A kill or a power cut may leave a
-/// part of the last line; this part counts as a line.
+/// Whether a file has only checksums of rows. A kill or a power cut may leave a part of the last
+/// line. This part counts as a line.
 bool IsSums(const std::filesystem::path& file);
 
 /// Checks the rows of a file in their order.
@@ -36,7 +36,7 @@ class RowChecker {
 
   explicit RowChecker(const std::filesystem::path& csv);
 
-  /// Whether there are checksums. A file that was copied without "FILE.sums" has none.
+  /// Whether there are checksums. A file that was copied without "FILE.sums" has no checksums.
   bool has_sums() const { return has_sums_; }
   Verdict Check(std::string_view row);
 

@@ -107,9 +107,9 @@ SweepFile::Handle::~Handle() {
   if (fd >= 0) close(fd);
 }
 
-// The lock admits only one writer at a time: two writers would mix their rows. An example: a
-// cluster starts a job a second time, while the first process of the job still writes and was only
-// cut off from the network.
+// The lock admits only one writer at a time, because two writers would mix their rows. There can be
+// two writers if a cluster starts a job a second time. The job's first process may still write,
+// because it was only cut off from the network.
 void SweepFile::Open() {
   file_.fd = open(path_.c_str(), kFlags, 0666);
   if (file_.fd < 0) ThrowCannotWrite(path_, errno);
@@ -129,8 +129,8 @@ void SweepFile::Cut(std::int64_t size, const Handle& file) const {
   }
 }
 
-// The description is written while the file is empty, so no row can be taken for a row of another
-// sweep.
+// The description is written while the file is empty. So no row can be mistaken for a row of
+// another sweep.
 void SweepFile::Start(const Shard& shard) {
   if (sums_.fd < 0) OpenSums();
   Cut(0, file_);
@@ -162,8 +162,7 @@ void SweepFile::Resume(const Shard& shard) {
     const auto verdict =
         row < 0 || !checker.has_sums() ? RowChecker::Verdict::kSame : checker.Check(line);
     if (verdict == RowChecker::Verdict::kNoSum)
-      break;  // the sweep computes this row and the
-              // following ones again
+      break;  // the sweep computes this row and all later rows again
     if (!has_key || verdict == RowChecker::Verdict::kOther) {
       throw InputError(
           fmt::format("{}:{}: error: --out: the line differs from the one that this sweep {} "
@@ -209,7 +208,7 @@ void SweepFile::Append(const std::vector<SweepRow>& rows) {
   }
   Write(text_, file_);
   ++next_unit_;
-  if (sums_.fd < 0) return;  // a stream has no checksums, because no sweep reads it again
+  if (sums_.fd < 0) return;  // a pipe or device has no checksums: no sweep reads its rows again
   Write(sums, sums_);
   RequireInPlace();
 }
@@ -228,7 +227,8 @@ void SweepFile::RequireInPlace() const {
 }
 
 void SweepFile::Write(std::string_view text, const Handle& file) const {
-  // A write to a file does not wait. A pipe may never be read, so an interrupt ends the write.
+  // A write to a file does not block. A write to a pipe may block forever, so an interrupt ends
+  // this write.
   const int error = WriteAll(file.fd, text, sums_.fd < 0 ? WasInterrupted : nullptr);
   if (error == 0) return;
   if (error == EINTR) throw Interrupted(fmt::format("interrupted in {}", PathText(path_)));

@@ -17,9 +17,9 @@ namespace fogline::sweep {
 
 class SweepFile {
  public:
-  /// Opens the file of a shard: a new one, or one that the same sweep has left unfinished. An
+  /// Opens the file of a shard: a new file, or a file that the same sweep has left unfinished. An
   /// incomplete end of the file is cut off. With `force` an existing file is replaced.
-  /// @throws InputError if the file is there and is not of the same sweep, if another process is
+  /// @throws InputError if the file exists and is not of the same sweep, if another process is
   ///     writing it, if it cannot be written, or as RefuseForeignSideFiles(); std::runtime_error
   ///     when the disk is full
   SweepFile(const std::filesystem::path& file, const SweepPlan& plan, const Shard& shard,
@@ -28,8 +28,8 @@ class SweepFile {
   /// First unit that is not in the file yet; the shard's end if the file is complete.
   std::int64_t next_unit() const { return next_unit_; }
 
-  /// Appends the rows of unit next_unit(). @throws std::runtime_error when the disk is full, or the
-  /// file has been removed; Interrupted in a pipe that is not read
+  /// Appends the rows of unit next_unit(). @throws std::runtime_error when the disk is full, or if
+  /// the file has been removed; Interrupted during a write to a pipe that is not read
   void Append(const std::vector<SweepRow>& rows);
 
  private:
@@ -44,7 +44,8 @@ class SweepFile {
 
   void Open();
   void OpenSums();
-  /// Whether to start with an empty file. @throws InputError if the existing file must stay
+  /// Whether to start with an empty file. @throws InputError if the existing file must not be
+  /// replaced
   bool IsToBeReplaced(const Shard& shard, bool force) const;
   void Cut(std::int64_t size, const Handle& file) const;
   void Start(const Shard& shard);

@@ -47,15 +47,15 @@ struct ThresholdRow {
   stats::Statistics rhe_pct;
   stats::Statistics si_until_recovery_pct;
   std::array<metrics::Mean, metrics::kSafetyChoices.size()> other_si_pct;
-  // The effect of the fog: mean compromised safety in fog, with and without traded control, and how
-  // far the host slows down in fog without traded control.
+  // The effect of the fog: mean compromised safety in fog, with and without traded control, and the
+  // loss of the host's speed in fog without traded control.
   stats::Statistics cs_m;
   stats::Statistics cs_without_m;
   stats::Statistics slow_down_without_mps;
   std::int64_t collisions = 0;  // runs with a collision
 };
 
-/// Refuses a scenario whose policy does not use the threshold: all its rows would be equal.
+/// Refuses a scenario whose policy does not use the threshold, because all its rows would be equal.
 /// @param file source of the scenario, for messages
 /// @throws InputError that names the policies which use the threshold
 void RequireThreshold(const Scenario& scenario, const std::filesystem::path& file);
@@ -64,8 +64,8 @@ void RequireThreshold(const Scenario& scenario, const std::filesystem::path& fil
 using SeedsDone = std::function<bool(std::int64_t seeds)>;
 
 /// Runs all seeds with every threshold and without traded control, on `jobs` threads. Rows are in
-/// the order of `thresholds`. They are bit for bit the same for every `jobs`. They are incomplete
-/// if `done` stopped the work.
+/// the order of `thresholds`. Every value of `jobs` gives the same rows, bit for bit. The rows are
+/// incomplete if `done` stopped the work.
 std::vector<ThresholdRow> SweepThresholds(const Scenario& scenario,
                                           std::span<const double> thresholds,
                                           const SeedRange& seeds, int jobs, const SeedsDone& done);

@@ -1,5 +1,5 @@
-// Finds distinct values of a scenario's free fields, each of which meets a target table: over the
-// seeds of the search, and over fresh seeds that the search does not use.
+// Finds several distinct sets of values for a scenario's free fields. Each set meets a target table
+// over the seeds of the search, and also over fresh seeds. The search does not use the fresh seeds.
 #pragma once
 
 #include <vector>
@@ -9,7 +9,7 @@
 
 namespace fogline::calibrate {
 
-/// One set of values, and the tables that it gives.
+/// One set of values, and its tables over the seeds of the search and over the fresh seeds.
 struct ParameterSet {
   std::vector<double> values;  // of the free fields
   Evaluation searched;
@@ -22,8 +22,8 @@ struct ParameterEnsemble {
   bool interrupted = false;
 };
 
-/// Distance of a table from its target: the root of the objective, in points. It contains the
-/// spread over the seeds by its weight.
+/// Distance of a table from its target: the root of the objective, in points. The objective
+/// includes the weighted spread over the seeds.
 double TableDistance(const Evaluation& evaluation);
 
 /// The values as shares of their ranges.
@@ -32,12 +32,12 @@ std::vector<double> SharesOf(const CalibrationProblem& problem, const std::vecto
 /// Least distance between two of the sets; 1 for a single set.
 double LeastDistance(const CalibrationProblem& problem, const std::vector<ParameterSet>& sets);
 
-/// The problem with fresh seeds in place of those of the search.
-/// @throws InputError if a seed is among both
+/// The problem with the seeds `fresh` instead of the seeds of the search.
+/// @throws InputError if both ranges of seeds have a seed in common
 CalibrationProblem WithFreshSeeds(CalibrationProblem problem, sweep::SeedRange fresh);
 
-/// Searches for an ensemble. `fresh` is the same problem with other seeds. The result does not
-/// depend on the number of threads. An interrupted search keeps what it has found.
+/// Searches for an ensemble. `fresh` is the problem of `searched` with other seeds. The result does
+/// not depend on the number of threads. An interrupted search returns the sets found so far.
 /// @throws InputError if the scenario can run at no evaluated point
 ParameterEnsemble FindEnsemble(const Objective& searched, const Objective& fresh,
                                const EnsembleRules& rules, const GoOn& go_on,

@@ -9,19 +9,20 @@
 
 namespace fogline::calibrate {
 
-/// `text`, a scenario file from the folder `from`, for the folder `to`: a relative path in $schema
-/// still leads to the same file.
+/// The text of a scenario file in the folder `from`, changed for the folder `to`: a relative path
+/// in $schema still leads to the same file.
 std::string WithSchemaIn(const std::filesystem::path& to, const std::filesystem::path& from,
                          std::string text);
 
-/// The folder, made before long work. The destructor removes a new folder that is still empty.
+/// The folder of an ensemble. The constructor makes the folder before the long search. The
+/// destructor removes a new folder that is still empty.
 class EnsembleFolder {
  public:
   /// @throws InputError if the folder cannot be written, or if it has sets and `force` is false
   EnsembleFolder(std::filesystem::path folder, bool force);
 
-  /// Writes set-1.json and so on, made from `text`, and sets.csv. Removes other sets, which are of
-  /// an ensemble before. @throws std::runtime_error when the disk is full
+  /// Writes set-1.json and so on, made from `text`, and sets.csv. Removes all other sets, because
+  /// they belong to an earlier ensemble. @throws std::runtime_error when the disk is full
   void Write(const EnsembleReport& report, const std::string& text) const;
 
  private:

@@ -34,9 +34,9 @@ std::string PointsText(double points) {
 struct QuantityLine {
   std::string name;
   std::string_view unit;
-  std::string lowest;  // of a free field
+  std::string lowest;  // bounds of a free field
   std::string highest;
-  std::string kind;  // linear or log, the scale of a free field; derived; else the seeds
+  std::string kind;  // scale of a free field (linear or log), or "derived", or the seeds
   std::vector<double> values;
 };
 
@@ -66,7 +66,7 @@ void AddFields(const EnsembleReport& report, std::vector<QuantityLine>& lines) {
   }
 }
 
-/// The tables over the seeds of one objective.
+/// Adds the numbers of the tables over the seeds of one objective.
 void AddTables(const EnsembleReport& report, const Objective& objective,
                Evaluation ParameterSet::*tables, std::vector<QuantityLine>& lines) {
   const auto add = [&](std::string name, std::string_view unit, const auto& value_of) {

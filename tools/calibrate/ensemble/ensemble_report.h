@@ -10,31 +10,31 @@
 
 namespace fogline::calibrate {
 
-/// What is known of an ensemble and of the search for it.
+/// An ensemble, and the search that found it.
 struct EnsembleReport {
   const Objective& searched;
   const Objective& fresh;
   const EnsembleRules& rules;
   ParameterEnsemble found;
-  std::string scenario;  // the file's name
-  std::string command;   // that makes the same ensemble again
+  std::string scenario;  // name of the scenario's file
+  std::string command;   // command that finds the same ensemble again
 };
 
 /// "set-3.json" for index 2.
 std::string SetFileName(std::size_t index);
 
-/// `text`, the file of the problem's scenario, with the title and the description of a set. They
-/// say how the set was made.
+/// `text`, the text of the scenario's file, with the title and the description of a set. Title and
+/// description say how the set was made.
 std::string WithOrigin(const EnsembleReport& report, std::size_t index, std::string_view text);
 
-/// The same with the values of the set: the set as a file.
+/// The text of a set's file: WithOrigin() with the values of the set.
 std::string SetText(const EnsembleReport& report, std::size_t index, std::string_view text);
 
-/// "8 of 8 sets ...": what became of the searches, in two lines.
+/// The outcome of the searches in two lines, such as "8 of 8 sets ...".
 std::string EnsembleSummary(const EnsembleReport& report);
 
-/// The summary and a table: a line for each field and for each number of the tables, a column for
-/// each set.
+/// The summary and a table. The table has a line for each field and for each number of the sets'
+/// tables, and a column for each set.
 std::string EnsembleText(const EnsembleReport& report);
 
 /// The same table as CSV.

@@ -12,11 +12,12 @@
 namespace fogline::calibrate {
 namespace {
 
-// Random stream of the starts. Streams below 1000 belong to roles, those after it to studies.
+// Random stream of the starting points. Streams below 1000 belong to roles, and streams from 1000
+// to 1999 belong to studies.
 constexpr Stream kStarts{2000};
 
-// A search ends at this share of the largest distance, so that a point still meets the target on
-// fresh seeds, over which the means differ a little.
+// A search ends at this share of the largest allowed distance. The rest of the distance is a margin
+// for the fresh seeds, because the means over fresh seeds differ a little.
 constexpr double kEnough = 0.5;
 
 double Squared(double x) { return x * x; }
@@ -56,7 +57,7 @@ class PointSearch {
     return value;
   }
 
-  /// The starts, the best first; none after an interrupt.
+  /// The starting points, the best first; none after an interrupt.
   std::vector<Valued> RankedStarts() {
     std::vector<Valued> starts;
     for (std::vector<double>& shares :
@@ -84,7 +85,7 @@ class PointSearch {
     return best;
   }
 
-  /// Keeps the result of a search, or counts why it is not kept.
+  /// Adds the result of a search to the points, or counts the reason why it is not added.
   void Judge(const Valued& best) {
     EnsembleCounts& counts = result_.counts;
     if (best.value > Squared(rules_.within)) {
@@ -133,7 +134,7 @@ std::vector<std::vector<double>> LatinHypercube(int points, std::size_t fields, 
     for (std::size_t i = count; i-- > 0;) {
       const auto [which, where] =
           random.Uniform2(static_cast<std::int64_t>(f), static_cast<std::uint32_t>(i));
-      // Fisher & Yates: one of the parts that are left.
+      // Fisher & Yates: draws one of the remaining parts.
       const auto left = static_cast<double>(i + 1);
       std::swap(parts[i], parts[std::min(i, static_cast<std::size_t>(which * left))]);
       hypercube[i][f] = (static_cast<double>(parts[i]) + where) / static_cast<double>(count);

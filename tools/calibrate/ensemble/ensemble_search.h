@@ -1,5 +1,5 @@
-// Finds several points that are far from each other and at which a function is small enough: the
-// search for an ensemble of calibrations, without the simulation.
+// Finds several points that are far from each other and at which a function is small enough. The
+// search for an ensemble of calibrations uses this file. The simulation is in other files.
 #pragma once
 
 #include <cstddef>
@@ -12,42 +12,44 @@
 
 namespace fogline::calibrate {
 
-/// What a search looks at. A point gives each field as a share of the field's range, in [0, 1].
+/// Input of a search. A point gives each field as a share of the field's range, in [0, 1].
 struct Landscape {
   std::size_t fields = 0;
-  /// Squared distance from the target over the seeds of the search, and over fresh seeds. No value
-  /// stops the search.
+  /// Squared distance from the target over the seeds of the search, and over fresh seeds. The
+  /// result nullopt stops the search.
   FunctionOfShares searched;
   FunctionOfShares fresh;
-  /// The point whose values are those of a file, which are rounded. Both functions have the same
-  /// value there as at the point itself.
+  /// The point with rounded values, as a file has them. Both functions have the same value at the
+  /// rounded point as at `shares`.
   std::function<std::vector<double>(const std::vector<double>& shares)> rounded;
 };
 
-/// What counts as an ensemble, and how long to search for it.
+/// The requirements on an ensemble, and the limits of the search for it.
 struct EnsembleRules {
   int sets = 1;
-  /// A point meets the target if its distance is at most this, in the unit of the target.
+  /// A point meets the target if its distance from the target is at most this value, in the unit of
+  /// the target.
   double within = 1;
-  /// Least distance (ShareDistance) of two points.
+  /// Least distance (ShareDistance) between two points.
   double apart = 0.2;
-  /// Number of points from which the search may begin, and largest number of evaluations from each.
+  /// Number of starting points, and largest number of evaluations in the search from each starting
+  /// point.
   int starts = 200;
   int evaluations = 1000;
-  std::int64_t seed = 1;  // of the starts
+  std::int64_t seed = 1;  // seed of the starting points
 };
 
-/// What became of the searches.
+/// Counts of the searches and their outcomes.
 struct EnsembleCounts {
   int evaluations = 0;  // over the seeds of the search
-  int searches = 0;     // from one start each
+  int searches = 0;     // searches, each from one starting point
   int missed = 0;       // searches that did not meet the target
   int too_near = 0;     // points too near to a point found before
   int rejected = 0;     // points that did not meet the target on fresh seeds
 };
 
-/// Points that meet the target over both kinds of seeds and are distinct, in the order in which
-/// they were found.
+/// Distinct points that meet the target over both kinds of seeds, in the order in which they were
+/// found.
 struct PointEnsemble {
   std::vector<std::vector<double>> points;
   EnsembleCounts counts;
@@ -57,18 +59,18 @@ struct PointEnsemble {
 /// Called after each evaluation, with the number of points so far.
 using EnsembleProgress = std::function<void(int found, const EnsembleCounts& counts)>;
 
-/// Root mean square of the differences of the shares: 0 for equal points, at most 1. Two random
-/// points are 0.41 apart on average, whatever the number of fields.
+/// Root mean square of the differences of the shares: 0 for equal points, at most 1. For two random
+/// points the mean of its square is 1/6, so a typical distance is 0.41 for any number of fields.
 double ShareDistance(std::span<const double> a, std::span<const double> b);
 
 /// Points of a Latin hypercube (McKay, Beckman & Conover 1979): in each field, each of `points`
 /// equal parts of the range has one point.
 std::vector<std::vector<double>> LatinHypercube(int points, std::size_t fields, std::int64_t seed);
 
-/// Evaluates a Latin hypercube of starts. Then it searches around one start after the other, the
-/// best first, and keeps each point that is distinct and meets the target on fresh seeds, too. It
-/// ends when it has enough points or no starts are left. The result depends only on the landscape
-/// and the rules.
+/// Evaluates the starting points of a Latin hypercube. Then it searches around one starting point
+/// after the other, the best first. A point that a search finds is added to the result if it is
+/// distinct and also meets the target on fresh seeds. FindPoints() ends when it has enough points
+/// or no starting points are left. The result depends only on the landscape and the rules.
 PointEnsemble FindPoints(const Landscape& landscape, const EnsembleRules& rules,
                          const EnsembleProgress& progress);
 

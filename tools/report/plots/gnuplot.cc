@@ -33,7 +33,7 @@ using File = std::unique_ptr<std::FILE, Close>;
   throw std::runtime_error(what + ": " + why);
 }
 
-/// A file without a name; it disappears when it is closed.
+/// A temporary file without a name. The system deletes the file when the file is closed.
 File NamelessFile() {
   File file(std::tmpfile());
   if (file == nullptr) Fail("temporary file", std::strerror(errno));
@@ -71,9 +71,9 @@ class Streams {
   posix_spawn_file_actions_t actions_;
 };
 
-/// A running gnuplot. It reads the script as a file instead of typed input, so that it ends at the
-/// first error. Its standard output is a pipe, because it does not report a failed write: on a full
-/// disk it would write a part of the picture, and succeed.
+/// A running gnuplot. gnuplot reads the script as a file and not as typed input, so that it ends at
+/// the first error. gnuplot does not report a failed write. On a full disk it would write a part of
+/// the picture, and end without an error. So its standard output is a pipe.
 class Gnuplot {
  public:
   /// @param script, words standard input and standard error
@@ -93,7 +93,7 @@ class Gnuplot {
       Fail("gnuplot", "not found; it draws the files of figures (package gnuplot-nox)");
     Fail("gnuplot", std::strerror(error));
   }
-  /// Without its pipe gnuplot ends at its next write.
+  /// Closes the pipe. gnuplot then ends at its next write.
   ~Gnuplot() { Wait(); }
   Gnuplot(const Gnuplot&) = delete;
   Gnuplot& operator=(const Gnuplot&) = delete;
@@ -108,7 +108,7 @@ class Gnuplot {
     return {buffer_.data(), static_cast<std::size_t>(size)};
   }
 
-  /// Closes the pipe and waits for the end. @return the exit status, in the form of waitpid()
+  /// Closes the pipe and waits for gnuplot's end. @return the exit status, in the form of waitpid()
   int Wait() {
     if (out_ < 0) return status_;
     close(std::exchange(out_, -1));
@@ -140,17 +140,17 @@ struct FormatRow {
   FigureFormat format;
   std::string_view suffix;
   std::string_view terminal;
-  double unit;  // of the terminal's size, per unit of kWidth
+  double unit;  // size in the terminal's unit for one unit of kWidth
   std::string_view font;
   double font_scale;
   double line_width;
   double point_scale;
 };
 
-constexpr double kInches = 1.0 / 200;  // with it a PDF figure is 8 inches wide
+constexpr double kInches = 1.0 / 200;  // makes a PDF figure 8 inches wide
 constexpr std::array kFormats{
     FormatRow{FigureFormat::kPng, "png", "pngcairo", 1, "sans", 1, 2, 1},
-    // The unit of font sizes is 4/3 of the unit in the cairo terminals, and 1 in svg.
+    // A font size of 1 is 4/3 units of length in the cairo terminals, and 1 unit in svg.
     FormatRow{FigureFormat::kSvg, "svg", "svg", 1, "sans-serif", 4.0 / 3, 2, 0.7},
     FormatRow{FigureFormat::kPdf, "pdf", "pdfcairo", kInches, "sans", 0.36, 1.44, 1},
 };
@@ -173,7 +173,7 @@ void RunGnuplot(const std::string& script, AtomicFile& picture) {
     picture.Write(part);
   }
   const int status = gnuplot.Wait();
-  // Ctrl-C reaches gnuplot too, so an interrupt is checked before gnuplot's status.
+  // Ctrl-C ends gnuplot too. So the interrupt is checked before gnuplot's status.
   if (WasInterrupted()) throw Interrupted("interrupted; no file was written");
   if (status != 0) Fail("gnuplot", ContentOf(words.get()));
 }

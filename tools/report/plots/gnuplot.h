@@ -9,8 +9,8 @@
 
 namespace fogline::report {
 
-/// Runs gnuplot with `script`, and writes its standard output into `picture`, which is not finished
-/// then. It uses no shell.
+/// Runs gnuplot with `script`, and writes its standard output into `picture`. The caller must
+/// finish `picture`. RunGnuplot() uses no shell.
 /// @throws std::runtime_error with gnuplot's own message, or when the disk is full; Interrupted
 void RunGnuplot(const std::string& script, AtomicFile& picture);
 
@@ -36,9 +36,9 @@ struct Place {
   double top;
 };
 
-/// Room for texts around a plot, in units of kWidth. It suffices for a font whose letters are a
-/// quarter larger than those of the widest common font (DejaVu Sans Mono Bold). gnuplot cuts off
-/// text outside the picture, and the available font depends on the machine.
+/// Room for texts around a plot, in the unit of kWidth. The room suffices for a font whose letters
+/// are a quarter larger than the letters of the widest common font (DejaVu Sans Mono Bold). gnuplot
+/// cuts off text outside the picture, and the available font depends on the machine.
 inline constexpr double kRoomLeft = 185;   // for values and the y axis's name
 inline constexpr double kRoomBelow = 135;  // for values and the x axis's name
 inline constexpr double kRoomRight = 45;   // for half of the last value
@@ -47,18 +47,19 @@ inline constexpr double kRoomOfKey = 115;  // for three lines
 /// Commands that set the position of the next plot.
 std::string Margins(const Place& place);
 
-/// Commands that put the name of the next plot's x axis below it, and the name of the y axis at the
-/// left edge of the picture, at the height `middle` (a share). Both distances are independent of
-/// the font.
+/// NameOfX(): commands that put the name of the x axis below the next plot. NameOfY(): commands
+/// that put the name of the y axis at the left edge of the picture, at the height `middle` (a share
+/// of the picture's height). The distances of both names do not depend on the font.
 std::string NameOfX(std::string_view name, double height);
 std::string NameOfY(std::string_view name, double middle);
 
-/// Numbers of these labels, for "unset label". gnuplot gives lower numbers to other labels.
+/// gnuplot's numbers of the names of both axes, for "unset label". gnuplot gives lower numbers to
+/// other labels.
 inline constexpr int kLabelOfX = 1001;
 inline constexpr int kLabelOfY = 1002;
 
-/// `text` as a gnuplot string in single quotes, in which gnuplot expands nothing. Line breaks and
-/// other control characters become spaces.
+/// `text` as a gnuplot string in single quotes. gnuplot expands nothing in such a string. Line
+/// breaks and other control characters become spaces.
 std::string GnuplotString(std::string_view text);
 
 }  // namespace fogline::report

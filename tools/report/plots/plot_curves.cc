@@ -75,7 +75,8 @@ std::string PointsBlock(const std::vector<FrontPoint>& points) {
 
 /// Commands that write the thresholds below or beside their points, where there is room.
 std::string Labels(const ReportCurves& curves, const std::vector<FrontPoint>& points) {
-  constexpr double kWidePct = 9;  // smallest distance of labels, in engagement or safety
+  // Two labels differ by at least kWidePct in RHE, or by at least kHighPct in SI.
+  constexpr double kWidePct = 9;
   constexpr double kHighPct = 4;
   std::vector<const FrontPoint*> labelled;
   std::string commands;

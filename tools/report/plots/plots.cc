@@ -1,5 +1,5 @@
 // The figures as files for a paper. The panels of a figure share their axes, and the key is above
-// them.
+// the panels.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -22,7 +22,7 @@ namespace fogline::report {
 namespace {
 
 constexpr std::string_view kFog = "#e3e8ed";
-constexpr std::string_view kHumanTint = "#a0fbedd0";  // alpha first, 0 is opaque
+constexpr std::string_view kHumanTint = "#a0fbedd0";  // transparency first; 00 is opaque
 constexpr std::string_view kHumanLines = "#ebcb8d";
 constexpr std::string_view kShortfall = "#a0bd3a29";
 
@@ -31,11 +31,11 @@ struct Span {
   double high;
 };
 
-/// Positions of the panels: up to three below each other, more in two columns. The key is above
-/// them.
+/// Positions of the panels. Up to three panels are in one column, more panels are in two columns.
+/// The key is above the panels.
 class Layout {
  public:
-  /// @param named whether a line of text stands above each panel
+  /// @param named whether there is a line of text above each panel
   Layout(std::size_t panels, bool named)
       : columns_(panels <= 3 ? 1 : 2),
         rows_((panels + columns_ - 1) / columns_),
@@ -64,7 +64,7 @@ class Layout {
   Place PlaceOfKey() const { return {0, 1, 1 - kRoomOfKey / height_, 1}; }
 
  private:
-  static constexpr double kLeastHeight = 1000;  // in the unit of kWidth, as the following lengths
+  static constexpr double kLeastHeight = 1000;  // like the following lengths in the unit of kWidth
   static constexpr double kName = 50;
   static constexpr double kRowGap = 75;
   static constexpr double kColumnGap = 64;

@@ -1,5 +1,5 @@
 // Alarms of detectors from their scores: thresholds with an equal rate of false alarms, and the
-// share of steps in fog that a threshold finds.
+// share of steps in fog that a threshold detects.
 #pragma once
 
 #include <cstddef>
@@ -11,20 +11,20 @@
 
 namespace fogline::study {
 
-/// A score above all earlier ones, and its time in s after the beginning.
+/// A score above all earlier scores of a run, and its time in s after the beginning.
 struct ScoreRecord {
   double score;
   double time_s;
 };
-/// The records of a run, ascending in score and time. They suffice to find the first alarm for any
-/// threshold.
+/// The records of a run, ascending in score and time. The records suffice to find the first alarm
+/// for any threshold.
 using ScoreRecords = std::vector<ScoreRecord>;
 /// Adds a score if it is a record.
 void AddScore(double score, double time_s, ScoreRecords& records);
-/// Time at which a threshold is first reached; nullopt if it never is.
+/// Time at which a threshold is first reached; nullopt if it is never reached.
 std::optional<double> FirstAlarm(const ScoreRecords& records, double threshold);
 
-/// Scores of a detector in a run in clear air after its warm-up.
+/// Scores of a detector in a run in clear air, after the warm-up.
 struct ClearRun {
   ScoreRecords records;
   std::vector<double> scores;  // at regular intervals of steps; empty if they are not needed
@@ -36,12 +36,12 @@ struct AlarmCount {
   std::int64_t alarms = 0;
   double time_s = 0;  // total time at risk of all runs
 
-  /// Mean time to a false alarm (ARL0), s, for an exponential distribution; runs without an alarm
-  /// are censored at their end. Infinite without an alarm.
+  /// Mean time to a false alarm (ARL0), s, for an exponential distribution. Runs without an alarm
+  /// are censored at their end. The mean time is infinite if no run has an alarm.
   double ArlZero_s() const;
   /// Exact 95 % bounds of this mean time (chi-square; Garwood 1936).
   std::pair<double, double> ArlZeroBounds_s() const;
-  /// Whether a mean time is within these bounds.
+  /// Whether a mean time is within ArlZeroBounds_s().
   bool MayHave(double arl_zero_s) const;
 };
 AlarmCount CountAlarms(std::span<const ClearRun> runs, double threshold);
@@ -51,11 +51,11 @@ class ThresholdFinder {
  public:
   explicit ThresholdFinder(std::span<const ClearRun> runs);
 
-  /// The smallest threshold with at least this mean time to a false alarm, when each run counts as
-  /// often as its weight says. If a measure has its greatest score too often, its threshold is
-  /// above all its scores: it gives no alarm in these runs.
+  /// The smallest threshold with at least this mean time to a false alarm. The weight of a run is
+  /// the number of times that the run counts. If a measure has its greatest score too often, the
+  /// threshold is above all scores of the measure. Then the measure gives no alarm in these runs.
   double Threshold(std::span<const double> weights, double arl_zero_s) const;
-  /// The same with weight 1 for each run.
+  /// The threshold with weight 1 for each run.
   double Threshold(double arl_zero_s) const;
 
  private:

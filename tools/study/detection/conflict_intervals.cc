@@ -88,7 +88,7 @@ std::vector<double> Differences(std::vector<double> a, std::span<const double> b
   return a;
 }
 
-/// A replicate of every detector.
+/// Computes a replicate of every detector.
 class Resampler {
  public:
   Resampler(std::span<const DetectorRuns> detectors, const DetectionRule& rule)

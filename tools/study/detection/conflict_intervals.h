@@ -1,4 +1,4 @@
-// Intervals for the detection by detectors whose thresholds are estimates themselves.
+// Intervals for the results of detectors. The detectors' thresholds are estimates, too.
 #pragma once
 
 #include <cstddef>
@@ -11,19 +11,19 @@
 
 namespace fogline::study {
 
-/// Runs of one detector: those in clear air, from which its threshold is found, and the records of
-/// its scores in fog, by visibility and seed.
+/// Runs of one detector. Its threshold is found from the runs in clear air. The records of its
+/// scores in fog are ordered by visibility and seed.
 struct DetectorRuns {
   std::span<const ClearRun> clear;
   std::span<const std::vector<ScoreRecords>> fog;
 };
 
-/// How detectors are compared.
+/// Settings for the comparison of detectors.
 struct DetectionRule {
   double arl_zero_s = 0;                   // mean time to a false alarm at the thresholds
-  double missed_s = 0;                     // delay with which an undetected fog counts
+  double missed_s = 0;                     // delay that is used for an undetected fog
   std::vector<std::size_t> ranked;         // the visibilities over which delays are averaged
-  std::optional<std::size_t> reference{};  // the detector from which differences are taken
+  std::optional<std::size_t> reference{};  // detector that is subtracted in differences
   int jobs = 1;
 };
 
@@ -41,18 +41,19 @@ struct DetectionMeans {
 struct DetectionComparison {
   DetectionMeans detector;
   std::vector<Estimate> delay_minus_other_s;  // by visibility
-  std::vector<double> mean_delays_s;          // of the resamples, over the ranked visibilities
+  std::vector<double> mean_delays_s;          // one for each resample, over the ranked visibilities
 };
 
 /// The difference a - b of the mean delays over the ranked visibilities, with its interval.
 Estimate DelayDifference(const DetectionComparison& a, const DetectionComparison& b);
 
-/// Detection by each of `detectors`. Means use the thresholds that all runs give. Intervals come
-/// from a bootstrap of both halves at once: it resamples the runs in clear air and finds a
-/// threshold in them, and it resamples the seeds of the fog, with the same draws for all
-/// visibilities and detectors. Detectors with equally many runs in clear air have the same draws of
-/// these, too. If all or nearly all replicates have the same detection, the interval of Clopper and
-/// Pearson is wider, and is used instead.
+/// Detection by each of `detectors`. Means use the thresholds from all runs in clear air. Intervals
+/// come from a bootstrap of clear air and fog at once. The bootstrap resamples the runs in clear
+/// air, and finds a threshold from the resampled runs. The bootstrap also resamples the seeds in
+/// fog, with the same draws for all visibilities and detectors. Detectors with equally many runs in
+/// clear air have the same draws of these runs, too. If all or nearly all replicates have the same
+/// detection, the interval of Clopper and Pearson is wider than the bootstrap's interval, and is
+/// used instead.
 std::vector<DetectionComparison> CompareDetection(std::span<const DetectorRuns> detectors,
                                                   const DetectionRule& rule);
 

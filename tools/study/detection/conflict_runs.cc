@@ -20,8 +20,9 @@ struct Noise {
   double radar_m;
   double lidar_m;
 };
-// The optimistic noise of paper.json; then data sheet values of a Continental ARS408 at near range,
-// between, and at far range, with a Velodyne VLP-16.
+// The first noise is the optimistic noise of paper.json. The other noises are data sheet values of
+// a Continental ARS408 radar with a Velodyne VLP-16 LiDAR: at near range, between near and far
+// range, and at far range.
 constexpr std::array kNoises{Noise{"calibrated", 0.01, 0.01}, Noise{kUsualNoise, 0.1, 0.03},
                              Noise{"realistic", kRealisticNoise_m, 0.03},
                              Noise{"far-range", 0.4, 0.03}};
@@ -43,8 +44,8 @@ std::vector<std::string> Overrides(std::string_view fog, const Noise& noise) {
           fmt::format("/fusion/lidar_range_std_m={}", noise.lidar_m)};
 }
 
-/// A scenario with these overrides that lasts for so long after the warm-up. The measures know the
-/// mounting offset of the sensors.
+/// A scenario with these overrides that lasts for `duration_s` after the warm-up. The measures know
+/// the mounting offset of the sensors.
 Scenario ConflictScenario(const StudyContext& context, const std::vector<std::string>& overrides,
                           double duration_s) {
   Scenario scenario = context.Load("paper.json", overrides);
@@ -74,12 +75,12 @@ using ClearRuns = std::vector<std::vector<ClearRun>>;
 
 /// All runs of a set.
 struct SetRuns {
-  ClearRuns calibration;  // from which thresholds come
-  ClearRuns validation;   // in which false alarms are counted again
-  ClearRuns long_air;     // instead of `calibration`, if a condition ranks detectors
+  ClearRuns calibration;  // runs from which thresholds are found
+  ClearRuns validation;   // other runs, in which false alarms are counted again
+  ClearRuns long_air;     // used instead of `calibration` if a condition ranks detectors
   std::vector<std::vector<std::vector<ScoreRecords>>> fog;  // by detector, visibility, seed
 
-  /// The runs from which the threshold of a detector comes.
+  /// The runs from which the threshold of a detector is found.
   std::span<const ClearRun> OfThreshold(std::size_t detector) const {
     return long_air[detector].empty() ? calibration[detector] : long_air[detector];
   }
@@ -99,7 +100,7 @@ SetRuns RunShortClearAir(const StudyContext& context, const Traffic& clear_air,
   return runs;
 }
 
-/// Runs the long clear air of some detectors. @param plan without its first seed
+/// Makes the long runs in clear air for some detectors. @param plan its first seed is set here
 void RunLongClearAir(const StudyContext& context, const Traffic& clear_air, ClearAirPlan plan,
                      const ShowUnit& show, SetRuns& runs) {
   plan.first_seed = kLongClearAirSeeds + plan.runs_per_seed * context.seeds.first;
@@ -123,7 +124,7 @@ void AddRoc(std::span<const Gathered> gathered, ConflictOutcome& outcome) {
   }
 }
 
-/// Runs the fog of every visibility, and adds everything that needs no threshold.
+/// Makes the runs in fog of every visibility, and adds all results that need no threshold.
 void RunFogs(const StudyContext& context, std::string_view fog, const Noise& noise,
              const ShowUnit& show, SetRuns& runs, ConflictSet& set) {
   const std::vector<SortedBatches> clear_scores = SortScores(runs.validation);
@@ -182,7 +183,7 @@ std::vector<AlarmTimes> CommonAlarms(const SetRuns& runs, const ConflictSet& set
   return alarms;
 }
 
-/// ConflictSet::counts_as. Detectors without a threshold count as themselves.
+/// The value of ConflictSet::counts_as. Detectors without a threshold count as themselves.
 std::vector<std::size_t> CountsAs(const ConflictSet& set, std::span<const AlarmTimes> alarms) {
   std::vector<std::size_t> counts_as = AllDetectors();
   std::vector<std::size_t> compared;
@@ -197,7 +198,7 @@ std::vector<std::size_t> CountsAs(const ConflictSet& set, std::span<const AlarmT
   return counts_as;
 }
 
-/// The detectors that have a threshold, each of those with the same alarms once.
+/// The detectors that have a threshold. Of the detectors with the same alarms, it has only one.
 std::vector<std::size_t> DistinctOf(const ConflictSet& set) {
   std::vector<std::size_t> distinct;
   for (std::size_t d = 0; d < set.thresholds.size(); ++d) {
@@ -220,7 +221,7 @@ void AddDetected(std::span<const ScoreRecords> records, double threshold,
   detector.delay_if_detected_s /= static_cast<double>(detector.detected);
 }
 
-/// Finds the conditions that rank detectors, at the present thresholds.
+/// Finds the conditions that rank detectors, at the current thresholds.
 void SetTelling(const StudyContext& context, const SetRuns& runs, ConflictSet& set) {
   const Scenario paper = context.Load("paper.json", {});
   const double window_s = static_cast<double>(paper.arbitrator.window_steps) * paper.step_s;
@@ -307,8 +308,8 @@ Estimate ConflictSet::Difference(std::size_t a, std::size_t b) const {
 }
 
 std::vector<ConflictSet> RunConflictSets(const StudyContext& context) {
-  // Units for each seed: two runs in clear air, one in each fog, and the long clear air of quick
-  // and of slow detectors.
+  // Units for each seed: two runs in clear air, one run in each fog, and the long runs in clear air
+  // for quick and for slow detectors.
   constexpr std::size_t kUnits = 2 + kVisibilities_m.size() + 2;
   const std::int64_t all = context.seeds.count() *
                            static_cast<std::int64_t>(kFogModels.size() * kNoises.size() * kUnits);

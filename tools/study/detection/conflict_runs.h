@@ -1,5 +1,5 @@
-// The runs of study `conflict`: fog models, visibilities and noises, with the detection by every
-// detector in each.
+// The runs of study `conflict`. A condition is a fog model, a visibility and a noise. Each
+// condition has the results of every detector.
 #pragma once
 
 #include <array>
@@ -17,17 +17,17 @@
 
 namespace fogline::study {
 
-/// Visibilities from thin to dense fog, m (meteorological optical range). At about 95 m the LiDAR
-/// in fog model beam loses a car 36 m ahead.
+/// Visibilities from thin to dense fog, m (meteorological optical range). At about 95 m and below,
+/// the LiDAR in fog model beam loses a car 36 m ahead.
 inline constexpr std::array kVisibilities_m{300.0, 150.0, 100.0, 75.0, 50.0};
-/// Visibility at which the bias of fog model bias is that of paper.json, m.
+/// Visibility at which fog model bias has the bias of paper.json, m.
 inline constexpr double kReferenceVisibility_m = 60;
 /// Mean time to a false alarm for which thresholds are calibrated, s: six false alarms an hour.
 inline constexpr double kArlZero_s = 600;
-/// Largest ratio of a threshold's mean time to kArlZero_s that still counts as equal.
+/// The mean time to a false alarm at a threshold counts as equal to kArlZero_s up to this ratio.
 inline constexpr double kLoosest = 1.5;
-/// Number of runs in clear air for each seed, from which the thresholds of quick and of slow
-/// detectors come if a condition ranks detectors. Otherwise it is one run.
+/// Number of runs in clear air for each seed, for the thresholds of quick and of slow detectors.
+/// These numbers apply if a condition ranks detectors. Otherwise there is one run for each seed.
 inline constexpr std::int64_t kQuickClearAir = 100;
 inline constexpr std::int64_t kSlowClearAir = 5;
 /// Length of the fog in paper.json, s.
@@ -44,12 +44,13 @@ struct ConflictCondition {
 /// Threshold of a detector for one fog model and noise.
 struct DetectorThreshold {
   double threshold = 0;
-  AlarmCount calibrated;  // in the runs from which it was found
-  AlarmCount clear;       // in other runs in clear air
+  AlarmCount calibrated;  // alarms in the runs from which the threshold was found
+  AlarmCount clear;       // alarms in other runs in clear air
 
-  /// Whether the threshold alarms as often as required. If a measure has its greatest value too
-  /// often, or the time in clear air is too short, the smallest threshold that alarms seldom enough
-  /// is never or hardly ever reached. Then the detector is not compared at equal false alarms.
+  /// Whether the threshold gives false alarms as often as required. A threshold cannot do this if a
+  /// measure has its greatest value too often, or if the time in clear air is too short. Then the
+  /// smallest threshold with few enough false alarms is never or hardly ever reached. A detector
+  /// with such a threshold is not compared at equal false alarms.
   bool is_determined() const {
     return calibrated.alarms > 0 && calibrated.ArlZero_s() <= kLoosest * kArlZero_s;
   }
@@ -61,9 +62,9 @@ struct DetectorThreshold {
 struct DetectorOutcome {
   Estimate delay_s;  // kFog_s for an undetected fog
   Estimate delay_minus_doc_s;
-  std::int64_t detected = 0;       // number of seeds
+  std::int64_t detected = 0;       // number of seeds with an alarm in fog
   Estimate detection;              // probability
-  double delay_if_detected_s = 0;  // mean; NaN without an alarm
+  double delay_if_detected_s = 0;  // mean delay of the alarms; NaN without an alarm
   Estimate auc;
   Estimate auc_minus_doc;
   std::array<Estimate, kFalsePositives.size()> true_positives;
@@ -75,31 +76,31 @@ struct ConflictOutcome {
   std::vector<DetectorOutcome> detectors;  // in the order of Detectors()
 };
 
-/// One fog model and one noise; their conditions share the thresholds. Vectors of detectors are in
-/// the order of Detectors().
+/// All conditions with one fog model and one noise. These conditions share the thresholds. Vectors
+/// of detectors are in the order of Detectors().
 struct ConflictSet {
   std::string fog;
   std::string noise;
   std::int64_t seeds = 0;
   std::int64_t runs = 0;
   std::vector<DetectorThreshold> thresholds;
-  /// For each detector the one with which it counts, because their alarms are the same. All of them
-  /// have its results.
+  /// For each detector, the index of the detector that it counts as. All detectors with the same
+  /// alarms count as one of them, and have the results of this one detector.
   std::vector<std::size_t> counts_as;
-  /// Detection of those that have a threshold; the mean delays are those of the conditions that
-  /// rank detectors.
+  /// Detection by the detectors that have a threshold. The mean delays are means over the
+  /// conditions that rank detectors.
   std::vector<DetectionComparison> compared;
   std::vector<Estimate> auc;              // mean over the visibilities
   std::vector<ConflictOutcome> outcomes;  // in the order of kVisibilities_m
 
-  /// Whether any of its conditions ranks detectors.
+  /// Whether any condition of the set ranks detectors.
   bool Ranks() const;
   /// Whether the detector has a threshold at which it can be compared.
   bool IsCompared(std::size_t detector) const { return thresholds[detector].is_determined(); }
   const Estimate& DelayOf(std::size_t detector) const {
     return compared[detector].detector.delay_s;
   }
-  /// The difference a - b of two mean delays; empty if one of them has no threshold.
+  /// The difference a - b of two mean delays; empty if one of the detectors has no threshold.
   Estimate Difference(std::size_t a, std::size_t b) const;
 };
 

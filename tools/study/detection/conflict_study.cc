@@ -1,5 +1,5 @@
 // Study `conflict`: compares every measure of conflict as a detector of fog, at an equal rate of
-// false alarms, and says which part of the Degree of Conflict its lead comes from.
+// false alarms. It also finds the part of the Degree of Conflict that causes its advantage.
 #include <algorithm>
 #include <cctype>
 
@@ -24,7 +24,7 @@ constexpr std::string_view kConflictAnswer =
 constexpr std::string_view kConflictWouldChange =
     "A deception that grows slowly, or sensors whose noise is not white.";
 
-/// A sentence for the usual noise, or for another noise with its name in front.
+/// The sentence of a claim. For another noise than the usual one, it begins with the noise's name.
 std::string SaysOf(const ConflictSet& set, std::string_view says) {
   if (set.noise != kUsualNoise) return fmt::format("With {} noise {}", set.noise, says);
   std::string sentence(says);
@@ -71,7 +71,7 @@ std::vector<Claim> ConflictClaims(std::span<const ConflictSet> sets) {
   return claims;
 }
 
-/// "beam, near-range noise (75 m, 50 m)": the conditions of this kind.
+/// The conditions of this kind, such as "beam, near-range noise (75 m, 50 m)".
 std::string ConditionsText(std::span<const ConflictSet> sets, Telling telling) {
   std::string text;
   for (const ConflictSet& set : sets) {

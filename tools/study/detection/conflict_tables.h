@@ -17,12 +17,12 @@ namespace fogline::study {
 std::string NameOfSet(const ConflictSet& set);
 /// The names of all detectors that count as this one.
 std::string NamesOf(const ConflictSet& set, std::size_t detector);
-/// The detectors that have a threshold, the shortest mean delay first. Those with the same alarms
-/// are one.
+/// The detectors that have a threshold, the shortest mean delay first. Of the detectors with the
+/// same alarms, the list has only one.
 std::vector<std::size_t> Ranked(const ConflictSet& set);
 
-/// The detectors between a distance of a single step and the Degree of Conflict: each has one more
-/// of its parts.
+/// The detectors from the distance of a single step to the Degree of Conflict. Each detector has
+/// one part of the Degree of Conflict more than the detector before it.
 struct DocPart {
   std::string_view name;
   std::string_view detector;
@@ -32,16 +32,17 @@ inline constexpr std::array<DocPart, 4> kDocParts{{{"distance of one step", "dis
                                                    {"and its sign", "distance + window + sign"},
                                                    {"and its sigmoid", "doc"}}};
 
-/// What each part of the Degree of Conflict changes, for the sets that rank detectors.
+/// A table of the effect of each part of the Degree of Conflict, for the sets that rank detectors.
 report::StudyTable TableOfParts(std::span<const ConflictSet> sets);
-/// Which conditions rank detectors.
+/// A table that shows which conditions rank detectors.
 report::StudyTable TableOfConditions(std::span<const ConflictSet> sets);
 /// Mean delays of each measure of a single step with and without window and sign.
 report::StudyTable TableOfOptions(const ConflictSet& set);
-/// Every detector of a set, in order of rank.
+/// A table of every detector of a set, in order of rank.
 report::StudyTable TableOfDetectors(const ConflictSet& set);
 
-/// Delay, AUC and ROC of the measures; the options of window and sign are in the tables only.
+/// Figures of delay, AUC and ROC of the measures. Only the tables have the combinations with window
+/// and sign.
 std::vector<report::StudyFigure> FiguresOf(const ConflictSet& set);
 
 std::string ConflictCsv(std::span<const ConflictSet> sets);

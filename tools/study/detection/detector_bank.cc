@@ -14,8 +14,8 @@
 namespace fogline::study {
 namespace {
 
-/// Measures whose score is a short formula of the two ranges. The others take ten times as long or
-/// longer: they add up bins or intervals, or compare three ranges.
+/// Measures whose score is a short formula of the two ranges. The other measures take at least ten
+/// times as long, because they add up bins or intervals, or compare three ranges.
 constexpr std::array<std::string_view, 11> kQuickMeasures{
     "doc",   "nis", "nis_window", "nis_signed",  "bhattacharyya", "hellinger",
     "cusum", "glr", "sprt",       "lidar_modes", kDistance};
@@ -37,8 +37,8 @@ conflict::Evidence EvidenceOfDifference(double difference_m) {
           .prediction = {.valid = true, .range_m = kRange_m, .std_m = kStd_m}};
 }
 
-/// Whether the score of a step depends on this step alone: it is then the same after a long
-/// conflict and after long agreement.
+/// Whether the score of a step depends on this step alone. Such a score is the same after a long
+/// conflict as after a long agreement.
 bool IsOfOneStep(const conflict::ConflictMeasureRow& row) {
   constexpr int kSteps = 50;  // more than any window
   constexpr double kConflict_m = 3;

@@ -1,5 +1,5 @@
-// The detectors of study `conflict`: every measure of conflict, and what the memory and the side of
-// the Degree of Conflict make of each measure of a single step.
+// The detectors of study `conflict`: every measure of conflict, and every measure of a single step
+// combined with the window and the sign of the Degree of Conflict.
 #pragma once
 
 #include <cstddef>
@@ -18,35 +18,35 @@
 
 namespace fogline::study {
 
-/// Parameters of the measures in a scenario. Those that the scenario does not set follow the noise
-/// of its sensors, as the defaults follow the default noise. The width of bins is the larger
-/// standard deviation of the two sensors. The SPRT tests for the same shift as the CUSUM: 2 kappa
-/// standard deviations of the difference. With fixed parameters a test would be tuned to one noise
-/// of several.
+/// Parameters of the measures in a scenario. The width of bins and the shift of the SPRT depend on
+/// the noise of the scenario's sensors, as their defaults depend on the default noise. The width of
+/// bins is the larger standard deviation of the two sensors. The SPRT tests for the same shift as
+/// the CUSUM: 2 kappa standard deviations of the difference. Fixed parameters would be tuned to
+/// only one of several noises.
 conflict::ConflictParameters DetectorParameters(const Scenario& scenario);
 
-/// The measure abs(d) in m, with d = radar - LiDAR - offset. Window, known sign and sigmoid make
-/// the Degree of Conflict of it.
+/// The measure abs(d) in m, with d = radar - LiDAR - offset. Window, known sign and sigmoid turn
+/// this measure into the Degree of Conflict.
 inline constexpr std::string_view kDistance = "distance";
 
-/// The rows of ConflictMeasures(), and `distance` after them.
+/// The rows of ConflictMeasures(), then `distance`.
 std::span<const conflict::ConflictMeasureRow> ComparedMeasures();
 
-/// A measure, or what window and sign make of a measure of a single step.
+/// A measure, or a measure of a single step combined with window, sign or both.
 struct Detector {
   std::string name;         // such as "nis", "nis + window", "nis + sign", "nis + window + sign"
   std::size_t measure = 0;  // index in ComparedMeasures()
   bool window = false;      // averages the score over the window of the Degree of Conflict
-  bool sign = false;        // negative if the LiDAR's range is too long, as fog never makes it
+  bool sign = false;        // the score is negative if the LiDAR's range is too long, unlike in fog
   bool is_quick = false;    // needs no prediction and little time (RunClearAir())
 };
 
-/// A detector for each of ComparedMeasures(), in the same order; after them, for each measure of a
-/// single step, the three others that window and sign make of it.
+/// A detector for each of ComparedMeasures(), in the same order. After them, three more detectors
+/// for each measure of a single step: its combinations with window, sign or both.
 const std::vector<Detector>& Detectors();
 /// Index in Detectors(). @throws std::out_of_range
 std::size_t DetectorNamed(std::string_view name);
-/// 0, 1, 2 ... for each of Detectors(); those of the quick ones, and those of the others.
+/// Indices in Detectors(): of all detectors, of the quick detectors, and of the other detectors.
 std::vector<std::size_t> AllDetectors();
 std::vector<std::size_t> QuickDetectors();
 std::vector<std::size_t> SlowDetectors();
@@ -60,7 +60,7 @@ class DetectorBank {
 
   /// The scores of this step, in the order of the detectors. Call it once per step.
   std::span<const double> Step(const conflict::Evidence& evidence);
-  /// Back to the state after construction.
+  /// Restores the state after construction.
   void Reset();
 
  private:
@@ -70,7 +70,7 @@ class DetectorBank {
     std::optional<conflict::Window> window;
   };
 
-  conflict::DisagreementSource source_;                               // of the sign
+  conflict::DisagreementSource source_;                               // gives the sign
   std::vector<std::unique_ptr<conflict::ConflictMeasure>> measures_;  // null if no member needs it
   std::vector<double> of_measures_;
   std::vector<Member> members_;

@@ -11,8 +11,8 @@
 
 namespace fogline::study {
 
-/// Number of batches of the runs in clear air and in fog. AUC and ROC compare the runs of equal
-/// batches.
+/// Number of batches of the runs in clear air and in fog. AUC and ROC compare runs of the same
+/// batch.
 inline constexpr std::int64_t kBatches = 10;
 /// False positive rates for the ROC: shares of the steps in clear air.
 inline constexpr std::array kFalsePositives{0.001, 0.002, 0.005, 0.01, 0.02,
@@ -21,7 +21,7 @@ inline constexpr std::array kFalsePositives{0.001, 0.002, 0.005, 0.01, 0.02,
 /// Scores of one detector in clear air, by batch, sorted.
 using SortedBatches = std::vector<std::vector<double>>;
 
-/// Those of every detector. @param by_detector runs that have kept scores
+/// The sorted scores of every detector. @param by_detector runs that have kept scores
 std::vector<SortedBatches> SortScores(std::span<const std::vector<ClearRun>> by_detector);
 
 /// Means over the runs of each batch. Batches are independent of each other, because each has its

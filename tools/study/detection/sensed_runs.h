@@ -17,7 +17,7 @@
 
 namespace fogline::study {
 
-/// The traffic of a scenario, step by step. @pre the human always drives and does not err
+/// The traffic of a scenario, step by step. @pre the human always drives and makes no errors
 struct Traffic {
   struct Moment {
     truth_t truth;
@@ -30,13 +30,13 @@ struct Traffic {
 /// The traffic of the scenario, from one run of the closed loop.
 Traffic TrafficOf(const Scenario& scenario);
 
-/// Lets sensors, filter and detectors look at the same traffic with one seed after the other. The
-/// scores are those of runs of the closed loop with these seeds, which would take more time. For
-/// use by one thread.
+/// Runs sensors, filter and detectors in the same traffic with one seed after the other. The scores
+/// are equal to the scores in runs of the closed loop with these seeds, but such runs would take
+/// more time. Only one thread may use a bench.
 class SensorBench {
  public:
   /// @param traffic must outlive the bench
-  /// @param detectors indices in Detectors(). If all of them are quick, there is no filter.
+  /// @param detectors indices in Detectors(). If all these detectors are quick, there is no filter.
   SensorBench(const Traffic& traffic, std::span<const std::size_t> detectors);
 
   /// Calls `visit(truth, scores)` after each step, with the scores in the order of the detectors.

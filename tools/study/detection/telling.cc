@@ -8,9 +8,10 @@
 namespace fogline::study {
 namespace {
 
-/// Share of the fogs that a detector must find, so that there is something to rank.
+/// A condition ranks detectors only if at least one detector finds this share of the fogs.
 constexpr double kLeastFound = 0.1;
-/// Share of the detectors that alarm at once. The others may be those that hardly work at all.
+/// A condition ranks nothing if this share of the detectors alarm at once. The other detectors may
+/// be detectors that hardly work.
 constexpr double kMostDetectors = 0.9;
 
 bool HaveEqualAlarms(const AlarmTimes& a, const AlarmTimes& b) {

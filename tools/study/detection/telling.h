@@ -1,5 +1,5 @@
-// Which detectors count once, because their alarms are the same, and which conditions rank
-// detectors at all.
+// Finds the detectors that count as one because their alarms are the same. Also finds the
+// conditions that can rank detectors.
 #pragma once
 
 #include <cstddef>
@@ -9,32 +9,32 @@
 
 namespace fogline::study {
 
-/// The first alarm of a detector in each run, s; negative in a run without one.
+/// The first alarm of a detector in each run, s; negative in a run without an alarm.
 struct AlarmTimes {
-  std::vector<double> common;   // in the runs of all detectors
-  std::vector<double> further;  // in runs of some detectors only; empty for the others
+  std::vector<double> common;   // in the runs that all detectors have
+  std::vector<double> further;  // in runs that only some detectors have; empty for other detectors
 };
 
-/// For each detector the index of the one with which it counts: two detectors with the same alarms
-/// in all runs in which they are compared are one. That one has the most runs of them. Further runs
-/// are compared if both have equally many, because these are the same runs.
+/// For each detector, the index of the detector that it counts as. Detectors with the same alarms
+/// in all compared runs count as one of them: the detector with the most runs. The further runs of
+/// two detectors are compared if both have equally many, because then they are the same runs.
 std::vector<std::size_t> OneOfEqualAlarms(std::span<const AlarmTimes> detectors);
 
-/// What a condition says of the detectors.
+/// The result of a condition for the ranking of detectors.
 enum class Telling {
   kRanks,
-  kAllAtOnce,  // nine of ten detectors alarm within the shortest difference of the first one
-  kHardlyAny,  // no detector finds one fog of ten
+  kAllAtOnce,  // nine of ten detectors alarm at about the same time as the first detector
+  kHardlyAny,  // every detector finds less than a tenth of the fogs
 };
 /// "ranked", "all alarm at once" or "hardly any alarm".
 std::string_view Text(Telling telling);
 
-/// Mean delay of a detector in a condition, and the share of the fogs that it finds.
+/// Mean delay of a detector in a condition, and the share of the fogs that the detector finds.
 struct DelayAndShare {
   double delay_s;
   double share;
 };
-/// @param shortest_s smaller differences of a delay rank nothing
+/// @param shortest_s delays that differ by less than this time count as the same time
 /// @return kRanks without detectors
 Telling TellingOf(std::span<const DelayAndShare> detectors, double shortest_s);
 

@@ -13,9 +13,9 @@ StudyCase FogMode::Case(std::string_view with, const std::vector<std::string>& m
   return one;
 }
 
-// Missing echoes are those of a beam whose own fog echo is too weak to be seen, in fog so dense
-// that the car ahead is not seen either. Real data show this mode (RADIATE, Sheeny et al. 2021):
-// beyond 35 m no echo of 65 cars, and none of the fog.
+// In the mode with missing echoes, the echo of the fog itself is too weak to be detected. The fog
+// is so dense that the echo of the car ahead is not detected either. Real data show this mode
+// (RADIATE, Sheeny et al. 2021): there is no echo of 65 cars beyond 35 m, and no echo of the fog.
 const std::vector<FogMode>& FogModes() {
   static const std::vector<FogMode> kModes{
       {"bias fog", "paper.json", {}},

@@ -1,5 +1,5 @@
-// The three ways in which a LiDAR fails in fog, and the two humans, with which studies cross their
-// variants.
+// The three ways in which a LiDAR fails in fog, and the two humans. Studies combine each of their
+// variants with them.
 #pragma once
 
 #include <string>
@@ -19,24 +19,25 @@ struct FogMode {
   std::string_view file;
   std::vector<std::string> overrides;
 
-  /// The case of this fog with something more, such as a human: "bias fog: perfect human".
+  /// The case of this fog with the overrides `more`, such as those of a human. `with` names them in
+  /// the case's name, such as "bias fog: perfect human".
   StudyCase Case(std::string_view with, const std::vector<std::string>& more = {}) const;
 };
 
 /// Bias (paper.json), near echo (dense_fog.json), missing echo.
 const std::vector<FogMode>& FogModes();
-/// What they are, for the method of a study.
+/// Explains the modes in the method of a study.
 std::string_view FogModesText();
 
 /// Overrides for a human who sees the fog, misjudges distances and loses awareness.
 const std::vector<std::string>& FallibleHuman();
-/// The two humans with their overrides: the perfect one has none.
+/// A human with its overrides. The perfect human has no overrides.
 struct HumanCase {
   std::string_view name;
   std::vector<std::string> overrides;
 };
 const std::vector<HumanCase>& BothHumans();
-/// What the two humans are, for the method of a study.
+/// Explains the two humans in the method of a study.
 std::string_view HumansText();
 
 }  // namespace fogline::study

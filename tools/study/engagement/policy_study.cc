@@ -14,7 +14,8 @@
 namespace fogline::study {
 namespace {
 
-/// Every policy of the table, and rivals: fusion that helps itself, and a driver who must be asked.
+/// Every policy of the table, and rival rules: fusion that handles wrong sensors without a human,
+/// and a driver who must be asked to take over.
 std::vector<StudyVariant> EveryRule() {
   std::vector<StudyVariant> variants;
   for (const policies::PolicyRow& row : policies::Policies()) {
@@ -35,8 +36,9 @@ std::vector<StudyVariant> EveryRule() {
 
 constexpr std::string_view kCalibratedRadar = "calibrated radar";
 
-/// Each fog with each human, with the scenario's noise and with a real radar's; and the paper's fog
-/// with a radar whose mounting offset is calibrated out and a DoC that knows the offset.
+/// Each fog with each human, with the scenario's noise and with the noise of a real radar. Also the
+/// paper's fog with a calibrated radar: the radar has no mounting offset, and the offset is
+/// subtracted from the centre of the DoC.
 std::vector<StudyCase> PolicyFogs() {
   std::vector<StudyCase> cases;
   for (const FogMode& fog : FogModes()) {

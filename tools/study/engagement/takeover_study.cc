@@ -15,15 +15,17 @@ namespace {
 
 constexpr std::string_view kNoTradedControl = "none";
 
-/// Mean times to take over, s; 0 is the paper's driver, who need not be asked. Zhang et al. 2019
-/// found a mean of 2.7 s in 129 studies.
+/// Mean times to take over, s. The paper's driver has 0, because this driver need not be asked.
+/// Zhang et al. 2019 found a mean of 2.7 s in 129 studies.
 constexpr std::array kLatencies_s{0, 1, 2, 3, 4, 5};
-/// Standard deviation of the time to take over, s; our choice, because the means are to differ.
+/// Standard deviation of the time to take over, s. The value is our choice: it is smaller than the
+/// difference of the means.
 constexpr double kDeviation_s = 0.5;
-/// Probability that a driver never comes; our choice, because one in ten shows what it costs.
+/// Probability that a driver never takes over. The value is our choice: one driver in ten is enough
+/// to show the cost.
 constexpr double kAbsent = 0.1;
 
-/// What the automation does from the request until the driver is there.
+/// The behaviour of the automation from the request until the driver takes over.
 struct Meanwhile {
   std::string_view name;
   std::vector<std::string> overrides;
@@ -64,7 +66,7 @@ std::vector<StudyVariant> TakeOverVariants() {
   return variants;
 }
 
-/// The variants of the main comparison, which are repeated with realistic noise.
+/// The variants of the main comparison. They are repeated with realistic noise.
 std::vector<StudyVariant> MainVariants() {
   std::vector<StudyVariant> variants = TakeOverVariants();
   std::erase_if(variants, [](const StudyVariant& one) {
@@ -89,10 +91,11 @@ std::vector<StudyCase> NoisyCases() {
   return cases;
 }
 
-/// Each fog with a perfect human, a fallible one, and a fallible one who must be more aware before
-/// he is given the wheel.
+/// Each fog with a perfect human, with a fallible human, and with a fallible human who must be more
+/// aware before the transfer.
 std::vector<StudyCase> TakeOverCases() {
-  constexpr double kReady = 0.8;  // our choice, because it takes 3 s from a monitoring driver's 0.5
+  // This value is our choice. A monitoring driver's readiness rises from 0.5 to this value in 3 s.
+  constexpr double kReady = 0.8;
   std::vector<StudyCase> cases;
   for (const FogMode& fog : FogModes()) {
     const auto add = [&](std::string_view human, const std::vector<std::string>& overrides) {
@@ -118,7 +121,7 @@ constexpr std::array<std::string_view, 9> kTakeOverTable{"si_pct",
                                                          "human_time_s",
                                                          "transfers_pmin"};
 
-/// A quantity over the time to take over: a series for each thing that the automation does.
+/// A quantity over the time to take over, with a series for each behaviour of the automation.
 report::StudyFigure OverLatency(const Comparison& comparison, std::string_view test_case,
                                 std::string_view measure, std::string id) {
   report::StudyFigure figure{
@@ -145,8 +148,8 @@ report::StudyFigure OverLatency(const Comparison& comparison, std::string_view t
   return figure;
 }
 
-/// Mean compromised safety by latency, for two things that the automation can do in each fog, with
-/// both humans side by side. @param noise the end of the names of the cases
+/// Mean compromised safety by latency, for two behaviours of the automation in each fog, with both
+/// humans side by side. @param noise the end of the names of the cases
 report::StudyTable TakeOverMainTable(const Comparison& comparison, std::string_view noise) {
   report::StudyTable table{
       .caption = fmt::format("Mean compromised safety in fog{} (m), means over {} seeds [95 % "
@@ -201,7 +204,7 @@ constexpr std::string_view kTakeOverWouldChange =
 std::string StayFor(int latency_s) { return LatencyName("stay", latency_s, false); }
 std::string IsolateFor(int latency_s) { return LatencyName("isolate", latency_s, false); }
 
-/// The claim on the mean compromised safety of two variants in a case.
+/// The claim on the difference in mean compromised safety of two variants in a case.
 Claim ShortfallClaim(const Comparison& comparison, std::string says, std::string_view test_case,
                      std::string_view a, std::string_view b, Sign sign, double margin = 0) {
   return ClaimOf(comparison, std::move(says), {test_case, a}, {test_case, b}, kShortfall, sign,
@@ -237,7 +240,7 @@ std::vector<Claim> TakeOverClaims(const Comparison& comparison) {
   };
 }
 
-/// The same with realistic noise, as far as the answer depends on it.
+/// The claims with realistic noise on which the answer depends.
 std::vector<Claim> NoisyClaims(const Comparison& noisy) {
   const std::string_view none = kNoTradedControl;
   const auto name = [](std::size_t fog) {

@@ -53,7 +53,7 @@ std::vector<StudyCase> FollowerCases() {
   return cases;
 }
 
-/// The followers of the answer behind a host with realistic noise.
+/// The followers that the answer mentions, behind a host with realistic noise.
 std::vector<StudyCase> NoisyFollowers() {
   constexpr std::array<std::string_view, 4> kNames{"bias fog: acc", "bias fog: normal human",
                                                    "beam fog: acc", "beam fog: aggressive human"};
@@ -73,8 +73,8 @@ constexpr std::array<std::string_view, 8> kFollowerTable{"si_pct",
                                                          "max_follower_drac_mps2",
                                                          "min_follower_rss_margin_m"};
 
-// Overrides with which a string settles before the fog, whatever the time gaps are. The fog is as
-// long as in the file.
+// Overrides for a later fog, so that a string with any time gaps settles before the fog. The fog
+// lasts as long as in the file.
 const std::vector<std::string> kLater{"/fog/start_s=60", "/steps=1200"};
 
 /// Strings in which every car has the same kind of driver.
@@ -128,7 +128,7 @@ std::vector<Claim> ClaimsOnFirst(const Comparison& comparison) {
                 Sign::kEqual, kNoShortfall_m)};
 }
 
-/// The same behind a host with realistic noise.
+/// The claims on the first follower behind a host with realistic noise.
 std::vector<Claim> NoisyClaimsOnFirst(const Comparison& comparison) {
   const auto claim = [&](std::string_view says, std::string_view name, Sign sign,
                          double margin = 0) {
@@ -144,7 +144,8 @@ std::vector<Claim> NoisyClaimsOnFirst(const Comparison& comparison) {
                 "beam fog: aggressive human", Sign::kLess)};
 }
 
-/// For each kind of string: the last car brakes less hard behind a host with traded control.
+/// For each kind of string, the claim that the last car brakes less hard behind a host with traded
+/// control.
 std::vector<Claim> ClaimsOnStrings(std::span<const StringOutcome> strings) {
   std::vector<Claim> claims;
   for (const StringOutcome& traded : strings) {

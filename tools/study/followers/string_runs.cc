@@ -17,7 +17,7 @@ constexpr double kInfinite = std::numeric_limits<double>::infinity();
 // The measurement starts this long before the fog, so that it includes the whole effect of the fog.
 constexpr double kBefore_s = 1;
 
-// Smaller decelerations do not count as braking: noise causes them in clear air.
+// Smaller decelerations do not count as braking, because noise causes them in clear air.
 constexpr double kLeastBraking_mps2 = 0.01;
 
 /// Result of one run.

@@ -1,4 +1,4 @@
-// Runs strings of cars behind the host, to follow a disturbance from car to car.
+// Runs strings of cars behind the host, to measure how a disturbance travels from car to car.
 #pragma once
 
 #include <cstddef>
@@ -16,18 +16,18 @@ namespace fogline::study {
 /// Number of cars behind the host.
 inline constexpr std::size_t kStringCars = 5;
 
-/// Values of one car from one second before the fog, seed by seed. Place 0 is the host, which has
-/// only a deceleration.
+/// Values of one car, seed by seed. The measurement begins one second before the fog. The host is
+/// the car at place 0, and has only a deceleration.
 struct CarInString {
   std::vector<double> max_deceleration_mps2;
-  /// Ratio of its deceleration to that of the car ahead: above 1 a disturbance grows. NaN behind a
-  /// car that did not brake.
+  /// Ratio of the car's deceleration to the deceleration of the car ahead. A disturbance grows if
+  /// the ratio is above 1. NaN if the car ahead did not brake.
   std::vector<double> amplification;
-  std::vector<double> min_ttc_s;  // infinite if it never closed in on the car ahead
+  std::vector<double> min_ttc_s;  // infinite if the car was never faster than the car ahead
   std::vector<double> min_gap_m;
 };
 
-/// One kind of driver in all cars, and one variant of the host.
+/// Results for one kind of driver in all cars, and one variant of the host.
 struct StringOutcome {
   std::string kind;
   std::string variant;
@@ -35,8 +35,8 @@ struct StringOutcome {
   std::int64_t collisions = 0;    // runs that end with a collision
 };
 
-/// All kinds with all variants, ordered by kind. In the scenarios of `kinds` the fog must begin
-/// after the string has settled. @throws InputError, StudyStopped
+/// Runs all kinds with all variants. The result is ordered by kind. In the scenarios of `kinds` the
+/// fog must begin after the string has settled. @throws InputError, StudyStopped
 std::vector<StringOutcome> RunStrings(const StudyContext& context, std::span<const StudyCase> kinds,
                                       std::span<const StudyVariant> variants);
 

@@ -1,4 +1,4 @@
-// The main rules of study `threshold` with a perfect and with a fallible human, and with two
+// Runs the main rules of study `threshold` with a perfect and with a fallible human, and with two
 // radars.
 #pragma once
 
@@ -24,22 +24,22 @@ struct HumanMix {
   std::string Name() const;
 };
 
-/// Number of mixes.
+/// Number of mixes: two humans with two radars each.
 inline constexpr std::int64_t kHumanMixes = 4;
 
-/// Both humans with drawn radars, then both with a realistic one. The units of their progress are
-/// the situations. @throws InputError, StudyStopped
+/// Runs the mixes of both humans with drawn radars, then of both humans with a realistic radar.
+/// Each situation of a mix is a unit of progress. @throws InputError, StudyStopped
 std::vector<HumanMix> RunBothHumans(const StudyContext& context);
 
-/// Both humans side by side, with one radar.
+/// A table of both humans side by side, with one radar.
 report::StudyTable TableOfHumans(std::span<const HumanMix> mixes, MixedRadar radar);
 std::string HumansCsv(std::span<const HumanMix> mixes);
 
-/// The claim that one rule has more or less SI than another one, situation by situation. `of` names
-/// the mix; "" for that of drawn humans.
+/// The claim on the difference in SI of rule `a` and rule `b`, paired situation by situation. `of`
+/// names the mix; "" stands for the mix with drawn humans.
 Claim RuleClaim(const MixedRuns& runs, std::string_view of, std::string says, std::string_view a,
                 std::string_view b, Sign sign, double margin = 0);
-/// Index of the rule of this name. @throws std::out_of_range
+/// Index of the rule with this name. @throws std::out_of_range
 std::size_t RuleNamed(const MixedRuns& runs, std::string_view name);
 
 }  // namespace fogline::study

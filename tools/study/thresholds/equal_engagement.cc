@@ -26,7 +26,7 @@ std::vector<CurvePoint> CurveOf(std::span<const RuleValues> fixed,
   return curve;
 }
 
-/// Gain as by BestAt(). If the RHE is beyond the curve, the end of the curve counts.
+/// The gain that BestAt() finds. If the RHE is beyond the curve, the end of the curve is used.
 double GainAt(std::span<const CurvePoint> curve, double rhe_pct) {
   const auto [least, most] = std::ranges::minmax(curve, {}, &CurvePoint::rhe_pct);
   const std::optional<CurvePlace> place =
@@ -34,8 +34,8 @@ double GainAt(std::span<const CurvePoint> curve, double rhe_pct) {
   return place ? place->gain : stats::kMissing;
 }
 
-/// Distance of a point of the curve from the curve of the other points. nullopt at the ends, and
-/// where the RHE is constant, because nothing is interpolated there.
+/// Distance of a point of the curve from the straight line between its neighbours. nullopt at the
+/// ends of the curve, and where the RHE is constant, because nothing is interpolated there.
 std::optional<double> OffTheOthers(std::span<const CurvePoint> curve, std::size_t point) {
   if (point == 0 || point + 1 >= curve.size()) return std::nullopt;
   const std::array neighbours{curve[point - 1], curve[point + 1]};
@@ -56,7 +56,7 @@ std::optional<CurvePlace> BestAt(std::span<const CurvePoint> curve, double rhe_p
     if (i + 1 == curve.size()) break;
     const auto [from, to] = std::pair(curve[i], curve[i + 1]);
     const double share = (rhe_pct - from.rhe_pct) / (to.rhe_pct - from.rhe_pct);
-    if (!(share > 0 && share < 1)) continue;  // also false where the RHE is constant
+    if (!(share > 0 && share < 1)) continue;  // a constant RHE gives infinity or NaN
     offer({.below = i, .share = share, .gain = std::lerp(from.gain, to.gain, share)});
   }
   return best;

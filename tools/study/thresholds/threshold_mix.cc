@@ -28,7 +28,7 @@ struct Range {
   double Log(double u) const { return least * std::pow(most / least, u); }
 };
 
-// The mix is our choice: in each respect it reaches from the paper's value to a bad one.
+// The mix is our choice: each parameter ranges from the paper's value to a bad value.
 constexpr double kClearShare = 0.25;
 constexpr Range kVisibility_m{40, 300};
 constexpr Range kBias_m{0.03, 0.5};  // of fog model bias; paper.json has 0.216
@@ -105,8 +105,8 @@ void AddToMember(const RunValues& run, RuleMember& member) {
 }  // namespace
 
 std::vector<RuleFamily> RuleFamilies() {
-  // The grid is dense, because other rules are compared with values between two points. It is
-  // denser where the RHE falls fastest.
+  // The grid is dense, because other rules are compared with values between two points of the grid.
+  // The grid is densest where the RHE falls fastest.
   std::vector<double> fixed;
   for (int permille = 10; permille < 1000; permille += permille < 200 ? 5 : 10) {
     fixed.push_back(permille / 1000.0);

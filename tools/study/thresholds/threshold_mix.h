@@ -16,7 +16,7 @@ namespace fogline::study {
 /// A rule with a parameter that trades engagement against safety.
 struct RuleFamily {
   std::string name;
-  std::vector<double> values;  // of its parameter, one for each member
+  std::vector<double> values;  // values of the parameter, one for each member
   std::vector<StudyVariant> members;
 };
 
@@ -39,10 +39,10 @@ struct MixedRuns {
   std::int64_t situations = 0;
 };
 
-/// Who takes over in the situations.
+/// The human who takes over in the situations.
 enum class MixedHuman {
-  kDrawn,     // half of the humans are right and stay aware; all of them see the fog
-  kPerfect,   // the paper's
+  kDrawn,     // half of the humans judge correctly and stay aware; all humans see the fog
+  kPerfect,   // the paper's human
   kFallible,  // sees the fog, misjudges distances and loses awareness
 };
 /// The noise of the radar in the situations.
@@ -51,12 +51,13 @@ enum class MixedRadar {
   kRealistic,  // RealisticNoise()
 };
 
-/// All rules. The first family is that of fixed thresholds, in ascending order.
+/// All rules. The first family has the fixed thresholds, in ascending order.
 std::vector<RuleFamily> RuleFamilies();
-/// Some of them, by their names.
+/// The members with these names, in their families.
 std::vector<RuleFamily> RulesNamed(std::span<const std::string_view> names);
 
-/// Runs all situations: one for each seed, the same for every rule, human and radar.
+/// Runs all situations. Each seed has one situation, which is the same for every rule, human and
+/// radar.
 /// @throws InputError, StudyStopped
 MixedRuns RunMix(const StudyContext& context, std::vector<RuleFamily> families, MixedHuman human,
                  MixedRadar radar);

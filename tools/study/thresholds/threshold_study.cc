@@ -22,13 +22,12 @@ namespace fogline::study {
 namespace {
 
 /// Every member compared with the curve of fixed thresholds, in the order of MixedRuns::members.
-/// Members on the curve itself are compared with nothing.
+/// Members on the curve itself have no comparison.
 struct Beside {
   std::vector<AtEqualEngagement> si;         // in points
   std::vector<AtEqualEngagement> shortfall;  // in m; less is better
   std::vector<CurvePoint> curve;             // for SI
-  std::size_t fixed = 0;                     // number of members on the curve; they are the first
-                                             // ones
+  std::size_t fixed = 0;                     // number of members on the curve; they come first
 };
 
 Beside BesideFixed(const MixedRuns& mixed) {
@@ -50,7 +49,7 @@ Beside BesideFixed(const MixedRuns& mixed) {
     const auto fixed = std::span(all).first(beside.fixed);
     std::vector<AtEqualEngagement> compared =
         AgainstFixed(fixed, std::span(all).subspan(beside.fixed));
-    compared.insert(compared.begin(), beside.fixed, {});  // the curve itself
+    compared.insert(compared.begin(), beside.fixed, {});  // the members on the curve itself
     return compared;
   };
   beside.si = compare([&](std::size_t i) { return std::span(mixed.members[i].si_pct); });
@@ -82,7 +81,7 @@ constexpr std::string_view kThresholdAnswer =
 constexpr std::string_view kThresholdWouldChange =
     "Situations in which the automation is deceived for longer.";
 
-/// The claim that a rule has more SI than the fixed threshold of equal RHE.
+/// The claim on the difference in SI between a rule and the fixed threshold of equal RHE.
 Claim AtEqualRhe(const MixedRuns& mixed, const Beside& beside, std::string says,
                  std::string_view rule, Sign sign, double margin = 0) {
   const AtEqualEngagement& one = beside.si[RuleNamed(mixed, rule)];
@@ -120,8 +119,8 @@ std::vector<Claim> ThresholdClaims(const MixedRuns& mixed, const Beside& beside)
   };
 }
 
-/// With each human and each radar: the highest threshold against the paper's, and the paper's
-/// against a low one.
+/// For each human and each radar, two claims: the highest threshold against the paper's threshold,
+/// and the paper's threshold against a low threshold.
 std::vector<Claim> ClaimsOnHumans(std::span<const HumanMix> mixes) {
   std::vector<Claim> claims;
   for (const HumanMix& mix : mixes) {
