@@ -1,5 +1,5 @@
 // These tests check which folder may use which other folder, how many files a folder may have, and
-// that each name has one meaning.
+// that each name has only one meaning.
 #include <gmock/gmock-more-matchers.h>
 #include <gtest/gtest.h>
 
@@ -29,8 +29,8 @@ using ::testing::UnorderedElementsAre;
 
 struct Room {
   std::string_view folder;  // with its subfolders, unless they are rooms of their own; see kAlone
-  std::string_view space;   // its types lie in fogline::SPACE; "": in fogline, for all to use
-  std::string_view why;     // why this room stands after the rooms before it
+  std::string_view space;   // its types lie in fogline::SPACE; "": in fogline, for all rooms
+  std::string_view why;     // reason for the position of this room in the order
 };
 
 /// A file may include files of its own room and of rooms before it, and a library may link
@@ -90,14 +90,14 @@ constexpr std::array kRooms = std::to_array<Room>({
     {"tools/benchmarks", "benchmarks", "a program that measures the others"},
 });
 
-/// This room has no subfolders: a new folder in it needs a line of its own.
+/// This room has no subfolders. A new folder in it needs a line of its own in kRooms.
 constexpr std::string_view kAlone = "services";
 
-/// The table of all measures of conflict. It may include all measures; no measure includes its
-/// header.
+/// The table of all measures of conflict. This file may include all measures; no measure includes
+/// the header of this table.
 constexpr std::string_view kTableOfMeasures = "services/decision/conflict/conflict_measures.cc";
 
-/// The room of a file; nullopt if it is in none.
+/// The room of a file; nullopt if the file is in no room.
 std::optional<std::size_t> RoomOf(const std::filesystem::path& file) {
   for (auto folder = file.parent_path(); !folder.empty(); folder = folder.parent_path()) {
     const auto room = std::ranges::find(kRooms, folder.generic_string(), &Room::folder);
@@ -181,8 +181,8 @@ TEST(HouseTest, FindsAFileThatIsInNoRoom) {
 }
 
 TEST(HouseTest, OnlyFilesThatAnExtensionReplacesAndAProgramIncludeTheListsOfChoices) {
-  // In a program with a longer list (tests/integration/extension) any other file of a library would
-  // bring a second definition of the list.
+  // A program with a longer list (tests/integration/extension) replaces these files. Any other file
+  // of a library would bring a second definition of the list into this program.
   std::vector<std::string> files;
   for (const auto& file : Sources()) {
     const std::string text = Read(SourceDirectory() / file);
@@ -195,7 +195,8 @@ TEST(HouseTest, OnlyFilesThatAnExtensionReplacesAndAProgramIncludeTheListsOfChoi
                           "services/decision/policies/policies.cc", "tools/fogline/report.cc"));
 }
 
-/// The places of a library's folders in the order. A folder without a room stands behind all rooms.
+/// The positions of a library's folders in the order. A folder without a room comes after all
+/// rooms.
 std::set<std::size_t> PlacesOf(const std::string& folders) {
   std::set<std::size_t> places;
   std::istringstream in(folders);
@@ -205,7 +206,7 @@ std::set<std::size_t> PlacesOf(const std::string& folders) {
   return places;
 }
 
-/// The libraries that each library links, and the place of each library.
+/// The libraries that each library links, and the positions of each library's folders.
 struct Links {
   std::map<std::string, std::vector<std::string>> linked;
   std::map<std::string, std::set<std::size_t>> places{{"fogline_lcmtypes", PlacesOf("fogline")}};
@@ -226,8 +227,8 @@ Links ReadLinks(const std::string& lines) {
 }
 
 /// "LIBRARY links LIBRARY" for each link that the order of the folders (kRooms) forbids. Every
-/// folder of the linked library must stand before every folder of the linking library, so allowed
-/// links make no circle.
+/// folder of the linked library must come before every folder of the linking library. So allowed
+/// links make no cycle.
 std::vector<std::string> ForbiddenLinks(const Links& links) {
   std::vector<std::string> forbidden;
   for (const auto& [library, all_linked] : links.linked) {
@@ -286,7 +287,7 @@ TEST(HouseTest, TestsOfAFolderLieInTheSameFolderAgain) {
     for (const auto& entry : std::filesystem::recursive_directory_iterator(tests / kind)) {
       if (!entry.is_directory()) continue;
       const auto folder = std::filesystem::relative(entry.path(), tests / kind);
-      if (folder == "fallback") continue;  // tests of whole runs in which a role falls silent
+      if (folder == "fallback") continue;  // tests of whole runs in which a role stops sending
       EXPECT_TRUE(std::filesystem::is_directory(SourceDirectory() / folder)) << entry.path();
       ++folders;
     }

@@ -1,4 +1,4 @@
-// Code of other projects is not in the tree. Packages of npm are the same on every machine.
+// The tree contains no code of other projects. Packages of npm are the same on every machine.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace {
 
 using nlohmann::json;
 
-/// Whether a file is minified, or says that another project holds rights in it.
+/// Whether a file is minified, or says that another project has rights in this file.
 bool IsOfAnotherProject(const std::filesystem::path& file, const std::string& text) {
   static const std::regex name(R"(.*\.min\..*|LICEN[CS]E.*|COPYING.*|NOTICE.*)");
   constexpr std::array kNotices{"Copyright", "/*!", "@license", "SPDX-License-Identifier"};

@@ -1,6 +1,6 @@
-// A run in real time in one process with all roles. Its clock is a number that the loop increases.
-// Each role can fall silent at a step. A role that then lacks an input falls silent, too, as its
-// process would. The arbitrator and the world go on with the inputs that they have.
+// A run in real time with all roles in one process. The clock of the run is a number that the loop
+// increases. Each role can stop sending at a step. A role that lacks an input also sends nothing,
+// as its own process would. The arbitrator and the world continue with the inputs that they have.
 #pragma once
 
 #include <array>
@@ -132,7 +132,8 @@ class RealTimeLoop {
     return {automation, human};
   }
 
-  // The arbitrator decides at once if no missing message can still come, otherwise at the deadline.
+  // The arbitrator decides at once if no message can come later. Otherwise it decides at the
+  // deadline.
   const arbitration_t& Arbitrate(const ego_t& ego, TimePoint now) {
     const std::int64_t step = ego.header.step;
     const bool waits = std::apply([&](auto&... line) { return (line.Waits(step, now) || ...); },

@@ -1,4 +1,4 @@
-// The role that drives the following cars falls silent. The tests check that all these cars stop.
+// The role that drives the following cars stops sending. The tests check that all these cars stop.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -70,8 +70,8 @@ TEST(SilentFollowersTest, WithoutASilentFollowerIsTheLockstepRun) {
   follower::Follower follower(scenario);
   lockstep.Start(1);
   RealTimeLoop(scenario).Run([&](const Moment& m) {
-    // GIVEN the same commands to the host, THEN the followers' commands are those of a run in
-    // lockstep
+    // GIVEN the same commands to the host, THEN the followers' commands equal the commands of a run
+    // in lockstep
     const follower_command_t& command = follower.Step(lockstep.truth());
     ASSERT_EQ(m.truth.follower_position_m, lockstep.truth().follower_position_m);
     ASSERT_EQ(m.vehicle.followers().acceleration_mps2, command.acceleration_mps2);

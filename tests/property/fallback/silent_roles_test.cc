@@ -1,4 +1,4 @@
-// Each role falls silent at many steps of the shipped scenarios. The tests check the motion of the
+// Each role stops sending at many steps of the shipped scenarios. The tests check the motion of the
 // vehicle.
 #include <algorithm>
 #include <cmath>
@@ -20,8 +20,8 @@ using test::Moment;
 using test::RealTimeLoop;
 
 constexpr double kRounding = 1e-9;
-constexpr std::int64_t kDetection = 3;       // periods
-constexpr std::int64_t kInForce = 1;         // one period more
+constexpr std::int64_t kDetection = 3;  // periods
+constexpr std::int64_t kInForce = 1;    // periods from the detection until the fallback is in force
 constexpr std::int64_t kBetweenDeaths = 13;  // steps
 
 Scenario Shipped(const std::string& name) {
@@ -41,7 +41,7 @@ class Braking {
   void Take(bool in_force, double speed_mps, double applied_mps2) {
     if (in_force_) {
       ASSERT_LE(std::abs(applied_mps2 - last_mps2_), limits_.jerk_mps3 * step_s_ + kRounding);
-      // If the car has braked harder before, it releases the brake.
+      // A car that has braked harder before the manoeuvre releases the brake.
       ASSERT_GE(applied_mps2, std::min(-limits_.deceleration_mps2, last_mps2_) - kRounding);
       ASSERT_TRUE(!stands_ || speed_mps == 0) << "drives off";
       stands_ = speed_mps == 0;
@@ -61,8 +61,8 @@ class Braking {
 
 class SilentRolesTest : public testing::TestWithParam<const char*> {
  protected:
-  // Runs once for every kBetweenDeaths-th step, with these roles silent from that step on. Calls
-  // check(that step, moment).
+  // For every kBetweenDeaths-th step, runs the scenario with these roles silent from this step on.
+  // Calls check(step, moment) for every moment of the run.
   template <class Check>
   void ForEachDeath(std::initializer_list<Role> roles, Check&& check) {
     for (std::int64_t death = 0; death < scenario_.steps - 10; death += kBetweenDeaths) {
@@ -72,7 +72,7 @@ class SilentRolesTest : public testing::TestWithParam<const char*> {
       double last_mps2 = 0;
       loop.Run([&](const Moment& m) {
         ASSERT_EQ(m.truth.collision, truth_t::COLLISION_NONE) << "at step " << m.truth.header.step;
-        // The acceleration of the car is the command of the step before.
+        // The acceleration of the car is the command of the previous step.
         if (m.truth.host_speed_mps > 0 && m.truth.header.step > 0) {
           ASSERT_EQ(m.truth.host_acceleration_mps2, last_mps2);
         }

@@ -16,7 +16,8 @@
 
 namespace fogline {
 
-/// Random values in a sequence that is the same on all systems, unlike that of std:: distributions.
+/// Random values in a sequence that is the same on all systems. The sequences of std::
+/// distributions differ between systems.
 class ValueDraw {
  public:
   explicit ValueDraw(std::uint64_t seed) : engine_(seed) {}

@@ -1,5 +1,5 @@
-// Tests of files that exist completely or not at all, and of the check whether such a file can be
-// written.
+// Tests of files that exist either completely or not at all. The tests also cover the check whether
+// such a file can be written.
 #include "common/atomic_file.h"
 
 #include <fcntl.h>
@@ -192,7 +192,7 @@ TEST_F(AtomicFileTest, OfAFolderThatIsMissingHasAFolderThatStaysOnlyWithFiles) {
     std::ofstream(folder_.File("figures/figure.png")) << "a figure";
   }
   EXPECT_EQ(Content(folder_.File("figures/figure.png")), "a figure");
-  // An empty folder that was there before stays.
+  // An empty folder stays if it existed before.
   std::filesystem::remove(folder_.File("figures/figure.png"));
   { const OutputFolder figures(folder_.File("figures"), "--png"); }
   EXPECT_TRUE(std::filesystem::exists(folder_.File("figures")));
@@ -256,7 +256,7 @@ TEST_F(AtomicFileTest, IsRefusedBeforehandByTheNameOfItsOption) {
             folder + ": error: --out: cannot write: it is a folder");
   EXPECT_EQ(ErrorOf([&] { OutputFolder(file_, "--png"); }),
             file_ + ": error: --png: cannot write: it is a file, not a folder");
-  // In this folder no user can make a file.
+  // No user can create a file in /proc.
   EXPECT_EQ(ErrorOf([&] { RequireWritable("/proc/result.csv", "--out"); }),
             "/proc/result.csv: error: --out: cannot write: No such file or directory");
   EXPECT_EQ(ErrorOf([&] { OutputFolder("/proc", "--logs"); }),

@@ -19,8 +19,8 @@ using Kind = FileLock::Kind;
 
 class FileLockTest : public testing::Test {
  protected:
-  /// The error text of an attempt to take a lock, "" if the attempt succeeds. The lock is then
-  /// given back at once.
+  /// The error text of an attempt to take a lock; "" if the attempt succeeds. The function releases
+  /// the lock at once.
   static std::string ErrorOf(const std::string& path, Kind kind) {
     return test::ErrorOf([&] { const FileLock lock(path, kind, "--log", "run"); });
   }

@@ -1,4 +1,4 @@
-// The channels of the table stand in an order in which a step can be computed.
+// Tests that a step can be computed in the order of the table of channels.
 #include "services/graph.h"
 
 #include <algorithm>

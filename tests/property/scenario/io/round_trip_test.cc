@@ -25,8 +25,8 @@ TEST(RoundTripProperty, PrintedScenariosReadBackBitByBit) {
   }
 }
 
-// The value of an override. A list of sections becomes a list of empty sections; overrides of
-// their fields follow. A section has no override of its own.
+// The text of a value in an override. The text of a list of sections is a list of empty sections;
+// further overrides set the fields of these sections. A section has no override of its own.
 struct OverrideValue {
   std::string operator()(const NumberField& number) const { return NumberText(*number.value); }
   std::string operator()(const IntegerField& integer) const {

@@ -15,8 +15,8 @@ using Solver = acc::AccController::Solver;
 
 constexpr double kTolerance = 1e-9;
 
-// Situations from calm to hopeless. The speed is logarithmic, so slow cars are as frequent as fast
-// ones.
+// Situations from calm to hopeless. The logarithm of the speed is uniform, so slow cars are as
+// frequent as fast cars.
 acc::AccController::Input RandomInput(Draw& draw, const AccSection& section) {
   const double scale = draw.LogUniform(0.01, 1);
   const double speed = draw.LogUniform(0.5, 55);
@@ -28,15 +28,15 @@ acc::AccController::Input RandomInput(Draw& draw, const AccSection& section) {
           .has_target = true};
 }
 
-// The control from which a new controller counts its first change.
+// The control that a new controller takes as the control of the previous step.
 double PreviousControl(const AccSection& section, double acceleration_mps2) {
   return std::clamp(-acceleration_mps2 / section.engine_gain,
                     -section.max_acceleration_mps2 / section.engine_gain,
                     -section.min_acceleration_mps2 / section.engine_gain);
 }
 
-// Calls `check` with a section, a step, an input, the controller, and its first answer to the
-// input.
+// Calls `check` with a section, a step, an input, the controller, and the controller's first output
+// for this input.
 template <class Check>
 void ForRandomSituations(std::int64_t seed, Check&& check) {
   Draw draw(seed);
@@ -79,8 +79,8 @@ TEST(AccControllerPropertyTest, PlansKeepTheLimitsOfTheControlAndOfItsChange) {
   });
 }
 
-// The highest of the car's speed and of the speeds at which the car would settle during the
-// fall-back plan.
+// The maximum of the present speed and of the settled speeds during the fall-back plan. A settled
+// speed is the speed at which the car settles if the control is 0 from then on.
 double HighestInFallback(const AccSection& section, double step_s,
                          const acc::AccController::Input& input) {
   const acc::AccProgram program(section, step_s);

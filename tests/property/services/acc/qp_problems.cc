@@ -40,9 +40,9 @@ bool SolveAndWrite(acc::QpSolver& solver, const QuadraticProgram& program) {
   return true;
 }
 
-// Whether the set of feasible plans has an interior, which an interior-point method needs. For a
-// car that is too fast the set has no interior, because the car must brake along one line until it
-// is slow enough.
+// Whether the set of feasible plans has an interior. An interior-point method needs this interior.
+// For a car that is too fast the set has no interior, because the limits fix the braking until the
+// car is slow enough.
 bool HasInterior(const AccSection& section, const acc::AccSituation& now) {
   return now.speed_mps + section.engine_time_constant_s * now.state(acc::kOwnAcceleration) <
          section.max_speed_mps;

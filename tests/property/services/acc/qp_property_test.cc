@@ -58,7 +58,7 @@ TEST(QpPropertyTest, RandomProgramsAreSolvedToTheirMinimum) {
   EXPECT_GT(with_active_limits, 1500);
 }
 
-// One solver solves all situations of a section, so most of its starts are far from the minimum.
+// One solver solves all situations of a section, so most starting points are far from the minimum.
 TEST(QpPropertyTest, ProgramsOfTheAccAreSolvedToTheirMinimum) {
   Draw draw(2);
   int with_active_limits = 0;
@@ -93,7 +93,8 @@ TEST(QpPropertyTest, TheMinimumDoesNotDependOnTheStart) {
   }
 }
 
-// A row is a combination of other rows, and its limit contradicts their limits (Farkas' lemma).
+// The limit of a row contradicts the limits of two other rows (Farkas' lemma). The row is a
+// combination of these two rows.
 TEST(QpPropertyTest, ContradictionsAreFound) {
   Draw draw(4);
   for (int i = 0; i < 1000; ++i) {
@@ -112,11 +113,11 @@ TEST(QpPropertyTest, ContradictionsAreFound) {
     program.upper.conservativeResize(m + 1);
     program.constraints.row(m) =
         program.constraints.row(row) + weight * program.constraints.row(other);
-    // WHEN c'x must be greater than this sum
+    // WHEN c'x must be greater than sum w_r upper_r
     program.lower(m) =
         program.upper(row) + weight * program.upper(other) + draw.LogUniform(1e-6, 1);
     program.upper(m) = std::numeric_limits<double>::infinity();
-    // THEN there is no solution
+    // THEN the program has no solution
     acc::QpSolver solver(program.hessian, program.constraints, kOptions);
     EXPECT_EQ(solver.Solve(program.linear, program.lower, program.upper).status,
               Status::kInfeasible)

@@ -23,9 +23,9 @@ struct QuadraticProgram {
   double Cost(const Eigen::VectorXd& x) const { return 0.5 * x.dot(hessian * x) + linear.dot(x); }
 };
 
-/// A program that is feasible by construction. It has up to 20 variables and up to three rows for
-/// each. Some rows are one-sided, equalities, or multiples of other rows. The unconstrained minimum
-/// is usually outside of the limits. Condition numbers are up to 1e4.
+/// A program that is feasible by construction. The program has up to 20 variables, and up to three
+/// rows for each variable. Some rows are one-sided, equalities, or multiples of other rows. The
+/// unconstrained minimum is usually outside of the limits. Condition numbers are up to 1e4.
 inline QuadraticProgram RandomProgram(Draw& draw) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const Eigen::Index n = draw.Integer(1, 20);

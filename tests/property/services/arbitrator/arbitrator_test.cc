@@ -16,7 +16,7 @@ namespace {
 constexpr auto kAbsolute = ConflictReading::kMeanOfAbsolute;
 constexpr auto kSigned = ConflictReading::kAbsoluteOfMean;
 
-// A difference of about a metre. In one step of five there is no difference.
+// A difference of about a metre; no value in one of five steps.
 std::optional<double> AnyDifference(const Random& random, std::int64_t step) {
   if (random.Uniform2(step, 0)[0] < 0.2) return std::nullopt;
   return random.Normal2(step, 1)[0];
@@ -37,8 +37,8 @@ TEST(DegreeOfConflictPropertyTest, GrowsWithTheConflictAndIsSymmetricAboutTheCen
   }
 }
 
-// The window must agree exactly with a simple window made of a deque and loops. So its sums do not
-// drift, and it contains no old value.
+// The window must agree exactly with a simple window made of a deque and loops. The test shows that
+// the sums of the window do not drift, and that the window contains no old value.
 TEST(ConflictWindowPropertyTest, AveragesTheLastStepsAndNothingElse) {
   for (const std::size_t length : {1, 2, 7, 8, 50}) {
     conflict::ConflictWindow window(static_cast<int>(length));

@@ -71,7 +71,7 @@ TEST(FailsafePropertyTest, IsTheArbitratorBitByBitWhileAllInputsAreThere) {
   }
 }
 
-// An input that fails and recovers at random. It is AWAITED until it comes for the first time.
+// An input that fails and recovers at random. The input is AWAITED until its first message comes.
 template <class M>
 class Flickering {
  public:
@@ -159,7 +159,7 @@ TEST(FailsafePropertyTest, CommandsNothingUndefinedWhateverFails) {
       ++taken[arbitrator.decision()];
     }
   }
-  // Every decision must be frequent, or the test would prove little.
+  // Every decision must be frequent. Otherwise the test would prove little.
   for (const arbitrator::Decision decision :
        {arbitrator::Decision::kRegular, arbitrator::Decision::kAutomation,
         arbitrator::Decision::kHuman, arbitrator::Decision::kHold,

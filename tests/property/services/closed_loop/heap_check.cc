@@ -1,8 +1,8 @@
 // Checks that only the first step of the closed loop allocates memory, and that the measures do not
-// allocate memory. It covers every shipped scenario, every fog model and policy, one car and a
-// column of mixed vehicles. It also checks each step of the ACC, whatever path its solver takes,
-// and of the models of vehicle, driver and follower. It is a separate program because it replaces
-// malloc. It prints the allocations and exits with 1 if there are any.
+// allocate memory. The check covers every shipped scenario, every fog model and policy, one car,
+// and a column of mixed vehicles. The check also covers each step of the ACC, whatever path its
+// solver takes, and of the models of vehicle, driver and follower. The program replaces malloc, so
+// it is separate from other tests. It prints the allocations, and exits with 1 if there are any.
 #include <cstddef>
 #include <cstdio>
 
@@ -77,8 +77,8 @@ bool CheckController() {
   return made == 0 && solver_steps > 1000;
 }
 
-// Whether no allocation happens while a human drives a car uphill and through fog, from the first
-// step on.
+// Whether no step, including the first, allocates memory while a human drives a car uphill and
+// through fog.
 bool CheckModels() {
   models::LongitudinalVehicle car(models::kSedan, models::FrictionOf(Surface::kWet),
                                   models::GradeProfile({{0, 0}, {500, 0.05}}), 0.1);
@@ -174,7 +174,7 @@ bool CheckTraffic(const Shipped& shipped) {
   return made == 0 && steps > 100;
 }
 
-// Drivers whom the car must ask: some come in time, some are late, some never come.
+// Drivers whom the car must ask to take over: some take over in time, some late, some never.
 bool CheckTakeOver(Scenario scenario) {
   scenario.arbitrator.take_over.mode = TakeOverMode::kRequested;
   scenario.arbitrator.take_over.time.mean_s = scenario.arbitrator.take_over.lead_s;
@@ -200,7 +200,7 @@ bool Check() {
     clean = CheckTakeOver(shipped.scenario) && clean;
   }
   clean = CheckHuman(all.front().scenario) && clean;
-  // If the counter had counted no allocation at all, the counter would be broken.
+  // The set-up of the runs allocates memory, so a count of 0 means that the counter is broken.
   return clean && all.size() >= 2 && allocations > 0;
 }
 

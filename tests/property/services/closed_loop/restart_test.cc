@@ -28,7 +28,7 @@ void ChangeTraffic(Draw& draw, Scenario& scenario) {
   scenario.road.grade = {{0, draw.Uniform(-0.05, 0.05)}, {500, draw.Uniform(-0.05, 0.05)}};
 }
 
-/// Changes some parts of a scenario and keeps others, as between two rows of a sweep.
+/// Changes some parts of a scenario, as between two rows of a sweep.
 void Change(Draw& draw, Scenario& scenario) {
   scenario.seed = draw.Integer(0, 1000);
   scenario.steps = draw.Integer(1, 300);
@@ -52,7 +52,7 @@ void Change(Draw& draw, Scenario& scenario) {
 }
 
 TEST(ClosedLoopProperty, RestartsAsIfNewWhateverRanBefore) {
-  // GIVEN a loop that may have computed other runs before
+  // GIVEN a loop that may already have computed other runs
   Draw draw(1);
   Scenario scenario;
   closed_loop::ClosedLoop loop(scenario);

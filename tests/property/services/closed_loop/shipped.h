@@ -1,4 +1,4 @@
-// The scenarios that Fogline ships, and the digest of a scenario when it runs in this process.
+// The scenarios that Fogline ships, and the digest of a scenario that runs in this process.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 
 namespace fogline::test {
 
-/// A recorded leader drives for many minutes. The first kMostSteps steps prove enough.
+/// A recorded leader drives for many minutes. For a test the first kMostSteps steps are enough.
 inline constexpr std::int64_t kMostSteps = 1000;
 
 struct Shipped {

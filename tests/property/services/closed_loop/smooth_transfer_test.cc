@@ -16,8 +16,8 @@
 namespace fogline::test {
 namespace {
 
-// The limit of ISO 15622 above 20 m/s. ISO 15622 averages over 1 s; here every single step keeps
-// the limit, too.
+// The limit of ISO 15622 above 20 m/s. ISO 15622 averages the jerk over 1 s; here every single step
+// must keep the limit.
 constexpr double kSmooth_mps3 = 2.5;
 
 Scenario Paper() { return LoadScenario(FOGLINE_SOURCE_DIR "/scenario/paper.json"); }
@@ -61,8 +61,9 @@ Outcome OutcomeOf(Scenario scenario, int seeds) {
 constexpr TransferProfile kProfiles[] = {TransferProfile::kLinear, TransferProfile::kSigmoid,
                                          TransferProfile::kJerkLimited};
 
-// The jumps in the paper's experiment are only a few cm/s2 (0.3 to 0.4 m/s3), so even abrupt
-// transfers keep the limit. In this experiment a profile must not cost safety.
+// At transfers in the paper's experiment the command jumps by only a few cm/s2 (0.3 to 0.4 m/s3).
+// So even abrupt transfers keep the limit. In this experiment a profile may cost at most three
+// points of SI.
 TEST(SmoothTransferProperty, EveryProfileIsSmoothInThePapersExperimentForThreePointsOfSafety) {
   for (const int seeds : {1, 40}) {
     Scenario scenario = Paper();
@@ -97,7 +98,7 @@ TEST(SmoothTransferProperty, ALimitedCommandTakesTheJerkOutOfHandOversInDenseFog
   EXPECT_GE(gated.si_pct, abrupt.si_pct - 3);
 }
 
-// ---- whole transfers against their definition ---------------------------------------------------
+// ---- whole transfers, compared with their definition --------------------------------------------
 
 struct Step {
   bool human_wanted;
@@ -164,7 +165,7 @@ class Ramp {
 };
 
 /// The command by definition, from the mixed offers. Each change of the request starts the limit;
-/// the limit ends when the command has caught up with the offers.
+/// the limit ends when the command has reached the mixed offers.
 class Limit {
  public:
   explicit Limit(const Scenario& scenario)
@@ -178,7 +179,7 @@ class Limit {
     }
     human_wanted_ = human_wanted;
     if (!limited_) return target_mps2;
-    if (target_mps2 < -section_.yield_mps2) {  // the limit yields to an emergency and ends
+    if (target_mps2 < -section_.yield_mps2) {  // an emergency ends the limit
       limited_ = false;
       return target_mps2;
     }
@@ -265,10 +266,10 @@ TEST(SmoothTransferProperty, EveryCommandOfARunIsTheOneThatItsProfileDefines) {
   }
 }
 
-// The ACC plans from the real acceleration of the host. So in every step of a return (a jump or a
-// ramp) the ACC's offer differs from the last command by at most (1 - exp(-step/T_e)) times one
-// change of u, whichever side gave that command. The ACC's own share of the new command makes no
-// bump.
+// The ACC plans from the real acceleration of the host, whichever side gave the last command. So in
+// every step of a return (a jump or a ramp) the ACC's offer is near the last command: the
+// difference is at most (1 - exp(-step/T_e)) times one change of u. The ACC's share of the new
+// command therefore makes no bump.
 TEST(BumplessTransferProperty, TheAutomationReturnsFromTheAccelerationThatTheHostHas) {
   constexpr double kRounding = 1e-9;
   for (const TransferProfile profile : kAllProfiles) {

@@ -1,4 +1,4 @@
-// The fallback in the closed loop of the shipped scenarios. Some drivers come, others do not.
+// The fallback in the closed loop of the shipped scenarios. Some drivers take over, others do not.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -110,7 +110,7 @@ TEST_F(TakeOverLoopTest, KeepsTheRulesForEveryDriver) {
   EXPECT_GT(manoeuvres, 3);
 }
 
-/// The share of control, in [0, 1], that the leaving side keeps in the first step of a transfer.
+/// The share of control, in [0, 1], that the old side has in the first step of a transfer.
 double LeftInTheFirstStep(const Scenario& scenario) {
   const TransferSection& section = scenario.arbitrator.transfer;
   const double progress = scenario.step_s / section.duration_s;
@@ -125,10 +125,10 @@ double LeftInTheFirstStep(const Scenario& scenario) {
   }
 }
 
-// In the step in which the driver takes over, or the automation gets control back, the new side's
-// offer has a share in the command. The share is 1, or on a ramp the share of the ramp's first
-// step. So the command differs from the old side's offer by this share of the difference between
-// both offers. A driver who ends a manoeuvre has full authority at once.
+// In the first step of a transfer the new side's offer has a share in the command. On a ramp this
+// share is that of the ramp's first step, otherwise 1. So the command differs from the old side's
+// offer by this share of the difference between both offers, within the profile's jerk limit. A
+// driver who ends a manoeuvre has full authority at once.
 TEST_F(TakeOverLoopTest, ATransferIsFeltInItsStepWhateverTheProfile) {
   for (const TransferProfile profile : {TransferProfile::kStep, TransferProfile::kLinear,
                                         TransferProfile::kSigmoid, TransferProfile::kJerkLimited}) {

@@ -1,6 +1,6 @@
-// The filter must have the accuracy that it reports. In many runs of exactly the model that the
-// filter assumes, its errors and innovations must have the covariances that it reports (Bar-Shalom,
-// Li & Kirubarajan 2001, section 5.4).
+// The accuracy that the filter reports must be correct. The runs follow exactly the model that the
+// filter assumes. Over many runs, the filter's errors and innovations must have the covariances
+// that the filter reports (Bar-Shalom, Li & Kirubarajan 2001, section 5.4).
 #include <array>
 #include <vector>
 
@@ -29,8 +29,8 @@ struct Ensemble {
       std::vector<Eigen::Vector3d>(kSteps, Eigen::Vector3d::Zero());
 };
 
-// A car that wanders by some 15 m in these steps. It stays ahead of the host, and near enough for
-// the lateral offsets of the sensors to have an effect.
+// A car whose position varies by some 15 m in these steps. The car stays ahead of the host, and so
+// near that the lateral offsets of the sensors have an effect.
 Scenario GentleScenario() {
   Scenario scenario;
   scenario.fusion.jerk_density_m2ps5 = 0.02;
@@ -83,15 +83,15 @@ int NisOutside(const Ensemble& sums) {
   return outside;
 }
 
-// Innovations of different steps are independent, so the number of steps outside is binomial. At
-// most its 99.9 % quantile is allowed.
+// Innovations of different steps are independent, so the number of steps outside the bounds is
+// binomial. The test allows at most the 99.9 % quantile of this number.
 constexpr double kOutsideChance = 0.05;
 int MostOutside() {
   return static_cast<int>(quantile(boost::math::binomial(kSteps - 1, kOutsideChance), 0.999));
 }
 
-// Errors of neighbouring steps are correlated, so one unlucky period counts several times. Twice
-// MostOutside() is allowed: a quarter of all steps.
+// Errors of neighbouring steps are correlated, so one unlucky period counts several times. The test
+// therefore allows twice MostOutside(): a quarter of all steps.
 int MostNeesOutside() { return 2 * MostOutside(); }
 
 double Mean(const std::vector<double>& sums) {
@@ -120,8 +120,9 @@ class ConsistencyTest : public ::testing::TestWithParam<Case> {
 TEST_P(ConsistencyTest, ErrorsHaveTheReportedCovariance) {
   const Ensemble sums = Simulate(World(), World(), GetParam().dropout);
   EXPECT_LE(NeesOutside(sums), MostNeesOutside());
-  // 3 is the dimension of the state. The means over other groups of a hundred seeds scatter by 0.06
-  // (0.025 if the values were independent). The tolerance is about three times 0.06.
+  // 3 is the dimension of the state. The means over other groups of a hundred seeds scatter by
+  // 0.06. For independent values they would scatter by 0.025. The tolerance is about three times
+  // 0.06.
   EXPECT_NEAR(Mean(sums.nees), 3.0, 0.2);
 }
 

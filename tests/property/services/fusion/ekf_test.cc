@@ -18,7 +18,7 @@ Eigen::Matrix3d CovarianceOf(const track_t& track) {
   return Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(track.covariance[0]);
 }
 
-// From 10^low to 10^high, uniform in the exponent.
+// A random number from 10^low to 10^high, uniform in the exponent.
 double Magnitude(const Random& random, std::uint32_t index, double low, double high) {
   return std::pow(10.0, low + (high - low) * random.Uniform2(0, index)[0]);
 }
@@ -82,8 +82,8 @@ TEST(EkfPropertyTest, BrakingOfTheHostLeavesTheEstimateOfThePrecedingCarAlone) {
   }
 }
 
-// Corrections by one value after the other must equal the textbook's correction by all three at
-// once.
+// Three corrections, by one value each, must equal the textbook's joint correction by all three
+// values.
 TEST(EkfPropertyTest, SequentialCorrectionsEqualAJointOne) {
   const Scenario scenario;
   const FusionSection& f = scenario.fusion;
@@ -92,7 +92,7 @@ TEST(EkfPropertyTest, SequentialCorrectionsEqualAJointOne) {
   const Eigen::Vector3d stds(f.radar_range_std_m, f.radar_range_rate_std_mps, f.lidar_range_std_m);
   const Eigen::Matrix3d r = stds.cwiseAbs2().asDiagonal();
   testing::LeadSimulation lead(scenario, 2);
-  fusion::Ekf joint(scenario.step_s, f.jerk_density_m2ps5);  // only predicts; this test corrects
+  fusion::Ekf joint(scenario.step_s, f.jerk_density_m2ps5);  // predicts only; the test corrects it
   fusion::Fusion fusion(scenario);
   for (int k = 0; k < 100; ++k) {
     const testing::LeadStep step = lead.Step();
@@ -109,8 +109,8 @@ TEST(EkfPropertyTest, SequentialCorrectionsEqualAJointOne) {
     const Eigen::Matrix3d gain = p * h.transpose() * (h * p * h.transpose() + r).inverse();
     const Eigen::Vector3d x = joint.state() + gain * (z - h * joint.state());
     joint.Start(x, (Eigen::Matrix3d::Identity() - gain * h) * p);
-    // Both filters compute the same numbers by different operations. 1e-10 is about 1000 roundings
-    // of 33 m.
+    // Both filters compute the same numbers by different operations. 1e-10 is more than 10,000
+    // times the rounding of 60 m.
     ASSERT_LT((own - x).cwiseAbs().maxCoeff(), 1e-10) << "step " << k;
     ASSERT_LT((CovarianceOf(track) - joint.covariance()).cwiseAbs().maxCoeff(), 1e-12);
   }

@@ -1,4 +1,5 @@
-// A car ahead that moves, and sensors that measure, exactly as the filter's model assumes.
+// A car ahead, and sensors. The car moves and the sensors measure exactly as the filter's model
+// assumes.
 #pragma once
 
 #include <cmath>
@@ -42,7 +43,7 @@ class LeadSimulation {
       noise += t * weight * scenario.fusion.jerk_density_m2ps5 * v * v.transpose();
     }
     noise_root_ = noise.llt().matrixL();
-    // The initial state is as uncertain as the filter assumes.
+    // The uncertainty of the initial state is the uncertainty that the filter assumes.
     const double spread = scenario.fusion.initial_acceleration_std_mps2;
     state_ << 60.0, 0.0, spread * random_.Normal2(0, 9)[0];
   }

@@ -152,7 +152,7 @@ TEST(LidarProperty, TheEchoIsThatOfTheMajorityOfBeams) {
     for (const lidar_t& lidar : Measure(scenario, range_m, 1e5)) detections += lidar.valid;
     ExpectShare(detections, 0.5, "detection");
   }
-  // Half of an even number of beams suffices. Of two beams at least one has an echo with
+  // Half of the beams suffice if their number is even. At least one of two beams has an echo with
   // probability 3/4.
   scenario.lidar.beam.beams = 2;
   int detections = 0;
@@ -178,7 +178,7 @@ TEST(LidarProperty, FogScattersByABetaDistribution) {
 TEST(LidarProperty, NothingIsEverSeenBehindTheTarget) {
   Scenario scenario = Beam();
   scenario.lidar.beam.beams = 1;
-  scenario.lidar.beam.fog_range_scale_m = 100.0;  // a scatter far beyond the target
+  scenario.lidar.beam.fog_range_scale_m = 100.0;  // the fog's echoes scatter far beyond the target
   lidar::Lidar lidar(scenario);
   for (double gap_m = 0.5; gap_m < 120.0; gap_m *= 1.1) {
     for (double visibility_m = 20.0; visibility_m < 20000.0; visibility_m *= 1.3) {
@@ -193,8 +193,8 @@ TEST(LidarProperty, NothingIsEverSeenBehindTheTarget) {
 }
 
 TEST(LidarProperty, DenserFogNeverBringsTheTargetBack) {
-  // The draws of a step are the same in any fog. So once the echo of the fog wins, the target does
-  // not win in denser fog.
+  // The draws of a step are the same in any fog. So if the target's echo loses in some fog, it also
+  // loses in denser fog.
   lidar::Lidar lidar(Beam());
   for (std::int64_t step = 0; step < 100; ++step) {
     bool sees_target = true;

@@ -84,7 +84,7 @@ TEST(RadarProperty, DropsOutAtItsRate) {
 }
 
 TEST(RadarProperty, NoStepDependsOnAnother) {
-  // A step has its own draws, which do not depend on the steps that were computed before it.
+  // Each step has its own random draws. These draws do not depend on the steps computed before.
   Scenario scenario;
   scenario.radar.dropout_probability = 0.2;
   radar::Radar forwards(scenario);

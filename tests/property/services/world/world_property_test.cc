@@ -37,7 +37,7 @@ Scenario Rough() {
   scenario.steps = 300;
   scenario.world.end_on_collision = false;
   scenario.lead.profile = LeadProfile::kSinusoid;
-  scenario.lead.sinusoid.amplitude_mps = 25.0;  // the leader stands for a part of each period
+  scenario.lead.sinusoid.amplitude_mps = 25.0;  // the leader stands still for a part of each period
   return scenario;
 }
 

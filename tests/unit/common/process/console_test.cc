@@ -52,8 +52,8 @@ std::string Read(int fd) {
   return text;
 }
 
-/// Calls `run` in a new process with this stderr, because a process opens its stderr only once.
-/// @return its exit code
+/// Calls `run` in a child process with this stderr, because a process opens its stderr only once.
+/// @return the exit code of the child
 int InChild(int standard_error, const std::function<int()>& run) {
   const pid_t child = fork();
   if (child == 0) {
@@ -120,7 +120,7 @@ TEST_P(ConsoleTest, AComplaintWaitsForAReaderAlsoWhenNoticesWereDropped) {
     _exit(0);
   }
   close(ends.in);
-  // GIVEN a reader that begins a moment after the error found no room
+  // GIVEN a reader that begins to read some time after the writer filled the pipe
   char byte = 0;
   ASSERT_EQ(read(told.out, &byte, 1), 1);
   usleep(200'000);
@@ -160,8 +160,8 @@ TEST_P(ConsoleTest, ALineWithoutAReaderEndsNoProcess) {
 INSTANTIATE_TEST_SUITE_P(To, ConsoleTest, testing::Values(Pipe, Sockets),
                          [](const auto& ends) { return ends.index == 0 ? "Pipe" : "Socket"; });
 
-/// Prints a line from a background process of a terminal, which stops background processes that
-/// write (stty tostop).
+/// Prints a line from a background process of a terminal with `stty tostop`. Such a terminal stops
+/// background processes that write.
 /// @return the status of the process that prints it, as waitpid() gives it
 int StatusInBackground(const char* terminal) {
   setsid();

@@ -93,7 +93,7 @@ TEST(AccControllerTest, ConvergesToTheSafeDistance) {
   }
 }
 
-// The gap returns to the safe distance and overshoots by at most this much.
+// The gap returns to the safe distance and overshoots it by at most kOvershoot.
 TEST(AccControllerTest, HardlyOvershootsTheSafeDistance) {
   constexpr double kOvershoot = 0.05;  // m
   for (const double error_m : {-18.0, -5.0, -0.5}) {
@@ -133,7 +133,7 @@ TEST(AccControllerTest, TheMinimumGapOverrulesTheSafeDistance) {
   section.min_gap_m = 10;
   for (const double gap_m : {6.0, 8.0, 15.0}) {
     const Trip trip = Drive(section, {gap_m, 12, 12}, 300);
-    // THEN the minimum gap holds in the end, up to some centimetres because its limit is soft
+    // THEN the gap ends at the minimum gap, within some centimetres because this limit is soft
     EXPECT_NEAR(trip.cars.gap_m, section.min_gap_m, 0.05) << gap_m;
     EXPECT_NEAR(trip.cars.speed_mps, 12, 1e-3) << gap_m;
     EXPECT_GE(trip.smallest_gap_m, std::min(gap_m, section.min_gap_m) - 0.05) << gap_m;
@@ -150,8 +150,8 @@ TEST(AccControllerTest, HoldsTheBrakeAtAStandstillTooCloseToTheNextCar) {
 TEST(AccControllerTest, ApproachesItsMaximumSpeedFromBelow) {
   const AccSection section;
   const Trip trip = Drive(section, {200, 45, 30}, 600);
-  // The plan keeps the limit exactly. But the car holds a command for a whole step, whereas the
-  // engine of the model reaches it gradually.
+  // The plan keeps the limit exactly. But the car of this test holds a command for a whole step,
+  // whereas the engine of the model approaches the command gradually.
   EXPECT_LE(trip.fastest_mps, section.max_speed_mps + 1e-3);
   EXPECT_NEAR(trip.cars.speed_mps, section.max_speed_mps, 1e-3);
   EXPECT_EQ(trip.fallbacks, 0);
@@ -159,7 +159,7 @@ TEST(AccControllerTest, ApproachesItsMaximumSpeedFromBelow) {
 
 TEST(AccControllerTest, BringsACarThatIsTooFastBackToItsMaximumSpeed) {
   const AccSection section;
-  // GIVEN a driver who leaves the car 4 m/s too fast, and still accelerating
+  // GIVEN a driver who leaves the car 4 m/s too fast and still accelerating
   const Trip trip = Drive(section, {200, 45, 44, 1.0}, 100);
   // THEN the automation brakes back to the limit without a fallback
   EXPECT_LE(trip.cars.speed_mps, section.max_speed_mps + 1e-3);
@@ -179,7 +179,7 @@ TEST(AccControllerTest, BrakesAtTheFallbackDecelerationWithoutATarget) {
     EXPECT_GE(output.acceleration_mps2 - cars.acceleration_mps2, -section.max_jerk_mps3 * kStep);
     cars.Advance(output.acceleration_mps2);
   }
-  EXPECT_NEAR(cars.acceleration_mps2, -section.fallback_deceleration_mps2, 1e-3);  // e^-7 remains
+  EXPECT_NEAR(cars.acceleration_mps2, -section.fallback_deceleration_mps2, 1e-3);  // e^-7 is left
 }
 
 TEST(AccControllerTest, IgnoresDistanceAndSpeedOfAMissingTarget) {
@@ -213,8 +213,9 @@ TEST(AccControllerTest, FallsBackAtTheIterationLimit) {
 }
 
 // The car may have any acceleration a when the automation takes over from a driver. Within the step
-// the engine goes (1 - e^(-h/T_e)) of its way towards -K_e u. And -K_e u differs from a by at most
-// one change of u, plus the part of a that is outside of the automation's limits.
+// the acceleration covers the share (1 - e^(-h/T_e)) of the way from a to -K_e u. And -K_e u
+// differs from a by at most one change of u, plus the part of a that is outside of the automation's
+// limits.
 TEST(AccControllerTest, TakesOverWithoutABump) {
   const AccSection section;
   const double share = -std::expm1(-kStep / section.engine_time_constant_s);
@@ -244,8 +245,8 @@ TEST(AccControllerTest, CountsItsChangeOfControlFromTheAccelerationThatADriverLe
   // GIVEN an ACC that wants to accelerate, and a driver who brakes at 1 m/s2
   for (int k = 0; k < 20; ++k) acc.Step(cars.Sense());
   cars.acceleration_mps2 = -1;
-  // THEN the control begins at the value that would hold this acceleration, and changes at its
-  // fastest rate
+  // THEN the control begins at the value that would keep this acceleration, and changes at the
+  // maximum rate
   const double change = section.max_jerk_mps3 * kStep / section.engine_gain;
   EXPECT_NEAR(acc.Step(cars.Sense()).control, 1 / section.engine_gain - change, 1e-9);
 }

@@ -45,13 +45,13 @@ TEST(AccModelTest, SettlesAtMinusGainTimesControl) {
   // WHEN 10 s have passed, more than twenty time constants
   Eigen::Vector3d x = Eigen::Vector3d::Zero();
   for (int k = 0; k < 100; ++k) x = model.phi * x + model.gamma * control;
-  // THEN the car decelerates by K u, is slower than the car ahead, and too far behind it
-  EXPECT_NEAR(x(acc::kOwnAcceleration), -0.732 * control, 1e-9);  // e^-21 remains
+  // THEN the car decelerates by K u, is slower than the car ahead, and its gap is too large
+  EXPECT_NEAR(x(acc::kOwnAcceleration), -0.732 * control, 1e-9);  // e^-21 is left
   EXPECT_GT(x(acc::kDeltaV), 0);
   EXPECT_GT(x(acc::kDeltaD), 0);
 }
 
-// The tolerance is some roundings of the largest term.
+// The tolerance covers some roundings of the largest term.
 TEST(AccModelTest, DiscretisationEqualsTheIntegralsWrittenOut) {
   for (const double step_s : {0.001, 0.05, 0.1, 1.0}) {
     for (const double time_constant_s : {0.01, 0.46, 10.0}) {

@@ -19,7 +19,7 @@ struct Drive {
   double largest_acceleration_mps2 = 0;
 };
 
-// A car follows another car of 20 m/s for a minute. After 5 s the car ahead brakes to 12 m/s at 2
+// A car follows a car ahead at 20 m/s for a minute. After 5 s the car ahead brakes to 12 m/s at 2
 // m/s2.
 Drive FollowABrakingCar(const AccSection& section, VehicleModel model,
                         const models::VehicleParameters& car = models::kSedan) {
@@ -82,7 +82,7 @@ TEST(AccOnVehicleTest, DoesNotRunAwayWhileThePersonDrives) {
                              .has_target = true})
                        .acceleration_mps2;
   }
-  // THEN the command is to brake, and differs from the car's acceleration by one jerk-limited ramp
+  // THEN the command is negative, and differs from the car's acceleration by one jerk-limited ramp
   // at most
   EXPECT_LT(command_mps2, -1);
   EXPECT_GE(command_mps2, -section.max_jerk_mps3 * (section.engine_time_constant_s + kStep_s));

@@ -113,7 +113,7 @@ TEST(AccProgramTest, LeavesOutLimitsThatNoPlanCanReach) {
   VectorXd lower(30);
   VectorXd upper(30);
   program.Limits(kSituation, lower, upper);
-  // THEN only the limits of u and of its change are left
+  // THEN only the limits of u and of the change of u remain
   EXPECT_EQ((upper.array() < std::numeric_limits<double>::infinity()).count(), 12);
   EXPECT_EQ((lower.array() > -std::numeric_limits<double>::infinity()).count(), 12);
 }

@@ -22,8 +22,8 @@ VectorXd Vector(std::initializer_list<double> values) {
   return v;
 }
 
-// The squared distance from the point (3, 2) in the plane, 1/2 |x - p|^2. Every optimum is easy to
-// see.
+// The squared distance from the point p = (3, 2) in the plane, 1/2 |x - p|^2. Every optimum is
+// obvious.
 class PlaneTest : public testing::Test {
  protected:
   acc::QpSolver::Result Solve(const MatrixXd& constraints, const VectorXd& lower,
@@ -54,7 +54,8 @@ TEST_F(PlaneTest, ProjectsOntoABox) {
   const auto result = Solve(MatrixXd::Identity(2, 2), Vector({0, 5}), Vector({1, 9}));
   EXPECT_EQ(result.status, Status::kOptimal);
   EXPECT_TRUE(x_.isApprox(Vector({1, 5}), 1e-15));
-  // Multipliers are the forces of the limits: negative at an upper one, positive at a lower one.
+  // Multipliers are the forces of the limits: negative at an upper limit, positive at a lower
+  // limit.
   EXPECT_TRUE(y_.isApprox(Vector({-2, 3}), 1e-15));
 }
 
@@ -119,10 +120,10 @@ TEST(QpSolverTest, FindsTheSameMinimumFromAnyActiveSet) {
   const VectorXd upper = VectorXd::Constant(4, 1);
   acc::QpSolver warm(hessian, constraints, {});
   for (int i = 0; i < 40; ++i) {
-    // GIVEN a linear term that turns, so that every limit becomes active and inactive again
+    // GIVEN a linear term that rotates, so that every limit becomes active and inactive again
     const VectorXd linear = 10 * Vector({std::cos(0.3 * i), std::sin(0.5 * i), std::cos(0.7 * i)});
     acc::QpSolver cold(hessian, constraints, {});
-    // WHEN one solver has solved the problems before this one and the other solver has not
+    // WHEN one solver has solved the earlier problems and the other solver has not
     ASSERT_EQ(warm.Solve(linear, lower, upper).status, Status::kOptimal);
     ASSERT_EQ(cold.Solve(linear, lower, upper).status, Status::kOptimal);
     // THEN both solvers agree

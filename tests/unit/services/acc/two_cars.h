@@ -1,5 +1,5 @@
-// Two cars on a straight road, one behind the other, moved as the world moves them. The commanded
-// acceleration acts from one step to the next. No car drives backwards.
+// Two cars on a straight road, one behind the other. They move as in the world: the commanded
+// acceleration acts from one step to the next, and no car drives backwards.
 #pragma once
 
 #include <algorithm>

@@ -24,7 +24,7 @@ struct Messages {
   driver_command_t driver{};
 };
 
-// Messages with this difference radar - LiDAR.
+// Messages in which radar and LiDAR have this difference (radar - LiDAR).
 Messages Differing(double difference_m) {
   Messages m;
   m.radar.valid = 1;
@@ -102,7 +102,7 @@ TEST(ArbitratorTest, StatesConflictDegreeAndThreshold) {
 }
 
 // The automation drives while 0 <= DoC < threshold, so at the threshold the human drives. The
-// ranges represent a difference of 1 m exactly, and its DoC is exactly 1/2.
+// ranges represent a difference of 1 m exactly, and the DoC of 1 m is exactly 1/2.
 TEST(ArbitratorTest, HandsOverExactlyAtTheThreshold) {
   Scenario scenario;
   scenario.arbitrator.threshold = 0.5;
@@ -166,7 +166,7 @@ TEST(ArbitratorTest, HoldRepeatsTheLastDifferenceThroughTheSilence) {
   Step(arbitrator, Differing(1));
   EXPECT_EQ(Step(arbitrator, WithoutLidar()).conflict_m, 5.0 / 3);
   EXPECT_EQ(Step(arbitrator, WithoutRadar()).conflict_m, 1.5);
-  EXPECT_EQ(Step(arbitrator, WithoutLidar()).conflict_m, 1.0);  // 3 has left the window; 1 is held
+  EXPECT_EQ(Step(arbitrator, WithoutLidar()).conflict_m, 1.0);  // 3 has left the window; 1 repeats
   for (int i = 0; i < 100; ++i) EXPECT_EQ(Step(arbitrator, WithoutLidar()).conflict_m, 1.0);
 }
 
@@ -275,7 +275,7 @@ TEST(ArbitratorTest, GoesOnFromACommandThatWasNotItsOwn) {
   EXPECT_NEAR(Step(arbitrator, Differing(2)).acceleration_mps2, -2.8, 1e-12);
 }
 
-// ---- a policy that shares, and a driver whom the car must ask -----------------------------------
+// ---- a policy that shares authority, and a driver whom the car must ask -------------------------
 
 class SharedWithTheAskedTest : public testing::Test {
  protected:
@@ -287,7 +287,7 @@ class SharedWithTheAskedTest : public testing::Test {
         .mode = TakeOverMode::kRequested, .time = {.mean_s = 1, .std_s = 1e-3}, .recovery_s = 1};
     return scenario;
   }
-  /// One step in which the policy requests this share, which is above 0.
+  /// One step in which the policy requests this share for the human. @pre share > 0
   const arbitration_t& Requesting(double share) {
     const double doc = 0.2 + 0.6 * share;
     Messages m = Differing(1 + std::log(doc / (1 - doc)) / 10);
@@ -322,8 +322,8 @@ TEST_F(SharedWithTheAskedTest, HeIsAskedForAnyShareAndHasThatOnceHeHasCome) {
     EXPECT_NEAR(out.acceleration_mps2, share * kHuman_mps2 + (1 - share) * kAutomation_mps2, 1e-12);
     EXPECT_FALSE(arbitrator_.must_ask());
   }
-  // A driver in state RECOVERING is available, so he gets each requested share at once. Here the
-  // share is 0.
+  // A driver in state RECOVERING is available, so the driver gets each requested share at once.
+  // Here the share is 0.
   EXPECT_EQ(RequestingNothing().lambda_human, 0);
   EXPECT_NEAR(Requesting(0.6).lambda_human, 0.6, 1e-12) << "without being asked again";
 }
@@ -363,7 +363,7 @@ class GuardedTest : public testing::Test {
     scenario.aeb.enabled = true;
     return scenario;
   }
-  /// A step with the car ahead at this distance and closing speed, by the track.
+  /// A step in which the track has the car ahead at this distance and closing speed.
   const arbitration_t& StepAt(double distance_m, double closing_mps, Messages m = Differing(0)) {
     m.ego.speed_mps = 20;
     m.track.valid = 1;
@@ -451,7 +451,8 @@ TEST(ArbitratorTest, BrakesInAManoeuvreUnderTheManoeuvresMode) {
   EXPECT_EQ(out.lambda_automation + out.lambda_human, 0);
 }
 
-// While the driver is asked, the state stays hidden for as long as the car brakes by itself.
+// While the car asks the driver, emergency braking hides the mode REQUEST only while the car
+// brakes.
 TEST(ArbitratorTest, BrakesAlsoWhileItAsksTheDriver) {
   Scenario scenario;
   scenario.aeb.enabled = true;

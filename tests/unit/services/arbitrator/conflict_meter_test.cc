@@ -18,7 +18,7 @@ struct Messages {
   track_t track{};
 };
 
-// Radar at 40 m and LiDAR at 38 m, each with 0.1 m; a prediction of 39.9 m with 0.05 m.
+// Radar 40 m and LiDAR 38 m, with standard deviations of 0.1 m; prediction 39.9 m, with 0.05 m.
 Messages Differing() {
   Messages m;
   m.radar.valid = m.lidar.valid = 1;

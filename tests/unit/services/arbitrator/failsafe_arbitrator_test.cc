@@ -18,7 +18,7 @@ Scenario SomeScenario() {
   return scenario;
 }
 
-// The arbitrator with its own set of input messages, which a test changes.
+// The arbitrator and a set of input messages that a test can change.
 class FailsafeArbitratorTest : public testing::Test {
  protected:
   FailsafeArbitratorTest() {
@@ -45,7 +45,7 @@ class FailsafeArbitratorTest : public testing::Test {
   }
   void Disagree() { radar_.range_m = lidar_.range_m + 5; }
 
-  // Takes the next step. Sensors that are OK have a value of this step.
+  // Takes the next step. Each sensor whose state is OK has a value of this step.
   const arbitration_t& Step() {
     const header_t header{.run_id = 7, .step = step_, .utime = step_ * 100'000};
     ++step_;
@@ -83,14 +83,14 @@ class FailsafeArbitratorTest : public testing::Test {
   std::int64_t step_ = 0;
 };
 
-// The state of the input from which this offer follows.
+// The input state that causes this offer.
 InputState StateOf(arbitrator::Offer offer) {
   return offer == arbitrator::kThere    ? InputState::kOk
          : offer == arbitrator::kNotYet ? InputState::kAwaited
                                         : InputState::kLost;
 }
 
-// For every combination of inputs that a row of the table covers, the decision is that of the row.
+// The decision must equal the row's decision for every combination of inputs that the row covers.
 TEST_F(FailsafeArbitratorTest, DoesWhatEachRowOfTheTableSays) {
   int cases = 0;
   for (const arbitrator::FailsafeRow& row : arbitrator::kFailsafeTable) {
@@ -173,7 +173,7 @@ TEST_F(FailsafeArbitratorTest, TakesNoConflictFromValuesOfDifferentSteps) {
   // GIVEN sensors that differ by 5 m, without a LiDAR value of this step
   inputs_.lidar.state = InputState::kStale;
   Disagree();
-  // THEN the conflict of the last pair holds until the next pair of the same step is complete
+  // THEN the last conflict stays until radar and LiDAR have values of the same step
   const arbitration_t& held = Step();
   EXPECT_EQ(held.conflict_m, 0);
   ExpectAutomation(held);
@@ -282,7 +282,7 @@ TEST_F(GuardedFailsafeTest, BrakesInTheMinimalRiskManoeuvreUnderItsMode) {
   ExpectMinimalRisk(Step(), kApplied_mps2 - 0.4);
 }
 
-// The command that holds is the last one of the driving side, not that of emergency braking.
+// In decision kHold the command is the last command of the driving side, not of emergency braking.
 TEST_F(GuardedFailsafeTest, HoldsTheCommandBeforeTheBraking) {
   ExpectEmergencyBraking(Step());
   track_.state[1] = 1;

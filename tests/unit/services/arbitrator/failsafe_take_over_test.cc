@@ -1,4 +1,4 @@
-// The fallback for a driver whom the car must ask, in real time, where inputs may fail, too.
+// The fallback for a driver whom the car must ask to take over, in real time. Inputs may fail, too.
 #include <cstdint>
 
 #include <gtest/gtest.h>
@@ -43,7 +43,7 @@ class FailsafeTakeOverTest : public testing::Test {
     ego_.header = radar_.header = lidar_.header = header;
     return last_ = arbitrator_.Step(header, inputs_);
   }
-  /// Makes steps until the mode is reached, at most for a minute.
+  /// Makes steps until the mode is reached, for at most a minute.
   void StepUntil(std::int8_t mode) {
     for (int k = 0; k < 600 && Step().mode != mode; ++k) {
     }
@@ -77,7 +77,7 @@ TEST_F(FailsafeTakeOverTest, AsksHandsOverAndReturnsWhileEverythingIsThere) {
 
 TEST_F(FailsafeTakeOverTest, StopsForADriverWhoseCommandIsLostWhileHeIsAsked) {
   Step();
-  inputs_.driver.state = InputState::kLost;  // the newest message still says ready
+  inputs_.driver.state = InputState::kLost;  // the driver's newest message still reports readiness
   StepUntil(arbitration_t::MRM_COMFORT);
   EXPECT_EQ(step_ - 1, 100) << "10 s after the request";
   EXPECT_EQ(last_.lambda_automation + last_.lambda_human, 0);

@@ -8,7 +8,7 @@ namespace fogline {
 namespace {
 
 constexpr double kError_m = 0.5;
-constexpr int kSteps = 3;  // of 0.1 s
+constexpr int kSteps = 3;  // steps of 0.1 s
 
 Scenario WithLimits() {
   Scenario scenario;

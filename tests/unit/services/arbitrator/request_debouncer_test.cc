@@ -38,7 +38,7 @@ TEST(RequestDebouncerTest, SprtWaitsForEnoughEvidenceInEitherDirection) {
       {.hysteresis = Hysteresis::kSprt, .sprt_alpha = 0.01, .sprt_beta = 0.01}, 0.1);
   for (const double expected : {0.0, 0.0, 1.0, 1.0}) EXPECT_EQ(Step(debouncer, 0.9), expected);
   // After the decision Wald's test starts again, so the fourth step above left L = ln 9. Three
-  // times -ln 9 leave -4.39, so a fourth step is needed.
+  // steps of -ln 9 lead to L = -4.39. This is above -ln 99, so a fourth step is needed.
   for (const double expected : {1.0, 1.0, 1.0, 0.0}) EXPECT_EQ(Step(debouncer, 0.1), expected);
 }
 
@@ -123,8 +123,8 @@ TEST(RequestDebouncerTest, LetsAFirmRequestPassWhateverTheTrack) {
   EXPECT_EQ(debouncer.Step(policies::StayAutomated(kThreshold), 1, false), 0);
 }
 
-// The band ends at half of the threshold. Otherwise no DoC would be low enough to leave a wide
-// band.
+// The lower end of the band is at least half of the threshold. Otherwise no DoC could be below a
+// wide band.
 TEST(RequestDebouncerTest, ABandOfWhateverWidthGivesTheWheelBack) {
   for (const double threshold : {1e-6, 0.1, 0.2, 0.5, 1.0}) {
     for (const double band : {0.0, 0.2, 0.5, 1.0}) {
@@ -140,7 +140,7 @@ TEST(RequestDebouncerTest, ABandOfWhateverWidthGivesTheWheelBack) {
   }
 }
 
-// A posterior of 0.99 has the evidence ln(0.99/0.01) = 4.595 against 0.5, at any time.
+// A posterior of 0.99 has the evidence ln(0.99/0.01) = 4.595 against 0.5, in every step.
 TEST(RequestDebouncerTest, SprtDoesNotCountTheEvidenceOfAPosteriorTwice) {
   arbitrator::RequestDebouncer debouncer(
       {.hysteresis = Hysteresis::kSprt, .sprt_alpha = 0.01, .sprt_beta = 0.01}, 0.1, true);

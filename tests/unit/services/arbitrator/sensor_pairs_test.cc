@@ -23,7 +23,8 @@ lidar_t Lidar(std::int64_t step) {
 
 class SensorPairsTest : public testing::Test {
  protected:
-  // A decision at `step` with newest messages of these steps. -1 means that no message has come.
+  // A decision at `step`; the newest messages are of these steps. -1 means that no message has
+  // come.
   InputState At(std::int64_t step, std::int64_t radar_step, std::int64_t lidar_step) {
     const radar_t radar = Radar(radar_step);
     const lidar_t lidar = Lidar(lidar_step);

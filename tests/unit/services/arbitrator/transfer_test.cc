@@ -14,7 +14,7 @@ constexpr arbitrator::Transfer::Offers kOffers{.automation_mps2 = -0.5, .human_m
 // The rounding of sums of some tens of changes.
 constexpr double kRounding = 1e-12;
 
-// The states in `count` steps with this wanted authority of the human.
+// The states in `count` steps in which the human shall have the authority `wanted`.
 std::vector<arbitrator::Transfer::State> Steps(
     arbitrator::Transfer& transfer, double wanted, int count,
     const arbitrator::Transfer::Offers& offers = kOffers) {
@@ -96,7 +96,7 @@ TEST(TransferTest, JerkLimitedGivesAuthorityAtOnceAndLetsTheCommandCatchUp) {
     EXPECT_NEAR(states[i].acceleration_mps2, -0.5 + 0.2 * static_cast<double>(i + 1), kRounding);
   }
   EXPECT_EQ(states[7].acceleration_mps2, 1.0);
-  // WHEN the command has caught up with the offer THEN the jerk limit has ended.
+  // WHEN the command has reached the offer THEN the jerk limit has ended
   EXPECT_EQ(Steps(transfer, 1, 1, {-0.5, -3.0})[0].acceleration_mps2, -3.0);
 }
 

@@ -1,4 +1,4 @@
-// After the fog the automation must not drive on a distance that is still wrong because of the fog.
+// After the fog, the automation must not use a distance that is still wrong because of the fog.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -13,11 +13,11 @@
 namespace fogline {
 namespace {
 
-/// What followed the hand-overs to the human in a run.
+/// How the automation drives with the track's distance after the human has handed back control.
 struct AfterHandBack {
   int returns = 0;       // of authority to the automation
-  double wrong_s = 0;    // the automation drove on a distance wrong by more than 0.1 m
-  double largest_m = 0;  // error of such a distance
+  double wrong_s = 0;    // time in which this distance was wrong by more than 0.1 m
+  double largest_m = 0;  // largest error of this distance
   bool automation_at_end = false;
 };
 

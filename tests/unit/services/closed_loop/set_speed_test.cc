@@ -1,5 +1,5 @@
-// After the fog the ACC closes the gap that the fog has left. Its set speed limits the host's
-// speed.
+// After the fog the ACC closes the gap that has grown in the fog. The ACC's set speed limits the
+// host's speed.
 #include <algorithm>
 #include <string>
 #include <vector>

@@ -1,4 +1,4 @@
-// Measures and the log of events must count the same transfers.
+// The measures and the log of events must count the same transfers.
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -41,7 +41,7 @@ Counted CountTransfers(const Scenario& scenario) {
   return counted;
 }
 
-/// The shortest time between two transfers of the log.
+/// The shortest time between two transfers in the log of events.
 std::optional<double> MinDwell_s(const Counted& counted, double step_s) {
   std::optional<double> least;
   for (std::size_t i = 1; i < counted.by_events.size(); ++i) {
@@ -68,8 +68,8 @@ TEST(TransfersTest, AreCountedAlikeByMeasuresAndEventsUnderEveryPolicyProfileAnd
                "/arbitrator/transfer/duration_s=1.3", "/arbitrator/take_over/mode=" + mode});
           const Counted counted = CountTransfers(scenario);
           EXPECT_EQ(counted.by_measures, std::ssize(counted.by_events));
-          // The transfers of measures and events are also in the same steps. The measures show this
-          // only by the shortest time between two transfers.
+          // Measures and events must also have the transfers in the same steps. The measures do not
+          // list the steps, so the test compares the shortest time between two transfers.
           const std::optional<double> dwell_s = MinDwell_s(counted, scenario.step_s);
           ASSERT_EQ(counted.min_dwell_s.has_value(), dwell_s.has_value());
           EXPECT_NEAR(counted.min_dwell_s.value_or(0), dwell_s.value_or(0), 1e-6)

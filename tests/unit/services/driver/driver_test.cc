@@ -89,7 +89,7 @@ models::Situation SituationOf(const truth_t& truth) {
 
 constexpr std::int64_t kSteps = 60;
 
-/// Expects that the driver follows this model in every step.
+/// Expects that the driver's acceleration equals the acceleration of this model in every step.
 void ExpectDrives(const Scenario& scenario,
                   const std::function<double(const truth_t& truth)>& model) {
   driver::Driver driver(scenario);
@@ -195,7 +195,7 @@ class AwarenessOfTheDriverTest : public testing::Test {
     host.mode = arbitration_t::MINIMAL_RISK;
     return host;
   }
-  /// His readiness in the next step, after he hears this HOST_COMMAND.
+  /// The driver's readiness in the next step, after this HOST_COMMAND has come.
   double ReadinessAfter(const arbitration_t& host) {
     driver_.SetOnDemandInput(host);
     return driver_.Step(TruthOf(step_++)).readiness;
@@ -247,7 +247,8 @@ TEST_F(AwarenessOfTheDriverTest, FadesWhileTheCarStopsByItself) {
   EXPECT_LT(ReadinessAfter(Stopping()), 1);
 }
 
-// The car has asked him, and the state machine still waits for him: take_over_table.h.
+// In these modes the car has asked the driver, and the state machine still waits for the driver
+// (see take_over_table.h).
 TEST_F(AwarenessOfTheDriverTest, ReturnsWhileTheCarStopsBecauseHeIsLate) {
   for (const std::int8_t mode :
        {arbitration_t::MRM_COMFORT, arbitration_t::MRM_EMERGENCY, arbitration_t::MRM_FAILED}) {
@@ -289,7 +290,7 @@ TEST_F(AwarenessOfTheDriverTest, MakesHimErrMoreAndReactLater) {
     const truth_t truth = TruthOf(step);
     if (step > 0) awareness_.Step(models::DriverTask::kMonitors, scenario_.step_s);
     const double faded = 1 - awareness_.awareness();
-    // Without awareness V_s and r_c grow as in SUMO's driver state, and T_r grows by 0.7 s.
+    // Without awareness, V_s and r_c grow as in SUMO's driver state, and T_r grows by 0.7 s.
     const models::Attention attention{.reaction_time_s = 0.8 + 0.7 * faded,
                                       .gap_error = 0.05 + 0.75 * 0.2 * faded,
                                       .approach_error_ps = 0.01 + 0.15 * 0.2 * faded};

@@ -14,8 +14,8 @@
 namespace fogline {
 namespace {
 
-// Cars behind a host of 20 m/s. All cars have this speed, and each is 33 m behind the car ahead of
-// it.
+// Cars behind a host at 20 m/s. All cars have this speed, and each car is 33 m behind the car
+// ahead.
 truth_t Platoon(std::size_t cars) {
   truth_t truth{};
   truth.host_speed_mps = 20;
@@ -58,7 +58,8 @@ TEST(TrafficTest, LetsEachCarFollowTheOneBeforeIt) {
       otherwise = undisturbed.Step(Platoon(3)).acceleration_mps2;
       ++truth.header.step;
     }
-    // THEN the third car brakes for the slower car, and the first car does not notice it
+    // THEN the third car brakes for the slower car, and the first car does not react to the slower
+    // car
     EXPECT_LT(now[2], otherwise[2] - 0.05);
     if (driver == FollowerDriver::kAcc) {
       EXPECT_EQ(now[0], otherwise[0]);
@@ -119,8 +120,8 @@ TEST(PersonTest, BrakesAsHardAsHisSafetyModelAsksInDanger) {
     }
     return least;
   };
-  // THEN the reference human brakes with 0.774 g, and with every model the car brakes at least as
-  // hard as without a model
+  // THEN the reference human brakes with 0.774 g. With every model the car brakes at least as hard
+  // as without a model.
   EXPECT_LE(hardest(SafetyModelChoice::kReferenceHuman), -7.59);
   EXPECT_LE(hardest(SafetyModelChoice::kRss), hardest(SafetyModelChoice::kNone));
   EXPECT_LE(hardest(SafetyModelChoice::kFuzzy), hardest(SafetyModelChoice::kNone));
@@ -167,8 +168,8 @@ TEST(DriverAssignmentTest, DrawsInProportionToTheShares) {
       aggressive += assignment.style == models::Style::kAggressive ? 1 : 0;
     }
   }
-  // Expected are a quarter and three fifths of 6,400 cars. Four standard deviations are 139 and
-  // 157.
+  // The expected numbers are a quarter and three fifths of 6,400 cars. Four standard deviations are
+  // 139 and 157 cars.
   EXPECT_NEAR(acc, 1600, 139);
   EXPECT_NEAR(aggressive, 3840, 157);
 }
@@ -187,8 +188,7 @@ TEST(DriverAssignmentTest, DrawsNoDriverOfAKindWithoutAShare) {
 
 class FogSightOfPeopleTest : public testing::Test {
  protected:
-  /// Accelerations of a column of two cars in fog, over 30 steps behind a host that is 5 m/s
-  /// slower.
+  /// Accelerations of a column of two cars in fog, over 30 steps. The host ahead is 5 m/s slower.
   static std::vector<double> Drive(Scenario scenario, double visibility_m) {
     follower::Follower follower(scenario);
     truth_t truth = Platoon(2);
@@ -215,7 +215,7 @@ TEST_F(FogSightOfPeopleTest, IsOffByDefaultAndThenFogChangesNothing) {
 }
 
 TEST_F(FogSightOfPeopleTest, IsThatOfTheHostsDriver) {
-  // GIVEN the sight of section human, and a person with a driver model of his own
+  // GIVEN the sight of section human, and a person who drives like the first car's driver
   Scenario scenario = Seeing(Sight::kFog);
   scenario.human.fog_sight.contrast = 0.4;
   const models::FogSight sight(scenario.human.fog_sight);
@@ -223,7 +223,7 @@ TEST_F(FogSightOfPeopleTest, IsThatOfTheHostsDriver) {
                           Random(scenario.seed, FollowerErrors(0)), scenario.step_s);
   // WHEN the first of the two cars follows the host through fog of 40 m
   const std::vector<double> driven = Drive(scenario, 40);
-  // THEN the driver of this car reacts to the situation that his sight shows
+  // THEN the driver of this car reacts to the situation as he sees it
   for (std::int64_t k = 0; k < 30; ++k) {
     const models::Situation truth{
         .speed_mps = 20,

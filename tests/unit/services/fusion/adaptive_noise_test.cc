@@ -54,7 +54,7 @@ TEST(AdaptiveNoiseTest, KeepsItsEstimateForeverIfNothingIsForgotten) {
 }
 
 // A scalar random walk with a variance of 0.25 per step, measured with noise of variance 4. The
-// filter assumes 1. With a long memory both rules find the true noise.
+// filter assumes a noise variance of 1. With a long memory both rules find the true noise.
 TEST(AdaptiveNoiseTest, FindsTheNoiseThatIsReallyThere) {
   constexpr double kWalk = 0.25;
   constexpr double kTrueNoise = 4;
@@ -82,8 +82,8 @@ TEST(AdaptiveNoiseTest, FindsTheNoiseThatIsReallyThere) {
                    .corrected_variance = variance});
       sum += noise.variance();
     }
-    // About 200 independent estimates, each of 100 values: the standard deviation is 4
-    // sqrt(2/20000) and more, because the estimate changes the gain. 5 % is four times that.
+    // About 200 independent estimates, each from 100 values. The standard deviation is at least 4
+    // sqrt(2/20000), because the estimate also changes the gain. 5 % is four times that.
     EXPECT_NEAR(sum / kSteps, kTrueNoise, 0.2);
   }
 }

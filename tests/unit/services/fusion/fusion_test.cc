@@ -41,7 +41,7 @@ Scenario Gated() {
   return scenario;
 }
 
-// Compares all fields of a track that its readers use.
+// Compares all fields of a track that readers of the track use.
 void ExpectSameEstimate(const track_t& a, const track_t& b) {
   for (int i = 0; i < 3; ++i) {
     EXPECT_EQ(a.state[i], b.state[i]) << i;
@@ -154,7 +154,7 @@ TEST(FusionTest, ReportsTheAccelerationRelativeToTheHosts) {
   fusion::Fusion fusion{Scenario()};
   Step(fusion, At(0));
   Messages m = At(1, 30 + 0.5 * 2 * 0.01, 0.2);
-  m.ego.acceleration_mps2 = -2;  // that of the car ahead is 0: no innovation
+  m.ego.acceleration_mps2 = -2;  // the car ahead does not accelerate: no innovation
   const track_t& track = Step(fusion, m);
   EXPECT_NEAR(track.state[2], 2, kNear);
   EXPECT_NEAR(track.state[1], 0.2, kNear);
@@ -215,7 +215,7 @@ TEST(FusionTest, RefusedValueLeavesTheEstimateAsIfItWereMissing) {
   // WHEN the value reaches the gate
   const track_t& a = Step(gated, deceived);
   const track_t& b = Step(blind, missing);
-  // THEN the track marks the value and has its innovation, but does not use it
+  // THEN the track marks the value and reports its innovation, but does not use the value
   EXPECT_EQ(a.usage[2], track_t::GATED);
   EXPECT_NEAR(a.innovation[2], -26, 1e-9);
   EXPECT_GT(a.innovation_variance[2], 0);
@@ -228,7 +228,7 @@ TEST(FusionTest, FollowsAnotherCarThatCutsInOnceTheGateReopens) {
   int k = 0;
   for (; k < 30; ++k) Step(fusion, At(k, 40));
   // GIVEN a car that cuts in, 15 m nearer and with the same speed
-  // WHEN the gate has refused the new distance for as many steps as the scenario says
+  // WHEN the gate has refused the new distance for `gate_reopen_after` steps
   for (int i = 0; i < scenario.fusion.gate_reopen_after; ++i, ++k) {
     const track_t& track = Step(fusion, At(k, 25));
     EXPECT_EQ(track.usage[0], track_t::GATED);
@@ -266,7 +266,8 @@ TEST(FusionTest, ComesBackFromAnEstimateBehindTheSensor) {
   scenario.radar.lateral_offset_m = 1.0;
   scenario.lidar.lateral_offset_m = -1.0;
   fusion::Fusion fusion(scenario);
-  // GIVEN an approach at 10 m/s, and silent sensors until the estimate has passed the target
+  // GIVEN an approach at 10 m/s, and sensors without values until the estimate has passed the
+  // target
   Step(fusion, At(0, 20, -10));
   int k = 1;
   for (; k < 30; ++k) {
@@ -291,8 +292,8 @@ Scenario Adapting(NoiseAdaptation rule) {
 
 constexpr NoiseAdaptation kAdapting[]{NoiseAdaptation::kInnovation, NoiseAdaptation::kResidual};
 
-// The variance of an innovation contains the noise that was estimated from earlier values. It does
-// not contain the noise that is estimated from this value.
+// The variance of an innovation contains the noise that was estimated from earlier values, and not
+// the noise that is estimated from the present value.
 TEST(FusionTest, UsesAnAdaptedNoiseFromTheNextStepOn) {
   for (const NoiseAdaptation rule : kAdapting) {
     fusion::Fusion plain{Scenario()};
@@ -380,7 +381,7 @@ TEST(FusionTest, IsolateLeavesOutALidarThatRangesTheFogAndShowsItsInnovation) {
   EXPECT_EQ(track.usage[2], track_t::DISTRUSTED);
   EXPECT_NEAR(track.innovation[2], -26, 1e-9);
   EXPECT_GT(track.innovation_variance[2], 0);
-  // WHEN the LiDAR sees the car again THEN the track uses it again
+  // WHEN the LiDAR sees the car again THEN the track uses the LiDAR again
   EXPECT_EQ(Step(isolating, At(++k)).usage[2], track_t::USED);
 }
 

@@ -1,4 +1,4 @@
-// How far a LiDAR sees in fog, and where fog hides a target, as published parameter sets tell it.
+// The range of a LiDAR in fog, and the range beyond which fog hides a target.
 #pragma once
 
 #include <cmath>
@@ -8,16 +8,16 @@
 
 namespace fogline::test {
 
-/// Maximum range in fog of a target that can be detected up to R_c = `clear_range_m` in clear air.
-/// It is the range R with (R / R_c)^2 exp(2 alpha R) = 1, that is R exp(alpha R) = R_c. With
+/// Maximum range in fog of a target that a LiDAR detects up to R_c = `clear_range_m` in clear air.
+/// The maximum range R solves (R / R_c)^2 exp(2 alpha R) = 1, that is R exp(alpha R) = R_c. With
 /// Lambert's W, R = W(alpha R_c) / alpha.
 inline double AttenuatedRange_m(double clear_range_m, double extinction_pm) {
   if (extinction_pm == 0.0) return clear_range_m;
   return boost::math::lambert_w0(extinction_pm * clear_range_m) / extinction_pm;
 }
 
-/// Range beyond which the echo of the fog is stronger than that of the target. At this range the
-/// ratio
+/// Range beyond which the echo of the fog is stronger than the echo of the target. At this range
+/// the ratio
 ///     rho = P_f / P_t = (pi beta / Gamma) J R^2 exp(2 alpha R)    (full overlap, R >= R2)
 /// is 1, so the range is AttenuatedRange_m of sqrt(Gamma / (pi beta J)).
 inline double CrossoverRange_m(double fog_strength_pm, double reflectivity, double backscatter_pmsr,

@@ -18,8 +18,8 @@ namespace {
 constexpr double kSpeedOfLight_mps = 299'792'458.0;
 constexpr double kBackscatterFactor = 0.046;  // beta times visibility, Hahner et al. 2021
 
-// Defaults of Hahner et al. 2021. Their Gamma of 1e-6 contains a factor 2/c. Without it Gamma is
-// 150.
+// Defaults of Hahner et al. 2021. Their Gamma of 1e-6 contains a factor 2/c. Without this factor
+// Gamma is 150.
 constexpr lidar::BeamOptics kHahner{
     .pulse_length_m = kSpeedOfLight_mps * 20e-9, .overlap_start_m = 0.9, .overlap_end_m = 1.0};
 constexpr double kHahnerReflectivity = 1e-6 * kSpeedOfLight_mps / 2.0;
@@ -36,8 +36,8 @@ double Crossover(const lidar::BeamOptics& optics, double reflectivity, double vi
                                 kBackscatterFactor / visibility_m, extinction_pm);
 }
 
-// The reference gives whole metres. The tolerance is half a metre for this rounding, and a little
-// for the reference's integration.
+// The reference gives whole metres. The tolerance is half a metre for this rounding, plus a little
+// for the numerical integration of the reference.
 constexpr double kTableTolerance_m = 0.6;
 
 struct Row {

@@ -115,8 +115,8 @@ TEST(LidarTest, SeesANearCarThroughThickFog) {
 }
 
 TEST(LidarTest, HasNoEchoAtAllOfAFarDarkCarInThinFog) {
-  // Car and fog are 2.4 and 2 standard deviations below the detection threshold. The probability
-  // that 8 of 15 beams are above it is 1e-9 in a step.
+  // Car and fog are 2.4 and 2 standard deviations below the detection threshold. In a step, 8 of 15
+  // beams are above the threshold with a probability of 1e-9.
   Scenario scenario = Exact(FogModel::kBeam);
   scenario.lidar.beam.target_reflectivity = 0.02;
   lidar::Lidar lidar(scenario);

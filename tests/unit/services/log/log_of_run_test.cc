@@ -1,4 +1,4 @@
-// The file of a log while its run writes it.
+// The file of a log while a run writes the file.
 #include "services/log/log_of_run.h"
 
 #include <gtest/gtest.h>
@@ -33,7 +33,7 @@ TEST(LogOfRunTest, OfARunThatNeverBeganIsRemovedAndALinkToItStays) {
   EXPECT_TRUE(fs::is_symlink(link));
 }
 
-/// A log, and runs that are to replace it.
+/// A log, and runs that shall replace this log.
 class OlderLogTest : public testing::Test {
  protected:
   OlderLogTest() { WriteShortLog(log_); }
@@ -42,7 +42,7 @@ class OlderLogTest : public testing::Test {
     return LogOfRun::InPlaceOf(
         log_, std::make_unique<FileLock>(log_, FileLock::Kind::kOwn, "--log", "run"));
   }
-  /// A process begins to replace the log, calls `work`, and ends as after kill -9.
+  /// A process begins to replace the log, calls `work`, and ends without cleanup, as after kill -9.
   template <class Work>
   void ReplaceAndBeKilled(const Work& work) const {
     const pid_t process = fork();
@@ -76,7 +76,7 @@ TEST_F(OlderLogTest, ComesBackAfterAKillBeforeTheFirstStep) {
   const std::string back = log_ +
                            ": the older log is back: the run that was to replace it was "
                            "killed before its first step";
-  // The new log is empty, has only a scenario, or was removed by the user.
+  // Three cases: the new log is empty, has only a scenario, or was removed by the user.
   ReplaceAndBeKilled([] {});
   ASSERT_EQ(Content(log_), "");
   EXPECT_EQ(TakeBackOlder(log_, "--log"), back);
@@ -129,7 +129,8 @@ TEST_F(OlderLogTest, IsNoFileOfAnotherKind) {
   std::ofstream(aside_) << "precious";
   EXPECT_EQ(TakeBackOlder(log_, "--log"), "");
   EXPECT_EQ(Content(aside_), "precious");
-  // The name is taken, so a run writes over the log. It harms neither file before it begins.
+  // The name for the older log is taken, so a run overwrites the log. Before the run begins, it
+  // changes neither file.
   Replace();
   EXPECT_EQ(Content(aside_), "precious");
   EXPECT_EQ(Content(log_), before);

@@ -1,4 +1,4 @@
-// The seal of a log: the changes that it shows, and those that it cannot show.
+// The seal of a log: the changes that the seal reveals, and the changes that it cannot reveal.
 #include "services/log/log_seal.h"
 
 #include <gmock/gmock-matchers.h>
@@ -94,7 +94,7 @@ TEST_F(LogSealTest, HoldsForTheLogThatWasSealedAndChangesNoDigest) {
 TEST_F(LogSealTest, ShowsABitThatIsFlippedInAnyByteOfTheFile) {
   SealIt();
   const std::string sealed = Content(log_);
-  // Flips one bit of each byte, not the same bit as in the bytes beside it.
+  // Flips one bit of one byte at a time. The position of this bit differs from byte to byte.
   for (std::size_t at = 0; at < sealed.size(); ++at) {
     std::string altered = sealed;
     altered[at] = static_cast<char>(altered[at] ^ (1 << (at % 8)));
@@ -145,7 +145,7 @@ TEST_F(LogSealTest, ShowsWhatWasAddedBehindIt) {
 
 TEST_F(LogSealTest, HoldsInACopyWithOtherEventTimes) {
   SealIt();
-  // GIVEN the log as lcm-logger records it while lcm-logplayer plays it
+  // GIVEN a copy of the log that lcm-logger records while lcm-logplayer plays the log
   const std::string copy = folder_.File("copy");
   {
     log::EventLogReader reader(log_);
@@ -228,17 +228,16 @@ TEST(WhyNotWrittenTest, SaysWhenTheBytesAreNotWhatWasTold) {
   EXPECT_EQ(why({}), "");
   EXPECT_EQ(why({first, last}), "");
   EXPECT_EQ(why({last, first}), "") << "in whatever order";
-  // A change in the part that the first writer has reported, and on which the second writer has
-  // relied.
+  // A change in the bytes that the report `first` covers.
   content[50] ^= 1;
   EXPECT_THAT(why({first}),
               HasSubstr("the log on disk is not what the recorder wrote: it wrote 133 bytes"));
-  // A change after this part.
+  // A change after these bytes, which only the report `last` covers.
   content[50] ^= 1;
   content[200] ^= 1;
   EXPECT_EQ(why({first}), "");
   EXPECT_THAT(why({first, last}), HasSubstr("267 bytes with checksum "));
-  // A shorter file.
+  // A file that is shorter than reported.
   content.resize(200);
   EXPECT_THAT(why({first, last}), HasSubstr(", on disk are 200 with "));
 }

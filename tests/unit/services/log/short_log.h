@@ -28,11 +28,11 @@ struct ShortLog {
   /// Whether the log has the message of this channel and step. By default it has all messages.
   std::function<bool(std::string_view channel, std::int64_t step)> has =
       [](std::string_view, std::int64_t) { return true; };
-  /// If set, the world has said that it is done after this step.
+  /// If set, the log has a STATUS of the world that says DONE after this step.
   std::optional<std::int64_t> done;
 };
 
-/// @return the place behind the last event
+/// @return the position after the last event
 inline log::LogHead WriteShortLog(const std::filesystem::path& file,
                                   const ShortLog& contents = {}) {
   log::EventLogWriter writer(file);

@@ -61,13 +61,13 @@ TEST(AveragedJerkTest, OfASpikeShorterThanTheWindowCountsItsHeight) {
 }
 
 TEST(AveragedJerkTest, TakesTheAccelerationThatHeldOneSecondAgo) {
-  // Steps of 0.4 s: 1 s before 2.0 s is 1.0 s, in the step that ends at 1.2 s.
+  // Steps of 0.4 s: one second before 2.0 s is 1.0 s, in the step that ends at 1.2 s.
   metrics::AveragedJerk jerk;
   EXPECT_EQ(jerk.Add(0.4, 1), std::nullopt);
   EXPECT_EQ(jerk.Add(0.8, 2), std::nullopt);
   EXPECT_EQ(jerk.Add(1.2, 4), std::nullopt);
-  EXPECT_EQ(jerk.Add(1.6, 8), 6);    // 0.6 s: 2, from 0.4 s to 0.8 s
-  EXPECT_EQ(jerk.Add(2.0, 16), 12);  // 1.0 s: 4
+  EXPECT_EQ(jerk.Add(1.6, 8), 6);    // 2 at 0.6 s, in the step from 0.4 s to 0.8 s
+  EXPECT_EQ(jerk.Add(2.0, 16), 12);  // 4 at 1.0 s
 }
 
 TEST(AveragedJerkTest, LooksAtTheNextKnownStepAfterAHole) {

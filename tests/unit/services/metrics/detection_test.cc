@@ -72,7 +72,7 @@ TEST(DetectionTest, AnAutomationWithoutTheDeceivedLidarIsNotWrong) {
 
 TEST(DetectionTest, AnAutomationOnAWrongTrackIsWrongAlsoIfTheLidarIsRight) {
   auto run = QuietRun(5);
-  run[1].fused_distance_m = 26.05;  // the filter has not settled after the fog
+  run[1].fused_distance_m = 26.05;  // the filter still has an error from the fog
   run[2].fused_distance_m = 29.5;
   run[3].fused_distance_m = 29.95;
   EXPECT_EQ(Collect(run).wrong_automation_s, 2 * kStep_s);
@@ -112,8 +112,8 @@ TEST(DetectionTest, CountsAlarmsThatBeginInClearAirPerHourOfIt) {
   auto run = QuietRun(9);
   for (const std::size_t k : {6, 7}) Deceive(run[k]);
   EXPECT_EQ(Collect(run).false_alarms_ph, 0);
-  // One false alarm begins in the first step, another one lasts a single step. The alarm in fog is
-  // right, and lasts beyond the fog.
+  // One false alarm begins in the first step. Another false alarm lasts a single step. The alarm in
+  // fog is correct, although it lasts beyond the fog.
   for (const std::size_t k : {0, 1, 3, 7, 8}) run[k].doc = 0.9;
   EXPECT_EQ(Collect(run).false_alarms_ph, 2 * 3600 / (6 * kStep_s));
 }

@@ -8,8 +8,7 @@
 namespace fogline {
 namespace {
 
-// Two cars, 30 and 20 m behind the car ahead of each. They are not faster than that car, and
-// exactly at their safe distances.
+// Two following cars with gaps of 30 m and 20 m to the car ahead. All cars drive at 20 m/s.
 truth_t TwoFollowers() {
   truth_t truth{};
   truth.host_speed_mps = 20;
@@ -53,13 +52,13 @@ TEST(FollowerMetricsTest, HaveTheTimeToCollisionWithTheCarBefore) {
   truth_t truth = TwoFollowers();
   accumulator.Add(truth, SafeDistances(0, 0));
   EXPECT_EQ(accumulator.Result()[0].min_ttc_s, std::nullopt) << "no car closes in";
-  // WHEN the first car closes in on the host with 5 m/s, and the second car on the first with 2 m/s
+  // WHEN the first car approaches the host at 5 m/s, and the second car the first car at 2 m/s
   truth.follower_speed_mps = {25, 27};
   accumulator.Add(truth, SafeDistances(0, 0));
-  // THEN 30 m take 6 s, and 20 m take 10 s
+  // THEN the TTC is 6 s over the first gap of 30 m, and 10 s over the second gap of 20 m
   EXPECT_EQ(accumulator.Result()[0].min_ttc_s, 6);
   EXPECT_EQ(accumulator.Result()[1].min_ttc_s, 10);
-  // AND once two cars touch, the time is 0
+  // AND once two cars touch, their TTC is 0
   truth.follower_gap_m[0] = -1;
   accumulator.Add(truth, SafeDistances(0, 0));
   EXPECT_EQ(accumulator.Result()[0].min_ttc_s, 0);

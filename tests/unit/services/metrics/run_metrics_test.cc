@@ -103,7 +103,7 @@ void Shorten(std::vector<metrics::Sample>& run, std::size_t step, double shortfa
 }
 
 TEST(MeasureTest, CompromisedSafetyUntilRecoveryEndsWhenTheTrackIsRightForGood) {
-  auto run = RunAroundFog({5, 7});  // right at step 6, wrong again at 7
+  auto run = RunAroundFog({5, 7});  // track right at step 6, wrong again at 7
   Shorten(run, 1, 9);               // before the fog
   Shorten(run, 3, 1);
   Shorten(run, 6, 2);
@@ -122,7 +122,7 @@ TEST(MeasureTest, CompromisedSafetyUntilRecoveryHasAtLeastTheFogAndAtMostTheRun)
   Shorten(run, 5, 9);
   EXPECT_EQ(metrics::Measure(run).max_compromised_safety_until_recovery_m, 2);
   EXPECT_EQ(metrics::Measure(run).mean_compromised_safety_until_recovery_m, 2.0 / 3);
-  // A track that is wrong at the end has not recovered.
+  // A track that is wrong at the end of the run has not recovered.
   run[11].fused_distance_m = 25;
   EXPECT_EQ(metrics::Measure(run).max_compromised_safety_until_recovery_m, 9);
   EXPECT_EQ(metrics::Measure(run).mean_compromised_safety_until_recovery_m, 11.0 / 10);
@@ -177,7 +177,7 @@ TEST(MeasureTest, CountsHandOversInBothDirectionsAndTheHumansTime) {
   for (std::size_t k : {2, 3, 4, 8, 9}) run[k].lambda_human = 1;
   const metrics::RunMetrics m = metrics::Measure(run);
   EXPECT_EQ(m.transfers, 3);
-  EXPECT_EQ(m.human_time_s, 4 * kStep_s);  // no car carries out the command of the last step
+  EXPECT_EQ(m.human_time_s, 4 * kStep_s);  // the command of the last step has no duration
 }
 
 TEST(MeasureTest, JumpOfTheCommandCountsOnlyAtHandOvers) {
@@ -210,7 +210,7 @@ TEST(MeasureTest, JerkOfAHandOverIsWhatFollowsAChangeOfTheAuthorities) {
   for (std::size_t k = 0; k < run.size(); ++k) run[k].host_acceleration_mps2 = acceleration[k];
   EXPECT_EQ(metrics::Measure(run, scenario).max_handover_jerk_mps3, std::nullopt);
   // The command of step 3 takes effect at step 4. Steps 4 and 5 belong to the hand-over. The jump
-  // at step 2 comes before the hand-over, the jump at step 6 after it.
+  // at step 2 is before the hand-over, and the jump at step 6 is after the hand-over.
   for (std::size_t k = 3; k < run.size(); ++k) run[k].lambda_human = 1;
   EXPECT_EQ(metrics::Measure(run, scenario).max_handover_jerk_mps3, 2);
   // A ramp takes time: authority still changes at step 4, so step 6 belongs to the hand-over, too.
@@ -240,8 +240,8 @@ TEST(MeasureTest, JerkIsTheChangeOfTheAppliedAccelerationOverTime) {
   const std::array<double, 5> acceleration{0, 2, 2.5, 0.5, 0.5};
   for (std::size_t k = 0; k < run.size(); ++k) run[k].host_acceleration_mps2 = acceleration[k];
   const metrics::RunMetrics m = metrics::Measure(run);
-  // Changes of 0.5, -2 and 0 within 0.5 s each. The 2 m/s2 of step 1 are no change, because step 0
-  // has no applied acceleration.
+  // The changes are 0.5, -2 and 0, within 0.5 s each. The 2 m/s2 of step 1 do not count as a
+  // change, because step 0 has no applied acceleration.
   EXPECT_EQ(m.max_abs_jerk_mps3, 4);
   EXPECT_EQ(m.rms_jerk_mps3, std::sqrt((1.0 + 16.0 + 0.0) / 3));
   EXPECT_EQ(m.max_abs_acceleration_mps2, 2.5);

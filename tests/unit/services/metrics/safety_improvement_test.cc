@@ -64,7 +64,7 @@ TEST(SafetyImprovementTest, RefusesToPairDifferentSteps) {
   }
 }
 
-// 8 steps with fog in steps 1 and 2, and a following car that is too near by 1 m in all of them.
+// 8 steps with fog in steps 1 and 2. In every step the following car is too near by 1 m.
 std::vector<metrics::Sample> BesideFog() {
   std::vector<metrics::Sample> run = FoggyRun(std::vector<double>(8, 1.0));
   for (const std::size_t k : {0, 3, 4, 5, 6, 7}) run[k].fog_present = false;
@@ -104,7 +104,7 @@ TEST(PairedMeasuresTest, HaveTheFloorOfTheScenario) {
             std::nullopt);
 }
 
-// Place of a choice in PairedMetrics::other_si_pct.
+// Position of a choice in PairedMetrics::other_si_pct.
 std::size_t PlaceOf(std::string_view name) {
   for (std::size_t i = 0; i < metrics::kSafetyChoices.size(); ++i) {
     if (metrics::kSafetyChoices[i].name == name) return i;
@@ -130,14 +130,14 @@ TEST(PairedMeasuresTest, HaveSafetyWithOtherReadingsOfCompromisedSafety) {
   for (const std::size_t k : {1, 2}) baseline[k].fog_present = true;
   for (metrics::Sample& sample : baseline) sample.follower_safe_distance_m = 30;
   auto traded = baseline;
-  // WHEN the gap shrinks by 4 m, and the safe distance by 1 m, and with traded control both shrink
-  // by less
+  // WHEN the gap shrinks by 4 m and the safe distance by 1 m, but both shrink less with traded
+  // control
   baseline[2].follower_gap_m = 28;
   traded[2].follower_gap_m = 30;
   baseline[2].follower_safe_distance_m = 29;
   traded[2].follower_safe_distance_m = 29.75;
-  // THEN the readings differ: 1 m below the safe distance against 0; 4 m against 2; 1 m against
-  // 0.25
+  // THEN the definitions of compromised safety give different improvements: from 1 m to 0 m below
+  // the safe distance, from 4 m to 2 m of lost gap, from 1 m to 0.25 m of lost safe distance
   const metrics::PairedMetrics m = metrics::MeasurePair(baseline, traded, WithFloor(0.1));
   EXPECT_EQ(m.si_pct, 100);
   EXPECT_EQ(m.other_si_pct[PlaceOf("gap_lost")], 50);

@@ -12,7 +12,7 @@ namespace {
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr double kStep_s = 0.5;  // a power of two, so integrals are exact
 
-// A gap of 30 m to a car of 20 m/s. The car behind drives 5 m/s faster.
+// A gap of 30 m to a car at 20 m/s. The car behind drives 5 m/s faster.
 constexpr metrics::CarPair kClosing{.gap_m = 30, .speed_mps = 25, .lead_speed_mps = 20};
 constexpr metrics::CarPair kFollowing{.gap_m = 30, .speed_mps = 20, .lead_speed_mps = 20};
 
@@ -45,8 +45,8 @@ TEST(SurrogateTest, DecelerationToAvoidACrashStopsTheClosingWithinTheGap) {
 }
 
 TEST(SurrogateTest, UrgentDecelerationGapIsWhatBothBrakingsLeave) {
-  // The car ahead needs 20^2/6.6 = 60.61 m; the car behind needs 25 m of reaction and 25^2/6.6 =
-  // 94.70 m.
+  // The car ahead needs 20^2/6.6 = 60.61 m to stop. The car behind needs 25 m during its reaction
+  // and then 25^2/6.6 = 94.70 m.
   EXPECT_NEAR(metrics::UrgentDecelerationGap({}, kClosing), 30 + 60.6061 - 94.6970 - 25, 1e-4);
   EXPECT_EQ(metrics::UrgentDecelerationGap({}, kFollowing), 10);
 }
@@ -112,8 +112,8 @@ TEST(PairAccumulatorTest, CrashPotentialIsTheMeanProbabilityOverTime) {
   section.madr_std_mps2 = 1;
   section.madr_least_mps2 = 7;
   section.madr_most_mps2 = 9;
-  // 100/(2 * 6.25) = 8 m/s2 has probability 1/2. It occurs in one of the four steps with a
-  // duration.
+  // The probability for 100/(2 * 6.25) = 8 m/s2 is 1/2. One of the four steps with a duration
+  // requires this deceleration.
   const metrics::CarPair hard{.gap_m = 6.25, .speed_mps = 30, .lead_speed_mps = 20};
   EXPECT_NEAR(*Collect({kFollowing, hard, kFollowing, kFollowing, hard}, section).cpi, 0.125,
               1e-12);

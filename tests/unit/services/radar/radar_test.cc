@@ -7,7 +7,7 @@
 namespace fogline {
 namespace {
 
-// A radar without errors, so only the geometry matters.
+// A radar without errors, so that only the geometry matters.
 Scenario Exact() {
   Scenario scenario;
   scenario.radar.bias_m = 0.0;
@@ -108,7 +108,7 @@ TEST(RadarTest, BarelyNoticesThickFogUnderModelBeam) {
 }
 
 TEST(RadarTest, AddsTheLossesOfRainAndFog) {
-  // 50 mm/h alone reduce the range to 172.3 m. With 1.57 dB/km of fog it is 168.5 m.
+  // 50 mm/h alone reduce the range to 172.3 m. Fog with 1.57 dB/km reduces this range to 168.5 m.
   Scenario scenario = Exact();
   scenario.fog.model = FogModel::kBeam;
   scenario.fog.rain_mmph = 50.0;

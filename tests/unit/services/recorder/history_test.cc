@@ -1,4 +1,4 @@
-// The steps of a run in a log of any length, and their places in it.
+// The steps of a run in a log of any length, and the positions of these steps in the log.
 #include "services/recorder/history.h"
 
 #include <gmock/gmock-matchers.h>
@@ -58,7 +58,8 @@ class HistoryTest : public testing::Test {
     WriteFront(log);
     for (std::int64_t step = 0; step < steps; ++step) WriteStep(log, step, step == steps - 1);
   }
-  /// The contents of the log, found from its end or, for comparison, read from front to back.
+  /// The contents of the log, found from the end of the log. For comparison they are also read from
+  /// front to back.
   log::Remains ReadFromEnd(std::int64_t tail = log::kTailBytes) const {
     return log::ReadRemains(file_, log::ReadFront(file_), {}, tail);
   }
@@ -118,8 +119,8 @@ TEST_F(HistoryTest, InRealTimePassesOverTheStatusOfARoleThatHasComputedNoStep) {
 }
 
 TEST_F(HistoryTest, ReadsOfALongLogOnlyItsEndAndWhatItIsAskedFor) {
-  // GIVEN a log of a hundred gigabytes that has only its front and its last steps. A reader of the
-  // part between them would find no event there, and would take minutes.
+  // GIVEN a log of a hundred gigabytes that has only its front and its last steps. The part between
+  // them contains no event; a reader would need minutes for this part.
   constexpr std::int64_t kPeriod = 7;  // the period of the steps' sizes
   constexpr std::int64_t kSteps = 14'000'000 * kPeriod;
   Write(kPeriod);
@@ -135,7 +136,8 @@ TEST_F(HistoryTest, ReadsOfALongLogOnlyItsEndAndWhatItIsAskedFor) {
     log::EventLogWriter log(file_, head);
     for (std::int64_t step = kSteps; step < kSteps + 500; ++step) WriteStep(log, step);
   }
-  // WHEN a recorder continues this log, THEN the recorder finds the last step and all steps near it
+  // WHEN a recorder continues this log, THEN the recorder finds the last step and the steps before
+  // it
   const log::Remains remains = ReadFromEnd();
   EXPECT_EQ(remains.steps, kSteps + 500);
   EXPECT_EQ(remains.head.events, head.events + 500 * static_cast<std::int64_t>(log::kStepChannels));
@@ -144,8 +146,8 @@ TEST_F(HistoryTest, ReadsOfALongLogOnlyItsEndAndWhatItIsAskedFor) {
 }
 
 TEST_F(HistoryTest, SaysThatItLivesWhileItReadsALogThatDoesNotEndAsItShould) {
-  // GIVEN a log of 20 MB with foreign bytes behind its steps, so that the reader must read all of
-  // it
+  // GIVEN a log of 20 MB with foreign bytes behind its steps, so that the reader must read the
+  // whole log
   constexpr std::int64_t kSteps = 20'000;
   Write(kSteps);
   std::filesystem::resize_file(file_, std::filesystem::file_size(file_) + 2 * log::kTailBytes);
@@ -153,7 +155,7 @@ TEST_F(HistoryTest, SaysThatItLivesWhileItReadsALogThatDoesNotEndAsItShould) {
   std::vector<std::int64_t> heard;
   const log::Remains remains = log::ReadRemains(
       file_, log::ReadFront(file_), [&heard](std::int64_t steps) { heard.push_back(steps); });
-  // THEN the reader finds all steps, and has given signs of life that show its progress
+  // THEN the reader finds all steps, and has reported increasing numbers of steps meanwhile
   EXPECT_EQ(remains.steps, kSteps);
   ASSERT_GE(heard.size(), 2U);
   EXPECT_TRUE(std::ranges::is_sorted(heard));
@@ -165,7 +167,7 @@ TEST_F(HistoryTest, SaysThatItLivesWhileItReadsALogThatDoesNotEndAsItShould) {
 
 TEST_F(HistoryTest, HandsOutEveryStepInWhateverOrderItIsAskedFor) {
   constexpr std::int64_t kSteps = 2000;
-  Write(kSteps + 1);  // the last one is marked as the last step
+  Write(kSteps + 1);  // the additional step is marked as the last step
   recorder::History history(file_, log::ReadFront(file_), ReadFromEnd());
   std::mt19937 random(7);
   for (int i = 0; i < 500; ++i) {
@@ -194,7 +196,7 @@ TEST_F(HistoryTest, TakesNoMoreMemoryTheLongerTheRunIs) {
   const std::int64_t before = MeasureThisProcess().rss_bytes;
   for (std::int64_t step = 1; step < kSteps; ++step) history.Add(step * 3000);
   EXPECT_EQ(history.steps(), kSteps);
-  // An index of every step would take eight bytes for each: 160 MB.
+  // An index of all steps would take 160 MB: eight bytes for each step.
   EXPECT_LT(MeasureThisProcess().rss_bytes - before, 1 << 20);
 }
 

@@ -77,7 +77,7 @@ class RecorderTest : public testing::Test {
       log.Write(ChannelOf<run_t>().name, 0, bytes);
     }
   }
-  /// Writes the steps from `first` on and before `end`. All of them have the same size.
+  /// Writes the steps from `first` to `end` - 1. All steps have the same size.
   static void WriteSteps(log::EventLogWriter& log, std::int64_t first, std::int64_t end) {
     std::vector<std::uint8_t> bytes;
     for (std::int64_t step = first; step < end; ++step) {
@@ -102,8 +102,8 @@ class RecorderTest : public testing::Test {
 TEST_F(RecorderTest, GoesOnWithALogThatIsCutAnywhereAndCompletesItByteByByte) {
   const std::string whole = WholeLog();
   ASSERT_GT(whole.size(), 100'000U);
-  // The log is cut in the scenario, in its last part, in the first step, between and within events
-  // and steps.
+  // The cuts are in the scenario, in the last part of the scenario, in the first step, and between
+  // and within events and steps.
   for (const std::size_t size :
        {std::size_t{0}, std::size_t{40}, std::size_t{3000}, std::size_t{8000}, std::size_t{20'000},
         whole.size() / 2, whole.size() / 2 + 1, whole.size() / 2 + 100, whole.size() - 1,
@@ -145,7 +145,8 @@ TEST_F(RecorderTest, AnswersAFloodOfRequestsWithABoundedNumberOfMessages) {
   for (int i = 0; i < kRequests; ++i) script_.AskFor("TRUTH", 0, 1'000'000'000);
   AnswerAll(*recorder);
   const std::chrono::duration<double> took = Clock::now() - began;
-  // Of the 32,000 requested messages the recorder sends each step once, and again after 2 ms.
+  // The requests are for 32,000 messages. The recorder sends a step again after 2 ms at the
+  // earliest.
   EXPECT_GE(truths_.size(), static_cast<std::size_t>(runtime::kRingSteps));
   EXPECT_LE(static_cast<double>(truths_.size()), runtime::kRingSteps * (1 + 500 * took.count()));
 }
@@ -219,7 +220,7 @@ TEST_F(RecorderTest, SaysThatItLivesWhileItReadsALogFromFrontToBack) {
   // WHEN a recorder continues this log
   const auto recorder = Record(script_, "long", recorder::Recorder::Existing::kResume);
   EXPECT_EQ(ErrorOf(*recorder), "");
-  // THEN the recorder has reported its progress during that time, and then that it is ready
+  // THEN the recorder has reported its progress while it read, and then that it is ready
   std::vector<std::int64_t> steps;
   for (const status_t& status : status_) {
     if (status.state == status_t::WAITING) steps.push_back(status.header.step);
@@ -314,7 +315,7 @@ TEST_F(RecorderTest, TellsInStatusWhatItHasWritten) {
   const std::string content = Content(folder_.File("log"));
   EXPECT_EQ(acknowledged.log_bytes, std::ssize(content)) << "no step behind it is on disk";
   EXPECT_EQ(acknowledged.log_checksum, ChecksumOf(content, acknowledged.log_bytes));
-  // WHEN the recorder leaves in an incomplete step, THEN its last STATUS covers that step, too
+  // WHEN the recorder leaves in an incomplete step, THEN its last STATUS covers this step, too
   truth_t truth = Script::Of<truth_t>(100);
   script_.Say(truth);
   recorder->node().parts().own.Leave();

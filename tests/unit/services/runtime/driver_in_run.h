@@ -31,7 +31,7 @@ class DriverInRun : public testing::Test {
     script_.bus().Publish(channel, bytes);
     script_.bus().Drain();
   }
-  /// The node's next STATUS, half a second later.
+  /// The node's next STATUS; half a second passes for the node.
   const status_t& Status() {
     later_ += milliseconds(500);
     script_.Poll(node_, Clock::now() + later_);

@@ -1,5 +1,5 @@
 // A role or a run coordinator alone on a bus in memory. The test publishes the messages of all
-// other processes and sees the answers.
+// other processes, and receives the answers.
 #pragma once
 
 #include <map>
@@ -24,7 +24,7 @@ class Script {
   runtime::Bus& bus() { return bus_; }
   const std::string& text() const { return text_; }
 
-  /// Keeps all messages on the channel of M from now on.
+  /// Collects all messages on the channel of M from this call on.
   template <class M>
   std::vector<M>& Listen() {
     auto& heard = std::get<std::vector<M>>(heard_);
@@ -68,8 +68,8 @@ class Script {
   }
 
   /// Makes the runner's message say that the driver is started elsewhere.
-  /// @param holder instance of the process that is the driver of the run, 0 if the run waits for
-  /// one
+  /// @param holder instance of the process that is the driver of the run, 0 if the run waits for a
+  /// driver
   static run_t WithDriver(run_t run, std::int64_t holder) {
     run.num_external = 1;
     run.external = {"driver"};
@@ -85,13 +85,14 @@ class Script {
     Say(resend);
   }
 
-  /// Calls the role once, for the work that is due at this time. It does not matter how much time
-  /// has passed since the last call.
+  /// Calls the role once, for the work that is due at this time. The time since the last call does
+  /// not matter.
   void Poll(runtime::Work& role, TimePoint now = Clock::now()) {
     wakes_[&role] = std::max(role.node().Poll(now), now + milliseconds(1));
     bus_.Drain();
   }
-  /// Calls the role at each time for which it has asked, up to this time, as its process would.
+  /// Calls the role at each time that the role has requested, up to this time, as its process
+  /// would.
   void PollUpTo(runtime::Work& role, TimePoint now = Clock::now()) {
     TimePoint& wake = wakes_.try_emplace(&role, TimePoint::max()).first->second;
     while (wake < now) Poll(role, wake);

@@ -1,4 +1,4 @@
-// The world in real time. The tests judge it by the cars in its TRUTH.
+// The world in real time. The tests check the cars in its TRUTH.
 #include "services/world/failsafe_world.h"
 
 #include <gtest/gtest.h>

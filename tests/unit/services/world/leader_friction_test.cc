@@ -103,8 +103,8 @@ TEST(LeaderFrictionTest, HoldsNothingOnADescentSteeperThanTheFriction) {
   EXPECT_EQ(friction.Limited(-1.0, 0.0), 0.0);
 }
 
-// A recorded stop from 20 m/s within 1 s. On ice the car needs 13.6 s, and then stands like its
-// recording.
+// The recording stops from 20 m/s within 1 s. On ice the car needs 13.6 s to stop. After this stop
+// the car stands still like its recording.
 TEST(LeaderFrictionTest, LetsARecordedCarBrakeAsHardAsItCan) {
   Scenario scenario = OnIce(LeadProfile::kRecorded);
   scenario.steps = 300;

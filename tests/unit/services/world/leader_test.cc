@@ -14,7 +14,7 @@ LeadSection Lead(LeadProfile profile, double speed_mps) {
   return lead;
 }
 
-// The speed at a time, for profiles that depend on time.
+// The speed at a time, for profiles that depend on time alone.
 double SpeedAt(const LeadSection& lead, double time_s) {
   return world::Leader(lead).SpeedAt(0, time_s);
 }

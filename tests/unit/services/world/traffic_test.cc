@@ -46,7 +46,7 @@ TEST(WorldTrafficTest, MovesEachFollowerByItsOwnCommand) {
   const truth_t& truth = Truth(world.Step(HostCommand(0), FollowerCommands({1, -1, 2})));
   EXPECT_EQ(truth.follower_acceleration_mps2, (std::vector<double>{1, -1, 2}));
   EXPECT_DOUBLE_EQ(truth.follower_speed_mps[1], 19.9);
-  // 0.1 s with 1 m/s2 are 5 mm.
+  // 1 m/s2 for 0.1 s moves a car by 5 mm.
   EXPECT_NEAR(truth.follower_gap_m[0], 33 - 0.005, 1e-12);
   EXPECT_NEAR(truth.follower_gap_m[1], 33 + 0.010, 1e-12);
   EXPECT_NEAR(truth.follower_gap_m[2], 33 - 0.015, 1e-12);
@@ -100,12 +100,12 @@ TEST(WorldVehicleTest, TakesTimeToDoWhatItIsTold) {
   // GIVEN a sedan with brakes that act after 0.1 s, and then gradually
   world::World world(WithVehicles());
   world.Start(1);
-  // WHEN the sedan is told to brake
+  // WHEN the sedan gets a command to brake
   const truth_t first = Truth(world.Step(HostCommand(-3), FollowerCommand(-3)));
   const truth_t second = Truth(world.Step(HostCommand(-3), FollowerCommand(-3)));
   truth_t later = second;
   for (int k = 0; k < 20; ++k) later = Truth(world.Step(HostCommand(-3), FollowerCommand(-3)));
-  // THEN the braking is not felt at first, then partly, and in the end fully
+  // THEN the sedan first does not brake, then partly, and in the end fully
   EXPECT_GT(first.host_acceleration_mps2, -0.5);
   EXPECT_LT(second.host_acceleration_mps2, first.host_acceleration_mps2);
   EXPECT_GT(second.host_acceleration_mps2, -2);

@@ -110,7 +110,7 @@ TEST_F(VehicleFallbackTest, TakesCommandsForNoCarAsNone) {
   now_.follower_acceleration_mps2 = {-1.5};
   // WHEN messages come in time but contain no command for the car
   const follower_command_t empty{};
-  // THEN the last command holds for the time of a stale command, and then the car stops
+  // THEN the last command stays in force as long as a stale command, and then the car stops
   EXPECT_EQ(Follower(kOk, &empty), -1.5);
   EXPECT_EQ(fallback_.follower_state(), kStale);
   EXPECT_NEAR(Follower(kOk, &empty), -1.5 - 0.2, 1e-12);
@@ -164,7 +164,7 @@ TEST_F(VehicleFallbackTest, ObeysADriverWhoComesDuringTheManoeuvre) {
   EXPECT_EQ(Host(kOk, &host_), 1.5);
 }
 
-// In the step in which he comes, emergency braking may hide the mode RECOVERING.
+// In the step in which the driver takes over, emergency braking may hide the mode RECOVERING.
 TEST_F(VehicleFallbackTest, ObeysADriverWhoComesInTheMomentOfEmergencyBraking) {
   for (const bool human : {false, true}) {
     world::VehicleFallback fallback(SomeScenario());
@@ -239,7 +239,7 @@ TEST_F(SeveralFollowersTest, StopOnlyTheCarThatMessagesLeaveOut) {
   EXPECT_EQ(Step(kOk, &two), (std::vector<double>{-1, 0.5, 1})) << "its last command holds";
   EXPECT_EQ(fallback_->follower_state(), kStale);
   EXPECT_FALSE(fallback_->follower_in_minimal_risk());
-  // THEN this car stops after the same time as with a lost command, and the others go on
+  // THEN this car stops after the same time as with a lost command, and the other cars continue
   const std::vector<double> stopping = Step(kOk, &two);
   EXPECT_EQ(stopping[0], -1);
   EXPECT_EQ(stopping[1], 0.5);

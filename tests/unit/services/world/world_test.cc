@@ -71,7 +71,7 @@ TEST(WorldTest, ReportsTheMeanAccelerationOfACarThatCameToRest) {
   // WHEN: the host comes to rest and still brakes
   const truth_t resting = Truth(world.Step(HostCommand(-10.0), FollowerCommand(0.0)));
   const truth_t at_rest = Truth(world.Step(HostCommand(-10.0), FollowerCommand(0.0)));
-  // THEN: its acceleration is the change of its speed, not the command
+  // THEN: the acceleration of the host is the change of its speed, not the command
   EXPECT_EQ(resting.host_speed_mps, 0.0);
   EXPECT_DOUBLE_EQ(resting.host_acceleration_mps2, -5.0);
   EXPECT_DOUBLE_EQ(resting.host_position_m, 0.0125);
@@ -142,7 +142,7 @@ TEST(WorldTest, EndsOnTheStepOfTheFirstCollision) {
 }
 
 TEST(WorldTest, KeepsTheFirstCollisionWhenTheRunGoesOn) {
-  // GIVEN: a run that goes on after collisions; the host hits the leader, then the follower hits
+  // GIVEN: a run that continues after collisions; the host hits the leader, then the follower hits
   // the host
   Scenario scenario = CollisionAhead();
   scenario.world.end_on_collision = false;

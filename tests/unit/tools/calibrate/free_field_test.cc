@@ -10,7 +10,7 @@
 namespace fogline {
 namespace {
 
-// The error text for a --free, or "".
+// The error text for a --free; "" if there is no error.
 std::string ErrorOf(const std::string& text) {
   return test::ErrorOf([&text] { const calibrate::FreeField field(text); });
 }
@@ -40,7 +40,7 @@ TEST(FreeFieldTest, ReturnsToTheShareOfAValue) {
   for (const char* text : {"/fog/bias_m=0.2:0.4", "/follower/weight_distance=0.001:10:log"}) {
     const calibrate::FreeField field(text);
     for (const double share : {0.0, 0.123, 0.5, 0.999}) {
-      // A value is rounded to 1e-5 of the range or finer.
+      // A value is rounded to 1e-5 of the range, or more finely.
       EXPECT_NEAR(field.ShareOf(field.ValueAt(share)), share, 1e-5) << text;
     }
   }

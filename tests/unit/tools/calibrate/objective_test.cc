@@ -162,15 +162,15 @@ TEST(CalibrateTest, HasNothingWhenStoppedBeforeTheFirstTable) {
 }
 
 TEST(SensitivityTest, IsTheSlopeOfTheTable) {
-  // GIVEN the tables at half a percent of the range (0.002 m) on either side
+  // GIVEN the tables at 0.002 m (half a percent of the range) below and above 0.4 m
   const calibrate::CalibrationProblem problem = ShortProblem();
   const calibrate::Evaluation below = Evaluate(problem, 0.398);
   const calibrate::Evaluation above = Evaluate(problem, 0.402);
   const auto changes = calibrate::Sensitivities(calibrate::Objective(problem), {0.4}, Always);
   ASSERT_TRUE(changes);
   for (std::size_t row = 0; row < 2; ++row) {
-    // THEN the change for 1 % is the difference of the tables. The values, 4e-3 m apart, are
-    // rounded to 1e-6 m
+    // THEN the change for 1 % of the range is the difference of the two tables. The values are 4e-3
+    // m apart, and are rounded to 1e-6 m.
     const double slope = *above.rows[row].si_pct.mean() - *below.rows[row].si_pct.mean();
     EXPECT_NE(slope, 0);
     EXPECT_NEAR(*(*changes)[0][row].si_pct, slope, 1e-3 * std::abs(slope));

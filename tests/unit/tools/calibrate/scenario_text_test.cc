@@ -22,7 +22,7 @@ constexpr std::string_view kText = R"({
 }
 )";
 
-// kText, in which `to` replaces `from`.
+// kText with `to` instead of `from`.
 std::string Edited(std::string_view from, std::string_view to) {
   std::string text(kText);
   return text.replace(text.find(from), from.size(), to);

@@ -24,7 +24,7 @@ TEST(SteadyStartTest, DerivesTheGapsThatAPersonDerivedForPaperJson) {
   const auto derived = calibrate::StartSteadily(scenario);
   ASSERT_EQ(derived.size(), calibrate::kSteadyFields.size());
   EXPECT_EQ(derived[0].pointer, "/world/host_gap_m");
-  // The file has these values, to 0.1 mm and to 1 mm.
+  // paper.json has these values, rounded to 0.1 mm and to 1 mm.
   EXPECT_DOUBLE_EQ(scenario.world.host_gap_m, 36.4445);
   EXPECT_NEAR(scenario.acc.standstill_m, 4.5, 1e-3);
   EXPECT_DOUBLE_EQ(scenario.world.follower_gap_m, 39);
@@ -33,7 +33,7 @@ TEST(SteadyStartTest, DerivesTheGapsThatAPersonDerivedForPaperJson) {
 
 TEST(SteadyStartTest, LetsNoCarAccelerateInClearAir) {
   for (const char* policy : {"none", "traded"}) {
-    // GIVEN sensors without noise, a human who always drives or never, and other parameters
+    // GIVEN sensors without noise, a human who drives always or never, and other parameters
     Scenario scenario =
         Paper({"/fog/model=none", std::string("/arbitrator/policy=") + policy,
                "/arbitrator/threshold=0", "/radar/range_std_m=0", "/radar/range_rate_std_mps=0",
@@ -48,7 +48,7 @@ TEST(SteadyStartTest, LetsNoCarAccelerateInClearAir) {
       most = std::max(
           {most, std::abs(sample.host_speed_mps - 20), std::abs(sample.follower_speed_mps - 20)});
     });
-    // THEN the speeds stay; gaps are rounded to 0.1 mm
+    // THEN the speeds are constant, apart from the rounding of the gaps to 0.1 mm
     EXPECT_LT(most, 1e-3) << policy;
   }
 }

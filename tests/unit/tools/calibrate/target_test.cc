@@ -18,7 +18,7 @@ class TargetTest : public testing::Test {
     std::ofstream(file_) << text;
     return calibrate::ReadTarget(file_);
   }
-  // The error text for a file, without the file's name at its beginning.
+  // The error text for a file, without the name of the file.
   std::string ErrorOf(const std::string& text) const {
     std::string what = test::ErrorOf([&] { Read(text); });
     for (std::size_t at = 0; (at = what.find(file_)) != std::string::npos;) {

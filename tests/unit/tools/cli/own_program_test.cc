@@ -16,7 +16,8 @@ namespace {
 
 using testing::HasSubstr;
 
-/// The output of a process that becomes the program of a verb; "itself" if it does not become one.
+/// The output of a process that becomes the program of a verb; "itself" if the process stays as it
+/// is.
 std::string Become(std::vector<std::string> words) {
   processes::Pipe pipe;
   const pid_t pid = fork();

@@ -16,7 +16,7 @@ namespace {
 using testing::ElementsAre;
 using Words = std::vector<std::string>;
 
-/// A program with two verbs, and its text about a command line.
+/// A program with two verbs, and the program's error text for a command line.
 class RefusalTest : public testing::Test {
  protected:
   RefusalTest() {
@@ -29,7 +29,7 @@ class RefusalTest : public testing::Test {
     table->add_option("--seeds", seeds_);
   }
 
-  /// @param words of the command line, in order. @return "" if the words are no error
+  /// @param words of the command line, in order. @return the error text; "" if the words are valid
   std::string Of(const std::vector<std::string>& words) {
     try {
       app_.parse(std::vector(words.rbegin(), words.rend()));
@@ -125,7 +125,7 @@ class EmptyTextsTest : public testing::Test {
     RefuseEmptyTexts(app_);
   }
 
-  /// @return the error; "" if the words are no error
+  /// @return the error text; "" if the words are valid
   std::string Of(const Words& words) {
     Words separate = SeparateEmptyValues(words);
     try {
@@ -135,7 +135,7 @@ class EmptyTextsTest : public testing::Test {
     }
     return "";
   }
-  /// Expects that an empty text for this option is refused, in each way to write it.
+  /// Expects that an empty text for this option is refused, in every notation of the option.
   void ExpectRefusal(const std::string& name) {
     const std::string error =
         "fogline run: error: " + name + ": the text is empty (see fogline run --help)";

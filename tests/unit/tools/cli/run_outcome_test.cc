@@ -13,7 +13,7 @@ using testing::HasSubstr;
 using testing::Not;
 using testing::StartsWith;
 
-/// A run without any trouble.
+/// The outcome of a run without any trouble.
 RunOutcome Undisturbed() {
   RunOutcome outcome{.file = "paper.json", .steps = 500, .result = {}};
   outcome.result.seed = 3;
@@ -25,7 +25,7 @@ RunOutcome Undisturbed() {
   return outcome;
 }
 
-/// The same run with all kinds of trouble.
+/// The outcome of a run with all kinds of trouble.
 RunOutcome Troubled() {
   RunOutcome outcome = Undisturbed();
   outcome.resumed = 100;

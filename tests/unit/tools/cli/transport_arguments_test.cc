@@ -17,7 +17,7 @@ namespace {
 
 using runner::ExperimentOptions;
 
-/// The options of a run by its command line.
+/// The options of a run that follow from its command line.
 ExperimentOptions Read(std::vector<std::string> words, const std::string& usual = "udpm") {
   CLI::App app;
   const cli::TransportArguments arguments(app, usual);
@@ -27,7 +27,7 @@ ExperimentOptions Read(std::vector<std::string> words, const std::string& usual 
   return options;
 }
 
-/// Why a command line is refused; "" if it is not.
+/// The error text for a command line; "" if the command line is accepted.
 std::string Refusal(const std::vector<std::string>& words) {
   return ErrorOf([&words] { Read(words); });
 }

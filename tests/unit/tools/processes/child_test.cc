@@ -96,7 +96,7 @@ TEST(ChildTest, IsOutOfReachOfTheTerminalsSignals) {
 }
 
 TEST(ChildTest, DiesWithItsParent) {
-  // GIVEN a process that starts a child, says its process id, and ends
+  // GIVEN a process that starts a child, writes the child's process id, and ends
   processes::Pipe pipe;
   const pid_t parent = fork();
   ASSERT_GE(parent, 0);
@@ -110,7 +110,7 @@ TEST(ChildTest, DiesWithItsParent) {
   ASSERT_EQ(status, 0);
   pid_t child = 0;
   ASSERT_EQ(read(pipe.read, &child, sizeof(child)), static_cast<ssize_t>(sizeof(child)));
-  // THEN the child ends, too
+  // THEN the child also ends
   const TimePoint end = Clock::now() + std::chrono::seconds(20);
   while (IsAlive(child) && Clock::now() < end) std::this_thread::sleep_for(kLookEvery);
   EXPECT_FALSE(IsAlive(child));

@@ -20,7 +20,7 @@ using processes::ProcessGroup;
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-/// The processes of a group that have ended, as soon as there are `count` of them.
+/// Waits until `count` processes of a group have ended. @return these processes
 std::vector<ProcessGroup::Exit> CollectUntil(ProcessGroup& group, std::size_t count) {
   std::vector<ProcessGroup::Exit> exits;
   const TimePoint end = Clock::now() + std::chrono::seconds(20);
@@ -76,7 +76,7 @@ TEST(ProcessGroupTest, EndsWithItsProcesses) {
   pid_t pid = 0;
   {
     ProcessGroup group;
-    // If a shell ignores a signal, the program that takes its place ignores the signal, too.
+    // If a shell ignores a signal, the program that replaces the shell ignores the signal, too.
     pid = StartScript(group, Role::kWorld, "trap '' TERM INT HUP; exec sleep 60");
     const TimePoint end = Clock::now() + std::chrono::seconds(20);
     while (Content("/proc/" + std::to_string(pid) + "/comm") != "sleep\n" && Clock::now() < end) {

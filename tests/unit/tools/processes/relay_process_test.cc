@@ -32,7 +32,7 @@ class RelayProcessTest : public testing::Test {
     EXPECT_EQ(children.size(), 1U);
     return children.empty() ? 0 : children.front();
   }
-  /// Looks at the relay until there is news.
+  /// Checks the relay again and again until the relay has news.
   std::string News(RelayProcess& relay) const {
     std::string news;
     const TimePoint end = Clock::now() + kPatience;

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t kLimit = 10;
 
-/// Matches at a time at which no budget is filled again.
+/// Matches at a fixed time, so that no budget is refilled.
 bool Match(relay::Subscriptions& subscriptions, std::string_view channel) {
   return subscriptions.Match(channel, TimePoint{});
 }
@@ -46,7 +46,7 @@ TEST(SubscriptionsTest, EndOneByOne) {
   EXPECT_TRUE(Match(wanted, "A"));
   wanted.Remove("A");
   EXPECT_FALSE(Match(wanted, "A"));
-  wanted.Remove("A");  // this pattern was never added; LCM ignores this, too
+  wanted.Remove("A");  // the pattern is already removed; LCM ignores this, too
 }
 
 TEST(SubscriptionsTest, ForgetAnswersWhenTheyChange) {
@@ -87,7 +87,7 @@ TEST(SubscriptionsTest, RefuseWhatIsNoRegularExpression) {
 
 TEST(SubscriptionsTest, SurviveExpressionsMadeAtRandom) {
   // The pieces are mostly characters that the parser of expressions treats specially. Sanitizers
-  // watch the test.
+  // check the memory accesses of this test.
   constexpr std::string_view kPieces = "AB.*+?|()[]{}^$-,:=!<\\1dQEx";
   std::mt19937_64 engine(20'260'101);
   int refused = 0;
@@ -96,7 +96,7 @@ TEST(SubscriptionsTest, SurviveExpressionsMadeAtRandom) {
     std::string pattern;
     for (auto n = engine() % 24; n > 0; --n) pattern += kPieces[engine() % kPieces.size()];
     relay::Subscriptions wanted(1);
-    // The pattern has a block of its own, so a sanitizer sees a read beyond the pattern.
+    // The pattern has a block of its own, so a sanitizer finds a read beyond the pattern.
     const std::vector<char> exact(pattern.begin(), pattern.end());
     if (!wanted.Add({exact.data(), exact.size()}).empty()) {
       ++refused;
@@ -113,7 +113,7 @@ TEST(SubscriptionsTest, SurviveExpressionsMadeAtRandom) {
 }
 
 TEST(SubscriptionsTest, GiveUpExpressionsThatTakeExponentialTime) {
-  // GIVEN an expression that backtracks over every way to divide the longest name
+  // GIVEN an expression that backtracks over every possible division of the longest name
   relay::Subscriptions wanted(kLimit);
   ASSERT_EQ(wanted.Add("(a|aa|a?)*(a|aa|a?)*(a|aa|a?)*b"), "");
   const std::string longest(63, 'a');
@@ -128,20 +128,20 @@ TEST(SubscriptionsTest, GiveUpExpressionsThatTakeExponentialTime) {
 }
 
 TEST(SubscriptionsTest, GiveUpManySlowExpressionsAsOne) {
-  // GIVEN slow expressions, none of them so slow that Boost gives up the search (it allows more
-  // visits for long expressions)
+  // GIVEN expressions that are slow, but that Boost alone completes (Boost allows more visits for
+  // long expressions)
   relay::Subscriptions wanted(1000);
   for (int i = 0; i < 100; ++i) wanted.Add("(a|aa)+b" + std::string(240, 'c'));
   // WHEN a name is matched with all of them, THEN the search ends before the last expression
   EXPECT_THROW(Match(wanted, std::string(24, 'a')), std::runtime_error);
 }
 
-/// This expression is so slow that some tens of names like SlowName() take a tenth of a second. For
-/// a long expression Boost allows more visits before it gives up the search.
+/// This expression is so slow that some tens of names like SlowName() take a tenth of a second.
+/// Boost completes the search, because it allows more visits for a long expression.
 const std::string kSlow = "(a|aa)+b" + std::string(240, 'c');
 std::string SlowName(int i) { return std::string(20, 'a') + std::to_string(i); }
 
-/// The number of new names, up to a thousand, until such an expression exceeds its budget.
+/// The number of new names, up to a thousand, until kSlow exceeds its budget.
 int NamesUntilTheEnd(relay::Subscriptions& wanted, int first, TimePoint now) {
   for (int i = 0; i < 1000; ++i) {
     try {
@@ -156,11 +156,11 @@ int NamesUntilTheEnd(relay::Subscriptions& wanted, int first, TimePoint now) {
 TEST(SubscriptionsTest, SpendABudgetOnNewNamesThatFillsAgain) {
   relay::Subscriptions wanted(kLimit);
   ASSERT_EQ(wanted.Add(kSlow), "");
-  // GIVEN more and more new names, none of them so slow that Boost gives up the search
+  // GIVEN more and more new names, for each of which Boost alone completes the search
   const int stood = NamesUntilTheEnd(wanted, 0, TimePoint{});
   EXPECT_GT(stood, 1);
   EXPECT_LT(stood, 1000) << "all of them together are";
-  // WHEN time has passed, a few more names are possible, but fewer than at first
+  // WHEN time has passed, THEN a few more names are possible, but fewer than at first
   const int more = NamesUntilTheEnd(wanted, 1000, TimePoint{} + std::chrono::seconds(2));
   EXPECT_GT(more, 0);
   EXPECT_LT(more, stood);

@@ -82,7 +82,7 @@ TEST_F(RoleCheckTest, ComputesEveryStepOfEveryRoleAgain) {
 TEST_F(RoleCheckTest, FindsTheStepInWhichARoleDiffersAndNoOther) {
   Alter<driver_command_t>([](driver_command_t& command) { command.acceleration_mps2 = 9; });
   for (const RoleCheck& one : Check(altered_)) {
-    if (one.role == Role::kArbitrator) continue;  // it reads the altered message
+    if (one.role == Role::kArbitrator) continue;  // the arbitrator reads the altered message
     EXPECT_EQ(one.steps_that_differ, one.role == Role::kDriver ? 1 : 0) << NameOf(one.role);
     if (one.role != Role::kDriver) continue;
     ASSERT_TRUE(one.first);
@@ -205,7 +205,7 @@ TEST_F(RoleCheckTest, ASealTellsWhichRolesAreOfOtherBuilds) {
   EXPECT_EQ(others[0].ours, runtime::BuildIdOf(processes::ProgramOf(Role::kAcc)));
   EXPECT_EQ(others[1].role, Role::kDriver);
 
-  run.seal->whole = false;  // a seal that was altered says nothing
+  run.seal->whole = false;  // an altered seal proves nothing
   EXPECT_THAT(replay::OtherBuildsIn(run), IsEmpty());
   run.seal.reset();
   EXPECT_THAT(replay::OtherBuildsIn(run), IsEmpty());

@@ -42,7 +42,7 @@ TEST(FrontPointsTest, ShareAPlaceWhereThresholdsAgree) {
 TEST(FrontPointsTest, SayWhichAreOnTheFront) {
   const std::vector<report::FrontPoint> points =
       report::FrontPoints(CurvesOf({{0.2, 100, 100}, {0.5, 80, 0}, {0.8, 10, 0}}));
-  ASSERT_EQ(points.size(), 3U);  // by RHE, then by SI
+  ASSERT_EQ(points.size(), 3U);  // in the order of RHE, then of SI
   EXPECT_FALSE(points[0].on_front);
   EXPECT_TRUE(points[1].on_front);
   EXPECT_TRUE(points[2].on_front);

@@ -1,5 +1,5 @@
-// Curves that look like those of the experiment, for tests of the report: SI falls from 100 % to 0,
-// RHE falls earlier and faster. They are a rough sketch without simulation.
+// Curves that look like those of the experiment, for tests of the report. SI falls from 100 % to 0;
+// RHE falls earlier and faster. The curves are a rough sketch without simulation.
 #pragma once
 
 #include <algorithm>

@@ -1,6 +1,7 @@
 // Runs that look like the experiment, for tests of the report: three cars at 20 m/s, 33 m apart,
-// fog from 19 s to 30 s, thresholds of 0.2, 0.5 and 0.8, and a run without traded control. They are
-// a rough sketch without simulation: the report does not depend on the source of the samples.
+// fog from 19 s to 30 s, thresholds of 0.2, 0.5 and 0.8, and a run without traded control. The runs
+// are a rough sketch without simulation, because the report does not depend on the source of the
+// samples.
 #pragma once
 
 #include <algorithm>
@@ -25,7 +26,7 @@ namespace fogline {
 /// The offset of the LiDAR's mounting.
 inline constexpr double kExampleLidarBias_m = -0.93;
 
-/// The difference between the example runs. Without a threshold there is no traded control.
+/// The settings that differ between example runs. Without a threshold there is no traded control.
 struct ExampleSettings {
   std::optional<double> threshold = {};
   std::int64_t steps = 500;
@@ -155,7 +156,7 @@ inline report::ReportRun ExampleRun(const ExampleSettings& settings) {
   return run;
 }
 
-/// Without traded control, and with thresholds of 0.2, 0.5 and 0.8.
+/// A run without traded control, and runs with thresholds of 0.2, 0.5 and 0.8.
 inline std::vector<report::ReportRun> ExampleRuns(std::int64_t steps = 500) {
   std::vector<report::ReportRun> runs{ExampleRun({.steps = steps})};
   for (const double threshold : {0.2, 0.5, 0.8}) {

@@ -40,7 +40,7 @@ report::ReportRun CalmRun(Policy policy, double threshold = 0.5) {
   return run;
 }
 
-/// Adds fog from 2 s to 5 s, in which the LiDAR reads short by this much.
+/// Adds fog from 2 s to 5 s. In this fog the LiDAR's range is too short by `short_m`.
 void AddFog(report::ReportRun& run, double short_m) {
   for (std::size_t i = 20; i < 50; ++i) {
     run.samples[i].fog_present = true;

@@ -36,7 +36,7 @@ class DirectLogTest : public testing::Test {
       to.Add(step, kChannels[channel], event->utime, event->data);
     }
   }
-  /// The log of a run that was cut off before step kCut, and the options that resume it.
+  /// Writes the log of a run up to step kCut - 1. @return the options that resume this log
   ExperimentOptions Resumed() const {
     Copy(log_, part_,
          [](log::EventLogWriter&, const log::Event& event, std::vector<std::uint8_t>& data) {

@@ -16,7 +16,7 @@ using runner::CommandToGoOn;
 using runner::ExperimentOptions;
 using runner::KeptLog;
 
-/// The options of a run for which only the log is given.
+/// Default options, except for the name of the log.
 ExperimentOptions OnlyLog() {
   ExperimentOptions options;
   options.log = "run.lcm";

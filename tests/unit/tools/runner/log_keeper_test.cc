@@ -21,7 +21,7 @@ using testing::HasSubstr;
 
 constexpr std::int64_t kSteps = 20;
 
-/// A log of a run as its recorder leaves it, without a seal.
+/// A log of a run without a seal, as the run's recorder leaves it.
 class LogKeeperTest : public testing::Test {
  protected:
   LogKeeperTest() {
@@ -41,7 +41,7 @@ class LogKeeperTest : public testing::Test {
   void Append(const std::string& bytes) const {
     std::ofstream(log_, std::ios::app | std::ios::binary) << bytes;
   }
-  /// The error text of Check(); "" if there is none.
+  /// The error text of Check(); "" if there is no error.
   std::string Trouble(const LogKeeper& keeper) const {
     try {
       keeper.Check(written_);

@@ -28,7 +28,7 @@ class ResumedLogTest : public testing::Test {
  protected:
   ResumedLogTest() { runner::RunExperiment(Paper(kSteps), Direct(log_)); }
 
-  /// A copy of the log that ends behind step kCut - 1, as a killed recorder leaves it.
+  /// A copy of the log that ends after step kCut - 1, like the log of a killed recorder.
   std::string CutOff() const {
     std::string part = folder_.File("part.lcm");
     Copy(log_, part,
@@ -37,7 +37,7 @@ class ResumedLogTest : public testing::Test {
          });
     return part;
   }
-  /// Why a log cannot be resumed; "" if it can.
+  /// The reason why a log cannot be resumed; "" if the log can be resumed.
   static std::string Refusal(const std::string& log, const runtime::SigningKey* key = nullptr) {
     return ErrorOf([&] { const ResumedLog resumed(log, key); });
   }

@@ -114,7 +114,7 @@ TEST_F(SupervisorTest, StartsAKilledRoleAgainAndSaysSo) {
   EXPECT_EQ(restarts[0].count, 1);
   EXPECT_THAT(restarts[0].last, HasSubstr("was killed by signal 9 (Killed) at step "));
 
-  // WHEN the restarts of the fusion are used up, THEN the run ends
+  // WHEN the fusion has no restarts left, THEN the run ends
   SignalOne(PidOfRole(Role::kFusion), SIGKILL);
   ASSERT_TRUE(PlayUntilPhase(Phase::kFailed));
   EXPECT_THAT(coordinator_->error(), HasSubstr(", after 1 restarts (--restarts)"));
@@ -140,7 +140,7 @@ TEST_F(SupervisorTest, StartsNoProcessAgainThatExitsByItself) {
 }
 
 TEST_F(SupervisorTest, KillsAProcessThatHangsAndStartsItAgain) {
-  // On a busy machine other processes may be silent for 2 s, too, so the run allows 100 restarts.
+  // On a busy machine other processes may also be silent for 2 s, so the run allows 100 restarts.
   Begin(kManySteps, {.restarts = 100, .silence = milliseconds(2000)});
   ASSERT_TRUE(PlayUntilStep(20)) << coordinator_->error();
   const pid_t pid = PidOfRole(Role::kLidar);

@@ -22,7 +22,7 @@ TEST(McNemarTest, CountsOnlyThePairsThatDiffer) {
   EXPECT_DOUBLE_EQ(stats::McNemar(FirstYes(16), FirstYes(10)), 0.03125) << "ten pairs are alike";
 }
 
-// By hand: of five pairs one differs in the other direction, 2 * (1 + 5)/32.
+// By hand: of five pairs that differ, one differs in the other direction: 2 * (1 + 5)/32.
 TEST(McNemarTest, WeighsBothDirections) {
   EXPECT_DOUBLE_EQ(
       stats::McNemar(std::array{1.0, 1.0, 1.0, 1.0, 0.0}, std::array{0.0, 0.0, 0.0, 0.0, 1.0}),

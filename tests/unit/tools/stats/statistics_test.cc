@@ -55,19 +55,20 @@ TEST(StatisticsTest, TakesTheIntervalOfTheMeanFromStudentsT) {
 }
 
 TEST(StatisticsTest, InterpolatesPercentilesWhateverTheOrderOfValues) {
-  // 0, 1, ... 100: the 5th percentile is 5. GIVEN them in a mixed order (37 and 101 are coprime)
+  // The 5th percentile of 0, 1, ... 100 is 5. GIVEN these values in a mixed order (37 and 101 are
+  // coprime)
   std::vector<double> values;
   for (int i = 0; i < 101; ++i) values.push_back(37 * i % 101);
   const stats::Summary summary = SummaryOf(values);
   EXPECT_DOUBLE_EQ(*summary.p5, 5.0);
   EXPECT_DOUBLE_EQ(*summary.p95, 95.0);
-  // Of two values, the percentiles lie on the line between them.
+  // The percentiles of two values lie on the line between these values.
   EXPECT_DOUBLE_EQ(*SummaryOf({10, 0}).p5, 0.5);
   EXPECT_DOUBLE_EQ(*SummaryOf({10, 0}).p95, 9.5);
 }
 
 TEST(StatisticsTest, KeepsTheSpreadOfValuesFarFromZero) {
-  // With plain sums of squares all digits of the deviation, 1, would be lost.
+  // Plain sums of squares would lose all digits of the deviation, which is 1.
   EXPECT_DOUBLE_EQ(*SummaryOf({1e9 - 1, 1e9, 1e9 + 1}).deviation, 1.0);
 }
 

@@ -15,7 +15,7 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr Stream kTest{1'000'000};
 
 TEST(ResamplingTest, DrawsAsManyRunsAsThereAreAndEachAsOftenInTheMean) {
-  constexpr std::size_t kRuns = 7;  // odd, so the last draw of a pair is left over
+  constexpr std::size_t kRuns = 7;  // odd, so one draw of the last pair is not used
   const study::Resampling resampling(kRuns, kTest);
   std::vector<double> sums(kRuns, 0.0);
   std::vector<double> weights;
@@ -62,7 +62,8 @@ TEST(FromReplicatesTest, HasNoIntervalOfOneRunOrWhereAReplicateHasNoValue) {
   EXPECT_EQ(study::VerdictOf(study::FromReplicates(1, 2, {1, 2, 3})), study::Verdict::kTooFew);
 }
 
-// The purpose of the interval: it covers the mean of normal values as often as its level promises.
+// The purpose of the interval: it must contain the mean of normal values as often as its level
+// says.
 TEST(FromReplicatesTest, CoversAMeanInNearlyNineteenOfTwentyExperiments) {
   constexpr std::size_t kRuns = 40;
   constexpr int kExperiments = 200;
@@ -83,8 +84,8 @@ TEST(FromReplicatesTest, CoversAMeanInNearlyNineteenOfTwentyExperiments) {
     const study::Estimate estimate = study::FromReplicates(kRuns, 0, std::move(replicates));
     covered += estimate.low <= 0 && 0 <= estimate.high ? 1 : 0;
   }
-  // Of 200 experiments at 0.93 (a bootstrap of 40 runs is a little narrow): 186 +- 3.6, three
-  // deviations on either side.
+  // A bootstrap of 40 runs is a little narrow: its level is 0.93. The expected number in 200
+  // experiments is 186, with a deviation of 3.6. The bounds are three deviations away.
   EXPECT_GE(covered, 175);
   EXPECT_LE(covered, 197);
 }

@@ -17,8 +17,8 @@ constexpr std::int64_t kSeeds = 20;
 constexpr double kWholeRun = 500;  // steps
 constexpr std::string_view kShortfall = "mean_compromised_safety_fog_m";
 
-/// A comparison of `none` and `traded` in one case, whose runs are equal except for the values that
-/// a test sets.
+/// A comparison of `none` and `traded` in one case. The runs are equal except for the values that a
+/// test sets.
 class Runs {
  public:
   Runs() {
@@ -102,7 +102,7 @@ TEST(ClaimsTest, WhatTheRunsDoNotDecideFailsAndIsOpenWithFewRuns) {
 TEST(ClaimsTest, CollisionsAreComparedByTheExactTestOfMcNemar) {
   Runs runs;
   runs.Crash(1, 5);
-  // 2 * 0.5^5 with five pairs, 2 * 0.5^6 with six.
+  // p is 2 * 0.5^5 with five pairs, and 2 * 0.5^6 with six pairs.
   EXPECT_DOUBLE_EQ(study::PValueOf(runs.ClaimThat(study::Sign::kMore, "collided")), 0.0625);
   runs.Crash(1, 6);
   const study::Claim more = runs.ClaimThat(study::Sign::kMore, "collided");

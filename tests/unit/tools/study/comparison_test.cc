@@ -13,8 +13,8 @@ namespace {
 
 constexpr std::int64_t kSeeds = 20;
 
-/// A comparison of `none` and `traded` in which some runs of `traded` end in a collision. Measure
-/// rms_jerk_mps3 differs in each pair, and each other one is equal.
+/// A comparison of `none` and `traded` in which some runs of `traded` end in a collision.
+/// rms_jerk_mps3 differs in each pair. In a pair without a collision all other measures are equal.
 study::Comparison WithCrashes(std::int64_t crashes) {
   const std::size_t measures = study::ComparedMetrics().size();
   std::vector<double> values(2 * measures * kSeeds, 0.0);
@@ -32,7 +32,7 @@ study::Comparison WithCrashes(std::int64_t crashes) {
   return {{{"fog", "paper.json", {}}}, {{"none", {}}, {"traded", {}}}, kSeeds, values};
 }
 
-/// The row of a measure of `traded`, by column.
+/// The cells of a measure's row for `traded`, by column.
 std::map<std::string, std::string> RowOf(const std::string& csv, const std::string& measure) {
   std::istringstream lines(csv);
   std::string head;

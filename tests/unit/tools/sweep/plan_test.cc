@@ -38,13 +38,13 @@ TEST(SweepPlanTest, HasEveryCombinationOnce) {
 
 TEST(SweepPlanTest, ConfiguresARowWhateverTheScenarioWasBefore) {
   const sweep::SweepPlan plan = MakePlan();
-  // GIVEN a scenario that holds the last row
+  // GIVEN a scenario that has the values of the last row
   Scenario scenario = plan.base();
   plan.Configure(plan.units() - 1, plan.rows_per_unit() - 1, scenario);
   // WHEN the scenario becomes row 1 of unit 11
   plan.Configure(11, 1, scenario);
-  // THEN the fields in the row's name have the values of the name, and all other fields those of
-  // the base
+  // THEN the fields in the row's name have the values of the name, and all other fields have the
+  // values of the base
   EXPECT_EQ(plan.NameOf(11, 1),
             "/arbitrator/threshold=0.2, /fog/bias_m=0.2, /arbitrator/window_steps=8, "
             "/fog/model=bias, seed 4");

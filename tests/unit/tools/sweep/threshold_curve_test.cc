@@ -12,7 +12,7 @@ namespace {
 
 using ::testing::ElementsAre;
 
-/// The shipped experiment, until some time after the fog begins.
+/// The shipped experiment, up to some time after the beginning of the fog.
 Scenario ShortScenario() {
   return LoadScenario(FOGLINE_SOURCE_DIR "/scenario/paper.json", {"/steps=220"});
 }

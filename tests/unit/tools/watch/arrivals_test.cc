@@ -43,8 +43,8 @@ TEST(ArrivalsTest, SaysNothingOfGapsThatItHasNotSeen) {
   watch::Arrivals arrivals;
   arrivals.Add(1, kBegin);
   EXPECT_FALSE(arrivals.Observe(kBegin + kSecond, kSecond).longest_gap_s);
-  // One gap, which began in the interval before. It suffices for the longest gap, but not for a
-  // deviation.
+  // The interval has one gap, which began in the previous interval. One gap is enough for the
+  // longest gap, but not for a deviation.
   arrivals.Add(1, kBegin + milliseconds(1300));
   const watch::ArrivalView view = arrivals.Observe(kBegin + 2 * kSecond, kSecond);
   EXPECT_NEAR(view.longest_gap_s.value(), 1.3, kRounding);

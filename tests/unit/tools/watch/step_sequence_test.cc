@@ -63,8 +63,8 @@ TEST(StepSequenceTest, CountsEveryCopyOnceAndNoCopyAsLate) {
 }
 
 TEST(StepSequenceTest, CountsAGapWiderThanTheWindowStepByStep) {
-  // Steps 0 and 200 were seen, steps 1 to 199 were not. Steps up to 200 - kWindow are lost, the
-  // rest is missing.
+  // Steps 0 and 200 were seen, steps 1 to 199 were not. Steps up to 200 - kWindow are lost; the
+  // later steps are missing.
   const auto counts = Seen({0, 200}).counts();
   EXPECT_EQ(counts.lost, 200 - watch::StepSequence::kWindow);
   EXPECT_EQ(counts.missing, watch::StepSequence::kWindow - 1);

@@ -107,9 +107,9 @@ TEST_F(TrafficStatisticsTest, NamesTheTypeOfWhatItCannotDecode) {
   std::vector<std::uint8_t> cut = Radar(kRun, 2);
   cut.pop_back();
   Add("RADAR", Radar(kRun, 0));
-  Add("RADAR", Encoded(lidar));  // its header says that it is of this run
+  Add("RADAR", Encoded(lidar));  // a lidar_t whose header names this run
   Add("RADAR", cut);
-  Add("RADAR", {1, 2, 3});  // it belongs to no run
+  Add("RADAR", {1, 2, 3});  // too short to name a run
   const watch::TrafficView view = Observe(1000);
   ASSERT_EQ(view.runs.size(), 1U);
   const watch::ChannelView& radar = view.runs[0].channels[0];
@@ -185,7 +185,7 @@ TEST_F(TrafficStatisticsTest, KeepsRolesInTheOrderOfTheGraphAndInstancesApart) {
   EXPECT_EQ(roles[0].status.role, "world");
   EXPECT_EQ(roles[1].status.instance, 3);
   EXPECT_EQ(roles[2].status.instance, 4);
-  // The statistics forget a process some time after another process has replaced it. They never
+  // The statistics forget a process some time after another process has replaced it. They do not
   // forget the last process of a role.
   const auto later = Observe(60'000).runs.at(0).roles;
   ASSERT_EQ(later.size(), 2U);
@@ -206,7 +206,7 @@ TEST_F(TrafficStatisticsTest, RemembersNoMoreThanItsBoundsWhateverArrives) {
   EXPECT_EQ(view.forgotten, (1001 - static_cast<int>(watch::TrafficStatistics::kMaxRuns)) +
                                 (1000 - static_cast<int>(watch::TrafficStatistics::kMaxOthers)) +
                                 (1000 - static_cast<int>(watch::TrafficStatistics::kMaxRoles)));
-  // The run that speaks all the time is still there, with all its messages.
+  // The run that sends all the time is still in the view, with all its messages.
   const auto run = std::ranges::find(view.runs, kRun, &watch::RunView::run_id);
   ASSERT_NE(run, view.runs.end());
   EXPECT_EQ(run->channels.at(0).arrivals.messages, 1000);

@@ -1,6 +1,6 @@
-// Checks that no conflict measure allocates memory in a step, with any rule for missing values. It
-// is a separate program because it replaces operator new. It prints the measures that allocate, and
-// exits with 1 if there are any.
+// Checks that no conflict measure allocates memory in a step, with any rule for missing values. The
+// program replaces operator new, so it is separate from other tests. It prints the measures that
+// allocate memory, and exits with 1 if there are any.
 #include <cstddef>
 #include <cstdio>
 #include <cstdlib>
@@ -26,7 +26,8 @@ namespace {
 
 constexpr int kSteps = 1000;
 
-// Prints the measures of these rows that allocate memory in a step. @return whether there are any
+// Prints the measures of these rows that allocate memory in a step. @return whether any measure
+// does
 template <class Row>
 bool Allocates(std::span<const Row> rows, const conflict::ConflictParameters& parameters) {
   const Random random(1, Stream::kRadar);
@@ -51,8 +52,7 @@ bool Check() {
     any = Allocates(conflict::ConflictMeasures(), parameters) || any;
     any = Allocates(conflict::BlameMeasures(), parameters) || any;
   }
-  // Measures are made on the heap. So if the counter had counted no allocation, the counter would
-  // be broken.
+  // Each measure itself is allocated on the heap, so a count of 0 means that the counter is broken.
   return !any && allocations > 0;
 }
 

@@ -123,7 +123,7 @@ TEST_P(EveryPolicyProperty, AuthoritiesSumToOneAndTheCommandLiesBetweenTheOffers
       ASSERT_GE(out.threshold, 0);
       ASSERT_LE(out.threshold, 1);
       ASSERT_EQ(out.mode == arbitration_t::HUMAN, out.lambda_human >= 0.5);
-      // With the gate of transfers the command may also be at the gate's limit.
+      // With the gate of transfers, the limit of the gate also extends the range of the command.
       const TransferSection& transfer = scenario.arbitrator.transfer;
       const double gate_mps2 = transfer.gate ? transfer.gate_acceleration_mps2 : kInfinity;
       const auto [low, high] =
@@ -193,7 +193,7 @@ TEST(TransferProperty, ALimitedCommandNeverChangesFasterThanItsJerkAfterATransfe
     for (int k = 0; k < 200; ++k) {
       if (draw.Chance(0.1)) wanted = 1 - wanted;
       const arbitrator::Transfer::State state = transfer.Step(wanted, offers, previous);
-      // THEN no step breaks the limit, and the authority is the wanted one
+      // THEN no step exceeds the jerk limit, and the authority is the wanted authority
       ASSERT_LE(std::abs(state.acceleration_mps2 - previous), jerk_mps3 * step_s + kRounding);
       ASSERT_EQ(state.lambda_human, wanted);
       const double target = wanted == 0 ? offers.automation_mps2 : offers.human_mps2;
@@ -254,9 +254,9 @@ TEST(RequestDebouncerProperty, NoTwoTransfersAreNearerThanTheLeastStay) {
   EXPECT_GT(transfers, 1000);
 }
 
-// Wald's test errs no more often than its parameters say, if the DoC really is the probability of a
-// conflict. For a reading x of N(+-m, 1), both signs equally likely, P(human | x) = 1/(1 +
-// e^(-2mx)).
+// Wald's test keeps the error rates that its parameters allow, if the DoC really is the probability
+// of a conflict. For a reading x from N(m, 1) or N(-m, 1), both equally likely, P(human | x) = 1/(1
+// + e^(-2mx)).
 TEST(RequestDebouncerProperty, SprtErrsNoMoreOftenThanItsParametersSay) {
   constexpr int kTests = 20'000;
   constexpr double kMean = 0.3;
@@ -266,8 +266,8 @@ TEST(RequestDebouncerProperty, SprtErrsNoMoreOftenThanItsParametersSay) {
     for (int test = 0; test < kTests; ++test) {
       arbitrator::RequestDebouncer debouncer(
           {.hysteresis = Hysteresis::kSprt, .sprt_alpha = alpha, .sprt_beta = alpha}, 0.1);
-      // GIVEN no conflict WHEN the test runs until its first decision, at most 60 steps THEN at
-      // most a share alpha of the tests decides for the human
+      // GIVEN no conflict WHEN Wald's test runs until its first decision, or for 60 steps THEN it
+      // decides for the human in about a share alpha of the tests at most
       for (int k = 0; k < 60; ++k) {
         const double x = random.Normal2(test, static_cast<std::uint32_t>(k))[0] - kMean;
         const double doc = 1 / (1 + std::exp(-2 * kMean * x));
@@ -279,7 +279,7 @@ TEST(RequestDebouncerProperty, SprtErrsNoMoreOftenThanItsParametersSay) {
         if (before != 0 && debouncer.evidence() == 0) break;  // decided for the automation
       }
     }
-    // Wald's bound is alpha/(1 - beta); four standard deviations of the count are added.
+    // Wald's bound is alpha/(1 - beta). The tolerance is four standard deviations of the count.
     const double bound = alpha / (1 - alpha);
     EXPECT_LE(errors, kTests * bound + 4 * std::sqrt(kTests * bound)) << alpha;
     EXPECT_GT(errors, 0) << alpha;

@@ -1,4 +1,4 @@
-// The witness of the measures of conflict: the filter's prediction, reconstructed from messages.
+// The witness of the conflict measures: the filter's prediction, reconstructed from messages.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -26,9 +26,10 @@ Scenario With(NoiseAdaptation rule, double radar_offset_m = 0, double lidar_offs
   return scenario;
 }
 
-/// H P- H' of the first range of a step, from the messages so far: the variance S of its innovation
-/// minus the noise R, which follows the filter's rule. e = d R / S and H P+ H' = (S - R) R / S hold
-/// without lateral offsets. (With them the rule `innovation` is exact, too.)
+/// H P- H' of the first range of a step, computed from the messages so far. H P- H' is the variance
+/// S of the range's innovation minus the noise R. R follows the filter's rule, which uses the
+/// innovation d and the residual e. Without lateral offsets, e = d R / S and H P+ H' = (S - R) R /
+/// S. With lateral offsets the rule `innovation` is still exact.
 class ByRecursion {
  public:
   explicit ByRecursion(const Scenario& scenario)
@@ -107,7 +108,7 @@ TEST(WitnessProperty, OfAnAdaptiveFilterNeedsTheStepBefore) {
   for (int k = 0; k < 50; ++k) {
     const testing::LeadStep step = lead.Step();
     const track_t& track = fusion.Step(step.ego, step.radar, step.lidar);
-    if (k % 10 == 5) continue;  // the witness does not hear this step
+    if (k % 10 == 5) continue;  // the witness does not get the messages of this step
     const bool predicted = witness.Prediction(track, step.radar, step.lidar).valid;
     EXPECT_EQ(predicted, k % 10 != 6 && k > 0) << k;
   }

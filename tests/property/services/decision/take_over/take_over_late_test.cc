@@ -1,5 +1,6 @@
-// The shares of drivers that are late and that never come. Both shares must be those of the
-// scenario, within the exact confidence interval of a binomial count.
+// The shares of drivers who take over too late, and of drivers who never take over. Both shares
+// must equal the scenario's probabilities, within the exact confidence interval of a binomial
+// count.
 #include <cstdint>
 #include <utility>
 
@@ -19,7 +20,8 @@ struct Interval {
   double high;
 };
 
-/// Clopper & Pearson 1934: the probabilities that are compatible with `count` of kDraws.
+/// Clopper & Pearson 1934: the probabilities that are compatible with `count` events in kDraws
+/// draws.
 Interval Confidence(std::int64_t count) {
   const auto k = static_cast<double>(count);
   const auto n = static_cast<double>(kDraws);
@@ -85,7 +87,7 @@ TEST(TakeOverLateTest, HappensAsOftenAsTheParameterSaysWhateverTheModel) {
   }
 }
 
-// SUMO repeats a negative draw. Long requests have many negative draws: 15 % for a request of 20 s.
+// SUMO repeats each negative draw. For a request of 20 s, 15 % of the draws are negative.
 TEST(TakeOverLateTest, IsWhatTheDistributionHasOfItForTheLongestRequest) {
   for (const TakeOverModel model : {TakeOverModel::kLogNormalByLead, TakeOverModel::kSumo}) {
     const TakeOverParameters given{.model = model, .late_probability = 0.1};

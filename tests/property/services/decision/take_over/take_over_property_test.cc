@@ -1,5 +1,5 @@
-// The fallback under random sequences of events. The tests compare it with its table, and with an
-// independent computation of everything else.
+// The fallback under random sequences of events. The tests compare its states with its table, and
+// everything else with an independent computation.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -22,7 +22,7 @@ using enum take_over::TakeOverState;
 constexpr std::int64_t kSequences = 10'000;
 constexpr std::int64_t kSteps = 300;
 
-/// How often a row of the table was taken, and how often it changed the applied command.
+/// How often the state machine took a row of the table, and how often the row changed the command.
 struct RowCount {
   int taken = 0;
   int changed = 0;
@@ -40,14 +40,13 @@ void ExpectTheTable(const take_over::TakeOverRow* row, take_over::TakeOverState 
       << "from " << take_over::InfoOf(before).name << " to " << take_over::InfoOf(after).name;
 }
 
-/// Expects that a change of state has its effect in its own step: the applied command is that of
-/// the new state's controller, and differs from the command that the old state's controller would
-/// have given with the same inputs. If both states have the same controller, the command is that of
-/// this controller.
+/// Expects that a change of state has its effect in its own step. The new state's controller must
+/// give the applied command. The old state's controller must have wanted another command for the
+/// same inputs. If both states have the same controller, this controller must give the command.
 ///
 /// Only the change to the harder stage of the manoeuvre may have its effect later. The jerk limit,
 /// or the limit shortly before standstill, may allow less deceleration than the softer stage wants.
-/// Then both stages command this limit.
+/// In this case both stages command this limit.
 /// @return whether the command changed
 bool ExpectTheChangeIsFelt(const take_over::TakeOverRow& row, const Witness& witness,
                            const take_over::TakeOverInputs& inputs, double applied_mps2) {
@@ -84,13 +83,13 @@ void ExpectNoManoeuvreTooEarly(const take_over::TakeOverRow& row, const Witness&
 void ExpectTheLimits(const take_over::TakeOverOutcome& out, const take_over::TakeOverInputs& inputs,
                      const TakeOverSection& section, double step_s) {
   if (out.authority == take_over::Authority::kEasing) {
-    // Easing does not accelerate, except while it ends an acceleration within the jerk limit.
+    // Easing commands a positive acceleration only while the jerk limit requires it.
     EXPECT_LE(out.acceleration_mps2,
               std::max(0.0, inputs.applied_mps2 - section.jerk_mps3 * step_s) + kTolerance);
   }
   if (out.authority < take_over::Authority::kComfort) return;
-  // A car may brake harder at the beginning than the manoeuvre is allowed to. It then releases the
-  // brake within the jerk limit.
+  // Before the manoeuvre, the car may brake harder than the manoeuvre is allowed to. The manoeuvre
+  // then releases the brake within the jerk limit.
   EXPECT_GE(out.acceleration_mps2,
             std::min(-section.emergency_deceleration_mps2, inputs.applied_mps2) - kTolerance);
   const bool standing = inputs.speed_mps == 0 && out.acceleration_mps2 == 0;
@@ -149,8 +148,8 @@ class Sequence {
   }
 
   /// Draws other offers until the controllers of the old and of the new state want different
-  /// commands, because a change has no effect if both want the same. But both stages of the
-  /// manoeuvre may be at the jerk limit, whatever the offers are.
+  /// commands. With equal commands the change would have no effect. The function gives up after 30
+  /// draws, because both stages of the manoeuvre may be at the jerk limit for any offers.
   void LetTheControllersDiffer(const take_over::TakeOverRow& row) {
     constexpr double kPlain_mps2 = 0.01;
     const take_over::Authority old_authority = take_over::AuthorityOf(row.state);
@@ -195,7 +194,8 @@ class Sequence {
     log_.Add(command, events_.inputs().human_mps2);
   }
 
-  /// Notes the first step with a driver's command that differs from the command before he came.
+  /// Notes the first step in which the driver's command differs from the last command before the
+  /// driver.
   void NoteTheDriver(take_over::TakeOverState before, std::int64_t step,
                      const take_over::TakeOverOutcome& out) {
     if (out.state == kDemand && before == kAutomated) effective_.reset();

@@ -1,7 +1,7 @@
 // Random events for the fallback, and an independent computation of its states and commands. The
-// computation uses the inputs, and does not call services/decision/take_over/take_over.cc. It
-// shares with that file only the code for the drawn take-over time and for the course of a
-// manoeuvre; this code has tests of its own.
+// computation uses the inputs, and does not call services/decision/take_over/take_over.cc. Both
+// share only the code for the drawn take-over time and for the course of a manoeuvre. This shared
+// code has tests of its own.
 #pragma once
 
 #include <algorithm>
@@ -54,8 +54,8 @@ inline Scenario AnyScenario(Dice& dice) {
   return scenario;
 }
 
-/// Random inputs of the state machine: offers, engagement requests and cars ahead, and a car of its
-/// own. The brake of this car may fail for a while.
+/// Random inputs of the state machine: offers, engagement requests, cars ahead, and the motion of
+/// the host. The host's brake may fail for a while.
 class Events {
  public:
   explicit Events(Dice& dice, double step_s)
@@ -104,8 +104,8 @@ class Events {
   take_over::TakeOverInputs inputs_;
 };
 
-/// The independent computation: from the inputs alone it finds the events that hold, and the
-/// command of each source.
+/// The independent computation. From the inputs alone it finds the present events and the command
+/// of each source.
 class Witness {
  public:
   explicit Witness(const Scenario& scenario)
@@ -141,7 +141,8 @@ class Witness {
     return events;
   }
 
-  /// The command of `authority` in this step. For a manoeuvre it may be called only once per step.
+  /// The command of `authority` in this step. For a manoeuvre, call this function once per step
+  /// only.
   double Source(take_over::Authority authority, const take_over::TakeOverInputs& inputs) {
     const double least =
         std::min(section_.comfort_deceleration_mps2, section_.emergency_deceleration_mps2);
@@ -187,8 +188,8 @@ class Witness {
     if (authority >= take_over::Authority::kComfort) other.manoeuvre_.Begin(inputs.applied_mps2);
     return other.Source(authority, inputs);
   }
-  /// The command of a manoeuvre without a limit of deceleration: the only limits are those on the
-  /// jerk and shortly before standstill.
+  /// The command of a manoeuvre without a limit of deceleration. The limit of the jerk, and the
+  /// limit shortly before standstill, still apply.
   double WouldAtMost(const take_over::TakeOverInputs& inputs) const {
     Witness other = *this;
     other.manoeuvre_.Begin(inputs.applied_mps2);

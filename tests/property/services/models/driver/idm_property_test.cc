@@ -94,8 +94,8 @@ TEST(IdmPropertyTest, LargerGapNeverMeansLessAcceleration) {
 }
 
 TEST(IdmPropertyTest, FasterDriverNeverAcceleratesMore) {
-  // Where v T + v dv / (2 sqrt(a b)) is negative, s* does not depend on the speed. Only the
-  // free-road term depends on it.
+  // Where v T + v dv / (2 sqrt(a b)) is negative, s* does not depend on the speed. So only the
+  // free-road term depends on the speed.
   ForManySituations([](const DriverSection& driver, Situation s, double u) {
     const models::Idm idm(driver);
     const double slow = idm.Acceleration(s.speed_mps, s.preceding_speed_mps, s.gap_m);

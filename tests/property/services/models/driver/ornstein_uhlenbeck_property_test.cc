@@ -11,7 +11,7 @@ namespace fogline {
 namespace {
 
 constexpr std::int64_t kProcesses = 20'000;
-constexpr double kDeviations = 4;  // standard deviations; chance exceeds them once in 16,000
+constexpr double kDeviations = 4;  // standard deviations; exceeded by chance once in 16,000 cases
 
 struct Moments {
   double mean = 0;

@@ -52,7 +52,7 @@ struct Drive {
   double jump_mps2 = 0;  // largest change of the applied acceleration from one step to the next
 };
 
-// Drives a car as the world moves it until it stands, and checks the limits in every step.
+// Moves a car as the world does until the car stands, and checks the limits in every step.
 Drive DriveToRest(const Case& c, std::int64_t index) {
   models::MinimalRisk manoeuvre(c.limits, c.step_s);
   manoeuvre.Begin(c.acceleration_mps2);
@@ -96,7 +96,7 @@ TEST(MinimalRiskPropertyTest, KeepsItsLimitsAndRestsWithinTheBound) {
   }
 }
 
-// A car that has room to release its brake stops without a jump.
+// If the car is fast enough to release its brake before standstill, it stops without a jump.
 TEST(MinimalRiskPropertyTest, EndsAsGentlyAsItBegins) {
   int checked = 0;
   for (std::int64_t i = 0; i < 3000; ++i) {
@@ -105,7 +105,7 @@ TEST(MinimalRiskPropertyTest, EndsAsGentlyAsItBegins) {
     const double release_mps = brake * brake / (2 * c.limits.jerk_mps3) + brake * c.step_s;
     if (c.speed_mps < release_mps) continue;
     ++checked;
-    // The speed that is left for the last step has the rounding of all steps before it.
+    // The speed before the last step contains the rounding of all earlier steps.
     const double rounding_mps2 = 1e-10 / c.step_s;
     EXPECT_LE(DriveToRest(c, i).jump_mps2 - c.limits.jerk_mps3 * c.step_s, rounding_mps2) << i;
   }
@@ -127,7 +127,7 @@ TEST(MinimalRiskPropertyTest, NeverDrivesOffAgain) {
   }
 }
 
-// Noise of the measured speed changes the command but never breaks its limits.
+// Noise of the measured speed changes the command, but the command still keeps its limits.
 TEST(MinimalRiskPropertyTest, KeepsItsLimitsUnderAnySpeeds) {
   const Random random(11, Stream::kLidar);
   for (std::int64_t i = 0; i < 300; ++i) {

@@ -59,11 +59,11 @@ TEST(LongitudinalVehicleProperty, NeverMakesEnergyAndNeverGoesBackwards) {
       ASSERT_GE(next.position_m, motion.position_m);
       const double path_m = next.position_m - motion.position_m;
 
-      // The energy from the engine, which its power limits.
+      // The engine's energy; the power of the engine limits this energy.
       const double engine_j = car.traction_n() * path_m;
       ASSERT_LE(engine_j, vehicle.power_w * step_s * (1 + 1e-2));
       // Kinetic energy of car and wheels, and potential energy. The path may be flatter in its
-      // middle than at its ends, but only as far as the grade changes: by 0.2 in 40 m.
+      // middle than at its ends: the grade changes by up to 0.2 in 40 m.
       const double kinetic_j =
           0.5 * vehicle.rotating_mass_factor * vehicle.mass_kg *
           (next.speed_mps * next.speed_mps - motion.speed_mps * motion.speed_mps);
@@ -72,7 +72,7 @@ TEST(LongitudinalVehicleProperty, NeverMakesEnergyAndNeverGoesBackwards) {
       const double height_j =
           vehicle.mass_kg * models::kGravity_mps2 * path_m * grade / std::sqrt(1 + grade * grade);
       ASSERT_LE(kinetic_j + height_j, engine_j + 1e-6) << "drive " << drive << " step " << step;
-      // The tyres' limits. On a slope gravity may add to either limit.
+      // The tyres' limits. On a slope, gravity may increase either limit.
       const double slope_mps2 = models::kGravity_mps2 * 0.1;
       const double drag_mps2 = 0.5 * models::kAirDensity_kgpm3 * vehicle.drag_coefficient *
                                vehicle.frontal_area_m2 * motion.speed_mps * motion.speed_mps /
@@ -84,7 +84,7 @@ TEST(LongitudinalVehicleProperty, NeverMakesEnergyAndNeverGoesBackwards) {
   }
 }
 
-// The commands from 0, 4, 8, ... s on. The coarsest step divides 4 s.
+// The commands that begin at 0, 4, 8, ... s. The coarsest step divides 4 s.
 using Commands = std::array<double, 6>;
 
 struct Error {

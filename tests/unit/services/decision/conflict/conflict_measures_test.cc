@@ -21,8 +21,8 @@ namespace {
 
 enum class Sides { kBoth, kLidarShort };
 
-// Properties of a measure beside its range. The list below has the measures that lack one of these
-// properties.
+// Properties of a measure apart from its range. ClaimsOf() lists the measures that lack one of
+// these properties.
 struct Claims {
   Sides sides = Sides::kBoth;  // both: d and -d score the same, and 0 scores the least
   bool zero_for_equal = true;  // equal evidence scores 0
@@ -114,8 +114,8 @@ TEST(EveryMeasureTest, TellsALidarThatIsLongAsItClaims) {
       if (ClaimsOf(row.name).sides == Sides::kLidarShort) {
         EXPECT_LE(longer, After(row, kSteps, LidarShortBy(0))) << error_m;
       } else if (row.name == "lidar_modes") {
-        // For lidar_modes each error is suspicious. But r* is on one side only, so errors of both
-        // signs have different scores.
+        // lidar_modes is suspicious of each error. But the fog return r* is on one side of the car
+        // only, so errors of both signs have different scores.
         EXPECT_GT(longer, After(row, kSteps, LidarShortBy(0))) << error_m;
       } else {
         EXPECT_NEAR(longer, After(row, kSteps, LidarShortBy(error_m)), kRounding) << error_m;
@@ -140,7 +140,7 @@ TEST(EveryMeasureTest, HoldsWhatItHadWhenAValueIsMissing) {
   for (const conflict::ConflictMeasureRow& row : conflict::ConflictMeasures()) {
     SCOPED_TRACE(row.name);
     if (row.name == "lidar_modes") {
-      // Only this measure treats a missing value as evidence, under every rule.
+      // This measure alone treats a missing value as evidence, under every rule for missing values.
       const auto measure = row.make({});
       measure->Step(LidarShortBy(0));
       EXPECT_GT(measure->Step(WithoutLidar(LidarShortBy(0))), 0.1);
@@ -162,7 +162,8 @@ TEST(EveryMeasureTest, RisesWithAMissingValueThatCountsAsConflict) {
     const double before = measure->Step(LidarShortBy(0));
     double after = before;
     for (int i = 0; i < kSteps; ++i) after = measure->Step(WithoutLidar(LidarShortBy(0)));
-    // On consonant beliefs, unequal precision alone gives d_J = 0.7 of 0.8.
+    // The rise may be as small as 0.1: on consonant beliefs, d_J is at most 0.8, and unequal
+    // precision alone already gives 0.7.
     EXPECT_GT(after, before + 0.1);
   }
 }
@@ -173,7 +174,8 @@ TEST(EveryMeasureTest, ScoresASkippedStepNoHigherThanOneThatWasMeasured) {
     conflict::ConflictParameters parameters;
     parameters.missing = MissingLidar::kSkip;
     const auto measure = row.make(parameters);
-    // Only lidar_modes finds a missing echo more suspicious than a LiDAR that reads 0.1 m short.
+    // Only lidar_modes finds a missing echo more suspicious than a LiDAR range that is 0.1 m too
+    // short.
     const double before = measure->Step(LidarShortBy(0.1));
     const double after = measure->Step(WithoutLidar(LidarShortBy(0.1)));
     EXPECT_EQ(after > before, row.name == "lidar_modes");

@@ -38,7 +38,7 @@ TEST(DisagreementTest, MissingValueAsConflictHasTheLastStatedPrecision) {
   const auto disagreement = source.Next(WithoutLidar(LidarShortBy(2, 5, 6)));
   EXPECT_EQ(disagreement->difference_m, parameters.missing_conflict_m);
   EXPECT_EQ(disagreement->radar_std_m, 5);  // from this step
-  EXPECT_EQ(disagreement->lidar_std_m, 4);  // the last stated value
+  EXPECT_EQ(disagreement->lidar_std_m, 4);  // the last value that the LiDAR stated
 }
 
 TEST(DisagreementTest, MissingValueAsConflictHasTheNominalPrecisionAtFirstAndAfterReset) {

@@ -16,8 +16,8 @@ inline conflict::Disagreement Differing(double difference_m, double radar_std_m 
   return {difference_m, radar_std_m, lidar_std_m};
 }
 
-// The radar and the prediction are at 0 m, where differences are exact. The LiDAR reads short by
-// `short_m`.
+// The radar and the prediction are at 0 m, where differences are exact. The LiDAR's range is too
+// short by `short_m`.
 inline conflict::Evidence LidarShortBy(double short_m, double radar_std_m = kRadarStd_m,
                                        double lidar_std_m = kLidarStd_m) {
   return {.radar = {true, 0, radar_std_m},
@@ -25,7 +25,7 @@ inline conflict::Evidence LidarShortBy(double short_m, double radar_std_m = kRad
           .prediction = {true, 0, 0.1}};
 }
 
-// The same difference, but the radar reads long.
+// The radar's range is too long by `long_m`; LiDAR and prediction are at 0 m.
 inline conflict::Evidence RadarLongBy(double long_m) {
   return {.radar = {true, long_m, kRadarStd_m},
           .lidar = {true, 0, kLidarStd_m},
@@ -42,13 +42,14 @@ inline conflict::Evidence WithoutRadar(conflict::Evidence evidence) {
   return evidence;
 }
 
-// d is standard normal, plus a shift. The variance S of both sensors is 1 m2.
+// The difference d is standard normal plus a shift. The variance S of both sensors together is 1
+// m2.
 inline conflict::Evidence UnitNoise(const Random& random, std::int64_t step, double shift_m = 0) {
   return LidarShortBy(random.Normal2(step, 0)[0] + shift_m, 0.6, 0.8);
 }
 
-// Arbitrary evidence of sensors: each value is sometimes missing, ranges are up to 250 m, standard
-// deviations start at 0, and readings may be equal or not.
+// Arbitrary evidence of sensors. Each value is sometimes missing. Ranges are up to 250 m and may be
+// equal; standard deviations may be 0.
 inline conflict::Evidence Anything(const Random& random, std::int64_t step) {
   const auto [where, near] = random.Uniform2(step, 0);
   const auto range = [&, place = where * 250, close = near < 0.7](std::uint32_t index) {

@@ -28,7 +28,7 @@ std::string WithPolicy(std::string_view name) {
   return R"({"version": 1, "arbitrator": {"policy": ")" + std::string(name) + R"("}})";
 }
 
-/// The parts of a view. A test changes them.
+/// The parts of a view that a test can change.
 struct Situation {
   double doc = 0.6;
   double threshold = 0.5;
@@ -95,7 +95,7 @@ TEST(PoliciesTest, AMisspeltNameIsAnsweredWithTheNearestOfTheTable) {
 }
 
 TEST(PoliciesTest, KnowsTheTraitsOfEachPolicy) {
-  // The list has only the policies that this file tests. Another policy has tests of its own.
+  // The list has only the policies that this file tests. Each other policy has tests of its own.
   for (const std::string_view name : {"none", "traded", "isolate", "oracle", "blend", "adaptive",
                                       "bayes", "availability", "traded_isolating"}) {
     const policies::PolicyRow& row = policies::RowOf(test::FindPolicy(name).value());
@@ -110,7 +110,7 @@ TEST(PoliciesTest, KnowsTheTraitsOfEachPolicy) {
   }
 }
 
-// For a policy with a simple rule, the arbitrator applies the rule and does not ask the policy.
+// For a policy with a simple rule, the arbitrator applies the rule without a call of the policy.
 TEST(PoliciesTest, ASimpleRuleIsWhatThePolicyDecides) {
   int simple = 0;
   for (const policies::PolicyRow& row : policies::Policies()) {
@@ -243,7 +243,8 @@ TEST(TimeUntilHardBrakingTest, SolvesItsOwnEquation) {
   }
 }
 
-// Take-over time: mean 2.7 s, deviation 1.45 s, 95th percentile 5.44 s; 2 s more without readiness.
+// Take-over time: mean 2.7 s, deviation 1.45 s, 95th percentile 5.44 s. Without readiness, 2 s
+// more.
 TEST(PoliciesTest, AvailabilityCallsOnlyADriverWhoCanBeThereInTime) {
   const auto followed = [](double time_s) {
     Situation situation;  // closing at 10 m/s
@@ -283,8 +284,8 @@ TEST(PoliciesTest, ThreePoliciesDropTheSensorThatThePredictionBlames) {
   }
 }
 
-// The fusion and the arbitrator each have an instance of the policy. An instance does not know the
-// decisions of the other one about the driver.
+// The fusion and the arbitrator each have an instance of the policy. The fusion's instance does not
+// know what the arbitrator's instance decides about the driver.
 TEST(PoliciesTest, AvailabilityDropsTheSensorWhetherTheDriverIsCalledOrNot) {
   const auto policy = policies::RowOf(test::FindPolicy("availability").value()).make({});
   Situation available;

@@ -27,7 +27,7 @@ arbitration_t Command(std::int64_t step, std::int8_t mode, double acceleration_m
   return command;
 }
 
-/// The same command with another authority of the human.
+/// A command in which the human has the authority `lambda_human`.
 arbitration_t Shared(std::int64_t step, std::int8_t mode, double lambda_human,
                      double acceleration_mps2 = 0) {
   arbitration_t command = Command(step, mode, acceleration_mps2);
@@ -35,7 +35,7 @@ arbitration_t Shared(std::int64_t step, std::int8_t mode, double lambda_human,
   return command;
 }
 
-/// Adds the command of a side that drives alone, so its offer is the command.
+/// Adds the command of a side that drives alone. The offer of this side equals the command.
 void Add(take_over::TakeOverLog& log, const arbitration_t& command) {
   log.Add(command, command.acceleration_mps2);
 }
@@ -140,7 +140,7 @@ TEST(TakeOverLogTest, TakesNothingThatTheAutomationDoesForAnInputOfADriverWithou
   EXPECT_THAT(Transfers(log), IsEmpty());
   EXPECT_THAT(log.requests(),
               ElementsAre(take_over::TakeOverRequest{.requested = 0, .acknowledged = 1}));
-  // With a tenth of the authority, a change of the offer counts by a tenth.
+  // The human has a tenth of the authority, so a tenth of the offer's change counts.
   log.Add(Shared(5, arbitration_t::HUMAN, 0.1, -3), 0.11);
   EXPECT_THAT(log.requests(), ElementsAre(take_over::TakeOverRequest{
                                   .requested = 0, .acknowledged = 1, .effective = 5}));

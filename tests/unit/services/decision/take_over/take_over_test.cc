@@ -53,7 +53,7 @@ class TakeOverTest : public testing::Test {
     return out;
   }
 
-  /// Makes steps until the state changes, or until this time. @return seconds since the start of
+  /// Makes steps until the state changes, or until `limit_s`. @return seconds since the start of
   /// the run
   double StepWhile(take_over::TakeOverState state, double limit_s = 100) {
     while (take_over_->outcome().state == state && Now() < limit_s) Step();
@@ -90,7 +90,7 @@ TEST_F(TakeOverTest, AsksAndHandsOverToADriverWhoAnswers) {
   EXPECT_EQ(out.acceleration_mps2, -0.7);
 }
 
-// The log (TakeOverLog) determines the fourth time, that of the first effective input.
+// TakeOverLog determines the fourth time of a request, which is that of the first effective input.
 TEST_F(TakeOverTest, KeepsTheTimesOfARequest) {
   Begin(Answering(2.05));
   inputs_.human_wanted = false;
@@ -276,9 +276,9 @@ TEST_F(TakeOverTest, BrakesHarderAndAtLastReportsFailureOfABrakeThatDoesNotStopT
   Begin(Absent());
   brakes_ = false;
   while (state() != kMrmComfort) Step();
-  // A stage is overdue after twice the longest time that it needs to stop the car. Without the time
-  // that the jerk limit adds, this is 2 * 13.3 s (20 m/s at 1.5 m/s2) for the comfortable stage,
-  // and 2 * 5 s (at 4 m/s2) for the hard one.
+  // A stage is overdue after twice the longest time that the stage needs to stop the car. Without
+  // the time that the jerk limit adds, the comfortable stage has 2 * 13.3 s (20 m/s at 1.5 m/s2).
+  // The hard stage has 2 * 5 s (20 m/s at 4 m/s2).
   EXPECT_GT(StepWhile(kMrmComfort), 10 + 2 * 13.3);
   EXPECT_EQ(state(), kMrmEmergency);
   EXPECT_GT(StepWhile(kMrmEmergency), 10 + 2 * (13.3 + 5));

@@ -14,8 +14,8 @@ metrics::Sample Track(double error_m) {
   return sample;
 }
 
-// A radar that reads 0.8 m too far. The filter gives its ranges a quarter of the weight of the
-// LiDAR's ranges.
+// A scenario with a radar whose ranges are 0.8 m too long. In the filter, the radar's ranges have a
+// quarter of the weight of the LiDAR's ranges.
 Scenario Biased(double radar_bias_m = 0.8, double lidar_bias_m = 0) {
   Scenario scenario;
   scenario.radar.bias_m = radar_bias_m;

@@ -27,7 +27,7 @@ models::Situation Closing(double gap_m, double closing_mps, double speed_mps = 2
           .ahead = models::CarAhead{.gap_m = gap_m, .speed_mps = speed_mps - closing_mps}};
 }
 
-/// The state of a system that was ready before.
+/// The state after one step of a system that is ready at first.
 AebState StateOf(const AebSection& section, const models::Situation& seen) {
   return models::Aeb(section).Step(seen);
 }
@@ -47,8 +47,8 @@ TEST(AebTest, BrakesByTheDecelerationThatIsRequired) {
 }
 
 TEST(AebTest, CombinesBothTriggers) {
-  // At a closing speed of 4 m/s, 1 s needs 4 m, and braking by 5 m/s2 needs 1.6 m. At 16 m/s these
-  // distances are 16 m and 25.6 m.
+  // At a closing speed of 4 m/s, a TTC of 1 s is a gap of 4 m, and braking by 5 m/s2 needs 1.6 m.
+  // At 16 m/s these distances are 16 m and 25.6 m.
   for (const auto& [closing_mps, gap_m] : {std::pair{4.0, 3.0}, {16.0, 20.0}}) {
     EXPECT_EQ(StateOf(On(AebTrigger::kEither), Closing(gap_m, closing_mps)), AebState::kBraking);
     EXPECT_NE(StateOf(On(AebTrigger::kBoth), Closing(gap_m, closing_mps)), AebState::kBraking);
@@ -115,8 +115,8 @@ struct Approach {
   double warned_s = 0;    // time of warnings before the braking
 };
 
-// With this distance no step has a time to collision that is exactly a limit. Otherwise rounding
-// would decide.
+// With this distance, no step has a time to collision that equals a limit exactly. At an exact
+// limit, rounding would decide.
 constexpr double kFarAway_s = 6.05;
 
 /// An approach at this relative speed, in which the driver does not brake.

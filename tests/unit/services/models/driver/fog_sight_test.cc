@@ -31,8 +31,9 @@ struct Lamp {
   double range_m;
 };
 
-// A tail lamp and a rear fog lamp, by night, at dusk and by day, by Allard's law at a visibility of
-// 50 m. The ranges are rounded to metres, so the tolerance is half a metre.
+// The ranges of a tail lamp and of a rear fog lamp, by night, at dusk and by day. They follow from
+// Allard's law at a visibility of 50 m. The ranges are rounded to metres, so the tolerance is half
+// a metre.
 TEST(FogSightTest, SeesLampsAsFarAsAllardSays) {
   for (const Lamp& lamp : {Lamp{5, 1e-6, 103}, Lamp{5, 1e-4, 50}, Lamp{5, 1e-3, 29},
                            Lamp{200, 1e-6, 151}, Lamp{200, 1e-4, 91}, Lamp{200, 1e-3, 65}}) {
@@ -63,7 +64,7 @@ TEST(FogSightTest, SeesAnyOutlineInClearAirAndLampsByTheInverseSquare) {
 }
 
 TEST(FogSightTest, LosesOutlineThenLamps) {
-  const models::FogSight sight{FogSightParameters{}};  // its two ranges at 50 m: 38.4 m and 50 m
+  const models::FogSight sight{FogSightParameters{}};  // the two ranges at 50 m: 38.4 m and 50 m
   EXPECT_EQ(sight.At(38, 50), models::Seen::kOutline);
   EXPECT_EQ(sight.At(39, 50), models::Seen::kLamps);
   EXPECT_EQ(sight.At(51, 50), models::Seen::kNothing);

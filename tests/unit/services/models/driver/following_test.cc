@@ -31,7 +31,7 @@ TEST(FollowingTest, IidmKeepsExactlyStandstillGapAndHeadway) {
     EXPECT_EQ(iidm.Acceleration(Behind(v, gap_m, v)), 0) << v;
     EXPECT_GT(iidm.Acceleration(Behind(v, 1.01 * gap_m, v)), 0) << v;
     EXPECT_LT(iidm.Acceleration(Behind(v, 0.99 * gap_m, v)), 0) << v;
-    // At the same gap the IDM still wants more room.
+    // At this gap the IDM still brakes, because the IDM keeps a larger gap.
     const models::Following idm(FollowingModel::kIdm, driver);
     if (v > 0) {
       EXPECT_LT(idm.Acceleration(Behind(v, gap_m, v)), 0) << v;
@@ -88,12 +88,12 @@ TEST(FollowingTest, AccIdmTakesACutInCoolly) {
 
 TEST(FollowingTest, AccIdmBrakesForACarThatWillStandAsItsHeuristicSays) {
   // v = 20, v_l = 20, s = 20, a_lead = -4: v_l (v - v_l) = 0 <= 160, so a_CAH = -1600 / 560 =
-  // -2.857. The IIDM with s* = 32 m gives 0.73 (1 - 2.56) = -1.139, which is greater, so the model
-  // uses the IIDM.
+  // -2.857. The IIDM with s* = 32 m gives 0.73 (1 - 2.56) = -1.139. The model uses the IIDM,
+  // because -1.139 is the greater of both.
   DriverSection driver;
   const models::Following acc(FollowingModel::kAccIdm, driver);
   EXPECT_NEAR(acc.Acceleration(Behind(20, 20, 20, -4)), 0.73 * (1 - 2.56), kNear);
-  // With s = 8: z = 4, the IIDM is at its limit of -9, a_CAH = -1600 / 464 = -3.448.
+  // With s = 8: z = 4, the IIDM is at its limit of -9, and a_CAH = -1600 / 464 = -3.448.
   const double heuristic = -1600.0 / 464;
   const double b = driver.comfortable_deceleration_mps2;
   const double cool = heuristic + b * std::tanh((-9 - heuristic) / b);

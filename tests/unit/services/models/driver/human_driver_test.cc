@@ -46,11 +46,11 @@ TEST(HumanDriverTest, RemembersBetweenStepsInProportion) {
 }
 
 TEST(HumanDriverTest, AnticipatesWhatHasHappenedSince) {
-  // GIVEN 1 s of reaction time, a gap that closes at 2 m/s, and his own braking at 1 m/s2
+  // GIVEN 1 s of reaction time, a gap that closes at 2 m/s, and a driver who brakes at 1 m/s2
   HumanParameters human = kPerfect;
   human.reaction_time_s = 1;
   models::HumanDriver driver(human, AnyModel(), AnyErrors(), kStep_s);
-  // THEN he reacts to 19 m/s, 38 m and the closing speed of that time
+  // THEN the driver reacts to 19 m/s, 38 m and the unchanged closing speed
   EXPECT_NEAR(driver.Step(0, Behind(20, -1, 40, 18)),
               AnyModel().Acceleration(Behind(19, -1, 38, 17)), 1e-12);
 }

@@ -58,7 +58,7 @@ TEST(TakeOverTimeTest, RefusesWhatNoDistributionHas) {
 }
 
 // 95 % of drivers have taken over after 5.44 s (log-normal with mean 2.7 s and deviation 1.45 s).
-// After the lead time the share of drivers that is not late has taken over.
+// After the lead time, all drivers except the late ones have taken over.
 TEST(TakeOverTimeTest, QuantilesAreThoseOfTheDistribution) {
   EXPECT_NEAR(models::TakeOverTime({}, 10).Quantile(0.95), 5.44, 0.005);
   for (const TakeOverModel model :

@@ -29,8 +29,8 @@ TEST(SafetyResponseTest, ReferenceHumanPerceivesLiftsOffAndRampsUp) {
     last = now;
   }
   EXPECT_EQ(human.Step(kCutIn), 7.59);
-  // The situation is not critical, but the gap still closes, so he goes on braking. When the gap
-  // closes no more, he releases the brake.
+  // The situation is not critical, but the gap still closes, so the driver continues to brake. As
+  // soon as the gap is constant or opens, the driver releases the brake.
   models::Situation clearing = kCutIn;
   clearing.ahead->gap_m = 50;
   EXPECT_EQ(human.Step(clearing), 7.59);

@@ -12,7 +12,7 @@ namespace {
 constexpr double kStep_s = 0.1;
 constexpr double kDry = models::FrictionOf(Surface::kDry);
 
-// A car on a road, which moves as the world moves cars.
+// A car on a road. The car moves as in the world.
 class Drive {
  public:
   Drive(const models::VehicleParameters& vehicle, double speed_mps, double command_mps2 = 0,
@@ -93,8 +93,8 @@ TEST_P(EveryVehicleTest, FollowsASteadyCommandWithinItsLimits) {
   EXPECT_NEAR(level.For(5, 0), 0, 1e-9);
   for (const double command : {0.1, -0.5, -2.0}) {
     Drive drive(GetParam(), 20, command);
-    // Drag changes with the speed, and its compensation comes late by delay and lag. The error is 2
-    // c v (D + tau) / m_eff of the command: at 20 m/s below 1 % for each of the three cars.
+    // Drag changes with the speed, and its compensation is late by delay and lag. The error is 2 c
+    // v (D + tau) / m_eff of the command: at 20 m/s below 1 % for each of the three cars.
     EXPECT_NEAR(drive.For(5, command), command, 0.01 * std::abs(command)) << command;
   }
 }
@@ -151,8 +151,8 @@ TEST(LongitudinalVehicleTest, BrakesWithDelayAndLag) {
   drive.For(0.4, -4);
   const double before = drive.For(0.1, -4);  // mean from 0.6 to 0.7 s
   const double after = drive.For(0.1, -4);   // mean from 0.7 to 0.8 s
-  // 0.7 s is delay plus time constant, so 63.2 % of the braking is there. Both means together are
-  // centred on 0.7 s. The tolerance is half the curvature.
+  // 0.7 s is delay plus time constant, so 63.2 % of the braking has its effect. The average of both
+  // means is centred on 0.7 s. The tolerance is half the curvature.
   EXPECT_NEAR(0.5 * (before + after), -4 * (1 - std::exp(-1)), 4 * 0.004);
 }
 

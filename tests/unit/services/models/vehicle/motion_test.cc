@@ -44,7 +44,7 @@ TEST(ContactTest, OfConstantSpeedsIsGapOverClosingSpeed) {
 }
 
 TEST(ContactTest, IsTheFirstRootOfTheParabola) {
-  // 6 - 5 t + t^2 = (t - 2) (t - 3): after contact at 2 s the cars would separate at 3 s.
+  // 6 - 5 t + t^2 = (t - 2) (t - 3): without the contact at 2 s, the cars would separate at 3 s.
   EXPECT_DOUBLE_EQ(models::TimeToContact(6.0, 20.0, 2.0, 25.0, 0.0, 10.0).value(), 2.0);
 }
 
@@ -65,12 +65,12 @@ TEST(ContactTest, DoesNotHappenAfterTheEnd) {
 
 TEST(ContactTest, CountsTheRestOfTheCarAhead) {
   // The car ahead stops after 1 s and 5 m; the car behind keeps 10 m/s: (7 + 5) m / 10 m/s. If the
-  // car ahead could roll back, the gap 7 - 5 t^2 would close at 1.183 s.
+  // car ahead rolled back instead, the gap 7 - 5 t^2 would close at 1.183 s.
   EXPECT_DOUBLE_EQ(models::TimeToContact(7.0, 10.0, -10.0, 10.0, 0.0, 2.0).value(), 1.2);
 }
 
 TEST(ContactTest, DoesNotHappenIfTheCarBehindStopsInFrontOfTheGap) {
-  // The car behind needs 4^2 / (2 * 2) = 4 m; the car ahead stands.
+  // The car behind needs 4^2 / (2 * 2) = 4 m to stop; the car ahead stands still.
   EXPECT_FALSE(models::TimeToContact(4.001, 0.0, 0.0, 4.0, -2.0, 10.0));
   EXPECT_DOUBLE_EQ(models::TimeToContact(3.0, 0.0, 0.0, 4.0, -2.0, 10.0).value(), 1.0);
 }

@@ -1,4 +1,4 @@
-// A run coordinator that hears the messages that a test publishes for the roles.
+// A run coordinator. The test publishes the messages of all roles for this coordinator.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -36,7 +36,7 @@ class RunCoordinatorTest : public testing::Test {
     ++role(who).sequence;
     script_.Say(role(who));
   }
-  /// Publishes a STATUS of every role, so that the run is at a step.
+  /// Publishes a STATUS of every role, so that the run is at this step.
   void BeAtStep(std::int64_t step) {
     for (const RoleInfo& info : kRoles) {
       role(info.role).header.step = step;
@@ -49,12 +49,12 @@ class RunCoordinatorTest : public testing::Test {
     coordinator_.Poll(now);
     script_.bus().Drain();
   }
-  /// Looks at the clock until `end`, as often as a runner does.
+  /// Calls Poll() every 20 ms until `end`, as a runner does.
   static void PollUntil(runtime::RunCoordinator& coordinator, TimePoint end) {
     for (TimePoint now = Clock::now(); now < end; now += milliseconds(20)) coordinator.Poll(now);
     coordinator.Poll(end);
   }
-  /// Replaces the process of a role by another one.
+  /// Replaces the process of a role by another process.
   void Replace(Role who) {
     role(who).pid += 1000;
     role(who).instance += 1000;

@@ -16,7 +16,7 @@ class DeafRolesTest : public testing::Test {
     std::int64_t age_ms;
     std::int8_t state = status_t::INPUT_LOST;
     std::int64_t late = 0;
-    std::int64_t step = 17;  // the last one that the radar has computed
+    std::int64_t step = 17;  // last step that the radar has computed
   };
   void SayWorld() {
     status_t status{};
@@ -34,8 +34,8 @@ class DeafRolesTest : public testing::Test {
     status.input_late = {ear.late};
     deaf_.Heard(Role::kRadar, status, now_);
   }
-  /// Passes `signs` STATUS messages of the world and of the radar. Between two of its messages the
-  /// world computes two steps. The radar's input gets 200 ms older each time.
+  /// Passes `signs` STATUS messages of the world and of the radar. Between two STATUS messages the
+  /// world computes two steps. Each time the radar's input gets 200 ms older.
   void Pass(int signs, std::int8_t state = status_t::INPUT_LOST) {
     for (int i = 0; i < signs; ++i) {
       now_ += milliseconds(200);
@@ -70,7 +70,7 @@ TEST_F(DeafRolesTest, AtTheEndASecondIsEnough) {
   EXPECT_FALSE(deaf_.AtTheEnd(Role::kRadar));
   Pass(1);
   EXPECT_TRUE(deaf_.AtTheEnd(Role::kRadar));
-  // Time without a step does not count, because the world publishes nothing then.
+  // Time without a step does not count, because the world publishes nothing in this time.
   for (int i = 0; i < 20; ++i) {
     now_ += milliseconds(200);
     age_ms_ += 200;
@@ -111,8 +111,7 @@ TEST_F(DeafRolesTest, AMessageNowAndThenOrALateOneIsHeard) {
 }
 
 TEST_F(DeafRolesTest, WhatComesLateToARoleThatIsAheadOfItsProducerIsNotHeard) {
-  // GIVEN a role that has computed a forged step far ahead, so that all genuine messages come too
-  // late for it
+  // GIVEN a role that has computed a forged step far ahead, so all genuine messages come too late
   const auto pass_ahead = [this](std::int64_t steps) {
     for (int i = 1; i <= 12; ++i) {
       now_ += milliseconds(200);
@@ -130,7 +129,7 @@ TEST_F(DeafRolesTest, WhatComesLateToARoleThatIsAheadOfItsProducerIsNotHeard) {
 
 TEST_F(DeafRolesTest, AtTheEndNothingIsMissedOfStepsThatNeverWere) {
   Pass(3);
-  // WHEN the world has computed its last step, and the role is late
+  // WHEN the world has computed its last step, and the role has not computed this step yet
   for (int i = 0; i < 5; ++i) {
     now_ += milliseconds(200);
     age_ms_ += 200;
@@ -153,7 +152,7 @@ TEST_F(DeafRolesTest, OfATimeInWhichItIsNotHeardItselfNothingIsKnown) {
 }
 
 TEST_F(DeafRolesTest, AReaderThatIsLateForgetsNoSilence) {
-  // GIVEN a reader that reads three signs of life together, and then no sign for half a second
+  // GIVEN a reader that reads three STATUS messages together, and then no message for half a second
   for (int i = 1; i <= 12; ++i) {
     now_ += milliseconds(i % 3 == 0 ? 598 : 1);
     world_step_ += 2;
@@ -162,7 +161,7 @@ TEST_F(DeafRolesTest, AReaderThatIsLateForgetsNoSilence) {
     SayRadar({.age_ms = age_ms_});
   }
   EXPECT_TRUE(IsDeaf());
-  // WHEN a message comes, THEN the reader notices the message as well
+  // WHEN the radar's input gets messages again, THEN the reader sees these messages, too
   age_ms_ = 0;
   for (int i = 1; i <= 6; ++i) {
     now_ += milliseconds(i % 3 == 0 ? 598 : 1);

@@ -17,7 +17,7 @@ TEST_F(RunCoordinatorTest, IgnoresADeadProcessThatItHadNeverHeardOf) {
   coordinator_.MarkDead(Role::kFusion, role(Role::kFusion).pid, Clock::now());
   SayStatus(Role::kFusion);
   EXPECT_FALSE(coordinator_.member(Role::kFusion).status);
-  // The next process of the role may have the same process id. Its STATUS counts.
+  // The next process of the role may have the same process id. The STATUS of this process counts.
   coordinator_.Launched(Role::kFusion, role(Role::kFusion).pid, Clock::now());
   SayStatus(Role::kFusion);
   EXPECT_TRUE(coordinator_.member(Role::kFusion).status);
@@ -38,7 +38,7 @@ TEST_F(RunCoordinatorTest, AwaitsRolesFromElsewhereUntilTheyAreThereAndWhenTheyF
   EXPECT_THAT(coordinator.Awaited(now), ElementsAre(Role::kDriver)) << "it has no scenario yet";
   BeAtStep(-1);
   EXPECT_THAT(coordinator.Awaited(now), IsEmpty());
-  // WHEN no role is heard for more than a second of the run
+  // WHEN no role sends a message for more than a second
   const TimePoint later = Clock::now() + milliseconds(1200);
   PollUntil(coordinator, later);
   EXPECT_THAT(coordinator.Awaited(later), ElementsAre(Role::kAcc, Role::kDriver));
@@ -51,7 +51,7 @@ TEST_F(RunCoordinatorTest, EndsTheRunWhenTwoLivingProcessesAreOneRole) {
   SayStatus(Role::kAcc);
   EXPECT_EQ(coordinator_.phase(), runtime::RunCoordinator::Phase::kRunning)
       << "the first may be dead";
-  // WHEN the first process speaks long after the second process has come
+  // WHEN the first process sends a STATUS long after the second process has come
   const TimePoint end = Clock::now() + milliseconds(120);
   while (Clock::now() < end) Poll(Clock::now());
   role(Role::kAcc) = first;
@@ -66,7 +66,7 @@ class ExternalDriverTest : public RunCoordinatorTest {
  protected:
   /// The instance that the run names as its driver.
   std::int64_t Holder() {
-    PassTime(milliseconds(300));  // the runner repeats RUN sooner than that
+    PassTime(milliseconds(300));  // longer than the period of the runner's RUN messages
     script_.bus().Drain();
     EXPECT_EQ(said_.back().external, std::vector<std::string>{"driver"});
     return said_.back().holder.at(0);
@@ -132,7 +132,7 @@ TEST_F(ExternalDriverTest, IsFreeAtOnceWhenItLeaves) {
 class StrayWordTest : public ExternalDriverTest {
  protected:
   /// Publishes a STATUS of this process every 100 ms. The process is the driver, or another process
-  /// that takes the driver's place.
+  /// that takes the driver's role.
   void SpeakFor(milliseconds time, status_t& who) {
     for (const TimePoint end = Clock::now() + time; Clock::now() < end;) {
       Say(who);
@@ -156,7 +156,7 @@ TEST_F(StrayWordTest, OfARivalLongAfterAnotherIsNotTwoProcesses) {
   SpeakFor(milliseconds(1300), driver);
   Say(other);
   EXPECT_NE(external_.phase(), runtime::RunCoordinator::Phase::kFailed) << external_.error();
-  // The run fails if the rival goes on.
+  // The run fails if the rival continues to send.
   for (int i = 0; i < 12; ++i) {
     Say(other);
     SpeakFor(milliseconds(100), driver);
@@ -168,7 +168,7 @@ TEST_F(StrayWordTest, OfADeadProcessLongAfterAnotherIsNotEither) {
   BeAtStep(-1);
   status_t& dead = role(Role::kDriver);
   status_t other = OtherDriver();
-  // GIVEN a driver that was silent for a second and was then replaced
+  // GIVEN a driver that sent nothing for a second and was then replaced
   while (external_.member(Role::kDriver).replaced == 0) SpeakFor(milliseconds(100), other);
   SpeakFor(milliseconds(200), other);
   Say(dead);

@@ -37,7 +37,7 @@ TEST_F(RunCoordinatorTest, TellsARoleThatJoinsHowFarTheRunIs) {
 TEST_F(RunCoordinatorTest, PreparesARoleThatIsStartedAgainAndSaysGoWhenItIsReady) {
   BeAtStep(-1);
   BeAtStep(40);
-  // WHEN the fusion has died
+  // WHEN the process of the fusion has died
   coordinator_.MarkDead(Role::kFusion, role(Role::kFusion).pid, Clock::now());
   Poll(Clock::now());
   EXPECT_EQ(said_.back().phase, run_t::PREPARE);
@@ -46,7 +46,7 @@ TEST_F(RunCoordinatorTest, PreparesARoleThatIsStartedAgainAndSaysGoWhenItIsReady
   SayStatus(Role::kFusion);
   Poll(Clock::now());
   EXPECT_FALSE(coordinator_.member(Role::kFusion).status);
-  // WHEN the next process of the fusion is there
+  // WHEN the next process of the fusion has come
   Replace(Role::kFusion);
   SayStatus(Role::kFusion);
   Poll(Clock::now());
@@ -90,7 +90,7 @@ TEST_F(RunCoordinatorTest, BlamesNoRoleForSilenceWhileItWasHeldUpItself) {
   EXPECT_EQ(coordinator_.phase(), runtime::RunCoordinator::Phase::kRunning) << coordinator_.error();
   EXPECT_GE(coordinator_.TakeLongestPause(), milliseconds(4900));
   EXPECT_EQ(coordinator_.TakeLongestPause(), Duration::zero());
-  // The silence after the pause counts.
+  // The silence of the roles after the runner's pause counts.
   for (TimePoint now = again; now < again + milliseconds(3990); now += milliseconds(20)) {
     coordinator_.Poll(now);
   }
@@ -102,7 +102,7 @@ TEST_F(RunCoordinatorTest, BlamesNoRoleForSilenceWhileItWasHeldUpItself) {
 TEST_F(RunCoordinatorTest, FindsAStallHoweverOftenItIsHeldUpItself) {
   BeAtStep(-1);
   BeAtStep(40);
-  // GIVEN a runner that looks at the clock for a second, and is held up for 0.6 s, again and again
+  // GIVEN a runner that again and again runs for a second and is then held up for 0.6 s
   const TimePoint began = Clock::now();
   TimePoint now = began;
   Duration looked{};
@@ -114,7 +114,7 @@ TEST_F(RunCoordinatorTest, FindsAStallHoweverOftenItIsHeldUpItself) {
     looked += milliseconds(20);
     coordinator_.Poll(now);
   }
-  // THEN the four seconds in which the runner looked count
+  // THEN the run stalls after four seconds in which the runner was not held up
   EXPECT_EQ(coordinator_.phase(), runtime::RunCoordinator::Phase::kFailed);
   EXPECT_NEAR(std::chrono::duration<double>(now - began).count(), 4 + 4 * 0.6, 0.7);
 }
@@ -134,7 +134,7 @@ TEST_F(RunCoordinatorTest, BlamesForAStallTheRoleAtTheEndOfTheChain) {
   };
   wait(Role::kWorld, 8, "HOST_COMMAND", 6);
   wait(Role::kArbitrator, 7, "DRIVER_COMMAND", 6);
-  // WHEN the driver lacks a message that the arbitrator has sent before
+  // WHEN the driver lacks a message that the arbitrator has already sent
   wait(Role::kDriver, 7, "HOST_COMMAND", 5);
   hasty.Poll(Clock::now() + milliseconds(150));
   EXPECT_THAT(
@@ -248,7 +248,7 @@ TEST_F(RunCoordinatorTest, EndsOnlyWhenTheRecorderHasToldWhatItHasWrittenOfTheLa
   role(Role::kRecorder).log_bytes = 4711;
   SayStatus(Role::kRecorder);
   EXPECT_EQ(coordinator_.phase(), runtime::RunCoordinator::Phase::kDone);
-  // AND the report that the recorder sends when it leaves counts
+  // AND the report that the recorder sends when it leaves counts, too
   role(Role::kRecorder).log_bytes = 4712;
   SayStatus(Role::kRecorder);
   EXPECT_EQ(coordinator_.member(Role::kRecorder).status->log_bytes, 4712);

@@ -6,14 +6,14 @@ namespace fogline {
 namespace {
 
 constexpr Duration kEvery = milliseconds(200);
-// One of a million living processes is wrongly regarded as hanging.
+// Probability that a living process is wrongly regarded as hanging.
 constexpr double kUnlikely = 1e-6;
 
 TimePoint At(std::int64_t ms) { return TimePoint(std::chrono::hours(5)) + milliseconds(ms); }
 
 class SignsOfLifeTest : public testing::Test {
  protected:
-  /// All roles except one speak regularly. Of `one_of` signs of a role, one is heard.
+  /// All roles except `silent` send signs of life regularly. One of `one_of` signs arrives.
   void Speak(Role silent, std::int64_t from_ms, std::int64_t to_ms, std::int64_t one_of = 1) {
     for (std::int64_t ms = from_ms; ms < to_ms; ms += 200) {
       for (const RoleInfo& info : kRoles) {
@@ -42,7 +42,7 @@ TEST_F(SignsOfLifeTest, WhereNoProcessIsHeardNoneHangs) {
 
 TEST_F(SignsOfLifeTest, AProcessThatFellSilentWithAllOthersMayLive) {
   signs_.Heard(Role::kFusion, 0, At(0));
-  // GIVEN that the other roles spoke once more before a network lost everything
+  // GIVEN other roles whose signs still arrived for a moment before the network lost everything
   Speak(Role::kFusion, 10, 200);
   EXPECT_GT(Chance(Role::kFusion, 1000), 0.1);
   EXPECT_GT(Chance(Role::kFusion, 3000), 0.1);

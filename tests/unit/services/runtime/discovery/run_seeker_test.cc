@@ -31,7 +31,8 @@ class RunSeekerTest : public testing::Test {
     runner_.Publish(runtime::kBeaconChannel, bytes);
   }
 
-  /// Announces the run until the driver goes there. @return whether the driver goes there
+  /// Announces the run until the driver's seeker returns it. @return whether the seeker returned
+  /// this run
   bool Finds(TimePoint now) {
     for (int tries = 0; tries < 2000; ++tries) {
       Announce({"driver"});
@@ -47,14 +48,15 @@ class RunSeekerTest : public testing::Test {
   TimePoint begin_ = Clock::now();
 };
 
-// The test passes times in steps of 0.4 s: the seeker would regard a longer step as a pause of its
+// The test passes times in steps of 0.4 s. The seeker would regard a longer step as a pause of its
 // own process.
 TEST_F(RunSeekerTest, TriesARunAgainSomeSecondsAfterItWasInVain) {
   // GIVEN a seeker that has tried a run in vain
   ASSERT_TRUE(Finds(begin_));
   driver_.GiveUp(begin_);
   EXPECT_FALSE(driver_.Tries());
-  // WHEN the run still waits, THEN the seeker leaves it alone for five seconds, and tries it again
+  // WHEN the run still waits, THEN the seeker ignores the run for five seconds, and then tries it
+  // again
   TimePoint now = begin_;
   for (; now < begin_ + std::chrono::seconds(5); now += milliseconds(400)) {
     Announce({"driver"});
@@ -67,14 +69,14 @@ TEST_F(RunSeekerTest, TriesARunAgainAtOnceWhenItsPlaceWasTakenAndLeft) {
   // GIVEN a seeker that has tried a run in vain at `begin_`
   ASSERT_TRUE(Finds(begin_));
   driver_.GiveUp(begin_);
-  // WHEN the run waits for another role only, and then for the driver again
+  // WHEN the run waits only for another role, and then for the driver again
   bool found = false;
   for (int tries = 0; !found && tries < 1000; ++tries) {
     Announce({tries % 2 == 0 ? "acc" : "driver"});
     runner_.Wait(milliseconds(10));
     found = driver_.Look(begin_).has_value();
   }
-  // THEN the seeker goes to the run at `begin_`, without a pause
+  // THEN the seeker tries the run again at time `begin_`, without a pause
   EXPECT_TRUE(found);
 }
 

@@ -1,4 +1,4 @@
-// When a role computes in lockstep, and the requests that it sends.
+// The times at which a role computes in lockstep, and the requests that the role sends.
 #include "services/runtime/lockstep/lockstep_rule.h"
 
 #include <gmock/gmock-more-matchers.h>
@@ -16,9 +16,9 @@ using LockstepRuleTest = test::DriverInRun;
 TEST_F(LockstepRuleTest, AsksForOneStepAtATimeWhenItIsInStep) {
   script_.SayRun(run_t::GO, -1);
   script_.Say(Truth(0));
-  // WHEN another role asks for an answer, and the node lacks the input for this answer
+  // WHEN another role requests an output, and the node lacks the input for this output
   script_.AskFor("DRIVER_COMMAND", 1, 1);
-  // THEN the node asks for this input
+  // THEN the node requests this input
   ASSERT_EQ(requests_.size(), 2U);
   EXPECT_EQ(requests_[1].channel, "TRUTH");
   EXPECT_EQ(requests_[1].header.step, 1);
@@ -41,13 +41,13 @@ TEST_F(LockstepRuleTest, CatchesUpManyStepsAtATimeAndInSilence) {
   constexpr std::int64_t kProgress = 200;
   script_.SayRun(run_t::GO, kProgress);
   script_.Poll(node_);
-  // GIVEN a node that asks at once for all steps that its ring can hold
+  // GIVEN a node that requests at once all steps that its ring can hold
   ASSERT_EQ(requests_.size(), 1U);
   EXPECT_EQ(requests_[0].header.step, 0);
   EXPECT_EQ(requests_[0].count, runtime::kRingSteps - 1);
-  // WHEN the node gets these steps, and all steps that it asks for next
+  // WHEN the node gets these steps, and all steps that it requests next
   AnswerRequests();
-  // THEN the node reaches the step of the other roles, and has asked for each step once
+  // THEN the node reaches the step of the other roles, and has requested each step once
   script_.Say(Truth(kProgress + 1));
   ASSERT_EQ(requests_.size(), 4U);
   std::int64_t next = 0;
@@ -77,7 +77,7 @@ TEST_F(LockstepRuleTest, CountsNoStepAsImpossibleThatIsUnderWayWhileItCatchesUp)
 TEST_F(LockstepRuleTest, AsksAgainForWhatIsLostOnTheWay) {
   script_.SayRun(run_t::GO, 30);
   script_.Poll(node_);
-  const TimePoint before = Clock::now();  // before the messages come, however slow the machine is
+  const TimePoint before = Clock::now();  // before the messages come, also on a slow machine
   for (std::int64_t k = 0; k <= 30; ++k) {
     if (k != 5 && k != 9) script_.Say(Truth(k));
   }

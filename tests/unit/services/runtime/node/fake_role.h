@@ -1,5 +1,5 @@
-// A role whose algorithm and rule only note their calls. The test publishes the messages of all
-// other processes (script.h).
+// A role whose algorithm and rule only count or list their calls. The test publishes the messages
+// of all other processes (script.h).
 #pragma once
 
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ class FakeRole final : public runtime::Work {
  public:
   static constexpr const char* kWaitingFor = "the test";
 
-  /// A rule that accepts the messages that fit into the rings, unless the test gives another
+  /// A rule that accepts the messages that fit into the rings, unless the test sets another
   /// verdict.
   class Rule final : public runtime::FireRule {
    public:

@@ -1,4 +1,4 @@
-// The messages that a role's inputs refuse, and those that they keep.
+// The messages that a role's inputs refuse, and the messages that they keep.
 #include "services/runtime/node/inputs.h"
 
 #include <gmock/gmock-more-matchers.h>
@@ -25,7 +25,7 @@ class InputsTest : public test::FakeRoleInRun {
     truth.host_gap_m = gap_m;
     script_.Say(truth);
   }
-  /// Gives the inputs this step from the log of a predecessor.
+  /// Passes this step to the inputs, as if from the log of a predecessor.
   void Remember(std::int64_t step) {
     std::vector<std::uint8_t> bytes;
     runtime::Encode(Script::Of<truth_t>(step), bytes);

@@ -143,7 +143,7 @@ TEST_F(MembershipOfADriverTest,
   EXPECT_FALSE(node.node().parts().own.Waits());
 }
 
-/// A driver that was started by hand, in a run that waited for it.
+/// A driver that a person has started, in a run that waited for a driver.
 class ExternalRoleTest : public testing::Test {
  protected:
   ExternalRoleTest() {
@@ -191,7 +191,7 @@ TEST_F(ExternalRoleTest, GoesWhenAnotherProcessHasItsPlace) {
   EXPECT_TRUE(own_.released());
   EXPECT_EQ(status_.back().state, status_t::LEFT);
   EXPECT_EQ(own_.message().error, "another process is the driver of run 7");
-  // AND the role publishes nothing more
+  // AND the role publishes no further message
   const std::size_t said = status_.size();
   script_.PollUpTo(node_, Clock::now() + milliseconds(1000));
   EXPECT_EQ(status_.size(), said);

@@ -32,7 +32,7 @@ TEST_F(NodeTest, CallsTheWorkAndTheRuleOnlyWhileTheRoleRuns) {
 TEST_F(NodeTest, WantsTheNextCallWhenTheFirstOfItsPartsHasSomethingToDo) {
   Join();
   const TimePoint now = Clock::now();
-  parts_.own.Publish();  // so the next STATUS is due no sooner than a heartbeat after `now`
+  parts_.own.Publish();  // so the next STATUS is due a heartbeat after `now` or later
   const Duration heartbeat = runtime::OwnStatus::kHeartbeat;
   EXPECT_EQ(role_.node().Poll(now), now + heartbeat);
   role_.rule->wait = milliseconds(3);

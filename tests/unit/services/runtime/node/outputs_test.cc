@@ -121,7 +121,7 @@ TEST_F(OutputsOfADriverTest, AnswersARangeFromItsRing) {
     EXPECT_EQ(commands_[i].acceleration_mps2, said[i + 2].acceleration_mps2);
   }
   commands_.clear();
-  script_.AskFor("DRIVER_COMMAND", 7, 0);  // from a requester that knows no ranges
+  script_.AskFor("DRIVER_COMMAND", 7, 0);  // from a requester that does not know ranges
   EXPECT_EQ(commands_.size(), 1U);
 }
 
@@ -133,7 +133,7 @@ TEST_F(OutputsOfADriverTest, AnswersAFloodOfRequestsWithAFewMessages) {
   const TimePoint began = Clock::now();
   for (int i = 0; i < kRequests; ++i) script_.AskFor("DRIVER_COMMAND", 0, 1'000'000'000);
   const std::chrono::duration<double> took = Clock::now() - began;
-  // Of 12,800 requested messages the role sends each step at most once per millisecond.
+  // The requests are for 12,800 messages. The role sends each step at most once per millisecond.
   EXPECT_GE(commands_.size(), static_cast<std::size_t>(runtime::kRingSteps));
   EXPECT_LE(static_cast<double>(commands_.size()), runtime::kRingSteps * (1 + 1000 * took.count()));
 }
@@ -141,11 +141,11 @@ TEST_F(OutputsOfADriverTest, AnswersAFloodOfRequestsWithAFewMessages) {
 TEST_F(OutputsOfADriverTest, AnswersForTheNewestStepsInAFloodOfRequestsForOldOnes) {
   script_.SayRun(run_t::GO, -1);
   for (std::int64_t k = 0; k < runtime::kRingSteps; ++k) script_.Say(Truth(k));
-  // GIVEN that the node has used up its burst of answers
+  // GIVEN a node that has used up its burst of answers
   const TimePoint until = Clock::now() + milliseconds(20);
   while (Clock::now() < until) script_.AskFor("DRIVER_COMMAND", 0, runtime::kRingSteps - 3);
   commands_.clear();
-  // WHEN a role asks for the step for which the run waits
+  // WHEN a role requests the step for which the run waits
   script_.AskFor("DRIVER_COMMAND", runtime::kRingSteps - 1, 1);
   EXPECT_EQ(commands_.size(), 1U);
 }

@@ -15,7 +15,7 @@ run_t RunWith(std::int64_t stall_ms) {
   return run;
 }
 
-/// Looks at the clock until this time, as often as a process does.
+/// Calls Attend() every 100 ms until `to_ms`, as a process does.
 void AttendUntil(runtime::RunnerWatch& watch, int from_ms, int to_ms) {
   for (int at_ms = from_ms; at_ms <= to_ms; at_ms += 100) watch.Attend(At(at_ms));
 }

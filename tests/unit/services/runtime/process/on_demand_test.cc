@@ -1,5 +1,5 @@
-// Inputs that only some scenarios demand. The example is a driver who reads HOST_COMMAND, which its
-// producer publishes later in a step than the driver publishes his command.
+// Inputs that only some scenarios demand. The example is a driver who reads HOST_COMMAND. In each
+// step, the driver publishes DRIVER_COMMAND before HOST_COMMAND is published.
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 
@@ -16,8 +16,8 @@ using testing::Contains;
 using testing::ElementsAre;
 using testing::Not;
 
-/// In each step this driver offers the last acceleration that he heard. His readiness is the number
-/// of commands that he heard.
+/// In each step this driver's offer is the acceleration of the last HOST_COMMAND. The driver's
+/// readiness is the number of HOST_COMMAND messages so far.
 class Echo {
  public:
   explicit Echo(const Scenario& /*scenario*/) { out_.acceleration_mps2 = kNothing; }
@@ -109,7 +109,7 @@ TEST_F(OnDemandTest, IsWaitedForAndAskedForLikeAnyOther) {
   EXPECT_EQ(requests_[0].channel, "HOST_COMMAND");
   EXPECT_EQ(requests_[0].header.step, 0);
   EXPECT_EQ(requests_[0].count, 1);
-  // AND the driver's STATUS says for which input he waits
+  // AND the driver's STATUS names the input for which the driver waits
   script_.Poll(node_, Clock::now() + milliseconds(500));
   EXPECT_EQ(status_.back().waiting_for, "HOST_COMMAND");
   EXPECT_EQ(status_.back().last_heard_step, -1);
@@ -147,7 +147,7 @@ TEST_F(OnDemandTest, IsAskedForFromTheFirstStepOnByALateRole) {
   }
   EXPECT_EQ(truths, kProgress + 1);
   EXPECT_EQ(hosts, kProgress);
-  // AND the driver computes as if he had been there from the start
+  // AND the driver's commands are those of a driver that takes part from the first step
   ASSERT_FALSE(commands_.empty());
   EXPECT_EQ(commands_.back().header.step, kProgress);
   EXPECT_EQ(commands_.back().readiness, kProgress + 1);

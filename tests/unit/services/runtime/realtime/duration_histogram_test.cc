@@ -48,8 +48,8 @@ TEST(DurationHistogramTest, RoundsUpToMicroseconds) {
   EXPECT_EQ(histogram.MaxUs(), 1);
 }
 
-// If a histogram has only one duration, the maximum gives its exact value. If there is also a
-// larger duration, the smaller one is rounded up within its cell.
+// If a histogram has only one duration, the maximum gives its exact value. If a larger duration is
+// there, too, the smaller duration is rounded up within its cell.
 TEST(DurationHistogramTest, IsTooLargeByAtMostASixtyFourthAndNeverTooSmall) {
   for (std::int64_t us = 1; us < runtime::DurationHistogram::kMaxUs / 2; us += 1 + us / 97) {
     runtime::DurationHistogram histogram;

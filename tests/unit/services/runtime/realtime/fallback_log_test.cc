@@ -69,11 +69,11 @@ TEST_F(FallbackLogTest, BlamesTheRoleThatSilencesTheOthers) {
 }
 
 TEST_F(FallbackLogTest, ForgetsWhatARoleHasLostOnceItIsSilentItself) {
-  // GIVEN a fusion that lost the radar and then falls silent
+  // GIVEN a fusion that lost the radar and then sent no further STATUS
   Add(Said("fusion", 12, {{"RADAR", kLost}}));
-  // WHEN another role loses its track later
+  // WHEN TRACK is lost later in another role
   Add(Said("acc", 40, {{"TRACK", kLost}}));
-  // THEN the radar is not to blame
+  // THEN the culprit is the fusion, not the radar
   EXPECT_EQ(log_.all().back().culprit, "fusion");
 }
 

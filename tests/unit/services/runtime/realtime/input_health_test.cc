@@ -13,7 +13,7 @@ TimePoint At(std::int64_t ms) { return kBegan + milliseconds(ms); }
 
 runtime::InputHealth Fresh() { return runtime::InputHealth(kSection, kPeriod, kBegan); }
 
-// An input of which the steps 0, 1, ... came at 0, 100, ... ms.
+// An input whose steps 0, 1, ... came at 0, 100, ... ms.
 runtime::InputHealth Running(std::int64_t steps) {
   runtime::InputHealth health = Fresh();
   for (std::int64_t k = 0; k < steps; ++k) health.Arrived(k, At(100 * k));
@@ -35,7 +35,7 @@ TEST(InputHealthTest, IsLostIfItNeverCame) {
 }
 
 TEST(InputHealthTest, IsStaleThenLostAtTheLimitsWhichAreClosed) {
-  runtime::InputHealth health = Running(3);  // the last one at 200 ms
+  runtime::InputHealth health = Running(3);  // the last step came at 200 ms
   EXPECT_EQ(health.Update(At(350)), InputState::kOk);
   EXPECT_EQ(health.Update(At(350) + Duration(1)), InputState::kStale);
   EXPECT_EQ(health.Update(At(450)), InputState::kStale);
@@ -45,7 +45,7 @@ TEST(InputHealthTest, IsStaleThenLostAtTheLimitsWhichAreClosed) {
 TEST(InputHealthTest, FindsASilentInputWithinThreePeriods) {
   runtime::InputHealth health = Running(10);
   EXPECT_EQ(health.Update(At(900 + 300)), InputState::kLost);
-  // The same holds with the scenario's defaults.
+  // The scenario's defaults have the same effect.
   runtime::InputHealth by_default(HealthSection(), kPeriod, kBegan);
   by_default.Arrived(0, At(0));
   EXPECT_EQ(by_default.Update(At(300)), InputState::kLost);
@@ -135,7 +135,7 @@ TEST(InputHealthTest, MeasuresTheRateAndLetsItFallInSilence) {
   health.Arrived(0, At(0));
   EXPECT_EQ(health.RateHz(At(50)), 0);
   for (std::int64_t k = 1; k < 40; ++k) health.Arrived(k, At(100 * k));
-  // 15 intervals of 0.1 s; the rounding is that of one division.
+  // 15 intervals of 0.1 s; the tolerance is the rounding of one division.
   EXPECT_NEAR(health.RateHz(At(3900)), 10, 1e-12);
   EXPECT_NEAR(health.RateHz(At(4000)), 10, 1e-12);
   // 16 intervals in 1.5 s + 1.7 s.

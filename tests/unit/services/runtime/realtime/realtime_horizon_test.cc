@@ -1,5 +1,6 @@
-// The steps that a role of a run in real time accepts, by the clock. The role is a fusion with a
-// period of 10 ms. The test publishes the inputs of the current step again and again.
+// The range of steps that a role accepts in real time. This range depends on the clock. The role is
+// a fusion with a period of 10 ms. The test publishes the inputs of the current step again and
+// again.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,8 +19,8 @@ using test::Script;
 
 constexpr double kSpeed = 10;
 constexpr Duration kPeriod = milliseconds(10);
-// Much longer than any wait in these tests, even on a busy machine. In this time the run advances
-// by 30 s.
+// This time is much longer than any wait in these tests, even on a busy machine. In this time the
+// run advances by 30 s.
 constexpr Duration kPatience = milliseconds(3000);
 
 class RealtimeHorizonTest : public testing::Test {
@@ -42,7 +43,7 @@ class RealtimeHorizonTest : public testing::Test {
     script_.Say(Script::Of<lidar_t>(step));
     script_.Poll(node_);
   }
-  /// Publishes the inputs of the current step until the fusion computes one, or until kPatience.
+  /// Publishes the inputs of the current step until the fusion computes a step, or until kPatience.
   /// @return whether the fusion has computed a step
   bool IsComputed() {
     const TimePoint end = Clock::now() + kPatience;
@@ -119,8 +120,8 @@ TEST_F(RealtimeHorizonTest,
   ASSERT_TRUE(IsComputed());
   // WHEN forged messages claim steps further and further ahead
   for (std::int64_t ahead = 1; ahead < 2000; ++ahead) Say(Now() + ahead);
-  // THEN genuine steps are computed again as soon as the progress that the runner reports allows
-  // them
+  // THEN genuine steps are computed again as soon as the progress that the runner reports is high
+  // enough
   const TimePoint end = Clock::now() + kPatience;
   bool computed = false;
   for (std::int64_t step = Now(); !computed && Clock::now() < end; step = Now()) {

@@ -1,6 +1,6 @@
-// When the roles of a run in real time compute, and with which inputs. Messages arrive at once, and
-// time is the argument of Poll(). A period is so long that the duration of the test itself does not
-// matter.
+// The times at which the roles of a run in real time compute, and the inputs that they use.
+// Messages arrive at once. Poll() gets the time as its argument. A period is so long that the
+// duration of the test itself does not matter.
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 
@@ -129,8 +129,8 @@ TEST_F(RealtimeRuleTest, BlamesNoRoleForItsOwnPause) {
 
 // ---- DeadlineRule: the arbitrator decides in every step ----------------------------------------
 
-// An input that never came is lost while the run's clock still runs: 1.25 periods after the last
-// tick.
+// With these limits, an input that never came is LOST before the run's clock stops. The clock stops
+// 1.25 periods after the last tick.
 Scenario Impatient() {
   Scenario scenario;
   scenario.health.stale_periods = 1.1;
@@ -180,16 +180,16 @@ TEST_F(DeadlineRuleTest, DecidesAtOnceEveryStepWhoseSuccessorHasBegun) {
 }
 
 TEST_F(DeadlineRuleTest, WaitsNotForWhatIsLostButForWhatComesAgain) {
-  // GIVEN a lost driver
+  // GIVEN a driver whose input is LOST
   Say<ego_t, radar_t, lidar_t, track_t, accel_command_t>(0);
   script_.PollUpTo(node_, At(1.22));
   // THEN the arbitrator decides the next step at once
   Say<ego_t, radar_t, lidar_t, track_t, accel_command_t>(1);
   script_.PollUpTo(node_);
   EXPECT_THAT(StepsOf(commands_), ElementsAre(0, 1));
-  // WHEN the driver speaks again, too late for step 1
+  // WHEN the driver sends again, too late for step 1
   Say<driver_command_t>(1);
-  // THEN the arbitrator waits for him in step 2
+  // THEN the arbitrator waits for the driver in step 2
   Say<ego_t, radar_t, lidar_t, track_t, accel_command_t>(2);
   script_.PollUpTo(node_);
   EXPECT_THAT(StepsOf(commands_), ElementsAre(0, 1));
@@ -243,8 +243,8 @@ TEST_F(TickRuleTest, LetsTheOthersFinishTheStepInWhichTheMachineStoodStill) {
   // GIVEN a world that wakes just before tick 3, when no role has answered yet
   script_.Poll(node_, At(2.999));
   EXPECT_THAT(StepsOf(truths_), ElementsAre(0));
-  // WHEN the other roles answer THEN the step begins at once, and tick 3 begins no step, because
-  // this tick comes too soon after it
+  // WHEN the other roles answer THEN the next step begins at once. Tick 3 begins no step, because
+  // tick 3 comes too soon after this step.
   Say<arbitration_t, follower_command_t>(0);
   script_.PollUpTo(node_, At(2.9995));
   EXPECT_THAT(StepsOf(truths_), ElementsAre(0, 1));
@@ -308,7 +308,7 @@ TEST_F(RecordRuleTest, CountsAsLateOnlyWhatItHasNotWrittenAndThatOnce) {
     const auto radar = std::ranges::find(status.input, ChannelOf<radar_t>().name);
     return status.input_late.at(static_cast<std::size_t>(radar - status.input.begin()));
   };
-  // GIVEN a hole that is repaired after the next step has come
+  // GIVEN a missing message that comes after the next step
   const auto say_all_but_radar = [this](std::int64_t step) {
     ForEachStepChannel([&]<class M>(std::size_t) {
       if constexpr (!std::is_same_v<M, radar_t>) Say<M>(step);
@@ -321,12 +321,12 @@ TEST_F(RecordRuleTest, CountsAsLateOnlyWhatItHasNotWrittenAndThatOnce) {
   Say<radar_t>(0);
   script_.PollUpTo(recorder_);
   EXPECT_EQ(late(), 0) << "it is in the log";
-  // WHEN another message of the repaired step comes
+  // WHEN this message comes again with other contents
   auto other = Script::Of<radar_t>(0);
   other.range_m = 17;
   script_.Say(other);
   EXPECT_EQ(late(), 0) << "the one of the log is there";
-  // WHEN a message comes twice after its step was given up
+  // WHEN a message comes twice after the recorder has given up its step
   say_all_but_radar(2);
   say_all_but_radar(3);
   Say<radar_t>(3);

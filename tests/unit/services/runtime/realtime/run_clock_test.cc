@@ -14,7 +14,7 @@ TimePoint At(std::int64_t ms) { return kBegan + milliseconds(ms); }
 
 class RunClockTest : public testing::Test {
  protected:
-  // The world's steps 0, 1, ... from 1000 ms on, each in time.
+  // Passes the world's steps 0, 1, ... to the clock. Each step is in time; step 0 comes at 1000 ms.
   void Tick(std::int64_t steps) {
     for (std::int64_t k = 0; k < steps; ++k) clock_.Heard(k, At(1000 + 100 * k));
   }
@@ -37,7 +37,7 @@ TEST_F(RunClockTest, GoesWithTheWallWhileTheWorldTicks) {
 }
 
 TEST_F(RunClockTest, StandsStillFromAQuarterPeriodAfterATickIsOverdue) {
-  Tick(5);  // the last one at 1400
+  Tick(5);  // the last tick comes at 1400
   EXPECT_EQ(clock_.At(At(1525)), At(525));
   EXPECT_EQ(clock_.At(At(1526)), At(525));
   EXPECT_EQ(clock_.At(At(9000)), At(525));
@@ -60,7 +60,7 @@ TEST_F(RunClockTest, TakesStepsThatWereNotHeardForNoPause) {
 
 TEST_F(RunClockTest, TakesAMessageThatComesLateForNoPause) {
   Tick(5);
-  // GIVEN a second in which nothing is heard, and then at first repeated messages
+  // GIVEN a second without messages, after which repeated messages come first
   clock_.Heard(9, At(2391));
   clock_.Heard(11, At(2392));
   // THEN the current step sets the clock as if the repeated messages had not come
@@ -86,8 +86,7 @@ TEST_F(RunClockTest, NeverGoesBackwards) {
   TimePoint last = clock_.At(At(1400));
   std::int64_t step = 5;
   for (std::int64_t ms = 1400; ms < 4000; ms += 7) {
-    // The ticks come at irregular times, from too early to far too late, and some of them are
-    // repeated.
+    // The ticks come at irregular times, from too early to far too late. Some ticks are repeated.
     if (ms % 3 == 0 && ms % 5 != 0) clock_.Heard(ms % 2 == 0 ? step++ : step - 1, At(ms));
     EXPECT_GE(clock_.At(At(ms)), last) << ms;
     last = clock_.At(At(ms));

@@ -13,7 +13,8 @@ TimePoint At(std::int64_t ms) { return TimePoint(std::chrono::hours(5)) + millis
 
 class StepHorizonTest : public testing::Test {
  protected:
-  // Steps from `first` on. Step k began at 100 ms * k; its message comes `late_ms` later.
+  // Passes `count` steps from `first` on. Step k began at 100 ms * k; its message comes `late_ms`
+  // later.
   void Hear(std::int64_t first, std::int64_t count, std::int64_t late_ms = 0) {
     for (std::int64_t step = first; step < first + count; ++step) {
       horizon_.Heard(step, At(100 * step + late_ms));
@@ -33,7 +34,7 @@ TEST_F(StepHorizonTest, GoesOnWithTheWallClock) {
 
 TEST_F(StepHorizonTest, IsNotHeldBackByWhatComesLate) {
   Hear(0, 10);
-  // GIVEN a second in which only late repeated messages are heard
+  // GIVEN a second in which only late repeated messages come
   horizon_.Heard(12, At(1950));
   horizon_.Heard(14, At(1955));
   EXPECT_EQ(horizon_.Newest(At(2000)), 20 + kSlack);
@@ -47,7 +48,7 @@ TEST_F(StepHorizonTest, OpensWithTheFirstMessageThatIsInTimeAfterOneThatWasNot) 
 }
 
 TEST_F(StepHorizonTest, IsNotNarrowedByStepsThatAreABitLateEachTime) {
-  // Each step comes 11 ms later than its period says. In total this is less than a whole period.
+  // Each step comes 11 ms later than its period says. The total delay is less than a period.
   for (std::int64_t k = 0; k < 9; ++k) horizon_.Heard(k, At(111 * k));
   EXPECT_EQ(horizon_.Newest(At(900)), 9 + kSlack);
 }
@@ -56,8 +57,8 @@ TEST_F(StepHorizonTest, ForgetsThePausesOfTheWorldAndAStepThatNeverWas) {
   Hear(0, 10);
   horizon_.Heard(40, At(1000));
   EXPECT_EQ(horizon_.Newest(At(1000)), 40 + kSlack);
-  // The horizon does not forget step 40 at once. If all other messages were late, it could be the
-  // only one in time.
+  // The horizon does not forget step 40 at once, because all other messages might be late. In this
+  // case step 40 would be the only step in time.
   Hear(10, kRemembered - 4, 5);
   EXPECT_GT(horizon_.Newest(At(7000)), 90 + kSlack);
   Hear(10 + kRemembered, kRemembered + 20, 5);
@@ -66,8 +67,8 @@ TEST_F(StepHorizonTest, ForgetsThePausesOfTheWorldAndAStepThatNeverWas) {
 
 TEST_F(StepHorizonTest, RemembersWhatWasInTimeHoweverMuchIsSentAgain) {
   Hear(0, 10);
-  // WHEN the recorder gets all messages that it has asked for at once, twice: 32 steps of nine
-  // channels
+  // WHEN the recorder gets all messages that it has requested, 32 steps of nine channels, and each
+  // message twice
   for (int i = 0; i < 2 * 32 * 9; ++i) horizon_.Heard(10 + i % 32, At(6000 + i));
   EXPECT_EQ(horizon_.Newest(At(7000)), 70 + kSlack);
 }
@@ -80,7 +81,7 @@ TEST_F(StepHorizonTest, FollowsAWorldWhoseClockIsFaster) {
 
 // ---- RunHorizon --------------------------------------------------------------------------------
 
-constexpr Duration kLong = 10 * kPeriod;  // a silence after which only the runner's report counts
+constexpr Duration kLong = 10 * kPeriod;  // after such a silence only the runner's report counts
 
 TEST(RunHorizonTest, IsLimitedByTheRunnerUntilAStepIsHeard) {
   runtime::RunHorizon horizon(kPeriod);

@@ -160,8 +160,8 @@ TEST(BusTest, TakesSignedMessagesAloneOnceItHasAKeyAndCountsTheOthers) {
     EXPECT_EQ(bytes.size(), 1U);
     received.push_back(bytes[0]);
   });
-  // GIVEN a sender without a key, one with another key, and one that has the key but may not
-  // publish RADAR
+  // GIVEN a sender without a key, a sender with another key, and a sender that has the key but may
+  // not publish RADAR
   runtime::Bus keyless(url);
   runtime::Bus other(url);
   other.Secure(runtime::MessageSigner(KeyOf(2), Role::kRadar));

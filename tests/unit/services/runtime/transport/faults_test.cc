@@ -26,8 +26,8 @@ Message Numbered(int number) {
 }
 int NumberOf(const Message& bytes) { return bytes[0] << 8 | bytes[1]; }
 
-/// The messages that arrive, until a second after the last of `count` messages sent a millisecond
-/// apart.
+/// Sends `count` messages, one per millisecond. @return the messages that arrive until a second
+/// after the last one
 std::vector<Message> Arrivals(runtime::Faults faults, int count) {
   std::vector<Message> arrived;
   const auto collect = [&](TimePoint now) {
@@ -48,7 +48,7 @@ std::vector<int> Numbers(const std::vector<Message>& messages) {
   return numbers;
 }
 
-// With so many messages, a share of them is exact to one or two per cent.
+// With this number of messages, the share of messages with a fault is exact to one or two per cent.
 constexpr int kMany = 10'000;
 /// Five standard deviations of the number of messages with a fault of this probability.
 double Tolerance(double chance) { return 5 * std::sqrt(kMany * chance * (1 - chance)); }
@@ -72,8 +72,8 @@ TEST(FaultsTest, LetLaterMessagesOvertake) {
   ASSERT_EQ(arrived.size(), static_cast<std::size_t>(kMany));
   int overtaken = 0;
   for (std::size_t i = 1; i < arrived.size(); ++i) overtaken += arrived[i] < arrived[i - 1] ? 1 : 0;
-  // Of two late messages in a row, the second does not overtake the first. So fewer than a tenth
-  // are overtaken.
+  // If two neighbouring messages are both delayed, the second does not overtake the first. So less
+  // than a tenth of the messages are overtaken.
   EXPECT_GT(overtaken, 0.07 * kMany);
   EXPECT_LT(overtaken, 0.1 * kMany + Tolerance(0.1));
 }

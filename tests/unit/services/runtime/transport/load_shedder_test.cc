@@ -11,7 +11,7 @@ class Sender {
  public:
   explicit Sender(runtime::LoadShedder& shedder) : shedder_(shedder) {}
 
-  /// @return messages per second that pass
+  /// @return admitted messages per second
   double Send(double rate_hz, double seconds) {
     const auto sent = static_cast<int>(rate_hz * seconds);
     double through = 0;

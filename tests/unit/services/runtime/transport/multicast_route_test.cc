@@ -8,7 +8,7 @@ namespace {
 
 constexpr const char* kGroup = "239.255.76.67";
 
-// In the kernel's format: addresses are hexadecimal numbers in memory order.
+// A table in the kernel's format: addresses are hexadecimal numbers in memory order.
 constexpr const char* kHeading =
     "Iface\tDestination\tGateway\tFlags\tRefCnt\tUse\tMetric\tMask\tMTU\tWindow\tIRTT\n";
 constexpr const char* kDefault = "eth0\t00000000\t010200C0\t0003\t0\t0\t0\t00000000\t0\t0\t0\n";
@@ -40,7 +40,7 @@ TEST(MulticastRouteTest, HasNoInterfaceWithoutARoute) {
 }
 
 TEST(MulticastRouteTest, FindsWhichInterfaceHasAGroup) {
-  // In the format of the kernel's /proc/net/igmp.
+  // A table in the format of the kernel's /proc/net/igmp.
   constexpr const char* kTable =
       "Idx\tDevice    : Count Querier\tGroup    Users Timer\tReporter\n"
       "1\tlo        :     2      V3\n"

@@ -49,7 +49,7 @@ TEST(BuildIdTest, ReadsNothingBehindTheEndOfAFileThatIsCutAnywhere) {
   const runtime::BuildId whole = runtime::BuildIdIn(program);
   constexpr std::size_t kNotesEnd = 4096;
   for (std::size_t size = 0; size < kNotesEnd; ++size) {
-    // A separate block, so that a sanitizer sees a read beyond its end.
+    // A separate block, so that a sanitizer finds a read beyond the end of the block.
     const std::vector<std::uint8_t> cut(program.begin(),
                                         program.begin() + static_cast<std::ptrdiff_t>(size));
     const runtime::BuildId id = runtime::BuildIdIn(cut);

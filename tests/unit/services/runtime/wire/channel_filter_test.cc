@@ -72,7 +72,7 @@ TEST(ChannelFilterTest, TakesWhatIsSubscribedWholeAndInOrder) {
 }
 
 TEST(ChannelFilterTest, TakesAMessageWithoutData) {
-  // GIVEN also a channel with a name that is longer than this whole datagram
+  // GIVEN two wanted channels, one of them with a name that is longer than the whole datagram
   const FilteredSocket socket({{"RUN_OF_LONGER_NAME"}, {"RUN"}});
   socket.Send(Datagram("RUN", ""));
   EXPECT_EQ(socket.Receive(), Datagram("RUN", ""));

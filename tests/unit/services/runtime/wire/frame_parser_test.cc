@@ -1,4 +1,4 @@
-// The parser of tcpq's byte stream, for any cuts and any contents.
+// The parser of tcpq's byte stream, for a stream with any cuts and any contents.
 #include <gtest/gtest.h>
 
 #include <numeric>
@@ -31,7 +31,7 @@ Buffer Hello(std::uint32_t magic = kClientMagic) {
   return stream;
 }
 
-/// The bytes that a client sends, from its greeting on.
+/// The bytes that a client sends; they begin with its greeting.
 Buffer ClientStream() {
   Buffer stream = Hello();
   AppendFrame(FrameType::kSubscribe, "TRUTH|HOST_.*", {}, stream);
@@ -50,7 +50,7 @@ void TakeAll(FrameParser& parser, std::vector<Kept>& frames) {
   }
 }
 
-/// The error of a parser that gets this stream at once.
+/// The error of a parser that gets this stream in one piece.
 std::string ErrorOf(const Buffer& stream, const Limits& limits = {}) {
   FrameParser parser(kClientMagic, limits);
   parser.Append(stream);
@@ -59,7 +59,7 @@ std::string ErrorOf(const Buffer& stream, const Limits& limits = {}) {
   return parser.error();
 }
 
-/// A stream with a frame header of these words.
+/// A stream with a frame header that consists of these words.
 Buffer Claim(std::initializer_list<std::uint32_t> words, std::string_view name = "") {
   Buffer stream = Hello();
   for (const std::uint32_t word : words) {

@@ -51,7 +51,7 @@ Message StatusOf(std::string_view role) {
 
 const Message kRadar = PayloadOf(radar_t{});
 
-/// The verdict of a receiver with the same key on a message that this role has signed.
+/// A role signs a message. @return the verdict of a receiver with the same key
 Verdict VerdictOn(Role sender, std::string_view channel, runtime::Bytes payload) {
   runtime::MessageSigner signer(KeyOf(1), sender);
   return runtime::MessageSigner(KeyOf(1), Role::kWorld)
@@ -215,7 +215,7 @@ TEST(SigningKeyTest, IsNotReadFromAPipeWhichMayHaveNoWriter) {
   EXPECT_THROW(runtime::SigningKey::Load(pipe), InputError);
 }
 
-/// The error text for a key file, "" if it is accepted.
+/// The error text for a key file; "" if the file is accepted.
 std::string Complaint(const std::string& file) {
   return test::ErrorOf([&file] { runtime::SigningKey::Load(file); });
 }

@@ -16,7 +16,7 @@ using Shares = std::vector<double>;
 
 Shares AsTheyAre(const Shares& shares) { return shares; }
 
-/// A landscape of two fields that is met everywhere, over both kinds of seeds.
+/// A landscape of two fields. Every point meets the target, for both kinds of seeds.
 calibrate::Landscape Plain() {
   return {.fields = 2,
           .searched = [](const Shares&) { return 0.0; },
@@ -24,7 +24,7 @@ calibrate::Landscape Plain() {
           .rounded = AsTheyAre};
 }
 
-/// A landscape that is met within 0.05 of a share of 1/2 in the first field.
+/// A landscape in which points meet the target within 0.05 of the share 1/2 in the first field.
 calibrate::Landscape Valley() {
   calibrate::Landscape landscape = Plain();
   landscape.searched = [](const Shares& shares) {
@@ -61,7 +61,8 @@ TEST(LatinHypercubeTest, HasOnePointInEachPartOfEachField) {
 }
 
 TEST(FindPointsTest, KeepsOnlyPointsThatAreFarEnoughFromEachOther) {
-  // GIVEN a landscape in which every start meets the target, and too little room for all starts
+  // GIVEN a landscape in which every start meets the target, but not all starts are far enough
+  // apart
   const auto found = Find(Plain(), {.sets = 100, .apart = 0.3, .starts = 100});
   ASSERT_GT(found.points.size(), 2U);
   for (std::size_t a = 0; a < found.points.size(); ++a) {
@@ -134,7 +135,7 @@ TEST(FindPointsTest, KeepsWhatItHasFoundWhenItIsStopped) {
     return left-- > 0 ? valley(shares) : std::nullopt;
   };
   const auto part = Find(landscape, rules);
-  // THEN it has the first points of the whole search
+  // THEN the result has the first points of the whole search
   EXPECT_TRUE(part.interrupted);
   ASSERT_LT(part.points.size(), 4U);
   EXPECT_TRUE(std::equal(part.points.begin(), part.points.end(), whole.points.begin()));

@@ -1,4 +1,4 @@
-// scenario/ensemble: its sets load, are distinct, and meet the published table.
+// The sets in scenario/ensemble load, are distinct, and meet the published table.
 #include <cstddef>
 #include <filesystem>
 #include <sstream>
@@ -20,7 +20,7 @@ namespace fogline::test {
 namespace {
 
 constexpr std::size_t kSets = 8;
-// The seeds of the search, and those on which the sets were confirmed
+// The seeds of the search, and the fresh seeds that confirmed the sets
 // (scenario/ensemble/README.md).
 constexpr sweep::SeedRange kSearched{1001, 1040};
 constexpr sweep::SeedRange kFresh{2001, 2200};

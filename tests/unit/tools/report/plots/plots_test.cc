@@ -103,7 +103,7 @@ TEST_F(PlotsTest, WritesThemAsSvgAndPdfTooWithTextThatStaysText) {
 }
 
 TEST_F(PlotsTest, SaysAboveEveryPanelIfTheAxisSpansLessThanAHundredthOfTheValue) {
-  // GIVEN cars that keep 20 m/s, so that the axis of speeds has its least span, 0.112 m/s
+  // GIVEN cars that keep 20 m/s, so that the axis of speeds has its smallest span, 0.112 m/s
   std::vector<report::ReportRun> runs = ExampleRuns(60);
   for (report::ReportRun& run : runs) {
     for (metrics::Sample& sample : run.samples) {
@@ -120,7 +120,7 @@ TEST_F(PlotsTest, SaysAboveEveryPanelIfTheAxisSpansLessThanAHundredthOfTheValue)
   WriteFigures(dir_ / "four", report::FigureFormat::kSvg, runs);
   EXPECT_EQ(notes(dir_ / "four/figure-1-speeds.svg"), 4U);
   EXPECT_THAT(Read(dir_ / "four/figure-1-speeds.svg"), HasSubstr(">threshold 0.5<"));
-  // AND the axis of accelerations has no such note, because it contains 0
+  // AND the axis of accelerations has no such note, because this axis contains 0
   EXPECT_THAT(Read(dir_ / "four/figure-5-accelerations.svg"),
               ::testing::Not(HasSubstr("axis spans")));
   WriteFigures(dir_ / "one", report::FigureFormat::kSvg, std::span(runs).first(1));
@@ -146,8 +146,8 @@ class OtherFont {
   OtherFont& operator=(const OtherFont&) = delete;
 };
 
-/// The number of pixels that are not white, in the part of a PNG file that gnuplot's "every"
-/// selects.
+/// The number of pixels that are not white, in a part of a PNG file. `part` is the argument of
+/// gnuplot's "every".
 std::size_t CountInk(const fs::path& picture, std::string_view part) {
   const fs::path table = picture.parent_path() / "pixels.txt";
   AtomicFile output(table);
@@ -257,7 +257,7 @@ TEST_F(PlotsTest, FailsIfAPictureDoesNotFitAndKeepsTheOldOnes) {
   };
   const auto before = pictures();
   const std::string first = (dir_ / "figure-1-speeds.png").string();
-  // GIVEN a limit that the script for gnuplot keeps and the picture does not
+  // GIVEN a limit of the file size; the script for gnuplot is smaller, and the picture is larger
   const test::FileSizeLimit limit(20'000);
   ASSERT_GT(fs::file_size(first), limit.bytes());
   try {

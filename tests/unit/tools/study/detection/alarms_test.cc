@@ -29,7 +29,7 @@ TEST(AlarmCountTest, EachRunEndsAtItsFirstAlarm) {
 }
 
 TEST(AlarmCountTest, BoundsAreThoseOfAPoissonCount) {
-  // Tables of Garwood's bounds: 10 events are 4.795 to 18.390; none are at most 3.689.
+  // Tables of Garwood's bounds: 4.795 to 18.390 for 10 events, and at most 3.689 for no event.
   const auto [low, high] = study::AlarmCount{.alarms = 10, .time_s = 1000}.ArlZeroBounds_s();
   EXPECT_NEAR(low, 1000 / 18.390, 0.01);
   EXPECT_NEAR(high, 1000 / 4.7954, 0.01);
@@ -42,7 +42,8 @@ TEST(AlarmCountTest, BoundsAreThoseOfAPoissonCount) {
 TEST(ThresholdFinderTest, IsTheLeastThatIsQuietEnough) {
   std::vector<study::ClearRun> runs;
   for (int i = 1; i <= 10; ++i) runs.push_back(RunOf({{0, 0}, {static_cast<double>(i), 50}}));
-  // Above k, 10 - k runs give an alarm after 50 s and k last 100 s: 50 + 100 k/(10 - k) s.
+  // With a threshold above k, 10 - k runs give an alarm after 50 s, and k runs last 100 s without
+  // an alarm. ARL0 is 50 + 100 k/(10 - k) s.
   const double threshold = study::ThresholdFinder(runs).Threshold(280);
   EXPECT_GT(threshold, 7);
   EXPECT_LE(threshold, 8);
@@ -75,7 +76,7 @@ TEST(ThresholdFinderTest, AgreesWithCountingAlarmsAtEveryThreshold) {
   for (std::uint32_t i = 0; i < 30; ++i) {
     study::ClearRun& run = runs.emplace_back(study::ClearRun{.duration_s = 100});
     for (int step = 0; step < 100; ++step) {
-      // Scores in tenths, so that many are equal.
+      // Scores in tenths, so that many scores are equal.
       study::AddScore(std::floor(10 * random.Uniform2(step, i)[0] * step) / 10, step, run.records);
     }
   }
@@ -105,8 +106,8 @@ TEST(TruePositivesTest, TakesTheThresholdFromTheQuantileOfClearAir) {
 }
 
 TEST(TruePositivesTest, EqualScoresInClearAirDoNotHideFalsePositives) {
-  // Half of the clear air scores 1. With a threshold up to 1, more than 10 % are false positives.
-  // So the threshold is above 1.
+  // Half of the scores in clear air are 1. With a threshold up to 1, more than 10 % of the scores
+  // are false positives. So the threshold is above 1.
   const std::array clear{0.0, 0.0, 1.0, 1.0};
   EXPECT_EQ(study::TruePositives(std::array{1.0, 2.0}, clear, 0.1), 0.5);
 }

@@ -17,7 +17,7 @@ constexpr double kArlZero_s = 400;
 constexpr double kMissed_s = 11;
 constexpr std::size_t kSeeds = 60;
 
-/// The rule of the tests, with these ranked visibilities.
+/// The rule of the tests, with the ranking over these visibilities.
 study::DetectionRule RuleOf(std::vector<std::size_t> ranked,
                             std::optional<std::size_t> reference = {}) {
   return {.arl_zero_s = kArlZero_s,
@@ -37,7 +37,7 @@ std::vector<study::ClearRun> ClearAir() {
   return runs;
 }
 
-/// Fog in which the score grows by `slope` in each second, the same for every seed.
+/// Fog in which the score grows by `slope` in each second. The scores are the same for every seed.
 std::vector<study::ScoreRecords> Fog(double slope) {
   study::ScoreRecords records;
   for (int i = 0; i <= 1000; ++i) records.push_back({slope * 0.01 * i, 0.01 * i});
@@ -52,13 +52,13 @@ TEST(CompareDetectionTest, HasTheUncertaintyOfTheThresholdInItsIntervals) {
   const study::Estimate& delay = compared[0].detector.by_visibility[0].delay_s;
   const double threshold = study::ThresholdFinder(clear).Threshold(kArlZero_s);
   EXPECT_NEAR(delay.mean, threshold / 0.1, 0.011);
-  // All runs are equal, so only the threshold can vary. It is the quantile of the greatest scores
-  // that a share q of 60 runs exceeds, with a deviation of sqrt(q (1 - q)/60). For runs of 100 s
-  // with an alarm at 50 s, (100 - 50 q)/q = 400, so q = 2/9.
+  // All runs in fog are equal, so only the threshold can vary. The threshold is the quantile of the
+  // greatest scores that a share q of 60 runs exceeds, with a deviation of sqrt(q (1 - q)/60). For
+  // runs of 100 s with an alarm at 50 s, (100 - 50 q)/q = 400, so q = 2/9.
   const double deviation_s = std::sqrt(2.0 / 9 * 7.0 / 9 / kSeeds) / 0.1;
   // The ends of the interval are two of the 60 scores, 2 * 1.96 * sqrt(60 q (1 - q)) = 12.6 places
-  // apart. The deviation of this many spacings is 28 %, because each spacing varies by its own
-  // length.
+  // apart. A sum of this many spacings has a deviation of 28 %, because the deviation of each
+  // spacing equals its mean.
   const double width_s = 2 * 1.96 * deviation_s;
   EXPECT_NEAR(delay.high - delay.low, width_s, 2 * 0.28 * width_s);
   EXPECT_FALSE(compared[0].delay_minus_other_s[0].has_interval()) << "there is no other";
@@ -72,7 +72,7 @@ TEST(CompareDetectionTest, PairsMeasuresAndVisibilitiesByRun) {
                         study::DetectorRuns{.clear = clear, .fog = fast},
                         study::DetectorRuns{.clear = clear, .fog = slow}};
   const auto compared = study::CompareDetection(runs, RuleOf({0, 1}, 0));
-  // The same measure again, with any threshold.
+  // The same measure again: both have the same threshold in every sample of the bootstrap.
   const study::Estimate again = study::DelayDifference(compared[2], compared[0]);
   EXPECT_EQ(again.low, 0);
   EXPECT_EQ(again.high, 0);
@@ -112,7 +112,7 @@ TEST(CompareDetectionTest, DetectorsMayHaveDifferentlyManyRunsInClearAir) {
   const auto compared = study::CompareDetection(runs, RuleOf({0}));
   const study::Estimate& few = compared[0].detector.delay_s;
   const study::Estimate& many = compared[1].detector.delay_s;
-  // The same scores twenty times have the same threshold, which is known better.
+  // Each score is there twenty times, so the threshold is the same, but its interval is narrower.
   EXPECT_EQ(many.mean, few.mean);
   EXPECT_LT(many.high - many.low, (few.high - few.low) / 2);
 }

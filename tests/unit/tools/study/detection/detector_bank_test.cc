@@ -22,7 +22,8 @@ TEST(DetectorParametersTest, FollowTheNoiseOfTheSensors) {
   scenario.radar.range_std_m = 0.3;
   scenario.lidar.range_std_m = 0.4;
   const conflict::ConflictParameters parameters = study::DetectorParameters(scenario);
-  // kappa 1/2: both tests look for a shift of one standard deviation of the difference, 0.5 m.
+  // With kappa = 1/2, both sequential tests look for a shift of one standard deviation of the
+  // difference, which is 0.5 m.
   EXPECT_NEAR(parameters.sprt_delta_m, 0.5, 1e-12);
   EXPECT_EQ(parameters.bin_width_m, 0.4);
   EXPECT_EQ(parameters.frame_bins, 625) << "250 m as ever";
@@ -85,8 +86,8 @@ TEST(DetectorBankTest, WindowAndSignAreThoseOfTheScores) {
   }
 }
 
-// With an offset of the sensors that exceeds their noise, as in paper.json, the mean of absolutes
-// is that of the differences themselves.
+// The sensors' offset exceeds their noise here, as in paper.json. So the mean of absolute
+// differences equals the mean of the differences themselves.
 TEST(DetectorBankTest, TheDegreeOfConflictIsTheSigmoidOfADistanceWithWindowAndSign) {
   conflict::ConflictParameters parameters;
   parameters.offset_m = 20;

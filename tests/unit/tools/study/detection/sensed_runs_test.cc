@@ -43,7 +43,7 @@ Scores OfTheSensors(const study::Traffic& traffic, const std::vector<std::size_t
                     std::int64_t seed) {
   study::SensorBench bench(traffic, detectors);
   Scores scores;
-  for (const std::int64_t other : {seed + 1, seed}) {  // a bench is used more than once
+  for (const std::int64_t other : {seed + 1, seed}) {  // the first run must not change the second
     scores.clear();
     bench.Run(other, [&](const truth_t&, std::span<const double> of_step) {
       scores.emplace_back(of_step.begin(), of_step.end());

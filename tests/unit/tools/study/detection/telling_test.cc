@@ -32,7 +32,7 @@ TEST(OneOfEqualAlarmsTest, OneWithFurtherRunsStandsForThoseWithout) {
   EXPECT_THAT(study::OneOfEqualAlarms(detectors), ElementsAre(1, 1, 2));
 }
 
-/// Ten detectors, the slowest of which are so much slower than the others.
+/// Ten detectors, of which `slow` are slower than the others by about `slower_s`.
 std::vector<study::DelayAndShare> Ten(int slow, double slower_s) {
   std::vector<study::DelayAndShare> detectors;
   for (int i = 0; i < 10; ++i) {

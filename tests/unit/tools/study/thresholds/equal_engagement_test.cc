@@ -29,7 +29,7 @@ TEST(BestAtTest, TakesTheBestWhereSeveralHaveThisEngagement) {
   ASSERT_TRUE(place);
   EXPECT_EQ(place->below, 4U);
   EXPECT_EQ(place->gain, 30);
-  // Just above 0 there is only one candidate, next to the worse of the two points with RHE 0.
+  // Just above an RHE of 0 the only candidate is next to the worse of the two points with RHE 0.
   EXPECT_NEAR(study::BestAt(kCurve, 1e-9)->gain, 22, 1e-6);
 }
 
@@ -40,9 +40,10 @@ TEST(BestAtTest, HasNoPlaceBeyondTheCurve) {
 }
 
 TEST(InterpolationErrorTest, IsThatOfTheNeighboursAtThePlace) {
-  // 40 % lies between 100 % and 20 %. Three quarters of the way from -50 to 20 is 2.5 instead of
-  // 10: 7.5 off.
-  // 20 % lies between 40 % and 0 %. Half of the way from 10 to 22 is 16 instead of 20: 4 off.
+  // 40 % lies between 100 % and 20 %: three quarters of the way from -50 to 20 is 2.5. The true
+  // gain is 10, so the error is 7.5.
+  // 20 % lies between 40 % and 0 %: half of the way from 10 to 22 is 16. The true gain is 20, so
+  // the error is 4.
   EXPECT_NEAR(study::InterpolationErrorAt(kCurve, *study::BestAt(kCurve, 30)), 7.5, 1e-12);
   EXPECT_NEAR(study::InterpolationErrorAt(kCurve, *study::BestAt(kCurve, 10)), 4, 1e-12);
   EXPECT_NEAR(study::InterpolationErrorAt(kCurve, *study::BestAt(kCurve, 5)), 3, 1e-12);
@@ -59,8 +60,8 @@ TEST(InterpolationErrorTest, LeavesADifferenceUndecidedThatIsNoLarger) {
   EXPECT_EQ(one.verdict(), study::Verdict::kUndecided);
 }
 
-/// Situations with a difficulty of their own, which all rules share. The gain of a rule is this
-/// difficulty, minus the cost of its engagement, plus `more`.
+/// The RHE and the gain of a rule in many situations. All rules share the difficulty of each
+/// situation. The gain is this difficulty, minus the mean RHE, plus `more`.
 struct Rule {
   std::vector<double> rhe_pct;
   std::vector<double> gain;
@@ -88,8 +89,8 @@ TEST(AgainstFixedTest, FindsASmallDifferenceUnderTheLargeOneOfTheSituations) {
   const Rule beyond = MakeRule(5, 9);
   const std::vector rules{ValuesOf(better), ValuesOf(worse), ValuesOf(beyond)};
   const std::vector<study::AtEqualEngagement> all = study::AgainstFixed(values, rules);
-  // The deviation over the situations is 30 points. Without pairs, 200 situations could not show a
-  // difference of 0.5.
+  // The gains have a deviation of 30 points over the situations. Without pairs, 200 situations
+  // could not show a difference of 0.5.
   EXPECT_NEAR(all[0].difference.mean, 0.5, 1e-9);
   EXPECT_EQ(study::VerdictOf(all[0].difference), study::Verdict::kMore);
   EXPECT_EQ(all[0].place->below, 1U);
@@ -99,8 +100,8 @@ TEST(AgainstFixedTest, FindsASmallDifferenceUnderTheLargeOneOfTheSituations) {
 }
 
 TEST(AgainstFixedTest, KnowsThatTheEngagementIsAnEstimateToo) {
-  // The rule's own RHE has a deviation of 20 points over 200 situations: 1.4 for its mean. A point
-  // of RHE is worth a point of gain.
+  // The rule's own RHE has a deviation of 20 points over 200 situations, so its mean has a
+  // deviation of 1.4 points. One point of RHE changes the gain by one point.
   Rule low = MakeRule(80, 0);
   Rule high = MakeRule(10, 0);
   Rule rule = MakeRule(40, 0);

@@ -1,5 +1,5 @@
-// Checks that the posterior of the LiDAR's modes is a probability: in a world that follows the
-// model, a share p of the steps with posterior p is deceived.
+// Checks that the posterior of the LiDAR's modes is a probability. In a world that follows the
+// model, the LiDAR is deceived in a share p of the steps with posterior p.
 #include "services/decision/conflict/over_time/lidar_modes.h"
 
 #include <algorithm>
@@ -18,9 +18,9 @@ namespace {
 constexpr double kRadarStd_m = 0.8;
 constexpr double kLidarStd_m = 0.03;
 constexpr std::int64_t kSequences = 50'000;
-constexpr std::int64_t kLength = 12;  // steps; only the last one counts
+constexpr std::int64_t kLength = 12;  // steps of a sequence; the test uses only the last step
 
-/// A LiDAR that behaves as the model says. It draws the gap of each step independently.
+/// A LiDAR that behaves as the model says. The gap of each step is drawn independently.
 class Lidar {
  public:
   Lidar(const conflict::ConflictParameters& model, const Random& random)
@@ -70,7 +70,7 @@ class Lidar {
 };
 
 /// All steps with a posterior in one interval: the sum of the posteriors, and the number of steps
-/// in which the LiDAR is deceived. The sum minus this number has mean 0.
+/// in which the LiDAR is deceived. The expected values of sum and number are equal.
 struct Claims {
   double said = 0;
   double variance = 0;  // variance of the number of deceived steps
@@ -96,7 +96,7 @@ TEST(LidarModesPropertyTest, SayTheShareOfStepsInWhichTheLidarIsDeceived) {
     claim.were_so += lidar.deceived() ? 1 : 0;
     ++claim.count;
   }
-  // THEN in each interval the number of deceived steps is the sum of the posteriors
+  // THEN in each interval the number of deceived steps is about the sum of the posteriors
   for (const Claims& claim : claims) {
     EXPECT_GT(claim.count, 100) << claim.said;
     EXPECT_NEAR(claim.were_so, claim.said, 4 * std::sqrt(claim.variance)) << claim.count;

@@ -55,7 +55,7 @@ TEST(BinnedBeliefTest, TheFrameResemblesABinByItsShareOfIt) {
 }
 
 TEST(BinnedBeliefTest, DempsterFindsConflictInEqualEvidence) {
-  // The known defect of k: it is not 0 although both sensors give the same value.
+  // The known defect of Dempster's k: it is above 0 although both sensors give the same value.
   const conflict::BinnedPair pair = conflict::PairOnBins(Differing(0, 0.2, 0.2), {});
   EXPECT_GT(conflict::DempsterConflict(pair), 0.3);
   EXPECT_NEAR(conflict::JousselmeDistance(pair), 0, 1e-7);  // square root of rounding errors
@@ -84,9 +84,9 @@ TEST(BinnedBeliefTest, MassAddsUpToTheReliabilityHoweverWideTheBelief) {
 TEST(BinnedBeliefTest, UnequalReliabilityIsADifferenceOfPignisticProbability) {
   conflict::ConflictParameters parameters;
   parameters.lidar_reliability = 0.55;
-  // GIVEN: two equal readings, WHEN: one is discounted by 0.4 more, THEN: 0.4 of its belief is
-  // spread over all 500 bins. The readings have belief in some 24 of these bins, so the distance is
-  // a little less than 0.4.
+  // GIVEN: two equal readings, WHEN: the reliability of one reading is lower by 0.4, THEN: 0.4 of
+  // its belief is spread over all 500 bins. The readings have belief in some 24 of these bins, so
+  // the distance is a little less than 0.4.
   const conflict::BinnedPair pair = conflict::PairOnBins(Differing(0, 0.2, 0.2), parameters);
   EXPECT_NEAR(conflict::PignisticDistance(pair), 0.4, 0.02);
   EXPECT_GT(conflict::JousselmeDistance(pair), 0.2);

@@ -49,12 +49,12 @@ TEST(DocTest, MeanAndVarianceOfItsConflictWithoutFaultAreTheQuotedOnes) {
   const double expected_variance = kStd_m * kStd_m * (1 - 2 / std::numbers::pi) / kWindow;
   EXPECT_NEAR(expected_mean, 0.32, 5e-3);
   EXPECT_NEAR(mean, expected_mean, 4 * std::sqrt(expected_variance / kWindows));
-  // The variance of n nearly normal numbers scatters by sqrt(2/n) of itself.
+  // The variance of n nearly normal numbers has a relative standard deviation of sqrt(2/n).
   EXPECT_NEAR(variance, expected_variance, 4 * expected_variance * std::sqrt(2.0 / kWindows));
 }
 
 TEST(DocTest, AStepBiasCrossesTheCentreAfterTheQuotedShareOfTheWindow) {
-  // n = N (1 - z0)/(b - z0), z0 = 0.32 m: N/14 for a bias of 10 m, 0.6 N for one of 1.5 m.
+  // n = N (1 - z0)/(b - z0), z0 = 0.32 m: N/14 for a bias of 10 m, 0.6 N for a bias of 1.5 m.
   constexpr int kWindow = 140;
   constexpr double kFloor_m = 0.32;
   for (const auto& [bias_m, share] : {std::pair{10.0, 1.0 / 14}, std::pair{1.5, 0.6}}) {
@@ -64,7 +64,7 @@ TEST(DocTest, AStepBiasCrossesTheCentreAfterTheQuotedShareOfTheWindow) {
     for (int i = 0; i < kWindow; ++i) measure.Step(LidarShortBy(kFloor_m));
     int steps = 1;
     while (measure.Step(LidarShortBy(bias_m)) < 0.5) ++steps;
-    EXPECT_NEAR(steps, kWindow * share, 0.03 * kWindow) << bias_m;  // "0.6" is 0.576
+    EXPECT_NEAR(steps, kWindow * share, 0.03 * kWindow) << bias_m;  // 0.6 is 0.576, rounded
   }
 }
 

@@ -79,7 +79,7 @@ TEST(LidarModesTest, AnEchoWithoutAnyReferenceSaysNothing) {
   conflict::Evidence alone = WithoutRadar(At(30, 4.3));
   alone.prediction.valid = false;
   EXPECT_NEAR(Of(modes.Step(alone), conflict::LidarMode::kClean), 0.99,
-              1e-12);  // only the step of the Markov chain counts
+              1e-12);  // only the Markov chain's transition has an effect
 }
 
 TEST(LidarModesTest, ComesBackFromFogWithinASecond) {

@@ -46,7 +46,7 @@ constexpr double kConfidence = 3.3;
 TEST(CusumTest, MeanRunLengthToAFalseAlarmIsTheQuotedOne) {
   const RunLength at_4 = TwoSidedRunLength(4, 0, 2000);
   EXPECT_NEAR(at_4.mean, 168, kConfidence * at_4.standard_error);
-  EXPECT_LT(at_4.standard_error, 0.03 * at_4.mean);  // the claim has a precision of 3 %
+  EXPECT_LT(at_4.standard_error, 0.03 * at_4.mean);  // the estimate is precise to 3 %
   const RunLength at_5 = TwoSidedRunLength(5, 0, 1200);
   EXPECT_NEAR(at_5.mean, 465, kConfidence * at_5.standard_error);
   EXPECT_LT(at_5.standard_error, 0.035 * at_5.mean);

@@ -27,7 +27,7 @@ class EveryBlameTest : public testing::TestWithParam<std::string_view> {};
 TEST_P(EveryBlameTest, FallsOnTheLidarThatLeavesRadarAndPrediction) {
   const conflict::Blame blame = Make(GetParam())->Step(LidarShortBy(5));
   EXPECT_GT(blame.lidar, 0.8);
-  EXPECT_LT(blame.radar, 0.55);  // the LiDAR takes part in Murphy's average
+  EXPECT_LT(blame.radar, 0.55);  // above 0 because Murphy's average includes the LiDAR
 }
 
 TEST_P(EveryBlameTest, FallsOnTheRadarThatLeavesLidarAndPrediction) {
@@ -75,7 +75,8 @@ INSTANTIATE_TEST_SUITE_P(Of, EveryBlameTest, testing::Values("nis", "deng", "mur
                          [](const auto& name) { return std::string(name.param); });
 
 TEST(NisBlameTest, IsTheChiSquareProbabilityOfTheResidual) {
-  // A residual of 2 standard deviations: 0.9545 of the normal distribution is nearer to the mean.
+  // The residual is 2 standard deviations. Within 2 standard deviations is 0.9545 of the normal
+  // distribution.
   const conflict::Evidence evidence{
       .radar = {true, 10, 0.3}, .lidar = {true, 11, 0.3}, .prediction = {true, 10, 0.4}};
   conflict::NisBlame blame({});
@@ -110,8 +111,8 @@ TEST(NisBlameTest, TakesTheOffsetOffTheRadar) {
 }
 
 TEST(SupportTest, OfTwoSourcesCannotTellWhichIsWrong) {
-  // GIVEN: a prediction whose belief has no interval in common with those of radar and LiDAR, so it
-  // counts as missing
+  // GIVEN: the belief of the prediction has no interval in common with the beliefs of radar and
+  // LiDAR. So the prediction counts as missing.
   const conflict::BeliefProducts products{
       .square = 0.6, .radar_lidar = 0.2, .radar_prediction = 0, .lidar_prediction = 0};
   for (const auto support : {conflict::DengSupport, conflict::MutualSupport}) {
