@@ -1,4 +1,4 @@
-// Bursts of loss of every kind.
+// Bursts of message loss, of every kind.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 namespace fogline::test {
 namespace {
 
-/// There are 100 kinds of bursts. Each one comes twice, or FOGLINE_TEST_BURSTS / 100 times.
+/// There are 100 kinds of bursts. Each kind is tested twice, or FOGLINE_TEST_BURSTS / 100 times.
 std::size_t Repeats() {
   const char* bursts = std::getenv("FOGLINE_TEST_BURSTS");
   return bursts == nullptr ? 2 : static_cast<std::size_t>(std::max(1, std::atoi(bursts) / 100));
@@ -27,7 +27,7 @@ TEST_F(LossBurstInRealtimeTest, IsOverASecondAfterTheNetworkIsClean) {
         for (const int loss_pct : {10, 30, 70, 90, 100}) {
           BurstPlan plan{.rate_hz = rate_hz, .machines = machines, .bursts = {}, .clean_s = 2};
           for (const double length_s : {0.1, 0.3, 1.0, 2.0, 3.0}) {
-            // With three machines, every second burst hits only one of them.
+            // With three machines, every second burst hits only one machine.
             const std::size_t number = plan.bursts.size();
             const bool one = machines > 1 && (repeat + number) % 2 == 1;
             plan.bursts.push_back({loss_pct, length_s, one ? number % 3 : kEverywhere});

@@ -7,7 +7,7 @@
 namespace fogline::fuzz {
 namespace {
 
-/// Reads all events. They are views into `reader`.
+/// Reads all events. The events are views into `reader`.
 std::vector<log::Event> ReadAll(log::EventLogReader& reader, std::size_t file_size) {
   std::vector<log::Event> events;
   std::size_t bytes = 0;

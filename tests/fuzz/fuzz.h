@@ -1,7 +1,7 @@
-// The parts of every fuzz target. A target is one file, NAME_fuzz.cc. It defines Seeds() and the
-// function that libFuzzer calls again and again with different bytes. This function ends the
-// program if an invariant does not hold. fuzz_NAME_replay calls the function with the same bytes in
-// each execution (replay.cc).
+// The code that all fuzz targets share. A target is one file, NAME_fuzz.cc. The file defines
+// Seeds() and the function that libFuzzer calls again and again with different bytes. This function
+// ends the program if an invariant does not hold. fuzz_NAME_replay calls the function with the same
+// bytes in each execution (replay.cc).
 #pragma once
 
 #include <cstddef>
@@ -20,7 +20,7 @@ namespace fogline::fuzz {
 using Input = std::vector<std::uint8_t>;
 
 /// The inputs with which the fuzzing of a target begins. The target makes them with the code that
-/// makes such bytes in a run, so they always have the current message types and formats.
+/// makes such bytes in a run. So the inputs always have the current message types and formats.
 std::vector<Input> Seeds();
 
 /// Ends the program with the text `what` if `holds` is false.
@@ -48,8 +48,8 @@ class MemoryFile {
   int fd_;
 };
 
-/// Splits an input into parts, from front to back. Beyond the end, bytes are 0 and datagrams are
-/// empty.
+/// Splits an input into parts, from front to back. After the end of the input, Byte() returns 0 and
+/// Datagram() returns an empty datagram.
 class Cutter {
  public:
   explicit Cutter(runtime::Bytes input) : rest_(input) {}

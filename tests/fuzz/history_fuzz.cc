@@ -12,8 +12,8 @@
 namespace fogline::fuzz {
 namespace {
 
-// In bytes. The sample logs are longer. So this end of a log sometimes suffices, and sometimes does
-// not.
+// The size in bytes of the end of a log, if only the end is read. The sample logs are longer than
+// this size. So the end of a log sometimes suffices, and sometimes does not.
 constexpr std::int64_t kShortTail = 2500;
 
 void DemandWhereabouts(const log::LogFront& front, const log::Remains& remains,
@@ -32,7 +32,7 @@ void DemandWhereabouts(const log::LogFront& front, const log::Remains& remains,
          "the kept part has whole steps");
 }
 
-/// Checks the log with which the recorder goes on, if it was read from front to back.
+/// Checks the part of a log that the recorder keeps, after the whole log was read.
 void DemandWholeRun(const log::Remains& remains, const std::filesystem::path& file) {
   log::EventLogReader events(file);
   std::int64_t count = 0;
@@ -66,8 +66,8 @@ void DemandAllMessages(const log::LogFront& front, const log::Remains& remains,
   }
 }
 
-/// If only the end of the log was read, the part before it may have any bytes. So the answer for a
-/// step in that part is the step's messages or a refusal.
+/// If only the end of the log was read, the bytes before the end may have any values. So History
+/// answers for a step in these bytes with the step's messages or with a refusal.
 void DemandMessagesOrRefusal(const log::LogFront& front, const log::Remains& remains,
                              const std::filesystem::path& file) {
   const std::int64_t first = std::max<std::int64_t>(0, remains.steps - 10);
@@ -112,8 +112,8 @@ void DemandUsefulRemains(runtime::Bytes bytes) {
     DemandWholeRun(all, kept.path());
     DemandAllMessages(front, all, file.path(), 0);
     DemandMessagesOrRefusal(front, end, file.path());
-    // If the end alone gave the right number of steps, it must also give the right number after the
-    // log has grown.
+    // If the end of the log gave the right number of steps, the end of a longer log must also give
+    // the right number.
     DemandGoesOn(front, all, file.path(), end.steps == all.steps ? kShortTail : size);
     if (all.steps > 0) Took();
   } catch (const InputError&) {

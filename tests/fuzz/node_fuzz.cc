@@ -1,6 +1,6 @@
 // Three roles of a run (world, driver, recorder), in lockstep or in real time, on a bus in memory,
 // among arbitrary messages. Input: actions, one byte each. An action is the next message of a run,
-// or a datagram on some channel; the datagram then follows.
+// or a datagram on some channel. The bytes of the datagram then follow in the input.
 #include <algorithm>
 #include <limits>
 #include <map>
@@ -120,7 +120,7 @@ class Run {
     run.phase = phase;
     run.realtime = realtime_;
     run.pace = realtime_ ? runtime::kMaxSpeed : 0;
-    run.external = {"world", "driver", "recorder"};  // the run waits for all three
+    run.external = {"world", "driver", "recorder"};  // the run waits for these roles
     run.holder = {0, 0, 0};
     run.num_external = static_cast<std::int32_t>(run.external.size());
     run.sequence = ++sequence_;

@@ -146,8 +146,8 @@ class Mutator {
     input.insert(At(input, begin), token.begin(), token.end());
   }
 
-  /// The place of a token: a string in quotation marks, a word of characters that numbers have, or
-  /// up to 64 bytes of any kind.
+  /// The position of a token: a string in quotation marks, a word of characters that numbers have,
+  /// or up to 64 bytes of any kind.
   std::pair<std::size_t, std::size_t> Token(Input& input) {
     std::size_t begin = Below(input.size());
     const auto in_word = [&input](std::size_t at) {
@@ -199,7 +199,7 @@ void SaveFinding() {
   fmt::print(stderr, "the input is in {}\n", finding_path);
 }
 
-/// @return whether the target took the input
+/// @return whether the target accepted the input
 bool Run(const Input& input) {
   // The block has exactly the input's size, so a sanitizer sees a read beyond the input's end.
   const std::vector<std::uint8_t> exact(input.begin(), input.end());

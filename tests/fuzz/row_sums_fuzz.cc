@@ -86,7 +86,7 @@ void DemandSoundVerdicts(runtime::Bytes input) {
   if (same > 0) Took();
 }
 
-/// The input of these checksums and rows.
+/// The input that contains these checksums and rows.
 Input Of(const std::string& sums, const std::vector<std::string>& rows) {
   const auto bytes = [](const std::string& text) {
     return runtime::Bytes(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());

@@ -40,7 +40,7 @@ void DemandWholeSteps(const Reading& reading) {
     for (std::size_t i = 0; i < kNumChannels; ++i) {
       const Input& message = reading.steps[step][i];
       const bool expected = kChannels[i].pace == Pace::kStep;
-      // A run in real time goes on if a message is missing.
+      // A run in real time continues if a message is missing.
       const bool hole = expected && message.empty() && reading.run.realtime;
       Demand(hole || message.empty() != expected, "a step has a message of each of its channels");
       if (message.empty()) continue;
@@ -77,7 +77,7 @@ void DemandRunOrRefusal(runtime::Bytes bytes) {
     DemandWholeSteps(reading);
     Demand(!reading.run.altered || (reading.run.seal && !reading.run.complete),
            "a log that differs from its seal is not complete");
-    if (reading.refused || reading.run.realtime) return;  // a copy would be in lockstep
+    if (reading.refused || reading.run.realtime) return;  // the copy would be a lockstep run
     const MemoryFile copy;
     Rewrite(reading, copy.path());
     const Reading again = Read(copy.path());

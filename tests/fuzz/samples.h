@@ -73,7 +73,7 @@ inline std::vector<run_t> RunParts(std::string_view text, std::size_t part_size)
   return messages;
 }
 
-/// A log as the recorder writes it: the scenario, then its steps.
+/// A log as the recorder writes it: the scenario, then the steps of the run.
 inline Input SampleLog() {
   const MemoryFile file;
   {

@@ -1,4 +1,4 @@
-// The scenario reader. Input: the text.
+// The scenario reader. Input: the text of a scenario.
 #include <algorithm>
 #include <string>
 #include <string_view>

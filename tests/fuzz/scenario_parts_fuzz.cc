@@ -6,7 +6,7 @@
 namespace fogline::fuzz {
 namespace {
 
-/// A simple reference for ScenarioParts.
+/// A simple reference implementation of ScenarioParts.
 struct Model {
   std::int32_t num_parts = 0;
   std::string hash;

@@ -19,7 +19,7 @@ bool IsPlain(std::string_view pattern) {
   return std::ranges::all_of(pattern, [](char c) { return (c >= 'A' && c <= 'Z') || c == '_'; });
 }
 
-/// Whether a subscription matches, or nothing if the answer would take too long.
+/// Whether a subscription matches the channel; nullopt if the search would take too long.
 std::optional<bool> Ask(relay::Subscriptions& subscriptions, std::string_view channel) {
   try {
     return subscriptions.Match(channel, TimePoint{});

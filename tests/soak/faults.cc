@@ -16,11 +16,11 @@ using Random = std::mt19937_64;
 double Uniform(Random& random, double low, double high) {
   return std::uniform_real_distribution(low, high)(random);
 }
-/// A positive value between two others; every decade is equally likely.
+/// A random value between two positive bounds; every decade is equally likely.
 double LogUniform(Random& random, double low, double high) {
   return std::exp(Uniform(random, std::log(low), std::log(high)));
 }
-/// Waits until the fault is over.
+/// Waits for the duration of a fault.
 void Last(double seconds) { std::this_thread::sleep_for(std::chrono::duration<double>(seconds)); }
 
 const Machine& AMachine(const SoakedRun& run, Random& random) {
@@ -42,13 +42,13 @@ bool LoseInput(SoakedRun& run, Random& random, const Limits&) {
   return true;
 }
 
-/// Takes something away from a machine for this time, and longer if no message was lost yet: on a
-/// busy machine it may take a moment until a message is sent. `felt` is a command of the shell that
-/// succeeds if a message was lost.
+/// Executes the shell command `begin` on a machine, waits for this time, and executes `end`. If no
+/// message was lost in this time, Lack() waits longer, because a busy machine may send messages
+/// late. `felt` is a shell command that succeeds if a message was lost.
 /// @return whether a message was lost
 bool Lack(const Machine& machine, const std::string& begin, const std::string& end, double seconds,
           const std::string& felt) {
-  constexpr int kTenths = 50;  // limit of this second wait; a role sends STATUS five times a second
+  constexpr int kTenths = 50;  // limit of the longer wait; a role sends STATUS five times a second
   return machine.Do(fmt::format("{}; sleep {:.3f}; hit=no;"
                                 "for i in $(seq {}); do if {}; then hit=yes; break; fi; sleep 0.1;"
                                 "done; {}; echo $hit",
@@ -77,8 +77,8 @@ bool ReloadFirewall(SoakedRun& run, Random& random, const Limits&) {
   return RefuseToSend(AMachine(run, random), 1, Uniform(random, 0.1, 1.5));
 }
 
-/// Takes away an interface, address or route, so that a machine has no route for multicast. The
-/// kernel counts the datagrams for which it finds no route (OutNoRoutes).
+/// Removes an interface, address or route, so that a machine has no route for multicast. The kernel
+/// counts the datagrams for which it finds no route (OutNoRoutes).
 bool TakeTheWay(const Machine& machine, const std::string& begin, const std::string& end,
                 double seconds) {
   const std::string unrouted = "$(awk '/^Ip: [0-9]/ { print $13 }' /proc/net/snmp)";

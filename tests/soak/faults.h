@@ -14,8 +14,8 @@ namespace fogline::test {
 
 /// Limits of the random parameters.
 struct Limits {
-  double freeze_s = 60;     // longest time for which all processes stand still
-  double partition_s = 20;  // longest time for which a machine is cut off
+  double freeze_s = 60;     // longest time for which all processes are stopped
+  double partition_s = 20;  // longest time for which a machine is disconnected
 };
 
 struct FaultKind {
@@ -23,11 +23,11 @@ struct FaultKind {
   std::string_view what;
   bool three_machines;  // some runs are on three machines; all runs if `alone` is empty
   std::optional<SoakedRun::Place> alone;  // place of the other runs
-  /// Options of `fogline run` that make the fault; empty if `strike` makes it.
+  /// Options of `fogline run` that cause the fault; empty if `strike` causes the fault.
   std::vector<std::string> (*options)(std::mt19937_64& random);
-  /// Strikes once. @return whether it has hit the run @pre the run goes on
+  /// Causes one fault. @return whether the fault has hit the run @pre the run has not ended
   bool (*strike)(SoakedRun& run, std::mt19937_64& random, const Limits& limits);
-  int most_strikes;  // in one run
+  int most_strikes;  // most faults in one run
 };
 
 std::span<const FaultKind> FaultKinds();

@@ -27,7 +27,7 @@ namespace {
 
 using SteadyClock = std::chrono::steady_clock;
 
-// Exit code if this process may not make machines.
+// Exit code if this process may not make simulated machines.
 constexpr int kNoMachines = 4;
 
 // Limits of the time and of numbers of runs: a year, and more runs than a year allows.
@@ -44,7 +44,7 @@ volatile std::sig_atomic_t interrupted = 0;
 struct Options {
   double minutes = 60;
   std::int64_t runs = 0;  // 0: as many as the time allows
-  std::int64_t each = 0;  // number of runs of each kind; 0: `runs` counts
+  std::int64_t each = 0;  // number of runs of each kind; 0: `runs` is the limit
   std::int64_t first = 0;
   std::uint64_t seed = 1;
   std::string only;

@@ -1,4 +1,4 @@
-// One run of real processes on machines of its own, in which faults happen.
+// One run of real processes on simulated machines, in which faults happen.
 #pragma once
 
 #include <sys/types.h>
@@ -33,16 +33,16 @@ struct Undisturbed {
 /// @throws std::runtime_error if the program fails
 Undisturbed RunUndisturbed(const Experiment& experiment);
 
-/// A run that is under way, on one machine or with its roles on three machines of one network. The
-/// one machine has a default route to elsewhere, as most machines have. Its messages go over
-/// loopback, which is the default, or over the interface to elsewhere.
+/// A run in progress, on one machine or with its roles on three machines of one network. A single
+/// machine has a default route to another network, as most machines have. Its messages go over
+/// loopback, which is the default, or over the interface of the default route.
 class SoakedRun {
  public:
   enum class Place { kLoopback, kInterface, kThreeMachines };
 
   SoakedRun(const Experiment& experiment, Place place, std::vector<std::string> options);
 
-  /// Waits until this share of the log is written. @return whether the run still goes on then
+  /// Waits until this share of the log is written. @return whether the run has not ended by then
   bool WaitForShare(double share, const Undisturbed& whole);
   bool Running() const { return IsAlive(run_->pid()); }
 
@@ -54,14 +54,14 @@ class SoakedRun {
   /// The ids of the runner and of all processes of the run on all machines. The runner is first.
   std::vector<pid_t> Processes() const;
 
-  // Each of these functions strikes once. @return false if there was no such process, or it had
-  // ended by itself
+  // Each of these functions causes one fault. @return false if there was no such process, or if the
+  // process had ended by itself
 
   /// Ends a role's process, drawn at random, by SIGKILL. Starts it again if the runner does not.
   bool KillARole(std::mt19937_64& random);
   /// Stops a process, drawn at random, of a role that the runner has started.
   bool StopARole(std::mt19937_64& random) const;
-  /// Ends the runner by SIGKILL, waits for its end, and lets another runner resume its log.
+  /// Ends the runner by SIGKILL, waits for its end, and lets another runner resume the run.
   bool KillTheRunnerAndResume();
 
   /// Waits for the end. @return the exit code and the output of the runner

@@ -13,8 +13,8 @@
 
 namespace fogline::test {
 
-/// The children of `parent` that have not ended, and that its main thread has started. In Fogline
-/// this thread starts all children.
+/// The children of `parent` that have not ended, and that the main thread of `parent` has started.
+/// In Fogline the main thread starts all children.
 inline std::vector<pid_t> ChildrenOf(pid_t parent) {
   const std::string id = std::to_string(parent);
   std::ifstream in("/proc/" + id + "/task/" + id + "/children");
@@ -25,7 +25,8 @@ inline std::vector<pid_t> ChildrenOf(pid_t parent) {
   return children;
 }
 
-/// Sends a signal to one process, which must exist. For pid 0, kill(2) would signal a whole group.
+/// Sends a signal to one process, which must exist. For pid 0, kill(2) would signal a process
+/// group.
 inline void SignalOne(pid_t pid, int signal) {
   ASSERT_GT(pid, 0);
   kill(pid, signal);

@@ -17,8 +17,8 @@ namespace {
 
 using SteadyClock = std::chrono::steady_clock;
 
-// A run of a test has a port of its own, also if LCM_DEFAULT_URL is set in the shell that starts
-// the tests. A test that needs the variable sets it.
+// A run of a test has a port of its own, even if the shell that starts the tests sets
+// LCM_DEFAULT_URL. A test that needs this variable sets it.
 [[maybe_unused]] const int kWithoutDefaultUrl = unsetenv("LCM_DEFAULT_URL");
 
 /// A new folder below the build folder, where tools/test finds and removes files of killed tests.

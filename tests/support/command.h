@@ -11,7 +11,7 @@
 
 namespace fogline::test {
 
-/// The interval at which a test looks at a condition outside of its process.
+/// The interval at which a test checks a condition outside of its process.
 inline constexpr std::chrono::milliseconds kLookEvery(5);
 
 /// The folder of the built programs, and the folder of the sources.

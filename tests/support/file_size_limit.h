@@ -1,4 +1,4 @@
-// A limit for the size of files, with which a test tries what happens on a full disk.
+// A limit for the size of files, with which a test simulates a full disk.
 #pragma once
 
 #include <sys/resource.h>
@@ -7,8 +7,8 @@
 
 namespace fogline::test {
 
-/// While this object lives, a write beyond `bytes` fails in this process and in the processes that
-/// it starts.
+/// While this object lives, a write beyond `bytes` bytes of a file fails, in this process and in
+/// the processes that it starts.
 class FileSizeLimit {
  public:
   explicit FileSizeLimit(rlim_t bytes) : bytes_(bytes), handler_(std::signal(SIGXFSZ, SIG_IGN)) {

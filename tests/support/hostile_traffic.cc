@@ -1,7 +1,7 @@
 // Sends datagrams to a multicast group: noise, and datagrams that resemble the messages of a run.
-// No process should accept them. The program listens to the genuine messages of this run. It never
-// sends a message that only a signature could tell from a genuine one (right type, run and step,
-// finite values).
+// No process should accept these datagrams. The program listens to the genuine messages of this
+// run. It never sends a false message with right type, run and step and with finite values. Only a
+// signature could distinguish such a message from a genuine one.
 #include <arpa/inet.h>
 #include <linux/filter.h>
 #include <netinet/in.h>
@@ -39,7 +39,7 @@ using Buffer = std::vector<std::uint8_t>;
 constexpr std::string_view kWholeMagic = "LC02";
 constexpr std::string_view kFragmentMagic = "LC03";
 constexpr std::size_t kWholeHeader = 8;
-// Most noise has the size of messages: it fits into one Ethernet frame.
+// Most datagrams of noise have the size of messages: each fits into one Ethernet frame.
 constexpr std::size_t kFrame = 1400;
 // The payload of the largest UDP datagram over IPv4, bytes.
 constexpr std::size_t kMaxDatagram = 65507;
@@ -60,7 +60,8 @@ void WriteInt64(Buffer& to, std::size_t offset, std::int64_t value) {
   std::ranges::copy(bytes, to.begin() + static_cast<std::ptrdiff_t>(offset));
 }
 
-/// The multicast group. It sends to the group and hears the datagrams of other processes.
+/// The multicast group. This class sends to the group and receives the datagrams of other
+/// processes.
 class Group {
  public:
   Group(const std::string& address, int port, int ttl)
@@ -100,8 +101,8 @@ class Group {
   static void Set(int fd, int level, int option, const Value& value) {
     Check(setsockopt(fd, level, option, &value, sizeof(value)), "setsockopt");
   }
-  /// A socket filter sees a datagram from its UDP header on. The header begins with the sender's
-  /// port.
+  /// Drops the datagrams of this process. A socket filter sees a datagram from its UDP header on,
+  /// which begins with the sender's port.
   void IgnoreOwn() const {
     sockaddr_in own{};
     socklen_t size = sizeof(own);
@@ -202,8 +203,8 @@ class Attacker {
   }
 
   void Noise() {
-    // Half of the noise looks like a datagram of LCM with a channel name that is too long or has no
-    // end.
+    // Half of the noise looks like a datagram of LCM whose channel name is too long or has no final
+    // zero.
     if (Below(2) == 0) Append(datagram_, OneOf(std::array{kWholeMagic, kFragmentMagic}));
     AppendNoise(datagram_, Below(kFrame));
   }
@@ -231,7 +232,8 @@ class Attacker {
     made ? Wrap() : Noise();
   }
   void WrongStep() {
-    // In STATUS the step is the sender's, and in RESEND it is the wanted one. So no step is wrong.
+    // In STATUS the step is the sender's newest step, and in RESEND it is the requested step. So no
+    // step is wrong in these two channels.
     if (channel_ == ChannelOf<status_t>().name || channel_ == ChannelOf<resend_t>().name) {
       return Noise();
     }
@@ -260,8 +262,8 @@ class Attacker {
     Wrap();
   }
   void Fragment() {
-    // Sizes and offsets of fragments that contradict each other: beyond the message, or beyond
-    // 2^32.
+    // Sizes and offsets of fragments that contradict each other: fragments that lie beyond the
+    // message, or beyond 2^32.
     constexpr std::array<std::uint32_t, 7> kAbsurd{0,          1,          1000,      0x7fffffff,
                                                    0x80000000, 0xfffffc00, 0xffffffff};
     constexpr std::array<std::uint16_t, 5> kNumbers{0, 1, 2, 0x7fff, 0xffff};
@@ -349,7 +351,8 @@ int Main(int argc, char** argv) {
     for (runtime::Bytes heard = network.Receive(); !heard.empty(); heard = network.Receive()) {
       attacker.Learn(heard);
     }
-    // If the system gave this process no time, the loop catches up. So the rate holds on average.
+    // If this process got no processor time, the loop sends the missed datagrams. So the rate is
+    // right on average.
     while (static_cast<double>(sent) < rate_hz * elapsed_s && stopped == 0) {
       network.Send(attacker.Next());
       ++sent;

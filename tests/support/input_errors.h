@@ -7,7 +7,7 @@
 
 namespace fogline::test {
 
-/// The text of the InputError, or other error, that a call throws; "" if it throws none.
+/// The text of the InputError, or of another Error, that a call throws; "" if it throws none.
 template <class Error = InputError, class Call>
 std::string ErrorOf(const Call& call) {
   try {

@@ -9,7 +9,7 @@
 namespace fogline::test {
 
 /// Ends a test, or its SetUp(), on a machine that lacks a requirement (root, namespaces, nftables).
-/// The test is skipped, or fails if FOGLINE_TEST_NO_SKIP is set because all tests must run.
+/// The test is skipped. If FOGLINE_TEST_NO_SKIP is set, all tests must run, so the test fails.
 /// Usage: `if (geteuid() != 0) return MachineLacks("root");`
 inline void MachineLacks(const std::string& what) {
   if (std::getenv("FOGLINE_TEST_NO_SKIP") != nullptr) FAIL() << "this machine lacks " << what;

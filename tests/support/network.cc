@@ -35,7 +35,7 @@ std::int64_t Counted(const std::string& counter) {
   return at == std::string::npos ? -1 : std::stoll(counter.substr(at + 8));
 }
 
-/// A line of sh. After it, a machine loses the UDP datagrams that match.
+/// A shell command that makes a machine lose the UDP datagrams that match.
 std::string LossOf(const std::string& match) {
   return "nft 'table inet loss { counter lost {}; chain input { type filter hook input priority 0;"
          " meta l4proto udp " +

@@ -1,7 +1,8 @@
-// Several simulated machines within this one. They are network namespaces with their own addresses
+// Several simulated machines on this machine. They are network namespaces with their own addresses
 // and host names, joined by veth pairs and a bridge. The kernel handles their packets like those of
 // real machines, and can lose some packets on request. The namespaces change nothing outside. The
-// kernel removes them when this process and its children have ended, because they have no names.
+// namespaces have no names, so the kernel removes them when this process and its children have
+// ended.
 #pragma once
 
 #include <cstdint>
@@ -13,8 +14,8 @@
 
 namespace fogline::test {
 
-/// The reason why machines cannot be made here, such as "unshare: Operation not permitted"; "" if
-/// they can be made.
+/// The reason why this process cannot make machines, such as "unshare: Operation not permitted"; ""
+/// if it can make them.
 std::string WhyNoMachines();
 
 /// A machine: a network namespace and a host name of its own. It has a loopback device and no
@@ -27,8 +28,8 @@ class Machine {
   Machine(Machine&& other) noexcept;
   Machine(const Machine&) = delete;
 
-  /// The command line that runs a command on this machine, for Background and RunCommand(). The
-  /// process has the id of the command itself.
+  /// The command line that runs a command on this machine, for Background and RunCommand(). The id
+  /// of the started process is the id of the command's process.
   std::vector<std::string> On(const std::vector<std::string>& command) const;
   /// Runs lines of sh on this machine. @return their output @throws std::runtime_error with the
   /// error text if a line fails
@@ -37,10 +38,10 @@ class Machine {
   std::string network() const;
   const std::string& name() const { return name_; }
 
-  /// Makes this machine's multicast stay on it.
+  /// Routes the multicast of this machine to its own loopback device.
   void RouteMulticastToItself() const { Do("ip route add 239.0.0.0/8 dev lo"); }
-  /// From now on the kernel loses `per_cent` of 100 UDP datagrams that arrive here, also those that
-  /// this machine sends to itself.
+  /// From now on the kernel loses `per_cent` % of the UDP datagrams that arrive at this machine,
+  /// also of those that this machine sends to itself.
   void LoseUdp(int per_cent) const;
   /// From now on the kernel loses the datagrams of one LCM channel.
   void LoseChannel(const std::string& channel) const;
@@ -69,8 +70,8 @@ class Lab {
   void Unplug(std::size_t machine) const { SetPort(machine, "down"); }
   void Plug(std::size_t machine) const { SetPort(machine, "up"); }
 
-  /// From now on the switch sends a share of the UDP datagrams from each machine to the next
-  /// machine twice: `per_cent` of 100. @throws std::runtime_error if the kernel cannot do this
+  /// From now on the switch sends `per_cent` % of the UDP datagrams from each machine to the next
+  /// machine twice. @throws std::runtime_error if the kernel cannot do this
   void RepeatUdp(int per_cent) const;
   /// The number of datagrams that the switch has sent twice.
   std::int64_t RepeatedUdp() const;

@@ -22,7 +22,7 @@ struct Block {
 inline std::vector<Block> BlocksOf(const std::string& page) {
   std::vector<Block> blocks;
   std::istringstream lines(page);
-  std::string fence;      // the kind of the open fence with its ticks, "" outside
+  std::string fence;      // the kind of the open fence with its ticks, "" outside of a fence
   bool indented = false;  // whether the line before belongs to an indented block
   for (std::string line; std::getline(lines, line);) {
     if (!fence.empty()) {

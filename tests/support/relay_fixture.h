@@ -43,8 +43,8 @@ class Relay {
   std::string url_;
 };
 
-/// Publishes a message, and waits until this bus hears it. All earlier messages of this bus have
-/// then passed the relay, too. @return false after kPatience
+/// Publishes a message, and waits until this bus receives it. The relay has then also passed all
+/// earlier messages of this bus. @return false after kPatience
 [[nodiscard]] inline bool RoundTrip(runtime::Bus& bus) {
   static int trips = 0;
   const std::string channel = "ROUND_TRIP_" + std::to_string(trips++);

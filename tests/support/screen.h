@@ -1,4 +1,4 @@
-// A screen on which a program can open windows, as far as it can tell before it tries.
+// A fake X screen. A program that looks for a screen finds it, but cannot open windows on it.
 #pragma once
 
 #include <sys/socket.h>
@@ -12,7 +12,7 @@
 
 namespace fogline::test {
 
-/// A socket that listens where the X server of a free number would.
+/// A socket that listens at the address of an X server with a free number.
 class Screen {
  public:
   Screen() : fd_(socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0)) {

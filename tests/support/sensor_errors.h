@@ -44,7 +44,7 @@ inline void ExpectUniform(const std::vector<double>& shares) {
   EXPECT_LT(statistic, quantile(complement(boost::math::chi_squared(kCells - 1), kRare)));
 }
 
-/// Expects that an event of this probability has happened `count` times in kSamples.
+/// Expects that `count` events in kSamples samples fit this probability of an event.
 inline void ExpectShare(int count, double probability, const char* what) {
   const boost::math::binomial binomial(kSamples, probability);
   EXPECT_GE(count, quantile(binomial, kRare)) << what;

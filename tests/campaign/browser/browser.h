@@ -21,15 +21,15 @@ struct ViewSize {
   int width;
   int height;
 };
-/// The colour scheme that the reader prefers, as Chromium numbers it.
+/// The colour scheme that the reader prefers. The values are Chromium's.
 enum class Scheme { kDark = 0, kLight = 1 };
 
 inline constexpr ViewSize kDesktop{1280, 900};
 inline constexpr ViewSize kPhone{360, 740};
 
-/// The page in a frame of the wanted size, because a window has at least 500 pixels. Chromium
-/// prints when everything is loaded. So an unfinished document lies beside the page, and the probe
-/// ends this document at its own end.
+/// The page in a frame of the wanted size, because a window of Chromium is at least 500 pixels
+/// wide. Chromium prints the page when all documents are loaded. So an unfinished document beside
+/// the page delays the printing. The probe closes this document when the probe ends.
 inline constexpr std::string_view kFrame = R"(<!DOCTYPE html><body style="margin:0">
 <iframe id="hold" hidden></iframe>
 <script>document.getElementById("hold").contentDocument.open();</script>
@@ -87,8 +87,8 @@ inline std::string Replaced(std::string text, std::string_view what, std::string
 
 class BrowserTest : public ::testing::Test {
  protected:
-  /// Shows a page in a window and runs `script`. @return the object `found` of the script. In it,
-  /// "problems" are the page's errors, and "loaded" is the number of resources from outside
+  /// Shows a page in a window and runs `script`. @return the object `found` of the script. Its
+  /// member "problems" has the page's errors, and "loaded" is the number of resources from outside
   nlohmann::json Show(std::string report, ViewSize window, std::string_view script,
                       Scheme scheme = Scheme::kLight) {
     report.insert(report.find("<meta"), kWatch);

@@ -20,7 +20,8 @@ using ::testing::Each;
 using ::testing::Ge;
 using ::testing::SizeIs;
 
-/// All studies over a few seeds, as `fogline study all` makes them. They are made only once.
+/// The sections of all studies over a few seeds, as `fogline study all` makes them. Only the first
+/// call computes the studies.
 const std::vector<report::StudySection>& Sections() {
   static const std::vector<report::StudySection> kSections = [] {
     std::vector<report::StudySection> sections;
@@ -47,7 +48,7 @@ std::size_t CountFigures() {
   return count;
 }
 
-/// The figures in a folded part are drawn when the part is unfolded.
+/// The page draws a figure in a folded section only when the section is unfolded.
 constexpr std::string_view kUnfold = R"(
     const chartOf = (name) => charts.find(({figure}) => figure.id === name).chart;
     document.querySelectorAll("details.more-figures").forEach((e) => { e.open = true; });
@@ -179,7 +180,7 @@ TEST_F(StudyInBrowserTest, GivesTheValuesAtTheCursor) {
 }
 
 TEST_F(StudyInBrowserTest, CutsNoNameOfARowOff) {
-  // If a text is cut off at the canvas, it has ink in the outermost pixels.
+  // A text that the canvas cuts off has ink in the outermost pixels of the canvas.
   constexpr std::string_view kInk = R"(
     const hasInk = (canvas, x, y, width, height) =>
         canvas.getContext("2d").getImageData(x, y, width, height).data.some((v) => v > 0);

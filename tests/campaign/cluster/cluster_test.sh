@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # cluster_test.sh FOGLINE HOW: makes a sweep of seven shards with tools/cluster/HOW (parallel or
-# slurm). The merged file must have the bytes of an unsplit sweep, also after a shard was cut off
-# and another one was lost.
+# slurm). The merged file must have the same bytes as the file of an unsplit sweep. This must also
+# hold after one shard was truncated and another shard was lost.
 set -euo pipefail
 cd "$(dirname "$0")/../../.."
 export FOGLINE=$1
@@ -34,7 +34,7 @@ compare() {
 make || fail "failed"
 compare "seven shards"
 
-# One shard is cut off, as after a kill. One is missing, and the merged file does not exist yet.
+# One shard is truncated, as after a kill. Another shard and the merged file are missing.
 truncate --size=-10000 "${out%.csv}.shard-3-of-7.csv"
 rm "${out%.csv}.shard-5-of-7.csv" "$out" "$out.json"
 make || fail "failed the second time"

@@ -1,6 +1,5 @@
 #!/usr/bin/env bash
-# same_output.sh PROGRAM...: fails unless all programs print the same text, and that text is not
-# empty.
+# same_output.sh PROGRAM...: fails if the programs print different texts, or an empty text.
 set -euo pipefail
 expected=$("$1")
 [ -n "$expected" ]

@@ -1,12 +1,13 @@
 % Jerk of the host averaged over 1 s, as ISO 15622 measures it, from the CSV files of one run.
 %
-% It judges Fogline's measures and shares no code with Fogline: it reads what `fogline export`
-% wrote. It finds the acceleration one second earlier by interpolation of a step function.
+% The script checks Fogline's measures and shares no code with Fogline: it reads the files that
+% `fogline export` wrote. It finds the acceleration one second earlier by interpolation of a step
+% function.
 %
 %   octave-cli tests/campaign/peers/jerk.m FOLDER      FOLDER/TRUTH.csv, HOST_COMMAND.csv, scenario.json
 %
-% It prints two values as JSON: the largest of the whole run, and the largest after changes of the
-% authorities.
+% The script prints two values as JSON: the largest jerk of the whole run, and the largest jerk
+% after changes of the authorities.
 1;
 
 function values = column(file, name)
@@ -28,13 +29,14 @@ human = column(host, 'lambda_human');
 assert(numel(us) == numel(human), 'a step lacks a message');
 us(1) = []; applied(1) = [];               % step 0: nothing was applied
 
-% The applied acceleration in row k holds from the step before to step k, so a time has the value of
-% the next row.
+% The acceleration in row k was applied from the step before until step k. So a time between two
+% rows has the acceleration of the later row.
 before = interp1(us, applied, us - 1e6, 'next', NaN);
 jerk = abs(applied - before);              % averaged over 1 s
 known = !isnan(jerk);
 
-% The command of step k acts from step k on. It shows in the applied accelerations of later steps.
+% The command of step k acts from step k on. So only the applied accelerations of later steps show
+% this command.
 changes = us(diff(human) != 0);            % row k of `us` is step k
 after = false(size(us));
 for change = changes'

@@ -21,7 +21,8 @@ SHARES = {
                      "/fog/modes/missing_beyond_m=32"],
 }
 BINS = [(0, 25), (25, 30), (30, 35), (35, 100)]
-# Of 60 counts at most one in a million is further away than 5.6 standard deviations.
+# By the normal distribution, the probability that one of the 18 counts is more than 5.6 standard
+# deviations from its mean is below one in a million.
 SIGMAS = 5.6
 
 

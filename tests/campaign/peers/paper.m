@@ -2,9 +2,9 @@
 % in fog, an extended Kalman filter, MPC cruise control in host and follower, a human driver (IDM),
 % and an arbitrator that trades control by the Degree of Conflict.
 %
-% It judges Fogline's results and shares no code with Fogline: the same equations and parameters in
-% another language, with another QP solver. It has random numbers of its own, so its tables agree
-% with Fogline's only without sensor noise.
+% The script checks Fogline's results and shares no code with Fogline. It has the same equations and
+% parameters in another language, with another QP solver. It draws its own random numbers, so its
+% tables agree with Fogline's only without sensor noise.
 %
 %   octave-cli tests/campaign/peers/paper.m SCENARIO.json            the table, as JSON
 %   octave-cli tests/campaign/peers/paper.m SCENARIO.json RUNS       seconds for RUNS runs, as JSON
@@ -14,7 +14,7 @@
 
 % ---- vehicles -----------------------------------------------------------------------------------
 
-% A point mass with a constant acceleration. When it has braked to a stop it stays there.
+% A point mass with a constant acceleration. After it has braked to a stop, it does not move.
 function car = drive(car, command, h)
   v = car.speed;
   if command < 0 && v / -command <= h
@@ -69,7 +69,7 @@ function kf = make_filter(fusion, h)
 end
 
 function kf = filter_step(kf, y, host_acceleration)
-  if isempty(kf.x)                           % starts from the radar; then the LiDAR corrects it
+  if isempty(kf.x)                           % starts from the radar; the LiDAR corrects this state
     kf.x = [y(1); y(2); 0];
     kf.P = diag([kf.R(1,1), kf.R(2,2), kf.P0_acceleration]);
     H = kf.H(3,:);
@@ -134,8 +134,8 @@ function mpc = make_mpc(acc, h)
   mpc.u = 0;
 end
 
-% The next u of the fall-back plan. In this plan u moves to the fall-back deceleration as fast as it
-% may change. The plan always exists.
+% The next u of the fall-back plan. In this plan u approaches the fall-back deceleration as fast as
+% the limits of u and of its change allow. These limits always allow this plan.
 function u = fallback(mpc, u_before)
   target = min(mpc.acc.fallback_deceleration_mps2 / mpc.acc.engine_gain, mpc.u_max);
   u = min(max(target, u_before - mpc.du_max), u_before + mpc.du_max);
@@ -144,7 +144,8 @@ end
 function [mpc, command] = acc_step(mpc, distance, relative_speed, speed, acceleration)
   acc = mpc.acc;
   N = mpc.N;
-  % The change of u counts from the car's real acceleration, because the driver may have driven.
+  % The limit on the change of u applies from the car's real acceleration, because the human may
+  % have driven before.
   if abs(acceleration - mpc.command) <= 1e-6
     u_before = mpc.u;
   else
@@ -154,7 +155,7 @@ function [mpc, command] = acc_step(mpc, distance, relative_speed, speed, acceler
 
   x = [distance - (acc.headway_s * speed + acc.standstill_m); relative_speed; acceleration];
   w = speed + acc.engine_time_constant_s * acceleration;
-  w_limit = zeros(N, 1);                     % the speed limit, or the fall-back plan's speed
+  w_limit = zeros(N, 1);                     % the speed limit, or the fall-back plan's higher speed
   w_fallback = w;
   u_fallback = u_before;
   for j = 1:N
@@ -225,11 +226,11 @@ function run = experiment(s, threshold, traded)
     lidar = max(0, host_gap - s.fog.bias_m * level + s.lidar.bias_m + s.lidar.range_std_m * randn());
     kf = filter_step(kf, [radar; rate; lidar], host.acceleration);
 
-    % The offers of the automation and of the driver.
+    % The accelerations that the automation and the driver propose.
     [host_mpc, a_automation] = acc_step(host_mpc, kf.x(1), kf.x(2), host.speed, host.acceleration);
     a_human = idm(s.driver, host.speed, preceding.speed, host_gap);
 
-    % The decision who drives, by the Degree of Conflict over the last differences.
+    % The Degree of Conflict over the last differences decides who drives.
     differences(end + 1) = radar - lidar;
     window = differences(max(1, end - s.arbitrator.window_steps + 1):end);
     if strcmp(s.arbitrator.conflict, 'mean_of_absolute')
@@ -268,7 +269,7 @@ function rows = make_table(s)
   end
 end
 
-% count of fragments
+% Stops with an error if the scenario has a feature that this script does not have.
 function refuse_what_is_missing(s)
   assert(strcmp(s.lead.profile, 'constant'), 'only a preceding car at constant speed');
   assert(any(strcmp(s.fog.model, {'none', 'bias'})), 'only fog models none and bias');

@@ -20,7 +20,8 @@ CASES = {
 
 
 def run(*command):
-    # Octave may print "ignoring const execution_exception& ..." at its exit. The script did not fail then.
+    # Octave may print "ignoring const execution_exception& ..." at its exit. This text does not
+    # mean that the script failed.
     return subprocess.run(command, check=True, stdout=subprocess.PIPE).stdout
 
 

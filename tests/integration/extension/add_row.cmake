@@ -1,5 +1,5 @@
-# Copies a list or table. The copy has one more row at its end, taken from a README or another file, and
-# the #include for that row if it needs one.
+# Copies a list or table. The copy has one more row at its end, taken from a README or another file.
+# The copy also has the #include for this row, if the row needs one.
 file(READ "${README}" readme)
 string(FIND "${readme}" "${ROW}" begin)
 if(begin EQUAL -1)

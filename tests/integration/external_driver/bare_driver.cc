@@ -61,8 +61,8 @@ class BareDriver {
   }
 
  private:
-  // The driver joins the first run that it hears. The runner repeats PREPARE until every role has
-  // said READY, with the scenario's hash. Then the world starts.
+  // The driver joins the first run from which it receives a RUN message. The runner repeats PREPARE
+  // until every role has reported READY with the scenario's hash. Then the world starts.
   void OnRun(const lcm::ReceiveBuffer*, const std::string&, const run_t* run) {
     if (status_.state == status_t::WAITING && run->phase == run_t::PREPARE) {
       status_.header.run_id = run->header.run_id;
@@ -89,8 +89,8 @@ class BareDriver {
     status_.header.step = step;
   }
 
-  // Another role lacks an answer of this driver, so the driver repeats it. If the driver lacks the
-  // TRUTH of that step, it asks for this TRUTH.
+  // Another role lacks an answer of this driver, so the driver repeats the answer. If the driver
+  // lacks the TRUTH of that step, the driver asks for this TRUTH.
   void OnResend(const lcm::ReceiveBuffer*, const std::string&, const resend_t* resend) {
     if (!IsOurs(resend->header) || resend->channel != "DRIVER_COMMAND") return;
     const auto answer = answers_.find(resend->header.step);

@@ -68,8 +68,8 @@ TEST(CrashTest, OfRolesThatReadEachOtherChangesNoResult) {
 TEST(CrashTest, OfARoleThatCatchesUpChangesNoResult) {
   WatchedRun watched;
   watched.WaitForStep(100);
-  // The next process is killed as soon as it is heard: before, while or after it catches up with
-  // the run.
+  // Each new process is killed as soon as the test receives its first message. The process is then
+  // killed before, while or after it catches up with the run.
   for (int i = 0; i < 5; ++i) {
     for (const char* role : {"fusion", "recorder", "world"}) watched.Signal(role, SIGKILL);
   }
@@ -99,14 +99,14 @@ TEST(CrashTest, ProcessesThatHangAreKilledAndStartedAgain) {
 }
 
 TEST(CrashTest, ARunnerThatWasHeldUpItselfTakesNoRoleForHung) {
-  // GIVEN a runner that stands still for longer than a role may be silent (half of the timeout, 3
-  // s), and goes on before the run would end (8 s). Even a busy machine delays a role by less than
-  // 3 s
+  // GIVEN a runner that is stopped for longer than a role may send no message (3 s, half of the
+  // timeout). The runner continues before the run would end (8 s). Even a busy machine delays a
+  // role by less than 3 s
   WatchedRun watched({"--stall-timeout", "6"}, 8000);
   watched.WaitForStep(100);
   kill(watched.run().pid(), SIGSTOP);
   std::this_thread::sleep_for(milliseconds(3500));  // the test is about this pause
-  // WHEN the runner goes on, THEN the run goes on, too
+  // WHEN the runner continues, THEN the run continues, too
   kill(watched.run().pid(), SIGCONT);
   const auto result = watched.ExpectSameResult();
   EXPECT_TRUE(result["restarts"].empty()) << result["restarts"];
@@ -125,13 +125,13 @@ TEST(CrashTest, EndsTheRunByNameWhenItHappensTooOften) {
 }
 
 TEST(CrashTest, OfARoleFromElsewhereIsOverWhenItIsStartedAgain) {
-  // GIVEN a run that lasts longer than the runner needs to be sure that a role is dead
+  // GIVEN a run that lasts longer than the runner needs to detect a dead role
   WatchedRun watched({"--external", "driver"}, 1500);
   const std::vector<std::string> command{Program("fogline-driver"), "--lcm-url", watched.url()};
   const Background first(command);
   watched.WaitForStep(100);
   watched.Signal("driver", SIGKILL);
-  // The second driver is started without --run-id. It learns of the run only from messages.
+  // The second driver is started without --run-id. Only messages tell this driver the run id.
   const Background second(command);
   const auto result = watched.ExpectSameResult();
   ASSERT_EQ(WatchedRun::RestartsOf(result, "driver"), 1);
@@ -160,7 +160,7 @@ TEST(CrashTest, AProcessOfARoleThatTheRunHasItselfWaitsForAnotherRun) {
 }
 
 TEST(CrashTest, ARoleFromElsewhereThatGoesOnAfterItWasReplacedLeavesTheRun) {
-  // GIVEN a driver that stands still, and a second driver that has taken its place
+  // GIVEN a stopped driver, and a second driver that has replaced the first one
   WatchedRun watched({"--external", "driver"}, 6000);
   const std::vector<std::string> command{Program("fogline-driver"), "--lcm-url", watched.url()};
   Background first(command);
@@ -169,7 +169,7 @@ TEST(CrashTest, ARoleFromElsewhereThatGoesOnAfterItWasReplacedLeavesTheRun) {
   Background second(command);
   watched.WaitUntil([&] { return watched.StateOf("driver", second.pid()) == status_t::RUNNING; },
                     "the other driver");
-  // WHEN the first driver goes on, THEN it leaves the run to the other driver
+  // WHEN the first driver continues, THEN it leaves the run to the second driver
   first.Signal(SIGCONT);
   EXPECT_TRUE(first.WaitForErr("another process is the driver of run ")) << first.Err();
   EXPECT_EQ(WatchedRun::RestartsOf(watched.ExpectSameResult(), "driver"), 1);
@@ -182,8 +182,8 @@ TEST(CrashTest, AFullDiskEndsTheRunByNameAndLeavesAReadableLog) {
     return MachineLacks("mount namespaces: " + own.err);
   }
   const ScratchFolder folder;
-  // A file system of 64 KiB has room for about fifty steps. It is mounted for these two commands
-  // alone.
+  // A file system of 64 KiB has room for about fifty steps. It is mounted only for these two
+  // commands.
   const Outcome outcome =
       RunCommand({"unshare", "--mount", "sh", "-c",
                   "mount -t tmpfs -o size=64k small \"$1\" || exit 99\n"
@@ -202,7 +202,7 @@ TEST(CrashTest, TheLimitForTheSizeOfFilesEndsTheRunByNameAndStartsNoRecorderAgai
     SCOPED_TRACE(transport);
     const ScratchFolder folder;
     const std::string log = folder.File("run.lcm");
-    // GIVEN a shell that allows files of 64 KiB, about fifty steps
+    // GIVEN a shell that limits the size of a file to 64 KiB, which is about fifty steps
     const Outcome outcome =
         RunCommand({"bash", "-c", "ulimit -f 64; exec \"$0\" run scenario/paper.json --log \"$@\"",
                     Program("fogline"), log, "--transport", transport});
@@ -213,7 +213,7 @@ TEST(CrashTest, TheLimitForTheSizeOfFilesEndsTheRunByNameAndStartsNoRecorderAgai
                                        log + "\n  to go on: fogline run --resume " + log));
     EXPECT_EQ(outcome.err.find("started again"), std::string::npos) << outcome.err;
     EXPECT_EQ(std::filesystem::file_size(log), 65'536U);
-    // WHEN the limit is lifted, THEN the run goes on
+    // WHEN the limit is lifted, THEN the run continues
     const Outcome rest =
         RunCommand({Program("fogline"), "run", "--resume", log, "--transport", transport});
     EXPECT_EQ(rest.code, 0) << rest.err;

@@ -1,5 +1,5 @@
-// How a run ends if one of its processes, its runner or the user ends it. (crash_test.cc has the
-// runs that may start roles again.)
+// How a run ends after one of its processes or its runner is killed, or after the user ends the
+// run. (In crash_test.cc, runs may start roles again.)
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -16,17 +16,17 @@ namespace {
 
 using SteadyClock = std::chrono::steady_clock;
 
-// A run is well under way after this many steps. They take one second.
+// A run is well under way after this many steps, which take one second.
 constexpr int kUnderWay = 10;
 
-/// A run in real speed that is well under way. It ends if one of its roles ends.
+/// A run at real speed that is well under way. The run ends if one of its roles ends.
 class PacedRun {
  public:
   PacedRun()
       : run_({Program("fogline"), "run", "scenario/paper.json", "--pace", "1", "--restarts", "0",
               "--log", folder_.File("run.lcm")}) {
     EXPECT_TRUE(run_.WaitForErr("processes: "));
-    // The run is under way when this many steps are on disk. No event shows this moment.
+    // The run is under way when kUnderWay steps are on disk. No event shows this moment.
     const auto end = SteadyClock::now() + std::chrono::seconds(20);
     while (StepsOnDisk() < kUnderWay && SteadyClock::now() < end) {
       std::this_thread::sleep_for(kLookEvery);
@@ -127,7 +127,7 @@ TEST(FaultTest, LeavesNoProcessWhenTheRunnerItselfIsKilled) {
   paced.run().Signal(SIGKILL);
   EXPECT_EQ(paced.run().Wait(), 128 + SIGKILL);
   const auto end = SteadyClock::now() + std::chrono::seconds(5);
-  // The roles are not children of this test, so it cannot wait for their ends.
+  // The roles are not children of this test, so the test cannot wait for their ends by waitpid().
   for (const pid_t pid : pids) {
     while (IsAlive(pid) && SteadyClock::now() < end) std::this_thread::sleep_for(kLookEvery);
     EXPECT_FALSE(IsAlive(pid)) << pid;

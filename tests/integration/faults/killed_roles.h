@@ -22,7 +22,8 @@ inline std::vector<std::string> AllRoles() {
   return names;
 }
 
-/// Stops these roles of a run. Expects that each is killed, started again, and named in the result.
+/// Stops these roles of a run. Expects that each role is killed, started again, and named in the
+/// result.
 inline void ExpectHangersAreStartedAgain(const std::vector<std::string>& roles) {
   WatchedRun watched({"--stall-timeout", "2"});
   watched.WaitForStep(100);
@@ -55,7 +56,7 @@ inline void ExpectKillsAtRandomStepsChangeNoResult(int wanted) {
     const auto result = watched.ExpectSameResult();
     int restarts = 0;
     for (const auto& role : result["restarts"]) restarts += role["count"].get<int>();
-    // The run may end without a role that is killed in its last 50 steps.
+    // If a role is killed in the last 50 steps, the run may end before the role is started again.
     const auto needed = std::ranges::count_if(steps, [](int step) { return step < kSteps - 50; });
     EXPECT_GE(restarts, needed) << watched.run().Err();
     EXPECT_LE(restarts, kills);

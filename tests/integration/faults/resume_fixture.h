@@ -70,7 +70,7 @@ class ResumeTest : public testing::Test {
     run.Signal(SIGKILL);
     return run.Wait() == 128 + SIGKILL;
   }
-  /// Expects that the run is refused with this text and leaves the log as it is.
+  /// Expects that the command is refused with this text, and that the log stays unchanged.
   void ExpectRefusal(const Words& command, const std::string& err) const {
     const std::string before = Content(log_);
     const Outcome outcome = RunCommand(command);
@@ -92,7 +92,7 @@ class ResumeTest : public testing::Test {
 inline constexpr Duration kResumePatience = std::chrono::seconds(30);
 inline const Words kPaced{"--pace", "33"};
 
-/// A run over the network whose steps the test hears.
+/// A run over the network. The test receives the steps of the run.
 class SeenRun {
  public:
   SeenRun(const Words& command, const std::string& log)
@@ -126,7 +126,7 @@ class SeenRun {
   std::int64_t step_ = -1;
 };
 
-/// Runners that are killed at random steps, and runs that go on from their logs.
+/// Tests that kill runners at random steps and continue the runs from their logs.
 class ResumeAfterKillTest : public ResumeTest {
  protected:
   void ExpectKilledRunnersChangeNoResult(int kills) const {

@@ -66,7 +66,7 @@ TEST_F(ResumeTest, GoesOnWithTheRolesFromElsewhereThatHaveOutlivedTheirRunner) {
     // GIVEN a driver that was started from another shell
     SeenRun seen(Paper(kSteps) + kPaced + Words{"--external", "driver"} + sealed, log_);
     Background driver(Words{Program("fogline-driver"), "--lcm-url", seen.url()} + sealed);
-    // WHEN the runner dies, THEN the same driver goes on with the next runner
+    // WHEN the runner dies, THEN the same driver continues with the next runner
     seen.KillAtStep(150);
     ASSERT_TRUE(IsAlive(driver.pid()));
     const auto result =

@@ -1,5 +1,5 @@
 // A process of a run is killed while the system cannot start it again: its program is missing, or
-// there is no room for another process. One test kills the relay of a run.
+// the user may not start another process. One test kills the relay of a run.
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -51,9 +51,10 @@ class StartAgainTest : public testing::Test {
                 HasSubstr("was killed by signal 9 (Killed) at step "));
     EXPECT_THAT(run.Err(), HasSubstr(role + " (pid "));
   }
-  /// Waits for longer than the first five tries to start the process again. These tries come 10 ms
-  /// after its death and then after 20, 40, 80 and 160 ms (RestartPolicy). The test waits for a
-  /// fixed time because the runner does not report a failed try.
+  /// Waits for longer than the first five tries to start the process again. The first try comes 10
+  /// ms after the death of the process. The other tries come after another 20, 40, 80 and 160 ms
+  /// (RestartPolicy). The test waits for a fixed time because the runner does not report a failed
+  /// try.
   static void StayAway() { std::this_thread::sleep_for(milliseconds(500)); }
 
   ScratchFolder folder_;

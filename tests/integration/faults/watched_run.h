@@ -1,4 +1,4 @@
-// A run over the network that a test watches by its messages.
+// A run over the network. The test receives the messages of the run.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -65,8 +65,7 @@ class WatchedRun {
     });
   }
 
-  /// Handles messages until the condition holds. @throws std::runtime_error if it does not hold in
-  /// time
+  /// Handles messages until the condition holds. @throws std::runtime_error after the time limit
   template <class Condition>
   void WaitUntil(const Condition& condition, const std::string& what) {
     const TimePoint end = Clock::now() + kRunPatience;
@@ -81,7 +80,7 @@ class WatchedRun {
     WaitUntil([&] { return step_ >= step; }, "step " + std::to_string(step));
   }
 
-  /// The process that has a role now, and that this test has not killed.
+  /// The process that has a role at present. Processes that this test has killed do not count.
   pid_t PidOf(const std::string& role) {
     pid_t pid = 0;
     WaitUntil(
@@ -99,7 +98,7 @@ class WatchedRun {
     gone_[pid] = true;
     kill(pid, signal);
   }
-  /// The state that a process has reported last; -1 if it has reported none.
+  /// The state that a process has reported last; -1 if the process has reported no state.
   std::int8_t StateOf(const std::string& role, pid_t pid) {
     return last_[role].contains(pid) ? last_[role][pid].state : std::int8_t{-1};
   }

@@ -25,7 +25,7 @@ namespace {
 
 using ::testing::StartsWith;
 using Words = std::vector<std::string>;
-using FilesByName = std::map<std::string, std::string>;  // their contents
+using FilesByName = std::map<std::string, std::string>;  // the contents of each file
 
 std::string Content(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
@@ -33,7 +33,7 @@ std::string Content(const std::filesystem::path& file) {
 }
 
 /// An export into a folder in which one file is a pipe that no process reads. The export waits at
-/// this file, with some files written and some not.
+/// this pipe after it has written some of its files.
 class HaltedExport {
  public:
   HaltedExport(const std::string& log, const std::string& folder, const std::string& file)
@@ -111,12 +111,13 @@ TEST_F(HaltedExportTest, LeavesNoFolderWithFilesOfTwoLogsWhenItIsKilled) {
   Run(other, "/steps=200");
   FilesByName older = Files();
   older.erase("ACC_COMMAND.csv");
-  // WHEN its export is killed before all of its files are on the disk or in a pipe
+  // WHEN the export of this log is killed before all of its files are on the disk or in a pipe
   HaltedExport halted(other, out_, "ACC_COMMAND.csv");
   ASSERT_TRUE(halted.WaitUntilItWaits()) << halted.process().Err();
   halted.process().Signal(SIGKILL);
   halted.process().Wait();
-  // THEN all files are those of the older export. A killed process leaves hidden files.
+  // THEN all files are those of the older export, apart from hidden files that the killed process
+  // left
   FilesByName files = Files();
   std::erase_if(files, [](const auto& file) { return file.first.front() == '.'; });
   EXPECT_TRUE(files == older);

@@ -68,7 +68,7 @@ inline void Rewrite(const std::string& from, const std::string& to,
 
 class LogIntegrityTest : public testing::Test {
  protected:
-  /// A run with a driver from elsewhere. The run waits until the test starts this driver.
+  /// The command of a run with an external driver. The run waits until the test starts this driver.
   Words Run(const Words& more = {}) const {
     return With({Program("fogline"), "run", "scenario/paper.json", "--json", "--external", "driver",
                  "--stall-timeout", "60", "--lcm-url", url_, "--log", log_},

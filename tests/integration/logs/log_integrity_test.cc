@@ -1,4 +1,4 @@
-// The log of a run was changed, or a role is of another build. The run reports this.
+// The log of a run was changed, or a role is of another build. The run reports such a log or role.
 #include <gmock/gmock-more-matchers.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -25,14 +25,15 @@ void PutRunId(std::int64_t run_id, Payload& bytes) {
   }
 }
 
-// ---- the log of a run, while it goes on ---------------------------------------------------------
+// ---- the log of a run, while the run continues --------------------------------------------------
 
 TEST_F(LogIntegrityTest, ALogThatAnotherTakesThePlaceOfEndsTheRunAlthoughItHasItsRunId) {
   const std::string other = DirectLog("other.lcm", {"--seed", "2"});
   Background run(Run());
   ASSERT_TRUE(run.WaitForErr("waiting for the driver"));
   ASSERT_TRUE(GrowsTo(1, log_));
-  // WHEN a forged log replaces the log of this run. It is of another run, but has this run's id
+  // WHEN a forged log replaces the log of this run. The forged log is of another run, but has the
+  // id of this run
   const std::int64_t run_id = RunIdIn(run.Err());
   const std::string forged = folder_.File("forged.lcm");
   Rewrite(other, forged, [run_id](std::string_view, Payload& bytes) { PutRunId(run_id, bytes); });

@@ -1,5 +1,5 @@
-// While a run writes its log, no other run may write it. While a table writes its folder of logs,
-// no other table may write there.
+// While a run writes its log, no other run may write this log. While a table writes its folder of
+// logs, no other table may write there.
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -37,7 +37,8 @@ bool HoldsALock(pid_t pid) {
 
 class LogLockTest : public testing::Test {
  protected:
-  /// The command of a run into log_, or of a table into its folder. It waits until a driver comes.
+  /// The command of a run into log_, or of a table into its folder, with an external driver. The
+  /// run or table then waits for this driver.
   std::vector<std::string> WaitingForADriver(const std::vector<std::string>& command) const {
     return With(command, {"--external", "driver", "--lcm-url", url_});
   }
@@ -71,7 +72,7 @@ TEST_F(LogLockTest, ASecondRunIntoOneLogIsRefusedByNameAndTheFirstKeepsItsResult
   Background first(WaitingForADriver(With(run_, {"--json", "--seed", "1"})));
   ASSERT_TRUE(first.WaitForErr("waiting for the driver"));
   ExpectRefusalOfASecondRun(first.pid());
-  // WHEN the run goes on
+  // WHEN the run continues
   const Background driver(StartADriver());
   ASSERT_EQ(first.Wait(), 0) << first.Err();
   // THEN its result and its log are those of an undisturbed run
@@ -150,7 +151,7 @@ TEST_F(LogLockTest, ARunRefusesALogThatIsNotItsOwn) {
   Background run(WaitingForADriver(With(run_, {"--json"})));
   ASSERT_TRUE(run.WaitForErr("waiting for the driver"));
   ASSERT_TRUE(GrowsTo(1, log_));
-  // WHEN another log takes the place of this log
+  // WHEN another log replaces this log
   std::filesystem::rename(other, log_);
   const Background driver(StartADriver());
   // THEN the run fails and reports no result
@@ -215,18 +216,18 @@ TEST_F(LogLockTest, OfRunsThatBeginAtOnceIntoOneLogOneHasIt) {
 }
 
 TEST_F(LogLockTest, NothingStaysOfARunThatNeverBegan) {
-  // GIVEN a run that waits for a driver in vain. Its log would have a scenario, but no step
+  // GIVEN a run whose driver does not come. Its log would have a scenario, but no step
   const Outcome run = RunCommand(With(WaitingForADriver(run_), {"--wait", "0.5"}));
   EXPECT_EQ(run.code, 3);
   EXPECT_THAT(run.err, HasSubstr("waited 0.5 s for the driver in vain"));
   EXPECT_THAT(run.err, HasSubstr("\n  no log was written\n"));
   EXPECT_FALSE(std::filesystem::exists(log_));
-  // AND a recorder that waits for a run in vain leaves no log
+  // AND a recorder whose run does not begin leaves no log
   const std::vector<std::string> recorder{Program("fogline-recorder"),  "--log",  log_, "--lcm-url",
                                           runtime::FreshMulticastUrl(), "--wait", "0.5"};
   EXPECT_EQ(RunCommand(recorder).code, 3);
   EXPECT_FALSE(std::filesystem::exists(log_));
-  // AND a recorder that waits in vain does not touch an older log
+  // AND a recorder whose run does not begin does not change an older log
   ASSERT_EQ(RunCommand(With(run_, {"--transport", "direct"})).code, 0);
   const auto size = std::filesystem::file_size(log_);
   EXPECT_EQ(RunCommand(recorder).code, 3);
@@ -240,7 +241,7 @@ TEST_F(LogLockTest, AnOlderLogIsThereAgainWhenTheRunThatReplacesItNeverBegins) {
       With(WaitingForADriver(run_), {"--wait", "0.5", "--force"});
   EXPECT_EQ(RunCommand(replace).code, 3);
   EXPECT_EQ(Content(log_), older);
-  // AND the older log is gone when the run has begun, and no other file lies beside the new one
+  // AND the older log is gone when the run has begun, and no other file lies beside the new log
   EXPECT_EQ(RunCommand(With(run_, {"--force", "--seed", "2"})).code, 0);
   EXPECT_NE(Content(log_), older);
   const std::filesystem::directory_iterator files(std::filesystem::path(log_).parent_path());
@@ -273,7 +274,7 @@ TEST_F(LogLockTest, AKilledRunThatHasBegunToReplaceALogLeavesNoFileBesideIt) {
       ASSERT_TRUE(IsAlive(run.pid())) << run.Err();
       std::this_thread::sleep_for(kLookEvery);
     }
-    // THEN the older log is removed while the run goes on, long before its end
+    // THEN the older log is removed while the run continues, long before the end of the run
     while (FilesBeside(log_) > 1) {
       ASSERT_TRUE(IsAlive(run.pid())) << transport << ": " << run.Err();
       std::this_thread::sleep_for(kLookEvery);
@@ -281,7 +282,7 @@ TEST_F(LogLockTest, AKilledRunThatHasBegunToReplaceALogLeavesNoFileBesideIt) {
     ASSERT_TRUE(IsAlive(run.pid())) << transport << ": removed by the run's end";
     Kill(run);
     EXPECT_EQ(FilesBeside(log_), 1) << transport;
-    // AND the rest of the new log can be resumed
+    // AND the incomplete new log can be resumed
     const Outcome resumed = RunCommand({Program("fogline"), "run", "--resume", log_});
     EXPECT_EQ(resumed.code, 0) << resumed.err;
     EXPECT_THAT(resumed.out, HasSubstr("500 steps"));
@@ -300,7 +301,7 @@ TEST_F(LogLockTest, AnOlderLogIsBackAfterAKillBeforeTheRunHasBegun) {
     ASSERT_TRUE(run.WaitForErr("waiting for the driver"));
     Kill(run);
   };
-  // WHEN another run is to write this log, THEN it finds the older log
+  // WHEN another run is told to write this log, THEN that run finds the older log
   kill_early();
   ASSERT_NE(Content(log_), older);
   const Outcome second = RunCommand(With(run_, {"--transport", "direct"}));
@@ -308,7 +309,7 @@ TEST_F(LogLockTest, AnOlderLogIsBackAfterAKillBeforeTheRunHasBegun) {
   EXPECT_EQ(second.err, back + log_ + ": error: --log: the file exists; --force replaces it\n");
   EXPECT_EQ(Content(log_), older);
   EXPECT_EQ(FilesBeside(log_), 1);
-  // AND so does --resume
+  // AND --resume finds the older log, too
   kill_early();
   const Outcome resumed = RunCommand({Program("fogline"), "run", "--resume", log_});
   EXPECT_EQ(resumed.code, 0);

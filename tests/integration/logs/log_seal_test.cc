@@ -81,7 +81,7 @@ TEST_F(SealedLogTest, EveryReaderNamesALogThatWasChangedSinceItWasSealed) {
 
 TEST_F(SealedLogTest, TheFileOfASealedLogIsComparedByDigest) {
   const std::string log = DirectLog("log.lcm");
-  FlipLowestBit(log, 19);  // the time of the first event; no digest covers it
+  FlipLowestBit(log, 19);  // the time of the first event; no digest covers this time
   EXPECT_EQ(Digest({log}, 1)["seal"], "broken");
 }
 
@@ -115,13 +115,13 @@ TEST_F(SealedLogTest, ALogThatLcmToolsPlayAndRecordKeepsDigestAndSeal) {
   const std::string copy = folder_.File("copy.lcm");
   {
     // The messages go over TCP, because lcm-logger loses UDP messages when a busy machine delays
-    // it.
+    // lcm-logger.
     const Relay relay;
     runtime::Bus bus(relay.url());
     Background logger(
         {"lcm-logger", "--quiet", "--flush-interval=10", "--lcm-url=" + relay.url(), copy});
-    // Sends messages until lcm-logger has written one of this channel. It has then also written all
-    // earlier messages.
+    // Sends messages until lcm-logger has written a message of this channel. lcm-logger has then
+    // also written all earlier messages.
     const auto mark = [&](std::string_view channel) {
       const auto has = [&] {
         std::ifstream in(copy, std::ios::binary);
@@ -195,7 +195,8 @@ TEST_F(SealedLogTest, ARunGoesOnWithNoLogThatWasChangedSinceItWasSealed) {
   const EventPlace radar = FirstEventOf(log_, "RADAR");
   FlipLowestBit(log_, radar.at + radar.size - 17);
   expect_refused(key, "the log is not the one that was sealed: ");
-  // THEN the run does not continue this log. With the bit as it was sealed, the run continues
+  // THEN the run does not continue this log. WHEN the bit is as it was sealed, THEN the run
+  // continues
   FlipLowestBit(log_, radar.at + radar.size - 17);
   EXPECT_EQ(resume(key).code, 0);
   EXPECT_EQ(Digest({log_, "--key", key}, 0)["signature"], "holds");

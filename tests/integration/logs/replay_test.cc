@@ -91,8 +91,8 @@ TEST_F(ReplayTest, ComputesALogOfOneProcessAgain) {
 }
 
 TEST_F(ReplayTest, ComputesALogWithEverythingSwitchedOnAgainWhateverThePolicyDemands) {
-  // With policy `bayes` the arbitrator reads TRUTH on demand, with policy `oracle` the fusion does.
-  // The driver reads HOST_COMMAND on demand.
+  // With policy `bayes` the arbitrator reads TRUTH on demand. With policy `oracle` the fusion reads
+  // TRUTH on demand. The driver reads HOST_COMMAND on demand.
   for (const char* policy : {"bayes", "oracle"}) {
     SCOPED_TRACE(policy);
     Words more = kEverything;
@@ -106,7 +106,7 @@ TEST_F(ReplayTest, ComputesALogWithEverythingSwitchedOnAgainWhateverThePolicyDem
 TEST_F(ReplayTest, NamesTheStepAndFieldOfAnOutputThatIsNotTheLogs) {
   const std::string log =
       Altered(Log("scenario/paper.json", {"--transport", "direct", "--set", "/steps=250"}), 200);
-  // In this step the log differs from the output of the fusion. The next steps agree, because the
+  // In step 200 the log differs from the output of the fusion. The next steps agree, because the
   // replay takes its inputs from the log.
   const Outcome fusion = Replay({log, "--role", "fusion", "--json"});
   EXPECT_EQ(fusion.code, 1);

@@ -1,4 +1,5 @@
-// A message of a run is altered on its way. The log shows this when its steps are computed again.
+// A message of a run is altered on its way. The alteration is found when the steps of the log are
+// computed again.
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -25,7 +26,7 @@ class Bridge {
     for (const char* channel : {"LIDAR", "STATUS"}) Carry(role_, run_, channel);
   }
 
-  /// Makes the range of this step larger on its way.
+  /// Tells the bridge to make the LiDAR's range of this step larger.
   void Alter(std::int64_t step) { altered_ = step; }
 
   void RunUntilTheEndOf(const Background& program) {

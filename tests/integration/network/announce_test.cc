@@ -1,5 +1,6 @@
-// top, doctor and roles find a run on a port of its own, although no user gives them its URL. Each
-// test has a meeting address of its own, so announcements on LCM's default address do not reach it.
+// top, doctor and roles find a run on its own port, although no user gives them the run's URL. Each
+// test has a meeting address of its own. So announcements on LCM's default address do not reach the
+// test.
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -31,9 +32,9 @@ class Top {
   explicit Top(const Meeting& meeting)
       : process_(meeting.Command("fogline", {"top", "--json", "--interval", "0.1"})) {}
 
-  /// Waits for a document that `good` accepts. It reads the output file every few milliseconds,
-  /// because no event shows that the file has grown. @return this document, or the last one if none
-  /// is accepted
+  /// Waits for a document that `good` accepts. WaitFor() reads the output file every few
+  /// milliseconds, because no event shows that the file has grown. @return this document, or the
+  /// last document if `good` accepts none
   json WaitFor(const std::function<bool(const json&)>& good) {
     const TimePoint end = Clock::now() + kPatience;
     json document;
@@ -137,7 +138,7 @@ TEST(AnnounceTest, TopFollowsTheNewestRunAndNamesTheOthers) {
   EXPECT_EQ(seen["announced"][1]["run_id"], first.run_id);
   EXPECT_EQ(seen["announced"][1]["followed"], false);
   EXPECT_EQ(seen["lcm_url"], second.url);
-  // WHEN the newest run is killed and so announces no end, THEN top follows the other run
+  // WHEN the newest run is killed and so cannot announce its end, THEN top follows the other run
   newer.Signal(SIGKILL);
   top.WaitFor([&first](const json& now) { return now["lcm_url"] == first.url; });
 }
@@ -224,11 +225,12 @@ TEST(AnnounceTest, OfTwoProcessesOfOneRoleTheOtherTakesOverWhenTheFirstIsKilled)
     drivers.emplace_back(meeting.Command("fogline-driver", {}));
     ASSERT_TRUE(drivers.back().WaitForErr("waiting for a run", kPatience));
   }
-  // The run takes 25 s. A driver needs up to 5 s to find its place taken, more on a busy machine.
+  // The run takes 25 s. A driver needs up to 5 s, and more on a busy machine, to notice that
+  // another driver has the role.
   Background run(
       meeting.Run({"--transport", "udpm", "--json", "--external", "driver", "--pace", "2"}));
   ASSERT_TRUE(GrowsTo(20'000, meeting.Log(), kPatience)) << run.Err();
-  // GIVEN two drivers in the run, of which one has reported that the other has the role
+  // GIVEN two drivers in the run. One driver has reported that the other driver has the role
   const auto is_other = [](const Background& driver) {
     const std::string said = driver.Err();
     return said.find("another process is the driver") != std::string::npos ||
@@ -242,14 +244,14 @@ TEST(AnnounceTest, OfTwoProcessesOfOneRoleTheOtherTakesOverWhenTheFirstIsKilled)
   ASSERT_EQ(std::ranges::count_if(drivers, is_other), 1);
   Background& first = drivers[is_other(drivers[0]) ? 1 : 0];
   Background& other = drivers[is_other(drivers[0]) ? 0 : 1];
-  // WHEN the first driver is killed THEN the other driver takes its place before the run gives up
+  // WHEN the first driver is killed THEN the other driver replaces it before the run fails
   first.Signal(SIGKILL);
   ASSERT_EQ(run.Wait(), 0) << run.Err() << other.Err();
   EXPECT_EQ(json::parse(run.Out())["digest"], DirectDigest());
   EXPECT_EQ(other.Wait(), 0) << other.Err();
 }
 
-/// Starts a run with a driver from elsewhere, and kills its runner while the run is under way.
+/// Starts a run with an external driver, and kills its runner while the run is under way.
 void KillRunner(Meeting& meeting, const std::vector<std::string>& more) {
   std::vector<std::string> arguments{"--external", "driver", "--pace", "1"};
   arguments.insert(arguments.end(), more.begin(), more.end());
@@ -307,7 +309,8 @@ TEST(AnnounceTest, WhatIsForgedIsRefusedAndCountedAndDisturbsNoRun) {
   Background driver(meeting.Command("fogline-driver", {}));
   ASSERT_TRUE(driver.WaitForErr("waiting for a run", kPatience));
   Top top(meeting);
-  // GIVEN thousands of beacons that no runner of this machine sends, and noise
+  // GIVEN thousands of beacons that no runner of this machine sends, and messages that are no
+  // beacons
   const auto attack = [&] {
     for (std::int64_t i = 1; i <= 1000; ++i) {
       beacon_t beacon = Beacon(i, "udpm://10.0.0.1:7700");
@@ -333,7 +336,7 @@ TEST(AnnounceTest, WhatIsForgedIsRefusedAndCountedAndDisturbsNoRun) {
   ASSERT_EQ(run.Wait(), 0) << run.Err();
   EXPECT_EQ(json::parse(run.Out())["digest"], DirectDigest());
   EXPECT_EQ(driver.Wait(), 0) << driver.Err();
-  // AND doctor says that it refused such announcements
+  // AND doctor says that it refused announcements
   Background doctor(meeting.Command("fogline", {"doctor"}));
   const TimePoint end = Clock::now() + kPatience;
   while (IsAlive(doctor.pid()) && Clock::now() < end) {

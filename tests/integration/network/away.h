@@ -1,4 +1,4 @@
-// Parts of a run that are away for longer than a process waits for another one by default.
+// Processes or a machine of a run are unreachable for longer than other processes wait by default.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@
 namespace fogline::test {
 
 inline constexpr const char* kAwayUrl = "udpm://239.255.76.67:7700?ttl=1";
-// The time of an absence. It is longer than a role waits for its runner.
+// The duration of an absence. It is longer than the time for which a role waits for its runner.
 inline constexpr auto kAway = runtime::RunnerWatch::kGone + milliseconds(2000);
 
 /// A run with its driver on another machine.
@@ -28,8 +28,8 @@ struct RunOnTwoMachines {
   const Background& driver;
 };
 
-/// The processes or the machine that are away, and the options with which the user announces this
-/// absence to the run.
+/// The processes or the machine that are unreachable, and the options by which the user tells the
+/// run to wait for them.
 struct Absence {
   std::string name;
   std::vector<std::string> options;
@@ -54,7 +54,7 @@ inline Absence Stopped(std::string name, std::vector<std::string> options,
 
 class AwayTest : public NetworkTest, public testing::WithParamInterface<Absence> {
  protected:
-  /// Plays a run with this absence in the middle. Its result must be that of an undisturbed run.
+  /// Executes a run with this absence in the middle. The result must be that of an undisturbed run.
   void ExpectAbsenceCostsNoRun(const Absence& absence) {
     const Lab lab(2);
     Background driver(lab[1].On({Program("fogline-driver"), "--lcm-url", kAwayUrl}));

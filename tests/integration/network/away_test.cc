@@ -1,5 +1,5 @@
-// All processes of a run are away for longer than any of them waits for another by default. They
-// are stopped by Ctrl-Z, or frozen with their container.
+// All processes of a run are stopped for longer than each process waits for another one by default.
+// A run is stopped in this way by Ctrl-Z, or when its container is frozen.
 #include <gtest/gtest.h>
 
 #include <vector>

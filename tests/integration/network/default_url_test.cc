@@ -22,7 +22,7 @@ TEST(DefaultUrlTest, IsWhereARunGoesThatIsNotToldOtherwise) {
   const json seen = TopOnce(meeting);
   EXPECT_EQ(seen["runs"].size(), 1U);
   EXPECT_TRUE(seen["announced"].empty()) << "it is where programs listen";
-  // AND the command line has precedence over the variable
+  // AND the command line has precedence over LCM_DEFAULT_URL
   const std::string other = runtime::FreshMulticastUrl();
   Background told(meeting.Run({"--pace", "1", "--lcm-url", other}));
   EXPECT_THAT(PlaceOf(told).url, testing::StartsWith(other));
@@ -158,7 +158,7 @@ TEST(DocsLinesTest, RecordARunWithLcmLoggerByTheLinesThatTheyShow) {
       RunCommand({"bash", "-c",
                   "cd " + folder.path().string() + " && PATH=" + ProgramDirectory().string() +
                       ":$PATH\n" + lines + "\nkill -INT $!; wait"});
-  // THEN lcm-logger has logged steps of the run, from the step on at which it began to listen
+  // THEN lcm-logger has logged the steps that the run sent after lcm-logger had begun to listen
   log::EventLogReader log(folder.File("copy.lcm"));
   std::int64_t truths = 0;
   while (const auto event = log.Next()) truths += event->channel == "TRUTH" ? 1 : 0;

@@ -1,4 +1,4 @@
-// A run among datagrams that are not its messages.
+// A run on a network with datagrams that are not the run's messages.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -31,8 +31,8 @@ class HostileTrafficTest : public NetworkTest {
     nlohmann::json sent;    // the hostile program's counts of sent datagrams
   };
 
-  /// A run on a machine whose network is full of hostile traffic, already before the start. The run
-  /// must succeed.
+  /// A run on a machine whose network is full of hostile traffic even before the run starts. The
+  /// run must succeed.
   /// @param more arguments of the hostile program
   Ended RunUnder(std::vector<std::string> more, const Hostility& hostility) {
     const Machine machine("target");
@@ -60,7 +60,7 @@ class HostileTrafficTest : public NetworkTest {
     }
     // THEN the result is that of the undisturbed run
     EXPECT_EQ(result["digest"], Undisturbed());
-    // AND it took less than twice the time that its pace demands
+    // AND the run took less than twice the time that its pace demands
     if (hostility.alone) {
       EXPECT_LT(result["wall_s"], 2 * hostility.seconds);
     }
@@ -68,7 +68,7 @@ class HostileTrafficTest : public NetworkTest {
     for (const char* kind : {"foreign", "malformed", "wrong_type", "not_finite", "out_of_window"}) {
       EXPECT_GT(result["refused"][kind], hostility.least_of_a_kind) << result["refused"];
     }
-    // AND it names some of the senders that pretended to be of other runs
+    // AND the run names some of the senders that pretended to be of other runs
     EXPECT_FALSE(result["strangers"].empty());
   }
 

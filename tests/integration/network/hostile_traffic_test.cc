@@ -1,4 +1,4 @@
-// A few seconds of hostile traffic, at a rate that also a busy machine can send and withstand. The
+// A few seconds of hostile traffic, at a rate that even a busy machine can send and process. The
 // tests demand only a small number of sent datagrams.
 #include <gtest/gtest.h>
 

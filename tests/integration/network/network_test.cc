@@ -1,5 +1,5 @@
-// The lockstep on networks that the kernel simulates. Their machines have their own addresses and
-// lose messages.
+// The lockstep on networks that the kernel simulates. The machines of these networks have their own
+// addresses and lose messages.
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 
@@ -94,7 +94,8 @@ TEST_F(ThreeMachinesTest, RunTheSameWhenTheLinksDelayRepeatAndReorder) {
   EXPECT_EQ(run["digest"], Undisturbed({"--set", "/steps=80"}));
 }
 
-/// The place of two runs: on two machines of one network, or on one machine.
+/// Two runs on two machines of one network, or on one machine. The parameter is the index of the
+/// second run's machine.
 class TwoRunsTest : public NetworkTest, public testing::WithParamInterface<std::size_t> {};
 
 TEST_P(TwoRunsTest, OnOneGroupAndPortDoNotMix) {
@@ -102,14 +103,16 @@ TEST_P(TwoRunsTest, OnOneGroupAndPortDoNotMix) {
   // GIVEN a run that takes 1.5 s
   Background paced(lab[0].On(Run({"--lcm-url", kUrl, "--set", "/steps=150", "--pace", "10"})));
   ASSERT_TRUE(paced.WaitForErr("processes: "));
-  // WHEN another run takes place meanwhile. It differs from the first run from the first step on
+  // WHEN another run takes place at the same time. It differs from the first run from the first
+  // step on
   const auto other =
       Result(RunCommand(lab[GetParam()].On(Run({"--lcm-url", kUrl, "--seed", "7"}))));
-  // THEN each of the two has the result that it has when it runs alone
+  // THEN each run has the same result as when it runs alone
   EXPECT_EQ(other["digest"], Undisturbed({"--seed", "7"}));
   const auto first = ResultOf(paced);
   EXPECT_EQ(first["digest"], Undisturbed({"--set", "/steps=150"}));
-  // AND each run has refused the other's messages, and names the run that sent them
+  // AND each run has refused messages of the other run, and the first run names the senders of
+  // these messages
   EXPECT_GT(first["refused"]["foreign"], 500);
   EXPECT_GT(other["refused"]["foreign"], 0);
   EXPECT_EQ(first["strangers"].size(), kRoles.size());
@@ -159,7 +162,7 @@ TEST_F(NetworkTest, TwoProducersOfOneChannelEndTheRunByTheNamesOfBoth) {
   const Lab lab(3);
   Background run(lab[0].On(Run({"--lcm-url", kUrl, "--external", "driver", "--pace", "1"})));
   ASSERT_TRUE(run.WaitForErr("waiting for the driver"));
-  // A role with --run-id joins this run without asking whether its place is free.
+  // A role with --run-id joins this run without a check whether another process has the role.
   const std::string id = run.Err().substr(4, run.Err().find(" on ") - 4);
   Background one(lab[1].On({Program("fogline-driver"), "--lcm-url", kUrl, "--run-id", id}));
   Background two(lab[2].On({Program("fogline-driver"), "--lcm-url", kUrl, "--run-id", id}));
@@ -184,8 +187,8 @@ TEST_F(NetworkTest, OfTwoProcessesOfOneRoleOneTakesPartAndTheOtherWaits) {
     return std::ranges::count_if(drivers,
                                  [](const Background& one) { return !IsAlive(one.pid()); });
   };
-  // The runner does not wait for the end of its driver. On a busy machine the driver ends within
-  // this time.
+  // The runner does not wait for the end of its driver. Even on a busy machine the driver ends
+  // within kPatience.
   constexpr auto kPatience = std::chrono::seconds(20);
   const TimePoint end = Clock::now() + kPatience;
   while (ended() == 0 && Clock::now() < end) std::this_thread::sleep_for(kLookEvery);
@@ -222,7 +225,7 @@ TEST_F(NetworkTest, AMachineWithoutAMulticastRouteIsToldWhichOneAnUrlNeeds) {
                                        "76.67; as root: \"ip route add 239.0.0.0/8 dev lo\""));
     EXPECT_EQ(std::ranges::count(outcome.err, '\n'), 1) << outcome.err;
   }
-  // AND with this route alone the run succeeds
+  // AND the run succeeds if only this route is added
   machine.Do("ip route add 239.0.0.0/8 dev lo");
   EXPECT_EQ(Result(RunCommand(machine.On(Run({}))))["digest"], Undisturbed());
 }

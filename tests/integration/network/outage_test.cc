@@ -1,5 +1,5 @@
-// Messages of a run cannot be sent for some time: an interface, its address or its route goes away
-// and comes back, or a firewall drops outgoing messages. Each test has a network that the kernel
+// Messages of a run cannot be sent for some time. An interface, its address or its route is removed
+// and restored, or a firewall drops outgoing messages. Each test has a network that the kernel
 // simulates.
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ using testing::HasSubstr;
 
 constexpr const char* kUrl = "udpm://239.255.76.67:7700?ttl=1";
 
-/// A part of the network, and the lines of sh that take it away and bring it back.
+/// A failure of the network, and the shell commands that begin and end the failure.
 struct Outage {
   std::string name;
   std::string begin;
@@ -36,7 +36,7 @@ void PrintTo(const Outage& outage, std::ostream* out) { *out << outage.name; }
 const char* const kFirewall =
     "nft 'table inet reload { chain out { type filter hook output priority 0; policy drop; }; }'";
 
-/// Tests on one machine with an interface that leads elsewhere.
+/// Tests on one machine with an interface to another network.
 class OutageTest : public NetworkTest {
  protected:
   static void SetUpInterface(const Machine& machine) {
@@ -53,7 +53,7 @@ class OutageTest : public NetworkTest {
   void LastForSteps() const {
     ASSERT_TRUE(GrowsTo(std::filesystem::file_size(Log()) + 50'000, Log()));
   }
-  /// No event shows when a process has noticed an outage.
+  /// Waits for a fixed time, because no event shows when a process has noticed an outage.
   static void LastFor(Duration time) { std::this_thread::sleep_for(time); }
 };
 
@@ -93,7 +93,7 @@ TEST_P(SeveralMachinesOutageTest, IsRepairedAndTold) {
   ASSERT_TRUE(GrowsTo(20'000, Log()));
   // WHEN a part of the network fails on the driver's machine and comes back
   lab[1].Do(GetParam().begin);
-  // The run stands still, and no event shows from outside that a message of the driver was lost.
+  // The run waits for the driver. No event shows this test that a message of the driver was lost.
   // The driver sends a message every 200 ms.
   std::this_thread::sleep_for(milliseconds(300));
   lab[1].Do(GetParam().end);
@@ -129,10 +129,10 @@ TEST_F(OutageTest, ARoleThatIsStartedWhileTheNetworkIsAwayWaitsForIt) {
   machine.Do("ip route del 239.0.0.0/8");
   kill(PidOf(run.Err(), "fusion"), SIGKILL);
   EXPECT_TRUE(run.WaitForErr("started again as pid ")) << run.Err();
-  // No event shows that the new process has looked for a route in vain.
+  // No event shows that the new process has found no route.
   LastFor(milliseconds(500));
   machine.RouteMulticastToItself();
-  // THEN the new process goes on where the old one was
+  // THEN the new process continues from the step of the old process
   const auto result = ResultOf(run);
   EXPECT_EQ(result["digest"], Undisturbed());
   ASSERT_EQ(result["restarts"].size(), 1U) << result["restarts"];
@@ -153,7 +153,7 @@ TEST_F(OutageTest, ARoleThatWaitsForTheNetworkSaysSoAndCanBeInterrupted) {
 }
 
 TEST_F(OutageTest, AFirewallThatDropsOneOfAThousandEndsNoRun) {
-  // GIVEN a machine on which a run could take any transport
+  // GIVEN a machine on which a run may choose any transport
   const Machine machine("firewall");
   machine.RouteMulticastToItself();
   machine.Do(
@@ -193,7 +193,7 @@ TEST_F(OutageTest, AFirewallThatLetsNothingOutEndsTheRunWithItsReason) {
   ASSERT_TRUE(GrowsTo(20'000, Log()));
   machine.Do(kFirewall);
   EXPECT_EQ(run.Wait(), 3);
-  // The run may notice first that nothing goes out, or that nothing comes in.
+  // The run may first notice that it cannot send messages, or that it receives none.
   EXPECT_THAT(run.Err(),
               AllOf(ContainsRegex("(nothing could be sent for 1\\.[0-9] s: |messages that "
                                   "could not be sent: .*)\\(?Operation not permitted"),
@@ -201,19 +201,19 @@ TEST_F(OutageTest, AFirewallThatLetsNothingOutEndsTheRunWithItsReason) {
 }
 
 TEST_F(OutageTest, ARoleInRealTimeThatCouldSendNothingForLongGoesOn) {
-  // GIVEN a run in real time that waits a second for a step, with its driver on another machine
+  // GIVEN a run in real time with a stall timeout of one second and its driver on another machine
   const Lab lab(2);
   Background driver(lab[1].On({Program("fogline-driver"), "--lcm-url", kUrl}));
   Background run(lab[0].On({Program("fogline"), "run", "scenario/paper.json", "--json",
                             "--realtime", "--set", "/steps=50", "--external", "driver", "--lcm-url",
                             kUrl, "--stall-timeout", "1", "--log", Log()}));
   ASSERT_TRUE(GrowsTo(20'000, Log()));
-  // WHEN the driver can send nothing for a longer time
+  // WHEN the driver can send nothing for longer than this timeout
   lab[1].Do(kFirewall);
   LastFor(milliseconds(1800));
   lab[1].Do("nft delete table inet reload");
-  // THEN the driver takes part to the end, and the run reports the messages that the driver could
-  // not send
+  // THEN the driver takes part until the end, and the run reports the messages that the driver
+  // could not send
   run.Wait();
   EXPECT_EQ(driver.Wait(), 0) << driver.Err();
   const auto result = nlohmann::json::parse(run.Out(), nullptr, false);
@@ -223,7 +223,7 @@ TEST_F(OutageTest, ARoleInRealTimeThatCouldSendNothingForLongGoesOn) {
 }
 
 TEST_F(OutageTest, ARoleThatWasToldNoNetworkOutlivesThatOfItsRun) {
-  // GIVEN a driver that may go to any run that is announced, in a run over an interface
+  // GIVEN a driver that may join any announced run, and that takes part in a run over an interface
   const Machine machine("lab");
   SetUpInterface(machine);
   Background driver(
@@ -231,11 +231,11 @@ TEST_F(OutageTest, ARoleThatWasToldNoNetworkOutlivesThatOfItsRun) {
   Background run(
       machine.On(PacedRun({"--lcm-url", kUrl, "--external", "driver", "--restarts", "0"})));
   ASSERT_TRUE(GrowsTo(20'000, Log()));
-  // WHEN the driver hears nothing of its runner for so long that it looks for another run
+  // WHEN the driver receives nothing from its runner for so long that it looks for another run
   machine.Do("ip addr flush dev eth0");
   LastFor(runtime::RunnerWatch::kSilent + milliseconds(1000));
   machine.Do("ip addr add 192.0.2.1/24 dev eth0; ip route add default via 192.0.2.2");
-  // THEN the driver goes on with its own run
+  // THEN the driver continues with its own run
   EXPECT_EQ(ResultOf(run)["digest"], Undisturbed());
   EXPECT_EQ(driver.Wait(), 0) << driver.Err();
 }
@@ -307,7 +307,7 @@ TEST_F(OutageTest, LeavesStockProgramsThatHearARunAndAreHeard) {
   for (std::int64_t step = 0; step < 500; step += 100) {
     EXPECT_NE(steps.lower_bound(step), steps.lower_bound(step + 100)) << step;
   }
-  // AND top hears lcm-logplayer, which sends over the interface of the route
+  // AND top receives the messages of lcm-logplayer, which sends over the interface of the route
   Background top(machine.On(
       {Program("fogline"), "top", "--json", "--once", "--interval", "3", "--lcm-url", url}));
   machine.Do("until grep -q :1E14 /proc/net/udp; do sleep 0.01; done");

@@ -38,6 +38,7 @@ class RawSocket {
   RawSocket& operator=(const RawSocket&) = delete;
 
   /// Sends all bytes. The test fails if a call blocks. @return false if the other side has closed
+  /// the connection
   bool Send(runtime::Bytes bytes) const {
     while (!bytes.empty()) {
       const ssize_t size = send(fd_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
@@ -49,7 +50,8 @@ class RawSocket {
     }
     return true;
   }
-  /// Reads until the other side closes. @return false if the other side does not close
+  /// Reads until the other side closes the connection. @return false if the other side does not
+  /// close it
   bool WaitForClose() const {
     Payload bytes(4096);
     ssize_t size = 0;
@@ -112,11 +114,11 @@ TEST(HostileRelayClientTest, DoesNotBlockWithAPublisherThatNeverReadsItsOwnMessa
   Relay relay({"--max-queue", "4"});
   const RawSocket publisher(relay.port());
   ASSERT_TRUE(publisher.Send(SubscriptionTo(".*")));
-  // WHEN the publisher sends up to 100 MB and reads nothing. (Send() fails the test if it blocks)
+  // WHEN the publisher sends up to 100 MB and reads nothing. (The test fails if Send() blocks)
   const Payload message = Message("ECHO", Payload(100'000));
   int sent = 0;
   while (sent < 1000 && publisher.Send(message)) ++sent;
-  // THEN the relay disconnects the publisher before the end
+  // THEN the relay disconnects the publisher before all messages are sent
   EXPECT_LT(sent, 1000);
   EXPECT_TRUE(relay.process().WaitForErr(publisher.Name() + " disconnected: does not read; "));
 }
@@ -175,7 +177,7 @@ TEST(HostileRelayClientTest, TakesNoMoreClientsThanItMay) {
 TEST(HostileRelayClientTest, IsCutOffWhenItsExpressionsAreSlowOnEverNewNames) {
   Relay relay;
   // GIVEN a client with an expression that is slow on some names. The expression is long, so the
-  // relay allows a long search. Another client wants everything
+  // relay allows a long search. Another client subscribes to everything
   const RawSocket slow(relay.port());
   ASSERT_TRUE(slow.Send(SubscriptionTo("(a|aa)+b" + std::string(240, 'c'))));
   runtime::Bus bus(relay.url());

@@ -67,18 +67,18 @@ TEST(RelayTest, TakesAndGivesMessagesOfStockLcm) {
         (*static_cast<std::map<std::string, std::size_t>*>(user))[channel] = buffer->data_size;
       },
       &got);
-  // WHEN this client publishes, THEN it hears its own message
+  // WHEN this client publishes, THEN it receives its own message
   const Payload large(100'000, 7);
   ASSERT_EQ(lcm_publish(stock, "FROM_STOCK", large.data(), static_cast<unsigned>(large.size())), 0);
   ASSERT_GT(lcm_handle_timeout(stock, 20'000), 0);
   EXPECT_EQ(got["FROM_STOCK"], large.size());
-  // AND it hears our messages
+  // AND the client receives our messages
   runtime::Bus bus(relay.url());
   bus.Publish("FROM_OURS", Payload(5));
   ASSERT_GT(lcm_handle_timeout(stock, 20'000), 0);
   EXPECT_EQ(got["FROM_OURS"], 5U);
-  // AND after this client has unsubscribed, only our bus hears its message (no other message is on
-  // the way)
+  // AND after this client has unsubscribed, only our bus receives the client's message (no other
+  // message is in transit)
   std::size_t heard = 0;
   bus.Subscribe("LAST", [&heard](runtime::Bytes bytes) { heard = bytes.size(); });
   ASSERT_TRUE(RoundTrip(bus));
@@ -94,7 +94,7 @@ TEST(RelayTest, TakesAndGivesMessagesOfStockLcm) {
 }
 
 TEST(RelayTest, CarriesABurstToAPublisherThatOnlyReadsAfterwards) {
-  // GIVEN a relay with a queue that, together with both sockets, holds less than the burst
+  // GIVEN a relay whose queue, together with both sockets, has less room than the burst needs
   Relay relay({"--max-queue", "4", "--quiet"});
   runtime::Bus bus(relay.url());
   int heard = 0;
@@ -128,7 +128,7 @@ TEST(RelayTest, SaysWhereItListensAndWhatItHasDoneAndNamesAPortThatIsTaken) {
               HasSubstr("1 clients, 0 disconnected; 2 messages in (0.0 MB), 1 out"));
 }
 
-// ---- a relay that is not there -----------------------------------------------------------------
+// ---- a missing relay ---------------------------------------------------------------------------
 
 TEST(RelayTest, IsMissedByNameOfItsAddress) {
   const auto end_of = [](const std::string& url) {
@@ -259,7 +259,7 @@ TEST(RelayTest, LetsLcmLoggerRecordEveryMessageOfARunInRealSpeed) {
   const Outcome check = RunCommand({Program("fogline"), "digest", "--json", stock});
   EXPECT_EQ(check.code, 0) << check.err;
   EXPECT_THAT(check.out, HasSubstr(digest));
-  // AND it has every payload of our own log
+  // AND lcm-logger's log has every payload of our own log
   const auto payloads = [](const std::string& log) {
     std::multimap<std::string, Payload> all;
     log::EventLogReader reader(log);
@@ -270,8 +270,8 @@ TEST(RelayTest, LetsLcmLoggerRecordEveryMessageOfARunInRealSpeed) {
   };
   const auto logged = payloads(stock);
   for (const auto& [channel, payload] : payloads(folder.File("own.lcm"))) {
-    // Two channels differ. Our log has only one RUN, in another phase, and it has a seal, which no
-    // process sends.
+    // Two channels differ. Our log has only one RUN message, in another phase. It also has a seal,
+    // which no process sends.
     if (channel == ChannelOf<run_t>().name || channel == log::kLogSealChannel) continue;
     const auto [first, last] = logged.equal_range(channel);
     EXPECT_TRUE(std::any_of(first, last, [&](const auto& it) { return it.second == payload; }))

@@ -20,7 +20,7 @@ namespace {
 using testing::HasSubstr;
 using Message = std::vector<std::uint8_t>;
 
-/// Hears all traffic of a network and publishes arbitrary messages. It has no key.
+/// Receives all traffic of a network and publishes arbitrary messages. The intruder has no key.
 class Intruder {
  public:
   explicit Intruder(const std::string& url) : bus_(url) {
@@ -32,8 +32,8 @@ class Intruder {
   }
 
   /// AccompanyUntilTheEnd() listens until the run has ended, and calls this function with every
-  /// message. It skips repeated messages, messages of `other_runs`, and the intruder's own
-  /// messages.
+  /// message. AccompanyUntilTheEnd() skips repeated messages, messages of `other_runs`, and the
+  /// intruder's own messages.
   using Answer = std::function<void(const std::string& channel, const Message& message)>;
   void AccompanyUntilTheEnd(const Background& run, const std::set<std::int64_t>& other_runs,
                             const Answer& answer) {
@@ -134,7 +134,7 @@ TEST_F(SignedTrafficTest,
   const auto recorded = intruder.heard();
   ASSERT_GT(recorded.size(), 300U);
   const std::int64_t earlier_id = Intruder::RunIdOf(recorded.front().second);
-  // WHEN an intruder answers every message of a run with forgeries, a STOP among them
+  // WHEN an intruder answers every message of a run with forgeries, including a STOP
   runtime::MessageSigner wrong_key(runtime::SigningKey::Load(other_key_), std::nullopt);
   runtime::MessageSigner wrong_sender(runtime::SigningKey::Load(key_), Role::kLidar);
   std::size_t next = 0;
@@ -219,7 +219,8 @@ TEST_F(SignedTrafficTest, UnsoundMessagesHaveNoEffectOnAnUnsignedRunEither) {
       Message nan;
       runtime::Encode(command, nan);
       intruder.Say(channel, nan);
-      // This message comes in fragments, which the kernel's filter keeps from LCM's parser.
+      // This message is sent in fragments. The kernel's filter drops them before LCM's parser gets
+      // them.
       const Message huge(300'000, 1);
       lcm_publish(lcm, channel.c_str(), huge.data(), static_cast<unsigned>(huge.size()));
     }
@@ -240,7 +241,7 @@ TEST_F(SignedTrafficTest, NamesProcessesThatHaveAnotherKeyOrNone) {
     command.insert(command.end(), more.begin(), more.end());
     return command;
   };
-  // WHEN two drivers come that cannot take part, THEN each says why
+  // WHEN two drivers start that cannot take part, THEN each driver says why
   Background keyless(driver({}));
   EXPECT_TRUE(keyless.WaitForErr("fogline-driver: traffic on this network is signed; give --key"));
   Background other(driver({"--key", other_key_, "--run-id", "7"}));

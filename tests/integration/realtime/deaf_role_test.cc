@@ -1,6 +1,6 @@
 // Real time on networks that lose all messages of one channel. The run names a role that does not
-// hear this channel, and starts the role again if the runner has started it. A run with a deaf role
-// fails.
+// receive this channel. If the runner has started this role, the runner starts it again. A run
+// fails if a role is deaf at the end of the run.
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 
@@ -48,13 +48,13 @@ TEST_F(DeafRoleTest, IsNamedAndStartedAgainAndComputesWhenItHears) {
   Background run(machine.On(RealtimeRun(kSeconds, {})));
   ASSERT_TRUE(run.WaitForErr("processes: "));
   ASSERT_TRUE(GrowsTo(20'000, Log()));
-  // WHEN no role hears where the cars are
+  // WHEN no role receives TRUTH
   machine.LoseChannel("TRUTH");
   ASSERT_TRUE(run.WaitForErr("radar (pid " + std::to_string(PidOf(run.Err(), "radar")) +
                              ") has heard no TRUTH for "))
       << run.Err();
   machine.LoseNothing();
-  // THEN the run starts a role again that reads TRUTH, and this role computes to the end
+  // THEN the run starts a role again that reads TRUTH, and this role computes until the end
   EXPECT_EQ(run.Wait(), kFailed);
   const auto result = nlohmann::json::parse(run.Out(), nullptr, false);
   ASSERT_TRUE(result.is_object()) << run.Err();
@@ -74,7 +74,7 @@ TEST_F(DeafRoleTest, IsNamedAndStartedAgainAndComputesWhenItHears) {
 TEST_F(DeafRoleTest, AtTheEndIsAFailureOfTheRun) {
   const Machine machine("deaf");
   machine.RouteMulticastToItself();
-  // The ACC is deaf after some 3 s. On a busy machine this may take two seconds more.
+  // The ACC counts as deaf after some 3 s. On a busy machine this may take two seconds more.
   Background run(machine.On(RealtimeRun(6, {"--restarts", "0"})));
   ASSERT_TRUE(run.WaitForErr("processes: "));
   ASSERT_TRUE(GrowsTo(20'000, Log()));
@@ -89,8 +89,8 @@ TEST_F(DeafRoleTest, AtTheEndIsAFailureOfTheRun) {
 TEST_F(DeafRoleTest, FromElsewhereIsNamed) {
   const Lab lab(2);
   Background driver(lab[1].On({Program("fogline-driver"), "--lcm-url", kUrl}));
-  // The driver is deaf after some 3 s, and then hears again. On a busy machine each of these may
-  // take a second more.
+  // The driver counts as deaf after some 3 s, and then receives TRUTH again. On a busy machine each
+  // of these two changes may take a second more.
   constexpr int kSeconds = 8;
   Background run(lab[0].On(RealtimeRun(kSeconds, {"--external", "driver"})));
   ASSERT_TRUE(run.WaitForErr("processes: "));

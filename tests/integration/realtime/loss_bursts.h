@@ -1,5 +1,5 @@
 // Real time on networks that lose many messages for a while. When the network is clean again, every
-// role computes again, no matter which messages were lost. A run that succeeds has a whole log.
+// role computes again, no matter which messages were lost. A run that succeeds has a complete log.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -83,7 +83,7 @@ class BurstMachines {
   std::vector<const Machine*> all_;
 };
 
-/// Hears, on the runner's machine, the times at which the roles of a run publish steps.
+/// Records, on the runner's machine, the times at which the steps of each role arrive.
 class BurstListener {
  public:
   BurstListener(const Machine& machine, Duration period) : period_(period) {
@@ -98,8 +98,8 @@ class BurstListener {
       bus_->Subscribe(ChannelOf<status_t>().name, [this](runtime::Arrival& arrival) {
         const auto* status = arrival.As<status_t>();
         if (status == nullptr || status->role != NameOf(Role::kRecorder)) return;
-        // The recorder does not send STATUS in every period. So it counts as back if its last
-        // written step began after the burst.
+        // The recorder does not send STATUS in every period. So the recorder counts as back if its
+        // last written step began after the burst.
         if (began_.contains(status->header.step)) back_.try_emplace(Role::kRecorder, Clock::now());
       });
     });
@@ -184,7 +184,8 @@ class BurstRun {
 
  private:
   static constexpr double kRest_s = 2;  // seconds without bursts, at both ends of the run
-  // Time for the commands that begin and end a burst on each machine, while other runs go on.
+  // Time for the commands that begin and end a burst on each machine, while other runs use the
+  // processors.
   static constexpr double kCommands_s = 1;
 
   /// The run goes on after a collision: the cars can hit each other when each stops by itself.
@@ -253,7 +254,7 @@ class BurstRun {
   BurstListener listener_;
 };
 
-/// Plays plans, several at the same time, because a run mostly waits.
+/// Executes plans, several at the same time, because a run waits for most of its time.
 inline std::vector<PlayedBursts> PlayAll(std::deque<BurstPlan> plans, unsigned at_once) {
   std::vector<PlayedBursts> results;
   std::mutex mutex;

@@ -1,5 +1,5 @@
-// Real time on a network that loses much: how long the recorder stays, which steps its log has, and
-// what the run reports about messages that it cannot get again.
+// Real time on a network that loses many messages. The tests examine when the recorder ends, which
+// steps its log has, and what the run reports about messages that stay lost.
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 
@@ -27,8 +27,7 @@ constexpr int kRate_hz = 50;
 // A time limit, far longer than any wait in these tests, even on a busy machine.
 constexpr Duration kPatience = std::chrono::seconds(30);
 
-/// Hears, on the machine of a run, the step that the world has begun, and whether the runner has
-/// said STOP.
+/// Receives, on the machine of a run, the newest step of the world and the STOP of the runner.
 class Listener {
  public:
   explicit Listener(const Machine& machine) {
@@ -46,11 +45,11 @@ class Listener {
     while (step_ < step && Clock::now() < end) bus_->Wait(milliseconds(20));
     return step_ >= step;
   }
-  /// Whether a process lives until the runner says STOP.
+  /// Whether a process lives until the runner sends STOP.
   bool LivesUntilStop(pid_t process) {
     const TimePoint end = Clock::now() + kPatience;
     while (!stopped_ && IsAlive(process) && Clock::now() < end) bus_->Wait(milliseconds(5));
-    // The process may have heard STOP a moment before this listener.
+    // The process may have received STOP a moment before this listener.
     const TimePoint grace = Clock::now() + milliseconds(200);
     for (TimePoint now = Clock::now(); !stopped_ && now < grace; now = Clock::now()) {
       bus_->Wait(grace - now);
@@ -112,7 +111,7 @@ TEST_F(LossyNetworkInRealtimeTest, ThatLosesAThirdAllTheTimeLeavesNoRoleDeaf) {
     EXPECT_EQ(outcome.code, kFailed);
     EXPECT_THAT(outcome.err, HasSubstr(kNotWhole));
   }
-  // Every role and the recorder hear and send until the end. Only messages near the end may be
+  // Every role and the recorder receive and send until the end. Only messages near the end may be
   // lost.
   const auto newest = NewestSteps();
   for (std::size_t i = 0; i < kNumChannels; ++i) {
@@ -131,7 +130,7 @@ TEST_F(LossyNetworkInRealtimeTest, NearTheEndOfTheRunSendsNoRecorderAwayBeforeSt
   // WHEN the network loses everything for half of the last second
   ASSERT_TRUE(listener.WaitForStep(kSteps - kRate_hz)) << run.Err();
   LoseEverythingFor(milliseconds(500));
-  // THEN the recorder stays until the runner says STOP, and has the last step
+  // THEN the recorder lives until the runner sends STOP, and the log has the last step
   EXPECT_TRUE(listener.LivesUntilStop(recorder)) << run.Err();
   const int code = run.Wait();
   EXPECT_EQ(NewestSteps()[IndexOf<truth_t>()], kSteps - 1) << run.Err();
@@ -145,7 +144,7 @@ TEST_F(LossyNetworkInRealtimeTest, ForLongerThanMessagesAreKeptFailsTheRun) {
   Listener listener(*machine_);
   Background run(RealtimeRun(4 * kRate_hz));
   ASSERT_TRUE(listener.WaitForStep(kRate_hz)) << run.Err();
-  // A second has 50 steps. The world and the roles can send only the last 32 of them again.
+  // A second has 50 steps. The world and the roles can send only the last 32 steps again.
   LoseEverythingFor(milliseconds(1000));
   EXPECT_EQ(run.Wait(), kFailed);
   EXPECT_THAT(run.Err(), HasSubstr(kNotWhole));

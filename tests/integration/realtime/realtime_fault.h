@@ -20,16 +20,16 @@
 namespace fogline::test {
 
 inline constexpr double kPeriodS = kStepS / kSpeed;
-// kDetection: from a role's last message until a reader reports the loss. kInForce: from this
-// report until the fallback acts.
+// kDetection: the periods from a role's last message until a reader reports the loss. kInForce: the
+// periods from this report until the fallback acts.
 inline constexpr std::int64_t kDetection = 3;  // periods
 inline constexpr std::int64_t kInForce = 1;
-// A role hears news from the runner within 100 ms, which are 5 periods.
+// A message from the runner reaches a role within 100 ms, which are 5 periods.
 inline constexpr std::int64_t kNews = 5;
-// The length of a manoeuvre from 20 m/s, steps.
+// The number of steps of a minimal risk manoeuvre from 20 m/s.
 inline constexpr int kManoeuvre = 230;
 
-/// Which role fails, how (by a signal), and in which scenario.
+/// The role that fails, the signal that makes it fail, and the scenario.
 struct Fault {
   std::string scenario;
   std::string role;
@@ -45,7 +45,7 @@ inline std::string NameOfFault(const testing::TestParamInfo<Fault>& info) {
          (info.param.signal == SIGKILL ? "_killed" : "_stopped");
 }
 
-/// The channel on which a role falls silent.
+/// The channel that a role publishes in each step. For the world, which has two, this is HOST_EGO.
 inline std::string ChannelOfRole(const std::string& role) {
   std::string name;
   for (const ChannelInfo& channel : kChannels) {
@@ -67,21 +67,22 @@ inline FaultPlan PlanOf(const Fault& fault) {
   if (fault.role == "arbitrator" || fault.role == "follower") {
     plan.steps = plan.fault_step + kManoeuvre;
   } else if (fault.role == "driver") {
-    // The human is needed some 20 steps after the fault. This is 13 steps after the fog begins in
-    // paper, and 120 steps after it begins in dense_fog. A stopped process is missing for 50 steps.
+    // The human is needed some 20 steps after the fault. This is 13 steps after the beginning of
+    // the fog in paper, and 120 steps after the beginning in dense_fog. A stopped process is
+    // missing for 50 steps.
     const bool dense = fault.scenario == "dense_fog";
     plan.fault_step = dense ? 100 : 60;
     plan.settings = {dense ? "/fog/start_s=0" : "/fog/start_s=6.7"};
     plan.steps = plan.fault_step + 40 + kManoeuvre;
   } else if (fault.role == "recorder") {
-    // A second passes until the recorder's silence counts as a hang. At this speed a second has 20
-    // steps, fewer than the other roles keep for the recorder.
+    // The recorder counts as hung after one second without a message from it. At this speed a
+    // second has 20 steps. The other roles keep more steps than these for the recorder.
     plan.speed = 2;
   }
   return plan;
 }
 
-// The vehicle stops by itself. The arbitrator that is started again lets it finish the stop.
+// The vehicle stops by itself. The restarted arbitrator lets the vehicle finish the stop.
 inline void JudgeWithoutArbitrator(const Log& log, std::int64_t lost) {
   EXPECT_LT(log.truth.at(lost + 1 + kInForce).host_acceleration_mps2,
             log.truth.at(lost).host_acceleration_mps2);
@@ -102,7 +103,7 @@ inline void JudgeWithoutFollower(const Log& log, std::int64_t lost) {
   ExpectStandstillWithinLimits(log, lost, Follower);
 }
 
-// The automation drives alone until the human is needed and does not answer.
+// Only the automation can drive, until the human is needed and does not answer.
 inline void JudgeWithoutDriver(const Log& log, const Fault& fault, const Log::Silence& silence,
                                std::int64_t lost) {
   ExpectCommandsAreCarriedOut(log, 1, log.last());
@@ -125,7 +126,7 @@ inline void JudgeWithoutDriver(const Log& log, const Fault& fault, const Log::Si
   ExpectStandstillWithinLimits(log, wanted->first, Host);
 }
 
-// The human drives until the automation has been back for some steps.
+// The human drives until the automation has been back for kRecoverSteps steps.
 inline void JudgeWithoutAutomation(const Log& log, const Log::Silence& silence, std::int64_t lost) {
   ExpectCommandsAreCarriedOut(log, 1, log.last());
   ASSERT_TRUE(log.command.contains(lost + kInForce));
@@ -143,7 +144,7 @@ inline void JudgeFault(const Log& log, const Fault& fault, std::int64_t fault_st
   if (fault.role == "recorder") return ExpectCommandsAreCarriedOut(log, 1, log.last());
   const auto loss = log.FirstLossOf(channel, fault_step);
   if (!loss) {
-    // A killed role may be back before another role misses it.
+    // A killed role may be replaced before another role notices the loss.
     ASSERT_EQ(fault.signal, SIGKILL) << "no role missed it";
     EXPECT_LT(log.LongestSilence(channel, fault_step), kDetection) << "no role missed it";
     ExpectFollowerObeys(log, 1, log.last());
@@ -155,7 +156,7 @@ inline void JudgeFault(const Log& log, const Fault& fault, std::int64_t fault_st
   if (fault.role == "arbitrator") return JudgeWithoutArbitrator(log, loss->step);
   if (fault.role == "follower") return JudgeWithoutFollower(log, loss->step);
   if (fault.role == "driver") return JudgeWithoutDriver(log, fault, silence, loss->step);
-  // When the world is lost, time stands still. Nothing else changes.
+  // When the world is lost, simulated time does not advance. Nothing else changes.
   if (fault.role == "world") return ExpectCommandsAreCarriedOut(log, 1, log.last());
   JudgeWithoutAutomation(log, silence, loss->step);
 }
@@ -166,8 +167,8 @@ inline void ExpectFaultLeavesNoCarUndecided(const Fault& fault) {
   run.WaitForStep(plan.fault_step);
   const std::int64_t step = run.Signal(fault.role, fault.signal);
   if (fault.role == "world") {
-    // The steps do not show how long the world was silent. This test may hear of the loss one
-    // period later.
+    // The steps do not show for how long the world sent nothing. The report of the loss may reach
+    // this test one period later.
     const auto missed = run.WaitForTheWorldToBeMissed();
     EXPECT_TRUE(missed || fault.signal == SIGKILL) << "no role missed it";
     if (missed) {

@@ -1,4 +1,4 @@
-// The contents of the log of a run in real time, and the rules for the cars in it.
+// The contents of the log of a run in real time, and rules that the motion of the cars must obey.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ inline constexpr double kJerkMps3 = 1;
 // Rounding of numbers near 100 m.
 inline constexpr double kRounding = 1e-9;
 
-/// A log in real time, by step.
+/// The messages of a log in real time, by step.
 struct Log {
   explicit Log(const std::string& file) {
     log::EventLogReader reader(file);
@@ -57,7 +57,8 @@ struct Log {
 
   std::int64_t last() const { return truth.rbegin()->first; }
 
-  /// The number of steps for which a role lacked an input that was due, by its own count.
+  /// The number of steps for which a role lacked an input that was due. The role itself counts
+  /// these steps.
   std::int64_t MissesOf(const std::string& role) const {
     std::map<std::int64_t, std::int64_t> of_instance;
     for (const status_t& said : status) {
@@ -72,7 +73,7 @@ struct Log {
 
   /// The first STATUS, from a given step on, that reports a lost channel.
   struct Loss {
-    std::int64_t step;  // the step that was under way
+    std::int64_t step;  // the current step of the run
     std::string reporter;
     std::string culprit_channel;
   };
@@ -89,8 +90,9 @@ struct Log {
     return std::nullopt;
   }
 
-  /// The silence of a channel around a step: the channel's last step before it, and its first step
-  /// after it (last() + 1 if the channel does not come back).
+  /// The missing steps of a channel around a given step. `before` is the channel's last step before
+  /// them. `back` is the channel's first step after them, or last() + 1 if the channel does not
+  /// come back.
   struct Silence {
     std::int64_t before;
     std::int64_t back;
@@ -102,7 +104,7 @@ struct Log {
             .back = after == there.end() ? last() + 1 : *after};
   }
 
-  /// The longest sequence of steps that a channel lacks, from step `from` on.
+  /// The length of the longest sequence of steps that a channel lacks, from step `from` on.
   std::int64_t LongestSilence(const std::string& channel, std::int64_t from) const {
     std::int64_t longest = 0;
     std::int64_t silent = 0;
@@ -140,9 +142,9 @@ inline Car Follower(const truth_t& truth) {
   return {truth.follower_speed_mps.at(0), truth.follower_acceleration_mps2.at(0)};
 }
 
-/// In each step a process carries out the message that came for the step. If the message did not
-/// come, or came too late, the process keeps to the message before. The log shows which messages
-/// came. The process reports how many of them came too late.
+/// In each step a process applies the value in the message of this step. If the message is missing
+/// or late, the process keeps the value of the step before. The log shows which messages exist. The
+/// process reports how many messages were late.
 class Obedience {
  public:
   /// @param role the role that obeys
@@ -165,8 +167,8 @@ class Obedience {
   std::int64_t late_ = 0;
 };
 
-/// Expects that the host follows the command of each step, and that the command is the human's
-/// offer while the human drives.
+/// Expects that the host follows the command of each step. While the human drives, the command must
+/// be the acceleration of DRIVER_COMMAND.
 inline void ExpectCommandsAreCarriedOut(const Log& log, std::int64_t from, std::int64_t to) {
   Obedience world(log, "world");
   Obedience arbitrator(log, "arbitrator");
@@ -205,7 +207,7 @@ inline void ExpectStandstillWithinLimits(const Log& log, std::int64_t step,
     const Car after = car(log.truth.at(k + 1));
     const double jerk = (after.acceleration_mps2 - before.acceleration_mps2) / kStepS;
     EXPECT_LE(std::abs(jerk), kJerkMps3 + kRounding) << "step " << k;
-    // A car that braked harder at the beginning releases the brake.
+    // A car that braked harder at the beginning releases the brake gradually.
     EXPECT_GE(after.acceleration_mps2,
               std::min(-kDecelerationMps2, before.acceleration_mps2) - kRounding)
         << "step " << k;

@@ -16,7 +16,7 @@
 
 namespace fogline::test {
 
-// Simulated seconds per second.
+// Simulated seconds per second of real time.
 inline constexpr double kSpeed = 5;
 
 /// A run in real time. This test can stop its processes.
@@ -47,13 +47,13 @@ class RealtimeRun {
       }
     }
   }
-  /// @return the step that was under way
+  /// @return the step of the run at the time of the signal
   std::int64_t Signal(const std::string& role, int signal) {
     kill(pids_.at(role), signal);
     return step_;
   }
   /// The time between the world's last TRUTH and the first STATUS that calls the world lost, on
-  /// this process's clock. std::nullopt if the world is back earlier.
+  /// this process's clock. The result is nullopt if the world comes back before such a STATUS.
   std::optional<Duration> WaitForTheWorldToBeMissed() {
     const std::int64_t silent_since = step_;
     const TimePoint end = Clock::now() + std::chrono::seconds(5);

@@ -41,8 +41,8 @@ TEST(RealtimeTest, UndisturbedItIsTheRunInLockstep) {
   const Outcome lockstep = RunCommand({Program("fogline"), "run", "scenario/paper.json", "--json",
                                        "--set", "/steps=60", "--transport", "direct"});
   std::int64_t misses = 0;
-  // If the machine stands still for half a period, the run is disturbed and proves nothing. So the
-  // test tries several runs. Most of these moments are shorter than half of a period of 50 ms.
+  // If the machine executes no process for half a period, the run is disturbed and proves nothing.
+  // So the test tries several runs. Most such pauses are shorter than half of a period of 50 ms.
   constexpr int kTries = 5;
   constexpr double kSlowly = 2;
   for (int i = 0; i < kTries; ++i) {
@@ -61,12 +61,12 @@ TEST(RealtimeTest, UndisturbedItIsTheRunInLockstep) {
          << " steps had to do without an input";
 }
 
-// A column of ACCs and people follows the driver. Every step must have commands for all of them.
+// A column of ACCs and people follows the driver. Every step must have commands for all these cars.
 TEST(RealtimeTest, ADriverWhoIsLateEndsTheManoeuvreAndTheLogTellsHisTimes) {
   constexpr int kSteps = 140;
   constexpr int kColumn = 5;
-  // The test compares times step by step. So a period is longer than the moments in which a busy
-  // machine stands still.
+  // The test compares times step by step. So a period is longer than the pauses in which a busy
+  // machine executes no process.
   RealtimeRun run(
       "scenario/dense_fog.json", kSteps, kSpeed / 2,
       {"/fog/start_s=1", "/fog/duration_s=4", "/arbitrator/take_over/mode=requested",
@@ -83,7 +83,7 @@ TEST(RealtimeTest, ADriverWhoIsLateEndsTheManoeuvreAndTheLogTellsHisTimes) {
   const auto after_s = [&](const char* what) {
     return requests.at(0)[what].get<double>() - requests.at(0)["requested_s"].get<double>();
   };
-  // A decision is a step late if its inputs are late.
+  // A decision comes one step later if its inputs are late.
   EXPECT_NEAR(after_s("manoeuvre_s"), 10, kStepS + kRounding);
   EXPECT_GE(after_s("manoeuvre_s"), 10 - kRounding);
   EXPECT_NEAR(after_s("acknowledged_s"), 10.6, kStepS + kRounding);

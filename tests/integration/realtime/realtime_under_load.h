@@ -49,7 +49,7 @@ inline std::map<std::string, std::vector<std::int64_t>> MemoryIn(const std::stri
   return memory;
 }
 
-/// Milliseconds of this machine that the hypervisor has given to other machines since the start.
+/// Milliseconds of processor time that the hypervisor has taken from this machine since its start.
 inline std::int64_t StolenMs() {
   std::ifstream stat("/proc/stat");
   std::string cpu;
@@ -86,7 +86,7 @@ inline void ExpectRunUnderLoadMissesNothing(int rate_hz, double seconds) {
   const auto memory = MemoryIn(log);
   EXPECT_EQ(memory.size(), kRoles.size());
   for (const auto& [role, bytes] : memory) {
-    // From this point on all parts of a role have been in use. LCM's ring of received datagrams
+    // At bytes[first] a role has used all of its code and data. LCM's ring of received datagrams
     // (200 KiB) may still have pages that were never touched.
     constexpr std::int64_t kFlat = 512 * 1024;
     const std::size_t first = std::max<std::size_t>(10, bytes.size() / 10);

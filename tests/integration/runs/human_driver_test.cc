@@ -1,4 +1,4 @@
-// A driver with human weaknesses. The digest is the same on every transport, also if driver and
+// A driver with human weaknesses. The digest is the same on every transport, even if driver and
 // arbitrator read each other's messages.
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-// Every policy has one digest on all transports. A policy takes part in two processes, and each of
-// them has its own instance.
+// Every policy has one digest on all transports. Two processes use the policy, and each process has
+// its own instance.
 #include <string>
 #include <string_view>
 #include <vector>
@@ -13,7 +13,7 @@
 namespace fogline::test {
 namespace {
 
-/// The LiDAR loses the car at about step 15. Transfers of the wheel are smooth.
+/// The LiDAR loses the car at about step 15. Transfers between automation and human are smooth.
 const std::vector<std::string> kFoggy{"/steps=60",
                                       "/fog/start_s=1",
                                       "/fog/duration_s=4",

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# run_memory.sh FOGLINE TRANSPORT: the peak memory of each process in a run of 50,000 steps is at
-# most a tenth above that in a run of 5,000 steps.
+# run_memory.sh FOGLINE TRANSPORT: checks that the largest process of a run of 50,000 steps needs at
+# most a tenth more memory than the largest process of a run of 5,000 steps.
 set -euo pipefail
 cd "$(dirname "$0")/../../.."
 fogline=$1

@@ -76,7 +76,7 @@ TEST(RunTest, PrintsDigitsThatMeanSomethingAndHasAllOfThemInJson) {
   const auto json = RunPaper(folder.File("run.lcm"), more)["metrics"];
   const Outcome text = RunCommand({Program("fogline"), "metrics", folder.File("run.lcm")});
   ASSERT_EQ(text.code, 0) << text.err;
-  // THEN the text shortens a time to collision of a year, and a number near 0 with many decimals
+  // THEN the text shortens a very long time to collision, and a number near 0 with many decimals
   EXPECT_GT(json["min_follower_ttc_s"], 1e6);
   EXPECT_THAT(text.out, ContainsRegex("min_follower_ttc_s +> 1000 s\n"));
   EXPECT_GT(json["max_compromised_safety_m"], 0);
@@ -93,8 +93,8 @@ TEST(RunTest, WritesTheSameLogByteForByteWhateverTheTransport) {
   RunPaper(folder.File("udpm.lcm"), {"--transport", "udpm"});
   RunPaper(folder.File("direct.lcm"), {"--transport", "direct"});
   const auto size = [&](const char* name) { return std::filesystem::file_size(folder.File(name)); };
-  // THEN they have the same size. Two of them have the same events in the same order, except run
-  // ids
+  // THEN all logs have the same size. Two of them have the same events in the same order, and
+  // differ only in run ids
   EXPECT_EQ(size("memq.lcm"), size("udpm.lcm"));
   EXPECT_EQ(size("memq.lcm"), size("direct.lcm"));
   const Outcome diff =

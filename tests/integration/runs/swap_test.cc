@@ -29,8 +29,8 @@ constexpr Duration kPatience = std::chrono::seconds(30);
 // The requester of this test's RESEND messages.
 constexpr const char* kTest = "test";
 
-/// A folder outside of the tree with an installed Fogline. The external drivers are built against
-/// it alone.
+/// A folder outside of the tree with an installed Fogline. The external drivers are built only
+/// against this installation.
 class Elsewhere {
  public:
   Elsewhere() {
@@ -107,7 +107,7 @@ class Elsewhere {
   ScratchFolder folder_;
 };
 
-/// The command line of `fogline run scenario/paper.json` with a driver from elsewhere.
+/// The command line of `fogline run scenario/paper.json` with an external driver.
 std::vector<std::string> RunWithExternalDriver(const std::string& fogline, const std::string& url,
                                                const std::string& log) {
   return {fogline, "run", "scenario/paper.json", "--external", "driver", "--json", "--lcm-url", url,
@@ -184,7 +184,7 @@ TEST(SwapTest, APartWithNothingButTheMessageTypesGivesTheSameDigestIfItDoesTheSa
       RunCommand({fogline, "run", "scenario/paper.json", "--transport", "direct", "--json"});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   const auto ours = nlohmann::json::parse(outcome.out);
-  // WHEN a driver from elsewhere replaces our driver
+  // WHEN the bare driver replaces our driver
   const auto same = RunWith(fogline, {bare, url, "1.6"}, url, elsewhere.File("same.lcm"));
   // THEN the digest is the same
   EXPECT_EQ(same["steps"], 500);
@@ -202,7 +202,8 @@ TEST(SwapTest, AClassWithAStepFunctionIsARoleByFindPackageAlone) {
   const std::string log = elsewhere.File("run.lcm");
   const auto run = RunWith(elsewhere.Installed("fogline"), {driver, "--lcm-url", url}, url, log);
   EXPECT_EQ(run["steps"], 500);
-  // THEN every command in the log is the one that this driver computes from the TRUTH of its step
+  // THEN every command in the log equals the command that this driver computes from the TRUTH of
+  // its step
   log::RunLogReader reader(log);
   truth_t truth{};
   driver_command_t command{};
@@ -276,7 +277,7 @@ TEST(SwapTest, TheBareDriverAnswersRepairsAndLeavesAsARoleMust) {
   const resend_t request = requests.WaitForNext();
   EXPECT_EQ(request.channel, "TRUTH");
   EXPECT_EQ(request.header.step, 2);
-  // WHEN another run stops, THEN the driver stays
+  // WHEN another run stops, THEN the driver does not exit
   say_run(8, run_t::STOP);
   say_truth(7, 2);
   EXPECT_EQ(commands.WaitForNext().header.step, 2);
@@ -289,7 +290,7 @@ TEST(SwapTest, APartThatDiesEndsTheRunByTheStallTimeoutAndByItsName) {
   const Elsewhere elsewhere;
   runtime::Bus bus(runtime::FreshMulticastUrl());
   Heard<driver_command_t> commands(bus);
-  // GIVEN a run in real speed that is under way
+  // GIVEN a run at real speed that is under way
   ListeningDriver driver(elsewhere.BareDriver(), bus.url());
   auto command = RunWithExternalDriver(Program("fogline"), bus.url(), elsewhere.File("run.lcm"));
   command.insert(command.end(), {"--pace", "1", "--stall-timeout", "2"});
@@ -322,7 +323,7 @@ TEST(SwapTest, TwoProcessesOfOneRoleAreRefusedByName) {
   const std::string url = runtime::FreshMulticastUrl();
   ListeningDriver one(bare, url);
   ListeningDriver two(bare, url);
-  // The run has real speed. So it still goes on when a busy machine starts one of the drivers late.
+  // The run has real speed. So it has not ended when a busy machine starts one of the drivers late.
   auto command = RunWithExternalDriver(Program("fogline"), url, elsewhere.File("run.lcm"));
   command.insert(command.end(), {"--pace", "1"});
   const Outcome run = RunCommand(command);

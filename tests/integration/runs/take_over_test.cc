@@ -1,5 +1,5 @@
-// A driver whom the car must ask: the run is the same on every transport, and its log shows the
-// request.
+// The car must ask the driver to take over. The run is the same on every transport, and its log
+// shows the request.
 #include <string>
 
 #include <gmock/gmock-matchers.h>

@@ -15,8 +15,8 @@ using testing::HasSubstr;
 
 class TrafficTest : public testing::Test {
  protected:
-  /// The command line of a verb on the paper's scenario: wet and uphill, with five cars behind the
-  /// host.
+  /// The command line of a verb on the paper's scenario, on a wet road uphill, with five cars
+  /// behind the host.
   std::vector<std::string> On(const std::string& verb, const std::vector<std::string>& more) const {
     std::vector<std::string> command{Program("fogline"), verb, "scenario/paper.json"};
     for (const char* field :
@@ -69,7 +69,7 @@ TEST_F(TrafficTest, IsMeasuredCarByCarFromTheLogAlone) {
   EXPECT_EQ(followers[0]["max_compromised_safety_m"], run["metrics"]["max_compromised_safety_m"]);
   for (const auto& follower : followers) {
     EXPECT_GT(follower["min_gap_m"], 0);
-    // A car that never closes in has no time to collision.
+    // A car that never approaches the car ahead has no time to collision.
     if (!follower["min_ttc_s"].is_null()) {
       EXPECT_GT(follower["min_ttc_s"], 0);
     }

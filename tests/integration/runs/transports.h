@@ -13,7 +13,7 @@
 
 namespace fogline::test {
 
-/// Runs `fogline run` with these fields set; it must succeed. @return its result as JSON
+/// Executes `fogline run`, which must succeed, with these fields set. @return its result as JSON
 /// @param more further arguments
 inline nlohmann::json RunOn(const std::string& transport, const std::string& scenario,
                             const std::string& log, const std::vector<std::string>& fields,

@@ -1,4 +1,4 @@
-// The scenarios of the repository as `fogline check` sees them: the shipped ones and scenario/bad.
+// The verdicts of `fogline check` on the repository's scenarios: the shipped ones and scenario/bad.
 #include <algorithm>
 #include <filesystem>
 #include <fstream>

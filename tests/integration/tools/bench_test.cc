@@ -1,5 +1,5 @@
 // The benchmarks start the programs that they compare, and print figures. The tests do not examine
-// whether a goal is met, because it depends on the machine.
+// whether a goal is met, because the figures depend on the machine.
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 
@@ -21,7 +21,7 @@ using ::testing::HasSubstr;
 TEST(BenchTest, MeasuresBothSidesOfAComparison) {
   const Outcome outcome = RunCommand(
       {Program("fogline-bench"), "--quick", "--only", "memq", "--rounds", "1", "--json"});
-  ASSERT_THAT(outcome.code, AnyOf(0, 1)) << outcome.err;  // with code 1 the goal is missed
+  ASSERT_THAT(outcome.code, AnyOf(0, 1)) << outcome.err;  // code 1: a goal is missed
   const auto comparisons = nlohmann::json::parse(outcome.out)["comparisons"];
   ASSERT_EQ(comparisons.size(), 1U);
   EXPECT_EQ(comparisons[0]["name"], "memq");
@@ -35,7 +35,7 @@ TEST(BenchTest, MeasuresTheStepFunctionOfEachRole) {
       RunCommand({Program("fogline-bench-steps"), "--benchmark_list_tests=true"});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   for (const RoleInfo& info : kRoles) {
-    if (info.role == Role::kRecorder) continue;  // it has no step function
+    if (info.role == Role::kRecorder) continue;  // the recorder has no step function
     std::string name(info.name);
     name[0] = static_cast<char>(std::toupper(name[0]));
     EXPECT_THAT(outcome.out, ContainsRegex("(^|\n)" + name + "[A-Za-z]*Step(\n|$)"));

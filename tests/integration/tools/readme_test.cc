@@ -38,7 +38,8 @@ class Clone {
     Must("git init -q && git add -A");
   }
 
-  /// Executes a script in the clone. make fails, and the home folder is empty at first.
+  /// Executes a script in the clone. The program make fails there, and the home folder is empty at
+  /// first.
   Outcome Run(const std::string& script) const {
     std::vector<std::string> command = WithoutMake(home_);
     command.insert(command.end(), {"bash", "-c",
@@ -89,8 +90,8 @@ std::vector<std::string> Comparable(const std::string& text) {
   return lines;
 }
 
-/// Why a text does not show the lines of an output, whole and in their order; "" if it does. A line
-/// "..." stands for any number of lines.
+/// The reason why a text does not show the whole lines of an output in their order; "" if the text
+/// shows them. A line "..." stands for any number of lines.
 std::string WhyNotShown(const std::string& shown, const std::string& printed) {
   constexpr const char* kLeftOut = "...";
   const std::vector<std::string> lines = Comparable(printed);
@@ -169,7 +170,7 @@ TEST(DocsTest, ThePartOfExtendingIsBuiltAndDrivesTheCarByTheCommandsThere) {
   const std::vector<Block> blocks = BlocksOf(ReadSource("docs/extending.md"));
   // WHEN a shell executes the commands of the page
   const Outcome outcome = clone.Run(ScriptOf(blocks));
-  // THEN the part that these commands build drives the car
+  // THEN the driver that these commands build drives the car
   EXPECT_EQ(outcome.code, 0) << outcome.out << outcome.err;
   EXPECT_NE(outcome.out.find("scenario/paper.json: 500 steps"), std::string::npos) << outcome.out;
   EXPECT_NE(outcome.out.find("verified: world radar lidar"), std::string::npos) << outcome.out;
@@ -225,7 +226,7 @@ TEST(ReadmeTest, ItsCommandsLeaveNoFileThatGitDoesNotKnow) {
     // These commands take long. Few seeds or steps give the same files.
     if ((*at)[2] == "study" || (*at)[2] == "calibrate") command += " --seeds 1:2";
     if (command.find("--pace") != std::string::npos) command += " --set /steps=20";
-    // The run waits for a driver that a person starts.
+    // This run waits for a driver that a person starts.
     if (command.find("--external driver") != std::string::npos) {
       command = "fogline-driver & " + command + "; wait $!";
     }

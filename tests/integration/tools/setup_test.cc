@@ -22,8 +22,9 @@ using ::testing::Not;
 /// The file that npm installs.
 constexpr const char* kFile = "node_modules/chart/chart.js";
 
-/// A clone that belongs to a user without root. The machine has all Debian packages except npm. It
-/// has another npm, and only the programs below. `$user` is the user who calls a program.
+/// A clone on a simulated machine, for a user other than root. The machine has all Debian packages
+/// except npm. Its npm comes from another source, and its only programs are those below. `$user` is
+/// the user who calls a program.
 class SetupTest : public testing::Test {
  protected:
   SetupTest() {
@@ -48,7 +49,7 @@ class SetupTest : public testing::Test {
 
   std::string File(const std::string& name) const { return machine_.File(name); }
 
-  /// Makes a program of this machine.
+  /// Makes a program of the simulated machine.
   void Write(const std::string& program, const std::string& script) const {
     const std::string file = File("bin/" + program);
     std::ofstream(file) << "#!/bin/sh\n" << script << "\n";
@@ -84,7 +85,8 @@ TEST_F(SetupTest, InstallsOnceAsTheUser) {
   }
   EXPECT_TRUE(std::filesystem::is_empty(File("tmp")));
 
-  // WHEN npm fails, THEN setup does not call it, because nothing is missing
+  // WHEN every call of npm fails, THEN setup succeeds, because it calls npm only if a package is
+  // missing
   Write("npm", "exit 1");
   const Outcome again = Setup();
   EXPECT_EQ(again.code, 0);
@@ -106,7 +108,7 @@ TEST_F(SetupTest, InstallsAgainWhatIsNotWhole) {
 }
 
 TEST_F(SetupTest, InstallsAgainAfterAnInterrupt) {
-  // GIVEN an installation that is killed in its middle, together with setup
+  // GIVEN an incomplete installation, because setup is killed while npm installs
   std::filesystem::copy_file(File("bin/npm"), File("tmp/npm"));
   Write("npm", "[ $1 = ci ] || exit 0; mkdir -p node_modules/chart; kill -KILL $PPID");
   EXPECT_EQ(Setup().code, 128 + 9);
@@ -149,7 +151,7 @@ TEST_F(SetupTest, RefusesAnNpmThatCannotReadTheLockFileBeforeItInstallsAnything)
     std::filesystem::remove_all(File("node_modules"));
     EXPECT_THAT(Calls(), HasSubstr("npm ci")) << version;
   }
-  // An old npm does no harm if nothing has to be installed.
+  // setup accepts an old npm if no package is missing.
   write_npm("6.14.18");
   EXPECT_EQ(Calls(), "");
 }

@@ -18,8 +18,8 @@ using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-/// What the program prints for these options. A program that takes a wrong option would run for an
-/// hour; the limit ends it.
+/// The outcome of the program with these options. If the program accepted a wrong option, it would
+/// run for an hour. The time limit ends such a run.
 Outcome Soak(std::vector<std::string> options) {
   options.insert(options.begin(), Program("soak"));
   return RunCommand(options, std::chrono::seconds(20));
@@ -49,7 +49,7 @@ TEST(SoakTest, RefusesANumberOutsideItsRangeInOneLine) {
       {"--each", {"nan", "-1", "0", "1.5", "99999999999999999999"}, "1 to 1000000000"},
       {"--first", {"nan", "-1", "abc", "99999999999999999999"}, "0 to 1000000000"},
       {"--jobs", {"nan", "0", "65"}, "1 to 64"},
-      // as `fogline run --seed`
+      // the range of `fogline run --seed`
       {"--seed",
        {"nan", "-1", "1.5", "9007199254740992", "99999999999999999999999999"},
        "0 to 9007199254740991"}};

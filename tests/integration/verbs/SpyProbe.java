@@ -1,6 +1,6 @@
-// Reads the table that a person sees in lcm-spy's window. It is a Java agent. Each time that a
-// channel has appeared, it prints all rows of the table, with tabs between the cells. lcm-spy
-// itself is unchanged:
+// Reads the table that a person sees in lcm-spy's window. SpyProbe is a Java agent. Each time that
+// a channel has appeared, the agent prints all rows of the table, with tabs between the cells.
+// lcm-spy itself is unchanged:
 //
 //   JAVA_TOOL_OPTIONS=-javaagent:probe.jar fogline spy --lcm-url URL
 import java.awt.Component;
@@ -28,8 +28,8 @@ public final class SpyProbe {
         System.out.flush();
         rowsShown = rows;
       } catch (IndexOutOfBoundsException error) {
-        // lcm-spy adds rows on its LCM thread, and was just adding this row. The next look finds
-        // the row.
+        // lcm-spy adds rows on its LCM thread, and this row was not complete yet. The next call of
+        // look() finds the complete row.
       }
     }
   }

@@ -17,7 +17,7 @@ namespace {
 
 using nlohmann::json;
 
-// The experiment in 30 s, without noise. The follower closes up within seconds.
+// The experiment in 30 s, without noise. The follower reaches its desired gap within seconds.
 constexpr const char* kScenario = R"({
   "$schema": "scenario.schema.json",
   "version": 1,
@@ -90,8 +90,8 @@ std::string TextOf(const std::string& file) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-// A search ends when every number of the table is within 0.001 points. Here the offset moves the
-// table by only 0.07 points for 1 % of its range. So the search finds the field within a few
+// A search ends when every number of the table is within 0.001 points of the target. Here 1 % of
+// the offset's range moves the table by only 0.07 points. So the search finds a field within a few
 // thousandths of its range: 0.4 mm of the offset, 1.5 mm of the fog's bias, 4 ms of the headway.
 constexpr double kShareOfRange = 5e-3;
 
@@ -120,7 +120,8 @@ TEST_F(CalibrateTest, RecoversFogAndOffsetFromMeansOverNoisySeeds) {
   std::vector<std::string> truth = noise;
   truth.insert(truth.end(), {"/fog/bias_m=0.377", "/radar/bias_m=0.9321"});
   MakeTarget(truth, "1:4");
-  // WHEN the seeds are the table's seeds, THEN the search can meet the table to the last digit
+  // WHEN the search uses the seeds of the table, THEN the search can meet the table to the last
+  // digit
   const json found =
       Calibrate({"/fog/bias_m=0.2:0.5", "/radar/bias_m=0.9:0.98"},
                 {"--seeds", "1:4", "--spread-weight", "0", "--set", noise[0], "--set", noise[1]});
@@ -138,7 +139,7 @@ TEST_F(CalibrateTest, WritesTheScenarioWithWhatItFound) {
   expected.replace(expected.find("Without noise"), 13, "Found");
   EXPECT_EQ(TextOf(out_), expected);
   EXPECT_EQ(RunFogline({"check", out_}).code, 0);
-  // AND the table of this file is the one that calibrate reported
+  // AND the table of this file equals the table that calibrate reported
   const Outcome table =
       RunFogline({"table", out_, "--thresholds", "0.3,0.4,0.5,0.6,0.7", "--seeds", "1", "--json"});
   const json rows = json::parse(table.out)["rows"];
@@ -194,7 +195,7 @@ TEST_F(CalibrateTest, EndsWithTheBestSoFarOnCtrlC) {
 
 class EnsembleOfCalibrateTest : public CalibrateTest {
  protected:
-  /// A search for sets that come near to the table of this scenario.
+  /// The arguments of a search for sets whose tables are near the target.
   std::vector<std::string> Search(const std::vector<std::string>& more) const {
     std::vector<std::string> arguments{"calibrate",     scenario_,
                                        "--target",      target_,
@@ -221,7 +222,7 @@ TEST_F(EnsembleOfCalibrateTest, WritesItsSetsAndTheirTable) {
   ASSERT_EQ(found["sets"].size(), 2U);
   EXPECT_GE(found["least_distance"], 0.05);
   for (const json& set : found["sets"]) {
-    // Each set is a scenario whose table is the one that calibrate reported.
+    // Each set is a scenario. Its table equals the table that calibrate reported.
     const std::string file = sets_ + "/" + set["file"].get<std::string>();
     EXPECT_EQ(RunFogline({"check", file}).code, 0);
     const Outcome table = RunFogline(
@@ -235,7 +236,7 @@ TEST_F(EnsembleOfCalibrateTest, WritesItsSetsAndTheirTable) {
     EXPECT_THAT(TextOf(file), testing::HasSubstr("Made by: fogline calibrate " + scenario_));
   }
   EXPECT_THAT(TextOf(sets_ + "/sets.csv"), testing::StartsWith("quantity,unit,lowest,"));
-  // AND it does not replace them unless it is told to
+  // AND calibrate replaces the sets only with --force
   const Outcome again = RunFogline(Search({"--ensemble", "1"}));
   EXPECT_EQ(again.code, 2);
   EXPECT_EQ(again.err, sets_ + ": error: --out: the folder has sets; --force replaces them\n");

@@ -1,4 +1,4 @@
-// The command line as a person meets it: its help, and its errors.
+// The command line as a person sees it: its help, and its errors.
 #include <sys/stat.h>
 
 #include <filesystem>
@@ -124,8 +124,8 @@ TEST(CommandLineTest, SaysHowAFieldIsSetThatIsTakenForAnOption) {
   EXPECT_EQ(ErrorOf({"sweep", "scenario/paper.json", "--policy=none"}),
             "fogline sweep: error: no option \"--policy\"" + set +
                 "/arbitrator/policy=none (see fogline sweep --help)\n");
-  // Several sections have a field of this name. The text does not repeat a value that the field
-  // refuses.
+  // The error text does not repeat a value that the field refuses. If several sections have a field
+  // of this name, the text names all these fields.
   EXPECT_EQ(ErrorOf({"run", "scenario/paper.json", "--end-on-collision", "scenario/x.json"}),
             "fogline run: error: no option \"--end-on-collision\"" + set +
                 "/world/end_on_collision=VALUE (see fogline run --help)\n");
@@ -219,7 +219,7 @@ TEST(CommandLineTest, ARunThatLacksDescriptorsFailsAndItsInputIsNotCalledBad) {
   const ScratchFolder folder;
   int failed = 0;
   for (const char* transport : {"udpm", "memq", "tcpq", "direct"}) {
-    for (int limit = 12; limit <= 28; limit += 4) {  // the libraries need this number of files
+    for (int limit = 12; limit <= 28; limit += 4) {  // the libraries need about so many files
       const Outcome outcome =
           RunCommand({"sh", "-c", fmt::format("ulimit -n {}; exec \"$@\"", limit), "sh",
                       Program("fogline"), "run", "scenario/paper.json", "--set", "/steps=5",
@@ -285,7 +285,7 @@ TEST(CommandLineTest, PrintsJsonThatNoTerminalObeysOfAnyName) {
   for (const char* control : {"\x1b", "\xc2\x9b", "\xe2\x80\xae"}) {
     EXPECT_THAT(digest.out, testing::Not(HasSubstr(control)));
   }
-  // JSON cannot carry this name: it is not valid UTF-8.
+  // JSON cannot contain this name, because the name is not valid UTF-8.
   const std::string latin = folder.File("f\xf6hn.lcm");
   std::filesystem::rename(log, latin);
   for (const char* verb : {"digest", "metrics", "events"}) {

@@ -68,7 +68,7 @@ class FullPipe {
   int pages_ = 0;
 };
 
-/// Waits for the process of a role that a run has started. @return 0 if no such process comes
+/// Waits for the process of a role that a run has started. @return 0 if no such process starts
 pid_t WaitForRole(pid_t run, const std::string& program) {
   const TimePoint end = Clock::now() + kPatience;
   while (Clock::now() < end) {
@@ -151,7 +151,7 @@ TEST(ConsoleTest, AnErrorIsNotWaitedForWithoutEnd) {
 }
 
 TEST(ConsoleTest, DoesNotChangeHowOtherProcessesWriteToTheSamePipe) {
-  // The shell's own writes to the pipe block until there is room, before the run and after it.
+  // Before and after the run, a write of the shell to the pipe blocks until the pipe has room.
   const ScratchFolder folder;
   const Outcome outcome =
       RunCommand({"bash", "-c",
@@ -170,7 +170,7 @@ TEST(ConsoleTest, ARoleIsRepairedWhereStderrIsAFullDisk) {
   Background run(Shell("exec 2>/dev/full", {Program("fogline"), "run", "scenario/paper.json",
                                             "--set", "/steps=60", "--pace", "2", "--log", log}));
   ASSERT_TRUE(GrowsTo(1, log));
-  // WHEN a role is killed THEN the run starts it again, although the run cannot report this
+  // WHEN a role is killed THEN the run starts it again, although the run cannot report the restart
   const pid_t radar = WaitForRole(run.pid(), "fogline-radar");
   ASSERT_GT(radar, 0);
   kill(radar, SIGKILL);
@@ -191,10 +191,11 @@ TEST(ConsoleTest, ARunGoesOnWhenItsTerminalIsGone) {
   ASSERT_TRUE(GrowsTo(1, log));
   const pid_t radar = WaitForRole(run.pid(), "fogline-radar");
   ASSERT_GT(radar, 0);
-  // WHEN the terminal's window is closed and a role is killed, which the run would report
+  // WHEN the terminal's window is closed, and a role is killed, so that the run has something to
+  // report
   close(terminal);
   kill(radar, SIGKILL);
-  // THEN the run goes on
+  // THEN the run continues
   EXPECT_EQ(run.Wait(), 0);
 }
 
@@ -227,12 +228,12 @@ TEST(InterruptTest, SignalsThatWereIgnoredAtTheStartStayIgnoredInEveryProgram) {
   ASSERT_TRUE(GrowsTo(1, log));
   const pid_t radar = WaitForRole(run.pid(), "fogline-radar");
   ASSERT_GT(radar, 0);
-  // WHEN the terminal is closed, or a person presses Ctrl-C there
+  // WHEN the terminal is closed, or a person presses Ctrl-C in the terminal
   for (const int signal : {SIGHUP, SIGINT}) {
     run.Signal(signal);
     kill(radar, signal);
   }
-  // THEN the run goes on to its end with the same processes
+  // THEN the run continues to its end with the same processes
   EXPECT_EQ(run.Wait(), 0) << run.Err();
   EXPECT_THAT(run.Out(), HasSubstr("40 steps"));
   EXPECT_EQ(run.Out().find("started again"), std::string::npos) << run.Out();

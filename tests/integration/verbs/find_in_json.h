@@ -8,7 +8,7 @@
 
 namespace fogline::test {
 
-/// @return null if there is none; the test then fails
+/// @return the first object that has this value; null if there is none, and the test then fails
 inline const nlohmann::json& Find(const nlohmann::json& array, const std::string& key,
                                   const std::string& value) {
   static const nlohmann::json kNone;

@@ -33,7 +33,8 @@ class FullDiskTest : public testing::Test {
     return own.code == 0 ? "" : "mount namespaces: " + own.err;
   }
   /// Executes a script with $fogline, $log and $disk, the folder of the small file system. "fill"
-  /// fills it, and "keep" ends the script with 97 if $disk/old differs from what it was before.
+  /// copies this folder and then fills it. "keep" ends the script with 97 if $disk/old differs from
+  /// the copy.
   Outcome Run(const std::string& script) const {
     const std::string begin =
         "fogline=$0 log=$1 disk=$2 copy=$3\n"

@@ -1,5 +1,5 @@
-// Debian's own LCM programs on a run of Fogline: lcm-logger records it, lcm-logplayer plays it, and
-// lcm-spy shows it.
+// Debian's own LCM programs on a run of Fogline: lcm-logger records the run, lcm-logplayer plays
+// the log, and lcm-spy shows the messages.
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -41,7 +41,7 @@ Traffic ReadTraffic(const std::string& log) {
   return traffic;
 }
 
-/// Payloads by step. A step may come again (a repair) if all its bytes are the same.
+/// Payloads by step. A step may have several messages (repairs) if all their bytes are the same.
 std::map<std::int64_t, Payload> BySteps(const std::vector<Payload>& payloads) {
   std::map<std::int64_t, Payload> steps;
   for (const Payload& payload : payloads) {
@@ -63,8 +63,9 @@ std::map<std::int64_t, std::string> ScenarioTexts(const std::vector<Payload>& pa
   return parts;
 }
 
-/// Publishes a mark, on a channel of no role, until `seen` is true. A program that has seen the
-/// mark listens, and has got all messages before the mark. @return false after kPatience
+/// Publishes a mark, on a channel of no role, until `seen` returns true. A program that has
+/// received the mark listens, and has received all messages before the mark. @return false after
+/// kPatience
 bool Mark(runtime::Bus& bus, const std::string& channel, const std::function<bool()>& seen) {
   const auto end = Clock::now() + kPatience;
   while (!seen()) {
@@ -75,8 +76,9 @@ bool Mark(runtime::Bus& bus, const std::string& channel, const std::function<boo
   return true;
 }
 
-/// The command, with real-time priority if that is permitted. lcm-logger queues 30 messages and
-/// loses further ones. On a busy machine it would lose the messages of some milliseconds.
+/// The command, with real-time priority if the system permits this. lcm-logger queues 30 messages
+/// and loses further ones. Without this priority, on a busy machine, lcm-logger would lose the
+/// messages of some milliseconds.
 std::vector<std::string> BeforeOtherWork(std::vector<std::string> command) {
   const std::vector<std::string> first{"chrt", "--rr", "1"};
   std::vector<std::string> probe = first;
@@ -117,7 +119,8 @@ class Logger {
   Background process_;
 };
 
-/// Debian's lcm-spy as `fogline spy` starts it, on a screen of its own. SpyProbe reads its window.
+/// Debian's lcm-spy as `fogline spy` starts it, on a screen of its own. SpyProbe reads lcm-spy's
+/// window.
 class Spy {
  public:
   explicit Spy(runtime::Bus& bus)
@@ -220,14 +223,14 @@ std::size_t PlayedAndVerified(const std::string& log, const std::string& key) {
   return truths;
 }
 
-// At intervals of this many steps the driver waits for lcm-spy, so lcm-spy is then ready for the
-// next messages. It may lose later messages of the interval if it gets no processor time.
+// The driver waits for lcm-spy once in this number of steps. lcm-spy is then ready for the next
+// messages. lcm-spy may lose later messages if it gets no processor time.
 constexpr std::int64_t kStepsOfSpy = 10;
 
-/// The driver of a run. It answers for a step only after lcm-logger has written all earlier
-/// messages. lcm-logger queues 30 messages, and lcm-spy those that fit into its socket. On a busy
-/// machine both lose further messages. A run that waits for its driver sends fewer messages at a
-/// time.
+/// The driver of a run. The driver answers for a step only after lcm-logger has written all earlier
+/// messages. lcm-logger queues 30 messages, and lcm-spy queues those that fit into its socket. On a
+/// busy machine both programs lose further messages. A run that waits for its driver sends fewer
+/// messages at a time.
 class DriverThatWaits {
  public:
   DriverThatWaits(const std::string& url, const std::string& key, Logger& logger, Spy& spy)
@@ -240,7 +243,7 @@ class DriverThatWaits {
     driver_.emplace(bus_, std::nullopt);
   }
 
-  /// Takes part in one run of `steps` steps. @return false if it takes too long
+  /// Takes part in one run of `steps` steps. @return false if the run takes too long
   [[nodiscard]] bool TakePart(std::int64_t steps) {
     std::int64_t waited = 0;
     auto end = Clock::now() + kPatience;  // the time limit of the next step
@@ -281,7 +284,7 @@ TEST_P(LoggerAndSpyTest, GetAndDecodeTheMessagesOfARunThatLeavesThemTheTime) {
   Spy spy(bus);
   ASSERT_TRUE(logger.CatchUp("BEFORE_LOG"));
   ASSERT_TRUE(spy.CatchUp("BEFORE")) << spy.Err();
-  // WHEN a run takes place and its driver waits for both
+  // WHEN a run takes place and its driver waits for both programs
   std::vector<std::string> command{Program("fogline"),
                                    "run",
                                    "scenario/paper.json",
@@ -344,7 +347,7 @@ TEST_P(LoggerAndSpyTest, GetAndDecodeTheMessagesOfARunThatLeavesThemTheTime) {
     EXPECT_EQ(row->second.undecodable, 0);
     EXPECT_GE(row->second.messages, kChannels[i].pace == Pace::kStep ? kSteps / kStepsOfSpy : 1);
   }
-  // AND the signatures in lcm-logger's log still hold when lcm-logplayer plays it
+  // AND the signatures in lcm-logger's log still hold when lcm-logplayer plays this log
   if (!key.empty()) {
     EXPECT_EQ(PlayedAndVerified(debian, key), logged["TRUTH"].size());
   }
@@ -377,7 +380,7 @@ TEST(LcmToolsTest, LogplayerPlaysEveryMessageToASubscriberThatDecodesIt) {
   ForEachStepChannel([&]<class M>(std::size_t) { listen.template operator()<M>(); });
   bool ended = false;
   bus.Subscribe("END", [&ended](runtime::Bytes) { ended = true; });
-  // WHEN lcm-logplayer plays it at 25 times its speed (its event times span 50 s)
+  // WHEN lcm-logplayer plays the log at 25 times its speed (the event times span 50 s)
   Background player({"lcm-logplayer", "--speed=25", "--lcm-url=" + bus.url(), log});
   ASSERT_EQ(player.Wait(), 0) << player.Err();
   ASSERT_TRUE(Mark(bus, "END", [&] {
@@ -386,7 +389,7 @@ TEST(LcmToolsTest, LogplayerPlaysEveryMessageToASubscriberThatDecodesIt) {
   }));
   // THEN every message has arrived, in order, and decodes
   Traffic logged = ReadTraffic(log);
-  EXPECT_EQ(logged.erase(std::string(log::kLogSealChannel)), 1U);  // no process sends it
+  EXPECT_EQ(logged.erase(std::string(log::kLogSealChannel)), 1U);  // no process sends a seal
   EXPECT_TRUE(received == logged);
   EXPECT_EQ(received["TRUTH"].size(), 500U);
   EXPECT_TRUE(undecodable.empty());

@@ -1,4 +1,4 @@
-// The kinds of output for results: files, links, pipes and devices, treated as a person expects.
+// Results go into files, links, pipes and devices as a person expects.
 #include <fcntl.h>
 #include <sys/ioctl.h>
 #include <sys/stat.h>
@@ -119,7 +119,8 @@ TEST_F(OutputFilesTest, AReportGoesThroughAPipeOrIntoNothing) {
   ASSERT_EQ(Report(page_).code, 0);
   EXPECT_EQ(Bash("fogline report run.lcm -o >(cat > copied) && wait $!").code, 0);
   EXPECT_EQ(Content(folder_.File("copied")), Content(page_));
-  // Descriptor 9 keeps the pipe open for reading, so `head` must know how many bytes to read.
+  // Descriptor 9 keeps the pipe open for reading and writing. So `head` would find no end of the
+  // file, and must know how many bytes to read.
   EXPECT_EQ(Bash("mkfifo pipe; exec 9<>pipe; fogline report run.lcm -o pipe & report=$!;"
                  "head -c $(stat -c %s page.html) <&9 > named; wait $report")
                 .code,

@@ -110,7 +110,7 @@ TEST(ReportVerbTest, TellsRunsOfSeveralSeedsAndEqualOnesApart) {
 }
 
 TEST(ReportVerbTest, WritesThePageOfALogThatIsCutOffMarksItThereAndExitsWith1) {
-  // GIVEN a whole log, and one that is cut off
+  // GIVEN a whole log, and a log that is cut off
   const ScratchFolder folder;
   const std::string whole = Log(folder, "whole.lcm", {"--set", "/arbitrator/policy=none"});
   const std::string cut = Log(folder, "cut.lcm", {});
@@ -123,7 +123,7 @@ TEST(ReportVerbTest, WritesThePageOfALogThatIsCutOffMarksItThereAndExitsWith1) {
   // AND stderr names the missing part of the log
   EXPECT_THAT(report.err, ContainsRegex(cut + ": cut off after event [^;]*; .*; ends after step "
                                               "[0-9]+ of 220"));
-  // AND the page reports this for the cut run only
+  // AND the page reports the missing part only for the cut run
   const nlohmann::json runs = DataOf(Read(page))["runs"];
   EXPECT_EQ(runs[0]["badge"], "");
   const std::string badge = runs[1]["badge"];

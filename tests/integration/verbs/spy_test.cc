@@ -20,7 +20,8 @@ using testing::HasSubstr;
 // A time limit. Programs start and messages arrive earlier even when every processor is busy.
 constexpr seconds kPatience(30);
 
-/// An installation of Java and of jars. Its java prints its own arguments.
+/// A simulated installation of Java and of jars. Its program `java` prints the arguments of the
+/// call.
 class Parts {
  public:
   Parts() {
@@ -130,7 +131,7 @@ TEST(SpyTest, SaysHowTheTypesAreMadeWhereThereAreNone) {
                                  "-C build fogline_lcmtypes_java\n"));
 }
 
-/// Tests in which programs without a URL meet at an address of their own.
+/// Tests in which programs without a URL use the meeting address of this test.
 class SpyAtMeetingTest : public testing::Test {
  protected:
   SpyAtMeetingTest() { EXPECT_EQ(setenv("LCM_DEFAULT_URL", url_.c_str(), 1), 0); }

@@ -49,7 +49,7 @@ std::vector<std::pair<std::string, std::string>> Files(const std::filesystem::pa
   return files;
 }
 
-/// The number of rows of conflict.csv for each measure, which is in the fifth column.
+/// The number of rows of conflict.csv for each measure. The fifth column has the measure.
 std::map<std::string, int> CountByMeasure(const std::string& csv) {
   std::istringstream lines(csv);
   std::string line;
@@ -66,7 +66,7 @@ std::map<std::string, int> CountByMeasure(const std::string& csv) {
 
 TEST(StudyVerbTest, WritesWhatItSaysAndTheSameBytesWhateverTheNumberOfJobs) {
   const ScratchFolder folder;
-  // WHEN the study of conflict measures is made twice
+  // WHEN the study of conflict measures is computed twice, with one job and with two
   const std::string one = folder.File("one");
   const std::string two = folder.File("two");
   const Outcome first =

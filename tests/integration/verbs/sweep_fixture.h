@@ -19,7 +19,7 @@ namespace fogline::test {
 
 using Words = std::vector<std::string>;
 
-// Runs of 5 s. They have every measure of clear air, and are cheap.
+// Runs of 5 s. They have every measure of clear air, and need little time.
 inline const Words kShort{"--set", "/steps=50"};
 inline const Words kThresholds{"--grid", "/arbitrator/threshold=0.2,0.5,0.8"};
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# sweep_memory.sh FOGLINE RUNS [options of fogline sweep]: the peak memory of a sweep of RUNS runs
-# is at most a fifth above that of 1,000 runs.
+# sweep_memory.sh FOGLINE RUNS [options of fogline sweep]: checks that a sweep of RUNS runs needs at
+# most a fifth more peak memory than a sweep of 1,000 runs.
 set -euo pipefail
 cd "$(dirname "$0")/../../.."
 fogline=$1

@@ -136,8 +136,8 @@ TEST_F(SweepMergeTest, NamesEachFileWhoseRowsItCannotCheck) {
     return "fogline sweep: warning: " + File(shard) + ": the rows are not checked, because " +
            File(shard) + ".sums is missing or empty\n";
   };
-  // GIVEN a file that was copied without its checksums, and a file with empty ones. The first file
-  // has no rows, so there is nothing to check in it
+  // GIVEN two files that were copied without their checksum files, and a file whose checksum file
+  // is empty. The first file has no rows, so there is nothing to check in it
   ASSERT_EQ(Lines(Content(File(shards[0]))), 1);
   std::filesystem::remove(File(shards[0] + ".sums"));
   std::filesystem::remove(File(shards[1] + ".sums"));
@@ -146,7 +146,7 @@ TEST_F(SweepMergeTest, NamesEachFileWhoseRowsItCannotCheck) {
   EXPECT_EQ(merge.code, 0);
   EXPECT_EQ(merge.out, "3 rows\n" + File("merged.csv") + "\n");
   EXPECT_EQ(merge.err, warning(shards[1]) + warning(shards[3]));
-  // AND --json names these files, and is empty for files that were all checked
+  // AND --json names these files. The list in --json is empty if all files were checked
   const Words json{Program("fogline"), "sweep", "--json", "--force", "--out", File("merged.csv")};
   const Words merge_all{"--merge", File(shards[0]), File(shards[1]), File(shards[2]),
                         File(shards[3])};

@@ -71,8 +71,9 @@ TEST_F(SweepTest, GoesOnWhereverAKillHasTornTheFile) {
   const std::string whole = Made("torn.csv", sweep);
   const std::size_t header = whole.find('\n') + 1;
   const std::size_t second_row = whole.find('\n', header) + 1;
-  // The file is cut in the header, after it, in the first row, after that row (in the middle of a
-  // unit, which has three rows), and at regular distances.
+  // The file is cut in the header, after the header, in the first row, after the first row, and at
+  // regular distances. The cut after the first row is in the middle of a unit, which has three
+  // rows.
   std::vector<std::size_t> cuts{0,          1,          header - 1,       header,
                                 header + 1, second_row, whole.size() - 1, whole.size()};
   for (std::size_t cut = 0; cut < whole.size(); cut += whole.size() / 13) cuts.push_back(cut);
@@ -161,8 +162,8 @@ TEST_F(SweepTest, NoticesALineThatItHasNotWritten) {
 TEST_F(SweepTest, NoticesADigitThatItHasNotWritten) {
   const Words sweep = kShort + kThresholds + Words{"--seeds", "1:4"};
   const std::string whole = Made("file.csv", sweep);
-  // GIVEN a file that ends early, and in which a digit in the middle of a row was altered, far from
-  // its key
+  // GIVEN a file that ends early, and in which one digit was altered. The digit is in the middle of
+  // a row, far from the key of the row
   std::string text = whole.substr(0, whole.rfind('\n', whole.size() - 2) + 1);
   const std::size_t digit = text.find_last_of("123456789", text.find('\n', text.size() / 2) - 1);
   text[digit] = text[digit] == '1' ? '2' : '1';
@@ -295,7 +296,7 @@ TEST_F(SweepTest, VariesTheFieldsOfAListsItems) {
 }
 
 TEST_F(SweepTest, NamesTheFirstRowThatCannotBeComputedAndKeepsThoseBefore) {
-  // GIVEN two weights, of which the second gives the ACC an ill-conditioned problem
+  // GIVEN two weights. The second weight gives the ACC an ill-conditioned problem
   const Words sweep = kShort + Words{"--set",   "/step_s=1",
                                      "--set",   "/acc/horizon_steps=60",
                                      "--set",   "/acc/headway_s=0",
@@ -320,7 +321,7 @@ TEST_F(SweepTest, SaysThatTheDiskIsFullAndGoesOnWhenThereIsRoom) {
   const Words sweep = kShort + kThresholds + Words{"--seeds", "1:100"};
   const std::string whole = Made("whole.csv", sweep);
   ASSERT_GT(whole.size(), 32 * 1024U);
-  // GIVEN a limit of 16 KiB for a file, which ends a write like a full disk
+  // GIVEN a limit of 16 KiB for a file. At this limit a write fails as on a full disk
   const Outcome full =
       RunCommand(Words{"bash", "-c", "trap '' XFSZ; ulimit -f 16; exec \"$@\"", "-"} +
                  Command("full.csv", sweep));

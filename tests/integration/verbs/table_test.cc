@@ -42,12 +42,12 @@ TEST(TableTextTest, EndsWithSafetyByOtherFloorsAndReadings) {
       RunCommand({Program("fogline"), "table", "scenario/paper.json", "--thresholds", "0.5"});
   ASSERT_EQ(table.code, 0) << table.err;
   EXPECT_THAT(table.out, HasSubstr("(/measures/safety_floor_m, 0.01 m)"));
-  // For the scenario's own floor, the value is SI itself.
+  // With the scenario's own floor, this value equals SI.
   const nlohmann::json row = TableRows({"--thresholds", "0.5"})[0];
   EXPECT_EQ(row["other_si_pct"]["floor_10mm"], row["si_pct"]);
   EXPECT_EQ(row["other_si_pct"].size(), 7U);
-  // A lower floor also counts steps with little compromised safety. Traded control avoids less of
-  // it.
+  // A lower floor also counts steps with little compromised safety. In these steps, traded control
+  // avoids a smaller share of compromised safety.
   double above = 100;
   for (const char* floor : {"floor_20mm", "floor_10mm", "floor_5mm", "floor_1mm", "floor_0mm"}) {
     EXPECT_LT(row["other_si_pct"][floor], above) << floor;
@@ -164,7 +164,7 @@ TEST(TableArgumentsTest, RefuseARoleFromElsewhereWhereItCannotJoin) {
 TEST(TableOfRunsTest, IsTheSameWithADriverFromElsewhereThatIsStartedForEveryRun) {
   const std::vector<std::string> what{"--thresholds", "0.5", "--set", "/steps=250"};
   const std::string url = runtime::FreshMulticastUrl();
-  // GIVEN a driver that a shell starts again each time it has exited
+  // GIVEN a driver that a shell starts again each time that the driver has exited
   Background drivers(
       {"bash", "-c", "while \"$@\"; do :; done", "-", Program("fogline-driver"), "--lcm-url", url});
   // THEN the driver takes part in both runs of the table

@@ -70,7 +70,7 @@ class Top {
 constexpr double kPace_hz = 10;
 constexpr double kPaceTolerance_hz = 1.5;
 
-/// Whether top's document has this pace in every channel with a message in each step.
+/// Whether top's document has kPace_hz in every channel with a message in each step.
 bool ShowsPace(const std::string& shown) {
   if (shown.empty()) return false;
   const json document = json::parse(shown);
@@ -83,12 +83,12 @@ bool ShowsPace(const std::string& shown) {
 }
 
 TEST(TopTest, ShowsEveryRoleAndChannelOfARunAtItsPace) {
-  // GIVEN a run in real speed, 10 steps a second, that is under way
+  // GIVEN a run at real speed, 10 steps a second, that is under way
   const ScratchFolder folder;
   runtime::Bus bus(runtime::FreshMulticastUrl());
   std::int64_t step = -1;
   TimePoint heard{};
-  int uneven = 0;  // steps that were late, and steps that were early after a late one
+  int uneven = 0;  // steps that came late, or early after a late one
   bus.Subscribe(ChannelOf<truth_t>().name, [&](runtime::Bytes bytes) {
     step = runtime::ReadInt64(bytes, runtime::kStepOffset);
     const TimePoint now = Clock::now();
@@ -100,8 +100,8 @@ TEST(TopTest, ShowsEveryRoleAndChannelOfARunAtItsPace) {
   const TimePoint end = Clock::now() + kPatience;
   while (step < 5 && Clock::now() < end) bus.Wait(milliseconds(100));
   ASSERT_GE(step, 5) << run.Err();
-  // WHEN top watches the run for two seconds. If the machine disturbs the run or top meanwhile, the
-  // test tries again. (top counts a message when it handles the message.)
+  // WHEN top watches the run for two seconds. If the machine disturbs the run or top in this time,
+  // the test tries again. (top counts a message when it handles the message.)
   std::string shown;
   for (int tries = 0; !ShowsPace(shown) && tries < 15; ++tries) {
     uneven = 0;
@@ -113,7 +113,8 @@ TEST(TopTest, ShowsEveryRoleAndChannelOfARunAtItsPace) {
     if (uneven == 0) shown = top.Out();
   }
   ASSERT_NE(shown, "") << "the machine disturbed every try";
-  // THEN top shows the run, and every channel that has a message in every step has 10 per second
+  // THEN top shows the run, and 10 messages per second on every channel with a message in every
+  // step
   const json document = json::parse(shown);
   ASSERT_EQ(document["runs"].size(), 1U) << shown;
   const json& seen = document["runs"][0];
@@ -240,7 +241,8 @@ TEST(WatchTest, RefusesUrlsThatNameNoNetwork) {
 }
 
 TEST(TopTest, EndsWhenItsTerminalIsGone) {
-  // GIVEN top on a terminal that does not control it, so no signal tells top of the terminal's end
+  // GIVEN top on a terminal that is not its controlling terminal. So no signal tells top that the
+  // terminal was closed
   const int terminal = posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC);
   ASSERT_GE(terminal, 0);
   ASSERT_EQ(grantpt(terminal) + unlockpt(terminal), 0);
@@ -271,8 +273,8 @@ TEST(TopTest, RemembersOnlySoManyChannelsHoweverManyNamesAreInvented) {
   // WHEN each message comes on a channel of its own (LCM keeps about 200 bytes for each name)
   const std::unique_ptr<lcm_t, decltype(&lcm_destroy)> foreign_sender(lcm_create(bus.url().c_str()),
                                                                       &lcm_destroy);
-  // Of each burst top hears at least the messages that a small socket holds, some 250 names. If top
-  // has a processor to itself, it hears all of them.
+  // From each burst, top receives at least the messages that a small socket holds, some 250 names.
+  // If top has a processor to itself, top receives all messages.
   constexpr int kNames = 4000;
   constexpr int kEnough = 50'000;  // 10 MB of names
   int invented = 0;
@@ -285,7 +287,7 @@ TEST(TopTest, RemembersOnlySoManyChannelsHoweverManyNamesAreInvented) {
     }
     ASSERT_TRUE(top.CatchUp("BURST" + std::to_string(burst)));
   }
-  // THEN top keeps few of the names, and LCM has forgotten them, too
+  // THEN top keeps few of the names, and LCM has forgotten the other names, too
   EXPECT_LE(top.Last()["others"].size(), 64U);
   EXPECT_LT(MemoryOf(top.pid()) - before, 6'000'000);
 }
