@@ -53,8 +53,8 @@ struct Recording {
   std::vector<CsvNumber> speeds_mps;
 };
 
-// Reads a recording in several stages. Each stage notes its mistakes. The next stage runs only if
-// there are no mistakes.
+// Reads a recording in several stages. Each stage notes the mistakes that it finds in the
+// recording. The next stage runs only if there are no mistakes so far.
 class RecordingReader {
  public:
   RecordingReader(const Scenario& scenario, const JsonValue& root, std::string csv_name,

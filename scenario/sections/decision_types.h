@@ -7,17 +7,17 @@
 
 namespace fogline {
 
-/// Policy for the authority over the host: an index of the list in decision.h, and of the table in
-/// services/decision/policies/policies.cc. Only two policies have an enumerator, because other code
-/// refers to them.
+/// Policy for the authority over the host. The value is an index into the list in decision.h, and
+/// into the table in services/decision/policies/policies.cc. Only two policies have an enumerator,
+/// because other code refers to these two policies.
 enum class Policy : std::uint8_t { kNone, kTraded };
 
-/// A measure of conflict: an index of the list in decision.h, and of the first table in
-/// services/decision/conflict/conflict_measures.cc.
+/// A measure of conflict. The value is an index into the list in decision.h, and into the first
+/// table in services/decision/conflict/conflict_measures.cc.
 enum class MeasureChoice : std::uint8_t { kDoc };
 
-/// A measure that tells which sensor is wrong: an index of the list in decision.h, and of the
-/// second table in conflict_measures.cc.
+/// A measure that tells which sensor is wrong. The value is an index into the list in decision.h,
+/// and into the second table in conflict_measures.cc.
 enum class BlameChoice : std::uint8_t { kNis };
 
 }  // namespace fogline

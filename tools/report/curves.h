@@ -16,8 +16,9 @@ struct FrontPoint {
   double rhe_pct = 0;
   double si_pct = 0;
   std::vector<std::size_t> rows;  // ascending indices of the point's thresholds in the curves
-  std::string thresholds;  // such as "0.36", or "0.01–0.27" for all thresholds of the curves in
-                           // this range
+  // The point's thresholds as text, such as "0.36" or "0.01–0.27, 0.3". A range "0.01–0.27" means
+  // these two thresholds and all thresholds of the curves between them.
+  std::string thresholds;
   bool on_front = false;
   bool beside = true;  // whether a label has room to the right of the point; false on a flat front
 };

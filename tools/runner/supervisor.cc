@@ -185,7 +185,8 @@ void Supervisor::End() {
     coordinator_.Stop();
     ++said;
     const TimePoint pause = Clock::now() + kLookEvery;
-    // Waits until `pause` even if many messages arrive: a flood must not delay the end.
+    // Handles messages until the time `pause`. If messages arrive faster than they are handled, a
+    // loop until no message is left would never end.
     while (Clock::now() < pause) bus_.Wait(pause - Clock::now());
     group_.Collect();
   }

@@ -34,7 +34,7 @@ class TakeOverTime {
   /// The exact P(T > t).
   double LateProbability() const;
 
-  /// The time in s that T exceeds with probability 1 - `probability`, in (0, 1).
+  /// The quantile q of T in s: P(T <= q) = `probability`. @param probability in (0, 1)
   double Quantile(double probability) const;
 
  private:

@@ -40,8 +40,8 @@ class LongitudinalVehicle {
   LongitudinalVehicle(const VehicleParameters& vehicle, double friction, GradeProfile road,
                       double step_s);
 
-  /// Sets the state of a car that has driven for a long time at this speed with this commanded
-  /// acceleration.
+  /// Sets pedals, powertrain and brake to the state in which they have settled under this command,
+  /// at the position and speed `now`.
   void Begin(const Motion& now, double command_mps2);
 
   /// Advances by one step of step_s with this command. Returns an acceleration that is constant
@@ -86,7 +86,7 @@ class LongitudinalVehicle {
   Actuator brake_;
   double traction_n_ = 0;
   double brake_n_ = 0;
-  double last_mps2_ = 0;  // result of the last Step()
+  double last_mps2_ = 0;  // result of the last Step(); before the first, the command of Begin()
 };
 
 }  // namespace fogline::models

@@ -76,8 +76,9 @@ class RunCoordinator {
   Duration TakeLongestPause() { return pauses_.TakeLongest(); }
 
   Phase phase() const { return phase_; }
-  /// The error that ended the run, in one line, or in more lines if keys or sends cause trouble.
-  /// The text is "" if phase() is not kFailed.
+  /// The error that ended the run; "" if phase() is not kFailed. The first line names the error.
+  /// More lines may follow: the last lines that a dead process printed, what is wrong with keys and
+  /// signatures, and the messages that could not be sent.
   const std::string& error() const { return error_; }
   /// Last step that is known to have begun; -1: none.
   std::int64_t step() const { return progress_; }
@@ -92,8 +93,8 @@ class RunCoordinator {
   std::int64_t Total(std::int64_t status_t::*counter) const;
   /// Messages that the roles and the runner have refused.
   Refusals Refused() const;
-  /// The messages that the roles and the runner could not send; processes without failed sends are
-  /// left out.
+  /// The messages that could not be sent, for each role and the runner. Processes that could send
+  /// all their messages are left out.
   std::vector<SendTrouble> SendTroubles() const;
   /// What is wrong with keys and signatures; "" if no trouble is known.
   std::string KeyTrouble() const;

@@ -40,8 +40,8 @@ class RunSeeker {
   void Stay(std::int64_t run_id, TimePoint now) { tried_ = {.run_id = run_id, .at = now}; }
 
  private:
-  // A runner that waits for roles sends 20 messages a second. A busy machine or a bad network
-  // delays the runner's messages by less than kSilentLimit.
+  // After this time InVain() is true. A runner that waits for roles sends 20 messages a second. We
+  // assume that a busy machine or a bad network delays these messages by less than this time.
   static constexpr Duration kSilentLimit = milliseconds(5000);
   // After this time a run that was tried in vain is tried again. A busy machine may have held up
   // the run, or the port of the run's network may have been in use by another program for a moment.

@@ -10,11 +10,11 @@ namespace {
 // The share of a period by which a call of Poll() may be late. RunClock has the same limit for the
 // world's ticks.
 constexpr double kLateCall = 0.25;
-// The longest interval, in periods, between two messages of an input that comes again. By default
-// an input counts as lost only after a longer time without messages.
+// Speaks() is true if the newest message of the input is at most this many periods old. By default
+// this limit is shorter than the time without a new step after which an input is LOST.
 constexpr int kSpeaks = 2;
 
-/// The input that brings the world's ticks; the number of inputs if no input brings them.
+/// Index of the input that brings the world's ticks; the number of inputs if no input brings them.
 std::size_t TickInputOf(std::span<const Input> inputs) {
   const auto tick = std::ranges::find(
       inputs, Role::kWorld, [](const Input& input) { return kChannels[input.channel].from; });
@@ -48,7 +48,8 @@ StepRing::Verdict RealtimeWatch::Judge(std::size_t input, std::int64_t step, Byt
   if (ring.Has(step) && std::ranges::equal(ring.Get(step), bytes)) {
     return StepRing::Verdict::kDuplicate;
   }
-  // For an input on demand the newest message counts, whatever its step.
+  // A message of an input on demand is late only if the input has a message of the same step or of
+  // a later step.
   const bool late = from.on_demand ? step <= ring.newest()
                                    : step < parts_.steps.next() - from.lag ||
                                          step <= ring.newest() - kRingSteps || ring.Has(step);

@@ -89,7 +89,7 @@ void AppendText(std::string_view text, std::size_t at, std::size_t then,
 /// Appends instructions for one wanted channel: they take or drop a datagram of this channel. For a
 /// datagram of another channel, the program continues after these instructions.
 void AppendWanted(const Wanted& wanted, std::vector<sock_filter>& program) {
-  const std::string_view name(wanted.channel.c_str(), wanted.channel.size() + 1);  // with the 0
+  const std::string_view name(wanted.channel.c_str(), wanted.channel.size() + 1);  // with final 0
   std::vector<sock_filter> contents;
   if (wanted.share < 1) {
     constexpr double kRandomMax = 4294967295.0;
@@ -123,8 +123,9 @@ std::vector<sock_filter> WholeMessages() {
 
 std::vector<sock_filter> ChannelFilter(std::vector<Wanted> wanted) {
   std::vector<sock_filter> program = WholeMessages();
-  // If a filter reads beyond the end of a datagram, the datagram is dropped. Short names are
-  // compared first. So no comparison reads beyond the matching name and its wanted contents.
+  // If a filter reads beyond the end of a datagram, the kernel drops the datagram. Therefore short
+  // names are compared first: a name that is compared before the matching name is not longer than
+  // the matching name, so its comparison stays within the datagram.
   std::ranges::stable_sort(wanted, {}, [](const Wanted& one) { return one.channel.size(); });
   for (const Wanted& one : wanted) AppendWanted(one, program);
   program.push_back(Take(kNothing));

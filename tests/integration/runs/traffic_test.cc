@@ -1,5 +1,6 @@
-// Vehicles on a hill, and a column of people and ACCs behind the host. The result is the same on
-// any transport, the measures are per car, and an impossible scenario gets one clear error.
+// Vehicles on a hill. Several cars follow the host, some with a human driver and some with an ACC.
+// The result is the same on any transport, each following car has its own measures, and an
+// impossible scenario causes one clear error.
 #include <fstream>
 
 #include <gmock/gmock-matchers.h>

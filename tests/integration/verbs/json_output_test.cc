@@ -1,4 +1,5 @@
-// --json of every verb that reports prints one JSON document on stdout and nothing else.
+// Each verb of `fogline` that has the option --json prints one JSON document with this option, and
+// nothing else on stdout.
 #include <map>
 #include <string>
 #include <vector>
@@ -17,8 +18,8 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-/// A log of a run behind a recorded leader, as `compare` needs it. All verbs that read a log read
-/// this log.
+/// The log of a run behind a recorded leader, because `compare` needs such a log. All verbs that
+/// read a log read this log.
 class JsonOutputTest : public testing::Test {
  protected:
   JsonOutputTest() : log_(folder_.File("run.lcm")) {

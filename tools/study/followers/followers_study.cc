@@ -73,11 +73,12 @@ constexpr std::array<std::string_view, 8> kFollowerTable{"si_pct",
                                                          "max_follower_drac_mps2",
                                                          "min_follower_rss_margin_m"};
 
-// Overrides for a later fog, so that a string with any time gaps settles before the fog. The fog
-// lasts as long as in the file.
+// Overrides that start the fog later. So the cars behind the host reach steady gaps before the
+// fog, whatever their time gaps are. The fog lasts as long as in the file.
 const std::vector<std::string> kLater{"/fog/start_s=60", "/steps=1200"};
 
-/// Strings in which every car has the same kind of driver.
+/// Strings: rows of cars behind the host. All drivers of a string are of one kind, or each driver
+/// is drawn at random.
 std::vector<StudyCase> Strings() {
   std::vector<StudyCase> kinds;
   const auto add = [&](std::string_view name, std::vector<std::string> overrides) {

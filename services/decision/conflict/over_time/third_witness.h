@@ -2,10 +2,10 @@
 // value, the witness, is needed. The witness is the filter's prediction of the range from all
 // earlier steps.
 //
-// All measures here first subtract the offset of the sensors from the radar's range. Without a
-// prediction there is no witness, and the blame of both sensors is 0. The witness depends on
-// earlier values of the sensors. After the witness has followed a slowly drifting sensor, the other
-// sensor is blamed.
+// Without a fault, the radar's range differs from the LiDAR's range by the known offset offset_m.
+// All measures here first subtract this offset from the radar's range. Without a prediction there
+// is no witness, and the blame of both sensors is 0. The witness depends on earlier values of the
+// sensors. After the witness has followed a slowly drifting sensor, the other sensor is blamed.
 #pragma once
 
 #include <array>

@@ -1,4 +1,5 @@
-// The fallback in the closed loop of the shipped scenarios. Some drivers take over, others do not.
+// Requests to take over in the closed loop of the shipped scenarios. Some drivers take over, others
+// do not.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -46,8 +47,8 @@ bool IsInTable(take_over::TakeOverState from, take_over::TakeOverState to) {
   });
 }
 
-// Checks the rules that a log shows: the table's changes, the source of each command, and the
-// manoeuvre's limits.
+// Checks the rules that a log shows: the state changes only as the table allows, each command comes
+// from the side that has authority, and the manoeuvre keeps its limits.
 void ExpectTheRules(const Scenario& scenario, const Driven& driven) {
   const TakeOverSection& section = scenario.arbitrator.take_over;
   take_over::TakeOverState before = take_over::TakeOverState::kAutomated;
@@ -125,10 +126,10 @@ double LeftInTheFirstStep(const Scenario& scenario) {
   }
 }
 
-// In the first step of a transfer the new side's offer has a share in the command. On a ramp this
-// share is that of the ramp's first step, otherwise 1. So the command differs from the old side's
-// offer by this share of the difference between both offers, within the profile's jerk limit. A
-// driver who ends a manoeuvre has full authority at once.
+// In the first step of a transfer the new side has a share s of the control: on a ramp, the share
+// of the ramp's first step, otherwise 1. The command is (1 - s) times the old side's offer plus s
+// times the new side's offer. Profile jerk_limited also limits the change of the command from the
+// step before. A driver who ends a manoeuvre has full authority at once, without this limit.
 TEST_F(TakeOverLoopTest, ATransferIsFeltInItsStepWhateverTheProfile) {
   for (const TransferProfile profile : {TransferProfile::kStep, TransferProfile::kLinear,
                                         TransferProfile::kSigmoid, TransferProfile::kJerkLimited}) {

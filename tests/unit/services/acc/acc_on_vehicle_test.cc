@@ -58,8 +58,8 @@ TEST(AccOnVehicleTest, KeepsItsDistanceAlmostAsWellAsInAPointMass) {
     for (const models::VehicleParameters& car :
          {models::kCompact, models::kSedan, models::kTruck}) {
       const Drive real = FollowABrakingCar(section, VehicleModel::kLongitudinal, car);
-      // Delay and lag together are half a second. In this time 2 m/s2 move the car by 0.25 m. The
-      // loss of gap adds up while the car brakes.
+      // Delay and lag together are half a second. In this time a braking of 2 m/s2 changes the gap
+      // by 0.25 m. The loss of gap adds up while the car brakes.
       EXPECT_GT(real.least_gap_m, ideal.least_gap_m - 2) << "headway " << headway_s;
       EXPECT_LT(real.largest_acceleration_mps2, 3.5) << "headway " << headway_s;
       // In the end speed and gap are right, except for the dead band of the pedals.
@@ -82,8 +82,8 @@ TEST(AccOnVehicleTest, DoesNotRunAwayWhileThePersonDrives) {
                              .has_target = true})
                        .acceleration_mps2;
   }
-  // THEN the command is negative, and differs from the car's acceleration by one jerk-limited ramp
-  // at most
+  // THEN the command is negative, and is below the car's acceleration (0) by at most the jerk limit
+  // times (engine time constant + one step)
   EXPECT_LT(command_mps2, -1);
   EXPECT_GE(command_mps2, -section.max_jerk_mps3 * (section.engine_time_constant_s + kStep_s));
 }

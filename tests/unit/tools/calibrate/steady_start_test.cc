@@ -24,7 +24,8 @@ TEST(SteadyStartTest, DerivesTheGapsThatAPersonDerivedForPaperJson) {
   const auto derived = calibrate::StartSteadily(scenario);
   ASSERT_EQ(derived.size(), calibrate::kSteadyFields.size());
   EXPECT_EQ(derived[0].pointer, "/world/host_gap_m");
-  // paper.json has these values, rounded to 0.1 mm and to 1 mm.
+  // paper.json has the same values, but its standstill_m is rounded to 1 mm. StartSteadily() rounds
+  // to 0.1 mm.
   EXPECT_DOUBLE_EQ(scenario.world.host_gap_m, 36.4445);
   EXPECT_NEAR(scenario.acc.standstill_m, 4.5, 1e-3);
   EXPECT_DOUBLE_EQ(scenario.world.follower_gap_m, 39);

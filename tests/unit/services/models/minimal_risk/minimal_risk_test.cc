@@ -20,7 +20,8 @@ TEST(MinimalRiskTest, BuildsTheBrakeUpAtTheJerkLimitAndHoldsIt) {
   }
 }
 
-// r = 1 at v = 1/(2 2) + 0.1/2 = 0.3, so the brake is released in exactly 5 steps of 0.2.
+// At v = r^2/(2 j) + r h/2 = 0.3 m/s, r(v) of minimal_risk.h is 1 m/s2. So the brake is released in
+// exactly 5 time steps, by j h = 0.2 m/s2 in each step.
 TEST(MinimalRiskTest, ReleasesTheBrakeStepByStepSoThatTheCarRestsWithoutIt) {
   models::MinimalRisk manoeuvre(kLimits, kStep_s);
   manoeuvre.Begin(-1.0);

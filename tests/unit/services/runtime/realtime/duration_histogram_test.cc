@@ -48,8 +48,9 @@ TEST(DurationHistogramTest, RoundsUpToMicroseconds) {
   EXPECT_EQ(histogram.MaxUs(), 1);
 }
 
-// If a histogram has only one duration, the maximum gives its exact value. If a larger duration is
-// there, too, the smaller duration is rounded up within its cell.
+// The histogram knows its largest duration exactly. So the quantile of a single duration is exact.
+// If a larger duration is added, the quantile of the smaller duration is rounded up to the end of
+// the smaller duration's cell.
 TEST(DurationHistogramTest, IsTooLargeByAtMostASixtyFourthAndNeverTooSmall) {
   for (std::int64_t us = 1; us < runtime::DurationHistogram::kMaxUs / 2; us += 1 + us / 97) {
     runtime::DurationHistogram histogram;
