@@ -1,5 +1,5 @@
-// Measures of a run, computed from its samples alone, in one pass and constant memory. A run in
-// this process and the log of the same run give equal measures.
+// Measures of a run, computed from its samples alone, in one pass and constant memory. A run has
+// the same measures, whether they are computed during the run or later from its log.
 #pragma once
 
 #include <array>

@@ -22,8 +22,8 @@ namespace fogline::models {
 /// - A car that brakes harder than r(v) at the start (a car that is about to stand) stops before
 ///   the brake is released. The car's acceleration then jumps to 0.
 ///
-/// The manoeuvre lasts until the end of the process, because UN R157, 5.5.5, allows another
-/// activation only after a new run cycle. At standstill, the command is 0, and the car does not
+/// No function ends the manoeuvre, because UN R157, 5.5.5, allows another activation of the
+/// automation only after a new run cycle. At standstill, the command is 0, and the car does not
 /// roll backwards.
 class MinimalRisk {
  public:
