@@ -50,16 +50,21 @@ class DeafRoles {
     Duration age{};
     std::int64_t late = 0;
     Duration missed{};
-    Duration unsure{};  // time to add to `missed` when the producer reports a further step
+    std::int64_t published = 0;  // steps of the producer when the role last received one of them
+    Duration unsure{};           // time to add to `missed` when the producer reports a further step
   };
   struct Speaker {
     TimePoint heard{};
     std::int64_t step = -1;
-    TimePoint advanced{};  // when a STATUS first showed `step`
+    std::int64_t ticks = 0;  // steps that its process has computed; 0 after a restart
+    TimePoint advanced{};    // when a STATUS first showed `step`
     std::array<Ear, kNumChannels> ears{};
   };
 
   std::optional<Deafness> Missing(Role role, Duration limit) const;
+  /// Whether the producer has published so many messages in this time that a network that loses
+  /// many of them has not lost all.
+  bool IsSure(const Ear& ear, Role from) const;
   /// Whether the role's STATUS messages show that it computes one step after another.
   bool Computes(Role role, TimePoint now) const;
   /// Whether `step` is later than any step that the role can have computed by `now`.

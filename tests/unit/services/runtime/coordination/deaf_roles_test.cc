@@ -1,5 +1,7 @@
 #include "services/runtime/coordination/deaf_roles.h"
 
+#include <optional>
+
 #include <gtest/gtest.h>
 
 #include "services/runtime/wire/wire.h"
@@ -21,6 +23,7 @@ class DeafRolesTest : public testing::Test {
   void SayWorld() {
     status_t status{};
     status.header.step = world_step_;
+    status.ticks = world_ticks_ ? *world_ticks_ : world_step_;
     deaf_.Heard(Role::kWorld, status, now_);
   }
   void SayRadar(const Ear& ear) {
@@ -50,6 +53,7 @@ class DeafRolesTest : public testing::Test {
   runtime::DeafRoles deaf_{kPeriod};
   TimePoint now_{std::chrono::hours(5)};
   std::int64_t world_step_ = 20;
+  std::optional<std::int64_t> world_ticks_;  // nullopt: the world has computed every step
   std::int64_t age_ms_ = 0;
 };
 
@@ -63,6 +67,23 @@ TEST_F(DeafRolesTest, ARoleIsDeafThatHearsNothingOfWhatIsPublishedForTwoSeconds)
   EXPECT_EQ(deaf->missed, milliseconds(2000));
   EXPECT_EQ(Text(*deaf), "has heard no TRUTH for 2.0 s, although the world has published it");
   EXPECT_FALSE(deaf_.Of(Role::kWorld));
+}
+
+TEST_F(DeafRolesTest, TheLossOfTheFewMessagesOfASlowProducerMakesNoRoleDeaf) {
+  // GIVEN a producer that leaves out most steps: it computes one step in 400 ms
+  world_ticks_ = 1;
+  Pass(1);
+  for (int i = 1; i < 10; ++i) {
+    Pass(2);
+    ++*world_ticks_;
+  }
+  // WHEN the role has received nothing for 3.6 s, THEN this can be chance
+  EXPECT_FALSE(IsDeaf());
+  // WHEN ten messages have not come, THEN it cannot
+  Pass(2);
+  ++*world_ticks_;
+  Pass(1);
+  EXPECT_TRUE(IsDeaf());
 }
 
 TEST_F(DeafRolesTest, AtTheEndASecondIsEnough) {
