@@ -22,23 +22,11 @@ class RunLogReader::Assembler {
       : file_(file), reader_(file), compared_(compared) {}
 
   const StepMessages* Next() {
-    while (!Ready()) {
-      const auto event = reader_.Next();
-      if (!event) {
-        ended_ = true;
-        if (Ready()) break;
-        if (!finished_) Finish();
-        return nullptr;
-      }
-      Take(*event);
-    }
-    current_ = TakeStep();
-    for (const runtime::Bytes message : current_) {
-      if (!message.empty()) digest_.Add(message);
-    }
-    if (runtime::Decode(current_[IndexOf<truth_t>()], truth_)) last_ = truth_.last != 0;
-    ++run_.steps;
-    return &current_;
+    if (over_) return nullptr;
+    over_ = true;  // remains if an exception leaves this function
+    const StepMessages* const step = ReadStep();
+    over_ = step == nullptr;
+    return step;
   }
 
   const RunLog& run() const { return run_; }
@@ -52,6 +40,27 @@ class RunLogReader::Assembler {
     StepMessages messages{};
     std::size_t count = 0;
   };
+
+  /// The next step; nullptr at the end of the log.
+  const StepMessages* ReadStep() {
+    while (!Ready()) {
+      const auto event = reader_.Next();
+      if (!event) {
+        ended_ = true;
+        if (Ready()) break;
+        Finish();
+        return nullptr;
+      }
+      Take(*event);
+    }
+    current_ = TakeStep();
+    for (const runtime::Bytes message : current_) {
+      if (!message.empty()) digest_.Add(message);
+    }
+    if (runtime::Decode(current_[IndexOf<truth_t>()], truth_)) last_ = truth_.last != 0;
+    ++run_.steps;
+    return &current_;
+  }
 
   /// Whether the next step is complete, or (in real time) no further message of this step is
   /// expected.
@@ -106,7 +115,6 @@ class RunLogReader::Assembler {
   }
 
   void Finish() {
-    finished_ = true;
     if (reader_.empty()) {
       throw InputError(fmt::format("{}: error: the log is empty: no run has begun to write it",
                                    PathText(file_)));
@@ -256,7 +264,7 @@ class RunLogReader::Assembler {
   std::string conflict_;    // names the first step with two different messages of one channel
   truth_t truth_{};
   bool last_ = false;
-  bool finished_ = false;
+  bool over_ = false;   // no further step comes: the log has ended, or an error was thrown
   bool ended_ = false;  // the log has no further event
   std::optional<RealtimeAccumulator> realtime_;
   std::int64_t steps_ = 0;  // number of steps of the scenario, in real time

@@ -56,7 +56,9 @@ class RunLogReader {
 
   /// The next complete step, from 0 on; nullptr at the end. In real time the step may be
   /// incomplete. The bytes of the step are valid for the lifetime of the reader.
-  /// @throws InputError at the end, when the log has no scenario of a run
+  /// After an exception it returns nullptr.
+  /// @throws InputError at the end, when the log has no scenario of a run; in real time also at the
+  /// first message of a run whose scenario is invalid
   const StepMessages* Next();
 
   /// The contents of the whole log. Known once Next() has returned nullptr.
