@@ -115,6 +115,7 @@ class RunLogReader::Assembler {
   }
 
   void Finish() {
+    if (realtime_) run_.realtime = realtime_->Result();  // also if the log is refused below
     if (reader_.empty()) {
       throw InputError(fmt::format("{}: error: the log is empty: no run has begun to write it",
                                    PathText(file_)));
@@ -132,7 +133,6 @@ class RunLogReader::Assembler {
     run_.scenario = ParseScenario(run_.scenario_text, file_.string());
     run_.digest = digest_.Hex();
     run_.events = reader_.head();
-    if (realtime_) run_.realtime = realtime_->Result();
     const std::string alteration = Alteration();
     run_.altered = !alteration.empty();
     // In real time, the TRUTH message that has `last` may be missing.
