@@ -58,24 +58,23 @@ report::ClaimState StateOf(const Claim& claim, double p, bool few_runs) {
   return few_runs ? report::ClaimState::kOpen : report::ClaimState::kFails;
 }
 
-}  // namespace
-
-Claim ClaimOf(const Comparison& comparison, std::string says, CellName a, CellName b,
-              std::string_view measure, Sign sign, double margin) {
-  const Cell cell_a{comparison.CaseNamed(a.test_case), comparison.VariantNamed(a.variant)};
-  const Cell cell_b{comparison.CaseNamed(b.test_case), comparison.VariantNamed(b.variant)};
+Claim OfPair(const Comparison& comparison, const PlannedClaim& planned, const CellName& b) {
+  const CellName& a = planned.cell;
+  const Cell cell_a = CellOf(comparison, a);
+  const Cell cell_b = CellOf(comparison, b);
   const bool one_case = a.test_case == b.test_case;
-  Claim claim{.says = std::move(says),
+  const std::string measure = NameWithUnit(planned.measure);
+  Claim claim{.says = planned.says,
               .compared = one_case ? fmt::format("{}: {} against {}, {}", a.test_case, a.variant,
-                                                 b.variant, NameWithUnit(measure))
+                                                 b.variant, measure)
                                    : fmt::format("{}: {} against {}, {}", a.variant, a.test_case,
-                                                 b.test_case, NameWithUnit(measure)),
-              .sign = sign,
-              .difference = comparison.Difference(cell_a, cell_b, measure),
-              .margin = margin,
+                                                 b.test_case, measure),
+              .sign = planned.sign,
+              .difference = comparison.Difference(cell_a, cell_b, planned.measure),
+              .margin = planned.margin,
               .p = {},
               .hindrance = {}};
-  if (measure == kCollided) {
+  if (planned.measure == kCollided) {
     claim.p = comparison.PValueOfCollisions(cell_a, cell_b);
   } else if (const std::int64_t cut_short = comparison.PairsCutShort(cell_a, cell_b);
              cut_short > 0) {
@@ -85,19 +84,56 @@ Claim ClaimOf(const Comparison& comparison, std::string says, CellName a, CellNa
   return claim;
 }
 
-Claim LevelClaim(const Comparison& comparison, std::string says, CellName cell,
-                 std::string_view measure, Sign sign, double level, double margin) {
-  Estimate difference = comparison.Mean(
-      {comparison.CaseNamed(cell.test_case), comparison.VariantNamed(cell.variant)}, measure);
-  for (double* value : {&difference.mean, &difference.low, &difference.high}) *value -= level;
+Claim OfLevel(const Comparison& comparison, const PlannedClaim& planned) {
+  Estimate difference = comparison.Mean(CellOf(comparison, planned.cell), planned.measure);
+  for (double* value : {&difference.mean, &difference.low, &difference.high}) {
+    *value -= planned.level;
+  }
+  return {
+      .says = planned.says,
+      .compared = fmt::format("{}: {} against {:g}, {}", planned.cell.test_case,
+                              planned.cell.variant, planned.level, NameWithUnit(planned.measure)),
+      .sign = planned.sign,
+      .difference = difference,
+      .margin = planned.margin,
+      .p = {},
+      .hindrance = {}};
+}
+
+}  // namespace
+
+Cell CellOf(const Comparison& comparison, const CellName& name) {
+  return {comparison.CaseNamed(name.test_case), comparison.VariantNamed(name.variant)};
+}
+
+PlannedClaim PairClaim(std::string says, CellName a, CellName b, std::string_view measure,
+                       Sign sign, double margin) {
   return {.says = std::move(says),
-          .compared = fmt::format("{}: {} against {:g}, {}", cell.test_case, cell.variant, level,
-                                  NameWithUnit(measure)),
+          .cell = std::move(a),
+          .other = std::move(b),
+          .measure = std::string(measure),
           .sign = sign,
-          .difference = difference,
-          .margin = margin,
-          .p = {},
-          .hindrance = {}};
+          .margin = margin};
+}
+
+PlannedClaim LevelClaim(std::string says, CellName cell, std::string_view measure, Sign sign,
+                        double level) {
+  return {.says = std::move(says),
+          .cell = std::move(cell),
+          .other = {},
+          .measure = std::string(measure),
+          .sign = sign,
+          .level = level};
+}
+
+Claim ClaimOf(const Comparison& comparison, const PlannedClaim& planned) {
+  return planned.other ? OfPair(comparison, planned, *planned.other) : OfLevel(comparison, planned);
+}
+
+std::vector<Claim> ClaimsOf(const Comparison& comparison, std::span<const PlannedClaim> planned) {
+  std::vector<Claim> claims;
+  for (const PlannedClaim& one : planned) claims.push_back(ClaimOf(comparison, one));
+  return claims;
 }
 
 double PValueOf(const Claim& claim) {

@@ -1,6 +1,7 @@
 // Makes claims (claim.h) from comparisons, and checks them against the numbers.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -20,22 +21,41 @@ inline constexpr double kNoShortfall_m = 0.002;
 
 /// The names of a case and of a variant.
 struct CellName {
-  std::string_view test_case;
-  std::string_view variant;
+  CellName(std::string_view in_case, std::string_view of_variant)
+      : test_case(in_case), variant(of_variant) {}
+
+  std::string test_case;
+  std::string variant;
 };
 
-/// The claim that a measure's mean difference a - b, paired seed by seed, has this sign. For the
-/// measure "collided" the p-value of the claim comes from McNemar's exact test (1947). A claim on
-/// any other measure cannot hold if pairs of runs end early, because sums and means over time then
-/// lack the steps after the end.
-/// @param margin for kEqual, in the unit of the measure
-/// @throws std::out_of_range if there is no such case, variant or measure
-Claim ClaimOf(const Comparison& comparison, std::string says, CellName a, CellName b,
-              std::string_view measure, Sign sign, double margin = 0);
+/// @throws std::out_of_range if there is no such case or variant
+Cell CellOf(const Comparison& comparison, const CellName& name);
 
+/// A claim before its runs: what it says, and of which cells.
+struct PlannedClaim {
+  std::string says;
+  CellName cell;
+  std::optional<CellName> other;  // with which the cell is compared; nullopt: with `level`
+  std::string measure;
+  Sign sign = Sign::kLess;
+  double margin = 0;  // for kEqual, in the unit of the measure
+  double level = 0;   // in the unit of the measure
+};
+
+/// The claim that a measure's mean difference a - b has this sign.
+PlannedClaim PairClaim(std::string says, CellName a, CellName b, std::string_view measure,
+                       Sign sign, double margin = 0);
 /// The claim that a measure's mean differs from `level` with this sign.
-Claim LevelClaim(const Comparison& comparison, std::string says, CellName cell,
-                 std::string_view measure, Sign sign, double level, double margin = 0);
+PlannedClaim LevelClaim(std::string says, CellName cell, std::string_view measure, Sign sign,
+                        double level);
+
+/// The claim with the numbers of the runs, paired seed by seed. For the measure "collided" the
+/// p-value of the claim comes from McNemar's exact test (1947). A claim on any other measure cannot
+/// hold if pairs of runs end early, because sums and means over time then lack the steps after the
+/// end.
+/// @throws std::out_of_range if there is no such case, variant or measure
+Claim ClaimOf(const Comparison& comparison, const PlannedClaim& planned);
+std::vector<Claim> ClaimsOf(const Comparison& comparison, std::span<const PlannedClaim> planned);
 
 /// p-value of the claim, not adjusted; 1 if the claim has a hindrance.
 double PValueOf(const Claim& claim);

@@ -8,6 +8,7 @@
 #include "tools/report/metric_text.h"
 #include "tools/study/claims.h"
 #include "tools/study/comparison.h"
+#include "tools/study/design.h"
 #include "tools/study/sensor_noise.h"
 #include "tools/study/study.h"
 
@@ -105,44 +106,42 @@ constexpr std::string_view kDriverAnswer =
 constexpr std::string_view kDriverWouldChange =
     "A driver who needs time to take over (study takeover), or larger errors of the human.";
 
-std::vector<Claim> DriverClaims(const Comparison& comparison) {
+std::vector<PlannedClaim> DriverClaims() {
   // A tenth of a millimetre: far less than any difference that a driver could cause.
   constexpr double kNothing_m = 1e-4;
-  std::vector<Claim> claims;
+  std::vector<PlannedClaim> claims;
   for (const StudyCase& kind : HumanKinds()) {
-    claims.push_back(ClaimOf(comparison,
-                             fmt::format("In dense fog traded control helps: {}.", kind.name),
-                             {kind.name, "traded"}, {kind.name, "none"}, kShortfall, Sign::kLess));
+    claims.push_back(PairClaim(fmt::format("In dense fog traded control helps: {}.", kind.name),
+                               {kind.name, "traded"}, {kind.name, "none"}, kShortfall,
+                               Sign::kLess));
   }
-  claims.push_back(ClaimOf(comparison, "An imperfect human leaves more danger.",
-                           {kWholeName, "traded"}, {kPaperName, "traded"}, kShortfall,
-                           Sign::kMore));
-  claims.push_back(ClaimOf(comparison, "In thin fog it makes no difference.",
-                           {"human at 200 m", "traded"}, {"human at 200 m", "none"}, kShortfall,
-                           Sign::kEqual, kNothing_m));
-  claims.push_back(ClaimOf(comparison, "In the paper's fog the paper's driver helps.",
-                           {kBiasName, "traded"}, {kBiasName, "none"}, kShortfall, Sign::kLess));
-  claims.push_back(ClaimOf(comparison, "In the paper's fog a human who misjudges does harm.",
-                           {kBiasMisjudgesName, "traded"}, {kBiasMisjudgesName, "none"}, kShortfall,
-                           Sign::kMore));
+  claims.push_back(PairClaim("An imperfect human leaves more danger.", {kWholeName, "traded"},
+                             {kPaperName, "traded"}, kShortfall, Sign::kMore));
+  claims.push_back(PairClaim("In thin fog it makes no difference.", {"human at 200 m", "traded"},
+                             {"human at 200 m", "none"}, kShortfall, Sign::kEqual, kNothing_m));
+  claims.push_back(PairClaim("In the paper's fog the paper's driver helps.", {kBiasName, "traded"},
+                             {kBiasName, "none"}, kShortfall, Sign::kLess));
+  claims.push_back(PairClaim("In the paper's fog a human who misjudges does harm.",
+                             {kBiasMisjudgesName, "traded"}, {kBiasMisjudgesName, "none"},
+                             kShortfall, Sign::kMore));
   return claims;
 }
 
 /// The claims with realistic noise on which the answer depends.
-std::vector<Claim> NoisyDriverClaims(const Comparison& comparison) {
+std::vector<PlannedClaim> NoisyDriverClaims() {
   const auto noisy = [](std::string_view name) {
     return fmt::format("{}{}", name, kWithRealisticNoise);
   };
   const auto claim = [&](std::string_view says, std::string_view name, Sign sign) {
     const std::string test_case = noisy(name);
-    return ClaimOf(comparison, fmt::format("With realistic noise {}", says), {test_case, "traded"},
-                   {test_case, "none"}, kShortfall, sign);
+    return PairClaim(fmt::format("With realistic noise {}", says), {test_case, "traded"},
+                     {test_case, "none"}, kShortfall, sign);
   };
   return {claim("in dense fog traded control helps: paper's driver.", kPaperName, Sign::kLess),
           claim("in dense fog traded control helps: all weaknesses.", kWholeName, Sign::kLess),
-          ClaimOf(comparison, "With realistic noise an imperfect human leaves more danger.",
-                  {noisy(kWholeName), "traded"}, {noisy(kPaperName), "traded"}, kShortfall,
-                  Sign::kMore),
+          PairClaim("With realistic noise an imperfect human leaves more danger.",
+                    {noisy(kWholeName), "traded"}, {noisy(kPaperName), "traded"}, kShortfall,
+                    Sign::kMore),
           claim("in the paper's fog the paper's driver helps.", kBiasName, Sign::kLess),
           claim("in the paper's fog a human who misjudges does harm.", kBiasMisjudgesName,
                 Sign::kMore)};
@@ -150,22 +149,30 @@ std::vector<Claim> NoisyDriverClaims(const Comparison& comparison) {
 
 }  // namespace
 
-StudyResult RunDriverStudy(const StudyContext& context) {
+StudyDesign DriverDesign() {
   std::vector<StudyCase> cases = HumanKinds();
   for (StudyCase& one : Densities()) cases.push_back(std::move(one));
   cases.push_back({std::string(kBiasName), "paper.json", {}});
   cases.push_back({std::string(kBiasMisjudgesName), "paper.json", {"/human/misjudges=true"}});
   for (StudyCase& one : NoisyDrivers()) cases.push_back(std::move(one));
-  const Comparison comparison(
-      context, cases,
-      {{"none", {"/arbitrator/policy=none"}}, {"traded", {"/arbitrator/policy=traded"}}});
+  std::vector<PlannedClaim> claims = DriverClaims();
+  for (PlannedClaim& claim : NoisyDriverClaims()) claims.push_back(std::move(claim));
+  return {.cases = std::move(cases),
+          .variants = {{"none", {"/arbitrator/policy=none"}},
+                       {"traded", {"/arbitrator/policy=traded"}}},
+          .claims = std::move(claims)};
+}
+
+StudyResult RunDriverStudy(const StudyContext& context) {
+  const StudyDesign design = DriverDesign();
+  const std::vector<StudyCase>& cases = design.cases;
+  const Comparison comparison(context, cases, design.variants);
   StudyResult result;
   result.runs = comparison.runs();
   report::StudySection& section = result.section;
   section.answer = kDriverAnswer;
   section.would_change = kDriverWouldChange;
-  result.claims = DriverClaims(comparison);
-  for (Claim& claim : NoisyDriverClaims(comparison)) result.claims.push_back(std::move(claim));
+  result.claims = ClaimsOf(comparison, design.claims);
   section.figures = {
       OverDensity(comparison, "mean_compromised_safety_fog_m", "driver-cs-visibility",
                   "Compromised safety over the density of the fog (m)"),

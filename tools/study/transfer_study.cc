@@ -5,6 +5,7 @@
 
 #include "tools/study/claims.h"
 #include "tools/study/comparison.h"
+#include "tools/study/design.h"
 #include "tools/study/sensor_noise.h"
 #include "tools/study/study.h"
 
@@ -60,56 +61,59 @@ constexpr std::string_view kTransferWouldChange =
     "command "
     "(study vehicle), or a limit for the jerk of a single step.";
 
-std::vector<Claim> TransferClaims(const Comparison& comparison) {
+std::vector<PlannedClaim> TransferClaims() {
   const CellName step{kPaperFog, "step"};
   const CellName step_in_dense_fog{kDenseFog, "step"};
   const CellName gate_in_dense_fog{kDenseFog, "gate"};
   return {
-      LevelClaim(comparison, "In the paper's scenario the step is comfortable.", step,
-                 kTransferJerk, Sign::kLess, kComfortableJerk_mps3),
-      LevelClaim(comparison, "In dense fog the step is comfortable, too.", step_in_dense_fog,
-                 kTransferJerk, Sign::kLess, kComfortableJerk_mps3),
-      ClaimOf(comparison, "In the paper's scenario a linear ramp costs safety.",
-              {kPaperFog, "linear"}, step, "si_pct", Sign::kLess),
-      ClaimOf(comparison, "In the paper's scenario a sigmoid ramp costs safety.",
-              {kPaperFog, "sigmoid"}, step, "si_pct", Sign::kLess),
-      ClaimOf(comparison, "In the paper's scenario a jerk limit costs no safety.",
-              {kPaperFog, "jerk_limited"}, step, "si_pct", Sign::kEqual, kTolerableLoss),
-      ClaimOf(comparison, "In dense fog the gate avoids jerk.", gate_in_dense_fog,
-              step_in_dense_fog, kTransferJerk, Sign::kLess),
-      ClaimOf(comparison, "In dense fog the gate costs no safety.", gate_in_dense_fog,
-              step_in_dense_fog, "si_pct", Sign::kEqual, kTolerableLoss),
-      LevelClaim(comparison,
-                 "With realistic noise in the paper's scenario the step is comfortable.",
+      LevelClaim("In the paper's scenario the step is comfortable.", step, kTransferJerk,
+                 Sign::kLess, kComfortableJerk_mps3),
+      LevelClaim("In dense fog the step is comfortable, too.", step_in_dense_fog, kTransferJerk,
+                 Sign::kLess, kComfortableJerk_mps3),
+      PairClaim("In the paper's scenario a linear ramp costs safety.", {kPaperFog, "linear"}, step,
+                "si_pct", Sign::kLess),
+      PairClaim("In the paper's scenario a sigmoid ramp costs safety.", {kPaperFog, "sigmoid"},
+                step, "si_pct", Sign::kLess),
+      PairClaim("In the paper's scenario a jerk limit costs no safety.",
+                {kPaperFog, "jerk_limited"}, step, "si_pct", Sign::kEqual, kTolerableLoss),
+      PairClaim("In dense fog the gate avoids jerk.", gate_in_dense_fog, step_in_dense_fog,
+                kTransferJerk, Sign::kLess),
+      PairClaim("In dense fog the gate costs no safety.", gate_in_dense_fog, step_in_dense_fog,
+                "si_pct", Sign::kEqual, kTolerableLoss),
+      LevelClaim("With realistic noise in the paper's scenario the step is comfortable.",
                  {kPaperFogNoisy, "step"}, kTransferJerk, Sign::kLess, kComfortableJerk_mps3),
-      LevelClaim(comparison, "With realistic noise in dense fog the step is comfortable.",
+      LevelClaim("With realistic noise in dense fog the step is comfortable.",
                  {kDenseFogNoisy, "step"}, kTransferJerk, Sign::kLess, kComfortableJerk_mps3),
-      ClaimOf(comparison,
-              "With realistic noise in the paper's scenario a linear ramp costs safety.",
-              {kPaperFogNoisy, "linear"}, {kPaperFogNoisy, "step"}, "si_pct", Sign::kLess),
-      ClaimOf(comparison, "With realistic noise in dense fog the gate avoids jerk.",
-              {kDenseFogNoisy, "gate"}, {kDenseFogNoisy, "step"}, kTransferJerk, Sign::kLess),
-      ClaimOf(comparison, "With realistic noise in dense fog the gate costs no safety.",
-              {kDenseFogNoisy, "gate"}, {kDenseFogNoisy, "step"}, "si_pct", Sign::kEqual,
-              kTolerableLoss),
+      PairClaim("With realistic noise in the paper's scenario a linear ramp costs safety.",
+                {kPaperFogNoisy, "linear"}, {kPaperFogNoisy, "step"}, "si_pct", Sign::kLess),
+      PairClaim("With realistic noise in dense fog the gate avoids jerk.", {kDenseFogNoisy, "gate"},
+                {kDenseFogNoisy, "step"}, kTransferJerk, Sign::kLess),
+      PairClaim("With realistic noise in dense fog the gate costs no safety.",
+                {kDenseFogNoisy, "gate"}, {kDenseFogNoisy, "step"}, "si_pct", Sign::kEqual,
+                kTolerableLoss),
   };
 }
 
 }  // namespace
 
+StudyDesign TransferDesign() {
+  return {.cases = {{std::string(kPaperFog), "paper.json", {}},
+                    {std::string(kDenseFog), "dense_fog.json", {}},
+                    {std::string(kPaperFogNoisy), "paper.json", RealisticNoise()},
+                    {std::string(kDenseFogNoisy), "dense_fog.json", RealisticNoise()}},
+          .variants = WaysToTransfer(),
+          .claims = TransferClaims()};
+}
+
 StudyResult RunTransferStudy(const StudyContext& context) {
-  const Comparison comparison(context,
-                              {{std::string(kPaperFog), "paper.json", {}},
-                               {std::string(kDenseFog), "dense_fog.json", {}},
-                               {std::string(kPaperFogNoisy), "paper.json", RealisticNoise()},
-                               {std::string(kDenseFogNoisy), "dense_fog.json", RealisticNoise()}},
-                              WaysToTransfer());
+  const StudyDesign design = TransferDesign();
+  const Comparison comparison(context, design.cases, design.variants);
   StudyResult result;
   result.runs = comparison.runs();
   report::StudySection& section = result.section;
   section.answer = kTransferAnswer;
   section.would_change = kTransferWouldChange;
-  result.claims = TransferClaims(comparison);
+  result.claims = ClaimsOf(comparison, design.claims);
   for (const std::string_view name : {kDenseFog, kPaperFog, kDenseFogNoisy, kPaperFogNoisy}) {
     section.tables.push_back(comparison.TableOfCase(comparison.CaseNamed(name), kTransferTable));
   }

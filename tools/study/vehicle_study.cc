@@ -6,6 +6,7 @@
 #include "services/models/vehicle/vehicle_parameters.h"
 #include "tools/study/claims.h"
 #include "tools/study/comparison.h"
+#include "tools/study/design.h"
 #include "tools/study/sensor_noise.h"
 #include "tools/study/study.h"
 
@@ -113,11 +114,11 @@ constexpr std::string_view kVehicleAnswer =
 constexpr std::string_view kVehicleWouldChange =
     "An ACC and a driver that are tuned to the car, or automatic emergency braking.";
 
-std::vector<Claim> VehicleClaims(const Comparison& comparison) {
-  std::vector<Claim> claims;
+std::vector<PlannedClaim> VehicleClaims() {
+  std::vector<PlannedClaim> claims;
   const auto add = [&](std::string says, std::string_view name, std::string_view a,
                        std::string_view b, std::string_view measure, Sign sign) {
-    claims.push_back(ClaimOf(comparison, std::move(says), {name, a}, {name, b}, measure, sign));
+    claims.push_back(PairClaim(std::move(says), {name, a}, {name, b}, measure, sign));
   };
   for (const std::string_view car : {"sedan", "truck", "truck behind a sedan"}) {
     for (const std::string_view fog : {"bias fog", "beam fog"}) {
@@ -126,12 +127,12 @@ std::vector<Claim> VehicleClaims(const Comparison& comparison) {
           Sign::kLess);
     }
   }
-  claims.push_back(ClaimOf(comparison, "A sedan has less safety improvement than a point mass.",
-                           {"beam fog: sedan", "traded"}, {"beam fog: point mass", "traded"},
-                           "si_pct", Sign::kLess));
-  claims.push_back(ClaimOf(comparison, "A truck has less safety improvement than a sedan.",
-                           {"beam fog: truck", "traded"}, {"beam fog: sedan", "traded"}, "si_pct",
-                           Sign::kLess));
+  claims.push_back(PairClaim("A sedan has less safety improvement than a point mass.",
+                             {"beam fog: sedan", "traded"}, {"beam fog: point mass", "traded"},
+                             "si_pct", Sign::kLess));
+  claims.push_back(PairClaim("A truck has less safety improvement than a sedan.",
+                             {"beam fog: truck", "traded"}, {"beam fog: sedan", "traded"}, "si_pct",
+                             Sign::kLess));
   for (const std::string_view car :
        {"point mass", "sedan", "truck", "truck behind a sedan", "truck uphill 2 %", "compact"}) {
     const std::string name = fmt::format("hard braking in beam fog: {}", car);
@@ -201,21 +202,27 @@ std::string VehicleMethod(const Comparison& comparison) {
 
 }  // namespace
 
-StudyResult RunVehicleStudy(const StudyContext& context) {
+StudyDesign VehicleDesign() {
   std::vector<StudyCase> cases = VehicleCases();
   for (StudyCase& one : NoisyCars()) cases.push_back(std::move(one));
-  const Comparison comparison(
-      context, cases,
-      {{"none", {"/arbitrator/policy=none"}},
-       {"traded", {"/arbitrator/policy=traded"}},
-       {"traded jerk-limited",
-        {"/arbitrator/policy=traded", "/arbitrator/transfer/profile=jerk_limited"}}});
+  return {
+      .cases = std::move(cases),
+      .variants = {{"none", {"/arbitrator/policy=none"}},
+                   {"traded", {"/arbitrator/policy=traded"}},
+                   {"traded jerk-limited",
+                    {"/arbitrator/policy=traded", "/arbitrator/transfer/profile=jerk_limited"}}},
+      .claims = VehicleClaims()};
+}
+
+StudyResult RunVehicleStudy(const StudyContext& context) {
+  const StudyDesign design = VehicleDesign();
+  const Comparison comparison(context, design.cases, design.variants);
   StudyResult result;
   result.runs = comparison.runs();
   report::StudySection& section = result.section;
   section.answer = kVehicleAnswer;
   section.would_change = kVehicleWouldChange;
-  result.claims = VehicleClaims(comparison);
+  result.claims = ClaimsOf(comparison, design.claims);
   section.figures = {comparison.FigureOf("mean_compromised_safety_fog_m", "vehicle-cs",
                                          "Compromised safety by vehicle", true),
                      comparison.FigureOf("max_handover_jerk_mps3", "vehicle-jerk",

@@ -7,6 +7,8 @@
 #include "services/decision/policies/policies.h"
 #include "tools/study/claims.h"
 #include "tools/study/comparison.h"
+#include "tools/study/design.h"
+#include "tools/study/engagement/calibrated_radar.h"
 #include "tools/study/engagement/fog_modes.h"
 #include "tools/study/sensor_noise.h"
 #include "tools/study/study.h"
@@ -39,7 +41,7 @@ constexpr std::string_view kCalibratedRadar = "calibrated radar";
 /// Each fog with each human, with the scenario's noise and with the noise of a real radar. Also the
 /// paper's fog with a calibrated radar: the radar has no mounting offset, and the offset is
 /// subtracted from the centre of the DoC.
-std::vector<StudyCase> PolicyFogs() {
+std::vector<StudyCase> PolicyFogs(const Scenario& paper) {
   std::vector<StudyCase> cases;
   for (const FogMode& fog : FogModes()) {
     for (const auto& [human, overrides] : BothHumans()) {
@@ -49,8 +51,7 @@ std::vector<StudyCase> PolicyFogs() {
   }
   for (const auto& [human, overrides] : BothHumans()) {
     std::vector<std::string> calibrated = overrides;
-    calibrated.insert(calibrated.end(), {"/radar/bias_m=0", "/arbitrator/doc_centre_m=0.054",
-                                         "/acc/standstill_m=4.4445"});
+    for (std::string& one : CalibratedRadar(paper)) calibrated.push_back(std::move(one));
     cases.push_back(
         FogModes()[0].Case(fmt::format("{} with {}", human, kCalibratedRadar), calibrated));
   }
@@ -121,16 +122,16 @@ constexpr std::string_view kPolicyWouldChange =
     "in "
     "another way.";
 
-std::vector<Claim> PolicyClaims(const Comparison& comparison) {
+std::vector<PlannedClaim> PolicyClaims() {
   const std::string bias = FogModes()[0].Case(kPerfectHuman).name;
   const std::string bias_fallible = FogModes()[0].Case(kFallibleHuman).name;
   const std::string near = FogModes()[1].Case(kPerfectHuman).name;
   const std::string missing = FogModes()[2].Case(kPerfectHuman).name;
-  const auto less = [&](std::string says, std::string_view fog, std::string_view a,
-                        std::string_view b, std::string_view measure = kShortfall) {
-    return ClaimOf(comparison, std::move(says), {fog, a}, {fog, b}, measure, Sign::kLess);
+  const auto less = [](std::string says, std::string_view fog, std::string_view a,
+                       std::string_view b, std::string_view measure = kShortfall) {
+    return PairClaim(std::move(says), {fog, a}, {fog, b}, measure, Sign::kLess);
   };
-  std::vector<Claim> claims;
+  std::vector<PlannedClaim> claims;
   for (const std::string_view rule :
        {"none", "isolate", "none + gate", "none + reopening gate", "none + adaptive noise"}) {
     claims.push_back(less(fmt::format("In bias fog traded control is safer than: {}.", rule), bias,
@@ -176,11 +177,16 @@ std::vector<Claim> PolicyClaims(const Comparison& comparison) {
 
 }  // namespace
 
+StudyDesign PolicyDesign(const Scenario& paper) {
+  return {.cases = PolicyFogs(paper), .variants = EveryRule(), .claims = PolicyClaims()};
+}
+
 StudyResult RunPolicyStudy(const StudyContext& context) {
-  const Comparison comparison(context, PolicyFogs(), EveryRule());
+  const StudyDesign design = PolicyDesign(context.Load("paper.json", {}));
+  const Comparison comparison(context, design.cases, design.variants);
   StudyResult result;
   result.runs = comparison.runs();
-  result.claims = PolicyClaims(comparison);
+  result.claims = ClaimsOf(comparison, design.claims);
   report::StudySection& section = result.section;
   section.answer = kPolicyAnswer;
   section.would_change = kPolicyWouldChange;

@@ -6,6 +6,7 @@
 
 #include "tools/study/claims.h"
 #include "tools/study/comparison.h"
+#include "tools/study/design.h"
 #include "tools/study/engagement/fog_modes.h"
 #include "tools/study/sensor_noise.h"
 #include "tools/study/study.h"
@@ -205,67 +206,67 @@ std::string StayFor(int latency_s) { return LatencyName("stay", latency_s, false
 std::string IsolateFor(int latency_s) { return LatencyName("isolate", latency_s, false); }
 
 /// The claim on the difference in mean compromised safety of two variants in a case.
-Claim ShortfallClaim(const Comparison& comparison, std::string says, std::string_view test_case,
-                     std::string_view a, std::string_view b, Sign sign, double margin = 0) {
-  return ClaimOf(comparison, std::move(says), {test_case, a}, {test_case, b}, kShortfall, sign,
-                 margin);
+PlannedClaim ShortfallClaim(std::string says, std::string_view test_case, std::string_view a,
+                            std::string_view b, Sign sign, double margin = 0) {
+  return PairClaim(std::move(says), {test_case, a}, {test_case, b}, kShortfall, sign, margin);
 }
 
-std::vector<Claim> TakeOverClaims(const Comparison& comparison) {
+std::vector<PlannedClaim> TakeOverClaims() {
   const std::string_view none = kNoTradedControl;
   const std::string bias = FogModes()[0].Case(kPerfectHuman).name;
   const std::string fallible = FogModes()[0].Case(kFallibleHuman).name;
   const std::string near = FogModes()[1].Case(kPerfectHuman).name;
   const std::string missing = FogModes()[2].Case(kPerfectHuman).name;
-  const auto claim = [&](std::string says, std::string_view test_case, std::string_view a,
-                         std::string_view b, Sign sign, double margin = 0) {
-    return ShortfallClaim(comparison, std::move(says), test_case, a, b, sign, margin);
-  };
   return {
-      claim("In bias fog a wait of one second costs safety.", bias, StayFor(1), StayFor(0),
-            Sign::kMore),
-      claim("A wait of three seconds leaves nothing of the gain.", bias, StayFor(3), none,
-            Sign::kEqual, kNoShortfall_m),
-      claim("A wait of five seconds does harm.", bias, StayFor(5), none, Sign::kMore),
-      claim("A fallible human does harm there without any wait.", fallible, StayFor(0), none,
-            Sign::kMore),
-      claim("With a false echo a wait of five seconds does harm.", near, StayFor(5), none,
-            Sign::kMore),
-      claim("It costs nothing if the deceived sensor is left out meanwhile.", near, IsolateFor(5),
-            IsolateFor(0), Sign::kEqual, kNoShortfall_m),
-      claim("That is safer than a driver without any wait.", near, IsolateFor(5), StayFor(0),
-            Sign::kLess),
-      claim("Without an echo the automation alone is safer than traded control.", missing, none,
-            StayFor(0), Sign::kLess),
+      ShortfallClaim("In bias fog a wait of one second costs safety.", bias, StayFor(1), StayFor(0),
+                     Sign::kMore),
+      ShortfallClaim("A wait of three seconds leaves nothing of the gain.", bias, StayFor(3), none,
+                     Sign::kEqual, kNoShortfall_m),
+      ShortfallClaim("A wait of five seconds does harm.", bias, StayFor(5), none, Sign::kMore),
+      ShortfallClaim("A fallible human does harm there without any wait.", fallible, StayFor(0),
+                     none, Sign::kMore),
+      ShortfallClaim("With a false echo a wait of five seconds does harm.", near, StayFor(5), none,
+                     Sign::kMore),
+      ShortfallClaim("It costs nothing if the deceived sensor is left out meanwhile.", near,
+                     IsolateFor(5), IsolateFor(0), Sign::kEqual, kNoShortfall_m),
+      ShortfallClaim("That is safer than a driver without any wait.", near, IsolateFor(5),
+                     StayFor(0), Sign::kLess),
+      ShortfallClaim("Without an echo the automation alone is safer than traded control.", missing,
+                     none, StayFor(0), Sign::kLess),
   };
 }
 
 /// The claims with realistic noise on which the answer depends.
-std::vector<Claim> NoisyClaims(const Comparison& noisy) {
+std::vector<PlannedClaim> NoisyClaims() {
   const std::string_view none = kNoTradedControl;
   const auto name = [](std::size_t fog) {
     return WithRealisticNoise(FogModes()[fog].Case(kPerfectHuman)).name;
   };
   return {
-      ShortfallClaim(noisy, "With realistic noise in bias fog a wait of one second costs safety.",
-                     name(0), StayFor(1), StayFor(0), Sign::kMore),
-      ShortfallClaim(noisy, "With realistic noise in bias fog a wait of five seconds still helps.",
+      ShortfallClaim("With realistic noise in bias fog a wait of one second costs safety.", name(0),
+                     StayFor(1), StayFor(0), Sign::kMore),
+      ShortfallClaim("With realistic noise in bias fog a wait of five seconds still helps.",
                      name(0), StayFor(5), none, Sign::kLess),
-      ShortfallClaim(noisy,
-                     "With realistic noise and a false echo a wait of five seconds does harm.",
+      ShortfallClaim("With realistic noise and a false echo a wait of five seconds does harm.",
                      name(1), StayFor(5), none, Sign::kMore),
-      ShortfallClaim(noisy,
-                     "With realistic noise it costs nothing if the deceived sensor is left out "
+      ShortfallClaim("With realistic noise it costs nothing if the deceived sensor is left out "
                      "meanwhile.",
                      name(1), IsolateFor(5), IsolateFor(0), Sign::kEqual, kNoShortfall_m),
-      ShortfallClaim(noisy,
-                     "With realistic noise and without an echo the automation alone is safer than "
+      ShortfallClaim("With realistic noise and without an echo the automation alone is safer than "
                      "traded control.",
                      name(2), none, StayFor(0), Sign::kLess),
   };
 }
 
 }  // namespace
+
+StudyDesign TakeOverDesign() {
+  std::vector<StudyCase> cases = TakeOverCases();
+  for (StudyCase& one : NoisyCases()) cases.push_back(std::move(one));
+  std::vector<PlannedClaim> claims = TakeOverClaims();
+  for (PlannedClaim& claim : NoisyClaims()) claims.push_back(std::move(claim));
+  return {.cases = std::move(cases), .variants = TakeOverVariants(), .claims = std::move(claims)};
+}
 
 StudyResult RunTakeOverStudy(const StudyContext& context) {
   const auto units = [&](const std::vector<StudyCase>& cases) {
@@ -277,8 +278,8 @@ StudyResult RunTakeOverStudy(const StudyContext& context) {
   const Comparison noisy(context.Part(first, all), NoisyCases(), MainVariants());
   StudyResult result;
   result.runs = comparison.runs() + noisy.runs();
-  result.claims = TakeOverClaims(comparison);
-  for (Claim& claim : NoisyClaims(noisy)) result.claims.push_back(std::move(claim));
+  result.claims = ClaimsOf(comparison, TakeOverClaims());
+  for (Claim& claim : ClaimsOf(noisy, NoisyClaims())) result.claims.push_back(std::move(claim));
   report::StudySection& section = result.section;
   section.answer = kTakeOverAnswer;
   section.would_change = kTakeOverWouldChange;

@@ -6,6 +6,7 @@
 
 #include "tools/study/claims.h"
 #include "tools/study/comparison.h"
+#include "tools/study/design.h"
 #include "tools/study/followers/string_runs.h"
 #include "tools/study/sensor_noise.h"
 #include "tools/study/study.h"
@@ -73,34 +74,6 @@ constexpr std::array<std::string_view, 8> kFollowerTable{"si_pct",
                                                          "max_follower_drac_mps2",
                                                          "min_follower_rss_margin_m"};
 
-// Overrides that start the fog later. So the cars behind the host reach steady gaps before the
-// fog, whatever their time gaps are. The fog lasts as long as in the file.
-const std::vector<std::string> kLater{"/fog/start_s=60", "/steps=1200"};
-
-/// Strings: rows of cars behind the host. All drivers of a string are of one kind, or each driver
-/// is drawn at random.
-std::vector<StudyCase> Strings() {
-  std::vector<StudyCase> kinds;
-  const auto add = [&](std::string_view name, std::vector<std::string> overrides) {
-    overrides.insert(overrides.end(), kLater.begin(), kLater.end());
-    kinds.push_back(
-        {.name = std::string(name), .file = "dense_fog.json", .overrides = std::move(overrides)});
-  };
-  add("acc", {});
-  for (const std::string_view style : {"aggressive", "normal", "cautious"}) {
-    add(fmt::format("{} humans", style),
-        {"/followers/driver=human", fmt::format("/followers/style={}", style)});
-  }
-  add("drawn", {"/followers/driver=drawn", "/followers/style=drawn"});
-  for (const std::string_view name : {"acc", "normal humans"}) {
-    kinds.push_back(WithRealisticNoise(*std::ranges::find(kinds, name, &StudyCase::name)));
-  }
-  return kinds;
-}
-
-const std::vector<StudyVariant> kVariants{{"none", {"/arbitrator/policy=none"}},
-                                          {"traded", {"/arbitrator/policy=traded"}}};
-
 constexpr std::string_view kFollowersAnswer =
     "It helps an ACC that follows the host. In the paper's fog traded control does nothing for a "
     "human "
@@ -112,10 +85,9 @@ constexpr std::string_view kFollowersAnswer =
 constexpr std::string_view kFollowersWouldChange =
     "Followers with automatic emergency braking, or a host that brakes harder.";
 
-std::vector<Claim> ClaimsOnFirst(const Comparison& comparison) {
-  const auto claim = [&](std::string says, std::string_view name, Sign sign, double margin = 0) {
-    return ClaimOf(comparison, std::move(says), {name, "traded"}, {name, "none"}, kShortfall, sign,
-                   margin);
+std::vector<PlannedClaim> ClaimsOnFirst() {
+  const auto claim = [](std::string says, std::string_view name, Sign sign, double margin = 0) {
+    return PairClaim(std::move(says), {name, "traded"}, {name, "none"}, kShortfall, sign, margin);
   };
   return {claim("In bias fog traded control helps an ACC.", "bias fog: acc", Sign::kLess),
           claim("In beam fog traded control helps an ACC.", "beam fog: acc", Sign::kLess),
@@ -130,12 +102,12 @@ std::vector<Claim> ClaimsOnFirst(const Comparison& comparison) {
 }
 
 /// The claims on the first follower behind a host with realistic noise.
-std::vector<Claim> NoisyClaimsOnFirst(const Comparison& comparison) {
-  const auto claim = [&](std::string_view says, std::string_view name, Sign sign,
-                         double margin = 0) {
+std::vector<PlannedClaim> NoisyClaimsOnFirst() {
+  const auto claim = [](std::string_view says, std::string_view name, Sign sign,
+                        double margin = 0) {
     const std::string noisy = fmt::format("{}{}", name, kWithRealisticNoise);
-    return ClaimOf(comparison, fmt::format("With realistic noise {}", says), {noisy, "traded"},
-                   {noisy, "none"}, kShortfall, sign, margin);
+    return PairClaim(fmt::format("With realistic noise {}", says), {noisy, "traded"},
+                     {noisy, "none"}, kShortfall, sign, margin);
   };
   return {claim("in bias fog traded control helps an ACC.", "bias fog: acc", Sign::kLess),
           claim("in beam fog traded control helps an ACC.", "beam fog: acc", Sign::kLess),
@@ -143,31 +115,6 @@ std::vector<Claim> NoisyClaimsOnFirst(const Comparison& comparison) {
                 "bias fog: normal human", Sign::kEqual, kNoShortfall_m),
           claim("in beam fog traded control helps an aggressive human.",
                 "beam fog: aggressive human", Sign::kLess)};
-}
-
-/// For each kind of string, the claim that the last car brakes less hard behind a host with traded
-/// control.
-std::vector<Claim> ClaimsOnStrings(std::span<const StringOutcome> strings) {
-  std::vector<Claim> claims;
-  for (const StringOutcome& traded : strings) {
-    if (traded.variant != "traded") continue;
-    const auto none = std::ranges::find_if(strings, [&](const StringOutcome& other) {
-      return other.kind == traded.kind && other.variant == "none";
-    });
-    claims.push_back(
-        {.says = fmt::format("The last car of a string brakes less hard: {}.", traded.kind),
-         .compared = fmt::format("string of {}: traded against none, largest "
-                                 "deceleration of follower {} (m/s2)",
-                                 traded.kind, kStringCars),
-         .sign = Sign::kLess,
-         .difference = PairedDifference(traded.cars[kStringCars].max_deceleration_mps2,
-                                        none->cars[kStringCars].max_deceleration_mps2),
-         .margin = 0,
-         .p = {},
-         .hindrance =
-             traded.collisions + none->collisions > 0 ? "not comparable: runs end early" : ""});
-  }
-  return claims;
 }
 
 /// The followers with the largest difference between their kinds, without and with traded control.
@@ -273,7 +220,7 @@ void AddStrings(const StudyContext& context, std::span<const StringOutcome> stri
   for (const StringOutcome& string : strings) {
     section.tables.push_back(TableOfString(string, context.seeds.count()));
   }
-  for (const StudyVariant& variant : kVariants) {
+  for (const StudyVariant& variant : HostVariants()) {
     section.figures.push_back(
         ByPlace(strings, variant.name, fmt::format("followers-string-{}", variant.name),
                 "Hardest braking along a string", "Largest deceleration (m/s2)",
@@ -288,23 +235,30 @@ void AddStrings(const StudyContext& context, std::span<const StringOutcome> stri
 
 }  // namespace
 
-StudyResult RunFollowersStudy(const StudyContext& context) {
+StudyDesign FollowersDesign() {
   std::vector<StudyCase> cases = FollowerCases();
   for (StudyCase& one : NoisyFollowers()) cases.push_back(std::move(one));
-  const std::vector<StudyCase> kinds = Strings();
+  std::vector<PlannedClaim> claims = ClaimsOnFirst();
+  for (PlannedClaim& claim : NoisyClaimsOnFirst()) claims.push_back(std::move(claim));
+  return {.cases = std::move(cases), .variants = HostVariants(), .claims = std::move(claims)};
+}
+
+StudyResult RunFollowersStudy(const StudyContext& context) {
+  const StudyDesign design = FollowersDesign();
+  const std::vector<StudyCase>& cases = design.cases;
+  const std::vector<StudyCase> kinds = StringKinds();
   const auto compared = static_cast<std::int64_t>(cases.size()) * context.seeds.count();
   const auto strung =
-      static_cast<std::int64_t>(kinds.size() * kVariants.size()) * context.seeds.count();
-  const Comparison comparison(context.Part(0, compared + strung), cases, kVariants);
+      static_cast<std::int64_t>(kinds.size() * HostVariants().size()) * context.seeds.count();
+  const Comparison comparison(context.Part(0, compared + strung), cases, HostVariants());
   const std::vector<StringOutcome> strings =
-      RunStrings(context.Part(compared, compared + strung), kinds, kVariants);
+      RunStrings(context.Part(compared, compared + strung), kinds, HostVariants());
   StudyResult result;
   result.runs = comparison.runs();
   report::StudySection& section = result.section;
   section.answer = kFollowersAnswer;
   section.would_change = kFollowersWouldChange;
-  result.claims = ClaimsOnFirst(comparison);
-  for (Claim& claim : NoisyClaimsOnFirst(comparison)) result.claims.push_back(std::move(claim));
+  result.claims = ClaimsOf(comparison, design.claims);
   for (Claim& claim : ClaimsOnStrings(strings)) result.claims.push_back(std::move(claim));
   section.figures = {comparison.FigureOf("mean_compromised_safety_fog_m", "followers-cs",
                                          "Compromised safety by follower", true),

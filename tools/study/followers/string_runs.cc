@@ -4,10 +4,13 @@
 #include <array>
 #include <limits>
 
+#include <fmt/format.h>
+
 #include "services/closed_loop/closed_loop.h"
 #include "services/metrics/follower_metrics.h"
 #include "tools/stats/in_order.h"
 #include "tools/stats/statistics.h"
+#include "tools/study/sensor_noise.h"
 
 namespace fogline::study {
 namespace {
@@ -19,6 +22,10 @@ constexpr double kBefore_s = 1;
 
 // Smaller decelerations do not count as braking, because noise causes them in clear air.
 constexpr double kLeastBraking_mps2 = 0.01;
+
+// Overrides that start the fog later. So the cars behind the host reach steady gaps before the
+// fog, whatever their time gaps are. The fog lasts as long as in the file.
+const std::vector<std::string> kLater{"/fog/start_s=60", "/steps=1200"};
 
 /// Result of one run.
 struct StringRun {
@@ -68,6 +75,31 @@ void AddToString(const StringRun& run, StringOutcome& outcome) {
 
 }  // namespace
 
+const std::vector<StudyVariant>& HostVariants() {
+  static const std::vector<StudyVariant> kVariants{{"none", {"/arbitrator/policy=none"}},
+                                                   {"traded", {"/arbitrator/policy=traded"}}};
+  return kVariants;
+}
+
+std::vector<StudyCase> StringKinds() {
+  std::vector<StudyCase> kinds;
+  const auto add = [&](std::string_view name, std::vector<std::string> overrides) {
+    overrides.insert(overrides.end(), kLater.begin(), kLater.end());
+    kinds.push_back(
+        {.name = std::string(name), .file = "dense_fog.json", .overrides = std::move(overrides)});
+  };
+  add("acc", {});
+  for (const std::string_view style : {"aggressive", "normal", "cautious"}) {
+    add(fmt::format("{} humans", style),
+        {"/followers/driver=human", fmt::format("/followers/style={}", style)});
+  }
+  add("drawn", {"/followers/driver=drawn", "/followers/style=drawn"});
+  for (const std::string_view name : {"acc", "normal humans"}) {
+    kinds.push_back(WithRealisticNoise(*std::ranges::find(kinds, name, &StudyCase::name)));
+  }
+  return kinds;
+}
+
 std::vector<StringOutcome> RunStrings(const StudyContext& context, std::span<const StudyCase> kinds,
                                       std::span<const StudyVariant> variants) {
   std::vector<StringOutcome> outcomes;
@@ -96,6 +128,33 @@ std::vector<StringOutcome> RunStrings(const StudyContext& context, std::span<con
         return true;
       });
   return outcomes;
+}
+
+std::string StringSays(std::string_view kind) {
+  return fmt::format("The last car of a string brakes less hard: {}.", kind);
+}
+
+std::vector<Claim> ClaimsOnStrings(std::span<const StringOutcome> strings) {
+  std::vector<Claim> claims;
+  for (const StringOutcome& traded : strings) {
+    if (traded.variant != "traded") continue;
+    const auto none = std::ranges::find_if(strings, [&](const StringOutcome& other) {
+      return other.kind == traded.kind && other.variant == "none";
+    });
+    claims.push_back({.says = StringSays(traded.kind),
+                      .compared = fmt::format("string of {}: traded against none, largest "
+                                              "deceleration of follower {} (m/s2)",
+                                              traded.kind, kStringCars),
+                      .sign = Sign::kLess,
+                      .difference = PairedDifference(traded.cars[kStringCars].max_deceleration_mps2,
+                                                     none->cars[kStringCars].max_deceleration_mps2),
+                      .margin = 0,
+                      .p = {},
+                      .hindrance = traded.collisions + none->collisions > 0
+                                       ? "not comparable: runs end early"
+                                       : ""});
+  }
+  return claims;
 }
 
 }  // namespace fogline::study

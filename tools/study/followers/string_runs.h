@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "tools/study/claim.h"
 #include "tools/study/comparison.h"
 #include "tools/study/study.h"
 
@@ -35,9 +36,21 @@ struct StringOutcome {
   std::int64_t collisions = 0;    // runs that end with a collision
 };
 
+/// The host without and with traded control.
+const std::vector<StudyVariant>& HostVariants();
+/// Strings: rows of cars behind the host. All drivers of a string are of one kind, or each driver
+/// is drawn at random. Two of them also have realistic noise.
+std::vector<StudyCase> StringKinds();
+
 /// Runs all kinds with all variants. The result is ordered by kind. In the scenarios of `kinds` the
 /// fog must begin after the string has settled. @throws InputError, StudyStopped
 std::vector<StringOutcome> RunStrings(const StudyContext& context, std::span<const StudyCase> kinds,
                                       std::span<const StudyVariant> variants);
+
+/// What the claim on a kind of string says.
+std::string StringSays(std::string_view kind);
+/// For each kind of string with HostVariants(), the claim that the last car brakes less hard behind
+/// a host with traded control.
+std::vector<Claim> ClaimsOnStrings(std::span<const StringOutcome> strings);
 
 }  // namespace fogline::study

@@ -102,6 +102,11 @@ Claim RuleClaim(const MixedRuns& runs, std::string_view of, std::string says, st
           .hindrance = {}};
 }
 
+Claim LowThresholdClaim(const MixedRuns& mixed) {
+  return RuleClaim(mixed, "", "The paper's threshold is safer than a low one.", "fixed 0.5",
+                   "fixed 0.3", Sign::kMore);
+}
+
 std::size_t RuleNamed(const MixedRuns& runs, std::string_view name) {
   const auto found = std::ranges::find(runs.members, name, &RuleMember::name);
   if (found == runs.members.end()) throw std::out_of_range(fmt::format("no rule {}", name));

@@ -39,6 +39,8 @@ std::string HumansCsv(std::span<const HumanMix> mixes);
 /// names the mix; "" stands for the mix with drawn humans.
 Claim RuleClaim(const MixedRuns& runs, std::string_view of, std::string says, std::string_view a,
                 std::string_view b, Sign sign, double margin = 0);
+/// The claim that the paper's threshold is safer than a low one, in the mix of drawn humans.
+Claim LowThresholdClaim(const MixedRuns& mixed);
 /// Index of the rule with this name. @throws std::out_of_range
 std::size_t RuleNamed(const MixedRuns& runs, std::string_view name);
 

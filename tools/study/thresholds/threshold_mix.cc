@@ -79,9 +79,9 @@ RuleFamily FamilyOf(std::string name, std::string_view policy, std::string_view 
   return family;
 }
 
-std::vector<Scenario> BasesOf(const StudyContext& context, const MixedRuns& mixed,
-                              MixedRadar radar) {
-  std::vector<std::string> overrides = kMixed;
+std::vector<Scenario> BasesOf(const StudyContext& context, const MixedRuns& mixed, MixedRadar radar,
+                              std::vector<std::string> overrides) {
+  overrides.insert(overrides.end(), kMixed.begin(), kMixed.end());
   if (radar == MixedRadar::kRealistic) {
     overrides.insert(overrides.end(), RealisticNoise().begin(), RealisticNoise().end());
   }
@@ -134,7 +134,7 @@ std::vector<RuleFamily> RulesNamed(std::span<const std::string_view> names) {
 }
 
 MixedRuns RunMix(const StudyContext& context, std::vector<RuleFamily> families, MixedHuman human,
-                 MixedRadar radar) {
+                 MixedRadar radar, std::vector<std::string> overrides) {
   MixedRuns mixed{
       .families = std::move(families), .members = {}, .situations = context.seeds.count()};
   for (std::size_t f = 0; f < mixed.families.size(); ++f) {
@@ -142,7 +142,7 @@ MixedRuns RunMix(const StudyContext& context, std::vector<RuleFamily> families, 
       mixed.members.push_back({.family = f, .name = member.name});
     }
   }
-  const std::vector<Scenario> bases = BasesOf(context, mixed, radar);
+  const std::vector<Scenario> bases = BasesOf(context, mixed, radar, std::move(overrides));
   stats::ComputeInOrder(
       0, mixed.situations, context.jobs, [] { return PairedWorker(); },
       [&](PairedWorker& worker, std::int64_t unit) {

@@ -58,9 +58,10 @@ std::vector<RuleFamily> RulesNamed(std::span<const std::string_view> names);
 
 /// Runs all situations. Each seed has one situation, which is the same for every rule, human and
 /// radar.
+/// @param overrides of paper.json, for the fields that do not vary between situations
 /// @throws InputError, StudyStopped
 MixedRuns RunMix(const StudyContext& context, std::vector<RuleFamily> families, MixedHuman human,
-                 MixedRadar radar);
+                 MixedRadar radar, std::vector<std::string> overrides = {});
 
 /// Description of the situations with drawn humans and radars.
 std::string MixText();

@@ -106,8 +106,7 @@ std::vector<Claim> ThresholdClaims(const MixedRuns& mixed, const Beside& beside)
   return {
       against("Hardly ever handing over is safer than the paper's threshold.", "fixed 0.99",
               "fixed 0.5", Sign::kMore),
-      against("The paper's threshold is safer than a low one.", "fixed 0.5", "fixed 0.3",
-              Sign::kMore),
+      LowThresholdClaim(mixed),
       against("It is safer than the adaptive rule.", "fixed 0.99", "adaptive 0.5", Sign::kMore),
       against("It is safer than the rule by costs.", "fixed 0.99", "bayes 1", Sign::kMore),
       against("It is as safe as dropping the sensor at the same threshold.", "fixed 0.99",

@@ -50,8 +50,8 @@ class Runs {
                          double margin = 0) const {
     const study::Comparison comparison({{"fog", "paper.json", {}}}, {{"none", {}}, {"traded", {}}},
                                        kSeeds, values_);
-    return study::ClaimOf(comparison, "It helps.", {"fog", "traded"}, {"fog", "none"}, measure,
-                          sign, margin);
+    return study::ClaimOf(comparison, study::PairClaim("It helps.", {"fog", "traded"},
+                                                       {"fog", "none"}, measure, sign, margin));
   }
 
  private:
@@ -126,8 +126,9 @@ TEST(ClaimsTest, RunsThatEndEarlyProveNothingAboutOtherMeasures) {
 TEST(ClaimsTest, ALevelIsComparedWithTheMean) {
   const study::Comparison comparison({{"fog", "paper.json", {}}}, {{"none", {}}}, 2,
                                      std::vector<double>(study::ComparedMetrics().size() * 2, 3));
-  const study::Claim claim = study::LevelClaim(comparison, "It is more.", {"fog", "none"},
-                                               "max_abs_jerk_mps3", study::Sign::kMore, 2.5);
+  const study::Claim claim =
+      study::ClaimOf(comparison, study::LevelClaim("It is more.", {"fog", "none"},
+                                                   "max_abs_jerk_mps3", study::Sign::kMore, 2.5));
   EXPECT_DOUBLE_EQ(claim.difference.mean, 0.5);
   EXPECT_EQ(claim.compared, "fog: none against 2.5, largest jerk (m/s3)");
   EXPECT_EQ(CheckOne(claim).state, report::ClaimState::kHolds);
@@ -136,8 +137,9 @@ TEST(ClaimsTest, ALevelIsComparedWithTheMean) {
 TEST(ClaimsTest, ANameThatIsNotThereIsRefused) {
   const study::Comparison comparison({{"fog", "paper.json", {}}}, {{"none", {}}}, 1,
                                      std::vector<double>(study::ComparedMetrics().size(), 0));
-  const auto claim = [&](study::CellName cell, std::string_view measure) {
-    return study::ClaimOf(comparison, "", cell, {"fog", "none"}, measure, study::Sign::kLess);
+  const auto claim = [&](const study::CellName& cell, std::string_view measure) {
+    return study::ClaimOf(comparison,
+                          study::PairClaim("", cell, {"fog", "none"}, measure, study::Sign::kLess));
   };
   EXPECT_THROW(claim({"mist", "none"}, "steps"), std::out_of_range);
   EXPECT_THROW(claim({"fog", "traded"}, "steps"), std::out_of_range);

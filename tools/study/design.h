@@ -1,0 +1,28 @@
+// What the studies run and claim, for a study that examines their claims with other parameters.
+#pragma once
+
+#include <vector>
+
+#include "scenario/sections/scenario.h"
+#include "tools/study/claims.h"
+#include "tools/study/comparison.h"
+
+namespace fogline::study {
+
+/// The cases and variants of a study, and its claims on them. Claims on other runs, such as those
+/// of strings of cars, are not here.
+struct StudyDesign {
+  std::vector<StudyCase> cases;
+  std::vector<StudyVariant> variants;
+  std::vector<PlannedClaim> claims;
+};
+
+/// @param paper the scenario of paper.json, because a calibrated radar depends on its offset
+StudyDesign PolicyDesign(const Scenario& paper);
+StudyDesign TakeOverDesign();
+StudyDesign TransferDesign();
+StudyDesign DriverDesign();
+StudyDesign FollowersDesign();
+StudyDesign VehicleDesign();
+
+}  // namespace fogline::study
