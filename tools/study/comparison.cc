@@ -50,7 +50,13 @@ void RequireNamesWithoutCommas(const std::vector<Named>& all) {
   }
 }
 
-/// The scenario of every cell, case by case. Each case begins with its run without traded control.
+/// Whether the runs of a variant are those without traded control, which each case has anyway.
+bool IsWithoutTradedControl(const StudyVariant& variant) {
+  return variant.overrides.size() == 1 && variant.overrides.front() == kWithoutTradedControl;
+}
+
+/// The scenarios of the cells, case by case. Each case begins with its run without traded control;
+/// a variant that is this run has no other scenario.
 std::vector<Scenario> ScenariosOf(const StudyContext& context, const std::vector<StudyCase>& cases,
                                   const std::vector<StudyVariant>& variants) {
   std::vector<Scenario> scenarios;
@@ -58,6 +64,7 @@ std::vector<Scenario> ScenariosOf(const StudyContext& context, const std::vector
     scenarios.push_back(
         context.Load(one.file, one.overrides, {std::string(kWithoutTradedControl)}));
     for (const StudyVariant& variant : variants) {
+      if (IsWithoutTradedControl(variant)) continue;
       scenarios.push_back(context.Load(one.file, one.overrides, variant.overrides));
     }
   }
@@ -89,13 +96,19 @@ Comparison::Comparison(const StudyContext& context, std::vector<StudyCase> cases
   const auto seeds = static_cast<std::size_t>(seeds_);
   values_.assign(cases_.size() * variants_.size() * measures * seeds, stats::kMissing);
   const std::int64_t units = static_cast<std::int64_t>(cases_.size()) * seeds_;
-  const std::size_t block = variants_.size() + 1;
+  const std::size_t block = scenarios.size() / std::max<std::size_t>(1, cases_.size());
   stats::ComputeInOrder(
       0, units, context.jobs, [] { return PairedWorker(); },
       [&](PairedWorker& worker, std::int64_t unit) {
-        const auto first = static_cast<std::size_t>(unit / seeds_) * block;
-        return worker.Compute(std::span(scenarios).subspan(first, block),
-                              context.seeds.first + unit % seeds_);
+        const auto of_case =
+            std::span(scenarios).subspan(static_cast<std::size_t>(unit / seeds_) * block, block);
+        auto runs = worker.Compute(of_case, context.seeds.first + unit % seeds_);
+        for (std::size_t v = 0; v < variants_.size(); ++v) {
+          if (!IsWithoutTradedControl(variants_[v])) continue;
+          runs.insert(runs.begin() + static_cast<std::ptrdiff_t>(v),
+                      worker.OfBaseline(of_case.front()));
+        }
+        return runs;
       },
       [&](std::int64_t unit, const std::vector<RunValues>& runs) {
         const auto seed = static_cast<std::size_t>(unit % seeds_);
@@ -123,7 +136,9 @@ Comparison::Comparison(std::vector<StudyCase> cases, std::vector<StudyVariant> v
 }
 
 std::int64_t Comparison::runs() const {
-  return static_cast<std::int64_t>(cases_.size() * (variants_.size() + 1)) * seeds_;
+  const auto others = variants_.size() - static_cast<std::size_t>(std::ranges::count_if(
+                                             variants_, IsWithoutTradedControl));
+  return static_cast<std::int64_t>(cases_.size() * (1 + others)) * seeds_;
 }
 
 std::span<const double> Comparison::Values(Cell cell, std::string_view measure) const {

@@ -57,4 +57,14 @@ std::vector<RunValues> PairedWorker::Compute(std::span<const Scenario> scenarios
   return runs;
 }
 
+RunValues PairedWorker::OfBaseline(const Scenario& scenario) const {
+  metrics::MetricsAccumulator measures(scenario);
+  metrics::PairedAccumulator pair(scenario);
+  for (const metrics::Sample& sample : baseline_) {
+    measures.Add(sample);
+    pair.Add(sample, sample);
+  }
+  return ValuesOf(measures.Result(), pair.Result());
+}
+
 }  // namespace fogline::study
