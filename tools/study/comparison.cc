@@ -196,6 +196,20 @@ double Comparison::PValueOfCollisions(Cell a, Cell b) const {
   return stats::McNemar(Values(a, kCollided), Values(b, kCollided));
 }
 
+std::vector<double> Comparison::LessSafe(Cell a, Cell b) const {
+  const std::span<const double> crash_a = Values(a, kCollided);
+  const std::span<const double> crash_b = Values(b, kCollided);
+  const std::span<const double> shortfall_a = Values(a, kShortfall);
+  const std::span<const double> shortfall_b = Values(b, kShortfall);
+  std::vector<double> less_safe;
+  for (std::size_t i = 0; i < crash_a.size(); ++i) {
+    const bool is_decided = crash_a[i] > 0 || crash_b[i] > 0;
+    const bool is_less = is_decided ? crash_a[i] > crash_b[i] : shortfall_a[i] > shortfall_b[i];
+    less_safe.push_back(is_less ? 1 : 0);
+  }
+  return less_safe;
+}
+
 std::vector<Comparison::PairedTest> Comparison::TestsAgainst(std::size_t reference) const {
   std::vector<PairedTest> tests;
   for (std::size_t c = 0; c < cases_.size(); ++c) {

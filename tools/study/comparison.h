@@ -98,6 +98,10 @@ class Comparison {
   std::int64_t PairsCutShort(Cell a, Cell b) const;
   /// p-value of the difference of `collided`, by the exact test of McNemar over the pairs.
   double PValueOfCollisions(Cell a, Cell b) const;
+  /// For each seed 1 if the run of `a` is less safe than that of `b`, else 0. Collisions come
+  /// first: a run that collides is less safe than one that does not. Two runs that do not collide
+  /// are compared by their compromised safety. Two that do are equally safe.
+  std::vector<double> LessSafe(Cell a, Cell b) const;
   /// Index of the case, or of the variant, with this name. @throws std::out_of_range
   std::size_t CaseNamed(std::string_view name) const;
   std::size_t VariantNamed(std::string_view name) const;

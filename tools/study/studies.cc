@@ -51,6 +51,12 @@ constexpr Study kStudies[] = {
      "Does traded control still help in a car that does not follow its commands exactly?",
      {1, 300},
      RunVehicleStudy},
+    {"ensemble",
+     "Other parameters that meet the table",
+     "Which findings hold for every parameter set that meets the published table?",
+     {1, 136},
+     RunEnsembleStudy,
+     true},
 };
 
 }  // namespace

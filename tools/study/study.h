@@ -28,7 +28,7 @@ class StudyStopped : public std::runtime_error {
 
 /// Input of a study.
 struct StudyContext {
-  std::filesystem::path scenarios;  // folder with paper.json and dense_fog.json
+  std::filesystem::path scenarios;  // folder with paper.json, dense_fog.json and ensemble/
   sweep::SeedRange seeds;
   int jobs = 1;
   /// Called repeatedly with the finished and the total number of units; returns false to stop.
@@ -63,6 +63,7 @@ struct Study {
   std::string_view question;
   sweep::SeedRange seeds;  // default of --seeds
   StudyResult (*run)(const StudyContext& context);
+  bool needs_sets = false;  // the parameter sets of scenario/ensemble
 };
 
 /// The table of all studies, in the order of `fogline study all`. The command line, its help and
@@ -81,5 +82,6 @@ StudyResult RunThresholdStudy(const StudyContext& context);
 StudyResult RunDriverStudy(const StudyContext& context);
 StudyResult RunFollowersStudy(const StudyContext& context);
 StudyResult RunVehicleStudy(const StudyContext& context);
+StudyResult RunEnsembleStudy(const StudyContext& context);
 
 }  // namespace fogline::study

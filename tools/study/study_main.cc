@@ -1,6 +1,7 @@
 // fogline study, a program of its own. It answers the paper's open questions with numbers.
 #include "tools/study/study.h"
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <string>
@@ -21,6 +22,7 @@
 #include "tools/cli/verb_program.h"
 #include "tools/report/study_page.h"
 #include "tools/study/claims.h"
+#include "tools/study/ensemble/parameter_sets.h"
 #include "tools/sweep/engine.h"
 
 namespace fogline::study {
@@ -55,14 +57,21 @@ void RequireFew(const sweep::SeedRange& seeds, const std::string& text) {
 }
 
 /// Checks before the runs that the scenarios of the studies exist. @throws InputError
-void RequireScenarios(const std::filesystem::path& folder) {
-  for (const char* name : {"paper.json", "dense_fog.json"}) {
+void RequireScenarios(const std::filesystem::path& folder,
+                      const std::vector<const Study*>& chosen) {
+  std::vector<std::string> names{"paper.json", "dense_fog.json"};
+  std::string with = "paper.json and dense_fog.json";
+  if (std::ranges::any_of(chosen, &Study::needs_sets)) {
+    names.emplace_back(kSetsFile);
+    with = fmt::format("paper.json, dense_fog.json and {}", kSetsFile);
+  }
+  for (const std::string& name : names) {
     const std::filesystem::path file = folder / name;
     if (std::filesystem::exists(file)) continue;
     throw InputError(
         fmt::format("{}: error: --scenarios: there is no such file; the option names the folder "
-                    "with paper.json and dense_fog.json, in Fogline's sources scenario/",
-                    PathText(file)));
+                    "with {}, in Fogline's sources scenario/",
+                    PathText(file), with));
   }
 }
 
@@ -173,7 +182,7 @@ void PrintText(const StudyArguments& arguments, const Made& made) {
 int RunStudy(const StudyArguments& arguments) {
   const std::vector<const Study*> chosen = Chosen(arguments.name);
   if (!arguments.seeds.empty()) RequireFew(cli::ReadSeeds(arguments.seeds), arguments.seeds);
-  RequireScenarios(arguments.scenarios);
+  RequireScenarios(arguments.scenarios, chosen);
   const OutputFolder folder(arguments.out, "--out");
   WatchInterrupts();
   std::vector<Made> all;
@@ -216,7 +225,7 @@ void AddStudy(CLI::App& app, cli::Action& action) {
       ->check(CLI::Range(1, 1024))
       ->capture_default_str();
   verb->add_option("--scenarios", arguments->scenarios,
-                   "Folder with paper.json and dense_fog.json, which the studies vary")
+                   "Folder with paper.json, dense_fog.json and ensemble/, which the studies vary")
       ->capture_default_str();
   verb->add_flag("--json", arguments->json, "Print answers, claims and files as JSON");
   std::string table;

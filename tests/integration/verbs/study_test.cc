@@ -111,7 +111,7 @@ TEST(StudyVerbTest, MakesEveryStudyOfOneSeedIntoOnePage) {
   const std::string page = Read(folder.File("studies.html"));
   EXPECT_THAT(page, StartsWith("<!DOCTYPE html>"));
   const nlohmann::json said = nlohmann::json::parse(all.out);
-  EXPECT_EQ(said["studies"].size(), 8U);
+  EXPECT_EQ(said["studies"].size(), 9U);
   for (const auto& study : said["studies"]) {
     EXPECT_THAT(page, HasSubstr("<section id=\"" + study["name"].get<std::string>() + "\""));
     EXPECT_FALSE(study["claims"].empty()) << study["name"];
@@ -205,6 +205,73 @@ TEST(StudyVerbTest, EveryFindingRestsOnClaimsOfItsStudies) {
   EXPECT_EQ(findings, 10);
 }
 
+/// The paragraph of each finding that says in which parameter sets it holds, by the finding's
+/// number.
+std::map<std::string, std::string> SentencesOnSets(const std::string& findings) {
+  std::map<std::string, std::string> sentences;
+  std::istringstream page(findings);
+  std::string number;
+  bool goes_on = false;
+  for (std::string line; std::getline(page, line);) {
+    if (line.starts_with("## ")) number = line.substr(3, line.find('.') - 3);
+    const bool begins = line.starts_with("Holds in ") || line.starts_with("Does not hold in ") ||
+                        line.starts_with("Not examined");
+    goes_on = begins || (goes_on && !line.empty());
+    if (!goes_on) continue;
+    EXPECT_TRUE(!begins || !sentences.contains(number)) << line;
+    sentences[number] += (begins ? "" : " ") + line;
+  }
+  return sentences;
+}
+
+TEST(StudyVerbTest, EveryFindingSaysInWhichParameterSetsItHolds) {
+  const ScratchFolder folder;
+  const Outcome made = Study({"ensemble", "--seeds", "1", "--out", folder.path(), "--json"});
+  ASSERT_EQ(made.code, 0) << made.err;
+  const nlohmann::json studies = nlohmann::json::parse(made.out)["studies"];
+  std::map<std::string, std::string> said;
+  for (const auto& claim : studies[0]["claims"]) {
+    const std::string says = claim["says"];
+    const std::size_t sentence = says.find(' ', std::string("Finding ").size()) + 1;
+    const std::string number = says.substr(8, sentence - 9);
+    said[number] = says.substr(sentence);
+    said[number][0] = static_cast<char>(std::toupper(static_cast<unsigned char>(said[number][0])));
+  }
+  const std::string findings = Read(SourceDirectory() / "docs/findings.md");
+  for (const auto& [number, sentence] : SentencesOnSets(findings)) {
+    if (sentence.starts_with("Not examined")) {
+      EXPECT_FALSE(said.contains(number)) << sentence;
+      said[number] = sentence;
+    }
+    EXPECT_EQ(said[number], sentence) << "finding " << number;
+  }
+  EXPECT_EQ(SentencesOnSets(findings).size(), 10U);
+  EXPECT_EQ(said.size(), 10U);
+}
+
+TEST(StudyVerbTest, TheComparisonsOnParameterSetsAreThoseOfTheirFinding) {
+  const ScratchFolder folder;
+  ASSERT_EQ(Study({"ensemble", "--seeds", "1", "--out", folder.path()}).code, 0);
+  const std::string findings = Read(SourceDirectory() / "docs/findings.md");
+  std::istringstream csv(Read(folder.File("ensemble.csv")));
+  std::string line;
+  std::getline(csv, line);
+  int rows = 0;
+  for (; std::getline(csv, line); ++rows) {
+    // A row begins: 3,policy,"With a false echo ..."
+    const std::size_t one = line.find(',');
+    const std::size_t two = line.find(',', one + 1);
+    const std::string claim = "\n- " + line.substr(one + 1, two - one - 1) + ": " +
+                              line.substr(two + 1, line.find('"', two + 2) - two) + "\n";
+    const std::size_t begin = findings.find("\n## " + line.substr(0, one) + ". ");
+    const std::size_t end = findings.find("\n## ", begin + 1);
+    const std::size_t found = findings.find(claim, begin);
+    EXPECT_TRUE(found != findings.npos && found < end) << line;
+  }
+  EXPECT_GE(rows, 8 * 9);
+  EXPECT_EQ(rows % 8, 0) << "eight sets";
+}
+
 TEST(StudyVerbTest, TriesItsFolderBeforeItComputes) {
   const ScratchFolder folder;
   const std::string file = folder.File("file");
@@ -229,6 +296,14 @@ TEST(StudyVerbTest, RefusesWhatItCannotFollow) {
   EXPECT_EQ(folder.err,
             "/nowhere/paper.json: error: --scenarios: there is no such file; the option names the "
             "folder with paper.json and dense_fog.json, in Fogline's sources scenario/\n");
+  const ScratchFolder without_sets;
+  for (const char* file : {"paper.json", "dense_fog.json"}) {
+    std::filesystem::copy(SourceDirectory() / "scenario" / file, without_sets.path());
+  }
+  const Outcome sets = Study({"ensemble", "--seeds", "1", "--scenarios", without_sets.path()});
+  EXPECT_EQ(sets.code, 2);
+  EXPECT_THAT(sets.err, StartsWith(without_sets.File("ensemble/sets.csv") +
+                                   ": error: --scenarios: there is no such file; "));
 }
 
 /// Waits until a program has begun to compute on several threads.

@@ -1,5 +1,8 @@
 #include "tools/study/comparison.h"
 
+#include <algorithm>
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <sstream>
@@ -77,6 +80,24 @@ TEST(ComparisonTest, TestsEveryMeasureOfWholeRuns) {
   EXPECT_GE(std::stod(row["p_holm"]), std::stod(row["p"]));
   EXPECT_EQ(RowOf(csv, "collided")["p"], "1");
   EXPECT_EQ(comparison.Comparisons(0), static_cast<std::int64_t>(study::ComparedMetrics().size()));
+}
+
+TEST(ComparisonTest, ARunThatCollidesIsLessSafeThanOneThatDoesNot) {
+  // GIVEN four seeds: both collide; only one of them; none, with equal and with other safety
+  const std::size_t measures = study::ComparedMetrics().size();
+  std::vector<double> values(2 * measures * 4, 0.0);
+  const auto set = [&](std::size_t variant, std::string_view measure, std::array<double, 4> of) {
+    const std::size_t row = variant * measures + study::PlaceOfMetric(measure);
+    std::ranges::copy(of, values.begin() + static_cast<std::ptrdiff_t>(row * 4));
+  };
+  set(0, "collided", {1, 0, 0, 0});
+  set(1, "collided", {1, 1, 0, 0});
+  set(0, "mean_compromised_safety_fog_m", {0.1, 0.9, 0.2, 0.3});
+  set(1, "mean_compromised_safety_fog_m", {0.4, 0.1, 0.2, 0.1});
+  const study::Comparison comparison({{"fog", "paper.json", {}}}, {{"none", {}}, {"traded", {}}}, 4,
+                                     values);
+  EXPECT_EQ(comparison.LessSafe({0, 0}, {0, 1}), (std::vector<double>{0, 0, 0, 1}));
+  EXPECT_EQ(comparison.LessSafe({0, 1}, {0, 0}), (std::vector<double>{0, 1, 0, 0}));
 }
 
 }  // namespace

@@ -1,0 +1,25 @@
+// The runs of study `ensemble`: the comparisons behind claims of other studies, with the scenarios
+// of these studies and with each parameter set.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "tools/study/ensemble/parameter_sets.h"
+#include "tools/study/ensemble/robustness.h"
+#include "tools/study/study.h"
+
+namespace fogline::study {
+
+struct EnsembleRuns {
+  std::vector<ClaimInSets> claims;  // in the order in which they are quoted
+  std::int64_t runs = 0;
+};
+
+/// Runs what the claims compare, and no other cells of their studies. All sets have the same seeds.
+/// @throws InputError, StudyStopped; std::out_of_range if a study makes no such claim
+EnsembleRuns RunEnsemble(const StudyContext& context, std::span<const EnsembleSet> sets,
+                         std::span<const QuotedClaim> quoted);
+
+}  // namespace fogline::study
