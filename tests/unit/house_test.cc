@@ -77,6 +77,8 @@ constexpr std::array kRooms = std::to_array<Room>({
     {"tools/report", "report", "pages about them"},
     {"tools/export", "exports", "logs for other programs"},
     {"tools/watch", "watch", "what is on a network"},
+    {"tools/web/types", "web", "what the bytes of a message mean, for the page"},
+    {"tools/web/foxglove", "web", "the same messages for viewers of other projects"},
     {"tools/relay", "relay", "carries messages over TCP"},
     {"tools/processes", "processes", "starts and watches processes"},
     {"tools/replay", "replay", "computes a role again from a log"},
