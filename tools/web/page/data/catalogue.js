@@ -64,6 +64,9 @@ export function headerOf(bytes) {
           time_s: Number(view.getBigInt64(AT.utime)) / 1e6};
 }
 
+// Fields that say nothing about the cars stand behind the others.
+const LATE = /\.header\.|^(RUN|STATUS|RESEND)\./;
+
 /**
  * Fields that fit what the reader typed, the best first. Each word must occur in the field's name,
  * comment or unit. A word in the name weighs more than a word in the comment.
@@ -72,7 +75,7 @@ export function searchFields(fields, typed, most) {
   const words = typed.toLowerCase().split(/\s+/).filter(Boolean);
   const weigh = ({name, comment, unit}) => {
     const low = name.toLowerCase();
-    let weight = low.length / 1000 + (low.includes(".header.") ? 10 : 0);
+    let weight = low.length / 1000 + (LATE.test(name) ? 10 : 0);
     for (const word of words) {
       const place = low.indexOf(word);
       if (place >= 0) weight += /[._]/.test(low[place - 1] ?? ".") ? 0 : 1;

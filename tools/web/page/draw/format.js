@@ -2,6 +2,7 @@
 
 const DASH = "–";
 const MINUS = "−";
+const SPACE = "\u00a0";  // between a number and its unit, which stay on one line
 
 export function decimal(value, decimals) {
   if (value == null || !Number.isFinite(value)) return DASH;
@@ -19,12 +20,12 @@ export function digits(value) {
 }
 
 export function withUnit(text, unit) {
-  return unit ? `${text} ${unit}` : text;
+  return unit ? `${text}${SPACE}${unit}` : text;
 }
 
 /** Simulated time, such as "19.0 s"; with as many decimals as the step needs. */
 export function seconds(time, step_s = 0.1) {
-  return `${decimal(time, timeDecimals(step_s))} s`;
+  return `${decimal(time, timeDecimals(step_s))}${SPACE}s`;
 }
 
 export function timeDecimals(step_s) {
@@ -32,11 +33,11 @@ export function timeDecimals(step_s) {
 }
 
 export function count(value) {
-  return value == null ? DASH : value.toLocaleString("en-GB").replaceAll(",", " ");
+  return value == null ? DASH : value.toLocaleString("en-GB").replaceAll(",", SPACE);
 }
 
 export function share(part, whole) {
-  return whole > 0 ? `${decimal((100 * part) / whole, 2)} %` : DASH;
+  return whole > 0 ? `${decimal((100 * part) / whole, 2)}${SPACE}%` : DASH;
 }
 
 const KMH_PER_MPS = 3.6;
@@ -45,5 +46,5 @@ export const kmh = (speed_mps) => decimal(speed_mps * KMH_PER_MPS, 0);
 /** What the reader is told about visibility in m. */
 export function visibility(value) {
   if (value == null || !Number.isFinite(value)) return DASH;
-  return value >= 1000 ? `${decimal(value / 1000, 1)} km` : `${decimal(value, 0)} m`;
+  return value >= 1000 ? `${decimal(value / 1000, 1)}${SPACE}km` : `${decimal(value, 0)}${SPACE}m`;
 }

@@ -10,6 +10,7 @@ export class Combobox {
     this.options = [];
     input.addEventListener("input", () => this.open());
     input.addEventListener("focus", () => this.open());
+    input.addEventListener("click", () => this.open());
     input.addEventListener("blur", () => this.close());
     input.addEventListener("keydown", (event) => this.key(event));
     list.addEventListener("pointerdown", (event) => {
@@ -57,7 +58,7 @@ export class Combobox {
     if (!option) return;
     this.input.value = "";
     this.onChoose(option.key);
-    this.open();
+    this.close();  // the list would cover what was chosen
   }
 
   key(event) {

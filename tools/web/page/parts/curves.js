@@ -71,7 +71,10 @@ export class Curves {
   }
 
   suggestions(typed) {
-    return searchFields(this.known, typed, MOST_SUGGESTIONS).map((field) => {
+    const exact = /\[\d+\]/.test(typed) ? this.fieldNamed(typed.trim()) : null;
+    const found = searchFields(this.known, typed, MOST_SUGGESTIONS);
+    const fields = exact && !found.some(({name}) => name === exact.name) ? [exact, ...found] : found;
+    return fields.map((field) => {
       const chosen = this.fields.some(({name}) => name === field.name);
       return {key: field.name, chosen, parts: [
         make("span", {class: "field-name"}, field.name),

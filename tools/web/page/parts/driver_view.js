@@ -9,15 +9,18 @@ import {
 
 import {carsOf, extinction} from "../data/cars.js";
 
-// three's own fog has another law and uses the depth instead of the distance. `fogNear` carries
-// sigma in 1/m.
-ShaderChunk.fog_vertex = "#ifdef USE_FOG\n  vFogDepth = length(mvPosition.xyz);\n#endif";
-// Light adds up linearly, so the colours are made linear for it.
-ShaderChunk.fog_fragment = `#ifdef USE_FOG
+// three's own fog has another law, and uses the depth instead of the distance. `fogNear` carries
+// sigma in 1/m. Each pixel computes its own distance, because the ground has few corners. Light adds
+// up linearly, so the colours are made linear for it.
+const chunk = (lines) => `#ifdef USE_FOG\n${lines}\n#endif`;
+ShaderChunk.fog_pars_vertex = chunk("varying vec3 vFogPlace;");
+ShaderChunk.fog_vertex = chunk("vFogPlace = mvPosition.xyz;");
+ShaderChunk.fog_pars_fragment = chunk(
+  "uniform vec3 fogColor;\nuniform float fogNear;\nvarying vec3 vFogPlace;");
+ShaderChunk.fog_fragment = chunk(`
   vec4 haze = sRGBTransferEOTF(vec4(fogColor, 1.0));
   vec4 thing = sRGBTransferEOTF(gl_FragColor);
-  gl_FragColor = sRGBTransferOETF(mix(haze, thing, exp(-fogNear * vFogDepth)));
-#endif`;
+  gl_FragColor = sRGBTransferOETF(mix(haze, thing, exp(-fogNear * length(vFogPlace))));`);
 
 const EYE = {height_m: 1.25, behind_front_m: 2.1};
 const LANE_M = 3.6;
@@ -106,7 +109,7 @@ export class DriverView {
     this.renderer = new WebGLRenderer({canvas, antialias: !drawsInSoftware(), powerPreference: "low-power"});
     this.camera = new PerspectiveCamera(FIELD_OF_VIEW, 2, 0.2, ROAD_M);
     this.camera.position.set(0, EYE.height_m, 0);
-    this.camera.rotation.x = -0.03;
+    this.camera.rotation.x = -0.07;
     this.setScheme("light");
   }
 

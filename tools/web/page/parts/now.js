@@ -1,10 +1,14 @@
 // The strip on top: who drives, since when and why; the request to take over with its countdown.
 
 import {byId, say, setAttribute} from "../draw/dom.js";
-import {decimal, seconds} from "../draw/format.js";
+import {decimal, seconds, withUnit} from "../draw/format.js";
 import {modeOf, requestAt, SIDES, upTo} from "../data/modes.js";
 
 const ANNOUNCE_AFTER_MS = 400;  // a reader who scrubs is not told of everything on the way
+
+const LASTS = {
+  automation: "The automation has driven for", human: "The human has driven for",
+  risk: "The manoeuvre has lasted", unknown: "This has lasted"};
 
 /** Time at which the side that drives at the end of `times` has begun to drive. */
 function drivingSince(times, modes, lambdas) {
@@ -50,8 +54,8 @@ export class Now {
     const end = upTo(modes.times, time) + 1;
     const times = modes.times.subarray(0, end);
     const since = drivingSince(times, modes.values, lambdas.values);
-    const sinceWords = since === null ? "" : ` Since ${seconds(since, run.step_s)}.`;
-    say(this.reason, reason(command) + sinceWords);
+    const lasted = since === null ? "" : ` ${LASTS[mode.side]} ${seconds(time - since, run.step_s)}.`;
+    say(this.reason, reason(command) + lasted);
     this.drawRequest(requestAt(times, modes.values, time,
                                run.scenario?.arbitrator?.take_over?.lead_s ?? 10));
     this.announce(mode.words);
@@ -61,7 +65,7 @@ export class Now {
   drawRequest(request) {
     this.request.hidden = request === null;
     if (request === null) return;
-    say(this.left, `${decimal(request.left_s, 1)} s`);
+    say(this.left, withUnit(decimal(request.left_s, 1), "s"));
     this.bar.value = request.share;
     this.bar.textContent = `${decimal(request.left_s, 1)} s left`;
   }

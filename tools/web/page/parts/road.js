@@ -12,7 +12,7 @@ const MARGIN_M = 10;                       // shown before the first and behind 
 const LEAST_SPAN_M = 60;
 const SLACK = 1.25;      // the scale stays while the cars fill between 1/SLACK and all of the width
 const SCALE_BARS_M = [1, 2, 5, 10, 20, 50, 100, 200, 500];
-const SIGHTS_HEIGHT = 46;  // for the marks of the sensors, in pixels
+const SIGHTS_HEIGHT = 52;  // for the marks of the sensors, in pixels
 const GAPS_HEIGHT = 44;
 
 /** Marks of the sensors: colour and shape say the same. */
@@ -43,6 +43,7 @@ export class Road {
   constructor(canvas) {
     this.canvas = canvas;
     this.window = null;  // {from_m, to_m}: what is shown, relative to the host's front bumper
+    this.lane = 0;       // middle of the lane, in pixels of the page from the top
   }
 
   /** Chooses what is shown. It changes only if the cars leave it or fill too little of it. */
@@ -72,6 +73,7 @@ export class Road {
     const bottom = height - GAPS_HEIGHT;
     const view = {pen, width, top, bottom, scale, theme, length_m,
                   x: (m) => (m - from_m) * scale, lane: (top + bottom) / 2 + ((bottom - top) / 4)};
+    this.lane = view.lane;
     pen.font = `12px ${theme.font}`;
     pen.textBaseline = "middle";
     drawSurface(view, truth.host_position_m + ahead_s * truth.host_speed_mps);
@@ -185,7 +187,7 @@ function drawHaze({pen, width, top, bottom, theme, x, scale}, truth) {
 function drawSights({pen, width, top, theme, x}, frame, truth) {
   const seen = sightings(frame);
   const colours = {radar: theme.radar, lidar: theme.lidar, fusion: theme.ink};
-  const rows = {radar: 10, lidar: 22, fusion: 34};
+  const rows = {radar: 9, lidar: 24, fusion: 39};
   pen.textAlign = "left";
   pen.fillStyle = theme.muted;
   pen.lineWidth = 1;

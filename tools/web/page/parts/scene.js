@@ -48,7 +48,7 @@ export class Scene {
     this.drawn = drawn;
     this.frame = frame;
     this.turn = (this.turn ?? 0) + 1;
-    if (this.turn % every === 0 || !moment.moves) this.view?.draw(moment, ratio);
+    if (this.turn % every === 0 || !moment.moves) this.view?.draw(moment, moment.moves ? ratio : 1);
     this.road.draw(moment);
     this.sayNumbers(frame);
     this.describe(moment);
