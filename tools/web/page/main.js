@@ -50,7 +50,13 @@ class Page {
   get run() { return this.store?.run ?? {step_s: 0.1, run_id: ""}; }
   get step() {
     const step = this.clock.step(this.run.step_s);
-    return Math.min(Math.max(step, this.store.firstStep), Math.max(this.store.firstStep, this.store.lastStep));
+    return this.within(step);
+  }
+
+  /** The nearest step that there is. */
+  within(step) {
+    const {firstStep, lastStep} = this.store;
+    return Math.max(firstStep, Math.min(step, lastStep));
   }
 
   listen() {
@@ -115,12 +121,12 @@ class Page {
     this.catalogue = new Catalogue(hello);
     this.events = [];
     this.log = null;
-    const changed = () => { this.isNew = true; };
-    this.store = this.isLive ? new LiveStore(this.catalogue, changed)
-                             : new LogStore(this.catalogue, this.wire, changed);
+    this.store = this.isLive ? new LiveStore(this.catalogue)
+                             : new LogStore(this.catalogue, this.wire);
     setAttribute(document.body, "data-mode", hello.mode);
     this.curves.setSpan(this.isLive ? "minute" : "all");
     if (this.isLive) {
+      this.build();
       this.clock.follow();
       this.askForHistory();
     }
@@ -154,6 +160,7 @@ class Page {
     this.length_m = run.scenario?.world?.vehicle_length_m ?? 4.5;
     if (!isNew) return;
     this.events = [];
+    this.frame = null;
     if (this.isLive) {
       this.build();
       this.clock.follow();
@@ -192,9 +199,7 @@ class Page {
   }
 
   goTo(step) {
-    if (!this.store) return;
-    const {firstStep, lastStep} = this.store;
-    this.clock.goTo(this.store.timeOf(Math.min(Math.max(step, firstStep), Math.max(firstStep, lastStep))));
+    if (this.store) this.clock.goTo(this.store.timeOf(this.within(step)));
   }
 
   goToTime(time) {
@@ -241,8 +246,8 @@ class Page {
     setAttribute(origin, "data-state", isOpen ? this.hello?.mode ?? "none" : "lost");
     say(byId("origin-words"), words);
     if (state === "refused") {
-      this.complain("The server does not answer. If it listens for other machines, open exactly the " +
-                    "address that it has printed: the address contains a key.");
+      this.complain("The server does not answer. If it listens for other machines, open exactly " +
+                    "the address that it has printed: the address contains a key.");
     } else {
       byId("problem").hidden = true;
     }
@@ -254,7 +259,9 @@ class Page {
     this.before = now;
     if (!this.store || this.why.charts.length === 0) return;
     this.budget.frame(now);
+    const played = this.clock.state === "playing";
     this.clock.advance(passed_s, this.store.firstTime, this.store.lastTime);
+    if (this.isLive && played && this.clock.state === "paused") this.clock.follow();  // caught up
     this.draw();
     ++this.frames;
   }
@@ -264,7 +271,7 @@ class Page {
     if (reducedMotion.matches || this.clock.state === "paused") return 0;
     const {step_s, pace} = this.run;
     const ahead_s = this.clock.state === "live"
-      ? ((Date.now() - this.store.arrived_ms) / 1000) * (pace || 0)
+      ? ((performance.now() - this.store.taken_ms) / 1000) * (pace || 0)
       : this.clock.time - this.store.timeOf(step);
     return Math.min(step_s, Math.max(0, ahead_s));
   }

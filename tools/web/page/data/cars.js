@@ -33,7 +33,7 @@ export function carsOf(truth, ahead_s = 0) {
   ];
 }
 
-/** Where the sensors see the preceding car, in m ahead of the host's front bumper; null: nowhere. */
+/** Where each sensor sees the preceding car, in m ahead of the host; null: nowhere. */
 export function sightings({RADAR, LIDAR, TRACK}) {
   return {
     radar: RADAR?.valid ? RADAR.range_m : null,

@@ -3,6 +3,7 @@
 import {DecodeError, fieldsOf, fingerprintOf, makeDecoder} from "./lcm.js";
 
 const FOGLINE_HEADER = "header_t";
+const CONTROL = new Set(["RUN", "STATUS", "RESEND"]);  // these have no message for each step
 // Where header_t lies in a message that begins with it, after the fingerprint.
 const AT = {run_id: 8, step: 16, utime: 24, end: 32};
 
@@ -19,7 +20,8 @@ export class Catalogue {
   add({id, name, type, from, what}) {
     const known = type != null && Object.hasOwn(this.types, type);
     const hasHeader = known && this.types[type].members[0]?.type === FOGLINE_HEADER;
-    const channel = {id, name, type, from: from ?? "", what: what ?? "", known, hasHeader};
+    const channel = {id, name, type, from: from ?? "", what: what ?? "", known, hasHeader,
+                     isStepwise: hasHeader && !CONTROL.has(name)};
     this.channels.set(id, channel);
     return channel;
   }
@@ -48,11 +50,14 @@ export class Catalogue {
     }
   }
 
-  /** All numeric fields: [{channel, path, name, unit, comment}], where name is "CHANNEL.path". */
+  /**
+   * All numeric fields of messages of steps: [{channel, path, name, unit, comment}], where name is
+   * "CHANNEL.path".
+   */
   fields() {
-    return [...this.channels.values()].filter(({known}) => known).flatMap(({name, type}) =>
-      fieldsOf(this.types, type).map((field) => (
-        {...field, channel: name, name: `${name}.${field.path}`})));
+    const channels = [...this.channels.values()].filter(({isStepwise}) => isStepwise);
+    return channels.flatMap(({name, type}) => fieldsOf(this.types, type).map((field) => (
+      {...field, channel: name, name: `${name}.${field.path}`})));
   }
 }
 
@@ -64,9 +69,6 @@ export function headerOf(bytes) {
           time_s: Number(view.getBigInt64(AT.utime)) / 1e6};
 }
 
-// Fields that say nothing about the cars stand behind the others.
-const LATE = /\.header\.|^(RUN|STATUS|RESEND)\./;
-
 /**
  * Fields that fit what the reader typed, the best first. Each word must occur in the field's name,
  * comment or unit. A word in the name weighs more than a word in the comment.
@@ -75,7 +77,7 @@ export function searchFields(fields, typed, most) {
   const words = typed.toLowerCase().split(/\s+/).filter(Boolean);
   const weigh = ({name, comment, unit}) => {
     const low = name.toLowerCase();
-    let weight = low.length / 1000 + (LATE.test(name) ? 10 : 0);
+    let weight = low.length / 1000 + (low.includes(".header.") ? 10 : 0);
     for (const word of words) {
       const place = low.indexOf(word);
       if (place >= 0) weight += /[._]/.test(low[place - 1] ?? ".") ? 0 : 1;

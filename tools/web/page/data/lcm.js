@@ -1,5 +1,5 @@
 // Decodes LCM messages by the description of their types, which the server sends in `hello`:
-// {TYPE: {constants: {NAME: number}, members: [{name, type, dims: [number or member's name], ...}]}}.
+// {TYPE: {constants: {NAME: number}, members: [{name, type, dims: [number or name], ...}]}}.
 // It makes no code from text, because the page's content security policy forbids that.
 
 const FINGERPRINT_BYTES = 8;
@@ -139,7 +139,9 @@ export function fieldsOf(types, name, depth = 0) {
   if (!Object.hasOwn(types, name) || depth > MOST_DEPTH) return [];
   return types[name].members.flatMap(({name: member, type, dims, unit, comment}) => {
     const paths = indices(dims).map((index) => member + index);
-    if (type in PRIMITIVES) return paths.map((path) => ({path, unit: unit ?? "", comment: comment ?? ""}));
+    if (type in PRIMITIVES) {
+      return paths.map((path) => ({path, unit: unit ?? "", comment: comment ?? ""}));
+    }
     return paths.flatMap((path) => fieldsOf(types, type, depth + 1)
       .map((field) => ({...field, path: `${path}.${field.path}`})));
   });

@@ -37,11 +37,10 @@ class Track {
 }
 
 export class LiveStore {
-  /** @param onChange called after each message that the store keeps */
-  constructor(catalogue, onChange) {
+  constructor(catalogue) {
     this.catalogue = catalogue;
-    this.onChange = onChange;
     this.run = null;
+    this.runId = null;
     this.clear();
   }
 
@@ -51,14 +50,16 @@ export class LiveStore {
     this.statuses = new Map();  // the newest STATUS of each role
     this.firstStep = 0;
     this.lastStep = -1;
-    this.arrived_ms = 0;
+    this.arrived_ms = 0;        // wall clock of the server at the newest step
+    this.taken_ms = 0;          // clock of the page at the newest step
     this.count = 0;
   }
 
   setRun(run) {
-    if (run.run_id !== this.run?.run_id) this.clear();
+    const id = BigInt.asIntN(64, BigInt(run.run_id));
+    if (id !== this.runId) this.clear();
     this.run = run;
-    this.runId = BigInt.asIntN(64, BigInt(run.run_id));
+    this.runId = id;
   }
 
   timeOf(step) { return step * (this.run?.step_s ?? 0.1); }
@@ -69,11 +70,11 @@ export class LiveStore {
     const channel = this.catalogue.channels.get(id);
     if (!channel?.hasHeader) return;
     const header = headerOf(bytes);
-    if (!header || (this.run && header.run_id !== this.runId)) return;
+    if (!header) return;
+    this.runId ??= header.run_id;  // the server has not said yet which run it follows
+    if (header.run_id !== this.runId) return;
     if (channel.name === "STATUS") this.addStatus(channel, bytes);
-    else if (channel.name !== "RUN" && channel.name !== "RESEND") {
-      this.keep(channel, header, arrived_ms, bytes);
-    }
+    else if (channel.isStepwise) this.keep(channel, header, arrived_ms, bytes);
   }
 
   addStatus(channel, bytes) {
@@ -88,10 +89,10 @@ export class LiveStore {
     if (header.step > this.lastStep) {
       this.lastStep = header.step;
       this.arrived_ms = arrived_ms;
+      this.taken_ms = performance.now();
     }
     this.extend(channel, header, bytes);
     if (++this.count % TIDY_AFTER === 0) this.tidy();
-    this.onChange();
   }
 
   extend(channel, {time_s}, bytes) {

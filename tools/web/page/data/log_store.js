@@ -5,15 +5,13 @@ import {Series} from "./series.js";
 const CHUNK = 64;          // steps that are fetched together
 const KEEP_CHUNKS = 64;
 const MOST_POINTS = 100000;  // of a series over the whole log; the server sends up to twice as many
-const DETAIL_POINTS = 2000;  // of a series over a part of the log
+const DETAIL_POINTS = 4000;  // of a series over a part of the log
 const KEEP_DETAILS = 24;
 
 export class LogStore {
-  /** @param onChange called when something has arrived */
-  constructor(catalogue, wire, onChange) {
+  constructor(catalogue, wire) {
     this.catalogue = catalogue;
     this.wire = wire;
-    this.onChange = onChange;
     this.run = null;
     this.chunks = new Map();   // by number; the last used one stands last
     this.wanted = new Map();   // series by field name
@@ -86,7 +84,6 @@ export class LogStore {
         const {next} = this;
         this.next = null;
         if (next !== null && !this.chunks.has(next)) this.want(next);
-        this.onChange();
       });
   }
 
@@ -105,9 +102,8 @@ export class LogStore {
 
   fetchSeries(series, channel, path, from, to, points) {
     this.wire.ask({op: "series", channel, field: path, from, to, points}).then((answer) => {
-      series.whole = answer.times.length < 2 * points;
+      series.whole = to - from < 2 * points;
       series.replace(answer);
-      this.onChange();
     }, () => {});
   }
 
@@ -124,13 +120,17 @@ export class LogStore {
     return this.wanted.get(name);
   }
 
-  /** The values of a field between two times, as fine as a screen can show. */
+  /**
+   * The values of a field between two times, as fine as a screen can show. What is fetched begins
+   * and ends at multiples of its length, so that a moving window seldom needs another part.
+   */
   detail(channel, path, from_s, to_s) {
     const whole = this.series(channel, path);
     if (whole.whole) return whole;
     const {step_s} = this.run;
-    const from = Math.max(this.firstStep, Math.floor(from_s / step_s));
-    const to = Math.min(this.lastStep, Math.ceil(to_s / step_s));
+    const length = Math.max(1, Math.ceil((to_s - from_s) / step_s));
+    const from = Math.max(this.firstStep, Math.floor(from_s / step_s / length) * length);
+    const to = Math.min(this.lastStep, Math.ceil(to_s / step_s / length) * length);
     const name = `${channel}.${path} ${from} ${to}`;
     if (!this.details.has(name)) {
       for (const oldest of this.details.keys()) {

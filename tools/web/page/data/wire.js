@@ -60,8 +60,9 @@ export function socketUrl(location, token) {
 
 /**
  * Keeps a connection to the server. It calls `on.text(object)`, `on.messages(messages)` and
- * `on.state("open", "lost" or "refused")`: "refused" if there never was a connection. Questions have answers: ask() returns a promise, which is rejected
- * if the server answers with an error or the connection is lost.
+ * `on.state("open", "lost" or "refused")`: "refused" if there never was a connection. Questions
+ * have answers: ask() returns a promise, which is rejected if the server answers with an error or
+ * the connection is lost.
  */
 export class Wire {
   constructor(url, on) {

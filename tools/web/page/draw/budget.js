@@ -1,5 +1,5 @@
-// How much the page may draw, so that it shows at least 30 frames a second on slow machines, too. It
-// looks at the time between frames, because that contains the work of the graphics processor.
+// How much the page may draw, so that it shows at least 30 frames a second on slow machines, too.
+// It looks at the time between frames, because that contains the work of the graphics processor.
 
 const SLOW_MS = 30;         // mean time between frames
 const FAST_MS = 20;
@@ -7,7 +7,7 @@ const LOOK_EVERY_MS = 500;
 const CALM_LOOKS = 10;      // fast looks before more is drawn again
 const HIDDEN_MS = 1000;     // a longer time between frames: the page was hidden
 
-/** What each level draws: rest between two drawings of a chart, pixels and rate of the driver's view. */
+/** For each level: rest between two drawings of a chart; pixels and rate of the driver's view. */
 const LEVELS = [
   {rest_ms: 40, ratio: 1, every: 1},
   {rest_ms: 80, ratio: 0.75, every: 1},

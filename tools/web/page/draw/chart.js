@@ -59,7 +59,8 @@ export function makeChart(element, options) {
     },
     axes: [
       axisOptions(theme, withTimeAxis ? {space: 56, size: 28, values: tickTexts(" s")}
-                                      : {space: 56, size: 0, values: () => [], ticks: {show: false}}),
+                                      : {space: 56, size: 0, values: () => [],
+                                         ticks: {show: false}}),
       axisOptions(theme, {space: 30, size: VALUE_AXIS_WIDTH, values: tickTexts(""),
                           ...options.valueAxis}),
     ],

@@ -22,7 +22,7 @@ export function setAttribute(element, name, value) {
   if (element.getAttribute(name) !== value) element.setAttribute(name, value);
 }
 
-/** Gives a canvas as many pixels as it covers on the screen. @return its 2D context in CSS pixels */
+/** Gives a canvas as many pixels as it covers. @return its 2D context, in pixels of the page */
 export function fitCanvas(canvas) {
   const ratio = devicePixelRatio;
   const {clientWidth: width, clientHeight: height} = canvas;

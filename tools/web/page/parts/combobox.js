@@ -73,7 +73,8 @@ export class Combobox {
     } else if (key === "ArrowDown" || key === "ArrowUp") {
       if (this.list.hidden) this.open();
       const direction = key === "ArrowDown" ? 1 : -1;
-      this.active = n === 0 ? -1 : (Math.max(this.active, direction < 0 ? 0 : -1) + direction + n) % n;
+      const from = Math.max(this.active, direction < 0 ? 0 : -1);
+      this.active = n === 0 ? -1 : (from + direction + n) % n;
       this.show();
     } else {
       return;

@@ -35,17 +35,14 @@ function keepFields(fields) {
 
 /** A piece of a curve, as its key. */
 function lineKey(colour, dash) {
-  const space = "http://www.w3.org/2000/svg";
-  const svg = document.createElementNS(space, "svg");
-  const line = document.createElementNS(space, "line");
-  for (const [name, value] of Object.entries({class: "line-key", width: 26, height: 8, "aria-hidden": "true"})) {
-    svg.setAttribute(name, value);
-  }
-  for (const [name, value] of Object.entries(
-    {x1: 0, x2: 26, y1: 4, y2: 4, stroke: colour, "stroke-width": 2.5, "stroke-dasharray": dash.join(" ")})) {
-    line.setAttribute(name, value);
-  }
-  svg.append(line);
+  const draw = (kind, attributes) => {
+    const element = document.createElementNS("http://www.w3.org/2000/svg", kind);
+    for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, value);
+    return element;
+  };
+  const svg = draw("svg", {class: "line-key", width: 26, height: 8, "aria-hidden": "true"});
+  svg.append(draw("line", {x1: 0, x2: 26, y1: 4, y2: 4, stroke: colour, "stroke-width": 2.5,
+                           "stroke-dasharray": dash.join(" ")}));
   return svg;
 }
 
@@ -73,13 +70,14 @@ export class Curves {
   suggestions(typed) {
     const exact = /\[\d+\]/.test(typed) ? this.fieldNamed(typed.trim()) : null;
     const found = searchFields(this.known, typed, MOST_SUGGESTIONS);
-    const fields = exact && !found.some(({name}) => name === exact.name) ? [exact, ...found] : found;
-    return fields.map((field) => {
+    if (exact && !found.some(({name}) => name === exact.name)) found.unshift(exact);
+    return found.map((field) => {
       const chosen = this.fields.some(({name}) => name === field.name);
+      const comment = chosen ? "chosen; choose it again to remove it" : field.comment;
       return {key: field.name, chosen, parts: [
         make("span", {class: "field-name"}, field.name),
         make("span", {class: "field-unit"}, field.unit),
-        make("span", {class: "field-comment"}, chosen ? "chosen; choose it again to remove it" : field.comment)]};
+        make("span", {class: "field-comment"}, comment)]};
     });
   }
 
@@ -118,7 +116,8 @@ export class Curves {
     for (const {chart} of this.charts) chart.destroy();
     this.place.replaceChildren();
     const units = [...new Set(this.fields.map(({unit}) => unit))];
-    this.charts = units.map((unit, i) => this.makePanel(unit, i === units.length - 1, units.length));
+    const n = units.length;
+    this.charts = units.map((unit, i) => this.makePanel(unit, i === n - 1, n));
     this.makeChips();
     byId("no-fields").hidden = this.fields.length > 0;
     this.drawn = "";
@@ -128,7 +127,8 @@ export class Curves {
   makePanel(unit, isLast, panels) {
     const fields = this.fields.filter((field) => field.unit === unit);
     const names = fields.map(({name}) => name).join(", ");
-    const element = make("div", {class: "chart", role: "img", "aria-label": `Curves over time: ${names}`});
+    const label = `Curves over time: ${names}`;
+    const element = make("div", {class: "chart", role: "img", "aria-label": label});
     this.place.append(make("p", {class: "axis-name"}, unit || "no unit"), element);
     const panel = {fields, element, range: [0, 1]};
     panel.chart = makeChart(element, {
@@ -155,7 +155,8 @@ export class Curves {
     this.values = this.fields.map(() => make("span", {class: "value"}));
     this.chips.replaceChildren(...this.fields.map((field, i) => {
       const {stroke, dash} = this.styleOf(i);
-      const remove = make("button", {type: "button", class: "remove", "aria-label": `Remove ${field.name}`}, "×");
+      const remove = make("button", {
+        type: "button", class: "remove", "aria-label": `Remove ${field.name}`}, "×");
       remove.addEventListener("click", () => {
         this.toggle(field.name);
         byId("field-search").focus();

@@ -10,8 +10,8 @@ import {
 import {carsOf, extinction} from "../data/cars.js";
 
 // three's own fog has another law, and uses the depth instead of the distance. `fogNear` carries
-// sigma in 1/m. Each pixel computes its own distance, because the ground has few corners. Light adds
-// up linearly, so the colours are made linear for it.
+// sigma in 1/m. Each pixel computes its own distance, because the ground has few corners. Light
+// adds up linearly, so the colours are made linear for it.
 const chunk = (lines) => `#ifdef USE_FOG\n${lines}\n#endif`;
 ShaderChunk.fog_pars_vertex = chunk("varying vec3 vFogPlace;");
 ShaderChunk.fog_vertex = chunk("vFogPlace = mvPosition.xyz;");
@@ -88,7 +88,7 @@ function makeCar(colours) {
   for (const x of [-0.72, 0.72]) car.add(box(0.24, 0.62, 0.62, dark, x, 0.31, -0.85));
   const off = lambert("#5d1712");
   const on = basic("#ff2a1a");
-  const lamps = [box(0.36, 0.16, 0.04, off, -0.68, 0.8, 0.01), box(0.36, 0.16, 0.04, off, 0.68, 0.8, 0.01),
+  const lamps = [...[-0.68, 0.68].map((x) => box(0.36, 0.16, 0.04, off, x, 0.8, 0.01)),
                  box(0.4, 0.05, 0.04, off, 0, 1.4, -0.92)];
   car.add(...lamps);
   const glow = basic("#ff2a1a", {transparent: true, opacity: 0.28, depthWrite: false});
@@ -106,7 +106,8 @@ export class DriverView {
   /** Throws if the browser has no WebGL. */
   constructor(canvas) {
     this.canvas = canvas;
-    this.renderer = new WebGLRenderer({canvas, antialias: !drawsInSoftware(), powerPreference: "low-power"});
+    this.renderer = new WebGLRenderer(
+      {canvas, antialias: !drawsInSoftware(), powerPreference: "low-power"});
     this.camera = new PerspectiveCamera(FIELD_OF_VIEW, 2, 0.2, ROAD_M);
     this.camera.position.set(0, EYE.height_m, 0);
     this.camera.rotation.x = -0.07;
@@ -130,9 +131,10 @@ export class DriverView {
     dash.rotateX(-Math.PI / 2);
     this.dashes = row(dash, marking, DASH.period_m, [[-LANE_M / 2, 0.01]]);
     const posts = [[LANE_M / 2 + 2, 0.45], [-1.5 * LANE_M - 2, 0.45]];
-    this.posts = row(new CylinderGeometry(0.07, 0.07, 0.9, 6), lambert("#f0f0ea"), POST_PERIOD_M, posts);
-    this.bands = row(new CylinderGeometry(0.075, 0.075, 0.2, 6), lambert("#202428"), POST_PERIOD_M,
-                     posts.map(([x]) => [x, 0.72]));
+    const post = new CylinderGeometry(0.07, 0.07, 0.9, 6);
+    const band = new CylinderGeometry(0.075, 0.075, 0.2, 6);
+    this.posts = row(post, lambert("#f0f0ea"), POST_PERIOD_M, posts);
+    this.bands = row(band, lambert("#202428"), POST_PERIOD_M, posts.map(([x]) => [x, 0.72]));
     const {car, brake} = makeCar(colours);
     this.lead = car;
     this.brake = brake;

@@ -7,8 +7,9 @@ const STATES = ["WAITING", "READY", "RUNNING", "DONE", "FAILED", "LEFT"];
 const INPUT_STATES = ["awaited", "OK", "stale", "lost"];
 
 function refusals(refused) {
-  const entries = Object.entries(refused ?? {});
-  return entries.length ? entries.map(([kind, n]) => `${n} ${kind.replaceAll("_", " ")}`).join(", ") : "0";
+  const texts = Object.entries(refused ?? {})
+    .map(([kind, n]) => `${n} ${kind.replaceAll("_", " ")}`);
+  return texts.join(", ") || "0";
 }
 
 /** What a role does instead of its work, and because of which channel. */
@@ -34,12 +35,14 @@ function cell(text, attributes = {}) {
 }
 
 function mark(kind) {
-  return make("span", {class: `mark ${kind}`, role: "img", "aria-label": MARK_WORDS[kind]}, MARKS[kind]);
+  const attributes = {class: `mark ${kind}`, role: "img", "aria-label": MARK_WORDS[kind]};
+  return make("span", attributes, MARKS[kind]);
 }
 
 function roleRow(role, status) {
   const kind = grade(role, status);
   const waits = role.waiting_for && !status?.fallback ? `waits for ${role.waiting_for}` : "";
+  const trouble = [fallbackOf(status), waits, role.error].filter(Boolean).join("; ");
   return make("tr", {},
     make("th", {scope: "row"}, mark(kind), role.role),
     cell(role.silent ? `${role.state}, silent` : role.state ?? "", {class: "text"}),
@@ -48,7 +51,7 @@ function roleRow(role, status) {
     cell(`${count(role.repairs_asked)} / ${count(role.repairs_served)}`),
     cell(refusals(role.refused)),
     cell(role.cpu_percent == null ? "–" : `${decimal(role.cpu_percent, 0)} %`),
-    cell([fallbackOf(status), waits, role.error].filter(Boolean).join("; ") || "–", {class: "text"}));
+    cell(trouble || "–", {class: "text"}));
 }
 
 function senderRow({address, received, lost, late, duplicates}) {
@@ -66,7 +69,8 @@ function channelRow(channel) {
     cell(`${decimal(channel.rate_hz, 1)} Hz`),
     cell(channel.jitter_ms == null ? "–" : `${decimal(channel.jitter_ms, 1)} ms`),
     cell(`${decimal(channel.age_s, 1)} s`),
-    cell(count(channel.lost ?? 0)), cell(count(channel.late ?? 0)), cell(count(channel.undecodable)));
+    cell(count(channel.lost ?? 0)), cell(count(channel.late ?? 0)),
+    cell(count(channel.undecodable)));
 }
 
 /** The run of the traffic that the page shows; the first one if the page knows none. */
@@ -94,21 +98,27 @@ export class Health {
     const roles = shown?.roles ?? [];
     this.fill("roles", roles.map((role) => roleRow(role, statuses.get(role.role))));
     this.fill("senders", (health.senders ?? []).map(senderRow));
-    this.fill("channels", [...(shown?.channels ?? []), ...(health.traffic?.others ?? [])].map(channelRow));
+    const channels = [...(shown?.channels ?? []), ...(health.traffic?.others ?? [])];
+    this.fill("channels", channels.map(channelRow));
     const bad = roles.filter((role) => grade(role, statuses.get(role.role)) === "bad");
     const lost = (health.senders ?? []).reduce((sum, sender) => sum + sender.lost, 0);
     this.conclude(bad, roles, lost, health);
   }
 
   conclude(bad, roles, lost, health) {
+    const names = bad.map(({role}) => role).join(", ");
     const first = roles.length === 0 ? "No role has reported yet."
       : bad.length === 0 ? `All ${roles.length} roles answer.`
-      : `${bad.length === 1 ? "One role is" : `${bad.length} roles are`} in trouble: ${bad.map(({role}) => role).join(", ")}.`;
-    const second = lost ? ` ${count(lost)} packets were lost on the network.` : " No packet was lost.";
+      : bad.length === 1 ? `One role is in trouble: ${names}.`
+      : `${bad.length} roles are in trouble: ${names}.`;
+    const second = lost ? ` ${count(lost)} packets were lost on the network.`
+                        : " No packet was lost.";
     setAttribute(this.summary, "data-grade", bad.length ? "bad" : lost ? "note" : "good");
     say(this.summary, first + second);
     const facts = [health.traffic?.lcm_url, `${count(health.viewers ?? 1)} viewers`];
-    if (health.own_overflow) facts.push(`this viewer itself missed ${count(health.own_overflow)} packets`);
+    if (health.own_overflow) {
+      facts.push(`this viewer itself missed ${count(health.own_overflow)} packets`);
+    }
     if (health.cut_off) facts.push(`${count(health.cut_off)} slow viewers were cut off`);
     say(this.network, facts.filter(Boolean).join(" · "));
   }

@@ -22,7 +22,8 @@ function drivingSince(times, modes, lambdas) {
 
 function reason({doc, threshold}) {
   const compared = doc >= threshold ? "at or above" : "below";
-  return `The Degree of Conflict ${decimal(doc, 2)} is ${compared} the threshold ${decimal(threshold, 2)}.`;
+  return `The Degree of Conflict ${decimal(doc, 2)} is ${compared} ` +
+    `the threshold ${decimal(threshold, 2)}.`;
 }
 
 export class Now {
@@ -54,7 +55,8 @@ export class Now {
     const end = upTo(modes.times, time) + 1;
     const times = modes.times.subarray(0, end);
     const since = drivingSince(times, modes.values, lambdas.values);
-    const lasted = since === null ? "" : ` ${LASTS[mode.side]} ${seconds(time - since, run.step_s)}.`;
+    const lasted = since === null ? ""
+      : ` ${LASTS[mode.side]} ${seconds(time - since, run.step_s)}.`;
     say(this.reason, reason(command) + lasted);
     this.drawRequest(requestAt(times, modes.values, time,
                                run.scenario?.arbitrator?.take_over?.lead_s ?? 10));

@@ -112,7 +112,8 @@ function carBox({x, scale, length_m, top, bottom}, {front_m}) {
   const length = Math.max(6, length_m * scale);
   const laneHeight = (bottom - top) / 2;
   const most = 1.2 * laneHeight * (CAR.width_m / LANE_M);
-  return {left: x(front_m) - length, length, width: Math.max(5, Math.min(CAR.width_m * scale, most))};
+  const width = Math.max(5, Math.min(CAR.width_m * scale, most));
+  return {left: x(front_m) - length, length, width};
 }
 
 function tracePath({pen, lane, scale}, {left, length, width}) {
@@ -126,9 +127,8 @@ function drawCar(view, car, side) {
   tracePath(view, box);
   pen.fillStyle = carColour(theme, car.kind, side);
   pen.fill();
-  if (car.kind === "host" && side === "human") fillPattern(pen, hatch(pen, theme.surface, {size: 5}));
-  if (car.kind === "host" && side === "risk") {
-    fillPattern(pen, hatch(pen, theme.surface, {both: true}));
+  if (car.kind === "host" && (side === "human" || side === "risk")) {
+    fillPattern(pen, hatch(pen, theme.surface, {size: 5, both: side === "risk"}));
   }
   drawScreens(pen, box, lane);
 }
@@ -267,8 +267,10 @@ function drawScaleBar({pen, width, scale, theme}, height) {
 export function roadInWords(frame, length_m) {
   if (!frame.TRUTH) return "The road from above. There is no message about the cars yet.";
   const cars = carsOf(frame.TRUTH);
-  const gaps = cars.slice(1).map((car, i) =>
-    `${decimal(cars[i].front_m - length_m - car.front_m, 1)} m from the ${car.name} to the ${cars[i].name}`);
+  const gaps = cars.slice(1).map((car, i) => {
+    const gap_m = cars[i].front_m - length_m - car.front_m;
+    return `${decimal(gap_m, 1)} m from the ${car.name} to the ${cars[i].name}`;
+  });
   const braking = cars.filter(({brakes}) => brakes).map(({name}) => `the ${name} brakes`);
   return `The road from above: ${[...gaps, ...braking].join(", ")}.`;
 }

@@ -21,9 +21,10 @@ export class Timebar {
     this.speed.append(...SPEEDS.map((speed) => make("option", {value: speed}, `${speed}×`)));
     this.slider.addEventListener("input", () => act.goTo(Number(this.slider.value)));
     this.speed.addEventListener("change", () => act.speed(Number(this.speed.value)));
-    const buttons = {play: act.toggle, live: act.live, link: act.link, "step-back": () => act.step(-1),
-                     "step-on": () => act.step(1), "event-back": () => act.jump(-1),
-                     "event-on": () => act.jump(1)};
+    const buttons = {
+      play: act.toggle, live: act.live, link: act.link,
+      "step-back": () => act.step(-1), "step-on": () => act.step(1),
+      "event-back": () => act.jump(-1), "event-on": () => act.jump(1)};
     for (const [id, action] of Object.entries(buttons)) byId(id).addEventListener("click", action);
     byId("events").addEventListener("click", ({target}) => {
       const button = target.closest("button[data-step]");
@@ -55,7 +56,8 @@ export class Timebar {
 
   /** Fog, who drives, and events over the whole time. */
   drawTrack(store, modes, lambdas, events, theme) {
-    const state = `${modes.version} ${store.lastStep} ${events.length} ${this.track.clientWidth} ${theme.ink}`;
+    const state = [modes.version, store.lastStep, events.length, this.track.clientWidth,
+                   theme.ink].join(" ");
     const now = performance.now();
     if (state === this.drawnTrack || now - this.trackAt < 1000 / TRACK_HZ) return;
     this.drawnTrack = state;

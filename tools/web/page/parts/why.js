@@ -1,7 +1,8 @@
 // Why who drives: conflict against threshold, authorities, and the error of each sensor, over the
 // last 20 s.
 
-import {drawNow, extremes, fillSpan, joined, makeChart, stepped, TOP, widened} from "../draw/chart.js";
+import {drawNow, extremes, fillSpan, joined, makeChart, stepped, TOP, widened}
+  from "../draw/chart.js";
 import {byId, hatch, say} from "../draw/dom.js";
 import {decimal} from "../draw/format.js";
 import {modeOf, spansOf} from "../data/modes.js";
@@ -67,7 +68,8 @@ export class Why {
     this.fog = series("TRUTH", "fog_present");
     this.truth = series("TRUTH", "host_gap_m");
     this.sources = SOURCES.map((source) => ({
-      ...source, value: series(source.channel, source.path), valid: series(source.channel, "valid")}));
+      ...source, value: series(source.channel, source.path),
+      valid: series(source.channel, "valid")}));
     this.charts = [this.makeConflict(), this.makeAuthority(), this.makeErrors()];
     this.drawn = "";
     this.drawnAt = 0;
@@ -107,8 +109,8 @@ export class Why {
     const {radar, lidar, ink} = this.theme;
     return this.chart("why-errors", {
       height: 178,
-      lines: [{stroke: radar, dash: [2, 3], width: 2}, {stroke: lidar, dash: [8, 3, 2, 3], width: 2},
-              {stroke: ink, width: 1.75}],
+      lines: [{stroke: radar, dash: [2, 3], width: 2},
+              {stroke: lidar, dash: [8, 3, 2, 3], width: 2}, {stroke: ink, width: 1.75}],
       valueRange: () => this.errorRange ?? [-1, 1],
       below: (chart) => {
         this.drawFog(chart);

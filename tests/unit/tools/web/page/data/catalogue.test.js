@@ -44,7 +44,7 @@ test("fields are found by parts of their names, comments and units", () => {
 });
 
 function filledStore() {
-  const store = new LiveStore(catalogue(), () => {});
+  const store = new LiveStore(catalogue());
   store.setRun({run_id: log.table("TRUTH")[0]["header.run_id"], step_s: 0.1});
   truth.forEach((bytes, i) => store.add({channel: 0, arrived_ms: i, bytes}));
   return store;
@@ -71,6 +71,14 @@ test("a live store takes no message twice, of another run, or of an unknown type
   other[8] ^= 1;
   store.add({channel: 0, arrived_ms: 0, bytes: other});
   assert.equal(series.length, 300);
+});
+
+test("messages that come before the server names the run belong to it", () => {
+  const store = new LiveStore(catalogue());
+  truth.forEach((bytes, i) => store.add({channel: 0, arrived_ms: i, bytes}));
+  assert.equal(store.lastStep, 299);
+  store.setRun({run_id: log.table("TRUTH")[0]["header.run_id"], step_s: 0.1});
+  assert.equal(store.lastStep, 299);
 });
 
 test("another run begins with an empty store", () => {
