@@ -286,7 +286,7 @@ class Page {
     }
     const time = store.timeOf(step);
     const {modes, lambdas} = this.why;
-    const moment = {frame: this.frame, step, time, run, theme, length_m: this.length_m,
+    const moment = {frame: this.frame, step, time, run, theme, length_m: this.length_m, isLive: this.isLive,
                     ahead_s: frame ? this.aheadOf(step) : 0, moves: clock.state !== "paused"};
     const {rest_ms} = this.budget.now;
     moment.side = this.now.draw(moment, modes, lambdas);

@@ -115,7 +115,8 @@ export class Health {
                         : " No packet was lost.";
     setAttribute(this.summary, "data-grade", bad.length ? "bad" : lost ? "note" : "good");
     say(this.summary, first + second);
-    const facts = [health.traffic?.lcm_url, `${count(health.viewers ?? 1)} viewers`];
+    const viewers = health.viewers ?? 1;
+    const facts = [health.traffic?.lcm_url, viewers === 1 ? "1 viewer" : `${count(viewers)} viewers`];
     if (health.own_overflow) {
       facts.push(`this viewer itself missed ${count(health.own_overflow)} packets`);
     }

@@ -40,11 +40,11 @@ export class Now {
   }
 
   /** @return the side that drives */
-  draw({frame, time, run}, modes, lambdas) {
+  draw({frame, time, run, isLive}, modes, lambdas) {
     const command = frame?.HOST_COMMAND;
     if (!command) {
-      say(this.words, SIDES.unknown.words);
-      say(this.reason, "");
+      say(this.words, isLive ? "Waiting for a run" : SIDES.unknown.words);
+      say(this.reason, isLive ? "Start one, such as: fogline run scenario/dense_fog.json --pace 1" : "");
       setAttribute(this.strip, "data-side", "unknown");
       this.request.hidden = true;
       return "unknown";

@@ -122,7 +122,7 @@ export class Why {
 
   drawFog(chart) {
     const {times, values} = this.fog.within(...this.range);
-    for (const {from, to, value} of spansOf(times, values, this.range[1])) {
+    for (const {from, to, value} of spansOf(times, values, this.shownEnd)) {
       if (value) fillSpan(chart, from, to, this.theme.fog);
     }
   }
@@ -131,7 +131,12 @@ export class Why {
     const {times, values} = this.modes.within(...this.range);
     const lambdas = this.lambdas.within(...this.range).values;
     const sides = values.map((mode, i) => sideNumber[modeOf(mode, lambdas[i]).side]);
-    return spansOf(times, sides, Math.min(this.range[1], this.store.lastTime));
+    return spansOf(times, sides, this.shownEnd);
+  }
+
+  /** End of what is known within the shown time. */
+  get shownEnd() {
+    return Math.min(this.range[1], this.store.lastTime);
   }
 
   get range() {
