@@ -47,8 +47,9 @@ struct WebClient::Parts {
 
   [[noreturn]] void ThrowClosed(error_code error) const {
     const auto& reason = socket.reason();
-    throw WebClosed(error == websocket::error::closed ? reason.code : 0,
-                    error.message() + " " + std::string(reason.reason.data(), reason.reason.size()));
+    throw WebClosed(
+        error == websocket::error::closed ? reason.code : 0,
+        error.message() + " " + std::string(reason.reason.data(), reason.reason.size()));
   }
 };
 
@@ -65,18 +66,16 @@ WebClient::WebClient(std::uint16_t port, const Options& options)
   lowest.connect(Here(port));
   beast::get_lowest_layer(socket).expires_never();
   socket.read_message_max(64 << 20);
-  socket.set_option(
-      websocket::stream_base::decorator([&options](websocket::request_type& request) {
-        if (!options.protocol.empty()) {
-          request.set(beast::http::field::sec_websocket_protocol, options.protocol);
-        }
-        if (!options.origin.empty()) request.set(beast::http::field::origin, options.origin);
-      }));
+  socket.set_option(websocket::stream_base::decorator([&options](websocket::request_type& request) {
+    if (!options.protocol.empty()) {
+      request.set(beast::http::field::sec_websocket_protocol, options.protocol);
+    }
+    if (!options.origin.empty()) request.set(beast::http::field::origin, options.origin);
+  }));
   websocket::response_type response;
   const std::string host = options.host.empty() ? HostOf(port) : options.host;
-  const error_code error = parts_->Run([&](auto handler) {
-    socket.async_handshake(response, host, options.target, handler);
-  });
+  const error_code error = parts_->Run(
+      [&](auto handler) { socket.async_handshake(response, host, options.target, handler); });
   if (error == websocket::error::upgrade_declined) throw WebRefused(int(response.result_int()));
   if (error) throw std::runtime_error(error.message());
   const auto chosen = response[beast::http::field::sec_websocket_protocol];
@@ -90,15 +89,15 @@ std::string WebClient::protocol() const { return parts_->protocol; }
 
 void WebClient::Send(const std::string& bytes, bool binary) {
   parts_->socket.binary(binary);
-  const error_code error = parts_->Run(
-      [&](auto handler) { parts_->socket.async_write(asio::buffer(bytes), handler); });
+  const error_code error =
+      parts_->Run([&](auto handler) { parts_->socket.async_write(asio::buffer(bytes), handler); });
   if (error) parts_->ThrowClosed(error);
 }
 
 WebFrame WebClient::Receive(std::chrono::seconds limit) {
   parts_->buffer.clear();
-  const error_code error = parts_->Run(
-      [&](auto handler) { parts_->socket.async_read(parts_->buffer, handler); }, limit);
+  const error_code error =
+      parts_->Run([&](auto handler) { parts_->socket.async_read(parts_->buffer, handler); }, limit);
   if (error) parts_->ThrowClosed(error);
   return {.binary = parts_->socket.got_binary(),
           .bytes = beast::buffers_to_string(parts_->buffer.cdata())};

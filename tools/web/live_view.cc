@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 
+#include <array>
 #include <chrono>
 #include <utility>
 #include <variant>

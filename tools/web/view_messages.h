@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "tools/web/channel_table.h"
-#include "tools/web/log_index.h"
+#include "tools/web/log/log_index.h"
+#include "tools/web/log/series.h"
 #include "tools/web/run_events.h"
-#include "tools/web/series.h"
 #include "tools/web/view_request.h"
 
 namespace fogline::web {

@@ -1,7 +1,7 @@
 // fogline view, a program of its own: shows the run that is on the network, or a log, in a browser.
 // It only listens: it never sends a message to a run.
-#include <array>
-#include <csignal>
+#include <chrono>
+#include <cstdint>
 #include <cstdio>
 #include <memory>
 #include <optional>
@@ -13,7 +13,6 @@
 #include <CLI/CLI.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/signal_set.hpp>
-#include <boost/asio/steady_timer.hpp>
 
 #include "common/errors.h"
 #include "common/exit_code.h"
@@ -28,7 +27,7 @@
 #include "tools/cli/verb_program.h"
 #include "tools/web/browser.h"
 #include "tools/web/live_view.h"
-#include "tools/web/log_view.h"
+#include "tools/web/log/log_view.h"
 #include "tools/web/server/server.h"
 
 namespace fogline::web {
@@ -156,24 +155,7 @@ std::unique_ptr<Server> Listen(asio::io_context& context, const ViewArguments& a
   }
 }
 
-/// Serves a view until a signal ends the program.
-/// @param stop_view ends the work of the view
-template <class StopView>
-void Serve(asio::io_context& context, Server& server, const StopView& stop_view) {
-  asio::signal_set signals(context);
-  for (const int signal : EndingSignals()) signals.add(signal);
-  asio::steady_timer limit(context);
-  signals.async_wait([&](boost::system::error_code, int) {
-    server.Stop();
-    stop_view();
-    limit.expires_after(kEndLimit);
-    limit.async_wait([&context](boost::system::error_code) { context.stop(); });
-    // The limit alone keeps the context from ending.
-    asio::post(context, [&] { limit.cancel(); });
-  });
-  context.run();
-}
-
+/// Prints the address, and opens it.
 void Say(const ViewArguments& arguments, const Server& server) {
   const std::string step =
       arguments.open_at ? fmt::format("step={}", *arguments.open_at) : std::string();
@@ -181,6 +163,23 @@ void Say(const ViewArguments& arguments, const Server& server) {
   fmt::print("{}\n", url);
   std::fflush(stdout);
   if (!arguments.no_browser && HasBrowser()) OpenBrowser(url);
+}
+
+/// Serves a view until a signal ends the program.
+/// @param stop_view ends the work of the view
+template <class StopView>
+void Serve(asio::io_context& context, const ViewArguments& arguments, Server& server,
+           const StopView& stop_view) {
+  asio::signal_set signals(context);
+  for (const int signal : EndingSignals()) signals.add(signal);
+  signals.async_wait([&context](boost::system::error_code, int) { context.stop(); });
+  Say(arguments, server);
+  context.run();
+  server.Stop();
+  stop_view();
+  // Says to the clients that the program ends. It returns when the last connection is closed.
+  context.restart();
+  context.run_for(kEndLimit);
 }
 
 /// @throws std::runtime_error if there is no page for a browser
@@ -203,16 +202,14 @@ int RunView(const ViewArguments& arguments) {
                             .key = runtime::KeyOf(arguments.traffic)});
     const auto server = Listen(context, arguments, view);
     view.Show(*server);
-    Say(arguments, *server);
-    Serve(context, *server, [&view] { view.Stop(); });
+    Serve(context, arguments, *server, [&view] { view.Stop(); });
     return kDone;
   }
   LogView view(arguments.log);
   const std::string& note = view.index().run().note;
   if (!note.empty()) Notice(fmt::format("{}: {}", PathText(arguments.log), note));
   const auto server = Listen(context, arguments, view);
-  Say(arguments, *server);
-  Serve(context, *server, [] {});
+  Serve(context, arguments, *server, [] {});
   return kDone;
 }
 

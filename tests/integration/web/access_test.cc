@@ -81,8 +81,8 @@ TEST_F(ViewAccessTest, KnowsOnlyGetAndItsOwnPaths) {
   EXPECT_TRUE(head.ends_with("\r\n\r\n")) << head;  // without a body
   EXPECT_THAT(head, HasSubstr("Allow: GET"));
   const std::string body(100'000, 'x');
-  EXPECT_EQ(StatusOf(Exchange(port(), "POST / HTTP/1.1\r\n" + host +
-                                          "Content-Length: 100000\r\n\r\n" + body)),
+  EXPECT_EQ(StatusOf(Exchange(
+                port(), "POST / HTTP/1.1\r\n" + host + "Content-Length: 100000\r\n\r\n" + body)),
             405);
   EXPECT_EQ(StatusOfSocket({.target = "/other"}), 404);
   ExpectServes();
@@ -161,9 +161,9 @@ TEST_F(ViewAccessTest, EndsAtOnceWithCtrlC) {
 }
 
 TEST_F(ViewAccessTest, SaysThatAPortIsBusy) {
-  const Outcome second = RunCommand({Program("fogline"), "view", "--no-browser", "--port",
-                                     std::to_string(port()), "--lcm-url",
-                                     runtime::FreshMulticastUrl()});
+  const Outcome second =
+      RunCommand({Program("fogline"), "view", "--no-browser", "--port", std::to_string(port()),
+                  "--lcm-url", runtime::FreshMulticastUrl()});
   EXPECT_EQ(second.code, 3);
   EXPECT_THAT(second.err, HasSubstr("cannot listen on " + Host() + ": Address already in use"));
   EXPECT_EQ(second.out, "");

@@ -19,8 +19,8 @@ using testing::HasSubstr;
 /// Makes the log of a run in one process.
 void MakeLog(const std::string& log, int steps) {
   const Outcome run =
-      RunCommand({Program("fogline"), "run", "scenario/paper.json", "--transport", "direct", "--set",
-                  "/steps=" + std::to_string(steps), "--log", log, "--quiet"});
+      RunCommand({Program("fogline"), "run", "scenario/paper.json", "--transport", "direct",
+                  "--set", "/steps=" + std::to_string(steps), "--log", log, "--quiet"});
   ASSERT_EQ(run.code, 0) << run.err;
 }
 
@@ -130,9 +130,15 @@ TEST(LogViewTest, GivesAFieldOverTimeAndLosesNoPeak) {
   ASSERT_NE(viewed.port(), 0) << viewed.process().Err();
   WebClient client(viewed.port());
   const auto ask = [&](std::uint32_t id, const std::string& field, int points) {
-    client.Send(json{{"op", "series"}, {"id", id}, {"channel", "TRUTH"}, {"field", field},
-                     {"from", 0}, {"to", 1'000'000}, {"points", points}}
-                    .dump());
+    client.Send(json{
+        {"op", "series"},
+        {"id", id},
+        {"channel", "TRUTH"},
+        {"field", field},
+        {"from", 0},
+        {"to", 1'000'000},
+        {"points",
+         points}}.dump());
   };
   ask(1, "host_gap_m", 200);
   const auto [times, values] = SeriesOf(ReceiveKind(client, 3), 1);
@@ -225,9 +231,15 @@ TEST(LogViewTest, OpensAMillionMessagesIn300MB) {
   EXPECT_EQ(ReceiveOp(client, "log")["last_step"], kSteps - 1);
   // Curves of the whole log, and steps in all its parts.
   for (const char* field : {"host_gap_m", "follower_gap_m[0]"}) {
-    client.Send(json{{"op", "series"}, {"id", 1}, {"channel", "TRUTH"}, {"field", field},
-                     {"from", 0}, {"to", kSteps}, {"points", 1000}}
-                    .dump());
+    client.Send(json{
+        {"op", "series"},
+        {"id", 1},
+        {"channel", "TRUTH"},
+        {"field", field},
+        {"from", 0},
+        {"to", kSteps},
+        {"points",
+         1000}}.dump());
     EXPECT_LE(ReceiveKind(client, 3).bytes.size(), 9 + 2000 * 2 * sizeof(double));
   }
   for (int from = 0; from < kSteps; from += kSteps / 20) {

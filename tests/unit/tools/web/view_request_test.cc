@@ -28,9 +28,8 @@ TEST(ViewRequestTest, ReadsEachRequest) {
   EXPECT_EQ(series.field, "host_gap_m");
   EXPECT_EQ(series.to, 499);
   EXPECT_EQ(series.points, 9);
-  EXPECT_EQ(
-      std::get<HistoryRequest>(ParseViewRequest(R"({"op":"history","id":4294967295})")).id,
-      4294967295U);
+  EXPECT_EQ(std::get<HistoryRequest>(ParseViewRequest(R"({"op":"history","id":4294967295})")).id,
+            4294967295U);
 }
 
 TEST(ViewRequestTest, SaysWhatIsWrongWithAnIdIfThereIsOne) {
@@ -56,8 +55,9 @@ TEST(ViewRequestTest, RefusesNumbersOutOfRange) {
     const std::string text = std::string(R"({"op":"steps","id":1,)") + range + "}";
     EXPECT_NE(Bad(text).why, "") << text;
   }
-  EXPECT_NE(Bad(R"({"op":"series","id":1,"channel":"A","field":"b","from":0,"to":1,"points":0})").why,
-            "");
+  EXPECT_NE(
+      Bad(R"({"op":"series","id":1,"channel":"A","field":"b","from":0,"to":1,"points":0})").why,
+      "");
   EXPECT_NE(
       Bad(R"({"op":"series","id":1,"channel":"A","field":"b","from":0,"to":1,"points":20001})").why,
       "");

@@ -11,9 +11,7 @@ Access Loopback() { return Access({.address = "127.0.0.1", .port = 7680}); }
 
 const std::string kToken(32, 'a');
 
-Access ForOthers() {
-  return Access({.address = "192.168.1.5", .port = 7680, .token = kToken});
-}
+Access ForOthers() { return Access({.address = "192.168.1.5", .port = 7680, .token = kToken}); }
 
 RequestOrigin From(std::string_view host, std::string_view origin = "",
                    std::string_view target = "/ws") {
@@ -74,10 +72,8 @@ TEST(AccessTest, RefusesPagesOfOtherOrigins) {
 }
 
 TEST(AccessTest, TakesOriginsThatTheUserAllows) {
-  const Access access(
-      {.address = "127.0.0.1", .port = 7680, .origins = {"http://localhost:8080"}});
-  EXPECT_EQ(access.OfWebSocket(From("127.0.0.1:7680", "http://localhost:8080")),
-            Verdict::kAllowed);
+  const Access access({.address = "127.0.0.1", .port = 7680, .origins = {"http://localhost:8080"}});
+  EXPECT_EQ(access.OfWebSocket(From("127.0.0.1:7680", "http://localhost:8080")), Verdict::kAllowed);
   EXPECT_EQ(access.OfWebSocket(From("127.0.0.1:7680", "http://localhost:8081")),
             Verdict::kForeignOrigin);
 }
@@ -100,8 +96,7 @@ TEST(AccessTest, PutsTokenAndStepBehindTheHash) {
   EXPECT_EQ(Loopback().Url(), "http://127.0.0.1:7680/");
   EXPECT_EQ(Loopback().Url("step=190"), "http://127.0.0.1:7680/#step=190");
   EXPECT_EQ(ForOthers().Url(), "http://192.168.1.5:7680/#token=" + kToken);
-  EXPECT_EQ(ForOthers().Url("step=190"),
-            "http://192.168.1.5:7680/#token=" + kToken + "&step=190");
+  EXPECT_EQ(ForOthers().Url("step=190"), "http://192.168.1.5:7680/#token=" + kToken + "&step=190");
 }
 
 TEST(AccessTest, DrawsTokensOf128Bits) {

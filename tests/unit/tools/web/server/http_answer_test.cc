@@ -14,8 +14,7 @@ constexpr std::array kFiles{
 };
 
 HttpAnswer AnswerTo(std::string_view method, std::string_view target,
-                    std::string_view if_none_match = "",
-                    std::string_view host = "127.0.0.1:7680") {
+                    std::string_view if_none_match = "", std::string_view host = "127.0.0.1:7680") {
   const Access access({.address = "127.0.0.1", .port = 7680});
   return Answer({.method = method,
                  .from = {.host = host, .origin = "", .target = target},
@@ -24,8 +23,8 @@ HttpAnswer AnswerTo(std::string_view method, std::string_view target,
 }
 
 std::string HeaderOf(const HttpAnswer& answer, std::string_view name) {
-  const auto found = std::ranges::find_if(
-      answer.headers, [&](const auto& header) { return header.first == name; });
+  const auto found = std::ranges::find_if(answer.headers,
+                                          [&](const auto& header) { return header.first == name; });
   return found == answer.headers.end() ? "" : found->second;
 }
 

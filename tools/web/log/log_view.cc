@@ -1,4 +1,4 @@
-#include "tools/web/log_view.h"
+#include "tools/web/log/log_view.h"
 
 #include <algorithm>
 #include <limits>

@@ -2,6 +2,7 @@
 // run's description and its events.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>

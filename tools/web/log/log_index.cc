@@ -1,4 +1,4 @@
-#include "tools/web/log_index.h"
+#include "tools/web/log/log_index.h"
 
 #include <algorithm>
 #include <optional>

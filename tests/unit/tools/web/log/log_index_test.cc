@@ -1,4 +1,4 @@
-#include "tools/web/log_index.h"
+#include "tools/web/log/log_index.h"
 
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
@@ -78,15 +78,16 @@ TEST_F(LogIndexTest, ShowsATornLogAsFarAsItGoes) {
 
 TEST_F(LogIndexTest, ShowsTheStepsBehindALostMessage) {
   const std::string file = Run(30);
-  test::Copy(file, File("lossy.lcm"), [](log::EventLogWriter& writer, const log::Event& event,
-                                         std::vector<std::uint8_t>& data) {
-    const bool lost = event.channel == "LIDAR" &&
-                      runtime::ReadInt64(data, runtime::kStepOffset) == 10;
-    // An event of a channel that nobody knows stands in for the lost one.
-    if (lost) writer.Write("OTHER", event.utime, data);
-    if (lost) data.assign(4, 0);
-    return true;
-  });
+  test::Copy(
+      file, File("lossy.lcm"),
+      [](log::EventLogWriter& writer, const log::Event& event, std::vector<std::uint8_t>& data) {
+        const bool lost =
+            event.channel == "LIDAR" && runtime::ReadInt64(data, runtime::kStepOffset) == 10;
+        // An event of a channel that nobody knows stands in for the lost one.
+        if (lost) writer.Write("OTHER", event.utime, data);
+        if (lost) data.assign(4, 0);
+        return true;
+      });
   const LogIndex index(File("lossy.lcm"));
   EXPECT_EQ(index.run().steps, 10);
   EXPECT_EQ(index.last_step(), 29);
@@ -97,12 +98,13 @@ TEST_F(LogIndexTest, ShowsTheStepsBehindALostMessage) {
 
 TEST_F(LogIndexTest, TakesTheFirstOfTwoMessages) {
   const std::string file = Run(5);
-  test::Copy(file, File("twice.lcm"), [](log::EventLogWriter& writer, const log::Event& event,
-                                         std::vector<std::uint8_t>& data) {
-    writer.Write(event.channel, event.utime, data);
-    if (event.channel == "TRUTH") data.back() ^= 1;
-    return true;
-  });
+  test::Copy(
+      file, File("twice.lcm"),
+      [](log::EventLogWriter& writer, const log::Event& event, std::vector<std::uint8_t>& data) {
+        writer.Write(event.channel, event.utime, data);
+        if (event.channel == "TRUTH") data.back() ^= 1;
+        return true;
+      });
   const LogIndex index(File("twice.lcm"));
   const LogIndex original(file);
   EXPECT_TRUE(std::ranges::equal(index.Message(3, IndexOf<truth_t>()),
@@ -113,16 +115,17 @@ TEST_F(LogIndexTest, TakesTheFirstOfTwoMessages) {
 TEST_F(LogIndexTest, NeedsNoMemoryForAForgedStep) {
   // GIVEN a log with messages of a very late step and of a negative one
   const std::string file = Run(5);
-  test::Copy(file, File("forged.lcm"), [](log::EventLogWriter& writer, const log::Event& event,
-                                          std::vector<std::uint8_t>& data) {
-    std::vector<std::uint8_t> forged = data;
-    for (const std::uint8_t late : {0x7f, 0x80}) {  // also a negative step
-      if (event.channel != "TRUTH") break;
-      forged[runtime::kStepOffset] = late;
-      writer.Write(event.channel, event.utime, forged);
-    }
-    return true;
-  });
+  test::Copy(
+      file, File("forged.lcm"),
+      [](log::EventLogWriter& writer, const log::Event& event, std::vector<std::uint8_t>& data) {
+        std::vector<std::uint8_t> forged = data;
+        for (const std::uint8_t late : {0x7f, 0x80}) {  // also a negative step
+          if (event.channel != "TRUTH") break;
+          forged[runtime::kStepOffset] = late;
+          writer.Write(event.channel, event.utime, forged);
+        }
+        return true;
+      });
   EXPECT_EQ(LogIndex(File("forged.lcm")).last_step(), 4);
 }
 

@@ -1,4 +1,4 @@
-#include "tools/web/series.h"
+#include "tools/web/log/series.h"
 
 #include <gtest/gtest.h>
 

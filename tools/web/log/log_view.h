@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include "tools/web/log_index.h"
+#include "tools/web/log/log_index.h"
 #include "tools/web/server/server.h"
 #include "tools/web/view_request.h"
 
