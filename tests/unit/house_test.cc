@@ -88,6 +88,8 @@ constexpr std::array kRooms = std::to_array<Room>({
     {"tools/cli", "cli", "what the command lines of verbs share"},
     {"tools/calibrate", "calibrate", "a program"},
     {"tools/study", "study", "a program"},
+    {"tools/web/server", "web", "HTTP and WebSockets; knows no runs"},
+    {"tools/web", "web", "a program: the page of a run or a log"},
     {"tools/fogline", "", "the verbs"},
     {"tools/benchmarks", "benchmarks", "a program that measures the others"},
 });

@@ -185,7 +185,8 @@ void BeastConnection::Write(HttpAnswer answer) {
   // A connection takes one request. Otherwise the idle connections of browsers would take the
   // places of viewers.
   response_->keep_alive(false);
-  response_->content_length(body.size());
+  constexpr unsigned kNotModified = 304;  // says nothing about the size of the file
+  if (answer_.status != kNotModified) response_->content_length(body.size());
   const bool head = parser_->get().method() == http::verb::head;
   if (!head) response_->body() = {body.data(), body.size()};
   stream_.expires_after(kRequestLimit);
