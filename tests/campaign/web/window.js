@@ -86,7 +86,8 @@ export async function until(look, what) {
 
 /** Starts `fogline view`. @return the address that it prints */
 export async function view(t, args) {
-  const server = background(t, FOGLINE, ["view", "--no-browser", "--port", "0", ...args]);
+  const place = args.includes("--listen") ? [] : ["--port", "0"];
+  const server = background(t, FOGLINE, ["view", "--no-browser", ...place, ...args]);
   server.on("exit", (code) => { server.code = code; });
   return until(() => {
     assert.equal(server.code, undefined, server.said);

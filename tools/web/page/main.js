@@ -47,7 +47,7 @@ class Page {
   }
 
   get isLive() { return this.hello?.mode === "live"; }
-  get run() { return this.store?.run ?? {step_s: 0.1, run_id: ""}; }
+  get run() { return this.store?.run ?? {step_s: this.store?.step_s ?? 0.1, run_id: ""}; }
   get step() {
     const step = this.clock.step(this.run.step_s);
     return this.within(step);
@@ -109,11 +109,16 @@ class Page {
       channel: () => { this.catalogue.add(object); this.rebuildSoon(); },
       run: () => this.setRun(object),
       log: () => this.setLog(object),
-      event: () => { this.events = [...this.events, object].slice(-MOST_EVENTS); },
+      event: () => this.addEvent(object),
       health: () => { this.lastHealth = object; this.healthIsNew = true; },
       error: () => { if (object.id == null) this.complain(object.message); },
     };
     if (Object.hasOwn(takers, object.op)) takers[object.op]();
+  }
+
+  addEvent(event) {
+    const again = event.step < (this.events.at(-1)?.step ?? 0);  // the same log is played once more
+    this.events = [...(again ? [] : this.events), event].slice(-MOST_EVENTS);
   }
 
   begin(hello) {
@@ -181,6 +186,7 @@ class Page {
   /** Makes all charts anew: another run, other channels, or other colours. */
   build() {
     if (!this.store || (!this.isLive && !this.log)) return;
+    this.generation = this.store.generation;
     this.why.build(this.store, this.theme);
     this.curves.build(this.store, this.catalogue, this.theme);
     this.scene.drawn = "";
@@ -259,6 +265,7 @@ class Page {
     this.before = now;
     if (!this.store || this.why.charts.length === 0) return;
     this.budget.frame(now);
+    if (this.store.generation !== this.generation) this.build();
     const played = this.clock.state === "playing";
     this.clock.advance(passed_s, this.store.firstTime, this.store.lastTime);
     if (this.isLive && played && this.clock.state === "paused") this.clock.follow();  // caught up

@@ -7,6 +7,7 @@ import {Series} from "./series.js";
 
 const KEEP_S = 600;              // of simulated time
 const KEEP_BYTES = 96 * 2 ** 20;
+const AWAY_MS = 2000;            // no new step for so long: the run has stopped
 const TIDY_AFTER = 4096;         // messages between two looks at what is too old
 
 /** Messages of one channel in the order of their steps. */
@@ -44,7 +45,9 @@ export class LiveStore {
     this.clear();
   }
 
+  /** Forgets everything. Series that were taken before do not grow any more. */
   clear() {
+    this.generation = (this.generation ?? 0) + 1;
     this.tracks = new Map();    // by channel name
     this.wanted = new Map();    // series by field name
     this.statuses = new Map();  // the newest STATUS of each role
@@ -53,6 +56,7 @@ export class LiveStore {
     this.arrived_ms = 0;        // wall clock of the server at the newest step
     this.taken_ms = 0;          // clock of the page at the newest step
     this.count = 0;
+    this.seenStep_s = null;
   }
 
   setRun(run) {
@@ -62,7 +66,9 @@ export class LiveStore {
     this.runId = id;
   }
 
-  timeOf(step) { return step * (this.run?.step_s ?? 0.1); }
+  /** The scenario's step; before the scenario is known, that of the messages. */
+  get step_s() { return this.run?.step_s ?? this.seenStep_s ?? 0.1; }
+  timeOf(step) { return step * this.step_s; }
   get firstTime() { return this.timeOf(this.firstStep); }
   get lastTime() { return this.timeOf(Math.max(0, this.lastStep)); }
 
@@ -83,6 +89,7 @@ export class LiveStore {
   }
 
   keep(channel, header, arrived_ms, bytes) {
+    if (this.beginsAgain(channel, header, arrived_ms)) this.clear();
     if (!this.tracks.has(channel.name)) this.tracks.set(channel.name, new Track(channel));
     if (!this.tracks.get(channel.name).add(header, bytes)) return;
     if (this.lastStep < 0) this.firstStep = header.step;
@@ -91,8 +98,14 @@ export class LiveStore {
       this.arrived_ms = arrived_ms;
       this.taken_ms = performance.now();
     }
+    if (header.step > 0) this.seenStep_s = header.time_s / header.step;
     this.extend(channel, header, bytes);
     if (++this.count % TIDY_AFTER === 0) this.tidy();
+  }
+
+  /** Whether a log of the same run is played once more. Old messages also come in a repair. */
+  beginsAgain({name}, {step}, arrived_ms) {
+    return name === "TRUTH" && step < this.lastStep && arrived_ms - this.arrived_ms > AWAY_MS;
   }
 
   extend(channel, {time_s}, bytes) {
@@ -112,7 +125,7 @@ export class LiveStore {
     if (oldest <= this.firstTime) return;
     for (const track of this.tracks.values()) track.forgetBefore(oldest);
     for (const {series} of this.wanted.values()) series.forgetBefore(oldest);
-    this.firstStep = Math.ceil(oldest / (this.run?.step_s ?? 0.1));
+    this.firstStep = Math.ceil(oldest / this.step_s);
   }
 
   /** The newest messages at a step: {NAME: message}; null if there are none. */

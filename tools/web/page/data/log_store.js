@@ -4,7 +4,7 @@ import {Series} from "./series.js";
 
 const CHUNK = 64;          // steps that are fetched together
 const KEEP_CHUNKS = 64;
-const MOST_POINTS = 100000;  // of a series over the whole log; the server sends up to twice as many
+const MOST_POINTS = 20000;   // of a series over the whole log; the server sends up to twice as many
 const DETAIL_POINTS = 4000;  // of a series over a part of the log
 const KEEP_DETAILS = 24;
 

@@ -81,6 +81,14 @@ test("messages that come before the server names the run belong to it", () => {
   assert.equal(store.lastStep, 299);
 });
 
+test("a log that is played once more begins with an empty store, and a repair changes nothing", () => {
+  const store = filledStore();
+  store.add({channel: 0, arrived_ms: 1000, bytes: truth[0]});
+  assert.deepEqual([store.firstStep, store.lastStep], [0, 299]);
+  store.add({channel: 0, arrived_ms: 10000, bytes: truth[0]});
+  assert.deepEqual([store.firstStep, store.lastStep], [0, 0]);
+});
+
 test("another run begins with an empty store", () => {
   const store = filledStore();
   store.setRun({run_id: "5", step_s: 0.1});
