@@ -176,10 +176,11 @@ class Page {
     this.log = log;
     this.events = log.events;
     this.store.setLog(log);
-    this.build();
     const {step} = readFragment(location.hash);
     this.clock.pause();
     this.clock.time = this.store.timeOf(step ?? log.first_step);
+    this.store.frame(this.step);  // asks for the picture before the curves
+    this.build();
     this.showConnection("open");
   }
 

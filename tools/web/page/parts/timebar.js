@@ -56,8 +56,9 @@ export class Timebar {
 
   /** Fog, who drives, and events over the whole time. */
   drawTrack(store, modes, lambdas, events, theme) {
-    const state = [modes.version, store.lastStep, events.length, this.track.clientWidth,
-                   theme.ink].join(" ");
+    const fog = store.series("TRUTH", "fog_present");
+    const state = [modes.version, lambdas.version, fog.version, store.lastStep, events.length,
+                   this.track.clientWidth, theme.ink].join(" ");
     const now = performance.now();
     if (state === this.drawnTrack || now - this.trackAt < 1000 / TRACK_HZ) return;
     this.drawnTrack = state;
@@ -71,7 +72,6 @@ export class Timebar {
     };
     pen.fillStyle = theme.grid;
     pen.fillRect(0, 9, width, 8);
-    const fog = store.series("TRUTH", "fog_present");
     for (const span of spansOf(fog.times, fog.values, lastTime)) {
       if (span.value) fill(span, theme.fog, 0, height);
     }
