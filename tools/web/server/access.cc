@@ -79,7 +79,7 @@ Verdict Access::OfWebSocket(const RequestOrigin& request) const {
 
 std::string Access::Url(std::string_view more) const {
   // 0.0.0.0 stands for every address of this machine. A browser on this machine needs one of them.
-  const std::string_view address = rules_.address == kEveryAddress ? "127.0.0.1" : rules_.address;
+  const std::string address = rules_.address == kEveryAddress ? "127.0.0.1" : rules_.address;
   std::string fragment = rules_.token.empty() ? "" : "token=" + rules_.token;
   if (!fragment.empty() && !more.empty()) fragment += '&';
   fragment += more;
