@@ -77,6 +77,8 @@ constexpr std::array kRooms = std::to_array<Room>({
     {"tools/report", "report", "pages about them"},
     {"tools/export", "exports", "logs for other programs"},
     {"tools/watch", "watch", "what is on a network"},
+    {"tools/web/types", "web", "what the bytes of a message mean, for the page"},
+    {"tools/web/foxglove", "web", "the same messages for viewers of other projects"},
     {"tools/relay", "relay", "carries messages over TCP"},
     {"tools/processes", "processes", "starts and watches processes"},
     {"tools/replay", "replay", "computes a role again from a log"},
@@ -86,6 +88,8 @@ constexpr std::array kRooms = std::to_array<Room>({
     {"tools/cli", "cli", "what the command lines of verbs share"},
     {"tools/calibrate", "calibrate", "a program"},
     {"tools/study", "study", "a program"},
+    {"tools/web/server", "web", "HTTP and WebSockets; knows no runs"},
+    {"tools/web", "web", "a program: the page of a run or a log"},
     {"tools/fogline", "", "the verbs"},
     {"tools/benchmarks", "benchmarks", "a program that measures the others"},
 });

@@ -26,15 +26,16 @@ void BecomeOwnProgram(int argc, char** argv) {
   if (argc < 2) return;
   const bool help = argc == 3 && std::string_view(argv[1]) == "help";
   const std::string verb = argv[help ? 2 : 1];
-  const auto is_verb = [&](const OwnProgram& own) { return own.verb == verb; };
-  if (std::ranges::none_of(kOwnPrograms, is_verb)) return;
-  std::string name = "fogline-" + verb;
+  const auto is_verb = [&](const OwnProgram& program) { return program.verb == verb; };
+  const auto own = std::ranges::find_if(kOwnPrograms, is_verb);
+  if (own == kOwnPrograms.end()) return;
+  std::string name = own->program;
   std::string option = "--help";
-  const std::string program = processes::ProgramBeside(name).string();
+  const std::string path = processes::ProgramBeside(name).string();
   argv[1] = name.data();
   if (help) argv[2] = option.data();
-  execv(program.c_str(), argv + 1);
-  Complain(fmt::format("fogline {}: error: {}: {}{}", verb, program, std::strerror(errno),
+  execv(path.c_str(), argv + 1);
+  Complain(fmt::format("fogline {}: error: {}: {}{}", verb, path, std::strerror(errno),
                        errno == ENOENT ? "; it is built by: ninja -C build " + name : ""));
   std::exit(kRunFailed);
 }

@@ -1,5 +1,5 @@
-// Verbs that are separate programs beside `fogline`: few people need them, and they take long to
-// build. `fogline VERB ...` is the same as `fogline-VERB ...`.
+// Verbs that are separate programs beside `fogline`: they take long to build, and `fogline` itself
+// does not need their libraries. `fogline VERB ...` is the same as `PROGRAM ...`.
 #pragma once
 
 #include <array>
@@ -12,12 +12,16 @@ namespace fogline::cli {
 
 struct OwnProgram {
   const char* verb;
+  const char* program;
   const char* purpose;  // one line in the list of verbs
 };
 
-inline constexpr OwnProgram kCalibrate{"calibrate", "Find values of fields that meet a table"};
-inline constexpr OwnProgram kStudy{"study", "Answer an open question with runs and intervals"};
-inline constexpr std::array kOwnPrograms{kCalibrate, kStudy};
+inline constexpr OwnProgram kCalibrate{"calibrate", "fogline-calibrate",
+                                       "Find values of fields that meet a table"};
+inline constexpr OwnProgram kStudy{"study", "fogline-study",
+                                   "Answer an open question with runs and intervals"};
+inline constexpr OwnProgram kView{"view", "fogline-web", "Show a run or a log in a browser"};
+inline constexpr std::array kOwnPrograms{kCalibrate, kStudy, kView};
 
 /// Adds these verbs to the list of verbs, for help and spelling hints. These verbs get no action.
 void AddOwnPrograms(CLI::App& app, Action& action);

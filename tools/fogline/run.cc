@@ -1,12 +1,15 @@
 // fogline run: makes one run of a scenario.
 #include <cstddef>
+#include <cstdio>
 #include <memory>
 #include <optional>
+#include <thread>
 #include <utility>
 
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include "common/clock.h"
 #include "common/interrupt.h"
 #include "common/process/console.h"
 #include "common/text.h"
@@ -19,6 +22,7 @@
 #include "tools/cli/run_outcome.h"
 #include "tools/cli/transport_arguments.h"
 #include "tools/fogline/verbs.h"
+#include "tools/processes/run_viewer.h"
 #include "tools/replay/role_check.h"
 #include "tools/runner/experiment.h"
 #include "tools/runner/kept_log.h"
@@ -44,6 +48,9 @@ the log, so its steps are computed again and compared, unless --no-verify is giv
 A complete log without a seal is compared in the same way, and then gets a seal;
 with --no-verify it gets none. A complete log with a seal is compared only with --verify.
 
+--view opens the run in a browser (fogline view --help), and its log when it is over.
+Then Ctrl-C ends the program. If the page cannot be shown, the run goes on without it.
+
 A run has a port of its own unless LCM_DEFAULT_URL names another; fogline top,
 spy, doctor and roles without --lcm-url find it on this machine.
 
@@ -51,6 +58,7 @@ Examples:
   fogline run scenario/paper.json
   fogline run scenario/paper.json --set /arbitrator/threshold=0.8 --seed 7
   fogline run scenario/paper.json --pace 1       at real speed, for fogline top or spy
+  fogline run scenario/paper.json --pace 1 --view
   fogline run scenario/paper.json --transport memq --json
   fogline run --resume logs/paper-1.lcm          goes on with a run that has ended early
   fogline run scenario/paper.json --faults loss=0.3,duplicate=0.1,reorder=0.1,delay_ms=5
@@ -87,6 +95,7 @@ struct RunArguments {
                     "death ends the run)")
         ->check(CLI::Range(0, 1'000'000))
         ->capture_default_str();
+    verb.add_flag("--view", view, "Show the run, and then its log, in a browser");
     verb.add_flag("--json", json, "Print the result as JSON");
     verb.add_flag("--quiet", quiet, "Print only errors on stderr");
     cli::ShowExitCodes(verb, {.check_failed = "--verify failed", .interruptible = true});
@@ -100,6 +109,7 @@ struct RunArguments {
   double speed = 1.0;
   double stall_s = 4.0;
   bool force = false;
+  bool view = false;
   bool json = false;
   bool quiet = false;
 };
@@ -146,6 +156,12 @@ void ApplyOptions(RunArguments& arguments) {
   runner::ExperimentOptions& options = arguments.options;
   arguments.transport.Apply(options);
   const bool direct = options.transport == "direct";
+  if (arguments.view && (direct || options.transport.starts_with("memq"))) {
+    throw InputError(
+        fmt::format("error: --view: no other process can see a run with --transport {}; "
+                    "fogline view LOG shows its log",
+                    options.transport));
+  }
   if (!(options.pace == 0 || runtime::IsSpeed(options.pace))) {
     throw InputError(fmt::format("error: --pace {}: neither 0 nor from {} to {}", options.pace,
                                  runtime::kMinSpeed, runtime::kMaxSpeed));
@@ -232,6 +248,18 @@ int Resume(RunArguments& arguments) {
   return Print(arguments, outcome);
 }
 
+/// Runs, and shows the run in a browser. When it is over, shows its log until Ctrl-C.
+int RunAndView(RunArguments& arguments) {
+  runner::ExperimentOptions& options = arguments.options;
+  processes::RunViewer viewer(runtime::ToArguments({.key_file = options.traffic.key_file}));
+  options.on_network = [&viewer](const std::string& url) { viewer.ShowNetwork(url); };
+  const int code = arguments.resume.empty() ? RunNew(arguments) : Resume(arguments);
+  std::fflush(stdout);
+  viewer.ShowLog(options.log);
+  while (viewer.Runs() && !WasInterrupted()) std::this_thread::sleep_for(milliseconds(50));
+  return code;
+}
+
 /// @throws CLI::ParseError for an option that contradicts --resume, or for a missing SCENARIO
 /// without --resume
 void CheckResume(const CLI::App& verb) {
@@ -258,6 +286,7 @@ void AddRun(CLI::App& app, cli::Action& action) {
     CheckResume(*verb);
     action = [arguments] {
       ApplyOptions(*arguments);
+      if (arguments->view) return RunAndView(*arguments);
       return arguments->resume.empty() ? RunNew(*arguments) : Resume(*arguments);
     };
   });

@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <linux/close_range.h>
+#include <poll.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -93,6 +94,22 @@ pid_t StartChild(const std::filesystem::path& program, const std::vector<std::st
     fail(error);
   }
   return pid;
+}
+
+std::string FirstLineOf(int output, Duration limit) {
+  std::string text;
+  const TimePoint end = Clock::now() + limit;
+  std::array<char, 256> buffer{};
+  while (text.find('\n') == std::string::npos) {
+    pollfd waited{.fd = output, .events = POLLIN, .revents = 0};
+    const auto left = Milliseconds(end - Clock::now());
+    if (left <= 0) return "";
+    if (poll(&waited, 1, static_cast<int>(left)) <= 0) continue;
+    const ssize_t size = read(output, buffer.data(), buffer.size());
+    if (size <= 0) return "";
+    text.append(buffer.data(), static_cast<std::size_t>(size));
+  }
+  return text.substr(0, text.find('\n'));
 }
 
 std::string HowItEnded(int status) {

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "common/clock.h"
 #include "services/graph.h"
 
 namespace fogline::processes {
@@ -33,6 +34,10 @@ struct Pipe {
   int read = -1;
   int write = -1;
 };
+
+/// The first line that a child prints, without its line feed; "" if none comes in time.
+/// @param output the read end of the pipe that is the child's stdout
+std::string FirstLineOf(int output, Duration limit);
 
 /// How a process ended, from the status of waitpid().
 std::string HowItEnded(int status);

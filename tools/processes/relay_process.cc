@@ -1,10 +1,8 @@
 #include "tools/processes/relay_process.h"
 
-#include <poll.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <array>
 #include <csignal>
 #include <stdexcept>
 #include <string_view>
@@ -22,24 +20,6 @@ constexpr Duration kListenLimit = milliseconds(5000);
 
 constexpr std::string_view kHere = "127.0.0.1";
 
-/// The first line of the relay, which the relay prints when it listens; "" if it does not listen in
-/// time.
-std::string FirstLine(int output) {
-  std::string text;
-  const TimePoint end = Clock::now() + kListenLimit;
-  std::array<char, 256> buffer{};
-  while (text.find('\n') == std::string::npos) {
-    pollfd waited{.fd = output, .events = POLLIN, .revents = 0};
-    const auto left = Milliseconds(end - Clock::now());
-    if (left <= 0) return "";
-    if (poll(&waited, 1, static_cast<int>(left)) <= 0) continue;
-    const ssize_t size = read(output, buffer.data(), buffer.size());
-    if (size <= 0) return "";
-    text.append(buffer.data(), static_cast<std::size_t>(size));
-  }
-  return text.substr(0, text.find('\n'));
-}
-
 }  // namespace
 
 RelayProcess::RelayProcess(int restarts)
@@ -53,7 +33,7 @@ std::string RelayProcess::Start(const std::string& place) {
   // The relay prints on the runner's stderr which clients it disconnects.
   pid_ = StartChild(program, {"--listen", place, "--quiet"}, output.write);
   close(std::exchange(output.write, -1));
-  std::string url = FirstLine(output.read);
+  std::string url = FirstLineOf(output.read, kListenLimit);
   if (!url.empty()) return url;
   End();
   throw std::runtime_error(fmt::format("cannot start {}: it does not listen", program.string()));

@@ -18,8 +18,8 @@
 #include <boost/asio/steady_timer.hpp>
 
 #include "common/clock.h"
+#include "common/process/line_budget.h"
 #include "services/runtime/wire/tcpq_frame.h"
-#include "tools/relay/line_budget.h"
 
 namespace fogline::relay {
 
@@ -67,7 +67,7 @@ class Relay {
   boost::asio::steady_timer pause_;  // runs after a connection could not be accepted
   std::map<std::uint64_t, std::shared_ptr<RelayClient>> clients_;
   std::uint64_t next_id_ = 0;
-  LineBudget lines_;
+  LineBudget lines_{"fogline-relay"};
   const TimePoint began_ = Clock::now();
 
   std::uint64_t served_ = 0;

@@ -56,6 +56,9 @@ struct ExperimentOptions {
   bool announce = false;         // print on stderr the network of the run and its processes
   bool samples = false;          // keep the samples of every step in the result
   std::string command_to_go_on;  // resumes the run; shown to the user if the run ends early
+  /// Called with the URL of the run's network, before any role is started. A run in memory has no
+  /// network.
+  std::function<void(const std::string& url)> on_network = [](const std::string&) {};
   /// Called when the operating system has the first step of the log, and perhaps again later.
   std::function<void()> on_logged_step = [] {};
 };

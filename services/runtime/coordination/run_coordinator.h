@@ -206,6 +206,7 @@ class RunCoordinator {
   TimePoint began_;
   OwnPauses pauses_;
   TimePoint announce_at_{};
+  std::size_t next_part_ = 0;  // of the scenario, for programs that only listen
   TimePoint parts_at_{};
   std::optional<TimePoint> ask_recorder_at_;  // when to ask for the recorder's last report
   std::int64_t sequence_;                     // sequence number of the last RUN

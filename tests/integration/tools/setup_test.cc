@@ -56,15 +56,15 @@ class SetupTest : public testing::Test {
     std::filesystem::permissions(file, std::filesystem::perms::owner_all);
   }
 
-  Outcome Setup() const {
+  Outcome Setup(const std::string& purpose = "run") const {
     return RunCommand({"/usr/bin/env", "-i", "-C", machine_.path().string(), "user=driver",
-                       "PATH=" + File("bin"), "TMPDIR=" + File("tmp"), "tools/setup", "run"});
+                       "PATH=" + File("bin"), "TMPDIR=" + File("tmp"), "tools/setup", purpose});
   }
 
   /// Runs Setup(), which must succeed. @return the calls of npm and apt-get
-  std::string Calls() const {
+  std::string Calls(const std::string& purpose = "run") const {
     std::filesystem::remove(File("calls"));
-    const Outcome outcome = Setup();
+    const Outcome outcome = Setup(purpose);
     EXPECT_EQ(outcome.code, 0) << outcome.err;
     return Content(File("calls"));
   }
@@ -105,6 +105,16 @@ TEST_F(SetupTest, InstallsAgainWhatIsNotWhole) {
   std::ofstream(File("package-lock.json"), std::ios::app) << "\n";
   EXPECT_THAT(Calls(), HasSubstr("npm ci")) << "after the lock file changed";
   EXPECT_EQ(Calls(), "");
+}
+
+TEST_F(SetupTest, InstallsPackagesThatOnlyTestsUseOnlyForTests) {
+  EXPECT_THAT(Calls("run"), HasSubstr(" --omit=dev"));
+  EXPECT_EQ(Calls("bench"), "");
+  EXPECT_THAT(Calls("test"), AllOf(HasSubstr("npm ci"), Not(HasSubstr("--omit"))));
+  // A whole installation serves everything.
+  for (const char* purpose : {"run", "test", "bench", "all"}) EXPECT_EQ(Calls(purpose), "");
+  std::filesystem::remove(File(kFile));
+  EXPECT_THAT(Calls("all"), AllOf(HasSubstr("npm ci"), Not(HasSubstr("--omit"))));
 }
 
 TEST_F(SetupTest, InstallsAgainAfterAnInterrupt) {

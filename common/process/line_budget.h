@@ -4,27 +4,31 @@
 
 #include <cstdint>
 #include <string>
+#include <utility>
 
 #include <fmt/core.h>
 
 #include "common/clock.h"
 #include "common/process/console.h"
 
-namespace fogline::relay {
+namespace fogline {
 
 class LineBudget {
  public:
+  /// @param program its name begins each line
+  explicit LineBudget(std::string program) : program_(std::move(program)) {}
+
   void Print(const std::string& line) {
     const TimePoint now = Clock::now();
     if (now - began_ > kPeriod) {
       began_ = now;
-      if (unsaid_ > 0) Notice(fmt::format("fogline-relay: {} such lines not shown", unsaid_));
+      if (unsaid_ > 0) Notice(fmt::format("{}: {} such lines not shown", program_, unsaid_));
       said_ = 0;
       unsaid_ = 0;
     }
     if (said_ < kLines) {
       ++said_;
-      Notice(fmt::format("fogline-relay: {}", line));
+      Notice(fmt::format("{}: {}", program_, line));
     } else {
       ++unsaid_;
     }
@@ -33,9 +37,10 @@ class LineBudget {
  private:
   static constexpr Duration kPeriod = milliseconds(1000);
   static constexpr int kLines = 20;
+  std::string program_;
   TimePoint began_{};
   int said_ = 0;
   std::int64_t unsaid_ = 0;
 };
 
-}  // namespace fogline::relay
+}  // namespace fogline

@@ -1,0 +1,24 @@
+// The page of a server that listens for other machines: only the printed address gives access.
+import assert from "node:assert/strict";
+import {test} from "node:test";
+
+import {browser, open, recordedRun, scratch, shows, view} from "./window.js";
+
+test("the key of the printed address opens the page, and leaves the address", async (t) => {
+  const log = recordedRun(scratch(t));
+  const address = await view(t, [log, "--listen", "127.0.0.1"]);
+  assert.match(address, /#.*token=/);
+  const page = await open(t, await browser(t), address);
+  await shows(page, 0);
+  assert.ok(!page.url().includes("token"), page.url());
+  await page.reload();
+  await shows(page, 0);
+});
+
+test("a page without the key says what is missing", async (t) => {
+  const log = recordedRun(scratch(t));
+  const address = await view(t, [log, "--listen", "127.0.0.1"]);
+  const page = await open(t, await browser(t), address.replace(/#.*/, ""));
+  await page.waitForFunction(() => document.getElementById("problem").textContent.includes("contains a key"));
+  page.trouble = page.trouble.filter((words) => !words.includes("WebSocket"));  // the refusal itself
+});

@@ -1,0 +1,272 @@
+// The page of a recorded run.
+import assert from "node:assert/strict";
+import {test} from "node:test";
+
+import {breaches, browser, goTo, median, numbersOf, open, PHONE, recordedRun, scratch, shows, view}
+  from "./window.js";
+
+const text = (page, selector) => page.locator(selector).innerText();
+
+/** The shown values of the chosen fields, by name. */
+function shownValues(page) {
+  return page.locator("#chosen li").evaluateAll((items) => Object.fromEntries(items.map((item) => [
+    item.querySelector(".field-name").textContent, Number(item.querySelector(".value").dataset.value)])));
+}
+
+/** Colours in the picture of the road: in the middle of the host, and of the road before it. */
+function roadColours(page) {
+  return page.evaluate(() => {
+    const canvas = document.getElementById("road");
+    const {window: {from_m, to_m}, lane} = foglinePage.scene.road;
+    const {TRUTH} = foglinePage.frame;
+    const length_m = foglinePage.length_m;
+    const scale = canvas.width / (to_m - from_m);
+    const at = (m) => [...canvas.getContext("2d").getImageData(
+      Math.round((m - from_m) * scale), Math.round(lane * devicePixelRatio), 1, 1).data];
+    return {host: at(-length_m / 2), gap: at(TRUTH.host_gap_m / 2),
+            lead: at(TRUTH.host_gap_m + length_m / 2), behind: at(-length_m - 3)};
+  });
+}
+
+const distance = (a, b) => Math.hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
+
+test("three moments of a log show who drives, and the log's own numbers", async (t) => {
+  const folder = scratch(t);
+  const log = recordedRun(folder);
+  const numbers = numbersOf(folder, log);
+  const page = await open(t, await browser(t), await view(t, [log]));
+  for (const [step, words] of [[50, "Automation drives"], [300, "The human drives"], [650, "Automation drives"]]) {
+    await goTo(page, step);
+    const [truth, lidar, radar] = ["TRUTH", "LIDAR", "RADAR"].map((channel) => numbers(channel, step));
+    assert.equal(await text(page, "#who"), words);
+    assert.deepEqual(await shownValues(page), {
+      "TRUTH.host_gap_m": truth.host_gap_m, "RADAR.range_m": radar.range_m,
+      "LIDAR.range_m": lidar.range_m, "TRUTH.host_speed_mps": truth.host_speed_mps});
+    assert.equal(await text(page, "#gap-now"), truth.host_gap_m.toFixed(1));
+    assert.equal(await text(page, "#speed-now"), truth.host_speed_mps.toFixed(1));
+    const {host, gap, lead, behind} = await roadColours(page);
+    assert.ok(distance(host, gap) > 60 && distance(host, behind) > 60, `the host stands at 0 m: ${host} ${gap}`);
+    assert.ok(distance(lead, gap) > 8, `the preceding car stands behind the gap: ${lead} ${gap}`);
+  }
+});
+
+test("the curves have the log's values over the whole time", async (t) => {
+  const folder = scratch(t);
+  const log = recordedRun(folder);
+  const numbers = numbersOf(folder, log);
+  const page = await open(t, await browser(t), await view(t, [log]));
+  await page.waitForFunction(() => foglinePage.curves.charts.length === 2 &&
+    foglinePage.curves.charts.every(({chart}) => chart.data[1].length === 700));
+  const columns = await page.evaluate(() => foglinePage.curves.charts.map(({chart}) => (
+    chart.data.map((column) => [column[0], column[270], column[699]]))));
+  const [first, deceived, last] = [0, 270, 699].map((step) => ["TRUTH", "RADAR", "LIDAR"].map(
+    (channel) => numbers(channel, step)));
+  assert.deepEqual(columns[0][0], [0, 27, 69.9]);
+  assert.deepEqual(columns[0][1], [first, deceived, last].map(([truth]) => truth.host_gap_m));
+  assert.deepEqual(columns[0][3], [first, deceived, last].map(([, , lidar]) => lidar.range_m));
+  assert.deepEqual(columns[1][1], [first, deceived, last].map(([truth]) => truth.host_speed_mps));
+});
+
+test("a request to take over counts down, and the page says who drives", async (t) => {
+  const log = recordedRun(scratch(t), ["/arbitrator/take_over/mode=requested",
+                                       "/arbitrator/take_over/absent_probability=1"]);
+  const page = await open(t, await browser(t), await view(t, [log]));
+  await goTo(page, 200);
+  assert.equal(await page.locator("#request").isVisible(), false);
+  await goTo(page, 310);
+  assert.equal(await text(page, "#who"), "Automation drives and urgently asks the human to take over");
+  assert.equal(await text(page, "#request-left"), "6.0\u00a0s");
+  await goTo(page, 400);
+  assert.equal(await page.locator("#request").isVisible(), false);
+  await page.waitForFunction(() => document.getElementById("announcement").textContent ===
+    "Minimal risk manoeuvre: comfortable stop.");
+});
+
+test("a link opens its moment, and an event of the list is a jump away", async (t) => {
+  const log = recordedRun(scratch(t));
+  const address = await view(t, [log]);
+  const page = await open(t, await browser(t), `${address.replace(/#.*/, "")}#step=123`);
+  await shows(page, 123);
+  await page.evaluate(() => { location.hash = "#step=321"; });
+  await shows(page, 321);
+  const events = page.locator("#events button");
+  const step = await events.last().getAttribute("data-step");
+  await events.last().click();
+  await shows(page, Number(step));
+  await page.waitForFunction((wanted) => location.hash === `#step=${wanted}`, step);
+});
+
+test("everything works with the keyboard alone", async (t) => {
+  const log = recordedRun(scratch(t));
+  const page = await open(t, await browser(t), await view(t, [log]));
+  await shows(page, 0);
+  const press = async (key, step) => {
+    await page.keyboard.press(key);
+    await shows(page, step);
+  };
+  await press("ArrowRight", 1);
+  await press("Shift+ArrowRight", 11);
+  await press("ArrowLeft", 10);
+  await press("End", 699);
+  await press("Home", 0);
+  await page.keyboard.press(".");
+  await page.waitForFunction(() => Number(document.body.dataset.step) > 100);
+  await page.keyboard.press("+");
+  assert.equal(await page.locator("#speed").inputValue(), "2");
+  await page.keyboard.press("Space");
+  await page.waitForFunction(() => Number(document.body.dataset.step) > 160);
+  await page.keyboard.press("Space");
+  assert.equal(await page.locator("#play").getAttribute("aria-label"), "Play");
+
+  await page.keyboard.press("?");
+  assert.ok(await page.locator("#help").isVisible());
+  await page.keyboard.press("?");
+  assert.equal(await page.locator("#help").isVisible(), false);
+
+  await page.keyboard.press("/");
+  await page.keyboard.type("lambda human");
+  await page.keyboard.press("Enter");
+  await page.keyboard.press("Escape");
+  await page.keyboard.press("Escape");
+  assert.ok((await page.locator("#chosen").innerText()).includes("HOST_COMMAND.lambda_human"));
+
+  // Each stop of the Tab key is visible, and every control is a stop.
+  await page.reload();
+  await page.waitForFunction(() => document.body.dataset.step);
+  const stops = new Set();
+  for (let i = 0; i < 80; ++i) {
+    await page.keyboard.press("Tab");
+    const stop = await page.evaluate(() => {
+      const element = document.activeElement;
+      const style = getComputedStyle(element);
+      return {id: element.id || element.textContent.trim(), isBody: element === document.body,
+              marked: style.outlineStyle !== "none" && parseFloat(style.outlineWidth) >= 2};
+    });
+    if (stop.isBody) break;
+    assert.ok(stop.marked, `the focus on ${stop.id} is visible`);
+    stops.add(stop.id);
+  }
+  for (const id of ["help-open", "field-search", "play", "step-back", "step-on", "event-back",
+                    "event-on", "time", "speed", "link", "Last minute", "Whole time", "Why"]) {
+    assert.ok(stops.has(id), `Tab reaches ${id}, besides ${[...stops].join(", ")}`);
+  }
+});
+
+test("curves: type a field, zoom by a drag, back by a double click, choose a moment by a click", async (t) => {
+  const log = recordedRun(scratch(t));
+  const page = await open(t, await browser(t), await view(t, [log]));
+  await page.waitForFunction(() => foglinePage.curves.charts[0]?.chart.data[0]?.length === 700);
+  const span = () => page.evaluate(() => {
+    const {min, max} = foglinePage.curves.charts[0].chart.scales.x;
+    return [min, max];
+  });
+  const plot = page.locator("#charts .u-over").first();
+  await plot.scrollIntoViewIfNeeded();
+  const box = await plot.boundingBox();
+  const whole = await span();
+  await page.mouse.move(box.x + 100, box.y + 40);
+  await page.mouse.down();
+  await page.mouse.move(box.x + 300, box.y + 40, {steps: 5});
+  await page.mouse.up();
+  await page.waitForFunction(([, last]) => foglinePage.curves.charts[0].chart.scales.x.max < last - 1, whole);
+  const zoomed = await span();
+  assert.ok(zoomed[0] > whole[0] + 1 && zoomed[1] < whole[1] - 1, String(zoomed));
+  await plot.dblclick({position: {x: 50, y: 40}});
+  await page.waitForFunction(([, last]) => foglinePage.curves.charts[0].chart.scales.x.max === last, whole);
+  assert.deepEqual(await span(), whole);
+
+  await page.mouse.click(box.x + box.width / 2, box.y + 40);
+  await page.waitForFunction(() => Math.abs(Number(document.body.dataset.step) - 350) < 3);
+  await page.locator("#field-search").fill("doc");
+  await page.locator("#field-list li", {hasText: "HOST_COMMAND.doc"}).click();
+  await page.locator("#chosen button[aria-label='Remove RADAR.range_m']").click();
+  const names = await page.locator("#chosen .field-name").allInnerTexts();
+  assert.deepEqual(names, ["TRUTH.host_gap_m", "LIDAR.range_m", "TRUTH.host_speed_mps", "HOST_COMMAND.doc"]);
+});
+
+test("a scrub through 7000 steps answers at once", async (t) => {
+  const log = recordedRun(scratch(t), ["/steps=7000", "/lead/profile=sinusoid"]);
+  const page = await open(t, await browser(t), await view(t, [log]));
+  await page.waitForFunction(() => foglinePage.why.doc.length > 0);
+  const answers = await page.evaluate(async () => {
+    const slider = document.getElementById("time");
+    const took = [];
+    for (let i = 1; i <= 60; ++i) {
+      const step = (i * 2741) % 7000;  // far from the one before, and mostly not fetched yet
+      const began = performance.now();
+      slider.value = String(step);
+      slider.dispatchEvent(new Event("input"));
+      while (document.body.dataset.step !== String(step)) await new Promise(requestAnimationFrame);
+      took.push(performance.now() - began);
+      await new Promise((resolve) => { setTimeout(resolve, 30); });
+    }
+    return took;
+  });
+  answers.sort((a, b) => a - b);
+  t.diagnostic(`scrub of 7000 steps: median ${median(answers).toFixed(1)} ms, ` +
+               `95th percentile ${answers[56].toFixed(1)} ms, longest ${answers[59].toFixed(1)} ms`);
+  assert.ok(median(answers) < 500, "a busy machine is slower than the goal of 50 ms, but not by this much");
+});
+
+for (const colorScheme of ["light", "dark"]) {
+  test(`a phone shows everything without a horizontal scroll, ${colorScheme}`, async (t) => {
+    const log = recordedRun(scratch(t));
+    const address = await view(t, [log]);
+    const started = await browser(t);
+    for (const width of [PHONE.width, 320]) {
+      const page = await open(t, started, address, {size: {...PHONE, width}, colorScheme, hasTouch: true});
+      await goTo(page, 300);
+      const found = await page.evaluate(() => ({
+        scroll: document.documentElement.scrollWidth, width: innerWidth,
+        wide: [...document.querySelectorAll("canvas, button, input, select, h2, .legend")]
+          .filter((element) => element.checkVisibility() && element.getBoundingClientRect().right > innerWidth + 1)
+          .map((element) => element.id || element.className),
+        background: getComputedStyle(document.body).backgroundColor}));
+      assert.ok(found.scroll <= found.width, JSON.stringify(found));
+      assert.deepEqual(found.wide, []);
+      const [red] = found.background.match(/\d+/g).map(Number);
+      assert.equal(red > 128, colorScheme === "light", found.background);
+      assert.equal(await text(page, "#who"), "The human drives");
+    }
+  });
+
+  test(`no rule of accessibility is broken, ${colorScheme}`, async (t) => {
+    const log = recordedRun(scratch(t), ["/arbitrator/take_over/mode=requested"]);
+    const started = await browser(t);
+    const page = await open(t, started, await view(t, [log]), {colorScheme});
+    for (const step of [0, 290, 400]) {
+      await goTo(page, step);
+      assert.deepEqual(await breaches(page), []);
+    }
+    await page.keyboard.press("/");
+    await page.keyboard.type("gap");
+    assert.deepEqual(await breaches(page), []);
+  });
+}
+
+test("a change of the colour scheme redraws the charts in its colours", async (t) => {
+  const log = recordedRun(scratch(t));
+  const page = await open(t, await browser(t), await view(t, [log]), {colorScheme: "light"});
+  await goTo(page, 300);
+  const ink = () => page.evaluate(() => foglinePage.why.charts[0].series[1].stroke());
+  const light = await ink();
+  await page.emulateMedia({colorScheme: "dark"});
+  await page.waitForFunction((before) => foglinePage.why.charts[0].series[1].stroke() !== before, light);
+  assert.equal(await text(page, "#who"), "The human drives");
+});
+
+test("cars do not glide between steps for readers who want no motion", async (t) => {
+  const log = recordedRun(scratch(t));
+  const page = await open(t, await browser(t), await view(t, [log]), {reducedMotion: "reduce"});
+  await shows(page, 0);
+  await page.keyboard.press("Space");
+  const glides = await page.evaluate(async () => {
+    const found = [];
+    for (let i = 0; i < 30; ++i) {
+      await new Promise(requestAnimationFrame);
+      found.push(foglinePage.aheadOf(foglinePage.step));
+    }
+    return found;
+  });
+  assert.deepEqual(new Set(glides), new Set([0]));
+});

@@ -1,0 +1,94 @@
+// `fogline run --view`: the run, and then its log, at one address.
+#include <gmock/gmock-matchers.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "tests/integration/web/viewed.h"
+
+namespace fogline::test {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+
+constexpr std::chrono::seconds kPatience(60);
+
+/// Without a screen, so that no browser is opened.
+std::vector<std::string> RunAndView(const std::string& program, const std::string& log,
+                                    std::vector<std::string> more = {}) {
+  more.insert(more.begin(), {"env", "-u", "DISPLAY", "-u", "WAYLAND_DISPLAY", program, "run",
+                             "scenario/paper.json", "--view", "--json", "--log", log});
+  return more;
+}
+
+std::uint16_t PortIn(const std::string& err) {
+  constexpr std::string_view kBefore = "view: http://127.0.0.1:";
+  const std::size_t at = err.find(kBefore);
+  if (at == std::string::npos) return 0;
+  return static_cast<std::uint16_t>(std::stoi(err.substr(at + kBefore.size())));
+}
+
+TEST(RunViewTest, ShowsTheRunAndThenItsLogUntilCtrlC) {
+  const ScratchFolder folder;
+  const std::string log = folder.File("run.lcm");
+  Background run(RunAndView(Program("fogline"), log, {"--set", "/steps=60", "--pace", "2"}));
+  ASSERT_TRUE(run.WaitForErr("view: http://127.0.0.1:", kPatience)) << run.Err();
+  ASSERT_TRUE(run.WaitForErr("/\n", kPatience));
+  const std::uint16_t port = PortIn(run.Err());
+  {
+    WebClient live(port);
+    EXPECT_EQ(ReceiveOp(live, "hello")["mode"], "live");
+    EXPECT_EQ(ReceiveOp(live, "run")["steps"], 60);
+    // The program that shows the network ends with the run.
+    EXPECT_EQ(CloseCodeOf(live), 1001);
+  }
+  ASSERT_TRUE(run.WaitForOut("\"digest\"", kPatience));
+  // THEN a page that connects again gets the log
+  std::string mode;
+  const TimePoint end = Clock::now() + kPatience;
+  while (mode != "log" && Clock::now() < end) {
+    try {
+      WebClient page(port);
+      mode = ReceiveOp(page, "hello")["mode"];
+      if (mode == "log") EXPECT_EQ(ReceiveOp(page, "log")["last_step"], 59);
+    } catch (const std::exception&) {  // nobody listens between the two programs
+    }
+  }
+  EXPECT_EQ(mode, "log");
+  EXPECT_TRUE(IsAlive(run.pid()));
+  run.Signal(SIGINT);
+  EXPECT_EQ(run.Wait(), 0) << run.Err();
+  EXPECT_EQ(json::parse(run.Out())["steps"], 60);
+}
+
+TEST(RunViewTest, RunsWithoutAViewerThatCannotBeStarted) {
+  // GIVEN the programs without fogline-web
+  const ScratchFolder folder;
+  for (const auto& entry : std::filesystem::directory_iterator(ProgramDirectory())) {
+    const std::string name = entry.path().filename();
+    if (!name.starts_with("fogline") || name == "fogline-web") continue;
+    std::filesystem::create_hard_link(entry.path(), folder.path() / name);
+  }
+  // WHEN a run shall be shown
+  const Outcome run = RunCommand(
+      RunAndView(folder.File("fogline"), folder.File("run.lcm"), {"--set", "/steps=30"}));
+  // THEN it says once that nothing is shown, and does not wait
+  EXPECT_EQ(run.code, 0) << run.err;
+  EXPECT_EQ(json::parse(run.out)["steps"], 30);
+  const std::size_t said = run.err.find("--view: cannot start");
+  ASSERT_NE(said, std::string::npos) << run.err;
+  EXPECT_EQ(run.err.find("--view", said + 1), std::string::npos) << run.err;
+}
+
+TEST(RunViewTest, RefusesARunInOneProcess) {
+  for (const char* transport : {"direct", "memq"}) {
+    const Outcome run = RunCommand(
+        {Program("fogline"), "run", "scenario/paper.json", "--view", "--transport", transport});
+    EXPECT_EQ(run.code, 2);
+    EXPECT_THAT(run.err, HasSubstr("error: --view: no other process can see a run"));
+  }
+}
+
+}  // namespace
+}  // namespace fogline::test

@@ -1,0 +1,126 @@
+// Common parts of the tests of fogline view.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <csignal>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "common/clock.h"
+#include "services/graph.h"
+#include "services/runtime/wire/wire.h"
+#include "tests/support/command.h"
+#include "tests/support/web_client.h"
+#include "tools/web/little_endian.h"
+
+namespace fogline::test {
+
+/// `fogline view` on a free port, without a browser.
+class Viewed {
+ public:
+  explicit Viewed(const std::vector<std::string>& more,
+                  const std::vector<std::string>& where = {"--port", "0"})
+      : process_(Command(more, where)) {
+    if (!process_.WaitForOut("\n", std::chrono::seconds(60))) return;
+    address_ = process_.Out().substr(0, process_.Out().find('\n'));
+    const std::size_t begin = address_.rfind(':') + 1;
+    port_ = static_cast<std::uint16_t>(std::stoi(address_.substr(begin)));
+  }
+
+  /// 0 if it does not listen.
+  std::uint16_t port() const { return port_; }
+  const std::string& address() const { return address_; }
+  Background& process() { return process_; }
+  /// Ends it with Ctrl-C, as a person does. @return its exit code
+  int End() {
+    process_.Signal(SIGINT);
+    return process_.Wait();
+  }
+
+ private:
+  static std::vector<std::string> Command(const std::vector<std::string>& more,
+                                          const std::vector<std::string>& where) {
+    std::vector<std::string> command{Program("fogline"), "view", "--no-browser"};
+    command.insert(command.end(), where.begin(), where.end());
+    command.insert(command.end(), more.begin(), more.end());
+    return command;
+  }
+
+  Background process_;
+  std::string address_;
+  std::uint16_t port_ = 0;
+};
+
+/// A message in a binary frame.
+struct WebMessage {
+  std::uint16_t channel = 0;
+  double wall_ms = 0;      // of kind 1
+  std::int64_t step = -1;  // of kind 2
+  std::string bytes;
+};
+
+/// The messages of a frame of kind 1 or 2.
+inline std::vector<WebMessage> MessagesOf(const WebFrame& frame) {
+  std::vector<WebMessage> messages;
+  std::string_view rest = frame.bytes;
+  if (!frame.binary || rest.empty()) return messages;
+  const char kind = rest.front();
+  rest.remove_prefix(1);
+  if (kind == 2) web::TakeLittleEndian<std::uint32_t>(rest);  // the request's id
+  while (!rest.empty()) {
+    WebMessage message;
+    message.channel = web::TakeLittleEndian<std::uint16_t>(rest);
+    if (kind == 1) message.wall_ms = web::TakeLittleEndian<double>(rest);
+    if (kind == 2) message.step = web::TakeLittleEndian<std::int64_t>(rest);
+    const auto size = web::TakeLittleEndian<std::uint32_t>(rest);
+    message.bytes = rest.substr(0, size);
+    rest.remove_prefix(size);
+    messages.push_back(std::move(message));
+  }
+  return messages;
+}
+
+inline char KindOf(const WebFrame& frame) {
+  return frame.binary && !frame.bytes.empty() ? frame.bytes.front() : '\0';
+}
+
+inline runtime::Bytes BytesOf(const std::string& text) {
+  return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
+}
+
+/// The next text frame with this "op". Other frames are dropped.
+inline nlohmann::json ReceiveOp(WebClient& client, const std::string& op) {
+  while (true) {
+    const WebFrame frame = client.Receive();
+    if (frame.binary) continue;
+    nlohmann::json json = nlohmann::json::parse(frame.bytes);
+    if (json["op"] == op) return json;
+  }
+}
+
+/// The next binary frame of this kind. Other frames are dropped.
+inline WebFrame ReceiveKind(WebClient& client, char kind) {
+  while (true) {
+    WebFrame frame = client.Receive();
+    if (KindOf(frame) == kind) return frame;
+  }
+}
+
+/// The code with which the server closes a client, which reads what comes before. 0: without a
+/// closing frame.
+inline std::uint16_t CloseCodeOf(WebClient& client) {
+  try {
+    while (true) client.Receive();
+  } catch (const WebClosed& closed) {
+    return closed.code();
+  }
+}
+
+}  // namespace fogline::test

@@ -1,0 +1,83 @@
+import assert from "node:assert/strict";
+import {test} from "node:test";
+
+import {Catalogue} from "../../../../../../tools/web/page/data/catalogue.js";
+import {LogStore} from "../../../../../../tools/web/page/data/log_store.js";
+import {describedTypes, realLog} from "../real_log.js";
+
+const log = realLog("/steps=700");
+const truth = log.events.filter(({channel}) => channel === "TRUTH").map(({bytes}) => bytes);
+
+/** A server that answers when the test says so. */
+class Wire {
+  constructor() { this.asked = []; }
+
+  ask(question) {
+    return new Promise((resolve) => { this.asked.push({question, resolve}); });
+  }
+
+  async answer() {
+    const {question: {op, from, to}, resolve} = this.asked.shift();
+    if (op === "steps") {
+      resolve({messages: truth.slice(from, to + 1).map((bytes, i) => ({channel: 0, step: from + i, bytes}))});
+    } else {
+      resolve({times: Float64Array.of(from, to), values: Float64Array.of(1, 2)});
+    }
+    for (let i = 0; i < 5; ++i) await Promise.resolve();
+  }
+}
+
+function opened(lastStep = 699) {
+  const wire = new Wire();
+  const catalogue = new Catalogue({types: describedTypes(),
+                                   channels: [{id: 0, name: "TRUTH", type: "truth_t"}]});
+  const store = new LogStore(catalogue, wire);
+  store.setRun({run_id: "1", step_s: 0.1});
+  store.setLog({first_step: 0, last_step: lastStep});
+  return {wire, store};
+}
+
+test("a step is there once its part of the log has come", async () => {
+  const {wire, store} = opened();
+  assert.equal(store.frame(190), null);
+  const {question} = wire.asked[0];
+  assert.ok(question.from <= 190 && question.to >= 190 && question.to - question.from < 512);
+  await wire.answer();
+  assert.equal(store.frame(190).TRUTH.header.step, 190);
+  assert.equal(store.frame(700), null);
+});
+
+test("of the steps that a fast reader passes only the newest is fetched", async () => {
+  const {wire, store} = opened();
+  for (const step of [0, 200, 300, 400, 650]) store.frame(step);
+  assert.equal(wire.asked.length, 1);
+  await wire.answer();
+  assert.equal(wire.asked.length, 1);
+  assert.ok(wire.asked[0].question.to >= 650);
+});
+
+test("a store keeps a limited number of steps", async () => {
+  const {wire, store} = opened(1e6);
+  for (let step = 0; step < 20000; step += 64) {
+    store.frame(step);
+    await wire.answer();
+  }
+  assert.ok(store.chunks.size <= 64, String(store.chunks.size));
+});
+
+test("a window that moves over a long log needs another part only now and then", async () => {
+  const {wire, store} = opened(1e6);
+  store.detail("TRUTH", "host_gap_m", 0, 60);
+  assert.equal(wire.asked[0].question.to, 1e6);
+  await wire.answer();
+  for (let from = 0; from < 600; from += 1) store.detail("TRUTH", "host_gap_m", from, from + 60);
+  assert.ok(wire.asked.length <= 25, String(wire.asked.length));
+});
+
+test("a short log needs no finer values", async () => {
+  const {wire, store} = opened();
+  store.detail("TRUTH", "host_gap_m", 0, 60);
+  await wire.answer();
+  store.detail("TRUTH", "host_gap_m", 10, 20);
+  assert.equal(wire.asked.length, 0);
+});

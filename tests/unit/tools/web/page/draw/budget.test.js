@@ -1,0 +1,33 @@
+import assert from "node:assert/strict";
+import {test} from "node:test";
+
+import {Budget} from "../../../../../../tools/web/page/draw/budget.js";
+
+/** Lets frames of this length pass for a time. */
+function run(budget, frame_ms, time_ms, from = 0) {
+  let now = from;
+  for (; now < from + time_ms; now += frame_ms) budget.frame(now);
+  return now;
+}
+
+test("a slow machine draws less, a fast one again more", () => {
+  const budget = new Budget();
+  const whole = budget.now;
+  const now = run(budget, 60, 5000);
+  assert.ok(budget.now.rest_ms > whole.rest_ms && budget.now.ratio < whole.ratio);
+  run(budget, 16, 60000, now);
+  assert.deepEqual(budget.now, whole);
+});
+
+test("frames within the budget change nothing", () => {
+  const budget = new Budget();
+  const {level} = budget;
+  run(budget, 25, 20000);
+  assert.equal(budget.level, level);
+});
+
+test("a page that was hidden is not slow", () => {
+  const budget = new Budget();
+  for (let i = 0; i < 20; ++i) budget.frame(i * 2000);
+  assert.equal(budget.level, 0);
+});

@@ -1,0 +1,138 @@
+#include "tools/web/run_tracker.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+namespace fogline::web {
+namespace {
+
+/// Speaks like a runner and its world to a tracker.
+class Speaker {
+ public:
+  Speaker(RunTracker& tracker, std::int64_t run_id, std::size_t length = 2500)
+      : tracker_(tracker),
+        run_id_(run_id),
+        text_("{\"title\": \"" + std::string(length, 'a') + "\"}") {}
+
+  /// Sends one part of the scenario. @return the number of parts
+  std::size_t Part(std::size_t part, TimePoint now, std::int8_t phase = run_t::GO) {
+    const auto parts = runtime::SplitScenario(text_);
+    Send(runtime::MakeRunPart(run_id_, phase, 2.0, runtime::HashOf(text_), parts, part), now);
+    return parts.size();
+  }
+  void AllParts(TimePoint now) {
+    const std::size_t parts = Part(0, now);
+    for (std::size_t part = 1; part < parts; ++part) Part(part, now);
+  }
+  void Truth(std::int64_t step, bool fog, TimePoint now) {
+    truth_t truth{};
+    truth.header = {.run_id = run_id_, .step = step, .utime = 100'000 * step};
+    truth.fog_present = fog ? 1 : 0;
+    Send(truth, now);
+  }
+  template <class Message>
+  void Send(const Message& message, TimePoint now) {
+    std::vector<std::uint8_t> bytes;
+    runtime::Encode(message, bytes);
+    tracker_.Hear(IndexOf<Message>(), bytes, now);
+  }
+  const std::string& text() const { return text_; }
+
+ private:
+  RunTracker& tracker_;
+  std::int64_t run_id_;
+  std::string text_;
+};
+
+constexpr TimePoint kBegin{};
+
+TEST(RunTrackerTest, ShowsARunWhenAllPartsOfItsScenarioAreThere) {
+  RunTracker tracker;
+  Speaker runner(tracker, 5);
+  // In any order, and with repetitions.
+  runner.Part(2, kBegin);
+  runner.Part(0, kBegin);
+  runner.Part(0, kBegin);
+  EXPECT_FALSE(tracker.run());
+  runner.Part(1, kBegin);
+  ASSERT_TRUE(tracker.run());
+  EXPECT_EQ(tracker.run()->run_id, 5);
+  EXPECT_EQ(tracker.run()->scenario_text, runner.text());
+  EXPECT_EQ(tracker.run()->pace, 2);
+  EXPECT_EQ(tracker.runs(), 1);
+  runner.AllParts(kBegin);
+  EXPECT_EQ(tracker.runs(), 1);
+}
+
+TEST(RunTrackerTest, StaysWithARunUntilItStops) {
+  RunTracker tracker;
+  Speaker first(tracker, 5), second(tracker, 6);
+  first.AllParts(kBegin);
+  second.AllParts(kBegin);
+  EXPECT_EQ(tracker.run()->run_id, 5);
+  first.Part(0, kBegin, run_t::STOP);
+  second.AllParts(kBegin);
+  EXPECT_EQ(tracker.run()->run_id, 6);
+  EXPECT_EQ(tracker.runs(), 2);
+}
+
+TEST(RunTrackerTest, LeavesARunThatIsSilent) {
+  RunTracker tracker;
+  Speaker first(tracker, 5), second(tracker, 6);
+  first.AllParts(kBegin);
+  TimePoint now = kBegin + RunTracker::kSilent;
+  first.Truth(1, false, now);  // a sign of life
+  now += RunTracker::kSilent;
+  second.AllParts(now);
+  EXPECT_EQ(tracker.run()->run_id, 5);
+  now += milliseconds(1);
+  second.AllParts(now);
+  EXPECT_EQ(tracker.run()->run_id, 6);
+}
+
+TEST(RunTrackerTest, FindsEventsOfItsRunOnly) {
+  RunTracker tracker;
+  Speaker own(tracker, 5), other(tracker, 6);
+  own.AllParts(kBegin);
+  other.Truth(3, true, kBegin);
+  EXPECT_TRUE(tracker.events().empty());
+  own.Truth(3, true, kBegin);
+  own.Truth(3, true, kBegin);
+  own.Truth(2, false, kBegin);  // late
+  ASSERT_EQ(tracker.events().size(), 1U);
+  EXPECT_EQ(tracker.events()[0].kind, "fog");
+  EXPECT_EQ(tracker.events()[0].step, 3);
+}
+
+TEST(RunTrackerTest, BeginsAgainWhenARunIsPlayedAgain) {
+  RunTracker tracker;
+  Speaker run(tracker, 5);
+  run.AllParts(kBegin);
+  run.Truth(0, false, kBegin);
+  run.Truth(40, true, kBegin);
+  EXPECT_EQ(tracker.events().size(), 1U);
+  run.Truth(0, false, kBegin);
+  EXPECT_TRUE(tracker.events().empty());
+  run.Truth(40, true, kBegin);
+  EXPECT_EQ(tracker.events().size(), 1U);
+}
+
+TEST(RunTrackerTest, SurvivesWhateverComes) {
+  RunTracker tracker;
+  for (std::size_t size = 0; size < 200; ++size) {
+    const std::vector<std::uint8_t> bytes(size, 0xff);
+    for (std::size_t channel = 0; channel <= kNumChannels; ++channel) {
+      tracker.Hear(channel, bytes, kBegin);
+    }
+  }
+  run_t huge{};
+  huge.num_parts = RunTracker::kMostParts + 1;
+  huge.text = "x";
+  Speaker(tracker, 1).Send(huge, kBegin);
+  EXPECT_FALSE(tracker.run());
+}
+
+}  // namespace
+}  // namespace fogline::web

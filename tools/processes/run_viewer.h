@@ -1,0 +1,41 @@
+// The page of a run that `fogline run --view` shows: fogline-web as a child. If it fails, the run
+// goes on without it, and the reason is printed once. The destructor ends it.
+#pragma once
+
+#include <sys/types.h>
+
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace fogline::processes {
+
+class RunViewer {
+ public:
+  /// @param traffic the options --key for fogline-web
+  explicit RunViewer(std::vector<std::string> traffic) : traffic_(std::move(traffic)) {}
+  ~RunViewer();
+  RunViewer(const RunViewer&) = delete;
+  RunViewer& operator=(const RunViewer&) = delete;
+
+  /// Shows the run on this network. Returns when the page can be opened, so that it misses nothing.
+  void ShowNetwork(const std::string& url);
+  /// Shows a log in place of the network, at the same address: pages that are open connect again.
+  void ShowLog(const std::filesystem::path& log);
+  /// Whether fogline-web runs. It ends by itself only if it fails.
+  bool Runs();
+
+ private:
+  /// @param more the arguments that say what is shown, and where
+  void Start(const std::vector<std::string>& more);
+  void End();
+  void Say(const std::string& trouble);
+
+  std::vector<std::string> traffic_;
+  pid_t pid_ = -1;
+  std::string address_;  // "http://127.0.0.1:7680/"; "": nothing was shown
+  bool said_ = false;    // the user knows that there is no page
+};
+
+}  // namespace fogline::processes

@@ -1,0 +1,70 @@
+// The network that a program observes: the one of its URL, and, if nobody gave it a URL, also that
+// of the newest run that is announced on this machine. It only listens.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/clock.h"
+#include "services/runtime/discovery/beacon.h"
+#include "services/runtime/transport/bus.h"
+
+namespace fogline::watch {
+
+class FollowedNetwork {
+ public:
+  /// A flood may leave messages that poll() does not report. So call Handle() at least so often.
+  static constexpr Duration kLookEvery = milliseconds(50);
+
+  /// @param follows whether to follow announced runs
+  /// @param watcher gets every message, except LCM's own and beacons
+  /// @throws InputError, std::runtime_error as Bus()
+  FollowedNetwork(std::string url, bool follows, runtime::Bus::Watcher watcher);
+
+  /// Handles messages that have come, and looks for announced runs.
+  /// @throws std::runtime_error if the network of the URL is lost
+  void Handle(TimePoint now);
+
+  /// LCM keeps every channel name that it hears while a network is open, at about 300 bytes each.
+  /// This function closes the networks and opens them again if there are too many names. Messages
+  /// of these milliseconds are missed.
+  /// @param unknown messages so far on channels whose names were unknown
+  void ForgetNames(std::int64_t unknown);
+
+  /// The descriptors to wait for; -1 for a network that is not open. They are valid until the next
+  /// Handle() or ForgetNames() that changes generation().
+  std::array<int, 2> descriptors() const { return {bus_->fd(), followed_ ? followed_->fd() : -1}; }
+  /// Changes when a network was opened or closed.
+  std::int64_t generation() const { return generation_; }
+
+  /// The network of the followed run, or else the given network.
+  const std::string& url() const { return followed_ ? followed_->url() : bus_->url(); }
+  bool follows() const { return listener_.has_value(); }
+  bool followed() const { return followed_.has_value(); }
+  /// The announced runs, the followed one first.
+  const std::vector<runtime::Announcement>& runs() const { return runs_; }
+
+ private:
+  void Open();
+  void Watch(runtime::Bus& bus);
+  void Follow(TimePoint now);
+  void DrainFollowed();
+  void CloseFollowed();
+  void Leave(std::int64_t run_id);
+
+  std::string url_;
+  runtime::Bus::Watcher watcher_;
+  std::optional<runtime::Bus> bus_;
+  std::int64_t names_ = 0;                           // unknown names when bus_ was opened
+  std::optional<runtime::BeaconListener> listener_;  // set if announced runs are to be followed
+  std::vector<runtime::Announcement> runs_;
+  std::optional<runtime::Bus> followed_;   // the network of the followed run
+  std::vector<std::int64_t> unreachable_;  // ids of runs
+  TimePoint follow_at_{};
+  std::int64_t generation_ = 0;
+};
+
+}  // namespace fogline::watch

@@ -1,0 +1,44 @@
+// The channels of a network by number. Binary frames name a channel by its number.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "services/runtime/wire/wire.h"
+
+namespace fogline::web {
+
+using ChannelId = std::uint16_t;
+
+struct KnownChannel {
+  ChannelId id = 0;
+  std::string name;
+  std::string type;  // "": unknown, because it is no type of Fogline
+};
+
+/// The channels of the graph have their places in kChannels. Other channels get the next numbers
+/// when they are heard.
+class ChannelTable {
+ public:
+  /// The most other channels. Anybody on the network can invent names.
+  static constexpr std::size_t kMostOthers = 4096;
+
+  /// The number of a channel. A new channel is added.
+  /// @param bytes a message of the channel; its first bytes name its type
+  /// @return nullopt if there are too many channels
+  std::optional<ChannelId> IdOf(std::string_view name, runtime::Bytes bytes);
+
+  /// The other channels, in the order of their numbers.
+  const std::vector<KnownChannel>& others() const { return others_; }
+
+ private:
+  std::map<std::string, ChannelId, std::less<>> ids_;
+  std::vector<KnownChannel> others_;
+};
+
+}  // namespace fogline::web

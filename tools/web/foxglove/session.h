@@ -1,0 +1,84 @@
+// The Foxglove WebSocket protocol, version 1, for viewers of other projects such as Foxglove and
+// Lichtblick (github.com/foxglove/ws-protocol, docs/spec.md). The session of one client, without a
+// socket: frames go in and out.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "tools/web/foxglove/channels.h"
+
+namespace fogline::web::foxglove {
+
+/// The subprotocols of a WebSocket connection that a session speaks. Viewers of today ask for both
+/// or for the second one; the frames that a session sends and takes are the same in both.
+inline constexpr std::array<std::string_view, 2> kSubprotocols{"foxglove.websocket.v1",
+                                                               "foxglove.sdk.v1"};
+
+/// One WebSocket message.
+struct Frame {
+  bool binary = false;
+  std::string bytes;  // UTF-8 if it is not binary
+
+  bool operator==(const Frame&) const = default;
+};
+
+/// What a client is told about the server.
+struct ServerInfo {
+  std::string name = "fogline view";
+  std::string session_id;  // distinguishes a new server from a new connection; "": none
+};
+
+/// A client subscribes to channels and gets their messages as JSON (DecodeJson()). It can send
+/// nothing else: Fogline's viewers never change a run. Each frame that the session cannot accept is
+/// counted and answered by one status of level error.
+class Session {
+ public:
+  /// @param channels must outlive the session
+  explicit Session(const Channels& channels, ServerInfo info = {});
+
+  /// The frames with which the server begins.
+  std::vector<Frame> Opened() const;
+
+  /// Tells the client about a channel that was added after Opened().
+  Frame Advertised(const Channel& channel) const;
+
+  /// Takes a frame of the client. @return the answers: at most one
+  std::vector<Frame> Received(std::string_view bytes, bool binary);
+
+  /// A message as the client gets it; nullopt if the client has not subscribed to the channel, or
+  /// the bytes are no message of the channel's type.
+  /// @param time_ns when the message was received, in ns since 1970
+  /// @param message without a signature (message_signer.h)
+  std::optional<Frame> Message(std::uint32_t channel, std::uint64_t time_ns, Bytes message);
+
+  /// Whether the client has subscribed to any channel. If not, Message() has nothing to do.
+  bool Subscribed() const { return !subscriptions_.empty(); }
+
+  /// The number of frames that were answered by an error.
+  std::int64_t refused() const { return refused_; }
+  /// The number of messages that were no messages of their channel's type.
+  std::int64_t undecodable() const { return undecodable_; }
+
+ private:
+  /// Each function returns "" or what is wrong.
+  std::string Text(std::string_view text);
+  std::string Subscribe(const nlohmann::ordered_json& request);
+  std::string Subscribe(std::uint32_t id, std::uint32_t channel);
+  std::string Unsubscribe(const nlohmann::ordered_json& request);
+
+  const Channels& channels_;
+  ServerInfo info_;
+  std::map<std::uint32_t, std::uint32_t> subscriptions_;  // channel -> the client's number for it
+  std::int64_t refused_ = 0;
+  std::int64_t undecodable_ = 0;
+};
+
+}  // namespace fogline::web::foxglove

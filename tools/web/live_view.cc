@@ -1,0 +1,280 @@
+#include "tools/web/live_view.h"
+
+#include <fcntl.h>
+
+#include <array>
+#include <chrono>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
+
+#include "tools/watch/announced.h"
+#include "tools/watch/traffic_text.h"
+#include "tools/web/types/lcm_types.h"
+#include "tools/web/view_messages.h"
+
+namespace fogline::web {
+namespace {
+
+namespace asio = boost::asio;
+using boost::system::error_code;
+
+double WallClock_ms() {
+  using Milli = std::chrono::duration<double, std::milli>;
+  return Milli(std::chrono::system_clock::now().time_since_epoch()).count();
+}
+
+std::array<watch::TrafficStatistics, 4> FourStatistics() {
+  const TimePoint now = Clock::now();
+  using watch::TrafficStatistics;
+  return {TrafficStatistics(now), TrafficStatistics(now), TrafficStatistics(now),
+          TrafficStatistics(now)};
+}
+
+OutgoingFrame ToOutgoing(foxglove::Frame frame) {
+  return frame.binary ? BinaryFrame(std::move(frame.bytes)) : TextFrame(std::move(frame.bytes));
+}
+
+void SendFrames(Client& client, std::vector<foxglove::Frame> frames) {
+  for (foxglove::Frame& frame : frames) client.Send(ToOutgoing(std::move(frame)));
+}
+
+}  // namespace
+
+LiveView::LiveView(asio::io_context& context, LiveOptions options)
+    : context_(context),
+      statistics_(FourStatistics()),
+      foxglove_channels_(FoglineTypes()),
+      network_(std::move(options.url), options.follows,
+               [this](std::string_view channel, runtime::Bytes bytes) { Hear(channel, bytes); }),
+      look_(context),
+      health_(context) {
+  static_assert(kTurns == 4);
+  for (std::size_t i = 0; i < kNumChannels; ++i) {
+    foxglove_channels_.Add({.id = static_cast<std::uint32_t>(i),
+                            .topic = std::string(kChannels[i].name),
+                            .type = FoglineTypes().WithFingerprint(runtime::FingerprintOf(i))});
+  }
+  if (options.key) signer_.emplace(*options.key, std::nullopt);
+  Wait();
+  WaitForHealth();
+}
+
+void LiveView::Stop() {
+  stopped_ = true;
+  look_.cancel();
+  health_.cancel();
+  for (auto& descriptor : descriptors_) descriptor.reset();
+}
+
+// ---- the network -------------------------------------------------------------------------------
+
+void LiveView::Hear(std::string_view channel, runtime::Bytes bytes) {
+  if (signer_) {
+    const runtime::MessageSigner::Opened opened = signer_->Open(channel, bytes);
+    if (opened.verdict != runtime::MessageSigner::Verdict::kGood) {
+      ++unverified_;
+      return;
+    }
+    bytes = opened.payload;
+  }
+  const TimePoint now = Clock::now();
+  for (watch::TrafficStatistics& statistics : statistics_) statistics.Add(channel, bytes, now);
+  if (!signer_ && runtime::LooksSigned(bytes)) bytes = runtime::WithoutSignature(bytes);
+  const auto id = channels_.IdOf(channel, bytes);
+  if (!id) return;
+  ring_.Add({.channel = *id, .wall_ms = WallClock_ms(), .bytes = bytes});
+  tracker_.Hear(*id, bytes, now);
+}
+
+void LiveView::Handle() {
+  network_.Handle(Clock::now());
+  network_.ForgetNames(statistics_.front().unknown_names());
+  TellNews();
+  PumpAll();
+}
+
+/// Handles messages when a descriptor is readable, and at least every kLookEvery.
+void LiveView::Wait() {
+  if (stopped_) return;
+  if (generation_ != network_.generation()) {
+    generation_ = network_.generation();
+    for (std::size_t i = 0; i < descriptors_.size(); ++i) {
+      descriptors_[i].reset();
+      // A descriptor of our own: the network may close the other one at any time.
+      const int fd = fcntl(network_.descriptors()[i], F_DUPFD_CLOEXEC, 0);
+      if (fd < 0) continue;
+      descriptors_[i].emplace(context_, fd);
+      WaitFor(i);
+    }
+  }
+  look_.expires_after(watch::FollowedNetwork::kLookEvery);
+  look_.async_wait([this](error_code stopped) {
+    if (stopped || stopped_) return;
+    Handle();
+    Wait();
+  });
+}
+
+void LiveView::WaitFor(std::size_t network) {
+  const std::int64_t generation = generation_;
+  descriptors_[network]->async_wait(asio::posix::stream_descriptor::wait_read,
+                                    [this, network, generation](error_code error) {
+                                      if (error || stopped_ || generation != generation_) return;
+                                      Handle();
+                                      if (network_.generation() == generation) WaitFor(network);
+                                    });
+}
+
+// ---- clients -----------------------------------------------------------------------------------
+
+void LiveView::Opened(Client& client) {
+  Viewer& viewer = viewers_[client.id()];
+  viewer.client = &client;
+  viewer.place = ring_.end();
+  if (client.protocol() != kViewProtocol) {
+    viewer.foxglove.emplace(foxglove_channels_);
+    return SendFrames(client, viewer.foxglove->Opened());
+  }
+  client.Send(TextFrame(HelloText(url(), channels_.others())));
+  if (!tracker_.run()) return;
+  client.Send(TextFrame(RunText(*tracker_.run())));
+  for (const RunEvent& event : tracker_.events()) client.Send(TextFrame(EventText(event)));
+}
+
+void LiveView::Received(Client& client, std::string_view bytes, bool binary) {
+  if (auto& session = viewers_.at(client.id()).foxglove) {
+    return SendFrames(client, session->Received(bytes, binary));
+  }
+  if (binary) return client.Send(TextFrame(ErrorText(std::nullopt, "requests are text frames")));
+  const ViewRequest request = ParseViewRequest(bytes);
+  if (const auto* bad = std::get_if<BadRequest>(&request)) {
+    return client.Send(TextFrame(ErrorText(bad->id, bad->why)));
+  }
+  if (const auto* history = std::get_if<HistoryRequest>(&request)) {
+    Viewer& viewer = viewers_.at(client.id());
+    if (!viewer.history) return BeginHistory(viewer, history->id);
+    return client.Send(TextFrame(ErrorText(history->id, "a history is being sent already")));
+  }
+  const auto id =
+      std::visit([](const auto& any) { return std::optional<RequestId>(any.id); }, request);
+  client.Send(TextFrame(ErrorText(id, "a live network is shown; steps and series are of logs")));
+}
+
+void LiveView::BeginHistory(Viewer& viewer, RequestId id) {
+  viewer.history = id;
+  viewer.place = ring_.begin();
+  viewer.sent = 0;
+  Pump(viewer.client->id());
+}
+
+/// Sends the next messages, if the client has taken everything before.
+void LiveView::Pump(std::uint64_t id) {
+  const auto found = viewers_.find(id);
+  if (found == viewers_.end()) return;
+  Viewer& viewer = found->second;
+  Client& client = *viewer.client;
+  const std::uint64_t behind = ring_.end() - viewer.place;
+  if (viewer.place < ring_.begin() || (!viewer.history && behind > kMostBehind)) {
+    return client.CutOff(CloseCode::kTryAgainLater,
+                         fmt::format("does not read; {} bytes wait for it", behind));
+  }
+  if (client.waiting() > 0) return;
+  const std::string_view messages = ring_.From(viewer.place);
+  if (viewer.history) {
+    for (std::string_view rest = messages; !rest.empty(); ++viewer.sent) TakeRingMessage(rest);
+  }
+  viewer.place += messages.size();
+  SendMessages(viewer, messages);
+  if (!viewer.history || viewer.place < ring_.end()) return;
+  client.Send(TextFrame(HistoryText(*viewer.history, viewer.sent)));
+  viewer.history.reset();
+}
+
+void LiveView::SendMessages(Viewer& viewer, std::string_view messages) {
+  if (messages.empty()) return;
+  if (viewer.foxglove) return Translate(viewer, messages);
+  viewer.client->Send(BinaryFrame(MessagesFrame(messages)));
+}
+
+/// Sends messages to a client that speaks Foxglove's protocol.
+void LiveView::Translate(Viewer& viewer, std::string_view messages) {
+  if (!viewer.foxglove->Subscribed()) return;
+  constexpr double kNanosecondsPerMillisecond = 1e6;
+  while (!messages.empty()) {
+    const RingMessage message = TakeRingMessage(messages);
+    const auto time_ns = static_cast<std::uint64_t>(message.wall_ms * kNanosecondsPerMillisecond);
+    auto frame = viewer.foxglove->Message(message.channel, time_ns, message.bytes);
+    if (frame) viewer.client->Send(ToOutgoing(std::move(*frame)));
+  }
+}
+
+void LiveView::PumpAll() {
+  for (const auto& [id, viewer] : viewers_) Pump(id);
+}
+
+void LiveView::SendToAll(std::string text) {
+  const OutgoingFrame frame = TextFrame(std::move(text));
+  for (const auto& [id, viewer] : viewers_) {
+    if (!viewer.foxglove) viewer.client->Send(frame);
+  }
+}
+
+void LiveView::TellChannel(const KnownChannel& channel) {
+  SendToAll(ChannelText(channel));
+  const LcmStruct* type = FoglineTypes().Named(channel.type);
+  if (type == nullptr) return;  // Foxglove could not show it
+  const foxglove::Channel& added =
+      foxglove_channels_.Add({.id = channel.id, .topic = channel.name, .type = type});
+  for (const auto& [id, viewer] : viewers_) {
+    if (viewer.foxglove) viewer.client->Send(ToOutgoing(viewer.foxglove->Advertised(added)));
+  }
+}
+
+/// Tells new channels, a new run and new events.
+void LiveView::TellNews() {
+  for (; told_channels_ < channels_.others().size(); ++told_channels_) {
+    TellChannel(channels_.others()[told_channels_]);
+  }
+  if (told_run_ != tracker_.runs()) {
+    told_run_ = tracker_.runs();
+    told_events_ = 0;
+    SendToAll(RunText(*tracker_.run()));
+  }
+  if (told_events_ > tracker_.events().size()) told_events_ = 0;  // a run is played again
+  for (; told_events_ < tracker_.events().size(); ++told_events_) {
+    SendToAll(EventText(tracker_.events()[told_events_]));
+  }
+}
+
+// ---- health ------------------------------------------------------------------------------------
+
+void LiveView::WaitForHealth() {
+  health_.expires_after(kHealthEvery);
+  health_.async_wait([this](error_code stopped) {
+    if (stopped || stopped_) return;
+    SendToAll(Health());
+    WaitForHealth();
+  });
+}
+
+std::string LiveView::Health() {
+  const watch::TrafficView traffic = statistics_[turn_].Observe(Clock::now());
+  turn_ = (turn_ + 1) % kTurns;
+  nlohmann::ordered_json json{{"op", "health"},
+                              {"traffic", watch::TrafficJson(traffic, url())},
+                              {"senders", nlohmann::ordered_json::array()},
+                              {"own_overflow", 0},
+                              {"unverified", unverified_},
+                              {"viewers", server_ ? server_->counts().viewers : 0},
+                              {"cut_off", server_ ? server_->counts().cut_off : 0}};
+  if (network_.follows()) {
+    json["traffic"]["announced"] = watch::AnnouncedJson(network_.runs(), network_.followed());
+  }
+  return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+}
+
+}  // namespace fogline::web

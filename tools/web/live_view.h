@@ -1,0 +1,106 @@
+// The run that is on the network, for the clients of a server. It subscribes to everything and
+// publishes nothing.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/posix/stream_descriptor.hpp>
+#include <boost/asio/steady_timer.hpp>
+
+#include "services/runtime/wire/message_signer.h"
+#include "tools/watch/followed_network.h"
+#include "tools/watch/traffic_statistics.h"
+#include "tools/web/channel_table.h"
+#include "tools/web/foxglove/session.h"
+#include "tools/web/message_ring.h"
+#include "tools/web/run_tracker.h"
+#include "tools/web/server/server.h"
+#include "tools/web/view_request.h"
+
+namespace fogline::web {
+
+struct LiveOptions {
+  std::string url;
+  bool follows = false;                    // whether to follow announced runs
+  std::optional<runtime::SigningKey> key;  // if set, messages without its signature are not shown
+};
+
+class LiveView final : public View {
+ public:
+  /// A client that has so many bytes of messages before it is cut off.
+  static constexpr std::uint64_t kMostBehind = SendQueue::kMostBytes;
+  static constexpr Duration kHealthEvery = milliseconds(250);
+
+  /// Listens while the context runs.
+  /// @throws InputError, std::runtime_error as runtime::Bus()
+  LiveView(boost::asio::io_context& context, LiveOptions options);
+
+  /// The server whose numbers the clients get. It must live as long as the view is not stopped.
+  void Show(const Server& server) { server_ = &server; }
+  /// The context then has no more work of this view.
+  void Stop();
+
+  void Opened(Client& client) override;
+  void Received(Client& client, std::string_view bytes, bool binary) override;
+  void Idle(Client& client) override { Pump(client.id()); }
+  void Closed(Client& client) override { viewers_.erase(client.id()); }
+
+  const std::string& url() const { return network_.url(); }
+
+ private:
+  /// A client, and the part of the ring that it has got.
+  struct Viewer {
+    Client* client = nullptr;
+    std::uint64_t place = 0;
+    std::optional<RequestId> history;           // set while it gets messages from before
+    std::int64_t sent = 0;                      // messages of the history
+    std::optional<foxglove::Session> foxglove;  // set if the client speaks Foxglove's protocol
+  };
+  /// Statistics of a second that end in turn, so that every health message has the numbers of a
+  /// whole second.
+  static constexpr std::size_t kTurns = 4;
+
+  void Hear(std::string_view channel, runtime::Bytes bytes);
+  void Handle();
+  void Wait();
+  void WaitFor(std::size_t network);
+  void WaitForHealth();
+  void Pump(std::uint64_t id);
+  void PumpAll();
+  void BeginHistory(Viewer& viewer, RequestId id);
+  void SendMessages(Viewer& viewer, std::string_view messages);
+  void Translate(Viewer& viewer, std::string_view messages);
+  void TellNews();
+  void TellChannel(const KnownChannel& channel);
+  /// Sends a text to the clients that speak our own protocol.
+  void SendToAll(std::string text);
+  std::string Health();
+
+  boost::asio::io_context& context_;
+  std::optional<runtime::MessageSigner> signer_;
+  std::array<watch::TrafficStatistics, kTurns> statistics_;
+  std::size_t turn_ = 0;
+  ChannelTable channels_;
+  foxglove::Channels foxglove_channels_;
+  std::size_t told_channels_ = 0;  // channels that the clients know
+  MessageRing ring_;
+  RunTracker tracker_;
+  std::int64_t told_run_ = 0;
+  std::size_t told_events_ = 0;
+  std::int64_t unverified_ = 0;
+  watch::FollowedNetwork network_;
+  std::int64_t generation_ = -1;  // of the descriptors below
+  std::array<std::optional<boost::asio::posix::stream_descriptor>, 2> descriptors_;
+  boost::asio::steady_timer look_;
+  boost::asio::steady_timer health_;
+  std::map<std::uint64_t, Viewer> viewers_;
+  const Server* server_ = nullptr;
+  bool stopped_ = false;
+};
+
+}  // namespace fogline::web

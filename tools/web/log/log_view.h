@@ -1,0 +1,33 @@
+// A recorded run, for the clients of a server. Clients ask for what they show.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "tools/web/log/log_index.h"
+#include "tools/web/server/server.h"
+#include "tools/web/view_request.h"
+
+namespace fogline::web {
+
+class LogView final : public View {
+ public:
+  /// @throws InputError if the log cannot be shown
+  explicit LogView(std::filesystem::path file) : file_(std::move(file)), index_(file_) {}
+
+  const LogIndex& index() const { return index_; }
+
+  void Opened(Client& client) override;
+  void Received(Client& client, std::string_view bytes, bool binary) override;
+  void Idle(Client&) override {}
+  void Closed(Client&) override {}
+
+ private:
+  OutgoingFrame Answer(const ViewRequest& request) const;
+  OutgoingFrame AnswerSeries(const SeriesRequest& request) const;
+
+  std::filesystem::path file_;
+  LogIndex index_;
+};
+
+}  // namespace fogline::web

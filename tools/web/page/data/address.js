@@ -1,0 +1,25 @@
+// The fragment of the page's address: "#step=190" is the moment, "#token=..." gives access.
+
+const TOKEN = "fogline.token";
+
+/** {step, token}; step is null if the address has none. */
+export function readFragment(fragment) {
+  const parts = new URLSearchParams(fragment.replace(/^#/, ""));
+  const step = /^\d+$/.test(parts.get("step") ?? "") ? Number(parts.get("step")) : null;
+  return {step, token: parts.get("token") ?? ""};
+}
+
+/** The fragment that reopens a step. */
+export function fragmentOf(step, token) {
+  return `#${token ? `token=${encodeURIComponent(token)}&` : ""}step=${step}`;
+}
+
+/** Takes the token out of the address, where it would be seen, and keeps it for this tab. */
+export function takeToken() {
+  const {step, token} = readFragment(location.hash);
+  if (token) {
+    sessionStorage.setItem(TOKEN, token);
+    history.replaceState(null, "", step === null ? location.pathname : fragmentOf(step, ""));
+  }
+  return sessionStorage.getItem(TOKEN) ?? "";
+}

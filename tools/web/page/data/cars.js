@@ -1,0 +1,48 @@
+// The cars on the road at a moment, from the messages of a step. It draws nothing.
+
+// From 0.7 m/s2 on the brake lamps of a car without a pedal may shine, and from 1.3 m/s2 on they
+// must (UN R13-H, 5.2.22.4).
+export const BRAKE_LAMPS_FROM_MPS2 = 0.7;
+const CONTRAST_AT_VISIBILITY = 0.05;  // the definition of the meteorological optical range
+
+/** Extinction in 1/m at a visibility in m, by Koschmieder. */
+export function extinction(visibility_m) {
+  return visibility_m > 0 ? -Math.log(CONTRAST_AT_VISIBILITY) / visibility_m : 0;
+}
+
+const brakes = (acceleration_mps2) => acceleration_mps2 <= -BRAKE_LAMPS_FROM_MPS2;
+
+/**
+ * All cars, the foremost first: [{name, kind, front_m, speed_mps, brakes}], where front_m is the
+ * front bumper's place relative to the host's. `ahead_s` is the time since the step: the cars have
+ * moved on at their speeds. No car may pass another only by this.
+ */
+export function carsOf(truth, ahead_s = 0) {
+  const place = (position_m, speed_mps) =>
+    position_m - truth.host_position_m + ahead_s * (speed_mps - truth.host_speed_mps);
+  const car = (name, kind, position_m, speed_mps, acceleration_mps2) => (
+    {name, kind, front_m: place(position_m, speed_mps), speed_mps,
+     brakes: brakes(acceleration_mps2)});
+  return [
+    car("preceding car", "preceding", truth.preceding_position_m, truth.preceding_speed_mps,
+        truth.preceding_acceleration_mps2),
+    car("host", "host", truth.host_position_m, truth.host_speed_mps, truth.host_acceleration_mps2),
+    ...truth.follower_position_m.map((position_m, i) =>
+      car(truth.num_followers > 1 ? `following car ${i + 1}` : "following car", "follower",
+          position_m, truth.follower_speed_mps[i], truth.follower_acceleration_mps2[i])),
+  ];
+}
+
+/** Where each sensor sees the preceding car, in m ahead of the host; null: nowhere. */
+export function sightings({RADAR, LIDAR, TRACK}) {
+  return {
+    radar: RADAR?.valid ? RADAR.range_m : null,
+    lidar: LIDAR?.valid ? LIDAR.range_m : null,
+    fusion: TRACK?.valid ? TRACK.state[0] : null,
+  };
+}
+
+/** Time in s that the host needs for the gap at its speed; null at a standstill. */
+export function timeGap(truth) {
+  return truth.host_speed_mps > 0.1 ? truth.host_gap_m / truth.host_speed_mps : null;
+}

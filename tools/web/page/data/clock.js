@@ -1,0 +1,50 @@
+// The reader's time: follows the live run, plays, or stands still. It knows no page.
+
+export const SPEEDS = [0.1, 0.2, 0.5, 1, 2, 5, 10];
+
+export class Clock {
+  constructor() {
+    this.state = "paused";  // "live", "playing" or "paused"
+    this.time = 0;          // s
+    this.speed = 1;
+  }
+
+  /** The simulated step that is shown. */
+  step(step_s) {
+    const EARLY = 1e-6;  // steps; 0.3 s of steps of 0.1 s is step 3, although 0.3 / 0.1 < 3
+    return Math.floor(this.time / step_s + EARLY);
+  }
+
+  /** Lets `seconds` pass in the reader's world. `first` and `last` are the times that there are. */
+  advance(seconds, first, last) {
+    if (this.state === "live") this.time = last;
+    if (this.state === "playing") {
+      this.time += seconds * this.speed;
+      if (this.time >= last) {
+        this.time = last;
+        this.state = "paused";
+      }
+    }
+    this.time = Math.min(Math.max(this.time, first), Math.max(first, last));
+  }
+
+  goTo(time) {
+    this.time = time;
+    if (this.state === "live") this.state = "paused";
+  }
+
+  follow() { this.state = "live"; }
+  pause() { this.state = "paused"; }
+
+  /** Plays on; from the beginning if the end is reached. */
+  play(first, last) {
+    if (this.time >= last) this.time = first;
+    this.state = "playing";
+  }
+
+  /** Chooses the next faster (+1) or slower (-1) speed. */
+  changeSpeed(direction) {
+    const place = SPEEDS.indexOf(this.speed) + direction;
+    this.speed = SPEEDS[Math.min(SPEEDS.length - 1, Math.max(0, place))];
+  }
+}

@@ -1,0 +1,161 @@
+// The messages of a live run, as far back as the page keeps them.
+
+import {headerOf} from "./catalogue.js";
+import {numberAt, parsePath} from "./lcm.js";
+import {upTo} from "./modes.js";
+import {Series} from "./series.js";
+
+const KEEP_S = 600;              // of simulated time
+const KEEP_BYTES = 96 * 2 ** 20;
+const AWAY_MS = 2000;            // no new step for so long: the run has stopped
+const TIDY_AFTER = 4096;         // messages between two looks at what is too old
+
+/** Messages of one channel in the order of their steps. */
+class Track {
+  constructor(channel) {
+    this.channel = channel;
+    this.steps = [];
+    this.times = [];
+    this.messages = [];  // bytes, or what they were decoded to
+    this.bytes = 0;
+  }
+
+  add({step, time_s}, bytes) {
+    if (this.steps.length && step <= this.steps.at(-1)) return false;
+    this.steps.push(step);
+    this.times.push(time_s);
+    this.messages.push(bytes);
+    this.bytes += bytes.byteLength;
+    return true;
+  }
+
+  forgetBefore(time) {
+    const keep = upTo(this.times, time) + 1;
+    for (const bytes of this.messages.splice(0, keep)) this.bytes -= bytes.byteLength;
+    this.steps.splice(0, keep);
+    this.times.splice(0, keep);
+  }
+}
+
+export class LiveStore {
+  constructor(catalogue) {
+    this.catalogue = catalogue;
+    this.run = null;
+    this.runId = null;
+    this.clear();
+  }
+
+  /** Forgets everything. Series that were taken before do not grow any more. */
+  clear() {
+    this.generation = (this.generation ?? 0) + 1;
+    this.tracks = new Map();    // by channel name
+    this.wanted = new Map();    // series by field name
+    this.statuses = new Map();  // the newest STATUS of each role
+    this.firstStep = 0;
+    this.lastStep = -1;
+    this.arrived_ms = 0;        // wall clock of the server at the newest step
+    this.taken_ms = 0;          // clock of the page at the newest step
+    this.count = 0;
+    this.seenStep_s = null;
+  }
+
+  setRun(run) {
+    const id = BigInt.asIntN(64, BigInt(run.run_id));
+    if (id !== this.runId) this.clear();
+    this.run = run;
+    this.runId = id;
+  }
+
+  /** The scenario's step; before the scenario is known, that of the messages. */
+  get step_s() { return this.run?.step_s ?? this.seenStep_s ?? 0.1; }
+  timeOf(step) { return step * this.step_s; }
+  get firstTime() { return this.timeOf(this.firstStep); }
+  get lastTime() { return this.timeOf(Math.max(0, this.lastStep)); }
+
+  add({channel: id, arrived_ms, bytes}) {
+    const channel = this.catalogue.channels.get(id);
+    if (!channel?.hasHeader) return;
+    const header = headerOf(bytes);
+    if (!header) return;
+    this.runId ??= header.run_id;  // the server has not said yet which run it follows
+    if (header.run_id !== this.runId) return;
+    if (channel.name === "STATUS") this.addStatus(channel, bytes);
+    else if (channel.isStepwise) this.keep(channel, header, arrived_ms, bytes);
+  }
+
+  addStatus(channel, bytes) {
+    const status = this.catalogue.decode(channel, bytes);
+    if (status) this.statuses.set(status.role, status);
+  }
+
+  keep(channel, header, arrived_ms, bytes) {
+    if (this.beginsAgain(channel, header, arrived_ms)) this.clear();
+    if (!this.tracks.has(channel.name)) this.tracks.set(channel.name, new Track(channel));
+    if (!this.tracks.get(channel.name).add(header, bytes)) return;
+    if (this.lastStep < 0) this.firstStep = header.step;
+    if (header.step > this.lastStep) {
+      this.lastStep = header.step;
+      this.arrived_ms = arrived_ms;
+      this.taken_ms = performance.now();
+    }
+    if (header.step > 0) this.seenStep_s = header.time_s / header.step;
+    this.extend(channel, header, bytes);
+    if (++this.count % TIDY_AFTER === 0) this.tidy();
+  }
+
+  /** Whether a log of the same run is played once more. Old messages also come in a repair. */
+  beginsAgain({name}, {step}, arrived_ms) {
+    return name === "TRUTH" && step < this.lastStep && arrived_ms - this.arrived_ms > AWAY_MS;
+  }
+
+  extend(channel, {time_s}, bytes) {
+    let message = null;
+    for (const wanted of this.wanted.values()) {
+      if (wanted.channel !== channel.name) continue;
+      message ??= this.catalogue.decode(channel, bytes);
+      if (message) wanted.series.push(time_s, numberAt(message, wanted.parts));
+    }
+  }
+
+  tidy() {
+    let oldest = this.lastTime - KEEP_S;
+    let bytes = 0;
+    for (const track of this.tracks.values()) bytes += track.bytes;
+    if (bytes > KEEP_BYTES) oldest = Math.max(oldest, (this.firstTime + this.lastTime) / 2);
+    if (oldest <= this.firstTime) return;
+    for (const track of this.tracks.values()) track.forgetBefore(oldest);
+    for (const {series} of this.wanted.values()) series.forgetBefore(oldest);
+    this.firstStep = Math.ceil(oldest / this.step_s);
+  }
+
+  /** The newest messages at a step: {NAME: message}; null if there are none. */
+  frame(step) {
+    if (this.lastStep < 0) return null;
+    const frame = {};
+    for (const [name, {channel, steps, messages}] of this.tracks) {
+      const place = upTo(steps, step);
+      const message = place < 0 ? null : this.catalogue.decode(channel, messages[place]);
+      if (message) frame[name] = message;
+    }
+    return frame;
+  }
+
+  /** The values of a field. The series grows with the run. */
+  series(channel, path) {
+    const name = `${channel}.${path}`;
+    if (!this.wanted.has(name)) {
+      const parts = parsePath(path);
+      const series = new Series();
+      const track = this.tracks.get(channel);
+      track?.messages.forEach((bytes, i) => {
+        const message = this.catalogue.decode(track.channel, bytes);
+        if (message) series.push(track.times[i], numberAt(message, parts));
+      });
+      this.wanted.set(name, {channel, parts, series});
+    }
+    return this.wanted.get(name).series;
+  }
+
+  /** A live series has every value already. */
+  detail(channel, path) { return this.series(channel, path); }
+}

@@ -1,0 +1,147 @@
+// The messages of a recorded run, fetched from the server as they are needed.
+
+import {Series} from "./series.js";
+
+const CHUNK = 64;          // steps that are fetched together
+const KEEP_CHUNKS = 64;
+const MOST_POINTS = 20000;   // of a series over the whole log; the server sends up to twice as many
+const DETAIL_POINTS = 4000;  // of a series over a part of the log
+const KEEP_DETAILS = 24;
+
+export class LogStore {
+  constructor(catalogue, wire) {
+    this.catalogue = catalogue;
+    this.wire = wire;
+    this.run = null;
+    this.chunks = new Map();   // by number; the last used one stands last
+    this.wanted = new Map();   // series by field name
+    this.details = new Map();
+    this.statuses = new Map();
+    this.fetching = null;      // number of the chunk that is under way
+    this.next = null;          // number of the chunk that is wanted after it
+    this.firstStep = 0;
+    this.lastStep = -1;
+    this.arrived_ms = 0;
+  }
+
+  setRun(run) { this.run = run; }
+
+  setLog({first_step, last_step}) {
+    this.firstStep = first_step;
+    this.lastStep = last_step;
+  }
+
+  timeOf(step) { return step * (this.run?.step_s ?? 0.1); }
+  get firstTime() { return this.timeOf(this.firstStep); }
+  get lastTime() { return this.timeOf(Math.max(0, this.lastStep)); }
+
+  /** The messages of a step: {NAME: message}; null while they are under way. */
+  frame(step) {
+    if (step < this.firstStep || step > this.lastStep) return null;
+    const number = Math.floor(step / CHUNK);
+    const chunk = this.chunks.get(number);
+    if (!chunk) {
+      this.want(number);
+      return null;
+    }
+    this.chunks.delete(number);
+    this.chunks.set(number, chunk);
+    if (step % CHUNK >= CHUNK / 2 && !this.chunks.has(number + 1) &&
+        (number + 1) * CHUNK <= this.lastStep) {
+      this.want(number + 1);
+    }
+    return this.decoded(chunk, step);
+  }
+
+  decoded(chunk, step) {
+    if (chunk.step === step) return chunk.frame;
+    const frame = {};
+    for (const {channel: id, bytes} of chunk.messages.get(step) ?? []) {
+      const channel = this.catalogue.channels.get(id);
+      const message = this.catalogue.decode(channel, bytes);
+      if (message && channel.name === "STATUS") this.statuses.set(message.role, message);
+      else if (message) frame[channel.name] = message;
+    }
+    chunk.step = step;
+    chunk.frame = frame;
+    return frame;
+  }
+
+  /** Fetches a chunk, one at a time. Of the chunks that wait only the newest is fetched. */
+  want(number) {
+    if (this.fetching === number) return;
+    if (this.fetching !== null) {
+      this.next = number;
+      return;
+    }
+    this.fetching = number;
+    const from = Math.max(this.firstStep, number * CHUNK);
+    const to = Math.min(this.lastStep, number * CHUNK + CHUNK - 1);
+    this.wire.ask({op: "steps", from, to})
+      .then(({messages}) => this.keep(number, messages), () => {})
+      .finally(() => {
+        this.fetching = null;
+        const {next} = this;
+        this.next = null;
+        if (next !== null && !this.chunks.has(next)) this.want(next);
+      });
+  }
+
+  keep(number, messages) {
+    const chunk = {messages: new Map(), step: null, frame: null};
+    for (const message of messages) {
+      if (!chunk.messages.has(message.step)) chunk.messages.set(message.step, []);
+      chunk.messages.get(message.step).push(message);
+    }
+    this.chunks.set(number, chunk);
+    for (const oldest of this.chunks.keys()) {
+      if (this.chunks.size <= KEEP_CHUNKS) break;
+      this.chunks.delete(oldest);
+    }
+  }
+
+  fetchSeries(series, channel, path, from, to, points) {
+    this.wire.ask({op: "series", channel, field: path, from, to, points}).then((answer) => {
+      series.whole = to - from < 2 * points;
+      series.replace(answer);
+    }, () => {});
+  }
+
+  /** The values of a field over the whole log. The series is empty until it has arrived. */
+  series(channel, path) {
+    const name = `${channel}.${path}`;
+    if (!this.wanted.has(name)) {
+      const series = new Series();
+      this.wanted.set(name, series);
+      const steps = this.lastStep - this.firstStep + 1;
+      this.fetchSeries(series, channel, path, this.firstStep, this.lastStep,
+                       Math.min(MOST_POINTS, steps));
+    }
+    return this.wanted.get(name);
+  }
+
+  /**
+   * The values of a field between two times, as fine as a screen can show. What is fetched begins
+   * and ends at multiples of its length, so that a moving window seldom needs another part.
+   */
+  detail(channel, path, from_s, to_s) {
+    const whole = this.series(channel, path);
+    if (whole.whole) return whole;
+    const {step_s} = this.run;
+    const length = Math.max(1, Math.ceil((to_s - from_s) / step_s));
+    const from = Math.max(this.firstStep, Math.floor(from_s / step_s / length) * length);
+    const to = Math.min(this.lastStep, Math.ceil(to_s / step_s / length) * length);
+    const name = `${channel}.${path} ${from} ${to}`;
+    if (!this.details.has(name)) {
+      for (const oldest of this.details.keys()) {
+        if (this.details.size < KEEP_DETAILS) break;
+        this.details.delete(oldest);
+      }
+      const series = new Series();
+      this.details.set(name, series);
+      this.fetchSeries(series, channel, path, from, to, DETAIL_POINTS);
+    }
+    const detail = this.details.get(name);
+    return detail.length ? detail : whole;
+  }
+}

@@ -1,0 +1,78 @@
+// Who drives the host, by HOST_COMMAND.mode (lcmtypes/arbitration_t.lcm).
+
+/** The sides that can drive. The page shows each by a colour, a shape and a pattern. */
+export const SIDES = {
+  automation: {words: "Automation drives", short: "automation"},
+  human: {words: "The human drives", short: "human"},
+  risk: {words: "Minimal risk manoeuvre", short: "minimal risk"},
+  unknown: {words: "Nobody has reported who drives", short: "unknown"},
+};
+
+const MODES = [
+  {name: "AUTOMATION", side: "automation", words: "Automation drives"},
+  {name: "HUMAN", side: "human", words: "The human drives"},
+  {name: "MINIMAL_RISK", side: "risk", words: "Minimal risk manoeuvre: the car stops by itself"},
+  {name: "REQUEST", side: "automation", asks: true,
+   words: "Automation drives and asks the human to take over"},
+  {name: "REQUEST_URGENT", side: "automation", asks: true, urgent: true,
+   words: "Automation drives and urgently asks the human to take over"},
+  {name: "HANDOVER", side: "automation", asks: true,
+   words: "Automation drives; the human has answered"},
+  {name: "RECOVERING", side: "human", words: "The human drives, just after taking over"},
+  {name: "MRM_COMFORT", side: "risk", words: "Minimal risk manoeuvre: comfortable stop"},
+  {name: "MRM_EMERGENCY", side: "risk", words: "Minimal risk manoeuvre: emergency stop"},
+  {name: "MRM_DONE", side: "risk", words: "Minimal risk manoeuvre: the car stands, locked"},
+  {name: "MRM_FAILED", side: "risk", words: "Minimal risk manoeuvre: the brake has no effect"},
+  {name: "COLLISION_WARNING", side: null, words: "Collision warning"},
+  {name: "EMERGENCY_BRAKING", side: "risk", words: "Emergency braking"},
+];
+
+/** {name, side, words, asks, urgent} of a mode. A collision warning leaves the driving side. */
+export function modeOf(mode, lambda_human = 0) {
+  const known = MODES[mode];
+  if (!known) return {name: "UNKNOWN", side: "unknown", words: SIDES.unknown.words};
+  if (known.side) return known;
+  const side = lambda_human > 0.5 ? "human" : "automation";
+  return {...known, side, words: `Collision warning. ${SIDES[side].words}`};
+}
+
+/**
+ * Spans of equal value: [{from, to, value}] of times and values in order. `to` is the begin of the
+ * next span, and `end` for the last one.
+ */
+export function spansOf(times, values, end) {
+  const spans = [];
+  for (let i = 0; i < times.length; ++i) {
+    if (Number.isNaN(values[i])) continue;
+    const last = spans.at(-1);
+    if (last?.value === values[i]) continue;
+    if (last) last.to = times[i];
+    spans.push({from: times[i], to: end, value: values[i]});
+  }
+  return spans;
+}
+
+/**
+ * The request that is open at a time: {since_s, left_s, share}, or null. `times` and `modes` are
+ * HOST_COMMAND's until this time, and lead_s is the scenario's. A request begins with the first of
+ * the successive modes that ask.
+ */
+export function requestAt(times, modes, time, lead_s) {
+  let place = upTo(times, time);
+  if (place < 0 || !modeOf(modes[place]).asks) return null;
+  while (place > 0 && modeOf(modes[place - 1]).asks) --place;
+  const left_s = Math.max(0, times[place] + lead_s - time);
+  return {since_s: times[place], left_s, share: lead_s > 0 ? left_s / lead_s : 0};
+}
+
+/** Index of the last value that is at most `x`; -1 if there is none. `values` ascend. */
+export function upTo(values, x) {
+  let low = 0;
+  let high = values.length;
+  while (low < high) {
+    const middle = (low + high) >> 1;
+    if (values[middle] <= x) low = middle + 1;
+    else high = middle;
+  }
+  return low - 1;
+}

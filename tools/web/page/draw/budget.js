@@ -1,0 +1,54 @@
+// How much the page may draw, so that it shows at least 30 frames a second on slow machines, too.
+// It looks at the time between frames, because that contains the work of the graphics processor.
+
+const SLOW_MS = 30;         // mean time between frames
+const FAST_MS = 20;
+const LOOK_EVERY_MS = 500;
+const CALM_LOOKS = 10;      // fast looks before more is drawn again
+const HIDDEN_MS = 1000;     // a longer time between frames: the page was hidden
+
+/** For each level: rest between two drawings of a chart; pixels and rate of the driver's view. */
+const LEVELS = [
+  {rest_ms: 40, ratio: 1, every: 1},
+  {rest_ms: 80, ratio: 0.75, every: 1},
+  {rest_ms: 120, ratio: 0.6, every: 1},
+  {rest_ms: 200, ratio: 0.5, every: 2},
+  {rest_ms: 330, ratio: 0.4, every: 3},
+];
+
+export class Budget {
+  constructor() {
+    this.level = 0;
+    this.began = null;
+    this.frames = 0;
+    this.calm = 0;
+    this.last = null;
+  }
+
+  get now() { return LEVELS[this.level]; }
+
+  /** Counts a frame at this time (ms). */
+  frame(now) {
+    if (this.last === null || now - this.last > HIDDEN_MS) {
+      this.began = now;
+      this.frames = 0;
+    }
+    this.last = now;
+    const passed_ms = now - this.began;
+    if (passed_ms >= LOOK_EVERY_MS && this.frames > 0) {
+      this.judge(passed_ms / this.frames);
+      this.began = now;
+      this.frames = 0;
+    }
+    ++this.frames;
+  }
+
+  judge(mean_ms) {
+    this.calm = mean_ms < FAST_MS ? this.calm + 1 : 0;
+    if (mean_ms > SLOW_MS) this.level = Math.min(this.level + 1, LEVELS.length - 1);
+    if (this.calm >= CALM_LOOKS) {
+      this.level = Math.max(0, this.level - 1);
+      this.calm = 0;
+    }
+  }
+}

@@ -1,0 +1,334 @@
+// The window: connects the server, the reader's clock, and the parts of the page.
+
+import {fragmentOf, readFragment, takeToken} from "./data/address.js";
+import {Budget} from "./draw/budget.js";
+import {Catalogue} from "./data/catalogue.js";
+import {Clock} from "./data/clock.js";
+import {Curves} from "./parts/curves.js";
+import {byId, darkScheme, reducedMotion, say, setAttribute} from "./draw/dom.js";
+import {Health} from "./parts/health.js";
+import {listenForKeys} from "./parts/keys.js";
+import {LiveStore} from "./data/live_store.js";
+import {LogStore} from "./data/log_store.js";
+import {Now} from "./parts/now.js";
+import {Scene} from "./parts/scene.js";
+import {readTheme} from "./draw/theme.js";
+import {eventFrom, Timebar} from "./parts/timebar.js";
+import {Why} from "./parts/why.js";
+import {socketUrl, Wire} from "./data/wire.js";
+
+const PARTS = ["scene", "why", "curves", "events-part", "health"];
+const MOST_EVENTS = 500;
+const HASH_EVERY_MS = 500;
+
+class Page {
+  constructor() {
+    this.token = takeToken();
+    this.clock = new Clock();
+    this.theme = readTheme();
+    this.scene = new Scene();
+    this.now = new Now();
+    this.why = new Why((time) => this.goToTime(time));
+    this.curves = new Curves({onPick: (time) => this.goToTime(time)});
+    this.health = new Health();
+    this.act = this.actions();
+    this.timebar = new Timebar({...this.act, speed: (speed) => { this.clock.speed = speed; }});
+    this.frame = null;
+    this.budget = new Budget();
+    this.frames = 0;
+    listenForKeys(this.act);
+    this.listen();
+    this.wire = new Wire(socketUrl(location, this.token), {
+      text: (object) => this.receive(object),
+      messages: (messages) => this.take(messages),
+      state: (state) => this.showConnection(state),
+    });
+    requestAnimationFrame((now) => this.loop(now));
+  }
+
+  get isLive() { return this.hello?.mode === "live"; }
+  get run() { return this.store?.run ?? {step_s: this.store?.step_s ?? 0.1, run_id: ""}; }
+  get step() {
+    const step = this.clock.step(this.run.step_s);
+    return this.within(step);
+  }
+
+  /** The nearest step that there is. */
+  within(step) {
+    const {firstStep, lastStep} = this.store;
+    return Math.max(firstStep, Math.min(step, lastStep));
+  }
+
+  listen() {
+    darkScheme.addEventListener("change", () => {
+      this.theme = readTheme();
+      this.scene.setScheme();
+      this.build();
+    });
+    const sizes = new ResizeObserver(() => {
+      this.why.resize();
+      this.curves.resize();
+    });
+    sizes.observe(byId("main"));
+    addEventListener("hashchange", () => {
+      const {step} = readFragment(location.hash);
+      if (step !== null && this.store) this.goTo(step);
+    });
+    byId("parts").addEventListener("click", (event) => {
+      const link = event.target.closest("a");
+      if (!link) return;
+      event.preventDefault();  // the fragment of the address is the moment
+      this.showPart(link.getAttribute("href").slice(1));
+    });
+  }
+
+  actions() {
+    return {
+      toggle: () => this.toggle(),
+      step: (n) => this.goTo(this.step + n),
+      jump: (direction) => this.jump(direction),
+      goTo: (step) => this.goTo(step),
+      begin: () => this.goTo(this.store?.firstStep ?? 0),
+      end: () => this.goTo(this.store?.lastStep ?? 0),
+      faster: (direction) => this.clock.changeSpeed(direction),
+      live: () => { if (this.isLive) this.clock.follow(); },
+      link: () => this.copyLink(),
+      span: (span) => this.curves.setSpan(span),
+      part: (place) => this.showPart(PARTS[place]),
+    };
+  }
+
+  showPart(id) {
+    byId(id).scrollIntoView({behavior: reducedMotion.matches ? "auto" : "smooth"});
+    byId(id).focus({preventScroll: true});
+  }
+
+  receive(object) {
+    const takers = {
+      hello: () => this.begin(object),
+      channel: () => { this.catalogue.add(object); this.rebuildSoon(); },
+      run: () => this.setRun(object),
+      log: () => this.setLog(object),
+      event: () => this.addEvent(object),
+      health: () => { this.lastHealth = object; this.healthIsNew = true; },
+      error: () => { if (object.id == null) this.complain(object.message); },
+    };
+    if (Object.hasOwn(takers, object.op)) takers[object.op]();
+  }
+
+  addEvent(event) {
+    const again = event.step < (this.events.at(-1)?.step ?? 0);  // the same log is played once more
+    this.events = [...(again ? [] : this.events), event].slice(-MOST_EVENTS);
+  }
+
+  begin(hello) {
+    this.hello = hello;
+    this.catalogue = new Catalogue(hello);
+    this.events = [];
+    this.log = null;
+    this.store = this.isLive ? new LiveStore(this.catalogue)
+                             : new LogStore(this.catalogue, this.wire);
+    setAttribute(document.body, "data-mode", hello.mode);
+    this.curves.setSpan(this.isLive ? "minute" : "all");
+    if (this.isLive) {
+      this.build();
+      this.clock.follow();
+      this.askForHistory();
+    }
+    this.showConnection("open");
+  }
+
+  /**
+   * The history contains what has come already, so nothing is used until it is complete. Only the
+   * messages before the history's own are then left out.
+   */
+  askForHistory() {
+    this.early = [];
+    this.wire.ask({op: "history"}).then(({messages}) => {
+      const history = messages > 0 ? this.early.slice(-messages) : [];
+      this.early = null;
+      this.take(history);
+    }, () => { this.early = null; });
+  }
+
+  take(messages) {
+    if (!this.isLive) return;
+    if (this.early) this.early.push(...messages);
+    else for (const message of messages) this.store.add(message);
+  }
+
+  setRun(run) {
+    const isNew = run.run_id !== this.store.run?.run_id;
+    this.store.setRun(run);
+    say(byId("title"), run.title || "A run without a title");
+    document.title = `${run.title || "Run"} – Fogline`;
+    this.length_m = run.scenario?.world?.vehicle_length_m ?? 4.5;
+    if (!isNew) return;
+    this.events = [];
+    this.frame = null;
+    if (this.isLive) {
+      this.build();
+      this.clock.follow();
+    }
+  }
+
+  setLog(log) {
+    this.log = log;
+    this.events = log.events;
+    this.store.setLog(log);
+    const {step} = readFragment(location.hash);
+    this.clock.pause();
+    this.clock.time = this.store.timeOf(step ?? log.first_step);
+    this.store.frame(this.step);  // asks for the picture before the curves
+    this.build();
+    this.showConnection("open");
+  }
+
+  /** Makes all charts anew: another run, other channels, or other colours. */
+  build() {
+    if (!this.store || (!this.isLive && !this.log)) return;
+    this.generation = this.store.generation;
+    this.why.build(this.store, this.theme);
+    this.curves.build(this.store, this.catalogue, this.theme);
+    this.scene.drawn = "";
+    this.timebar.drawnTrack = "";
+  }
+
+  rebuildSoon() {
+    clearTimeout(this.rebuilding);
+    this.rebuilding = setTimeout(() => this.build(), 100);
+  }
+
+  toggle() {
+    if (!this.store) return;
+    if (this.clock.state === "paused") this.clock.play(this.store.firstTime, this.store.lastTime);
+    else this.clock.pause();
+  }
+
+  goTo(step) {
+    if (this.store) this.clock.goTo(this.store.timeOf(this.within(step)));
+  }
+
+  goToTime(time) {
+    this.goTo(Math.round(time / this.run.step_s));
+  }
+
+  jump(direction) {
+    const event = this.store && eventFrom(this.events, this.step, direction);
+    if (event) this.goTo(event.step);
+  }
+
+  async copyLink() {
+    if (!this.store) return;
+    const link = new URL(fragmentOf(this.step, this.token), location.href).href;
+    const words = `a link to step ${this.step}`;
+    try {
+      await navigator.clipboard.writeText(link);
+      this.tell(`Copied ${words}.`);
+    } catch {
+      history.replaceState(null, "", fragmentOf(this.step, ""));
+      this.tell(`The address of this page is now ${words}.`);
+    }
+  }
+
+  /** A short note to the reader. */
+  tell(words) {
+    const note = byId("note");
+    say(note, words);
+    note.classList.add("shown");
+    clearTimeout(this.noteTimer);
+    this.noteTimer = setTimeout(() => note.classList.remove("shown"), 4000);
+  }
+
+  complain(message) {
+    byId("problem").hidden = false;
+    say(byId("problem"), message);
+  }
+
+  showConnection(state) {
+    const origin = byId("origin");
+    const isOpen = state === "open";
+    const words = !isOpen ? "No connection, trying again"
+      : this.isLive ? "Live" : this.log ? this.log.file : "Connecting";
+    setAttribute(origin, "data-state", isOpen ? this.hello?.mode ?? "none" : "lost");
+    say(byId("origin-words"), words);
+    if (state === "refused") {
+      this.complain("The server does not answer. If it listens for other machines, open exactly " +
+                    "the address that it has printed: the address contains a key.");
+    } else {
+      byId("problem").hidden = true;
+    }
+  }
+
+  loop(now) {
+    requestAnimationFrame((next) => this.loop(next));
+    const passed_s = Math.min(0.25, (now - (this.before ?? now)) / 1000);
+    this.before = now;
+    if (!this.store || this.why.charts.length === 0) return;
+    this.budget.frame(now);
+    if (this.store.generation !== this.generation) this.build();
+    const played = this.clock.state === "playing";
+    this.clock.advance(passed_s, this.store.firstTime, this.store.lastTime);
+    if (this.isLive && played && this.clock.state === "paused") this.clock.follow();  // caught up
+    this.draw();
+    ++this.frames;
+  }
+
+  /** Time since the shown step, for which the cars have moved on. */
+  aheadOf(step) {
+    if (reducedMotion.matches || this.clock.state === "paused") return 0;
+    const {step_s, pace} = this.run;
+    const ahead_s = this.clock.state === "live"
+      ? ((performance.now() - this.store.taken_ms) / 1000) * (pace || 0)
+      : this.clock.time - this.store.timeOf(step);
+    return Math.min(step_s, Math.max(0, ahead_s));
+  }
+
+  draw() {
+    const {clock, store, run, theme} = this;
+    const step = this.step;
+    const frame = store.frame(step);
+    if (frame) {
+      this.frame = frame;
+      this.frameStep = step;
+    }
+    const time = store.timeOf(step);
+    const {modes, lambdas} = this.why;
+    const moment = {frame: this.frame, step, time, run, theme, length_m: this.length_m, isLive: this.isLive,
+                    ahead_s: frame ? this.aheadOf(step) : 0, moves: clock.state !== "paused"};
+    const {rest_ms} = this.budget.now;
+    moment.side = this.now.draw(moment, modes, lambdas);
+    this.scene.draw(moment, this.budget.now);
+    this.why.draw(moment, rest_ms);
+    this.curves.draw(moment, 2 * rest_ms);
+    this.timebar.draw({clock, store, step, time, run, isLive: this.isLive}, modes, lambdas,
+                      this.events, theme);
+    this.timebar.drawEvents(this.events, step, run);
+    this.drawHealth(step);
+    this.keepAddress(step);
+    setAttribute(document.body, "data-step", String(this.frameStep ?? ""));
+  }
+
+  drawHealth(step) {
+    if (this.isLive && this.healthIsNew) {
+      this.healthIsNew = false;
+      this.health.drawLive(this.lastHealth, this.store.run, this.store.statuses);
+    }
+    if (!this.isLive && this.healthStep !== step) {
+      this.healthStep = step;
+      this.health.drawLog(this.log, this.run, this.store.statuses, step);
+    }
+  }
+
+  /** Keeps a log's moment in the address, so that the page can be loaded again. */
+  keepAddress(step) {
+    if (this.isLive || this.clock.state !== "paused" || step === this.keptStep) return;
+    const now = performance.now();
+    if (now - (this.keptAt ?? 0) < HASH_EVERY_MS) return;
+    this.keptAt = now;
+    this.keptStep = step;
+    history.replaceState(null, "", fragmentOf(step, ""));
+  }
+}
+
+window.foglinePage = new Page();

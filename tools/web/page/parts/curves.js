@@ -1,0 +1,246 @@
+// Curves of the fields that the reader has chosen. Fields of one unit share a chart.
+
+import {Combobox} from "./combobox.js";
+import {drawNow, extremes, fillSpan, joined, makeChart, widened} from "../draw/chart.js";
+import {byId, make, say, setAttribute} from "../draw/dom.js";
+import {searchFields} from "../data/catalogue.js";
+import {digits, seconds, withUnit} from "../draw/format.js";
+import {numberAt, parsePath} from "../data/lcm.js";
+import {spansOf} from "../data/modes.js";
+
+const FIRST_FIELDS = ["TRUTH.host_gap_m", "RADAR.range_m", "LIDAR.range_m", "TRUTH.host_speed_mps"];
+const MOST_FIELDS = 8;         // as many as there are colours
+const MOST_SUGGESTIONS = 40;
+const MINUTE_S = 60;
+const DASHES = [[], [8, 4], [2, 3], [8, 3, 2, 3], [14, 4], [4, 4], [1, 4], [12, 3, 3, 3, 3, 3]];
+const REST = {most_ms: 1000, factor: 5};  // between two drawings; factor: of the time for one
+const LEAST_SPAN = 1e-3;  // of a value axis, as a share of the values
+const KEEP = "fogline.fields";
+
+/** The reader's last choice, if the browser kept one. */
+function keptFields() {
+  try {
+    const kept = JSON.parse(localStorage.getItem(KEEP));
+    return Array.isArray(kept) ? kept.filter((name) => typeof name === "string") : FIRST_FIELDS;
+  } catch {
+    return FIRST_FIELDS;
+  }
+}
+
+function keepFields(fields) {
+  try {
+    localStorage.setItem(KEEP, JSON.stringify(fields.map(({name}) => name)));
+  } catch { /* a browser that keeps nothing */ }
+}
+
+/** A piece of a curve, as its key. */
+function lineKey(colour, dash) {
+  const draw = (kind, attributes) => {
+    const element = document.createElementNS("http://www.w3.org/2000/svg", kind);
+    for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, value);
+    return element;
+  };
+  const svg = draw("svg", {class: "line-key", width: 26, height: 8, "aria-hidden": "true"});
+  svg.append(draw("line", {x1: 0, x2: 26, y1: 4, y2: 4, stroke: colour, "stroke-width": 2.5,
+                           "stroke-dasharray": dash.join(" ")}));
+  return svg;
+}
+
+export class Curves {
+  constructor({onPick}) {
+    this.onPick = onPick;
+    this.place = byId("charts");
+    this.chips = byId("chosen");
+    this.charts = [];
+    this.fields = [];
+    this.span = "minute";  // "minute", "all", or [from, to] after a zoom
+    this.hover = null;
+    this.drawnAt = 0;
+    this.cost_ms = 0;
+    this.box = new Combobox(byId("field-search"), byId("field-list"), {
+      suggest: (typed) => this.suggestions(typed),
+      onChoose: (name) => this.toggle(name),
+    });
+    for (const button of document.querySelectorAll("[data-span]")) {
+      button.addEventListener("click", () => this.setSpan(button.dataset.span));
+    }
+    byId("curves").addEventListener("pointerleave", () => { this.hover = null; });
+  }
+
+  suggestions(typed) {
+    const exact = /\[\d+\]/.test(typed) ? this.fieldNamed(typed.trim()) : null;
+    const found = searchFields(this.known, typed, MOST_SUGGESTIONS);
+    if (exact && !found.some(({name}) => name === exact.name)) found.unshift(exact);
+    return found.map((field) => {
+      const chosen = this.fields.some(({name}) => name === field.name);
+      const comment = chosen ? "chosen; choose it again to remove it" : field.comment;
+      return {key: field.name, chosen, parts: [
+        make("span", {class: "field-name"}, field.name),
+        make("span", {class: "field-unit"}, field.unit),
+        make("span", {class: "field-comment"}, comment)]};
+    });
+  }
+
+  /** Begins with another store, or with new channels. */
+  build(store, catalogue, theme) {
+    this.store = store;
+    this.theme = theme;
+    this.known = catalogue.fields();
+    const wanted = this.fields.length ? this.fields.map(({name}) => name) : keptFields();
+    this.fields = wanted.map((name) => this.fieldNamed(name)).filter(Boolean).slice(0, MOST_FIELDS);
+    this.rebuild();
+  }
+
+  /** A known field, or an element of a list with another index. */
+  fieldNamed(name) {
+    const known = this.known.find((field) => field.name === name);
+    if (known) return known;
+    const pattern = name.replace(/\[\d+\]/g, "[0]");
+    const first = this.known.find((field) => field.name === pattern);
+    return first ? {...first, name, path: name.slice(first.channel.length + 1)} : null;
+  }
+
+  toggle(name) {
+    const place = this.fields.findIndex((field) => field.name === name);
+    if (place >= 0) this.fields.splice(place, 1);
+    else if (this.fields.length < MOST_FIELDS) this.fields.push(this.fieldNamed(name));
+    keepFields(this.fields);
+    this.rebuild();
+  }
+
+  styleOf(index) {
+    return {stroke: this.theme.palette[index], dash: DASHES[index]};
+  }
+
+  rebuild() {
+    for (const {chart} of this.charts) chart.destroy();
+    this.place.replaceChildren();
+    const units = [...new Set(this.fields.map(({unit}) => unit))];
+    const n = units.length;
+    this.charts = units.map((unit, i) => this.makePanel(unit, i === n - 1, n));
+    this.makeChips();
+    byId("no-fields").hidden = this.fields.length > 0;
+    this.drawn = "";
+    this.drawnAt = 0;
+  }
+
+  makePanel(unit, isLast, panels) {
+    const fields = this.fields.filter((field) => field.unit === unit);
+    const names = fields.map(({name}) => name).join(", ");
+    const label = `Curves over time: ${names}`;
+    const element = make("div", {class: "chart", role: "img", "aria-label": label});
+    this.place.append(make("p", {class: "axis-name"}, unit || "no unit"), element);
+    const panel = {fields, element, range: [0, 1]};
+    panel.chart = makeChart(element, {
+      theme: this.theme,
+      height: (panels > 1 ? 170 : 280) + (isLast ? 28 : 0),
+      timeAxis: isLast,
+      lines: fields.map((field) => this.styleOf(this.fields.indexOf(field))),
+      valueRange: () => panel.range,
+      below: (chart) => this.drawFog(chart),
+      above: (chart) => drawNow(chart, this.moment?.time ?? 0, this.theme.muted),
+      onPick: this.onPick,
+      onSpan: (from, to) => this.setSpan([from, to]),
+      onWhole: () => this.setSpan("all"),
+      onCursor: (chart) => {
+        if (chart.cursor.left >= 0 && chart.cursor.event) {
+          this.hover = chart.posToVal(chart.cursor.left, "x");
+        }
+      },
+    });
+    return panel;
+  }
+
+  makeChips() {
+    this.values = this.fields.map(() => make("span", {class: "value"}));
+    this.chips.replaceChildren(...this.fields.map((field, i) => {
+      const {stroke, dash} = this.styleOf(i);
+      const remove = make("button", {
+        type: "button", class: "remove", "aria-label": `Remove ${field.name}`}, "×");
+      remove.addEventListener("click", () => {
+        this.toggle(field.name);
+        byId("field-search").focus();
+        this.box.close();
+      });
+      return make("li", {title: field.comment}, lineKey(stroke, dash),
+                  make("span", {class: "field-name"}, field.name), this.values[i], remove);
+    }));
+  }
+
+  setSpan(span) {
+    this.span = span;
+    for (const button of document.querySelectorAll("[data-span]")) {
+      setAttribute(button, "aria-pressed", String(button.dataset.span === span));
+    }
+    this.drawn = "";
+    this.drawnAt = 0;
+  }
+
+  /** First and last time that the charts show. */
+  range(time) {
+    if (Array.isArray(this.span)) return this.span;
+    const {firstTime, lastTime} = this.store;
+    if (this.span === "all") return [firstTime, Math.max(lastTime, firstTime + 1)];
+    const end = Math.max(time, firstTime + MINUTE_S);
+    return [end - MINUTE_S, end];
+  }
+
+  seriesOf({channel, path}, from, to) {
+    return this.store.detail(channel, path, from, to);
+  }
+
+  drawFog(chart) {
+    const {min, max} = chart.scales.x;
+    if (min == null) return;
+    const {times, values} = this.store.series("TRUTH", "fog_present").within(min, max);
+    for (const span of spansOf(times, values, Math.min(max, this.store.lastTime))) {
+      if (span.value) fillSpan(chart, span.from, span.to, this.theme.fog);
+    }
+  }
+
+  /** Draws the moment. At least `least_ms` lie between two drawings. */
+  draw(moment, least_ms) {
+    this.moment = moment;
+    this.sayValues(moment);
+    const now = performance.now();
+    const rest_ms = Math.min(REST.most_ms, Math.max(least_ms, REST.factor * this.cost_ms));
+    if (now - this.drawnAt < rest_ms) return;
+    const [from, to] = this.range(moment.time);
+    const series = this.fields.map((field) => this.seriesOf(field, from, to));
+    const drawn = `${from} ${to} ${moment.time} ${series.map(({version}) => version)}`;
+    if (drawn === this.drawn) return;
+    this.drawn = drawn;
+    for (const panel of this.charts) this.drawPanel(panel, from, to);
+    this.drawnAt = performance.now();
+    this.cost_ms = this.drawnAt - now;
+  }
+
+  drawPanel({chart, fields, range}, from, to) {
+    const columns = fields.map((field) => this.seriesOf(field, from, to).within(from, to));
+    const [low, high] = extremes(columns, from, to);
+    const size = Math.max(1e-6, Math.abs(low) || 0, Math.abs(high) || 0);
+    [range[0], range[1]] = widened(low, high, LEAST_SPAN * size);
+    chart.setData(joined(columns), false);
+    chart.setScale("x", {min: from, max: to});
+  }
+
+  /** The values at the cursor, or else of the shown moment, to the last digit that matters. */
+  sayValues({frame, time, run}) {
+    const hover = this.hover;
+    this.fields.forEach(({channel, path, unit}, i) => {
+      const value = hover === null ? numberAt(frame?.[channel], parsePath(path))
+                                   : this.store.series(channel, path).at(hover);
+      say(this.values[i], withUnit(digits(value), unit));
+      setAttribute(this.values[i], "data-value", String(value));
+    });
+    say(byId("curves-at"), hover === null ? `Values at ${seconds(time, run.step_s)}`
+                                          : `Values at the cursor, ${seconds(hover, run.step_s)}`);
+  }
+
+  resize() {
+    for (const {chart, element} of this.charts) {
+      const width = element.clientWidth;
+      if (width > 0 && width !== chart.width) chart.setSize({width, height: chart.height});
+    }
+  }
+}

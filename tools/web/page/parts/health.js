@@ -1,0 +1,145 @@
+// The health of the run: roles, senders, and channels. It shows what `fogline top` shows.
+
+import {byId, make, say, setAttribute} from "../draw/dom.js";
+import {count, decimal, share} from "../draw/format.js";
+
+const STATES = ["WAITING", "READY", "RUNNING", "DONE", "FAILED", "LEFT"];
+const INPUT_STATES = ["awaited", "OK", "stale", "lost"];
+
+function refusals(refused) {
+  const texts = Object.entries(refused ?? {})
+    .map(([kind, n]) => `${n} ${kind.replaceAll("_", " ")}`);
+  return texts.join(", ") || "0";
+}
+
+/** What a role does instead of its work, and because of which channel. */
+function fallbackOf(status) {
+  if (!status) return "";
+  const bad = (status.input ?? []).filter((_, i) => status.input_state[i] >= 2)
+    .map((name, i) => `${name} ${INPUT_STATES[status.input_state[status.input.indexOf(name)]]}`);
+  const cause = status.fallback && status.waiting_for ? ` (because of ${status.waiting_for})` : "";
+  return [status.fallback ? status.fallback + cause : "", ...bad].filter(Boolean).join("; ");
+}
+
+/** How well a role is: "good", "note" or "bad". */
+function grade(role, status) {
+  if (role.silent || role.state === "FAILED" || role.error) return "bad";
+  return status?.fallback || Object.keys(role.refused ?? {}).length ? "note" : "good";
+}
+
+const MARKS = {good: "●", note: "▲", bad: "■"};
+const MARK_WORDS = {good: "well", note: "look at it", bad: "trouble"};
+
+function cell(text, attributes = {}) {
+  return make("td", attributes, text);
+}
+
+function mark(kind) {
+  const attributes = {class: `mark ${kind}`, role: "img", "aria-label": MARK_WORDS[kind]};
+  return make("span", attributes, MARKS[kind]);
+}
+
+function roleRow(role, status) {
+  const kind = grade(role, status);
+  const waits = role.waiting_for && !status?.fallback ? `waits for ${role.waiting_for}` : "";
+  const trouble = [fallbackOf(status), waits, role.error].filter(Boolean).join("; ");
+  return make("tr", {},
+    make("th", {scope: "row"}, mark(kind), role.role),
+    cell(role.silent ? `${role.state}, silent` : role.state ?? "", {class: "text"}),
+    cell(count(role.step)),
+    cell(`${decimal(role.age_s, 1)} s`),
+    cell(`${count(role.repairs_asked)} / ${count(role.repairs_served)}`),
+    cell(refusals(role.refused)),
+    cell(role.cpu_percent == null ? "–" : `${decimal(role.cpu_percent, 0)} %`),
+    cell(trouble || "–", {class: "text"}));
+}
+
+function senderRow({address, received, lost, late, duplicates}) {
+  return make("tr", {},
+    make("th", {scope: "row"}, mark(lost ? "note" : "good"), address),
+    cell(count(received)), cell(count(lost)), cell(share(lost, lost + received)),
+    cell(count(late)), cell(count(duplicates)));
+}
+
+function channelRow(channel) {
+  return make("tr", {},
+    make("th", {scope: "row"}, channel.channel),
+    cell(channel.type ?? "unknown", {class: "text"}),
+    cell(count(channel.messages)),
+    cell(`${decimal(channel.rate_hz, 1)} Hz`),
+    cell(channel.jitter_ms == null ? "–" : `${decimal(channel.jitter_ms, 1)} ms`),
+    cell(`${decimal(channel.age_s, 1)} s`),
+    cell(count(channel.lost ?? 0)), cell(count(channel.late ?? 0)),
+    cell(count(channel.undecodable)));
+}
+
+/** The run of the traffic that the page shows; the first one if the page knows none. */
+function shownRun(traffic, run) {
+  const runs = traffic?.runs ?? [];
+  return runs.find(({run_id}) => run && String(run_id) === run.run_id) ?? runs[0];
+}
+
+export class Health {
+  constructor() {
+    this.parts = {roles: byId("roles"), senders: byId("senders"), channels: byId("channels")};
+    this.summary = byId("health-summary");
+    this.network = byId("network");
+  }
+
+  fill(part, rows) {
+    const table = this.parts[part];
+    table.hidden = rows.length === 0;
+    table.querySelector("tbody").replaceChildren(...rows);
+  }
+
+  /** Shows a `health` frame of a live run. */
+  drawLive(health, run, statuses) {
+    const shown = shownRun(health.traffic, run);
+    const roles = shown?.roles ?? [];
+    this.fill("roles", roles.map((role) => roleRow(role, statuses.get(role.role))));
+    this.fill("senders", (health.senders ?? []).map(senderRow));
+    const channels = [...(shown?.channels ?? []), ...(health.traffic?.others ?? [])];
+    this.fill("channels", channels.map(channelRow));
+    const bad = roles.filter((role) => grade(role, statuses.get(role.role)) === "bad");
+    const lost = (health.senders ?? []).reduce((sum, sender) => sum + sender.lost, 0);
+    this.conclude(bad, roles, lost, health);
+  }
+
+  conclude(bad, roles, lost, health) {
+    const names = bad.map(({role}) => role).join(", ");
+    const first = roles.length === 0 ? "No role has reported yet."
+      : bad.length === 0 ? `All ${roles.length} roles answer.`
+      : bad.length === 1 ? `One role is in trouble: ${names}.`
+      : `${bad.length} roles are in trouble: ${names}.`;
+    const second = lost ? ` ${count(lost)} packets were lost on the network.`
+                        : " No packet was lost.";
+    setAttribute(this.summary, "data-grade", bad.length ? "bad" : lost ? "note" : "good");
+    say(this.summary, first + second);
+    const viewers = health.viewers ?? 1;
+    const facts = [health.traffic?.lcm_url, viewers === 1 ? "1 viewer" : `${count(viewers)} viewers`];
+    if (health.own_overflow) {
+      facts.push(`this viewer itself missed ${count(health.own_overflow)} packets`);
+    }
+    if (health.cut_off) facts.push(`${count(health.cut_off)} slow viewers were cut off`);
+    say(this.network, facts.filter(Boolean).join(" · "));
+  }
+
+  /** Shows a recorded run: its completeness, and the roles' last STATUS if the log has any. */
+  drawLog(log, run, statuses, step) {
+    const roles = [...statuses.values()].map((status) => ({
+      role: status.role, state: STATES[status.state], step: status.header.step, silent: false,
+      age_s: Math.max(0, (step - status.header.step) * run.step_s),
+      repairs_asked: status.repairs_asked, repairs_served: status.repairs_served,
+      error: status.error, waiting_for: status.waiting_for}));
+    this.fill("roles", roles.map((role) => roleRow(role, statuses.get(role.role))));
+    this.fill("senders", []);
+    this.fill("channels", []);
+    setAttribute(this.summary, "data-grade", log.complete ? "good" : "note");
+    const steps = log.last_step - log.first_step + 1;
+    say(this.summary, `${log.complete ? "The log is complete" : "The log is not complete"}: ` +
+      `${count(steps)} of ${count(run.steps ?? steps)} steps.${log.note ? ` ${log.note}` : ""}`);
+    const status = roles.length ? "" : "A log of a run in lockstep has no reports of the roles.";
+    say(this.network, [`${log.file}, run ${run.run_id}`, status].filter(Boolean).join(" · "));
+  }
+}
+

@@ -1,0 +1,85 @@
+// The strip on top: who drives, since when and why; the request to take over with its countdown.
+
+import {byId, say, setAttribute} from "../draw/dom.js";
+import {decimal, seconds, withUnit} from "../draw/format.js";
+import {modeOf, requestAt, SIDES, upTo} from "../data/modes.js";
+
+const ANNOUNCE_AFTER_MS = 400;  // a reader who scrubs is not told of everything on the way
+
+const LASTS = {
+  automation: "The automation has driven for", human: "The human has driven for",
+  risk: "The manoeuvre has lasted", unknown: "This has lasted"};
+
+/** Time at which the side that drives at the end of `times` has begun to drive. */
+function drivingSince(times, modes, lambdas) {
+  let place = times.length - 1;
+  if (place < 0) return null;
+  const sideAt = (i) => modeOf(modes[i], lambdas?.[i]).side;
+  const side = sideAt(place);
+  while (place > 0 && sideAt(place - 1) === side) --place;
+  return place > 0 ? times[place] : null;
+}
+
+function reason({doc, threshold}) {
+  const compared = doc >= threshold ? "at or above" : "below";
+  return `The Degree of Conflict ${decimal(doc, 2)} is ${compared} ` +
+    `the threshold ${decimal(threshold, 2)}.`;
+}
+
+export class Now {
+  constructor() {
+    this.strip = byId("now");
+    this.words = byId("who");
+    this.reason = byId("reason");
+    this.request = byId("request");
+    this.left = byId("request-left");
+    this.bar = byId("request-bar");
+    this.live = byId("announcement");
+    this.said = "";
+    this.timer = 0;
+  }
+
+  /** @return the side that drives */
+  draw({frame, time, run, isLive}, modes, lambdas) {
+    const command = frame?.HOST_COMMAND;
+    if (!command) {
+      say(this.words, isLive ? "Waiting for a run" : SIDES.unknown.words);
+      say(this.reason, isLive ? "Start one, such as: fogline run scenario/dense_fog.json --pace 1" : "");
+      setAttribute(this.strip, "data-side", "unknown");
+      this.request.hidden = true;
+      return "unknown";
+    }
+    const mode = modeOf(command.mode, command.lambda_human);
+    setAttribute(this.strip, "data-side", mode.side);
+    say(this.words, mode.words);
+    const end = upTo(modes.times, time) + 1;
+    const times = modes.times.subarray(0, end);
+    const since = drivingSince(times, modes.values, lambdas.values);
+    const lasted = since === null ? ""
+      : ` ${LASTS[mode.side]} ${seconds(time - since, run.step_s)}.`;
+    say(this.reason, reason(command) + lasted);
+    this.drawRequest(requestAt(times, modes.values, time,
+                               run.scenario?.arbitrator?.take_over?.lead_s ?? 10));
+    this.announce(mode.words);
+    return mode.side;
+  }
+
+  drawRequest(request) {
+    this.request.hidden = request === null;
+    if (request === null) return;
+    say(this.left, withUnit(decimal(request.left_s, 1), "s"));
+    this.bar.value = request.share;
+    this.bar.textContent = `${decimal(request.left_s, 1)} s left`;
+  }
+
+  /** Tells readers who do not see the page when the driver changes. */
+  announce(words) {
+    if (words === this.wanted) return;
+    this.wanted = words;
+    clearTimeout(this.timer);
+    this.timer = setTimeout(() => {
+      if (this.said !== words) say(this.live, `${words}.`);
+      this.said = words;
+    }, ANNOUNCE_AFTER_MS);
+  }
+}

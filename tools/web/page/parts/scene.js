@@ -1,0 +1,81 @@
+// The scene: the driver's view with its instruments, and the road from above.
+
+import {timeGap} from "../data/cars.js";
+import {byId, darkScheme, make, say, setAttribute} from "../draw/dom.js";
+import {decimal, kmh, visibility} from "../draw/format.js";
+import {Road, roadInWords} from "./road.js";
+
+const WORDS_EVERY_MS = 1000;
+const VIEW_FILE = "./driver_view.js";  // three.js is in this file, which is loaded on its own
+
+export class Scene {
+  constructor() {
+    this.road = new Road(byId("road"));
+    this.view = null;
+    this.wordsAt = 0;
+    this.loadView();
+  }
+
+  async loadView() {
+    try {
+      const {DriverView} = await import(VIEW_FILE);
+      this.view = new DriverView(byId("driver-view"));
+      this.view.setScheme(darkScheme.matches ? "dark" : "light");
+    } catch (problem) {
+      byId("picture").append(make("p", {class: "no-view"},
+        `The driver’s view needs WebGL, which this browser does not offer. (${problem.message})`));
+    }
+    this.drawn = "";
+  }
+
+  setScheme() {
+    this.view?.setScheme(darkScheme.matches ? "dark" : "light");
+    this.drawn = "";
+  }
+
+  /**
+   * Draws the moment if it differs from the last one that was drawn.
+   * @param budget {ratio, every}: share of the pixels, and of the frames, that the view draws
+   */
+  draw(moment, {ratio, every}) {
+    const {frame, ahead_s, step, side} = moment;
+    if (!frame?.TRUTH) return;
+    const {clientWidth, clientHeight} = this.road.canvas;
+    const view = byId("driver-view");
+    const drawn = `${step} ${ahead_s} ${side} ${clientWidth} ${clientHeight} ${view.clientWidth} ` +
+      `${view.clientHeight} ${frame.TRUTH.header.run_id}`;
+    if (drawn === this.drawn && frame === this.frame) return;
+    this.drawn = drawn;
+    this.frame = frame;
+    this.turn = (this.turn ?? 0) + 1;
+    if (this.turn % every === 0 || !moment.moves) this.view?.draw(moment, moment.moves ? ratio : 1);
+    this.road.draw(moment);
+    this.sayNumbers(frame);
+    this.describe(moment);
+  }
+
+  sayNumbers({TRUTH: truth}) {
+    const gap_s = timeGap(truth);
+    say(byId("speed-now"), decimal(truth.host_speed_mps, 1));
+    say(byId("speed-kmh"), `${kmh(truth.host_speed_mps)} km/h`);
+    say(byId("gap-now"), decimal(truth.host_gap_m, 1));
+    say(byId("gap-time"), gap_s === null ? "" : `${decimal(gap_s, 2)} s`);
+    say(byId("sight-now"), visibility(truth.fog_visibility_m));
+    setAttribute(byId("gap-now"), "data-value", String(truth.host_gap_m));
+    setAttribute(byId("speed-now"), "data-value", String(truth.host_speed_mps));
+    byId("collision").hidden = truth.collision === 0;
+  }
+
+  /** Says what the pictures show, for readers who do not see them. */
+  describe({frame, length_m}) {
+    const now = performance.now();
+    if (now - this.wordsAt < WORDS_EVERY_MS) return;
+    this.wordsAt = now;
+    const {TRUTH: truth} = frame;
+    setAttribute(byId("road"), "aria-label", roadInWords(frame, length_m));
+    const lamps = truth.preceding_acceleration_mps2 < -0.7 ? "Its brake lamps shine. " : "";
+    setAttribute(byId("driver-view"), "aria-label",
+      `The driver’s view: the preceding car is ${decimal(truth.host_gap_m, 1)} m ahead. ${lamps}` +
+      `The visibility is ${visibility(truth.fog_visibility_m)}.`);
+  }
+}

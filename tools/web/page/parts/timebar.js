@@ -1,0 +1,121 @@
+// The bar at the bottom: live, pause, play, step, jump to events, scrub, speed, link.
+
+import {byId, fitCanvas, hatch, make, say, setAttribute} from "../draw/dom.js";
+import {seconds, timeDecimals, decimal} from "../draw/format.js";
+import {modeOf, spansOf} from "../data/modes.js";
+import {SPEEDS} from "../data/clock.js";
+import {sideNames, sideNumber} from "./why.js";
+
+const TRACK_HZ = 4;
+export const EVENT_MARKS = {
+  fog: "≋", transfer: "⇄", request: "?", alarm: "!", manoeuvre: "△", braking: "▼", collision: "✕"};
+
+export class Timebar {
+  /** @param act {toggle, step, jump, goTo, speed, live, link} */
+  constructor(act) {
+    this.slider = byId("time");
+    this.track = byId("track");
+    this.play = byId("play");
+    this.speed = byId("speed");
+    this.liveButton = byId("live");
+    this.speed.append(...SPEEDS.map((speed) => make("option", {value: speed}, `${speed}×`)));
+    this.slider.addEventListener("input", () => act.goTo(Number(this.slider.value)));
+    this.speed.addEventListener("change", () => act.speed(Number(this.speed.value)));
+    const buttons = {
+      play: act.toggle, live: act.live, link: act.link,
+      "step-back": () => act.step(-1), "step-on": () => act.step(1),
+      "event-back": () => act.jump(-1), "event-on": () => act.jump(1)};
+    for (const [id, action] of Object.entries(buttons)) byId(id).addEventListener("click", action);
+    byId("events").addEventListener("click", ({target}) => {
+      const button = target.closest("button[data-step]");
+      if (button) act.goTo(Number(button.dataset.step));
+    });
+    this.trackAt = 0;
+  }
+
+  draw({clock, store, step, time, run, isLive}, modes, lambdas, events, theme) {
+    const {slider} = this;
+    const min = String(store.firstStep);
+    const max = String(Math.max(store.firstStep, store.lastStep));
+    if (slider.min !== min) slider.min = min;
+    if (slider.max !== max) slider.max = max;
+    if (slider.value !== String(step)) slider.value = step;
+    setAttribute(slider, "aria-valuetext", `${seconds(time, run.step_s)}, step ${step}`);
+    say(byId("time-now"), decimal(time, timeDecimals(run.step_s)));
+    say(byId("time-end"), ` / ${seconds(store.lastTime, run.step_s)}`);
+    say(byId("step-now"), `step ${step}`);
+    const running = clock.state !== "paused";
+    setAttribute(this.play, "aria-label", running ? "Pause" : "Play");
+    setAttribute(this.play, "data-running", String(running));
+    if (this.speed.value !== String(clock.speed)) this.speed.value = String(clock.speed);
+    this.speed.disabled = clock.state === "live";
+    this.liveButton.hidden = !isLive;
+    setAttribute(this.liveButton, "aria-pressed", String(clock.state === "live"));
+    this.drawTrack(store, modes, lambdas, events, theme);
+  }
+
+  /** Fog, who drives, and events over the whole time. */
+  drawTrack(store, modes, lambdas, events, theme) {
+    const fog = store.series("TRUTH", "fog_present");
+    const state = [modes.version, lambdas.version, fog.version, store.lastStep, events.length,
+                   this.track.clientWidth, theme.ink].join(" ");
+    const now = performance.now();
+    if (state === this.drawnTrack || now - this.trackAt < 1000 / TRACK_HZ) return;
+    this.drawnTrack = state;
+    this.trackAt = now;
+    const {context: pen, width, height} = fitCanvas(this.track);
+    const {firstTime, lastTime} = store;
+    const x = (time) => ((time - firstTime) / Math.max(1e-9, lastTime - firstTime)) * width;
+    const fill = ({from, to}, style, top, tall) => {
+      pen.fillStyle = style;
+      pen.fillRect(x(from), top, Math.max(1, x(to) - x(from)), tall);
+    };
+    pen.fillStyle = theme.grid;
+    pen.fillRect(0, 9, width, 8);
+    for (const span of spansOf(fog.times, fog.values, lastTime)) {
+      if (span.value) fill(span, theme.fog, 0, height);
+    }
+    const sides = modes.values.map((mode, i) => sideNumber[modeOf(mode, lambdas.values[i]).side]);
+    const patterns = {human: hatch(pen, theme.surface, {size: 5}),
+                      risk: hatch(pen, theme.surface, {size: 5, both: true})};
+    for (const span of spansOf(modes.times, sides, lastTime)) {
+      const side = sideNames[span.value];
+      if (side === "unknown") continue;
+      fill(span, theme[side], 9, 8);
+      if (patterns[side]) fill(span, patterns[side], 9, 8);
+    }
+    pen.fillStyle = theme.ink;
+    for (const {time_s} of events) pen.fillRect(Math.round(x(time_s)) - 0.5, 2, 1.5, height - 4);
+  }
+
+  /** The list of events; the last one before the shown step is marked. */
+  drawEvents(events, step, run) {
+    const list = byId("events");
+    const state = `${events.length} ${events.at(-1)?.step} ${run.run_id}`;
+    if (state !== this.drawnEvents) {
+      this.drawnEvents = state;
+      list.replaceChildren(...events.map((event) => make("li", {}, make("button", {
+        type: "button", "data-step": event.step},
+        make("span", {class: "event-mark", "aria-hidden": "true"}, EVENT_MARKS[event.kind] ?? "·"),
+        make("span", {class: "event-time"}, seconds(event.time_s, run.step_s)),
+        make("span", {class: "event-text"}, event.text)))));
+      byId("no-events").hidden = events.length > 0;
+      this.current = null;
+    }
+    const place = events.findLastIndex((event) => event.step <= step);
+    if (place === this.current) return;
+    this.current = place;
+    [...list.children].forEach((item, i) => {
+      const button = item.firstElementChild;
+      if (i === place) button.setAttribute("aria-current", "true");
+      else button.removeAttribute("aria-current");
+    });
+  }
+}
+
+/** The step of the next (+1) or last (-1) event from a step on; null if there is none. */
+export function eventFrom(events, step, direction) {
+  const found = direction > 0 ? events.find((event) => event.step > step)
+                              : events.findLast((event) => event.step < step);
+  return found ?? null;
+}

@@ -1,0 +1,195 @@
+// Why who drives: conflict against threshold, authorities, and the error of each sensor, over the
+// last 20 s.
+
+import {drawNow, extremes, fillSpan, joined, makeChart, stepped, TOP, widened}
+  from "../draw/chart.js";
+import {byId, hatch, say} from "../draw/dom.js";
+import {decimal} from "../draw/format.js";
+import {modeOf, spansOf} from "../data/modes.js";
+import {Series} from "../data/series.js";
+import {withAlpha} from "../draw/theme.js";
+
+export const WINDOW_S = 20;
+const BAND = {height: 12, gap: 5};  // above the conflict, for who drives, in pixels
+const LEAST_ERROR_SPAN_M = 0.5;
+
+/** Distance of each source to the truth: [key, channel, path, validity path]. */
+const SOURCES = [
+  {key: "radar", channel: "RADAR", path: "range_m", label: "radar"},
+  {key: "lidar", channel: "LIDAR", path: "range_m", label: "LiDAR"},
+  {key: "fusion", channel: "TRACK", path: "state[0]", label: "fusion"},
+];
+
+export const sideNumber = {automation: 0, human: 1, risk: 2, unknown: 3};
+export const sideNames = Object.keys(sideNumber);
+
+/** Draws who drives as a band: a colour and a pattern for each side. */
+export function drawBand(chart, spans, theme, top, height) {
+  const {ctx} = chart;
+  for (const {from, to, value} of spans) {
+    const side = sideNames[value];
+    if (side === "unknown") continue;
+    fillSpan(chart, from, to, theme[side], top, height);
+    if (side === "automation") continue;
+    const lines = hatch(ctx, theme.surface, {both: side === "risk", size: 5});
+    lines.setTransform(new DOMMatrix());
+    fillSpan(chart, from, to, lines, top, height);
+  }
+}
+
+/** Value minus truth of a source, where the source has a value. */
+function errorColumns(value, valid, truth) {
+  const {times} = value;
+  const values = new Float64Array(times.length);
+  for (let i = 0; i < times.length; ++i) {
+    values[i] = valid.at(times[i]) ? value.values[i] - truth.at(times[i]) : NaN;
+  }
+  return {times, values};
+}
+
+export class Why {
+  constructor(onPick) {
+    this.onPick = onPick;
+    this.charts = [];
+  }
+
+  /** Begins with another store, or other colours. */
+  build(store, theme) {
+    for (const chart of this.charts) chart.destroy();
+    this.store = store;
+    this.theme = theme;
+    this.moment = {time: 0};
+    const series = (channel, path) => store.series(channel, path);
+    this.doc = series("HOST_COMMAND", "doc");
+    this.threshold = series("HOST_COMMAND", "threshold");
+    this.modes = series("HOST_COMMAND", "mode");
+    this.lambdas = series("HOST_COMMAND", "lambda_human");
+    this.automation = series("HOST_COMMAND", "lambda_automation");
+    this.fog = series("TRUTH", "fog_present");
+    this.truth = series("TRUTH", "host_gap_m");
+    this.sources = SOURCES.map((source) => ({
+      ...source, value: series(source.channel, source.path),
+      valid: series(source.channel, "valid")}));
+    this.charts = [this.makeConflict(), this.makeAuthority(), this.makeErrors()];
+    this.drawn = "";
+    this.drawnAt = 0;
+  }
+
+  chart(id, options) {
+    return makeChart(byId(id), {
+      theme: this.theme, onPick: this.onPick, below: (chart) => this.drawFog(chart),
+      above: (chart) => drawNow(chart, this.moment.time, this.theme.muted), ...options});
+  }
+
+  makeConflict() {
+    const {ink, risk} = this.theme;
+    return this.chart("why-doc", {
+      height: 168, top: TOP + BAND.height + BAND.gap, timeAxis: false,
+      lines: [{stroke: ink, width: 2}, {stroke: risk, dash: [6, 4], width: 1.75, paths: stepped}],
+      valueRange: () => [-0.04, 1.04],
+      valueAxis: {splits: () => [0, 0.25, 0.5, 0.75, 1]},
+      below: (chart) => {
+        this.drawFog(chart);
+        const height = BAND.height * devicePixelRatio;
+        drawBand(chart, this.sideSpans(), this.theme, TOP * devicePixelRatio, height);
+      }});
+  }
+
+  makeAuthority() {
+    const {automation, human} = this.theme;
+    return this.chart("why-authority", {
+      height: 74, timeAxis: false,
+      lines: [{stroke: automation, width: 2, paths: stepped},
+              {stroke: human, dash: [2, 3], width: 2.25, paths: stepped}],
+      valueRange: () => [-0.12, 1.12],
+      valueAxis: {splits: () => [0, 1]}});
+  }
+
+  makeErrors() {
+    const {radar, lidar, ink} = this.theme;
+    return this.chart("why-errors", {
+      height: 178,
+      lines: [{stroke: radar, dash: [2, 3], width: 2},
+              {stroke: lidar, dash: [8, 3, 2, 3], width: 2}, {stroke: ink, width: 1.75}],
+      valueRange: () => this.errorRange ?? [-1, 1],
+      below: (chart) => {
+        this.drawFog(chart);
+        const {ctx, bbox} = chart;
+        ctx.fillStyle = withAlpha(this.theme.muted, 0.6);
+        ctx.fillRect(bbox.left, chart.valToPos(0, "y", true), bbox.width, devicePixelRatio);
+      }});
+  }
+
+  drawFog(chart) {
+    const {times, values} = this.fog.within(...this.range);
+    for (const {from, to, value} of spansOf(times, values, this.shownEnd)) {
+      if (value) fillSpan(chart, from, to, this.theme.fog);
+    }
+  }
+
+  sideSpans() {
+    const {times, values} = this.modes.within(...this.range);
+    const lambdas = this.lambdas.within(...this.range).values;
+    const sides = values.map((mode, i) => sideNumber[modeOf(mode, lambdas[i]).side]);
+    return spansOf(times, sides, this.shownEnd);
+  }
+
+  /** End of what is known within the shown time. */
+  get shownEnd() {
+    return Math.min(this.range[1], this.store.lastTime);
+  }
+
+  get range() {
+    const end = Math.max(this.moment.time, this.store.firstTime + WINDOW_S);
+    return [end - WINDOW_S, end];
+  }
+
+  /** Draws the moment. While time goes on, `rest_ms` lies between two drawings. */
+  draw(moment, rest_ms) {
+    this.moment = moment;
+    const all = [this.doc, this.threshold, this.modes, this.lambdas, this.automation, this.fog,
+                 this.truth, ...this.sources.flatMap(({value, valid}) => [value, valid])];
+    const drawn = `${moment.time} ${all.map(({version}) => version)}`;
+    if (drawn === this.drawn && moment.frame === this.frame) return;
+    const now = performance.now();
+    if (moment.moves && now - this.drawnAt < rest_ms) return;
+    this.drawnAt = now;
+    this.drawn = drawn;
+    this.frame = moment.frame;
+    const [from, to] = this.range;
+    const errors = this.sources.map(({value, valid}) => {
+      const {times, values} = value.within(from, to);
+      return errorColumns(new Series(times, values, times.length), valid, this.truth);
+    });
+    this.errorRange = widened(...extremes(errors, from, to), LEAST_ERROR_SPAN_M);
+    const part = (series) => series.within(from, to);
+    const columns = [[part(this.doc), part(this.threshold)],
+                     [part(this.automation), part(this.lambdas)], errors];
+    this.charts.forEach((chart, i) => {
+      chart.setData(joined(columns[i]), false);
+      chart.setScale("x", {min: from, max: to});
+    });
+    this.sayValues(moment);
+  }
+
+  /** The numbers of the shown moment, beside the names of the curves. */
+  sayValues({frame, time}) {
+    const {HOST_COMMAND: command, TRUTH: truth} = frame ?? {};
+    say(byId("value-doc"), decimal(command?.doc, 2));
+    say(byId("value-threshold"), decimal(command?.threshold, 2));
+    say(byId("value-automation"), decimal(command?.lambda_automation, 2));
+    say(byId("value-human"), decimal(command?.lambda_human, 2));
+    for (const {key, value, valid} of this.sources) {
+      const seen = truth && valid.at(time) ? value.at(time) - truth.host_gap_m : NaN;
+      say(byId(`value-${key}`), Number.isNaN(seen) ? "no value" : `${decimal(seen, 2)} m`);
+    }
+  }
+
+  resize() {
+    const ids = ["why-doc", "why-authority", "why-errors"];
+    this.charts.forEach((chart, i) => {
+      const width = byId(ids[i]).clientWidth;
+      if (width > 0 && width !== chart.width) chart.setSize({width, height: chart.height});
+    });
+  }
+}

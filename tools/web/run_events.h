@@ -1,0 +1,56 @@
+// The events of a run, found in its messages: fog, transfers, requests, alarms, manoeuvres,
+// emergency braking, collisions. They are the same for a live run and for its log.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "fogline/truth_t.hpp"
+#include "services/decision/take_over/take_over_log.h"
+
+namespace fogline::web {
+
+struct RunEvent {
+  std::int64_t step = 0;
+  double time_s = 0;
+  std::string_view
+      kind;  // "fog", "transfer", "request", "alarm", "manoeuvre", "braking", "collision"
+  std::string text;
+};
+
+/// Takes the messages of a run in the order of their steps. Some may be missing. A message that
+/// comes again, or too late, is ignored.
+class RunEvents {
+ public:
+  /// The most events that are kept. A DoC that moves around its threshold gives many alarms.
+  static constexpr std::size_t kMost = 5000;
+
+  void Add(const truth_t& truth);
+  /// @param human_mps2 the driver's offer in this step; nullopt if it is not known
+  void Add(const arbitration_t& command, std::optional<double> human_mps2);
+
+  const std::vector<RunEvent>& events() const { return events_; }
+  /// Events beyond kMost.
+  std::size_t left_out() const { return left_out_; }
+
+ private:
+  template <class Message>
+  void Note(const Message& message, std::string_view kind, std::string text);
+  void NoteAlarm(const arbitration_t& command);
+
+  take_over::TakeOverLog take_over_;
+  std::size_t taken_ = 0;  // entries of take_over_ that have become events
+  std::int64_t truth_step_ = -1;
+  std::int64_t command_step_ = -1;
+  bool fog_ = false;
+  bool alarm_ = false;
+  std::int8_t collision_ = truth_t::COLLISION_NONE;
+  std::vector<RunEvent> events_;
+  std::size_t left_out_ = 0;
+};
+
+}  // namespace fogline::web

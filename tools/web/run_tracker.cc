@@ -1,0 +1,67 @@
+#include "tools/web/run_tracker.h"
+
+#include <algorithm>
+
+#include "services/graph.h"
+
+namespace fogline::web {
+namespace {
+
+// If a step is older than the newest one by more than this, the run is being played again. In
+// lockstep no role is so far behind.
+constexpr std::int64_t kPlayedAgain = 1000;
+
+}  // namespace
+
+void RunTracker::Hear(std::size_t channel, runtime::Bytes bytes, TimePoint now) {
+  if (channel >= kNumChannels || bytes.size() < runtime::kHeaderEnd) return;
+  if (channel == IndexOf<run_t>()) return HearRun(bytes, now);
+  if (!run_id_ || runtime::ReadInt64(bytes, runtime::kRunIdOffset) != *run_id_) return;
+  heard_ = now;
+  HearStep(channel, bytes);
+}
+
+void RunTracker::HearRun(runtime::Bytes bytes, TimePoint now) {
+  run_t run{};
+  if (!runtime::Decode(bytes, run) || run.num_parts > kMostParts) return;
+  const bool free = !run_id_ || stopped_ || now - heard_ > kSilent;
+  if (run_id_ != run.header.run_id) {
+    if (!free || run.phase == run_t::STOP) return;
+    Begin(run);
+  }
+  heard_ = now;
+  stopped_ = run.phase == run_t::STOP;
+  const bool known = parts_.Complete();
+  if (!parts_.Add(run) || known || !parts_.Complete() || !parts_.HashHolds()) return;
+  shown_ = {.run_id = run.header.run_id,
+            .scenario_text = parts_.Text(),
+            .realtime = run.realtime != 0,
+            .pace = run.pace};
+  ++runs_;
+}
+
+void RunTracker::Begin(const run_t& run) {
+  run_id_ = run.header.run_id;
+  parts_ = {};
+  events_ = {};
+  newest_ = -1;
+  offered_ = false;
+}
+
+void RunTracker::HearStep(std::size_t channel, runtime::Bytes bytes) {
+  if (kChannels[channel].pace != Pace::kStep) return;
+  const std::int64_t step = runtime::ReadInt64(bytes, runtime::kStepOffset);
+  if (step < newest_ - kPlayedAgain || (step == 0 && newest_ > 0)) {
+    events_ = {};
+    newest_ = step;
+  }
+  newest_ = std::max(newest_, step);
+  if (channel == IndexOf<truth_t>() && runtime::Decode(bytes, truth_)) events_.Add(truth_);
+  if (channel == IndexOf<driver_command_t>()) offered_ = runtime::Decode(bytes, driver_);
+  if (channel == IndexOf<arbitration_t>() && runtime::Decode(bytes, command_)) {
+    const bool offered = offered_ && driver_.header.step == command_.header.step;
+    events_.Add(command_, offered ? std::optional(driver_.acceleration_mps2) : std::nullopt);
+  }
+}
+
+}  // namespace fogline::web

@@ -1,0 +1,55 @@
+// Which run a live view shows, and its events: found in the messages of the network, without
+// sending any.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "common/clock.h"
+#include "services/runtime/wire/scenario_parts.h"
+#include "services/runtime/wire/wire.h"
+#include "tools/web/run_events.h"
+#include "tools/web/view_messages.h"
+
+namespace fogline::web {
+
+/// Follows one run until it has ended or has been silent for kSilent. Then it takes the next run
+/// that it hears. The scenario of a run comes in parts; a run is shown when all of them are there.
+class RunTracker {
+ public:
+  static constexpr Duration kSilent = milliseconds(2000);
+  /// The most parts of a scenario: about 4 MB of text. A page could not use more.
+  static constexpr std::int32_t kMostParts = 4096;
+
+  /// Takes a message. @param channel its place in kChannels
+  void Hear(std::size_t channel, runtime::Bytes bytes, TimePoint now);
+
+  /// The run whose scenario is known; nullopt if there is none.
+  const std::optional<RunFacts>& run() const { return shown_; }
+  /// Grows by one with each new run().
+  std::int64_t runs() const { return runs_; }
+  /// The events of the run so far.
+  const std::vector<RunEvent>& events() const { return events_.events(); }
+
+ private:
+  void HearRun(runtime::Bytes bytes, TimePoint now);
+  void HearStep(std::size_t channel, runtime::Bytes bytes);
+  void Begin(const run_t& run);
+
+  std::optional<std::int64_t> run_id_;
+  TimePoint heard_{};
+  bool stopped_ = false;
+  runtime::ScenarioParts parts_;
+  std::optional<RunFacts> shown_;
+  std::int64_t runs_ = 0;
+  RunEvents events_;
+  std::int64_t newest_ = -1;  // step
+  truth_t truth_{};
+  arbitration_t command_{};
+  driver_command_t driver_{};
+  bool offered_ = false;  // driver_ has a message of this run
+};
+
+}  // namespace fogline::web

@@ -1,0 +1,126 @@
+#include "tools/web/server/access.h"
+
+#include <arpa/inet.h>
+#include <sodium.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+
+#include <fmt/core.h>
+
+namespace fogline::web {
+namespace {
+
+constexpr std::string_view kEveryAddress = "0.0.0.0";
+
+std::string Lowered(std::string_view text) {
+  std::string lowered(text);
+  std::ranges::transform(lowered, lowered.begin(), [](char c) {
+    return static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  });
+  return lowered;
+}
+
+bool IsAddressInNumbers(const std::string& name) {
+  in_addr ignored{};
+  return inet_pton(AF_INET, name.c_str(), &ignored) == 1;
+}
+
+}  // namespace
+
+std::string_view WhyRefused(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::kAllowed:
+      break;
+    case Verdict::kWrongHost:
+      return "its Host header does not name the address of this server";
+    case Verdict::kForeignOrigin:
+      return "a page of another origin asks";
+    case Verdict::kWrongToken:
+      return "the token is missing or wrong";
+  }
+  return "";
+}
+
+bool Access::IsOurs(std::string_view host) const {
+  std::string name = Lowered(host);
+  const std::string port = fmt::format(":{}", rules_.port);
+  constexpr std::uint16_t kPortOfHttp = 80;
+  if (name.ends_with(port)) {
+    name.resize(name.size() - port.size());
+  } else if (rules_.port != kPortOfHttp) {
+    return false;
+  }
+  if (name == rules_.address) return true;
+  const bool everywhere = rules_.address == kEveryAddress;
+  if (name == "localhost") return everywhere || rules_.address.starts_with("127.");
+  // DNS cannot point an address in numbers at another machine.
+  return everywhere && IsAddressInNumbers(name);
+}
+
+Verdict Access::OfPage(const RequestOrigin& request) const {
+  return IsOurs(request.host) ? Verdict::kAllowed : Verdict::kWrongHost;
+}
+
+Verdict Access::OfWebSocket(const RequestOrigin& request) const {
+  if (!IsOurs(request.host)) return Verdict::kWrongHost;
+  const std::string origin = Lowered(request.origin);
+  const bool own = origin.empty() || origin == "http://" + Lowered(request.host);
+  if (!own && std::ranges::find(rules_.origins, origin) == rules_.origins.end()) {
+    return Verdict::kForeignOrigin;
+  }
+  const std::string_view token = QueryValue(request.target, "token");
+  if (!rules_.token.empty() && !EqualInConstantTime(token, rules_.token)) {
+    return Verdict::kWrongToken;
+  }
+  return Verdict::kAllowed;
+}
+
+std::string Access::Url(std::string_view more) const {
+  // 0.0.0.0 stands for every address of this machine. A browser on this machine needs one of them.
+  const std::string address = rules_.address == kEveryAddress ? "127.0.0.1" : rules_.address;
+  std::string fragment = rules_.token.empty() ? "" : "token=" + rules_.token;
+  if (!fragment.empty() && !more.empty()) fragment += '&';
+  fragment += more;
+  return fmt::format("http://{}:{}/{}{}", address, rules_.port, fragment.empty() ? "" : "#",
+                     fragment);
+}
+
+std::string DrawToken() {
+  std::array<unsigned char, 16> secret{};
+  randombytes_buf(secret.data(), secret.size());
+  std::string token;
+  for (const unsigned char byte : secret) token += fmt::format("{:02x}", byte);
+  return token;
+}
+
+bool EqualInConstantTime(std::string_view a, std::string_view b) {
+  return a.size() == b.size() && sodium_memcmp(a.data(), b.data(), a.size()) == 0;
+}
+
+std::string_view QueryValue(std::string_view target, std::string_view name) {
+  const std::size_t query = target.find('?');
+  if (query == std::string_view::npos) return "";
+  std::string_view rest = target.substr(query + 1);
+  while (!rest.empty()) {
+    const std::string_view part = rest.substr(0, rest.find('&'));
+    rest.remove_prefix(std::min(rest.size(), part.size() + 1));
+    if (part.size() <= name.size() || part[name.size()] != '=') continue;
+    if (part.starts_with(name)) return part.substr(name.size() + 1);
+  }
+  return "";
+}
+
+bool IsOrigin(std::string_view text) {
+  for (const std::string_view scheme : {"http://", "https://"}) {
+    if (!text.starts_with(scheme)) continue;
+    const std::string_view rest = text.substr(scheme.size());
+    return !rest.empty() && std::ranges::all_of(rest, [](char c) {
+      return c > ' ' && c < 127 && std::string_view("/?#@\\").find(c) == std::string_view::npos;
+    });
+  }
+  return false;
+}
+
+}  // namespace fogline::web

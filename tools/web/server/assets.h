@@ -1,0 +1,21 @@
+// The files of the page, built into the program (embed.cmake writes them).
+#pragma once
+
+#include <span>
+#include <string_view>
+
+namespace fogline::web {
+
+/// A file of the page. A browser asks for it by its path.
+struct Asset {
+  std::string_view path;   // such as "/index.html" or "/page.js"
+  std::string_view type;   // the media type, such as "text/html; charset=utf-8"
+  std::string_view etag;   // a hash of the bytes, in double quotes as HTTP wants it
+  std::string_view bytes;  // as they are in the file
+};
+
+/// All files of the page. Empty if the page could not be built, because the packages of npm were
+/// missing.
+std::span<const Asset> Assets();
+
+}  // namespace fogline::web

@@ -1,0 +1,353 @@
+#include "tools/web/server/connection.h"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include <fmt/core.h>
+#include <boost/beast/core.hpp>
+#include <boost/beast/http.hpp>
+#include <boost/beast/websocket.hpp>
+
+#include "common/clock.h"
+#include "tools/web/server/frame_budget.h"
+#include "tools/web/server/http_answer.h"
+
+namespace fogline::web {
+namespace {
+
+namespace asio = boost::asio;
+namespace beast = boost::beast;
+namespace http = beast::http;
+namespace websocket = beast::websocket;
+using boost::system::error_code;
+using tcp = asio::ip::tcp;
+
+// A request must be there, and its answer taken, within this time.
+constexpr std::chrono::seconds kRequestLimit(10);
+// A WebSocket that sends nothing for half of this time gets a ping; without an answer it is closed.
+constexpr std::chrono::seconds kIdleLimit(60);
+// A client that is cut off may read the reason for this time.
+constexpr std::chrono::seconds kCutOffLimit(1);
+// While more bytes than this wait for a client, none of its frames is read.
+constexpr std::size_t kPauseBytes = 1 << 20;
+// Bytes that the kernel may keep for a client, in addition to those of the queue.
+constexpr int kKernelBytes = 256 << 10;
+
+std::string AddressOf(const tcp::socket& socket) {
+  error_code error;
+  const auto peer = socket.remote_endpoint(error);
+  if (error) return "a client that has left already";
+  return fmt::format("{}:{}", peer.address().to_string(), peer.port());
+}
+
+std::string_view TextOf(beast::string_view text) { return {text.data(), text.size()}; }
+
+/// The first subprotocol of the header that the server knows. The header may name several.
+/// @return kViewProtocol if the header is empty; "" if the server knows none of them
+std::string_view ChooseProtocol(std::string_view header) {
+  if (header.empty()) return kViewProtocol;
+  for (const auto& token : http::token_list(beast::string_view(header.data(), header.size()))) {
+    for (const std::string_view known : {kViewProtocol, kFoxgloveProtocol, kFoxgloveSdkProtocol}) {
+      if (TextOf(token) == known) return known;
+    }
+  }
+  return "";
+}
+
+using Request = http::request<http::empty_body>;
+using Response = http::response<http::span_body<const char>>;
+
+RequestOrigin OriginOf(const Request& request) {
+  return {.host = TextOf(request[http::field::host]),
+          .origin = TextOf(request[http::field::origin]),
+          .target = TextOf(request.target())};
+}
+
+}  // namespace
+
+class BeastConnection final : public Connection,
+                              public std::enable_shared_from_this<BeastConnection> {
+ public:
+  BeastConnection(Server& server, std::uint64_t id, tcp::socket socket, Place place)
+      : Connection(server, id),
+        address_(AddressOf(socket)),
+        place_(place),
+        stream_(std::move(socket)),
+        farewell_(context()) {}
+
+  void Begin();
+
+  void GoAway() override;
+  const std::string& address() const override { return address_; }
+  std::string_view protocol() const override { return protocol_; }
+  std::size_t waiting() const override { return queue_.bytes(); }
+  void Send(OutgoingFrame frame) override;
+  void CutOff(CloseCode code, const std::string& why) override;
+
+ private:
+  using Socket = websocket::stream<beast::tcp_stream>;
+
+  void Handle(error_code error);
+  void Write(HttpAnswer answer);
+  void Linger();
+  void Upgrade();
+  void Open();
+  void Read();
+  void TakeFrame();
+  void WriteNext();
+  void Close(CloseCode code, const std::string& why, std::chrono::milliseconds limit);
+  void SendClose();
+  void Leave();
+
+  const std::string address_;
+  const Place place_;
+  beast::tcp_stream stream_;  // until the WebSocket is opened
+  beast::flat_buffer buffer_{Server::kMostFrameBytes + Server::kMostHeaderBytes};
+  std::optional<http::request_parser<http::empty_body>> parser_;
+  HttpAnswer answer_;  // its text must live while it is sent
+  std::optional<Response> response_;
+
+  std::optional<Socket> socket_;
+  std::string_view protocol_ = kViewProtocol;
+  SendQueue queue_;
+  std::optional<FrameBudget> budget_;
+  asio::steady_timer farewell_;  // runs while the connection is being closed
+  std::optional<websocket::close_reason> reason_;
+  bool opened_ = false;   // the view knows this client
+  bool reading_ = false;  // an operation waits for a frame
+  bool writing_ = false;  // an operation sends the front of the queue
+  bool gone_ = false;
+};
+
+// ---- HTTP --------------------------------------------------------------------------------------
+
+void BeastConnection::Begin() {
+  error_code ignored;  // a closed socket reports that at the next operation
+  stream_.socket().set_option(tcp::no_delay(true), ignored);
+  stream_.socket().set_option(asio::socket_base::send_buffer_size(kKernelBytes), ignored);
+  parser_.emplace();
+  parser_->header_limit(Server::kMostHeaderBytes);
+  stream_.expires_after(kRequestLimit);
+  http::async_read_header(
+      stream_, buffer_, *parser_,
+      [self = shared_from_this()](error_code error, std::size_t) { self->Handle(error); });
+}
+
+void BeastConnection::Handle(error_code error) {
+  constexpr unsigned kBadRequest = 400;
+  constexpr unsigned kHeaderTooLarge = 431;
+  constexpr unsigned kUnavailable = 503;
+  if (gone_) return;
+  if (error == http::error::header_limit || error == http::error::buffer_overflow) {
+    return Write(Refusal(kHeaderTooLarge, "The headers are too large.\n"));
+  }
+  if (error && error.category() == http::make_error_code(http::error::bad_method).category() &&
+      error != http::error::end_of_stream && error != http::error::partial_message) {
+    return Write(Refusal(kBadRequest, "This is no request of HTTP.\n"));
+  }
+  if (error) return Leave();
+  if (place_ == Place::kNone) {
+    return Write(Refusal(kUnavailable, "Too many clients are connected. Try again later.\n"));
+  }
+  const Request& request = parser_->get();
+  const RequestOrigin from = OriginOf(request);
+  const bool upgrade = websocket::is_upgrade(request);
+  if (upgrade && PathOf(from.target) == kSocketPath &&
+      access().OfWebSocket(from) == Verdict::kAllowed) {
+    protocol_ = ChooseProtocol(TextOf(request[http::field::sec_websocket_protocol]));
+    if (!protocol_.empty()) return Upgrade();
+    return Write(
+        Refusal(kBadRequest, fmt::format("The subprotocols here are {}, {} and {}.\n",
+                                         kViewProtocol, kFoxgloveProtocol, kFoxgloveSdkProtocol)));
+  }
+  Write(Answer({.method = TextOf(request.method_string()),
+                .from = from,
+                .if_none_match = TextOf(request[http::field::if_none_match]),
+                .upgrade = upgrade},
+               access(), assets()));
+}
+
+void BeastConnection::Write(HttpAnswer answer) {
+  if (answer.verdict != Verdict::kAllowed) {
+    CountRefused(WhyRefused(answer.verdict));
+  }
+  answer_ = std::move(answer);
+  const std::string_view body = answer_.text.empty() ? answer_.body : answer_.text;
+  response_.emplace(http::status(answer_.status), 11);
+  for (const auto& [name, value] : SafetyHeaders()) {
+    response_->set(beast::string_view(name.data(), name.size()),
+                   beast::string_view(value.data(), value.size()));
+  }
+  for (const auto& [name, value] : answer_.headers) {
+    response_->set(beast::string_view(name.data(), name.size()), value);
+  }
+  // A connection takes one request. Otherwise the idle connections of browsers would take the
+  // places of viewers.
+  response_->keep_alive(false);
+  constexpr unsigned kNotModified = 304;  // says nothing about the size of the file
+  if (answer_.status != kNotModified) response_->content_length(body.size());
+  const bool head = parser_->get().method() == http::verb::head;
+  if (!head) response_->body() = {body.data(), body.size()};
+  stream_.expires_after(kRequestLimit);
+  http::async_write(stream_, *response_,
+                    [self = shared_from_this()](error_code error, std::size_t) {
+                      if (error || self->gone_) return self->Leave();
+                      self->stream_.socket().shutdown(tcp::socket::shutdown_send, error);
+                      self->stream_.expires_after(kCutOffLimit);
+                      self->Linger();
+                    });
+}
+
+// If a socket is closed while bytes of the client are unread, the client may lose the answer. So
+// the rest of its request is read and dropped.
+void BeastConnection::Linger() {
+  buffer_.clear();
+  stream_.async_read_some(buffer_.prepare(Server::kMostFrameBytes),
+                          [self = shared_from_this()](error_code error, std::size_t) {
+                            if (error || self->gone_) return self->Leave();
+                            self->Linger();
+                          });
+}
+
+// ---- WebSocket ---------------------------------------------------------------------------------
+
+void BeastConnection::Upgrade() {
+  stream_.expires_never();  // the WebSocket has limits of its own
+  socket_.emplace(std::move(stream_));
+  socket_->set_option(websocket::stream_base::timeout{
+      .handshake_timeout = kRequestLimit, .idle_timeout = kIdleLimit, .keep_alive_pings = true});
+  const bool named = !parser_->get()[http::field::sec_websocket_protocol].empty();
+  socket_->set_option(websocket::stream_base::decorator(
+      [named, protocol = protocol_](websocket::response_type& response) {
+        for (const auto& [name, value] : SafetyHeaders()) {
+          response.set(beast::string_view(name.data(), name.size()),
+                       beast::string_view(value.data(), value.size()));
+        }
+        if (!named) return;
+        response.set(http::field::sec_websocket_protocol,
+                     beast::string_view(protocol.data(), protocol.size()));
+      }));
+  socket_->read_message_max(Server::kMostFrameBytes);
+  socket_->auto_fragment(false);
+  socket_->async_accept(parser_->get(), [self = shared_from_this()](error_code error) {
+    if (error || self->gone_) return self->Leave();
+    self->Open();
+  });
+}
+
+void BeastConnection::Open() {
+  parser_.reset();
+  buffer_.clear();
+  budget_.emplace(Clock::now());
+  opened_ = true;
+  CountViewer();
+  view().Opened(*this);
+  Read();
+}
+
+void BeastConnection::Read() {
+  if (gone_ || reading_ || queue_.bytes() > kPauseBytes) return;
+  reading_ = true;
+  socket_->async_read(buffer_, [self = shared_from_this()](error_code error, std::size_t) {
+    self->reading_ = false;
+    if (self->gone_) return;
+    if (error == websocket::error::message_too_big) {
+      // Beast has sent the reason to the client.
+      self->CountCutOff(
+          fmt::format("sends more than {} KiB in a frame", Server::kMostFrameBytes >> 10));
+    }
+    if (error) return self->Leave();
+    self->TakeFrame();
+  });
+}
+
+void BeastConnection::TakeFrame() {
+  if (!reason_ && !budget_->Take(Clock::now())) {
+    CutOff(CloseCode::kPolicyViolation,
+           fmt::format("sends more than {} frames a second", FrameBudget::kFrames));
+  }
+  if (!reason_) {
+    const auto bytes = buffer_.cdata();
+    view().Received(*this, {static_cast<const char*>(bytes.data()), bytes.size()},
+                    socket_->got_binary());
+  }
+  buffer_.clear();
+  Read();  // a client that is being closed still has to answer
+}
+
+void BeastConnection::Send(OutgoingFrame frame) {
+  if (gone_ || reason_ || !socket_) return;
+  const std::size_t waiting = queue_.bytes();
+  if (!queue_.Push(std::move(frame))) {
+    return CutOff(CloseCode::kTryAgainLater,
+                  fmt::format("does not read; {} bytes wait for it", waiting));
+  }
+  WriteNext();
+}
+
+void BeastConnection::WriteNext() {
+  if (gone_ || writing_ || queue_.empty()) return;
+  writing_ = true;
+  const OutgoingFrame& frame = queue_.front();
+  socket_->binary(frame.binary);
+  socket_->async_write(asio::buffer(*frame.bytes),
+                       [self = shared_from_this()](error_code error, std::size_t) {
+                         self->writing_ = false;
+                         if (self->gone_) return;
+                         if (error) return self->Leave();
+                         self->queue_.Pop();
+                         if (self->reason_) return self->SendClose();
+                         self->WriteNext();
+                         if (self->queue_.empty()) self->view().Idle(*self);
+                         self->Read();
+                       });
+}
+
+void BeastConnection::CutOff(CloseCode code, const std::string& why) {
+  if (gone_ || reason_) return;
+  CountCutOff(why);
+  Close(code, why, kCutOffLimit);
+}
+
+void BeastConnection::GoAway() {
+  if (gone_) return;
+  if (!opened_) return Leave();
+  if (!reason_) Close(CloseCode::kGoingAway, "the program ends", Server::kFarewell);
+}
+
+void BeastConnection::Close(CloseCode code, const std::string& why,
+                            std::chrono::milliseconds limit) {
+  reason_.emplace(static_cast<websocket::close_code>(code), why.substr(0, 120));
+  queue_.Clear(writing_);
+  farewell_.expires_after(limit);
+  farewell_.async_wait([self = shared_from_this()](error_code stopped) {
+    if (!stopped) self->Leave();
+  });
+  // A frame that is being sent must be whole before the closing frame.
+  if (!writing_) SendClose();
+}
+
+void BeastConnection::SendClose() {
+  socket_->async_close(*reason_, [self = shared_from_this()](error_code) { self->Leave(); });
+}
+
+void BeastConnection::Leave() {
+  if (std::exchange(gone_, true)) return;
+  farewell_.cancel();
+  error_code ignored;
+  auto& stream = socket_ ? beast::get_lowest_layer(*socket_) : stream_;
+  stream.socket().close(ignored);
+  stream.close();
+  // Later, because a view may be calling this client.
+  asio::post(context(), [self = shared_from_this()] { self->LeaveServer(self->opened_); });
+}
+
+std::shared_ptr<Connection> Connection::Start(Server& server, std::uint64_t id, tcp::socket socket,
+                                              Place place) {
+  auto connection = std::make_shared<BeastConnection>(server, id, std::move(socket), place);
+  connection->Begin();
+  return connection;
+}
+
+}  // namespace fogline::web

@@ -1,0 +1,48 @@
+// What the server answers to an HTTP request: the rules, without sockets.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "tools/web/server/access.h"
+#include "tools/web/server/assets.h"
+
+namespace fogline::web {
+
+/// The path at which a WebSocket is opened.
+inline constexpr std::string_view kSocketPath = "/ws";
+
+struct HttpRequest {
+  std::string_view method;
+  RequestOrigin from;
+  std::string_view if_none_match;  // the ETag that the browser has; "": none
+  bool upgrade = false;            // whether it asks for a WebSocket
+};
+
+struct HttpAnswer {
+  unsigned status = 200;
+  /// The headers that depend on the request. Date, Server and Content-Length are not among them.
+  std::vector<std::pair<std::string_view, std::string>> headers;
+  std::string_view body;  // a file of the page, or `text`
+  std::string text;       // one line for a person
+  Verdict verdict = Verdict::kAllowed;
+};
+
+/// The headers of every answer. The page may load only files of this server, and no other page may
+/// show it in a frame.
+std::vector<std::pair<std::string_view, std::string_view>> SafetyHeaders();
+
+/// The answer to a request that does not open a WebSocket, or that may not open one. Only GET is
+/// known. "/" is "/index.html"; a query behind a path is ignored.
+HttpAnswer Answer(const HttpRequest& request, const Access& access, std::span<const Asset> assets);
+
+/// An answer that has only a line of text.
+HttpAnswer Refusal(unsigned status, std::string text);
+
+/// The path of a target, without its query.
+std::string_view PathOf(std::string_view target);
+
+}  // namespace fogline::web

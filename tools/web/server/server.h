@@ -1,0 +1,138 @@
+// A server for browsers: the files of the page by HTTP, and WebSockets. It has one thread, and
+// nothing blocks it. It knows nothing of runs and logs: a View does.
+//
+// Every limit protects the other clients and the memory of this process. A client that exceeds a
+// limit is closed, counted, and named on stderr.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/steady_timer.hpp>
+
+#include "common/process/line_budget.h"
+#include "tools/web/server/access.h"
+#include "tools/web/server/assets.h"
+#include "tools/web/server/send_queue.h"
+
+namespace fogline::web {
+
+/// The subprotocols of WebSockets: our own, and both names of Foxglove's.
+inline constexpr std::string_view kViewProtocol = "fogline.view.v1";
+inline constexpr std::string_view kFoxgloveProtocol = "foxglove.websocket.v1";
+inline constexpr std::string_view kFoxgloveSdkProtocol = "foxglove.sdk.v1";
+
+/// Codes with which the server closes a WebSocket (RFC 6455, 7.4.1; 1013 is from IANA's registry).
+enum class CloseCode : std::uint16_t {
+  kGoingAway = 1001,        // the program ends
+  kPolicyViolation = 1008,  // the client sends too many frames
+  kTooBig = 1009,           // the client sends a frame that is too large
+  kTryAgainLater = 1013,    // the client does not take its bytes
+};
+
+/// An open WebSocket, as a view sees it.
+class Client {
+ public:
+  virtual ~Client() = default;
+
+  virtual std::uint64_t id() const = 0;
+  /// The address and port of the client, for people.
+  virtual const std::string& address() const = 0;
+  /// The subprotocol; kViewProtocol if the client asked for none.
+  virtual std::string_view protocol() const = 0;
+  /// Queues a frame. If there is no room in its queue, the client is cut off: it does not take its
+  /// bytes. A client that is being closed gets nothing.
+  virtual void Send(OutgoingFrame frame) = 0;
+  /// The bytes that are queued.
+  virtual std::size_t waiting() const = 0;
+  /// Closes the client because it exceeds a limit. The client is counted and named. View::Closed()
+  /// comes later, not during this call.
+  virtual void CutOff(CloseCode code, const std::string& why) = 0;
+};
+
+/// What the clients of a server see.
+class View {
+ public:
+  virtual ~View() = default;
+  virtual void Opened(Client& client) = 0;
+  /// A frame of a client. No further frame of the client is read while much waits to be sent to it.
+  virtual void Received(Client& client, std::string_view bytes, bool binary) = 0;
+  /// Everything that was queued for the client has been sent.
+  virtual void Idle(Client& client) = 0;
+  /// The last call for this client.
+  virtual void Closed(Client& client) = 0;
+};
+
+struct ServerOptions {
+  std::string address = "127.0.0.1";  // IPv4 in numbers
+  std::uint16_t port = 0;             // 0: the system chooses a port
+  std::string token;                  // see Access::Rules
+  std::vector<std::string> origins;   // see Access::Rules
+};
+
+/// Numbers since the start of the server.
+struct ServerCounts {
+  std::int64_t viewers = 0;  // WebSockets that are open now
+  std::int64_t cut_off = 0;  // clients that exceeded a limit
+  std::int64_t refused = 0;  // requests with a wrong Host, Origin or token
+};
+
+class Connection;
+
+class Server {
+ public:
+  using tcp = boost::asio::ip::tcp;
+
+  static constexpr std::size_t kMostClients = 64;
+  static constexpr std::size_t kMostHeaderBytes = 8 << 10;
+  static constexpr std::size_t kMostFrameBytes = 64 << 10;
+
+  /// Listens, and accepts while the context runs.
+  /// @param view must live as long as the server
+  /// @throws boost::system::system_error if it cannot listen
+  Server(boost::asio::io_context& context, const ServerOptions& options,
+         std::span<const Asset> assets, View& view);
+  ~Server();
+  Server(const Server&) = delete;
+  Server& operator=(const Server&) = delete;
+
+  const Access& access() const { return access_; }
+  const ServerCounts& counts() const { return counts_; }
+
+  /// Closes all connections: it says to the WebSockets that it goes away, and closes those that do
+  /// not answer in kFarewell. The context then has no more work.
+  void Stop();
+  static constexpr std::chrono::milliseconds kFarewell{300};
+
+ private:
+  friend class Connection;
+
+  void Accept();
+  void Take(tcp::socket socket);
+  void Leave(std::uint64_t id);
+  /// Counts a client that exceeds a limit, and names it on stderr.
+  void CountCutOff(const std::string& address, const std::string& why);
+  void CountRefused(const std::string& address, std::string_view why);
+
+  boost::asio::io_context& context_;
+  std::span<const Asset> assets_;
+  View& view_;
+  tcp::acceptor acceptor_;
+  Access access_;
+  boost::asio::steady_timer pause_;  // runs after a connection could not be accepted
+  std::map<std::uint64_t, std::shared_ptr<Connection>> connections_;
+  std::uint64_t next_id_ = 0;
+  ServerCounts counts_;
+  LineBudget lines_{"fogline-web"};
+};
+
+}  // namespace fogline::web

@@ -1,0 +1,28 @@
+// A message's bytes as JSON, by the description of its type.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "tools/web/types/lcm_types.h"
+
+namespace fogline::web {
+
+/// The members of a message, in their order.
+///
+/// Integers beyond 2^53, such as a run's id, are decimal strings, because JavaScript would round
+/// them. Numbers that are infinite or NaN are null. A boolean is true if its byte is not 0. Arrays
+/// are lists of lists; an array without elements is []. In a string that is no UTF-8, the wrong
+/// bytes are replaced by U+FFFD, so the result can always be printed.
+///
+/// @param message with its fingerprint and without a signature (message_signer.h)
+/// @return nullopt if the bytes are not exactly one message of this type
+std::optional<nlohmann::ordered_json> DecodeJson(const LcmTypes& types, const LcmStruct& type,
+                                                 Bytes message);
+
+/// An integer as DecodeJson() writes it.
+nlohmann::ordered_json IntegerJson(std::int64_t value);
+
+}  // namespace fogline::web

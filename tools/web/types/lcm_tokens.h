@@ -1,0 +1,28 @@
+// The words of a text in LCM's type language.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace fogline::web {
+
+struct LcmToken {
+  enum class Kind : std::uint8_t { kWord, kNumber, kSymbol, kEnd };
+  Kind kind = Kind::kEnd;
+  std::string text;
+  int line = 0;
+  /// The lines of comment directly before the token, joined by spaces.
+  std::string comment_before;
+  /// The comment behind the token on the same line.
+  std::string comment_behind;
+};
+
+/// The words, and a last one of kind kEnd. A comment belongs to the word behind it if no blank line
+/// is between them, or to the last word of its own line.
+/// @param file for errors
+/// @throws InputError for a character that the language does not have, or a comment without an end
+std::vector<LcmToken> LcmTokens(std::string_view text, std::string_view file);
+
+}  // namespace fogline::web

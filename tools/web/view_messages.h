@@ -1,0 +1,49 @@
+// The frames that a page gets (docs/view.md describes them).
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "tools/web/channel_table.h"
+#include "tools/web/log/log_index.h"
+#include "tools/web/log/series.h"
+#include "tools/web/run_events.h"
+#include "tools/web/view_request.h"
+
+namespace fogline::web {
+
+/// The kinds of binary frames: their first byte.
+enum class FrameKind : std::uint8_t { kMessages = 1, kSteps = 2, kSeries = 3 };
+
+/// A run, as a page needs it.
+struct RunFacts {
+  std::int64_t run_id = 0;
+  std::string scenario_text;  // the effective scenario, JSON
+  bool realtime = false;
+  double pace = 0;
+};
+
+/// @param url the LCM network; nullopt for a log
+std::string HelloText(const std::optional<std::string>& url,
+                      const std::vector<KnownChannel>& others);
+std::string ChannelText(const KnownChannel& channel);
+/// @return "" if the scenario is no JSON object
+std::string RunText(const RunFacts& run);
+std::string LogText(const std::filesystem::path& file, const LogIndex& index);
+std::string EventText(const RunEvent& event);
+std::string HistoryText(RequestId id, std::int64_t messages);
+std::string ErrorText(std::optional<RequestId> id, std::string_view message);
+
+/// A frame of kind 1. @param messages as MessageRing::From() gives them
+std::string MessagesFrame(std::string_view messages);
+/// A frame of kind 2 with all messages of these steps.
+std::string StepsFrame(const StepsRequest& request, const LogIndex& index);
+/// A frame of kind 3.
+std::string SeriesFrame(RequestId id, const Series& series);
+
+}  // namespace fogline::web

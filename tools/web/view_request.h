@@ -1,0 +1,51 @@
+// What a page asks the server, read from a text frame.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+
+namespace fogline::web {
+
+using RequestId = std::uint32_t;
+
+/// All messages of some steps of a log.
+struct StepsRequest {
+  RequestId id = 0;
+  std::int64_t from = 0;
+  std::int64_t to = 0;
+
+  static constexpr std::int64_t kMostSteps = 512;
+};
+
+/// A field of a log over time.
+struct SeriesRequest {
+  RequestId id = 0;
+  std::string channel;
+  std::string field;
+  std::int64_t from = 0;
+  std::int64_t to = 0;
+  std::int64_t points = 0;
+
+  static constexpr std::int64_t kMostPoints = 20'000;
+};
+
+/// The messages of a live network that have come before.
+struct HistoryRequest {
+  RequestId id = 0;
+};
+
+/// A frame that is no request, with the reason for its sender.
+struct BadRequest {
+  std::optional<RequestId> id;
+  std::string why;
+};
+
+using ViewRequest = std::variant<StepsRequest, SeriesRequest, HistoryRequest, BadRequest>;
+
+/// Never throws: whatever is wrong with the text becomes a BadRequest.
+ViewRequest ParseViewRequest(std::string_view text);
+
+}  // namespace fogline::web

@@ -1,0 +1,227 @@
+// fogline view, a program of its own: shows the run that is on the network, or a log, in a browser.
+// It only listens: it never sends a message to a run.
+#include <chrono>
+#include <cstdint>
+#include <cstdio>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <fmt/core.h>
+#include <CLI/CLI.hpp>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/signal_set.hpp>
+
+#include "common/errors.h"
+#include "common/exit_code.h"
+#include "common/interrupt.h"
+#include "common/process/console.h"
+#include "common/text.h"
+#include "services/runtime/transport/tcpq_url.h"
+#include "services/runtime/transport/traffic_options.h"
+#include "tools/cli/arguments.h"
+#include "tools/cli/help.h"
+#include "tools/cli/own_program.h"
+#include "tools/cli/verb_program.h"
+#include "tools/web/browser.h"
+#include "tools/web/live_view.h"
+#include "tools/web/log/log_view.h"
+#include "tools/web/server/server.h"
+
+namespace fogline::web {
+namespace {
+
+namespace asio = boost::asio;
+
+constexpr std::uint16_t kDefaultPort = 7680;
+// The ports after the default port that are tried if it is busy.
+constexpr std::uint16_t kPortsTried = 20;
+// All connections must be closed in this time after Ctrl-C.
+constexpr std::chrono::milliseconds kEndLimit(600);
+
+constexpr const char* kExplanation =
+    R"(Without LOG it shows the run that is on the network: that of --lcm-url, or else the
+newest run that is announced on this machine. With LOG it shows a recorded run, also one
+that was cut off. It prints the address of the page, and opens it in a browser if there
+is a screen. Ctrl-C ends it. Any number of people may look, up to 64 connections at a
+time. Nobody who looks can change a run: the program sends no message to it.
+
+Only this machine can see the page, unless --listen names an address for others. The
+printed address then has a token. Whoever has the address can see everything; the
+traffic is not encrypted, so listen only on a network that you trust, or use ssh -L.
+
+The WebSocket at /ws is for other programs, too: docs/view.md describes its protocol.
+Foxglove and Lichtblick can connect to it (live runs only).
+
+Examples:
+  fogline run scenario/paper.json --pace 1 & fogline view
+  fogline view logs/paper-1.lcm
+  fogline view logs/paper-1.lcm --open-at 190
+  fogline view --listen 192.168.1.5 --no-browser       for other machines
+  ssh -L 7680:127.0.0.1:7680 lab1 fogline view         the run on lab1, seen here
+  fogline view --allow-origin http://localhost:8080    for Lichtblick, served there)";
+
+struct ViewArguments {
+  explicit ViewArguments(CLI::App& verb) : network(verb, "to show") {
+    verb.add_option("LOG", log, "Log to show; without it, the run that is on the network");
+    verb.add_option("--key", traffic.key_file,
+                    "Show only messages that are signed with the key in this file");
+    listen_said = verb.add_option("--listen", listen,
+                                  "ADDRESS[:PORT] of this machine at which others may look, too");
+    port_said = verb.add_option("--port", port,
+                                "Port on this machine; 0: any free port (default: the first free "
+                                "one of 7680 to 7699)")
+                    ->check(CLI::Range(0, 65535))
+                    ->excludes(listen_said);
+    verb.add_option("--allow-origin", origins,
+                    "Pages of this origin may connect, too, such as http://localhost:8080 "
+                    "(repeatable)")
+        ->allow_extra_args(false);
+    verb.add_flag("--no-browser", no_browser, "Only print the address");
+    verb.add_option("--open-at", open_at, "Step of the log that the page shows first")
+        ->check(CLI::Range(0, 1'000'000'000));
+    cli::ShowExitCodes(verb, {.done = "ended by Ctrl-C, SIGTERM or SIGHUP"});
+    verb.footer(kExplanation);
+  }
+
+  cli::NetworkArguments network;
+  std::string log;
+  runtime::TrafficOptions traffic;
+  std::string listen;
+  CLI::Option* listen_said = nullptr;
+  std::uint16_t port = kDefaultPort;
+  CLI::Option* port_said = nullptr;
+  std::vector<std::string> origins;
+  bool no_browser = false;
+  std::optional<std::int64_t> open_at;
+};
+
+/// @throws InputError for options that contradict each other
+void CheckTogether(const ViewArguments& arguments) {
+  const bool live = arguments.log.empty();
+  if (live && arguments.open_at) {
+    throw InputError("error: --open-at: a step of a log; LOG is missing");
+  }
+  if (!live && !arguments.network.Follows()) {
+    throw InputError("error: --lcm-url: a log is shown without a network; leave out one of them");
+  }
+  if (!live && !arguments.traffic.key_file.empty()) {
+    throw InputError("error: --key: for the messages of a network; a log has no signatures");
+  }
+  for (const std::string& origin : arguments.origins) {
+    if (IsOrigin(origin)) continue;
+    throw InputError(
+        fmt::format("error: --allow-origin {}: no origin such as http://localhost:8080",
+                    EscapeControls(origin)));
+  }
+}
+
+/// @throws InputError if --listen names no address
+ServerOptions OptionsOf(const ViewArguments& arguments) {
+  ServerOptions options{.port = arguments.port, .origins = arguments.origins};
+  if (arguments.listen_said->count() == 0) return options;
+  const auto endpoint = runtime::tcpq::Resolve(arguments.listen, "--listen");
+  options.address = endpoint.address;
+  const bool has_port = arguments.listen.find(':') != std::string::npos;
+  options.port = has_port ? endpoint.port : kDefaultPort;
+  options.token = DrawToken();
+  return options;
+}
+
+/// Whether the user has chosen the port. Otherwise the next free one is as good.
+bool HasChosenPort(const ViewArguments& arguments) {
+  return arguments.port_said->count() > 0 || arguments.listen.find(':') != std::string::npos;
+}
+
+/// @throws std::runtime_error if it cannot listen
+std::unique_ptr<Server> Listen(asio::io_context& context, const ViewArguments& arguments,
+                               View& view) {
+  ServerOptions options = OptionsOf(arguments);
+  const int tries = HasChosenPort(arguments) ? 1 : kPortsTried;
+  for (int tried = 1;; ++tried) {
+    try {
+      return std::make_unique<Server>(context, options, Assets(), view);
+    } catch (const boost::system::system_error& error) {
+      const bool busy = error.code() == boost::system::errc::address_in_use;
+      if (busy && tried < tries) {
+        ++options.port;
+        continue;
+      }
+      throw std::runtime_error(fmt::format("cannot listen on {}:{}: {}", options.address,
+                                           options.port, error.code().message()));
+    }
+  }
+}
+
+/// Prints the address, and opens it.
+void Say(const ViewArguments& arguments, const Server& server) {
+  const std::string step =
+      arguments.open_at ? fmt::format("step={}", *arguments.open_at) : std::string();
+  const std::string url = server.access().Url(step);
+  fmt::print("{}\n", url);
+  std::fflush(stdout);
+  if (!arguments.no_browser && HasBrowser()) OpenBrowser(url);
+}
+
+/// Serves a view until a signal ends the program.
+/// @param stop_view ends the work of the view
+template <class StopView>
+void Serve(asio::io_context& context, const ViewArguments& arguments, Server& server,
+           const StopView& stop_view) {
+  asio::signal_set signals(context);
+  for (const int signal : EndingSignals()) signals.add(signal);
+  signals.async_wait([&context](boost::system::error_code, int) { context.stop(); });
+  Say(arguments, server);
+  context.run();
+  server.Stop();
+  stop_view();
+  // Says to the clients that the program ends. It returns when the last connection is closed.
+  context.restart();
+  context.run_for(kEndLimit);
+}
+
+/// @throws std::runtime_error if there is no page for a browser
+void RequirePage(const ViewArguments& arguments) {
+  if (!Assets().empty()) return;
+  const std::string why =
+      "this build has no page, because packages of npm were missing when it was configured; "
+      "install and build: tools/setup run && tools/build fogline_demo";
+  if (!arguments.no_browser) throw std::runtime_error(why);
+  Notice("fogline view: warning: " + why);
+}
+
+int RunView(const ViewArguments& arguments) {
+  CheckTogether(arguments);
+  RequirePage(arguments);
+  asio::io_context context(1);
+  if (arguments.log.empty()) {
+    LiveView view(context, {.url = arguments.network.Url(),
+                            .follows = arguments.network.Follows(),
+                            .key = runtime::KeyOf(arguments.traffic)});
+    const auto server = Listen(context, arguments, view);
+    view.Show(*server);
+    Serve(context, arguments, *server, [&view] { view.Stop(); });
+    return kDone;
+  }
+  LogView view(arguments.log);
+  const std::string& note = view.index().run().note;
+  if (!note.empty()) Notice(fmt::format("{}: {}", PathText(arguments.log), note));
+  const auto server = Listen(context, arguments, view);
+  Serve(context, arguments, *server, [] {});
+  return kDone;
+}
+
+void AddView(CLI::App& app, cli::Action& action) {
+  CLI::App* verb = app.add_subcommand(cli::kView.verb, cli::kView.purpose);
+  const auto arguments = std::make_shared<ViewArguments>(*verb);
+  verb->callback([&action, arguments] { action = [arguments] { return RunView(*arguments); }; });
+}
+
+}  // namespace
+}  // namespace fogline::web
+
+int main(int argc, char** argv) {
+  return fogline::cli::RunOneVerb(argc, argv, fogline::web::AddView);
+}
