@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
@@ -20,6 +22,8 @@
 #include "tools/cli/help.h"
 #include "tools/fogline/verbs.h"
 #include "tools/watch/announced.h"
+#include "tools/watch/senders/packet_tap.h"
+#include "tools/watch/senders/senders_report.h"
 #include "tools/watch/terminal.h"
 #include "tools/watch/traffic_statistics.h"
 #include "tools/watch/traffic_text.h"
@@ -33,7 +37,9 @@ interval; jitter, the standard deviation of the times between messages in it; ag
 message; steps that were still missing when a step came that is newer by 64 (lost), came after a
 newer one (late), or came again (twice); undecodable messages, by apparent type. Per role, from its
 STATUS: state, step, repairs asked for and served, processor time, memory, refusals; a role is
-silent after 1 s without STATUS. Without --lcm-url top follows the newest run that is announced on
+silent after 1 s without STATUS. Per sender of LCM traffic of any kind, by LCM's own numbers of
+messages (udpm only): messages that are missing because they were lost on the way, or because top
+itself was too slow (here). Without --lcm-url top follows the newest run that is announced on
 this machine, and names all announced runs. Top sees only messages that reach this machine; a
 message that is lost on the way here may have arrived elsewhere. q quits.
 
@@ -41,6 +47,7 @@ Examples:
   fogline run scenario/paper.json --pace 1 & fogline top
   fogline top --lcm-url 'udpm://239.255.76.67:7700?ttl=0'
   fogline top --once --json --interval 2 | jq '.runs[].channels[] | {channel, rate_hz}'
+  fogline top --once --json | jq '.senders[] | select(.lost > 0)'
   fogline top --for 60 --interval 10 >> traffic.txt
   lcm-logplayer logs/paper-1.lcm & fogline top     a log that is being played)";
 
@@ -83,6 +90,31 @@ Duration FromSeconds(double seconds) {
   return duration_cast<Duration>(std::chrono::duration<double>(seconds));
 }
 
+/// A network that top watches.
+class WatchedNetwork {
+ public:
+  WatchedNetwork(const std::string& url, runtime::Bus::Watcher watcher, watch::Senders& senders)
+      : bus_(url), tap_(watch::PacketTap::Open(bus_.url(), senders)) {
+    bus_.SubscribeAll(std::move(watcher));
+  }
+
+  /// Handles what has come. @throws std::runtime_error if the network's relay has ended
+  void Drain() {
+    bus_.Drain();
+    // The tap comes second, so it has taken the packet of each message that the bus has handled.
+    if (tap_) tap_->Drain(Clock::now());
+  }
+
+  int fd() const { return bus_.fd(); }
+  const std::string& url() const { return bus_.url(); }
+  /// Whether its packets have numbers. Those of a relay have none.
+  bool numbered() const { return tap_ != nullptr; }
+
+ private:
+  runtime::Bus bus_;
+  std::unique_ptr<watch::PacketTap> tap_;
+};
+
 class Top {
  public:
   explicit Top(const TopArguments& arguments)
@@ -114,8 +146,7 @@ class Top {
  private:
   void Open() {
     bus_.reset();
-    bus_.emplace(url_);
-    Watch(*bus_);
+    bus_.emplace(url_, Watcher(), senders_);
     names_ = statistics_.unknown_names();
   }
 
@@ -127,10 +158,10 @@ class Top {
     Open();
   }
 
-  void Watch(runtime::Bus& bus) {
-    bus.SubscribeAll([this](std::string_view channel, runtime::Bytes bytes) {
+  runtime::Bus::Watcher Watcher() {
+    return [this](std::string_view channel, runtime::Bytes bytes) {
       if (!watch::IsHousekeeping(channel)) statistics_.Add(channel, bytes, Clock::now());
-    });
+    };
   }
 
   /// Waits at most kDiscovery for the announcement of a run, so that the first interval has all
@@ -158,8 +189,7 @@ class Top {
     followed_.reset();
     if (runtime::SameNetwork(bus_->url(), run.url)) return;
     try {
-      followed_.emplace(run.url);
-      Watch(*followed_);
+      followed_.emplace(run.url, Watcher(), senders_);
     } catch (const std::exception&) {  // the address came from the network and may be invalid
       Leave(run.run_id);
     }
@@ -217,27 +247,34 @@ class Top {
   /// The network of the followed run, or the given network if no run is followed.
   const std::string& url() const { return followed_ ? followed_->url() : bus_->url(); }
 
+  bool Numbered() const { return bus_->numbered() || (followed_ && followed_->numbered()); }
+
   std::vector<watch::Line> Lines(const watch::TrafficView& view) const {
     std::vector<watch::Line> lines = watch::TrafficLines(view, url());
     const std::vector<watch::Line> announced = watch::AnnouncedLines(runs_, followed_.has_value());
     lines.insert(lines.begin() + 1, announced.begin(), announced.end());
+    std::ranges::move(watch::SenderLines(senders_.View(Clock::now())), std::back_inserter(lines));
     return lines;
   }
 
   nlohmann::ordered_json Json(const watch::TrafficView& view) const {
     nlohmann::ordered_json json = watch::TrafficJson(view, url());
+    const watch::SendersView senders = senders_.View(Clock::now());
+    json["senders"] = Numbered() ? watch::SendersJson(senders) : nlohmann::ordered_json(nullptr);
+    json["own_overflow"] = senders.own_overflow;
     if (listener_) json["announced"] = watch::AnnouncedJson(runs_, followed_.has_value());
     return json;
   }
 
   const TopArguments& arguments_;
   std::string url_;
-  std::optional<runtime::Bus> bus_;
   watch::TrafficStatistics statistics_;
+  watch::Senders senders_;
+  std::optional<WatchedNetwork> bus_;
   std::int64_t names_ = 0;                           // unknown names when bus_ was opened
   std::optional<runtime::BeaconListener> listener_;  // set if announced runs are to be followed
   std::vector<runtime::Announcement> runs_;          // announced runs, the followed one first
-  std::optional<runtime::Bus> followed_;             // the network of the followed run
+  std::optional<WatchedNetwork> followed_;           // the network of the followed run
   std::vector<std::int64_t> unreachable_;            // ids of runs
   TimePoint follow_at_{};
   std::optional<watch::Terminal> terminal_;

@@ -116,8 +116,8 @@ void RunCoordinator::AnnounceWhenDue(TimePoint now) {
   // RUN is sent at the shorter interval until every role is ready and the world has started.
   const auto& world = member(Role::kWorld).status;
   const bool going = ready_ && world && world->state != status_t::READY;
-  // Roles ask for the parts of the scenario that they lack. Programs that only listen cannot ask, so
-  // they get one part after another while the run goes on.
+  // Roles ask for the parts of the scenario that they lack. Programs that only listen cannot ask,
+  // so they get one part after another while the run goes on.
   Announce(going ? next_part_++ % parts_.size() : 0);
   announce_at_ = now + (going ? kRepeatEvery : kAnnounceEvery);
 }

@@ -19,6 +19,7 @@
 
 #include "services/runtime/transport/bus.h"
 #include "tests/integration/verbs/find_in_json.h"
+#include "tests/integration/verbs/top_process.h"
 #include "tests/support/command.h"
 
 namespace fogline::test {
@@ -27,44 +28,6 @@ namespace {
 using nlohmann::json;
 using std::chrono::seconds;
 using testing::HasSubstr;
-
-// A time limit. Programs start and messages arrive earlier, even when every processor is busy.
-constexpr seconds kPatience(30);
-// The time for which top watches. It is longer than any test with top.
-constexpr seconds kTopFor(240);
-
-/// `fogline top --json`, which prints a document for each interval until the test ends.
-class Top {
- public:
-  explicit Top(runtime::Bus& bus)
-      : bus_(bus),
-        process_({Program("fogline"), "top", "--json", "--interval", "0.2", "--for",
-                  std::to_string(kTopFor.count()), "--lcm-url", bus.url()}) {}
-
-  pid_t pid() const { return process_.pid(); }
-
-  /// Waits until top shows everything that was sent so far.
-  [[nodiscard]] bool CatchUp(const std::string& mark) {
-    const TimePoint end = Clock::now() + kPatience;
-    while (process_.Out().find("\"" + mark + "\"") == std::string::npos) {
-      if (Clock::now() > end) return false;
-      bus_.Publish(mark, std::vector<std::uint8_t>{0});
-      bus_.Wait(milliseconds(10));
-    }
-    return true;
-  }
-  /// The last document that is complete.
-  json Last() const {
-    std::string out = process_.Out();
-    out.erase(out.rfind('\n'));
-    const std::size_t begin = out.rfind('\n');
-    return json::parse(begin == std::string::npos ? out : out.substr(begin + 1));
-  }
-
- private:
-  runtime::Bus& bus_;
-  Background process_;
-};
 
 // 10 messages a second. The tolerance allows one message more or less at each end of two seconds.
 constexpr double kPace_hz = 10;

@@ -7,7 +7,7 @@
 
 #include "common/errors.h"
 #include "common/text.h"
-#include "tools/web/types/field_path.h"
+#include "tools/web/types/fields.h"
 #include "tools/web/types/wire_cursor.h"
 
 namespace fogline::web {

@@ -1,6 +1,6 @@
-// Reads LCM's type language (LCM, lcmgen.c). Refused, although lcm-gen accepts them: enums, which
-// lcm-gen itself calls obsolete; constants as lengths of arrays; structs without members, because
-// an array of them could have any length in a message without bytes.
+// Reads LCM's type language as lcm-gen does (LCM, lcmgen.c). Two things that lcm-gen accepts are
+// refused: enums, which no generated class for C++ has; and structs without members, because an
+// array of them could have any length in a message without bytes.
 #pragma once
 
 #include <string_view>

@@ -57,20 +57,21 @@ std::optional<std::string_view> WireCursor::Text() {
 
 std::optional<Extent> WireCursor::ExtentOf(const LcmMember& member, const Lengths& lengths) const {
   Extent extent;
-  for (std::size_t i = 0; i < member.dimensions.size(); ++i) {
+  const std::size_t dimensions = member.dimensions.size();
+  for (std::size_t i = 0; i < dimensions; ++i) {
     const LcmDimension& dimension = member.dimensions[i];
-    std::size_t size = 0;
     if (dimension.fixed) {
-      size = *dimension.fixed;
+      extent.sizes[i] = *dimension.fixed;
     } else {
       const std::int64_t length = lengths[dimension.slot];
       if (length < 0) return std::nullopt;
-      size = static_cast<std::size_t>(length);
+      extent.sizes[i] = static_cast<std::size_t>(length);
     }
-    if (size > rest_.size()) return std::nullopt;
-    extent.sizes[i] = size;
-    extent.count *= size;  // no overflow: no message has more than kLargestMessage bytes
-    if (extent.count > rest_.size()) return std::nullopt;
+    if (extent.sizes[i] == 0) extent.count = 0;
+  }
+  for (std::size_t i = 0; i < dimensions && extent.count > 0; ++i) {
+    if (extent.sizes[i] > rest_.size() / extent.count) return std::nullopt;
+    extent.count *= extent.sizes[i];
   }
   return extent;
 }

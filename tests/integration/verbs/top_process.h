@@ -1,0 +1,53 @@
+// `fogline top` in tests.
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include <chrono>
+#include <string>
+#include <vector>
+
+#include "services/runtime/transport/bus.h"
+#include "tests/support/command.h"
+
+namespace fogline::test {
+
+// A time limit. Programs start and messages arrive earlier, even when every processor is busy.
+inline constexpr std::chrono::seconds kPatience(30);
+// The time for which top watches. It is longer than any test with top.
+inline constexpr std::chrono::seconds kTopFor(240);
+
+/// `fogline top --json`, which prints a document for each interval until the test ends.
+class Top {
+ public:
+  explicit Top(runtime::Bus& bus)
+      : bus_(bus),
+        process_({Program("fogline"), "top", "--json", "--interval", "0.2", "--for",
+                  std::to_string(kTopFor.count()), "--lcm-url", bus.url()}) {}
+
+  pid_t pid() const { return process_.pid(); }
+
+  /// Waits until top shows everything that was sent so far.
+  [[nodiscard]] bool CatchUp(const std::string& mark) {
+    const TimePoint end = Clock::now() + kPatience;
+    while (process_.Out().find("\"" + mark + "\"") == std::string::npos) {
+      if (Clock::now() > end) return false;
+      bus_.Publish(mark, std::vector<std::uint8_t>{0});
+      bus_.Wait(milliseconds(10));
+    }
+    return true;
+  }
+  /// The last document that is complete.
+  nlohmann::json Last() const {
+    std::string out = process_.Out();
+    out.erase(out.rfind('\n'));
+    const std::size_t begin = out.rfind('\n');
+    return nlohmann::json::parse(begin == std::string::npos ? out : out.substr(begin + 1));
+  }
+
+ private:
+  runtime::Bus& bus_;
+  Background process_;
+};
+
+}  // namespace fogline::test

@@ -1,0 +1,34 @@
+// The head of a UDP packet of LCM (LCM, udpm_util.h). A short message is one packet: the word
+// "LC02", the number of the message, the channel with a 0, the data. A long message is several
+// fragments: "LC03", the number, the size of the data, the offset of this part, the number of this
+// fragment and the count of fragments; the first fragment then has the channel with a 0. All
+// numbers are big endian.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+#include "services/runtime/wire/wire.h"
+
+namespace fogline::watch {
+
+struct LcmPacket {
+  std::uint32_t number = 0;  // of the message; its sender counts its messages, beginning with 0
+  std::uint16_t fragment = 0;
+  std::uint16_t fragments = 1;
+  std::string_view channel;  // in the first packet of a message, otherwise ""
+
+  bool First() const { return fragment == 0; }
+  bool Whole() const { return fragments == 1; }
+};
+
+/// This many bytes of a packet are enough for ParsePacket().
+inline constexpr std::size_t kPacketHead = 20 + runtime::kLongestChannel + 1;
+
+/// @param head the packet, or its first kPacketHead bytes; the channel is valid as long as they are
+/// @return nullopt if LCM would not take the packet
+std::optional<LcmPacket> ParsePacket(runtime::Bytes head);
+
+}  // namespace fogline::watch

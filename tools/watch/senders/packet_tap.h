@@ -1,0 +1,52 @@
+// Listens to the packets of a udpm:// network beside LCM. LCM's library throws the numbers of
+// messages away, so a second socket in the same multicast group reads them.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/clock.h"
+#include "services/runtime/transport/lcm_sockets.h"
+#include "tools/watch/senders/senders.h"
+
+namespace fogline::watch {
+
+/// For one thread. It sends nothing, and reads only the heads of packets. It also says how many
+/// packets the kernel dropped because this process did not read them in time (SO_RXQ_OVFL): their
+/// messages may have reached all other processes.
+class PacketTap {
+ public:
+  /// Begins to listen. @param senders gets the packets, and must outlive the tap
+  /// @return nullptr if the URL is of another transport, whose packets have no numbers
+  /// @throws std::runtime_error if the network cannot be heard
+  static std::unique_ptr<PacketTap> Open(const std::string& url, Senders& senders);
+  ~PacketTap();
+  PacketTap(const PacketTap&) = delete;
+  PacketTap& operator=(const PacketTap&) = delete;
+
+  /// Takes the packets that are there, but at most kDrained, so that a flood does not keep the
+  /// caller from other work.
+  void Drain(TimePoint now);
+  static constexpr int kDrained = 4096;
+
+  /// This descriptor is readable when packets are there.
+  int fd() const { return fd_; }
+
+ private:
+  struct Batch;
+  PacketTap(int fd, const std::string& url, Senders& senders);
+  int Receive(TimePoint now);
+
+  int fd_;
+  Senders& senders_;
+  std::unique_ptr<Batch> batch_;  // buffers for one system call
+  std::uint32_t dropped_ = 0;  // packets that found no room, as the kernel counts: it wraps around
+  // Set if packets come over the route, which may change.
+  std::optional<runtime::GroupMembership> membership_;
+  TimePoint heard_{};  // when packets came last, or the membership was renewed
+};
+
+}  // namespace fogline::watch
