@@ -15,7 +15,7 @@ constexpr std::size_t kRingHeader = sizeof(std::uint16_t) + sizeof(double) + siz
 void MessageRing::Add(const RingMessage& message) {
   const std::size_t size = kRingHeader + message.bytes.size();
   if (chunks_.empty() || chunks_.back().bytes.size() + size > kChunkBytes) {
-    Trim(message.wall_ms);
+    Trim(message.wall_ms, std::max(size, kChunkBytes));
     chunks_.push_back({.begin = end_, .newest_ms = 0, .bytes = {}});
     chunks_.back().bytes.reserve(std::max(size, kChunkBytes));
   }
@@ -28,9 +28,9 @@ void MessageRing::Add(const RingMessage& message) {
   end_ += size;
 }
 
-void MessageRing::Trim(double now_ms) {
+void MessageRing::Trim(double now_ms, std::size_t room) {
   const auto is_old = [&](const Chunk& chunk) {
-    return end_ - chunk.begin + kChunkBytes > kMostBytes || now_ms - chunk.newest_ms > kMost_ms;
+    return end_ - chunk.begin + room > kMostBytes || now_ms - chunk.newest_ms > kMost_ms;
   };
   while (!chunks_.empty() && is_old(chunks_.front())) chunks_.pop_front();
 }

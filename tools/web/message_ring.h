@@ -46,7 +46,8 @@ class MessageRing {
     std::string bytes;
   };
 
-  void Trim(double now_ms);
+  /// Drops old messages, and those whose place a new chunk needs.
+  void Trim(double now_ms, std::size_t room);
 
   std::deque<Chunk> chunks_;
   std::uint64_t end_ = 0;

@@ -18,8 +18,8 @@ using testing::HasSubstr;
 
 constexpr std::chrono::seconds kPatience(60);
 
-std::vector<std::string> Run(const std::string& url, const std::string& log, int steps,
-                             const std::string& pace) {
+std::vector<std::string> RunOn(const std::string& url, const std::string& log, int steps,
+                               const std::string& pace) {
   return {Program("fogline"),
           "run",
           "scenario/paper.json",
@@ -61,6 +61,12 @@ class Got {
   double wall_ms_ = 0;
 };
 
+/// Takes frames until there are so many messages, or until kPatience has passed.
+void TakeUntil(std::size_t messages, WebClient& client, Got& got) {
+  const TimePoint end = Clock::now() + kPatience;
+  while (got.size() < messages && Clock::now() < end) got.Take(client.Receive(kPatience));
+}
+
 /// Compares with the log of the run. @return the number of messages in the log
 std::size_t CompareWithLog(Got& got, const std::string& log) {
   log::RunLogReader reader(log);
@@ -87,11 +93,12 @@ TEST(LiveViewTest, GivesEachMessageAsTheRunLogsIt) {
   EXPECT_THAT(hello["url"].get<std::string>(), HasSubstr(url));
   constexpr int kSteps = 230;  // fog begins at 190, the human drives from 203 on
   constexpr std::size_t kMessages = kSteps * 9;
-  Background run(Run(url, folder.File("run.lcm"), kSteps, "10"));
+  Background run(RunOn(url, folder.File("run.lcm"), kSteps, "10"));
   Got got;
   json described;
   std::vector<json> events;
-  while (got.size() < kMessages) {
+  const TimePoint end = Clock::now() + kPatience;
+  while (got.size() < kMessages && Clock::now() < end) {
     const WebFrame frame = client.Receive(kPatience);
     got.Take(frame);
     if (frame.binary) continue;
@@ -116,7 +123,7 @@ TEST(LiveViewTest, GivesALateClientTheRunAndItsHistory) {
   const std::string url = runtime::FreshMulticastUrl();
   Viewed viewed({"--lcm-url", url});
   ASSERT_NE(viewed.port(), 0) << viewed.process().Err();
-  Background run(Run(url, folder.File("run.lcm"), 60, "0"));
+  Background run(RunOn(url, folder.File("run.lcm"), 60, "0"));
   ASSERT_EQ(run.Wait(), 0) << run.Err();
   WebClient client(viewed.port());
   EXPECT_EQ(ReceiveOp(client, "run")["steps"], 60);
@@ -140,7 +147,7 @@ TEST(LiveViewTest, GivesALateClientTheRunAndItsHistory) {
 TEST(LiveViewTest, TellsTheScenarioToAViewerThatStartsLate) {
   const ScratchFolder folder;
   const std::string url = runtime::FreshMulticastUrl();
-  Background run(Run(url, folder.File("run.lcm"), 500, "1"));
+  Background run(RunOn(url, folder.File("run.lcm"), 500, "1"));
   runtime::Bus bus(url);
   bool under_way = false;
   bus.Subscribe(ChannelOf<arbitration_t>().name, [&](runtime::Bytes) { under_way = true; });
@@ -164,11 +171,11 @@ TEST(LiveViewTest, NamesChannelsOfOtherPrograms) {
   ReceiveOp(client, "hello");
   runtime::Bus bus(url);
   const std::vector<std::uint8_t> noise{1, 2, 3};
-  bus.Publish("CAMERA \xff", noise);
+  bus.Publish("CAMERA", noise);
   const json channel = ReceiveOp(client, "channel");
   EXPECT_EQ(channel["id"], kNumChannels);
   EXPECT_EQ(channel["type"], nullptr);
-  EXPECT_THAT(channel["name"].get<std::string>(), HasSubstr("CAMERA"));
+  EXPECT_EQ(channel["name"], "CAMERA");
   const auto messages = MessagesOf(ReceiveKind(client, 1));
   ASSERT_EQ(messages.size(), 1U);
   EXPECT_EQ(messages[0].channel, kNumChannels);
@@ -189,12 +196,12 @@ TEST(LiveViewTest, LeavesTheDigestOfARunAsItIsWith20Viewers) {
   ASSERT_NE(viewed.port(), 0) << viewed.process().Err();
   std::vector<WebClient> clients;
   for (int i = 0; i < 20; ++i) clients.emplace_back(viewed.port());
-  Background run(Run(url, folder.File("run.lcm"), 150, "10"));
+  Background run(RunOn(url, folder.File("run.lcm"), 150, "10"));
   ASSERT_EQ(run.Wait(), 0) << run.Err();
   EXPECT_EQ(json::parse(run.Out())["digest"], direct["digest"]);
   for (WebClient& client : clients) {
     Got got;
-    while (got.size() < 150U * 9) got.Take(client.Receive(kPatience));
+    TakeUntil(150U * 9, client, got);
     EXPECT_EQ(CompareWithLog(got, folder.File("run.lcm")), 150U * 9);
   }
   EXPECT_EQ(ReceiveOp(clients.front(), "health")["viewers"], 20);
@@ -215,7 +222,7 @@ TEST(LiveViewTest, CutsOffAClientThatReadsNothingWhileOthersGoOn) {
     ASSERT_LT(Clock::now(), end);
     for (int i = 0; i < 100; ++i) bus.Publish("FLOOD", bytes);
     sent += 100;
-    while (received < sent) {
+    while (received < sent && Clock::now() < end) {
       const WebFrame frame = eager.Receive(kPatience);
       if (KindOf(frame) == 1) received += MessagesOf(frame).size();
     }
@@ -247,9 +254,10 @@ TEST(LiveViewTest, FollowsARunThatAnnouncesItself) {
                        "--pace", "2", "--quiet", "--log", folder.File("run.lcm")}));
   EXPECT_EQ(ReceiveOp(client, "run")["steps"], 500);
   json health;
+  const TimePoint end = Clock::now() + kPatience;
   do {
     health = ReceiveOp(client, "health");
-  } while (health["traffic"]["runs"].empty());
+  } while (health["traffic"]["runs"].empty() && Clock::now() < end);
   ASSERT_EQ(health["traffic"]["announced"].size(), 1U);
   EXPECT_EQ(health["traffic"]["announced"][0]["followed"], true);
   run.Signal(SIGINT);
@@ -265,11 +273,11 @@ TEST(LiveViewTest, ShowsOnlySignedMessagesIfItHasAKey) {
   ASSERT_NE(viewed.port(), 0) << viewed.process().Err();
   WebClient client(viewed.port());
   runtime::Bus(url).Publish("TRUTH", std::vector<std::uint8_t>(100));
-  std::vector<std::string> command = Run(url, folder.File("run.lcm"), 50, "10");
+  std::vector<std::string> command = RunOn(url, folder.File("run.lcm"), 50, "10");
   command.insert(command.end(), {"--key", key});
   Background run(command);
   Got got;
-  while (got.size() < 50U * 9) got.Take(client.Receive(kPatience));
+  TakeUntil(50U * 9, client, got);
   ASSERT_EQ(run.Wait(), 0) << run.Err();
   EXPECT_EQ(CompareWithLog(got, folder.File("run.lcm")), 50U * 9);
   EXPECT_EQ(ReceiveOp(client, "health")["unverified"], 1);
@@ -291,7 +299,7 @@ TEST(LiveViewTest, GivesFoxglovesClientsMessagesAsJson) {
   client.Send(json{{"op", "subscribe"},
                    {"subscriptions", json::array({{{"id", 77}, {"channelId", truth}}})}}
                   .dump());
-  Background run(Run(url, folder.File("run.lcm"), 20, "10"));
+  Background run(RunOn(url, folder.File("run.lcm"), 20, "10"));
   std::set<std::int64_t> steps;
   while (steps.size() < 20) {
     const std::string frame = ReceiveKind(client, 1).bytes;

@@ -7,6 +7,7 @@
 #include <csignal>
 #include <cstdint>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -95,9 +96,16 @@ inline runtime::Bytes BytesOf(const std::string& text) {
   return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
 }
 
-/// The next text frame with this "op". Other frames are dropped.
+// The server sends something several times a second, so a test must not wait for a certain frame
+// without a limit.
+inline constexpr Duration kFrameLimit = milliseconds(60'000);
+
+/// The next text frame with this "op". Other frames are dropped. @throws std::runtime_error after
+/// kFrameLimit
 inline nlohmann::json ReceiveOp(WebClient& client, const std::string& op) {
+  const TimePoint end = Clock::now() + kFrameLimit;
   while (true) {
+    if (Clock::now() > end) throw std::runtime_error("no frame \"" + op + "\" comes");
     const WebFrame frame = client.Receive();
     if (frame.binary) continue;
     nlohmann::json json = nlohmann::json::parse(frame.bytes);
@@ -105,9 +113,12 @@ inline nlohmann::json ReceiveOp(WebClient& client, const std::string& op) {
   }
 }
 
-/// The next binary frame of this kind. Other frames are dropped.
+/// The next binary frame of this kind. Other frames are dropped. @throws std::runtime_error after
+/// kFrameLimit
 inline WebFrame ReceiveKind(WebClient& client, char kind) {
+  const TimePoint end = Clock::now() + kFrameLimit;
   while (true) {
+    if (Clock::now() > end) throw std::runtime_error("no frame of the kind comes");
     WebFrame frame = client.Receive();
     if (KindOf(frame) == kind) return frame;
   }

@@ -119,9 +119,9 @@ TEST_F(LogIndexTest, NeedsNoMemoryForAForgedStep) {
       file, File("forged.lcm"),
       [](log::EventLogWriter& writer, const log::Event& event, std::vector<std::uint8_t>& data) {
         std::vector<std::uint8_t> forged = data;
-        for (const std::uint8_t late : {0x7f, 0x80}) {  // also a negative step
+        for (const int late : {0x7f, 0x80}) {  // also a negative step
           if (event.channel != "TRUTH") break;
-          forged[runtime::kStepOffset] = late;
+          forged[runtime::kStepOffset] = static_cast<std::uint8_t>(late);
           writer.Write(event.channel, event.utime, forged);
         }
         return true;
