@@ -51,7 +51,9 @@ TEST(RunViewTest, ShowsTheRunAndThenItsLogUntilCtrlC) {
     try {
       WebClient page(port);
       mode = ReceiveOp(page, "hello")["mode"];
-      if (mode == "log") EXPECT_EQ(ReceiveOp(page, "log")["last_step"], 59);
+      if (mode == "log") {
+        EXPECT_EQ(ReceiveOp(page, "log")["last_step"], 59);
+      }
     } catch (const std::exception&) {  // nobody listens between the two programs
     }
   }
