@@ -1,4 +1,4 @@
-// fogline top: shows the traffic on an LCM network as text.
+// fogline top: a text view of the traffic on an LCM network.
 #include <poll.h>
 #include <unistd.h>
 
@@ -9,20 +9,17 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
-#include <utility>
 
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
 #include "common/interrupt.h"
 #include "services/runtime/discovery/beacon.h"
-#include "services/runtime/transport/bus.h"
-#include "services/runtime/transport/lcm_url.h"
 #include "tools/cli/arguments.h"
 #include "tools/cli/help.h"
 #include "tools/fogline/verbs.h"
 #include "tools/watch/announced.h"
-#include "tools/watch/senders/packet_tap.h"
+#include "tools/watch/followed_network.h"
 #include "tools/watch/senders/senders_report.h"
 #include "tools/watch/terminal.h"
 #include "tools/watch/traffic_statistics.h"
@@ -72,55 +69,22 @@ struct TopArguments {
   bool json = false;
 };
 
-// After a flood of messages, poll() may not report the messages that remain. So top looks for such
-// messages at this interval.
-constexpr Duration kLookEvery = milliseconds(50);
-// Interval at which top checks whether it should follow another run. The interval is not shorter,
-// because opening a network takes time.
-constexpr Duration kFollowEvery = milliseconds(100);
 // Every run of this machine announces itself within this time.
 constexpr Duration kDiscovery = 2 * runtime::kBeaconEvery;
-// While a network is open, LCM stores every channel name that it receives, with about 300 bytes for
-// each name. After this many unknown names top closes the network and opens it again.
-constexpr std::int64_t kMostNames = 10'000;
-// Largest number of announced runs that top remembers because their networks are unreachable.
-constexpr std::size_t kMaxUnreachable = 64;
 
 Duration FromSeconds(double seconds) {
   return duration_cast<Duration>(std::chrono::duration<double>(seconds));
 }
 
-/// A network that top watches.
-class WatchedNetwork {
- public:
-  WatchedNetwork(const std::string& url, runtime::Bus::Watcher watcher, watch::Senders& senders)
-      : bus_(url), tap_(watch::PacketTap::Open(bus_.url(), senders)) {
-    bus_.SubscribeAll(std::move(watcher));
-  }
-
-  /// Handles what has come. @throws std::runtime_error if the network's relay has ended
-  void Drain() {
-    bus_.Drain();
-    // The tap comes second, so it has taken the packet of each message that the bus has handled.
-    if (tap_) tap_->Drain(Clock::now());
-  }
-
-  int fd() const { return bus_.fd(); }
-  const std::string& url() const { return bus_.url(); }
-  /// Whether its packets have numbers. Those of a relay have none.
-  bool numbered() const { return tap_ != nullptr; }
-
- private:
-  runtime::Bus bus_;
-  std::unique_ptr<watch::PacketTap> tap_;
-};
-
 class Top {
  public:
   explicit Top(const TopArguments& arguments)
-      : arguments_(arguments), url_(arguments.network.Url()), statistics_(Clock::now()) {
-    Open();
-    if (arguments.network.Follows()) listener_.emplace(bus_->url());
+      : arguments_(arguments),
+        statistics_(Clock::now()),
+        network_(arguments.network.Url(), arguments.network.Follows(),
+                 [this](std::string_view channel, runtime::Bytes bytes) {
+                   statistics_.Add(channel, bytes, Clock::now());
+                 }) {
     if (isatty(STDOUT_FILENO) == 1 && !arguments.once && !arguments.json) terminal_.emplace();
   }
 
@@ -133,7 +97,7 @@ class Top {
     if (terminal_) Show();
     for (TimePoint next = began + interval; Clock::now() < end; next += interval) {
       const bool whole = Listen(std::min(next, end));
-      if (!whole && !WasInterrupted()) return kDone;  // the user pressed q
+      if (!whole && !WasInterrupted()) return kDone;  // q
       if (!whole && arguments_.once) throw Interrupted("interrupted before the interval was over");
       if (!whole) return kInterrupted;
       Show();
@@ -144,72 +108,13 @@ class Top {
   }
 
  private:
-  void Open() {
-    bus_.reset();
-    bus_.emplace(url_, Watcher(), senders_);
-    names_ = statistics_.unknown_names();
-  }
-
-  /// Makes LCM forget the names of channels when there are too many names. Follow() then opens the
-  /// network of the run again.
-  void ForgetNames() {
-    if (statistics_.unknown_names() - names_ < kMostNames) return;
-    followed_.reset();
-    Open();
-  }
-
-  runtime::Bus::Watcher Watcher() {
-    return [this](std::string_view channel, runtime::Bytes bytes) {
-      if (!watch::IsHousekeeping(channel)) statistics_.Add(channel, bytes, Clock::now());
-    };
-  }
-
-  /// Waits at most kDiscovery for the announcement of a run, so that the first interval has all
-  /// traffic of the run.
+  /// Waits until a run is announced, so that the first interval has all of its traffic.
   void Discover() {
     const TimePoint end = Clock::now() + kDiscovery;
-    while (listener_ && !followed_ && Clock::now() < end && Listen(Clock::now() + kLookEvery)) {
+    while (network_.follows() && !network_.followed() && Clock::now() < end &&
+           Listen(Clock::now() + watch::FollowedNetwork::kLookEvery)) {
     }
     statistics_.Observe(Clock::now());
-  }
-
-  /// Also watches the network of the newest announced run.
-  void Follow(TimePoint now) {
-    if (!listener_ || now < follow_at_) return;
-    follow_at_ = now + kFollowEvery;
-    listener_->Look();
-    runs_ = listener_->Runs();
-    const auto newest = std::ranges::find_if(runs_, [this](const runtime::Announcement& run) {
-      return std::ranges::find(unreachable_, run.run_id) == unreachable_.end();
-    });
-    if (newest == runs_.end()) return followed_.reset();
-    std::rotate(runs_.begin(), newest, newest + 1);
-    const runtime::Announcement& run = runs_.front();
-    if (followed_ && runtime::SameNetwork(followed_->url(), run.url)) return;
-    followed_.reset();
-    if (runtime::SameNetwork(bus_->url(), run.url)) return;
-    try {
-      followed_.emplace(run.url, Watcher(), senders_);
-    } catch (const std::exception&) {  // the address came from the network and may be invalid
-      Leave(run.run_id);
-    }
-  }
-
-  /// Handles messages of the followed run.
-  void DrainFollowed() {
-    if (!followed_) return;
-    try {
-      followed_->Drain();
-    } catch (const std::exception&) {  // the relay of the run has ended
-      Leave(runs_.front().run_id);
-    }
-  }
-
-  /// Stops following this run, and remembers it as unreachable.
-  void Leave(std::int64_t run_id) {
-    followed_.reset();
-    if (unreachable_.size() == kMaxUnreachable) unreachable_.clear();
-    unreachable_.push_back(run_id);
   }
 
   /// Handles messages and keys. @return false on an interrupt, or if the user quits before `until`
@@ -217,17 +122,16 @@ class Top {
     while (true) {
       const TimePoint now = Clock::now();
       if (now >= until) return true;
+      const auto [network, followed] = network_.descriptors();
       std::array<pollfd, 3> waited{
-          pollfd{.fd = bus_->fd(), .events = POLLIN, .revents = 0},
-          pollfd{.fd = followed_ ? followed_->fd() : -1, .events = POLLIN, .revents = 0},
+          pollfd{.fd = network, .events = POLLIN, .revents = 0},
+          pollfd{.fd = followed, .events = POLLIN, .revents = 0},
           pollfd{.fd = terminal_ ? terminal_->fd() : -1, .events = POLLIN, .revents = 0}};
-      const Duration wait = std::min(until - now, kLookEvery);
+      const Duration wait = std::min(until - now, watch::FollowedNetwork::kLookEvery);
       poll(waited.data(), waited.size(), static_cast<int>(Milliseconds(wait)) + 1);
       if (WasInterrupted()) return false;
-      bus_->Drain();
-      DrainFollowed();
-      ForgetNames();
-      Follow(now);
+      network_.Handle(now);
+      network_.ForgetNames(statistics_.unknown_names());
       if (terminal_ && terminal_->Key() == 'q') return false;
     }
   }
@@ -244,39 +148,31 @@ class Top {
     std::fflush(stdout);
   }
 
-  /// The network of the followed run, or the given network if no run is followed.
-  const std::string& url() const { return followed_ ? followed_->url() : bus_->url(); }
-
-  bool Numbered() const { return bus_->numbered() || (followed_ && followed_->numbered()); }
-
   std::vector<watch::Line> Lines(const watch::TrafficView& view) const {
-    std::vector<watch::Line> lines = watch::TrafficLines(view, url());
-    const std::vector<watch::Line> announced = watch::AnnouncedLines(runs_, followed_.has_value());
+    std::vector<watch::Line> lines = watch::TrafficLines(view, network_.url());
+    const std::vector<watch::Line> announced =
+        watch::AnnouncedLines(network_.runs(), network_.followed());
     lines.insert(lines.begin() + 1, announced.begin(), announced.end());
-    std::ranges::move(watch::SenderLines(senders_.View(Clock::now())), std::back_inserter(lines));
+    std::ranges::move(watch::SenderLines(network_.ViewSenders(Clock::now())),
+                      std::back_inserter(lines));
     return lines;
   }
 
   nlohmann::ordered_json Json(const watch::TrafficView& view) const {
-    nlohmann::ordered_json json = watch::TrafficJson(view, url());
-    const watch::SendersView senders = senders_.View(Clock::now());
-    json["senders"] = Numbered() ? watch::SendersJson(senders) : nlohmann::ordered_json(nullptr);
+    nlohmann::ordered_json json = watch::TrafficJson(view, network_.url());
+    const watch::SendersView senders = network_.ViewSenders(Clock::now());
+    json["senders"] =
+        network_.numbered() ? watch::SendersJson(senders) : nlohmann::ordered_json(nullptr);
     json["own_overflow"] = senders.own_overflow;
-    if (listener_) json["announced"] = watch::AnnouncedJson(runs_, followed_.has_value());
+    if (network_.follows()) {
+      json["announced"] = watch::AnnouncedJson(network_.runs(), network_.followed());
+    }
     return json;
   }
 
   const TopArguments& arguments_;
-  std::string url_;
   watch::TrafficStatistics statistics_;
-  watch::Senders senders_;
-  std::optional<WatchedNetwork> bus_;
-  std::int64_t names_ = 0;                           // unknown names when bus_ was opened
-  std::optional<runtime::BeaconListener> listener_;  // set if announced runs are to be followed
-  std::vector<runtime::Announcement> runs_;          // announced runs, the followed one first
-  std::optional<WatchedNetwork> followed_;           // the network of the followed run
-  std::vector<std::int64_t> unreachable_;            // ids of runs
-  TimePoint follow_at_{};
+  watch::FollowedNetwork network_;
   std::optional<watch::Terminal> terminal_;
 };
 

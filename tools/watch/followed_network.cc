@@ -20,15 +20,29 @@ constexpr std::size_t kMaxUnreachable = 64;
 }  // namespace
 
 FollowedNetwork::FollowedNetwork(std::string url, bool follows, runtime::Bus::Watcher watcher)
-    : url_(std::move(url)), watcher_(std::move(watcher)) {
+    : url_(std::move(url)),
+      watcher_([watch = std::move(watcher)](std::string_view channel, runtime::Bytes bytes) {
+        if (!IsHousekeeping(channel)) watch(channel, bytes);
+      }) {
   Open();
-  if (follows) listener_.emplace(bus_->url());
+  if (follows) listener_.emplace(network_->bus.url());
+}
+
+FollowedNetwork::Network::Network(const std::string& url, const runtime::Bus::Watcher& watcher,
+                                  Senders& senders)
+    : bus(url), tap(PacketTap::Open(bus.url(), senders)) {
+  bus.SubscribeAll(watcher);
+}
+
+void FollowedNetwork::Network::Drain(TimePoint now) {
+  bus.Drain();
+  // The tap comes second, so it has taken the packet of each message that the bus has handled.
+  if (tap) tap->Drain(now);
 }
 
 void FollowedNetwork::Open() {
-  bus_.reset();
-  bus_.emplace(url_);
-  Watch(*bus_);
+  network_.reset();
+  network_.emplace(url_, watcher_, senders_);
   ++generation_;
 }
 
@@ -39,15 +53,9 @@ void FollowedNetwork::ForgetNames(std::int64_t unknown) {
   Open();
 }
 
-void FollowedNetwork::Watch(runtime::Bus& bus) {
-  bus.SubscribeAll([this](std::string_view channel, runtime::Bytes bytes) {
-    if (!IsHousekeeping(channel)) watcher_(channel, bytes);
-  });
-}
-
 void FollowedNetwork::Handle(TimePoint now) {
-  bus_->Drain();
-  DrainFollowed();
+  network_->Drain(now);
+  DrainFollowed(now);
   Follow(now);
 }
 
@@ -62,22 +70,21 @@ void FollowedNetwork::Follow(TimePoint now) {
   if (newest == runs_.end()) return CloseFollowed();
   std::rotate(runs_.begin(), newest, newest + 1);
   const runtime::Announcement& run = runs_.front();
-  if (followed_ && runtime::SameNetwork(followed_->url(), run.url)) return;
+  if (followed_ && runtime::SameNetwork(followed_->bus.url(), run.url)) return;
   CloseFollowed();
-  if (runtime::SameNetwork(bus_->url(), run.url)) return;
+  if (runtime::SameNetwork(network_->bus.url(), run.url)) return;
   try {
-    followed_.emplace(run.url);
-    Watch(*followed_);
+    followed_.emplace(run.url, watcher_, senders_);
     ++generation_;
   } catch (const std::exception&) {  // the address came from the network and may be invalid
     Leave(run.run_id);
   }
 }
 
-void FollowedNetwork::DrainFollowed() {
+void FollowedNetwork::DrainFollowed(TimePoint now) {
   if (!followed_) return;
   try {
-    followed_->Drain();
+    followed_->Drain(now);
   } catch (const std::exception&) {  // its relay has ended
     Leave(runs_.front().run_id);
   }

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,6 +12,8 @@
 #include "common/clock.h"
 #include "services/runtime/discovery/beacon.h"
 #include "services/runtime/transport/bus.h"
+#include "tools/watch/senders/packet_tap.h"
+#include "tools/watch/senders/senders.h"
 
 namespace fogline::watch {
 
@@ -36,32 +39,47 @@ class FollowedNetwork {
 
   /// The descriptors to wait for; -1 for a network that is not open. They are valid until the next
   /// Handle() or ForgetNames() that changes generation().
-  std::array<int, 2> descriptors() const { return {bus_->fd(), followed_ ? followed_->fd() : -1}; }
+  std::array<int, 2> descriptors() const {
+    return {network_->bus.fd(), followed_ ? followed_->bus.fd() : -1};
+  }
   /// Changes when a network was opened or closed.
   std::int64_t generation() const { return generation_; }
 
   /// The network of the followed run, or else the given network.
-  const std::string& url() const { return followed_ ? followed_->url() : bus_->url(); }
+  const std::string& url() const { return followed_ ? followed_->bus.url() : network_->bus.url(); }
   bool follows() const { return listener_.has_value(); }
   bool followed() const { return followed_.has_value(); }
   /// The announced runs, the followed one first.
   const std::vector<runtime::Announcement>& runs() const { return runs_; }
 
+  /// Who sends, and what of it was lost.
+  SendersView ViewSenders(TimePoint now) const { return senders_.View(now); }
+  /// Whether packets have numbers, by which a loss is found. Those of a relay have none.
+  bool numbered() const { return network_->tap || (followed_ && followed_->tap); }
+
  private:
+  struct Network {
+    Network(const std::string& url, const runtime::Bus::Watcher& watcher, Senders& senders);
+    void Drain(TimePoint now);
+
+    runtime::Bus bus;
+    std::unique_ptr<PacketTap> tap;  // nullptr if packets have no numbers
+  };
+
   void Open();
-  void Watch(runtime::Bus& bus);
   void Follow(TimePoint now);
-  void DrainFollowed();
+  void DrainFollowed(TimePoint now);
   void CloseFollowed();
   void Leave(std::int64_t run_id);
 
   std::string url_;
   runtime::Bus::Watcher watcher_;
-  std::optional<runtime::Bus> bus_;
-  std::int64_t names_ = 0;                           // unknown names when bus_ was opened
+  Senders senders_;
+  std::optional<Network> network_;
+  std::int64_t names_ = 0;                           // unknown names when network_ was opened
   std::optional<runtime::BeaconListener> listener_;  // set if announced runs are to be followed
   std::vector<runtime::Announcement> runs_;
-  std::optional<runtime::Bus> followed_;   // the network of the followed run
+  std::optional<Network> followed_;        // the network of the followed run
   std::vector<std::int64_t> unreachable_;  // ids of runs
   TimePoint follow_at_{};
   std::int64_t generation_ = 0;

@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tools/watch/announced.h"
+#include "tools/watch/senders/senders_report.h"
 #include "tools/watch/traffic_text.h"
 #include "tools/web/types/lcm_types.h"
 #include "tools/web/view_messages.h"
@@ -264,13 +265,15 @@ void LiveView::WaitForHealth() {
 std::string LiveView::Health() {
   const watch::TrafficView traffic = statistics_[turn_].Observe(Clock::now());
   turn_ = (turn_ + 1) % kTurns;
+  const watch::SendersView senders = network_.ViewSenders(Clock::now());
   nlohmann::ordered_json json{{"op", "health"},
                               {"traffic", watch::TrafficJson(traffic, url())},
-                              {"senders", nlohmann::ordered_json::array()},
-                              {"own_overflow", 0},
+                              {"senders", nullptr},
+                              {"own_overflow", senders.own_overflow},
                               {"unverified", unverified_},
                               {"viewers", server_ ? server_->counts().viewers : 0},
                               {"cut_off", server_ ? server_->counts().cut_off : 0}};
+  if (network_.numbered()) json["senders"] = watch::SendersJson(senders);
   if (network_.follows()) {
     json["traffic"]["announced"] = watch::AnnouncedJson(network_.runs(), network_.followed());
   }

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "services/runtime/wire/tcpq_frame.h"
-#include "tests/support/relay_fixture.h"
+#include "tests/integration/network/relay_fixture.h"
 
 namespace fogline::test {
 namespace {

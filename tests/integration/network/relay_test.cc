@@ -16,7 +16,7 @@
 
 #include "services/log/event_log.h"
 #include "services/log/log_seal.h"
-#include "tests/support/relay_fixture.h"
+#include "tests/integration/network/relay_fixture.h"
 
 namespace fogline::test {
 namespace {

@@ -180,7 +180,11 @@ TEST(LiveViewTest, NamesChannelsOfOtherPrograms) {
   ASSERT_EQ(messages.size(), 1U);
   EXPECT_EQ(messages[0].channel, kNumChannels);
   EXPECT_EQ(messages[0].bytes, "\1\2\3");
-  EXPECT_EQ(ReceiveOp(client, "health")["traffic"]["others"].size(), 1U);
+  json health = ReceiveOp(client, "health");
+  EXPECT_EQ(health["traffic"]["others"].size(), 1U);
+  ASSERT_EQ(health["senders"].size(), 1U) << health["senders"].dump();
+  EXPECT_GE(health["senders"][0]["received"], 1);  // LCM tests itself with a message, too
+  EXPECT_EQ(health["senders"][0]["lost"], 0);
   WebClient late(viewed.port());
   EXPECT_EQ(ReceiveOp(late, "hello")["channels"].size(), kNumChannels + 1);
 }
