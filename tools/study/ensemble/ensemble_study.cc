@@ -64,7 +64,7 @@ const std::vector<ExaminedFinding>& Findings() {
               "over is safer, and no set shows that the gate is safer than a driver who is asked "
               "while the deceived sensor is left out."},
       {.number = 4,
-       .name = "hardly ever handing over",
+       .name = "the paper's threshold against a low one",
        .central = {{"threshold", "The paper's threshold is safer than a low one."}},
        .exceptions = {{"The paper's threshold is safer than a low one.", {4, 8}, InSet::kOpposite}},
        .why = "the paper's threshold is less safe than a low one there. The highest threshold is "
@@ -291,7 +291,8 @@ std::string EnsembleMethod(std::int64_t seeds, std::size_t comparisons, std::siz
       "and undecided otherwise. A finding holds in a set if all of its comparisons hold there. It "
       "is robust only if it holds in all sets. A wait leaves nothing of the gain if it does not "
       "save more than a difference that does not matter; a rule costs nothing if it does not cost "
-      "more than that. Comparisons whose differences are large have one of {4} seeds. If runs end "
+      "more than that. Comparisons whose differences are large have one of every {4} seeds. If "
+      "runs end "
       "in collisions, the runs of each seed are compared: a run that collides is less safe than "
       "one "
       "that does not, and two runs that do not collide are compared by their compromised safety "
