@@ -226,6 +226,10 @@ TEST(ReadmeTest, ItsCommandsLeaveNoFileThatGitDoesNotKnow) {
     // These commands take long. Few seeds or steps give the same files.
     if ((*at)[2] == "study" || (*at)[2] == "calibrate") command += " --seeds 1:2";
     if (command.find("--pace") != std::string::npos) command += " --set /steps=20";
+    // The page of a run is shown until Ctrl-C. A run of 20 steps takes 2 s.
+    if (command.find("--view") != std::string::npos) {
+      command = "timeout --preserve-status --signal=INT 20 " + command;
+    }
     // This run waits for a driver that a person starts.
     if (command.find("--external driver") != std::string::npos) {
       command = "fogline-driver & " + command + "; wait $!";
