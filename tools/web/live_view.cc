@@ -183,13 +183,15 @@ void LiveView::Pump(std::uint64_t id) {
     return client.CutOff(CloseCode::kTryAgainLater,
                          fmt::format("does not read; {} bytes wait for it", behind));
   }
-  if (client.waiting() > 0) return;
-  const std::string_view messages = ring_.From(viewer.place);
-  if (viewer.history) {
-    for (std::string_view rest = messages; !rest.empty(); ++viewer.sent) TakeRingMessage(rest);
+  // A client of Foxglove's protocol may have subscribed to none of the messages.
+  while (client.waiting() == 0 && viewer.place < ring_.end()) {
+    const std::string_view messages = ring_.From(viewer.place);
+    if (viewer.history) {
+      for (std::string_view rest = messages; !rest.empty(); ++viewer.sent) TakeRingMessage(rest);
+    }
+    viewer.place += messages.size();
+    SendMessages(viewer, messages);
   }
-  viewer.place += messages.size();
-  SendMessages(viewer, messages);
   if (!viewer.history || viewer.place < ring_.end()) return;
   client.Send(TextFrame(HistoryText(*viewer.history, viewer.sent)));
   viewer.history.reset();
@@ -273,6 +275,9 @@ std::string LiveView::Health() {
                               {"unverified", unverified_},
                               {"viewers", server_ ? server_->counts().viewers : 0},
                               {"cut_off", server_ ? server_->counts().cut_off : 0}};
+  for (auto& run : json["traffic"]["runs"]) {  // JavaScript rounds numbers beyond 2^53
+    run["run_id"] = std::to_string(run["run_id"].get<std::int64_t>());
+  }
   if (network_.numbered()) json["senders"] = watch::SendersJson(senders);
   if (network_.follows()) {
     json["traffic"]["announced"] = watch::AnnouncedJson(network_.runs(), network_.followed());

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "services/graph.h"
+#include "tools/watch/step_sequence.h"
 
 namespace fogline::web {
 namespace {
@@ -51,6 +52,7 @@ void RunTracker::Begin(const run_t& run) {
 void RunTracker::HearStep(std::size_t channel, runtime::Bytes bytes) {
   if (kChannels[channel].pace != Pace::kStep) return;
   const std::int64_t step = runtime::ReadInt64(bytes, runtime::kStepOffset);
+  if (step < 0 || step > watch::StepSequence::kMaxStep) return;
   if (step < newest_ - kPlayedAgain || (step == 0 && newest_ > 0)) {
     events_ = {};
     newest_ = step;

@@ -59,7 +59,7 @@ Examples:
   fogline run scenario/paper.json --pace 1 & fogline view
   fogline view logs/paper-1.lcm
   fogline view logs/paper-1.lcm --open-at 190
-  fogline view --listen 192.168.1.5 --no-browser       for other machines
+  fogline view --listen 192.168.1.5                    for other machines
   ssh -L 7680:127.0.0.1:7680 lab1 fogline view         the run on lab1, seen here
   fogline view --allow-origin http://localhost:8080    for Lichtblick, served there)";
 
@@ -162,7 +162,9 @@ void Say(const ViewArguments& arguments, const Server& server) {
   const std::string url = server.access().Url(step);
   fmt::print("{}\n", url);
   std::fflush(stdout);
-  if (!arguments.no_browser && HasBrowser()) OpenBrowser(url);
+  // Every user of the machine can read the arguments of the opener, so it gets no token.
+  const bool has_token = url.find("token=") != std::string::npos;
+  if (!arguments.no_browser && !has_token && HasBrowser()) OpenBrowser(url);
 }
 
 /// Serves a view until a signal ends the program.

@@ -314,7 +314,7 @@ class Page {
       this.healthIsNew = false;
       this.health.drawLive(this.lastHealth, this.store.run, this.store.statuses);
     }
-    if (!this.isLive && this.healthStep !== step) {
+    if (!this.isLive && this.log && this.healthStep !== step) {
       this.healthStep = step;
       this.health.drawLog(this.log, this.run, this.store.statuses, step);
     }

@@ -73,10 +73,10 @@ function channelRow(channel) {
     cell(count(channel.undecodable)));
 }
 
-/** The run of the traffic that the page shows; the first one if the page knows none. */
+/** The run of the traffic that the page shows; the newest one if the page knows none. */
 function shownRun(traffic, run) {
   const runs = traffic?.runs ?? [];
-  return runs.find(({run_id}) => run && String(run_id) === run.run_id) ?? runs[0];
+  return run ? runs.find(({run_id}) => run_id === run.run_id) : runs.at(-1);
 }
 
 export class Health {
