@@ -10,8 +10,8 @@
 #include "services/runtime/transport/bus.h"
 #include "services/runtime/wire/message_signer.h"
 #include "tests/integration/logs/log_integrity_fixture.h"
+#include "tests/integration/network/relay_fixture.h"
 #include "tests/support/command.h"
-#include "tests/support/relay_fixture.h"
 
 namespace fogline::test {
 namespace {
