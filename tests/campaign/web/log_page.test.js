@@ -116,7 +116,7 @@ test("everything works with the keyboard alone", async (t) => {
   await page.keyboard.press("Space");
   await page.waitForFunction(() => Number(document.body.dataset.step) > 160);
   await page.keyboard.press("Space");
-  assert.equal(await page.locator("#play").getAttribute("aria-label"), "Play");
+  await page.waitForFunction(() => document.getElementById("play").ariaLabel === "Play");
 
   await page.keyboard.press("?");
   assert.ok(await page.locator("#help").isVisible());
