@@ -14,6 +14,7 @@
 #include "fogline/accel_command_t.hpp"
 #include "fogline/arbitration_t.hpp"
 #include "fogline/driver_command_t.hpp"
+#include "fogline/driver_input_t.hpp"
 #include "fogline/ego_t.hpp"
 #include "fogline/follower_command_t.hpp"
 #include "fogline/lidar_t.hpp"
@@ -153,6 +154,11 @@ inline constexpr std::tuple kGraph{
                       "state, step and counters of every role"},
     Channel<resend_t>{"RESEND", Pace::kControl, Role::kRunner, kEveryone,
                       "asks a producer to publish a step again"},
+    Channel<driver_input_t>{"DRIVER_INPUT",
+                            Pace::kControl,
+                            Role::kRunner,
+                            {Role::kDriver},
+                            "pedals and buttons of a person who drives"},
 };
 
 inline constexpr std::size_t kNumChannels = std::tuple_size_v<decltype(kGraph)>;
@@ -167,7 +173,7 @@ struct ChannelInfo {
   RoleSet on_demand;
 
   /// Whether the recorder logs the channel. The recorder logs every kStep channel, and RUN, so that
-  /// a log contains its scenario. In real time, the recorder also logs STATUS.
+  /// a log contains its scenario. In real time, the recorder also logs STATUS and DRIVER_INPUT.
   constexpr bool Logged() const { return pace == Pace::kStep || name == "RUN"; }
 };
 

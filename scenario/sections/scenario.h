@@ -11,6 +11,7 @@
 #include "scenario/sections/control.h"
 #include "scenario/sections/field.h"
 #include "scenario/sections/human.h"
+#include "scenario/sections/person.h"
 #include "scenario/sections/realtime.h"
 #include "scenario/sections/road.h"
 #include "scenario/sections/sensing.h"
@@ -106,6 +107,8 @@ struct Scenario {
   FOGLINE_FIELD(DriverSection, driver, {}, "The human driver of the host.");
   FOGLINE_FIELD(HumanSection, human, {},
                 "Human weaknesses of the driver, which the paper's driver lacks.");
+  FOGLINE_FIELD(PersonSection, person, {},
+                "Real time: a person who drives in place of the model of a driver.");
   FOGLINE_FIELD(ArbitratorSection, arbitrator, {}, "Who drives the host.");
   FOGLINE_FIELD(AebSection, aeb, {},
                 "Emergency braking of the host, on the fused track, whichever side drives.");

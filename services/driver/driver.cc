@@ -39,6 +39,7 @@ Driver::Driver(const Scenario& scenario)
       step_s_(scenario.step_s) {
   const HumanSection& human = scenario.human;
   out_.readiness = scenario.driver.readiness;
+  out_.input_sequence = -1;
   if (human.sight == Sight::kFog) sight_.emplace(human.fog_sight);
   if (human.loses_awareness) awareness_.emplace(human.awareness, scenario.driver.readiness);
   if (human.misjudges) {

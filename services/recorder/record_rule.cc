@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "services/runtime/wire/driver_input.h"
+
 namespace fogline::recorder {
 namespace {
 
@@ -14,9 +16,12 @@ constexpr Duration kAskEvery = milliseconds(20);
 // At most this many steps may be incomplete: half of the number of steps that a producer stores.
 // The other half leaves time for the producers' answers.
 constexpr std::int64_t kMaxOpen = runtime::kRingSteps / 2;
-// At most this many STATUS messages may wait to be written: several from each role in each open
-// step.
+// At most this many STATUS and DRIVER_INPUT messages may wait to be written: several from each role
+// in each open step.
 constexpr std::size_t kMaxHeard = 4096;
+// So many DRIVER_INPUT are logged in a second: those of four seats that send as often as a seat
+// may. So a flood fills neither the memory nor the disk.
+constexpr double kSeats = 4;
 
 }  // namespace
 
@@ -25,25 +30,38 @@ RecordRule::RecordRule(runtime::Parts& parts, const Scenario& scenario)
       watch_(parts, scenario),
       overdue_(duration_cast<Duration>(
           kOverduePeriods *
-          std::chrono::duration<double>(runtime::PeriodOf(scenario, parts.run.pace)))) {}
+          std::chrono::duration<double>(runtime::PeriodOf(scenario, parts.run.pace)))),
+      inputs_per_s_(kSeats * runtime::kMostInputsPerSecond, kSeats * runtime::kMostInputsAtOnce) {}
 
-void RecordRule::ListenToStatus() {
+void RecordRule::Listen() {
   listening_ = true;
   parts_.bus.Subscribe(ChannelOf<status_t>().name, [this](runtime::Arrival& arrival) {
     const auto* status = arrival.As<status_t>();
-    if (status == nullptr || status->header.run_id != *parts_.run.id ||
-        heard_.size() >= kMaxHeard) {
+    if (status == nullptr || status->header.run_id != *parts_.run.id) return;
+    Hear(IndexOf<status_t>(), arrival.bytes());
+  });
+  // The driver refuses what is unsound, and counts it.
+  parts_.bus.Subscribe(ChannelOf<driver_input_t>().name, [this](runtime::Arrival& arrival) {
+    const auto* input = arrival.As<driver_input_t>();
+    if (input == nullptr || input->header.run_id != *parts_.run.id ||
+        runtime::WrongIn(*input) != nullptr || !inputs_per_s_.Take(arrival.time())) {
       return;
     }
-    const runtime::Bytes bytes = arrival.bytes();
-    heard_.push_back({.step = std::max<std::int64_t>(watch_.horizon().newest(), 0),
-                      .bytes = {bytes.begin(), bytes.end()}});
+    Hear(IndexOf<driver_input_t>(), arrival.bytes());
   });
 }
 
-void RecordRule::TakeStatus(std::int64_t step, const std::function<void(runtime::Bytes)>& use) {
+void RecordRule::Hear(std::size_t channel, runtime::Bytes bytes) {
+  if (heard_.size() >= kMaxHeard) return;
+  heard_.push_back({.step = std::max<std::int64_t>(watch_.horizon().newest(), 0),
+                    .channel = channel,
+                    .bytes = {bytes.begin(), bytes.end()}});
+}
+
+void RecordRule::TakeEvents(
+    std::int64_t step, const std::function<void(std::string_view channel, runtime::Bytes)>& use) {
   for (; !heard_.empty() && heard_.front().step <= step; heard_.pop_front()) {
-    use(heard_.front().bytes);
+    use(kChannels[heard_.front().channel].name, heard_.front().bytes);
   }
 }
 
@@ -97,7 +115,7 @@ TimePoint RecordRule::Poll(TimePoint now) {
 }
 
 TimePoint RecordRule::Fire(TimePoint now) {
-  if (!listening_) ListenToStatus();
+  if (!listening_) Listen();
   const auto inputs = parts_.inputs.all();
   const auto is_due = [&, this] {
     const std::int64_t next = parts_.steps.next();

@@ -2,8 +2,8 @@
 // steps in order as soon as they are complete. The recorder asks for a missing message as long as
 // the producer can still have the message. A step that stays incomplete is written without the
 // missing messages. RUN tells the recorder that a step is under way, even if none of its messages
-// has come. Each STATUS is also written into the log, after the step in which it came, because the
-// states of the roles are part of the record.
+// has come. Each STATUS and each DRIVER_INPUT is also written into the log, after the step in which
+// it came, because the states of the roles and the acts of a person are part of the record.
 #pragma once
 
 #include <array>
@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "services/runtime/node/fire_rule.h"
+#include "services/runtime/node/rate_limiter.h"
 #include "services/runtime/realtime/realtime_watch.h"
 
 namespace fogline::recorder {
@@ -27,8 +28,9 @@ class RecordRule final : public runtime::FireRule {
   /// this count.
   void WriteStatus(TimePoint now) override;
 
-  /// Calls `use` once for each STATUS that came in this step or before.
-  void TakeStatus(std::int64_t step, const std::function<void(runtime::Bytes)>& use);
+  /// Calls `use` once for each STATUS and DRIVER_INPUT that came in this step or before.
+  void TakeEvents(std::int64_t step,
+                  const std::function<void(std::string_view channel, runtime::Bytes)>& use);
 
  private:
   /// A step that is under way and not written yet.
@@ -39,7 +41,8 @@ class RecordRule final : public runtime::FireRule {
     TimePoint asked_at{};
   };
   struct Heard {
-    std::int64_t step;  // the newest step when the STATUS came
+    std::int64_t step;  // the newest step when the message came
+    std::size_t channel;
     std::vector<std::uint8_t> bytes;
   };
 
@@ -63,7 +66,8 @@ class RecordRule final : public runtime::FireRule {
   /// Whether the recorder expects no further message of the step.
   bool GivenUp(std::int64_t step, TimePoint now);
   void AskForHoles(TimePoint now);
-  void ListenToStatus();
+  void Listen();
+  void Hear(std::size_t channel, runtime::Bytes bytes);
 
   runtime::Parts& parts_;
   runtime::RealtimeWatch watch_;
@@ -71,6 +75,7 @@ class RecordRule final : public runtime::FireRule {
   std::array<Open, runtime::kRingSteps> open_{};
   std::array<Refused, kNumChannels> refused_{};  // by index in Inputs::all()
   std::deque<Heard> heard_;
+  runtime::RateLimiter inputs_per_s_;
   TimePoint ask_at_{};
   bool listening_ = false;
 };

@@ -136,15 +136,15 @@ void Recorder::Write(std::int64_t step) {
   }
 }
 
-void Recorder::WriteStatus(std::int64_t step) {
-  recording_->TakeStatus(step, [&](runtime::Bytes bytes) {
-    log_->Write(ChannelOf<status_t>().name, step * step_us_, bytes);
+void Recorder::WriteEvents(std::int64_t step) {
+  recording_->TakeEvents(step, [&](std::string_view channel, runtime::Bytes bytes) {
+    log_->Write(channel, step * step_us_, bytes);
   });
 }
 
 void Recorder::Compute(std::int64_t step) {
   Write(step);
-  if (recording_ != nullptr) WriteStatus(step);
+  if (recording_ != nullptr) WriteEvents(step);
   history_->Add(log_->size());
   // In real time, the recorder flushes each step, because a restarted recorder can ask the roles
   // for only the newest 32 steps. There is enough time to flush.
@@ -267,7 +267,7 @@ void Recorder::OnLeave() {
   const std::int64_t next = parts_.steps.next();
   try {
     for (std::int64_t step = next; step <= newest; ++step) Write(step);
-    if (recording_ != nullptr) WriteStatus(std::max(newest, next - 1));
+    if (recording_ != nullptr) WriteEvents(std::max(newest, next - 1));
     log_->Flush();
   } catch (const std::runtime_error&) {
     // The disk is full. If complete steps did not fit, an earlier write has reported this. These

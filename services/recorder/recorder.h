@@ -49,7 +49,8 @@ class Recorder final : public runtime::Work {
   void RememberLastSteps();
   void WriteScenario();
   void Write(std::int64_t step);
-  void WriteStatus(std::int64_t step);
+  /// Writes what came apart from the steps, in this step or before (RecordRule::TakeEvents).
+  void WriteEvents(std::int64_t step);
   /// Writes into STATUS how much of the log the operating system has, and the checksum of this
   /// part.
   void TellWritten();

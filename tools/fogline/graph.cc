@@ -22,11 +22,12 @@ std::string NamesOf(const RoleSet& roles) {
 }
 
 std::string Consumers(const ChannelInfo& channel) {
-  if (channel.pace == Pace::kControl && channel.name != "STATUS") return "everyone";
-  return NamesOf(channel.to) + (channel.pace == Pace::kStep ? ", recorder" : "");
+  if (channel.name == "RUN" || channel.name == "RESEND") return "everyone";
+  return NamesOf(channel.to) + (channel.name == "STATUS" ? "" : ", recorder");
 }
 
 std::string Producer(const ChannelInfo& channel) {
+  if (channel.name == "DRIVER_INPUT") return "a seat";
   const bool many = channel.pace == Pace::kControl && channel.name != "RUN";
   return many ? "everyone" : std::string(NameOf(channel.from));
 }

@@ -24,6 +24,9 @@ inline constexpr std::array kRefusals{
     RefusalKind{"out_of_window", &status_t::out_of_window, "of impossible steps"},
     RefusalKind{"not_signed", &status_t::not_signed, "without a signature"},
     RefusalKind{"badly_signed", &status_t::badly_signed, "with a wrong signature"},
+    RefusalKind{"out_of_range", &status_t::out_of_range, "with numbers outside of their range"},
+    RefusalKind{"too_frequent", &status_t::too_frequent, "sent too often"},
+    RefusalKind{"second_seat", &status_t::second_seat, "of a second seat"},
 };
 
 /// The counter of a kind of refusal; nullptr means that the message is not refused.

@@ -97,7 +97,7 @@ Json ChannelsJson() {
   std::apply(
       [&json]<class... M>(const Channel<M>&... channel) {
         const auto add = [&json](const auto& info, std::string_view type) {
-          const bool everyone = info.pace == Pace::kControl && info.name != "RUN";
+          const bool everyone = info.name == "STATUS" || info.name == "RESEND";
           json.push_back({{"id", json.size()},
                           {"name", info.name},
                           {"type", type},

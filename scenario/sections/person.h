@@ -1,0 +1,73 @@
+// The section of a scenario for a person who drives the host in place of the model of a driver: the
+// map from pedals to an acceleration, the deadman, and how the person takes over.
+#pragma once
+
+#include <array>
+#include <string_view>
+
+#include "scenario/sections/field.h"
+
+namespace fogline {
+
+enum class PedalMap { kLinear, kProgressive };
+constexpr auto ChoicesOf(PedalMap) {
+  return std::to_array<Choice>(
+      {{"linear", "the acceleration is proportional to the pedal's travel"},
+       {"progressive",
+        "the acceleration is proportional to a power of the pedal's travel (pedal_exponent), so "
+        "the first part of the travel is finer"}});
+}
+
+enum class TakeOverBy { kButton, kPedal, kEither };
+constexpr auto ChoicesOf(TakeOverBy) {
+  return std::to_array<Choice>({{"button", "the button for taking over"},
+                                {"pedal", "a pedal at take_over_pedal or beyond"},
+                                {"either", "the button, or a pedal"}});
+}
+
+/// A person who drives. services/models/driver/pedal_response.h has the equation of the pedal map.
+struct PersonSection {
+  FOGLINE_FIELD(bool, drives, false,
+                "Whether a person drives, through DRIVER_INPUT. Only a run in real time can have "
+                "a person (fogline drive).");
+  FOGLINE_FIELD(PedalMap, pedal_map, PedalMap::kProgressive,
+                "How a pedal's travel becomes a share of its full effect.");
+  FOGLINE_FIELD(double, pedal_exponent, 1.5, {1, 4},
+                "For progressive: power of the pedal's travel.",
+                "our choice, because half of the travel then gives about a third of the effect");
+  FOGLINE_FIELD(double, full_throttle_mps2, 3.0, {0.5, 12, "m/s2"},
+                "Acceleration with the throttle pressed fully.",
+                "our choice, because a usual car goes from 0 to 100 km/h in about 10 s");
+  FOGLINE_FIELD(double, full_brake_mps2, 8.0, {1, 12, "m/s2"},
+                "Deceleration with the brake pressed fully.",
+                "our choice, because the tyres of cars brake with about 8 m/s2 on a dry road");
+  FOGLINE_FIELD(double, coasting_mps2, 0.5, {0, 3, "m/s2"},
+                "Deceleration with both pedals released.",
+                "our choice, because air, tyres and the drag of the engine slow a car by about "
+                "this much at 25 m/s");
+  FOGLINE_FIELD(double, deadman_s, 0.3, {0.1, 5, "s"},
+                "Without a DRIVER_INPUT for this time, nobody drives: readiness 0, pedals "
+                "released.",
+                "our choice, because a seat sends at least every 50 ms, so six messages in a row "
+                "are then missing");
+  FOGLINE_FIELD(TakeOverBy, take_over_by, TakeOverBy::kEither,
+                "How the person answers a request to take over.");
+  FOGLINE_FIELD(double, take_over_pedal, 0.1, {0.01, 1},
+                "For pedal and either: travel of throttle or brake from which on the person takes "
+                "over.",
+                "our choice, because a foot that rests on a pedal presses less than a tenth");
+  FOGLINE_FIELD(double, key_press_ps, 1.5, {0.1, 20, "1/s"},
+                "How fast a pedal moves while its key is down.",
+                "our choice, because full brake in 0.7 s still lets a short press brake gently");
+  FOGLINE_FIELD(double, key_release_ps, 4.0, {0.1, 20, "1/s"},
+                "How fast a pedal moves back when its key is up.",
+                "our choice, because a foot leaves a pedal in about a quarter of a second");
+};
+
+/// The error of every run that a person cannot drive.
+inline constexpr std::string_view kPersonNeedsRealtime =
+    "/person/drives: a person drives only in real time, with one process for each role: use "
+    "fogline "
+    "drive, or fogline run --realtime";
+
+}  // namespace fogline

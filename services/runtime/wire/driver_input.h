@@ -1,0 +1,42 @@
+// What a DRIVER_INPUT may contain, and how often a seat may send one. All programs that send or
+// read DRIVER_INPUT use these limits.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+
+#include "common/clock.h"
+#include "services/runtime/wire/refusals.h"
+
+namespace fogline::runtime {
+
+/// A seat sends at least one message in this time, so a longer silence is a fault.
+inline constexpr Duration kInputEvery = milliseconds(50);
+/// A seat sends at most this many messages in a second. Our choice: the fastest gamepads report 250
+/// times a second over Bluetooth.
+inline constexpr double kMostInputsPerSecond = 250;
+/// So many messages of a seat may come at once: those of a network that has stopped for 0.2 s.
+inline constexpr double kMostInputsAtOnce = 50;
+/// Longest name of a device, in bytes of UTF-8.
+inline constexpr std::size_t kMostDeviceBytes = 64;
+/// No usual gamepad or wheel has more axes.
+inline constexpr std::int32_t kMostAxes = 16;
+
+/// Whether every number of the message is in its range. @return nullptr if so
+inline RefusalCounter WrongIn(const driver_input_t& input) {
+  const auto in = [](double value, double least, double most) {
+    return value >= least && value <= most;  // false for NaN
+  };
+  constexpr std::int32_t kButtons = driver_input_t::TAKE_OVER | driver_input_t::GIVE_BACK;
+  const bool sound =
+      input.header.step >= -1 && input.instance != 0 && input.sequence >= 0 &&
+      input.latency_us >= -1 && input.device_kind >= driver_input_t::KEYBOARD &&
+      input.device_kind <= driver_input_t::EVDEV && input.device.size() <= kMostDeviceBytes &&
+      in(input.throttle, 0, 1) && in(input.brake, 0, 1) && input.num_axes <= kMostAxes &&
+      std::ranges::all_of(input.axes, [&](double axis) { return in(axis, -1, 1); }) &&
+      (input.buttons & ~kButtons) == 0;
+  return sound ? nullptr : &status_t::out_of_range;
+}
+
+}  // namespace fogline::runtime
