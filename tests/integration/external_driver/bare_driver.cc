@@ -83,6 +83,7 @@ class BareDriver {
     answer.acceleration_mps2 = Idm(std::max(truth->host_speed_mps, 0.0), truth->preceding_speed_mps,
                                    truth->host_gap_m, time_gap_);
     answer.readiness = 1;
+    answer.input_sequence = -1;  // no person drives
     lcm_.publish("DRIVER_COMMAND", &answer);
     answers_.erase(answers_.begin(), answers_.lower_bound(step - 64));  // no role is so far behind
     status_.state = status_t::RUNNING;

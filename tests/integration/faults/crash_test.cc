@@ -217,7 +217,7 @@ TEST(CrashTest, TheLimitForTheSizeOfFilesEndsTheRunByNameAndStartsNoRecorderAgai
     const Outcome rest =
         RunCommand({Program("fogline"), "run", "--resume", log, "--transport", transport});
     EXPECT_EQ(rest.code, 0) << rest.err;
-    EXPECT_THAT(rest.out, HasSubstr("digest dc509616fb13af4c"));
+    EXPECT_THAT(rest.out, HasSubstr("digest 90ca471057e464ab"));
   }
 }
 
