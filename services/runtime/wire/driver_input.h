@@ -28,14 +28,15 @@ inline RefusalCounter WrongIn(const driver_input_t& input) {
   const auto in = [](double value, double least, double most) {
     return value >= least && value <= most;  // false for NaN
   };
-  constexpr std::int32_t kButtons = driver_input_t::TAKE_OVER | driver_input_t::GIVE_BACK;
+  constexpr std::int32_t kTakeOver = driver_input_t::TAKE_OVER;
+  constexpr std::int32_t kGiveBack = driver_input_t::GIVE_BACK;
   const bool sound =
       input.header.step >= -1 && input.instance != 0 && input.sequence >= 0 &&
       input.latency_us >= -1 && input.device_kind >= driver_input_t::KEYBOARD &&
       input.device_kind <= driver_input_t::EVDEV && input.device.size() <= kMostDeviceBytes &&
       in(input.throttle, 0, 1) && in(input.brake, 0, 1) && input.num_axes <= kMostAxes &&
       std::ranges::all_of(input.axes, [&](double axis) { return in(axis, -1, 1); }) &&
-      (input.buttons & ~kButtons) == 0;
+      (input.buttons & ~(kTakeOver | kGiveBack)) == 0;
   return sound ? nullptr : &status_t::out_of_range;
 }
 
