@@ -12,6 +12,16 @@
 // 0 all fields of this message are zero. In real time the role does not wait for M:
 // SetOnDemandInput gets the newest M that has come. SetOnDemandInput is not called before the first
 // M has come.
+//
+// An algorithm may have a live input: what a person does, which no role computes. An algorithm with
+// a live input has these two functions.
+//
+//     static bool UsesLiveInput(const Scenario& scenario);  // whether the input is used
+//     void SetLiveInput(const driver_input_t* input);       // if so, called before each Step
+//
+// Only a run in real time has a live input. SetLiveInput gets the newest message; nullptr if nobody
+// is there (services/runtime/seat/seat_gate.h). The output of the algorithm names the message,
+// so a replay can find it in the log.
 #pragma once
 
 #include <concepts>
@@ -59,6 +69,11 @@ template <class A>
 requires requires { &A::SetOnDemandInput; }
 struct OnDemandInputs<A> {
   using Type = typename OnDemandSignature<decltype(&A::SetOnDemandInput)>::Inputs;
+};
+
+template <class A>
+concept HasLiveInput = requires(A a, const driver_input_t* input) {
+  a.SetLiveInput(input);
 };
 
 /// Whether the tuple has exactly the types of the kStep channels that kGraph sends to the role.
@@ -113,6 +128,18 @@ struct AlgorithmTraits {
   static bool UsesOnDemandInput([[maybe_unused]] const Scenario& scenario) {
     if constexpr (kHasOnDemand) {
       return A::UsesOnDemandInput(scenario);
+    } else {
+      return false;
+    }
+  }
+
+  /// Whether the algorithm can read a live input.
+  static constexpr bool kHasLive = internal::HasLiveInput<A>;
+
+  /// Whether the algorithm reads its live input in this scenario.
+  static bool UsesLiveInput([[maybe_unused]] const Scenario& scenario) {
+    if constexpr (kHasLive) {
+      return A::UsesLiveInput(scenario);
     } else {
       return false;
     }

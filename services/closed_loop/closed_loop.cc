@@ -3,7 +3,8 @@
 namespace fogline::closed_loop {
 
 ClosedLoop::ClosedLoop(const Scenario& scenario)
-    : on_demand_(scenario),
+    : person_(scenario.person.drives),
+      on_demand_(scenario),
       world_(scenario),
       radar_(scenario),
       lidar_(scenario),
@@ -14,6 +15,7 @@ ClosedLoop::ClosedLoop(const Scenario& scenario)
       follower_(scenario) {}
 
 void ClosedLoop::Restart(const Scenario& scenario) {
+  person_ = scenario.person.drives;
   on_demand_ = OnDemandRoles(scenario);
   acc_.Restart(scenario);
   follower_.Restart(scenario);

@@ -5,7 +5,9 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 
+#include "common/errors.h"
 #include "scenario/sections/scenario.h"
 #include "services/acc/acc.h"
 #include "services/algorithm.h"
@@ -64,8 +66,10 @@ class ClosedLoop {
 
   /// Computes all steps, and calls `visit(const StepView&)` after each step. Call Run() once after
   /// construction, and once after each Restart().
+  /// @throws InputError if a person drives
   template <class Visit>
   void Run(std::int64_t run_id, Visit&& visit) {
+    if (person_) throw InputError(std::string(kPersonNeedsRealtime));
     static const arbitration_t kBeforeTheRun{};
     const arbitration_t* last = &kBeforeTheRun;
     const auto* made = &world_.Start(run_id);
@@ -108,6 +112,7 @@ class ClosedLoop {
     }
   }
 
+  bool person_;  // whether the scenario has a person who drives
   OnDemandRoles on_demand_;
   world::World world_;
   radar::Radar radar_;

@@ -36,10 +36,17 @@ models::HumanDriver MakeHuman(const Scenario& scenario, const models::Following&
 Driver::Driver(const Scenario& scenario)
     : following_(scenario.human.following, scenario.driver, scenario.human.coolness),
       errors_(scenario.human.errors),
+      person_(scenario.person),
+      pedals_(scenario.person),
+      readiness_(scenario.driver.readiness),
       step_s_(scenario.step_s) {
   const HumanSection& human = scenario.human;
-  out_.readiness = scenario.driver.readiness;
+  out_.readiness = readiness_;
   out_.input_sequence = -1;
+  if (person_.drives) {
+    SetLiveInput(nullptr);
+    return;
+  }
   if (human.sight == Sight::kFog) sight_.emplace(human.fog_sight);
   if (human.loses_awareness) awareness_.emplace(human.awareness, scenario.driver.readiness);
   if (human.misjudges) {
@@ -56,7 +63,30 @@ void Driver::SetOnDemandInput(const arbitration_t& host) {
   task_ = monitors ? models::DriverTask::kMonitors : models::DriverTask::kDrives;
 }
 
+void Driver::SetLiveInput(const driver_input_t* input) {
+  static const driver_input_t kReleased{};
+  if (input != nullptr && input->present == 0) input = nullptr;
+  const driver_input_t& act = input != nullptr ? *input : kReleased;
+  out_.acceleration_mps2 = pedals_.Acceleration(act.throttle, act.brake);
+  out_.readiness = input != nullptr ? readiness_ : 0;
+  out_.acknowledged = input != nullptr && Acknowledges(act) ? 1 : 0;
+  out_.gives_back = (act.buttons & driver_input_t::GIVE_BACK) != 0 ? 1 : 0;
+  out_.input_instance = act.instance;
+  out_.input_sequence = input != nullptr ? act.sequence : -1;
+}
+
+bool Driver::Acknowledges(const driver_input_t& input) const {
+  const bool button = (input.buttons & driver_input_t::TAKE_OVER) != 0;
+  const bool pedal = pedals_.TakesOver(input.throttle, input.brake);
+  return (button && person_.take_over_by != TakeOverBy::kPedal) ||
+         (pedal && person_.take_over_by != TakeOverBy::kButton);
+}
+
 const driver_command_t& Driver::Step(const truth_t& truth) {
+  if (person_.drives) {
+    out_.header = truth.header;
+    return out_;
+  }
   if (awareness_) PassTime(truth.header.step);
   out_.header = truth.header;
   out_.acceleration_mps2 = Drive(truth);

@@ -1,6 +1,6 @@
 // The human driver of the host. The driver sees the road as far as fog allows, and does not use the
 // sensors. The driver offers an acceleration in every step. The arbitrator decides whether the host
-// follows this offer.
+// follows this offer. In real time a person at pedals may take the place of this model.
 #pragma once
 
 #include <cstdint>
@@ -12,6 +12,7 @@
 #include "services/models/driver/fog_sight.h"
 #include "services/models/driver/following.h"
 #include "services/models/driver/human_driver.h"
+#include "services/models/driver/pedal_response.h"
 
 namespace fogline::driver {
 
@@ -25,15 +26,25 @@ class Driver {
   explicit Driver(const Scenario& scenario);
 
   /// Whether the driver needs HOST_COMMAND, because his awareness depends on who drives.
-  static bool UsesOnDemandInput(const Scenario& scenario) { return scenario.human.loses_awareness; }
+  static bool UsesOnDemandInput(const Scenario& scenario) {
+    return scenario.human.loses_awareness && !scenario.person.drives;
+  }
   /// Takes the host's command of the previous step. The command's mode says which side drove.
   void SetOnDemandInput(const arbitration_t& host);
+
+  /// Whether a person drives. SetLiveInput() is then called before every Step().
+  static bool UsesLiveInput(const Scenario& scenario) { return scenario.person.drives; }
+  /// Takes what the person does; nullptr: nobody is there. The next offer is a function of this
+  /// input alone (services/models/driver/pedal_response.h). Without a person the pedals are
+  /// released, and the readiness is 0.
+  void SetLiveInput(const driver_input_t* input);
 
   /// The acceleration that the driver offers. Call it in the order of steps. The driver has a
   /// memory only if he misjudges or loses awareness. The result is valid until the next call.
   const driver_command_t& Step(const truth_t& truth);
 
  private:
+  bool Acknowledges(const driver_input_t& input) const;
   void PassTime(std::int64_t step);
   double Drive(const truth_t& truth);
 
@@ -42,6 +53,9 @@ class Driver {
   std::optional<models::HumanDriver> human_;
   std::optional<models::Awareness> awareness_;
   HumanParameters errors_;  // errors of an aware driver
+  PersonSection person_;
+  models::PedalResponse pedals_;
+  double readiness_;  // of a person who is there
   double step_s_;
   models::DriverTask task_ = models::DriverTask::kMonitors;
   std::optional<std::int64_t> last_step_;

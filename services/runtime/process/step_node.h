@@ -25,6 +25,7 @@
 #include "services/runtime/realtime/deadline_rule.h"
 #include "services/runtime/realtime/realtime_rule.h"
 #include "services/runtime/realtime/tick_rule.h"
+#include "services/runtime/seat/live_input.h"
 
 namespace fogline::runtime {
 
@@ -79,6 +80,7 @@ class StepNode final : public Work {
       uses_on_demand_ = Traits::UsesOnDemandInput(scenario);
       if (uses_on_demand_) KeepMessagesOf<kInputs>(parts_.inputs.ReadOnDemand(kPlace<kInputs>));
     }
+    if (Traits::UsesLiveInput(scenario)) live_.emplace(parts_, scenario);
     if constexpr (kFailsafe) {
       if (parts_.run.realtime) failsafe_ = std::make_unique<Failsafe>(scenario);
     }
@@ -118,6 +120,9 @@ class StepNode final : public Work {
       if (step == 0) return Publish(step, algorithm_->Start(*parts_.run.id));
     }
     PassOnDemandInput(*algorithm_, step);
+    if constexpr (Traits::kHasLive) {
+      if (live_) algorithm_->SetLiveInput(live_->Newest(Clock::now()));
+    }
     Publish(step, Step(step, std::make_index_sequence<kInputs>{}));
   }
 
@@ -237,6 +242,7 @@ class StepNode final : public Work {
   bool uses_on_demand_ = false;  // whether the input on demand is read in this scenario
   std::vector<std::uint8_t> encoded_;
   std::optional<StepGate> gate_;          // only for the role that begins the steps
+  std::optional<LiveInput> live_;         // only if the scenario uses the live input
   const RealtimeWatch* watch_ = nullptr;  // the watch of the rule; nullptr without failsafe_
 };
 

@@ -1,0 +1,30 @@
+// The live input of a role: DRIVER_INPUT, from a seat at which a person sits.
+#pragma once
+
+#include "scenario/sections/scenario.h"
+#include "services/runtime/node/parts.h"
+#include "services/runtime/seat/seat_gate.h"
+
+namespace fogline::runtime {
+
+/// Subscribes to DRIVER_INPUT. Messages that are refused are counted in the role's STATUS.
+class LiveInput {
+ public:
+  /// @param parts of the role, which has joined
+  /// @throws InputError if the run is not in real time
+  LiveInput(Parts& parts, const Scenario& scenario);
+  LiveInput(const LiveInput&) = delete;  // the bus refers to this object
+  LiveInput& operator=(const LiveInput&) = delete;
+
+  /// The newest input; nullptr if nobody is there. The pointer is valid until the bus is read
+  /// again.
+  const driver_input_t* Newest(TimePoint now) const { return gate_.Newest(now); }
+
+ private:
+  RefusalCounter Take(Arrival& arrival);
+
+  Parts& parts_;
+  SeatGate gate_;
+};
+
+}  // namespace fogline::runtime

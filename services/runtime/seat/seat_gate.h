@@ -1,0 +1,48 @@
+// Decides which DRIVER_INPUT counts: one seat has the driver at a time, and its silence is noticed.
+#pragma once
+
+#include <optional>
+
+#include "common/clock.h"
+#include "services/runtime/node/rate_limiter.h"
+#include "services/runtime/wire/driver_input.h"
+
+namespace fogline::runtime {
+
+/// The seat whose newest message is present and at most `deadman` old has the driver. While a seat
+/// has the driver, the messages of other seats are refused. When it is silent or nobody sits there,
+/// the next message of a person at any seat counts.
+///
+/// The class reads no clock. So tests can give it any times.
+class SeatGate {
+ public:
+  explicit SeatGate(Duration deadman) : deadman_(deadman) {}
+
+  /// Takes a message that was decoded, of this run.
+  /// @return why the message is refused; nullptr if it is not refused. An older message of the same
+  ///     seat is not refused, and has no effect.
+  RefusalCounter Take(const driver_input_t& input, TimePoint now) {
+    if (const RefusalCounter wrong = WrongIn(input)) return wrong;
+    const bool same = newest_ && newest_->instance == input.instance;
+    if (!same && Newest(now) != nullptr) return &status_t::second_seat;
+    if (same ? input.sequence <= newest_->sequence : !input.present) return nullptr;
+    if (!limiter_.Take(now)) return &status_t::too_frequent;
+    newest_ = input;
+    heard_ = now;
+    return nullptr;
+  }
+
+  /// The newest input; nullptr if nobody is there. The pointer is valid until the next Take().
+  const driver_input_t* Newest(TimePoint now) const {
+    const bool there = newest_ && newest_->present != 0 && now - heard_ < deadman_;
+    return there ? &*newest_ : nullptr;
+  }
+
+ private:
+  Duration deadman_;
+  RateLimiter limiter_{kMostInputsPerSecond, kMostInputsAtOnce};
+  std::optional<driver_input_t> newest_;
+  TimePoint heard_{};  // when newest_ came
+};
+
+}  // namespace fogline::runtime
