@@ -98,7 +98,9 @@ bool Arbitrator::Ask(double wanted, const ego_t& ego, const track_t& track,
                                     .readiness = driver.readiness,
                                     .speed_mps = ego.speed_mps,
                                     .applied_mps2 = sent_mps2_.value_or(ego.acceleration_mps2),
-                                    .track = &track});
+                                    .track = &track,
+                                    .acknowledged = driver.acknowledged != 0,
+                                    .gives_back = driver.gives_back != 0});
   if (take_over_->in_manoeuvre()) {
     granted_ = 0;
     out_.lambda_automation = 0;

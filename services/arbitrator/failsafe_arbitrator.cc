@@ -33,7 +33,8 @@ const M& UsableOrNone(const Heard<M>& input) {
 FailsafeArbitrator::FailsafeArbitrator(const Scenario& scenario)
     : arbitrator_(scenario),
       pairs_(scenario.health),
-      minimal_risk_(scenario.minimal_risk, scenario.step_s) {
+      minimal_risk_(scenario.minimal_risk, scenario.step_s),
+      person_(scenario.person.drives) {
   out_.threshold = scenario.arbitrator.threshold;
 }
 
@@ -80,6 +81,14 @@ void FailsafeArbitrator::Regular(const ArbitratorInputs& inputs, Offer automatio
                             UsableOrNone(inputs.automation), UsableOrNone(inputs.driver));
 }
 
+// A person may be gone although the driver's process sends its messages: nobody sits at a seat, or
+// the seat is silent. The readiness then is 0.
+Offer FailsafeArbitrator::HumanOffer(const ArbitratorInputs& inputs) const {
+  const Offer offer = OfferOf(inputs.driver.state);
+  const bool absent = person_ && offer == kThere && inputs.driver.newest->readiness <= 0;
+  return absent ? kGone : offer;
+}
+
 Decision FailsafeArbitrator::Judge(const ArbitratorInputs& inputs, InputState pairs) const {
   if (minimal_risk_.begun()) return Decision::kMinimalRisk;
   if (arbitrator_.in_manoeuvre()) return Decision::kRegular;
@@ -87,7 +96,7 @@ Decision FailsafeArbitrator::Judge(const ArbitratorInputs& inputs, InputState pa
   const Offer automation = AutomationOffer(inputs, pairs);
   // If the automation has failed, there is no time to ask the driver.
   const bool unasked = automation == kGone && arbitrator_.must_ask();
-  const Offer human = unasked ? kGone : OfferOf(inputs.driver.state);
+  const Offer human = unasked ? kGone : HumanOffer(inputs);
   const bool disputed = pairs_.has_pair() && arbitrator_.wants_human();
   return Decide(automation, human, disputed ? kDisputed : kCalm);
 }

@@ -56,6 +56,7 @@ class FailsafeArbitrator {
   Decision decision() const { return decision_; }
 
  private:
+  Offer HumanOffer(const ArbitratorInputs& inputs) const;
   void Regular(const ArbitratorInputs& inputs, Offer automation);
   Decision Judge(const ArbitratorInputs& inputs, InputState pairs) const;
   void Drive(std::int8_t mode, double acceleration_mps2);
@@ -64,6 +65,7 @@ class FailsafeArbitrator {
   Arbitrator arbitrator_;
   SensorPairs pairs_;
   models::MinimalRisk minimal_risk_;
+  bool person_;  // whether a person drives
   bool demanded_ = false;
   Decision decision_ = Decision::kHold;
   // Acceleration and mode of the last decision, before emergency braking.

@@ -32,6 +32,7 @@ double LongestTimeToRest_s(double speed_mps, double acceleration_mps2, double de
 
 TakeOver::TakeOver(const Scenario& scenario)
     : section_(scenario.arbitrator.take_over),
+      person_(scenario.person.drives),
       step_s_(scenario.step_s),
       lead_steps_(StepsUntil(section_.lead_s, step_s_)),
       escalation_steps_(StepsUntil(section_.escalation_s, step_s_)),
@@ -47,6 +48,7 @@ TakeOver::TakeOver(const Scenario& scenario)
 }
 
 const TakeOverOutcome& TakeOver::Step(const header_t& header, const TakeOverInputs& inputs) {
+  if (person_) HearAnswer(header.step, inputs);
   const TakeOverRow* row =
       TakeOverRowOf(out_.state, EventsOf(header.step, inputs), manoeuvre_.begun());
   if (row != nullptr) Enter(*row, header.step, inputs);
@@ -60,7 +62,7 @@ TakeOverEvents TakeOver::EventsOf(std::int64_t step, const TakeOverInputs& input
     if (holds) events = static_cast<TakeOverEvents>(events | Bit(event));
   };
   set(TakeOverEvent::kWanted, inputs.human_wanted);
-  set(TakeOverEvent::kCalm, !inputs.human_wanted);
+  set(TakeOverEvent::kCalm, !inputs.human_wanted && (!person_ || inputs.gives_back));
   set(TakeOverEvent::kSevere, Severe(inputs.track));
   set(TakeOverEvent::kStandstill, inputs.speed_mps < kStandstill_mps && inputs.applied_mps2 <= 0);
   set(TakeOverEvent::kOverdue, in_manoeuvre() && step > overdue_step_);
@@ -92,13 +94,23 @@ void TakeOver::Enter(const TakeOverRow& row, std::int64_t step, const TakeOverIn
   if (stage) BeginStage(row.authority, step, inputs);
 }
 
-// Draws the driver's answer once. Later events do not change the answer.
+// Draws the modelled driver's answer once. Later events do not change the answer.
 void TakeOver::Ask(std::int64_t step) {
   request_ = TakeOverRequest{.requested = step};
+  in_time_ = false;
+  answer_step_ = kNever;
+  if (person_) return;
   const double time_s = time_.Draw(random_, step);
   const bool absent = random_.Uniform2(step, kAbsenceDraw)[0] < section_.absent_probability;
   in_time_ = !absent && time_s <= section_.lead_s;
-  answer_step_ = absent ? kNever : step + StepsUntil(time_s, step_s_);
+  if (!absent) answer_step_ = step + StepsUntil(time_s, step_s_);
+}
+
+// A person's answer holds until the next request, like that of the modelled driver.
+void TakeOver::HearAnswer(std::int64_t step, const TakeOverInputs& inputs) {
+  if (!request_ || answer_step_ != kNever || !inputs.acknowledged) return;
+  answer_step_ = step;
+  in_time_ = step - request_->requested <= lead_steps_;
 }
 
 void TakeOver::BeginStage(Authority stage, std::int64_t step, const TakeOverInputs& inputs) {

@@ -25,6 +25,9 @@ struct TakeOverInputs {
   double speed_mps = 0;            // speed of the host
   double applied_mps2 = 0;         // last sent command; at first the applied acceleration
   const track_t* track = nullptr;  // nullptr if no preceding car is known
+  // Of a person who drives; false for the model of a driver.
+  bool acknowledged = false;  // he answers now
+  bool gives_back = false;    // he wants the automation to drive
 };
 
 /// Result of a step.
@@ -58,6 +61,10 @@ inline constexpr double kOverdueFactor = 2.0;
 /// deceleration. A driver who is not absent is late if and only if T > lead_s. Between
 /// acknowledgement and transfer the automation drives for at least one step. Only a driver who
 /// answers during the manoeuvre gets authority at once.
+///
+/// If the scenario has a person who drives, nothing is drawn: T is the time of the first step after
+/// the request in which the person answers. The automation gets authority back only if, in
+/// addition, the person gives it back.
 class TakeOver {
  public:
   /// @throw std::invalid_argument if lead_s is below kLeastLead_s, or if TakeOverTime throws it
@@ -81,10 +88,12 @@ class TakeOver {
   bool Severe(const track_t* track) const;
   void Enter(const TakeOverRow& row, std::int64_t step, const TakeOverInputs& inputs);
   void Ask(std::int64_t step);
+  void HearAnswer(std::int64_t step, const TakeOverInputs& inputs);
   void BeginStage(Authority stage, std::int64_t step, const TakeOverInputs& inputs);
   double Acceleration(const TakeOverInputs& inputs);
 
   TakeOverSection section_;
+  bool person_;  // whether a person drives
   double step_s_;
   std::int64_t lead_steps_;
   std::int64_t escalation_steps_;

@@ -42,6 +42,15 @@ std::string_view NameOfMode(std::int8_t mode) {
   return info == nullptr ? "UNKNOWN" : info->name;
 }
 
+std::string_view TextOf(const TakeOverEntry& entry, bool person) {
+  if (entry.from == entry.to) return entry.logged;
+  if (person && entry.to == arbitration_t::MINIMAL_RISK) {
+    return "manoeuvre begins: inputs or person gone";
+  }
+  if (entry.to != arbitration_t::HANDOVER) return entry.logged;
+  return person ? "acknowledgement by the person" : "acknowledgement (modelled driver)";
+}
+
 void TakeOverLog::Add(const arbitration_t& command, std::optional<double> human_mps2) {
   arbitration_t decided = command;
   decided.mode = DecidedMode(command);

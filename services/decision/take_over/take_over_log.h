@@ -29,6 +29,11 @@ struct TakeOverEntry {
   std::string_view logged;
 };
 
+/// The text of an entry, for a person who reads it. It says whether a person has acknowledged a
+/// request, or whether the acknowledgement of the model of a driver was drawn.
+/// @param person whether a person drives in this run (scenario section person)
+std::string_view TextOf(const TakeOverEntry& entry, bool person);
+
 /// Reads commands in the order of steps; some commands may be missing.
 ///
 /// The state says whether the driver has a share of the authority, and lambda_H is this share. The

@@ -19,9 +19,16 @@ Scenario Asking() {
   return scenario;
 }
 
+/// The driver is a person.
+Scenario AskingAPerson() {
+  Scenario scenario = Asking();
+  scenario.person.drives = true;
+  return scenario;
+}
+
 class FailsafeTakeOverTest : public testing::Test {
  protected:
-  FailsafeTakeOverTest() {
+  explicit FailsafeTakeOverTest(const Scenario& scenario = Asking()) : arbitrator_(scenario) {
     radar_.valid = lidar_.valid = 1;
     radar_.range_m = 37;
     lidar_.range_m = 32;  // radar and LiDAR disagree
@@ -51,7 +58,7 @@ class FailsafeTakeOverTest : public testing::Test {
   }
   void Agree() { radar_.range_m = lidar_.range_m; }
 
-  arbitrator::FailsafeArbitrator arbitrator_{Asking()};
+  arbitrator::FailsafeArbitrator arbitrator_;
   ego_t ego_{};
   radar_t radar_{};
   lidar_t lidar_{};
@@ -135,6 +142,68 @@ TEST_F(FailsafeTakeOverTest, LetsALateDriverEndTheManoeuvre) {
   EXPECT_EQ(Step().mode, arbitration_t::RECOVERING);
   EXPECT_EQ(last_.acceleration_mps2, -0.4);
   EXPECT_EQ(arbitrator_.minimal_risk(), 0);
+}
+
+/// A person drives. The driver's process sends its messages also when nobody is there; the
+/// readiness is then 0.
+class FailsafePersonTest : public FailsafeTakeOverTest {
+ protected:
+  FailsafePersonTest() : FailsafeTakeOverTest(AskingAPerson()) {}
+
+  void TakeOver() {
+    StepUntil(arbitration_t::REQUEST);
+    driver_.acknowledged = 1;
+    StepUntil(arbitration_t::RECOVERING);
+    driver_.acknowledged = 0;
+  }
+  void Leave() {
+    driver_.readiness = 0;
+    driver_.acceleration_mps2 = -0.5;
+  }
+};
+
+TEST_F(FailsafePersonTest, TakesOverWhenHeAnswersAndNotBefore) {
+  EXPECT_EQ(Step().mode, arbitration_t::REQUEST);
+  for (int k = 0; k < 50; ++k) Step();
+  EXPECT_EQ(last_.mode, arbitration_t::REQUEST_URGENT);
+  EXPECT_EQ(last_.lambda_human, 0);
+  driver_.acknowledged = 1;
+  EXPECT_EQ(Step().mode, arbitration_t::HANDOVER);
+  EXPECT_EQ(Step().mode, arbitration_t::RECOVERING);
+  EXPECT_EQ(last_.acceleration_mps2, -0.4);
+}
+
+TEST_F(FailsafePersonTest, KeepsNoAuthorityWhenHeHasGone) {
+  TakeOver();
+  EXPECT_EQ(last_.lambda_human, 1);
+  Leave();
+  EXPECT_EQ(Step().mode, arbitration_t::MINIMAL_RISK);
+  EXPECT_EQ(last_.lambda_human, 0);
+}
+
+TEST_F(FailsafePersonTest, LetsTheAutomationDriveWhileNobodyIsThereAndNoneIsWanted) {
+  Agree();
+  Leave();
+  for (int k = 0; k < 100; ++k) {
+    ASSERT_EQ(Step().mode, arbitration_t::AUTOMATION);
+    ASSERT_EQ(last_.acceleration_mps2, 0.2);
+  }
+  EXPECT_NE(arbitrator_.fallback(), "");
+}
+
+TEST_F(FailsafePersonTest, IsAskedAlsoWhenNobodyIsThereAndThenTheCarStops) {
+  Leave();
+  EXPECT_EQ(Step().mode, arbitration_t::REQUEST);
+  StepUntil(arbitration_t::MRM_COMFORT);
+  EXPECT_EQ(step_ - 1, 100) << "10 s after the request";
+  EXPECT_EQ(last_.lambda_human, 0);
+}
+
+TEST_F(FailsafePersonTest, StopsWhenTheAutomationIsLostAndNobodyIsThere) {
+  TakeOver();
+  Leave();
+  inputs_.automation.state = InputState::kLost;
+  EXPECT_EQ(Step().mode, arbitration_t::MINIMAL_RISK);
 }
 
 }  // namespace

@@ -207,5 +207,15 @@ TEST(TakeOverLogTest, TakesARequestBehindEmergencyBrakingForTheSame) {
               ElementsAre(take_over::TakeOverRequest{.requested = 1, .acknowledged = 6}));
 }
 
+TEST(TakeOverLogTest, SaysWhoHasAcknowledged) {
+  const take_over::TakeOverEntry answer{
+      .from = arbitration_t::REQUEST, .to = arbitration_t::HANDOVER, .logged = "acknowledgement"};
+  EXPECT_EQ(take_over::TextOf(answer, true), "acknowledgement by the person");
+  EXPECT_EQ(take_over::TextOf(answer, false), "acknowledgement (modelled driver)");
+  const take_over::TakeOverEntry other{
+      .from = arbitration_t::HANDOVER, .to = arbitration_t::HANDOVER, .logged = "something"};
+  EXPECT_EQ(take_over::TextOf(other, true), "something");
+}
+
 }  // namespace
 }  // namespace fogline

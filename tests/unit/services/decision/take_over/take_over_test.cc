@@ -297,5 +297,92 @@ TEST_F(TakeOverTest, DecidesTheSameWhenStepsAreLeftOut) {
   EXPECT_EQ(Step().state, kMrmComfort);
 }
 
+// ---- a person who drives -----------------------------------------------------------------------
+
+/// The modelled driver would answer after 2 s.
+Scenario WithPerson() {
+  Scenario scenario = Answering(2);
+  scenario.person.drives = true;
+  return scenario;
+}
+
+TEST_F(TakeOverTest, WaitsForTheAnswerOfAPersonAndDrawsNone) {
+  Begin(WithPerson());
+  EXPECT_EQ(StepWhile(kAutomated), 0);
+  while (Now() < 5) Step();
+  EXPECT_EQ(state(), kUrgentDemand);
+  inputs_.acknowledged = true;
+  EXPECT_EQ(Step().state, kHandover);
+  EXPECT_EQ(take_over_->request()->acknowledged, step_ - 1);
+  inputs_.acknowledged = false;
+  EXPECT_EQ(Step().state, kRecovering) << "the answer holds";
+}
+
+TEST_F(TakeOverTest, DoesNotTakeWhatAPersonDidBeforeTheRequestForAnAnswer) {
+  Begin(WithPerson());
+  inputs_.human_wanted = false;
+  inputs_.acknowledged = true;
+  for (int k = 0; k < 5; ++k) EXPECT_EQ(Step().state, kAutomated);
+  inputs_.acknowledged = false;
+  inputs_.human_wanted = true;
+  for (int k = 0; k < 20; ++k) EXPECT_EQ(Step().state, kDemand);
+}
+
+TEST_F(TakeOverTest, StopsForAPersonWhoDoesNotAnswerAndLetsALateOneDrive) {
+  Begin(WithPerson());
+  StepWhile(kAutomated);
+  StepWhile(kDemand);
+  EXPECT_NEAR(StepWhile(kUrgentDemand), 10, 1.5 * kStep_s);
+  EXPECT_EQ(state(), kMrmComfort);
+  for (int k = 0; k < 10; ++k) Step();
+  inputs_.acknowledged = true;
+  EXPECT_EQ(Step().state, kRecovering);
+}
+
+TEST_F(TakeOverTest, DoesNotHandOverToAPersonWhoHasGone) {
+  Begin(WithPerson());
+  StepWhile(kAutomated);
+  inputs_.acknowledged = true;
+  EXPECT_EQ(Step().state, kHandover);
+  inputs_.readiness = 0;
+  EXPECT_NEAR(StepWhile(kHandover), 10, 1.5 * kStep_s);
+  EXPECT_EQ(state(), kMrmComfort);
+}
+
+TEST_F(TakeOverTest, ReturnsToTheAutomationOnlyWhenAPersonGivesBack) {
+  Begin(WithPerson());
+  brakes_ = false;
+  StepWhile(kAutomated);
+  inputs_.acknowledged = true;
+  StepWhile(kDemand);
+  StepWhile(kHandover);
+  StepWhile(kRecovering);
+  ASSERT_EQ(state(), kManual);
+  inputs_.gives_back = true;
+  EXPECT_EQ(Step().state, kManual) << "the policy still wants the human";
+  inputs_.gives_back = false;
+  inputs_.human_wanted = false;
+  for (int k = 0; k < 100; ++k) EXPECT_EQ(Step().state, kManual);
+  inputs_.gives_back = true;
+  EXPECT_EQ(Step().state, kAutomated);
+}
+
+TEST_F(TakeOverTest, AsksAPersonAgainForEachRequest) {
+  Begin(WithPerson());
+  brakes_ = false;
+  StepWhile(kAutomated);
+  inputs_.acknowledged = true;
+  StepWhile(kDemand);
+  StepWhile(kHandover);
+  inputs_.acknowledged = false;
+  StepWhile(kRecovering);
+  inputs_.human_wanted = false;
+  inputs_.gives_back = true;
+  EXPECT_EQ(Step().state, kAutomated);
+  inputs_.human_wanted = true;
+  inputs_.gives_back = false;
+  for (int k = 0; k < 20; ++k) EXPECT_EQ(Step().state, kDemand) << "the old answer does not count";
+}
+
 }  // namespace
 }  // namespace fogline
