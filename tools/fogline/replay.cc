@@ -29,24 +29,33 @@ struct ReplayArguments {
   throw InputError(fmt::format("{}: error: {}", PathText(log), why));
 }
 
-/// The run of a log, without its steps. @throws InputError for a run in real time
+/// The run of a log, without its steps.
 log::RunLog ReadRun(const std::filesystem::path& log) {
   log::RunLogReader reader(log);
   while (reader.Next() != nullptr) {
   }
-  const log::RunLog& run = reader.run();
-  if (run.realtime) {
-    Refuse(log,
-           "a run in real time: its log does not show which inputs had come by a role's deadline; "
-           "replay takes runs in lockstep");
-  }
-  return run;
+  return reader.run();
+}
+
+/// @throws InputError for a role whose commands do not follow from the log
+void RefuseOthers(const std::filesystem::path& log, const std::vector<replay::RoleCheck>& roles,
+                  const log::RunLog& run) {
+  const bool all = std::ranges::all_of(
+      roles, [&](const replay::RoleCheck& one) { return replay::CanReplay(one.role, run); });
+  if (all) return;
+  Refuse(log,
+         "a run in real time: its log does not show which inputs had come by a role's deadline; "
+         "replay takes runs in lockstep, and of a run that a person drove the role driver");
 }
 
 /// @throws InputError for a name that is no role, or a role that computes nothing
 std::vector<replay::RoleCheck> ChosenRoles(const ReplayArguments& arguments,
                                            const log::RunLog& run) {
-  std::vector<replay::RoleCheck> roles = replay::MakeRoleChecks(run);
+  const log::DriverInputs inputs =
+      run.scenario.person.drives
+          ? log::DriverInputs(log::ReadDriverInputs(arguments.log, run.run_id))
+          : log::DriverInputs();
+  std::vector<replay::RoleCheck> roles = replay::MakeRoleChecks(run, inputs);
   std::vector<std::string_view> names;
   for (const replay::RoleCheck& one : roles) names.push_back(NameOf(one.role));
   if (arguments.all) return roles;
@@ -86,6 +95,7 @@ int RunReplay(const ReplayArguments& arguments) {
   }
   const log::RunLog run = ReadRun(arguments.log);
   std::vector<replay::RoleCheck> roles = ChosenRoles(arguments, run);
+  RefuseOthers(arguments.log, roles, run);
   log::RunLogReader reader(arguments.log);
   try {
     replay::CheckRoles(reader, roles);
@@ -115,7 +125,7 @@ void AddReplay(CLI::App& app, cli::Action& action) {
   CLI::App* verb =
       app.add_subcommand("replay", "Compute a log's steps again, role by role, and compare");
   const auto arguments = std::make_shared<ReplayArguments>();
-  verb->add_option("LOG", arguments->log, "Event log of a run in lockstep")->required();
+  verb->add_option("LOG", arguments->log, "Event log of a run")->required();
   CLI::Option* role =
       verb->add_option("--role", arguments->role, "Role to replay, such as fusion or arbitrator");
   verb->add_flag("--all", arguments->all, "Replay every role, each by itself")->excludes(role);
@@ -124,7 +134,9 @@ void AddReplay(CLI::App& app, cli::Action& action) {
   verb->footer(
       "Each step takes its inputs from the log, so a difference in one role does not affect\n"
       "another role. Scenario and seed are those of the log, too. Outputs are compared bit by\n"
-      "bit: a log from before a change shows which steps of which role the change alters.\n\n"
+      "bit: a log from before a change shows which steps of which role the change alters.\n"
+      "Of a run in real time only the role driver can be computed again, and only if a person\n"
+      "drove: each command names the input of the person from which it was made.\n\n"
       "Examples:\n"
       "  fogline run scenario/paper.json --log before.lcm\n"
       "  fogline replay before.lcm --role fusion      # after a change of the fusion\n"

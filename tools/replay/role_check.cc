@@ -11,10 +11,10 @@
 
 namespace fogline::replay {
 
-std::vector<RoleCheck> MakeRoleChecks(const log::RunLog& run) {
+std::vector<RoleCheck> MakeRoleChecks(const log::RunLog& run, const log::DriverInputs& inputs) {
   std::vector<RoleCheck> roles;
   for (const RoleInfo& info : kRoles) {
-    auto replay = MakeRoleReplay(info.role, run);
+    auto replay = MakeRoleReplay(info.role, run, inputs);
     if (replay != nullptr) roles.push_back({.role = info.role, .replay = std::move(replay)});
   }
   return roles;

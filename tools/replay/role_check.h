@@ -23,8 +23,9 @@ struct RoleCheck {
   std::optional<Difference> first;  // `a` in the log, `b` computed here
 };
 
-/// The roles of a run in lockstep that compute messages, in their initial state.
-std::vector<RoleCheck> MakeRoleChecks(const log::RunLog& run);
+/// The roles of a run that compute messages, in their initial state.
+/// @param inputs what a person did in the run
+std::vector<RoleCheck> MakeRoleChecks(const log::RunLog& run, const log::DriverInputs& inputs = {});
 /// Computes every step of a log again.
 /// @throws InputError for a step that cannot be computed; the error text does not contain the log's
 ///     name

@@ -31,15 +31,23 @@ using Algorithms = std::tuple<world::World, radar::Radar, lidar::Lidar, fusion::
 template <class Algorithm>
 class ReplayOf final : public RoleReplay {
  public:
-  explicit ReplayOf(const log::RunLog& run)
+  ReplayOf(const log::RunLog& run, const log::DriverInputs& inputs)
       : algorithm_(run.scenario),
         run_id_(run.run_id),
+        live_(Traits::UsesLiveInput(run.scenario)),
+        live_inputs_(inputs),
         uses_on_demand_(Traits::UsesOnDemandInput(run.scenario)) {}
 
   std::optional<Difference> Step(std::int64_t step, const log::StepMessages& messages,
                                  const log::StepMessages& before) override {
     if constexpr (Traits::kStarts) {
       if (step == 0) return Compare(step, algorithm_.Start(run_id_), messages);
+    }
+    if constexpr (Traits::kHasLive) {
+      if (live_) {
+        if (messages[IndexOf<truth_t>()].empty() || messages[IndexOf<Output>()].empty()) return {};
+        if (auto missing = PassLiveInput(step, messages)) return missing;
+      }
     }
     WithIndex<kInputs>([&]<std::size_t I> { Read<I>(step, messages, before); });
     try {
@@ -58,6 +66,7 @@ class ReplayOf final : public RoleReplay {
  private:
   using Traits = AlgorithmTraits<Algorithm>;
   using AllInputs = typename Traits::AllInputs;
+  using Output = typename Traits::Output;
   static constexpr std::size_t kInputs = std::tuple_size_v<typename Traits::Inputs>;
 
   template <std::size_t N, class F>
@@ -87,6 +96,29 @@ class ReplayOf final : public RoleReplay {
     algorithm_.SetOnDemandInput(std::get<kInputs>(inputs_));
   }
 
+  /// Passes the input that the logged command names. @return the difference if the log lacks it
+  std::optional<Difference> PassLiveInput(
+      std::int64_t step, const log::StepMessages& messages) requires Traits::kHasLive {
+    Output logged{};
+    if (runtime::Examine(messages[IndexOf<Output>()], logged) != nullptr) {
+      throw InputError(fmt::format("step {}: the {} in the log is not a message of its type", step,
+                                   ChannelOf<Output>().name));
+    }
+    const driver_input_t* input = nullptr;
+    if (logged.input_instance != 0) {
+      input = live_inputs_.Find(logged.input_instance, logged.input_sequence);
+      if (input == nullptr) {
+        return Difference{.step = step,
+                          .channel = std::string(ChannelOf<Output>().name),
+                          .field = "input_sequence",
+                          .a = fmt::format("{}", logged.input_sequence),
+                          .b = "not in the log"};
+      }
+    }
+    algorithm_.SetLiveInput(input);
+    return {};
+  }
+
   template <std::size_t... I>
   const typename Traits::Output& Compute(std::index_sequence<I...>) {
     return algorithm_.Step(std::get<I>(inputs_)...);
@@ -110,6 +142,8 @@ class ReplayOf final : public RoleReplay {
 
   Algorithm algorithm_;
   std::int64_t run_id_;
+  bool live_;  // whether a person drives
+  log::DriverInputs live_inputs_;
   bool uses_on_demand_;  // whether the role reads its input on demand in this scenario
   AllInputs inputs_{};
   std::vector<std::uint8_t> encoded_;
@@ -117,16 +151,22 @@ class ReplayOf final : public RoleReplay {
 
 }  // namespace
 
-std::unique_ptr<RoleReplay> MakeRoleReplay(Role role, const log::RunLog& run) {
+std::unique_ptr<RoleReplay> MakeRoleReplay(Role role, const log::RunLog& run,
+                                           const log::DriverInputs& inputs) {
   std::unique_ptr<RoleReplay> replay;
   [&]<class... A>(std::type_identity<std::tuple<A...>>) {
     (
         [&] {
-          if (AlgorithmTraits<A>::kRole == role) replay = std::make_unique<ReplayOf<A>>(run);
+          if (AlgorithmTraits<A>::kRole == role)
+            replay = std::make_unique<ReplayOf<A>>(run, inputs);
         }(),
         ...);
   }(std::type_identity<Algorithms>{});
   return replay;
+}
+
+bool CanReplay(Role role, const log::RunLog& run) {
+  return !run.realtime || (role == Role::kDriver && run.scenario.person.drives);
 }
 
 }  // namespace fogline::replay

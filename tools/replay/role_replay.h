@@ -9,6 +9,7 @@
 
 #include "scenario/sections/scenario.h"
 #include "services/graph.h"
+#include "services/log/driver_inputs.h"
 #include "services/log/run_log.h"
 #include "tools/replay/difference.h"
 
@@ -21,14 +22,21 @@ class RoleReplay {
   /// Computes a step. Call it for every step in order, from 0 on.
   /// @param messages the messages of the step
   /// @param before the messages of the previous step; step 0 does not use them
-  /// @return the first difference, `a` in the log and `b` computed here
+  /// @return the first difference, `a` in the log and `b` computed here. A step in which a person
+  ///     could not drive, because a message is missing in real time, has no difference.
   /// @throws InputError for an invalid message, or for a message that the role refuses
   virtual std::optional<Difference> Step(std::int64_t step, const log::StepMessages& messages,
                                          const log::StepMessages& before) = 0;
 };
 
 /// A role of a run in its initial state; nullptr for the recorder and the runner, which compute
-/// nothing. @throws InputError for an impossible scenario
-std::unique_ptr<RoleReplay> MakeRoleReplay(Role role, const log::RunLog& run);
+/// nothing.
+/// @param inputs what a person did in the run
+/// @throws InputError for an impossible scenario
+std::unique_ptr<RoleReplay> MakeRoleReplay(Role role, const log::RunLog& run,
+                                           const log::DriverInputs& inputs = {});
+
+/// Whether the log of a run has everything that a role's commands depend on.
+bool CanReplay(Role role, const log::RunLog& run);
 
 }  // namespace fogline::replay

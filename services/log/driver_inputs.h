@@ -1,0 +1,31 @@
+// What a person did in a run: the DRIVER_INPUT messages in its log.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "services/runtime/wire/wire.h"
+
+namespace fogline::log {
+
+/// The DRIVER_INPUT messages of a run in the order of the log. Messages that are unsound, or of
+/// another run, are left out. @throws InputError if the log cannot be read
+std::vector<driver_input_t> ReadDriverInputs(const std::filesystem::path& log, std::int64_t run_id);
+
+/// The inputs of a run, to be found by what a DRIVER_COMMAND names.
+class DriverInputs {
+ public:
+  DriverInputs() = default;
+  explicit DriverInputs(const std::vector<driver_input_t>& inputs);
+
+  /// The input with this instance and sequence; nullptr if the log has none.
+  const driver_input_t* Find(std::int64_t instance, std::int64_t sequence) const;
+
+ private:
+  std::map<std::pair<std::int64_t, std::int64_t>, driver_input_t> inputs_;
+};
+
+}  // namespace fogline::log
