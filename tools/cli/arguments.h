@@ -31,9 +31,11 @@ class ScenarioArguments {
     if (with_seed) verb.add_option("--seed", seed_, "Seed instead of the scenario's own");
   }
 
+  /// @param more overrides of the verb, which count more than those of the user
   /// @throws InputError
-  Scenario Load() const {
+  Scenario Load(const std::vector<std::string>& more = {}) const {
     std::vector<std::string> overrides = overrides_;
+    overrides.insert(overrides.end(), more.begin(), more.end());
     if (!seed_.empty()) overrides.push_back("/seed=" + seed_);
     Scenario scenario = LoadScenario(file_, overrides);
     runner::CheckPossible(scenario, file_);

@@ -1,14 +1,33 @@
 #include "tools/cli/run_outcome.h"
 
+#include <stdexcept>
+
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include "common/exit_code.h"
+#include "common/process/console.h"
 #include "common/text.h"
+#include "services/runtime/wire/step_ring.h"
 #include "tools/cli/arguments.h"
 #include "tools/report/metric_text.h"
 
 namespace fogline::cli {
 namespace {
+
+/// The exit code of an ended run. If it is not kDone, the reason is printed on stderr.
+/// @throws std::runtime_error if the log of a run in real time lacks published messages
+int Ended(const runner::ExperimentResult& result, std::string_view verb) {
+  if (result.realtime && result.realtime->unlogged_messages > 0) {
+    throw std::runtime_error(fmt::format(
+        "the log is not complete: it lacks at least {} messages that were published; the recorder "
+        "heard nothing for longer than the {} steps that it can ask for again",
+        result.realtime->unlogged_messages, runtime::kMaxAhead));
+  }
+  if (!result.verification || result.verification->Holds()) return kDone;
+  Complain(fmt::format("fogline {}: error: {}", verb, result.verification->Trouble()));
+  return kCheckFailed;
+}
 
 nlohmann::ordered_json VerificationJson(const replay::Verification& verification) {
   nlohmann::ordered_json json{{"same", nullptr},
@@ -140,6 +159,15 @@ std::string ToText(const RunOutcome& outcome) {
   text += fmt::format("digest {}\n", result.digest);
   if (!result.log.empty()) text += fmt::format("log    {}\n", PathText(result.log));
   return text + MetricsText(result);
+}
+
+int PrintOutcome(const RunOutcome& outcome, bool json, std::string_view verb) {
+  if (json) {
+    PrintJson(ToJson(outcome));
+  } else {
+    fmt::print("{}", ToText(outcome));
+  }
+  return Ended(outcome.result, verb);
 }
 
 }  // namespace fogline::cli

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include <nlohmann/json_fwd.hpp>
 
@@ -23,5 +24,11 @@ struct RunOutcome {
 nlohmann::ordered_json ToJson(const RunOutcome& outcome);
 /// Several lines, the most important line first.
 std::string ToText(const RunOutcome& outcome);
+
+/// Prints the outcome of a run on stdout, and what is wrong with it on stderr.
+/// @param verb for the text of an error
+/// @return the exit code
+/// @throws std::runtime_error if the log of a run in real time lacks published messages
+int PrintOutcome(const RunOutcome& outcome, bool json, std::string_view verb);
 
 }  // namespace fogline::cli

@@ -13,6 +13,10 @@
 namespace fogline::cli {
 namespace {
 
+// The shortest step in wall-clock time. In this time nine processes must send and receive the
+// messages of a step. The signs of life of these processes must arrive within 64 steps.
+constexpr double kMinPeriodS = 0.005;
+
 std::vector<std::string> RoleNames() {
   std::vector<std::string> names;
   for (const RoleInfo& info : kRoles) names.emplace_back(info.name);
@@ -97,6 +101,28 @@ void TransportArguments::Apply(runner::ExperimentOptions& options) const {
   if (std::ranges::find(options.external, Role::kRecorder) != options.external.end()) {
     throw InputError("error: --external recorder: the run's result is read from its own log");
   }
+}
+
+void RunInRealtime(runner::ExperimentOptions& options, double speed) {
+  if (options.transport == "direct" || options.transport.starts_with("memq")) {
+    throw InputError(fmt::format(
+        "error: --realtime: --transport {} is one process; real time needs one for each role",
+        options.transport));
+  }
+  if (options.pace != 0) {
+    throw InputError("error: --pace: limits the speed of lockstep; with --realtime use --speed");
+  }
+  options.realtime = true;
+  options.pace = speed;
+}
+
+void CheckPeriod(const Scenario& scenario, double speed) {
+  const double period_s = scenario.step_s / speed;
+  if (period_s >= kMinPeriodS) return;
+  throw InputError(fmt::format(
+      "error: --speed {:g}: a step of {:g} s would take {:.3g} ms of wall clock; the shortest is "
+      "{:g} ms",
+      speed, scenario.step_s, 1e3 * period_s, 1e3 * kMinPeriodS));
 }
 
 }  // namespace fogline::cli

@@ -6,6 +6,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "scenario/sections/scenario.h"
 #include "tools/runner/experiment.h"
 
 namespace fogline::cli {
@@ -35,5 +36,13 @@ class TransportArguments {
   bool no_verify_ = false;
   runtime::TrafficOptions traffic_;
 };
+
+/// Makes the run one in real time.
+/// @param speed simulated seconds per second
+/// @throws InputError if the other options do not allow real time
+void RunInRealtime(runner::ExperimentOptions& options, double speed);
+
+/// @throws InputError if the steps are too short for real time at this speed
+void CheckPeriod(const Scenario& scenario, double speed);
 
 }  // namespace fogline::cli

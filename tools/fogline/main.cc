@@ -6,8 +6,9 @@
 int main(int argc, char** argv) {
   using namespace fogline;
   cli::BecomeOwnProgram(argc, argv);
-  return cli::RunVerbs(argc, argv,
-                       {AddRun, AddTable, AddSweep, cli::AddOwnPrograms, AddMetrics, AddCompare,
-                        AddReport, AddDigest, AddDiff, AddEvents, AddReplay, AddExport, AddGraph,
-                        AddCheck, AddTop, AddSpy, AddDoctor, AddKeygen, AddHelp});
+  return cli::RunVerbs(
+      argc, argv,
+      {AddRun,    AddDrive,  AddTable, AddSweep,  cli::AddOwnPrograms, AddMetrics, AddCompare,
+       AddReport, AddDigest, AddDiff,  AddEvents, AddReplay,           AddExport,  AddGraph,
+       AddCheck,  AddTop,    AddSpy,   AddDoctor, AddKeygen,           AddHelp});
 }

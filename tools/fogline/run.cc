@@ -65,10 +65,6 @@ Examples:
   fogline-driver & fogline run scenario/paper.json --external driver
   fogline run scenario/paper.json --external driver --lcm-url 'udpm://239.255.76.67:7700?ttl=0')";
 
-// The shortest step in wall-clock time. In this time nine processes must send and receive the
-// messages of a step. The signs of life of these processes must arrive within 64 steps.
-constexpr double kMinPeriodS = 0.005;
-
 struct RunArguments {
   explicit RunArguments(CLI::App& verb) : scenario(verb), transport(verb, "udpm") {
     verb.get_option("SCENARIO")->required(false);  // --resume takes the scenario from the log
@@ -114,43 +110,6 @@ struct RunArguments {
   bool quiet = false;
 };
 
-/// @throws InputError if the other options do not allow real time
-void ApplyRealtime(RunArguments& arguments) {
-  runner::ExperimentOptions& options = arguments.options;
-  if (options.transport == "direct" || options.transport.starts_with("memq")) {
-    throw InputError(fmt::format(
-        "error: --realtime: --transport {} is one process; real time needs one for each role",
-        options.transport));
-  }
-  if (options.pace != 0) {
-    throw InputError("error: --pace: limits the speed of lockstep; with --realtime use --speed");
-  }
-  options.pace = arguments.speed;
-}
-
-/// The exit code of an ended run. If it is not kDone, the reason is printed on stderr.
-/// @throws std::runtime_error if the log of a run in real time lacks published messages
-int Ended(const runner::ExperimentResult& result) {
-  if (result.realtime && result.realtime->unlogged_messages > 0) {
-    throw std::runtime_error(fmt::format(
-        "the log is not complete: it lacks at least {} messages that were published; the recorder "
-        "heard nothing for longer than the {} steps that it can ask for again",
-        result.realtime->unlogged_messages, runtime::kMaxAhead));
-  }
-  if (!result.verification || result.verification->Holds()) return kDone;
-  Complain("fogline run: error: " + result.verification->Trouble());
-  return kCheckFailed;
-}
-
-int Print(const RunArguments& arguments, const cli::RunOutcome& outcome) {
-  if (arguments.json) {
-    cli::PrintJson(ToJson(outcome));
-  } else {
-    fmt::print("{}", ToText(outcome));
-  }
-  return Ended(outcome.result);
-}
-
 /// Applies the options that a new run and a resumed run share. @throws InputError
 void ApplyOptions(RunArguments& arguments) {
   runner::ExperimentOptions& options = arguments.options;
@@ -169,21 +128,23 @@ void ApplyOptions(RunArguments& arguments) {
   if (direct && options.pace != 0) {
     throw InputError("error: --pace: a run with --transport direct has no pace");
   }
-  if (options.realtime) ApplyRealtime(arguments);
+  if (options.realtime) cli::RunInRealtime(options, arguments.speed);
   options.stall_limit = duration_cast<Duration>(std::chrono::duration<double>(arguments.stall_s));
   options.announce = !arguments.quiet;
+}
+
+int Print(const RunArguments& arguments, const cli::RunOutcome& outcome) {
+  return cli::PrintOutcome(outcome, arguments.json, "run");
 }
 
 int RunNew(RunArguments& arguments) {
   runner::ExperimentOptions& options = arguments.options;
   const Scenario scenario = arguments.scenario.Load();
-  if (const double period_s = scenario.step_s / arguments.speed;
-      options.realtime && period_s < kMinPeriodS) {
-    throw InputError(fmt::format(
-        "error: --speed {:g}: a step of {:g} s would take {:.3g} ms of wall clock; the shortest "
-        "is {:g} ms",
-        arguments.speed, scenario.step_s, 1e3 * period_s, 1e3 * kMinPeriodS));
+  if (scenario.person.drives && !options.realtime) {
+    throw InputError(
+        fmt::format("{}: error: {}", PathText(arguments.scenario.file()), kPersonNeedsRealtime));
   }
+  if (options.realtime) cli::CheckPeriod(scenario, arguments.speed);
   const bool has_log = !options.log.empty() || options.transport != "direct";
   log::LogOfRun log = !has_log              ? log::LogOfRun()
                       : options.log.empty() ? cli::FreshLog(arguments.scenario.file())

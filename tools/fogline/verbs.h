@@ -10,6 +10,7 @@
 namespace fogline {
 
 void AddRun(CLI::App& app, cli::Action& action);
+void AddDrive(CLI::App& app, cli::Action& action);
 void AddTable(CLI::App& app, cli::Action& action);
 void AddSweep(CLI::App& app, cli::Action& action);
 void AddMetrics(CLI::App& app, cli::Action& action);

@@ -334,6 +334,7 @@ BusRun RunOnBus(const Scenario& scenario, const ExperimentOptions& options,
   runtime::Apply(options.traffic, in_memory ? std::nullopt : std::optional(Role::kRunner), bus);
   const runtime::RunCoordinatorOptions conducting =
       MakeCoordinatorOptions(scenario, options, in_memory);
+  if (!in_memory) options.on_run(conducting.run_id, bus.url());
   runtime::RunCoordinator coordinator(bus, conducting);
   const TimePoint began = Clock::now();
   std::vector<Restarts> restarts;

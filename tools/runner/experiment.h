@@ -59,6 +59,10 @@ struct ExperimentOptions {
   /// Called with the URL of the run's network, before any role is started. A run in memory has no
   /// network.
   std::function<void(const std::string& url)> on_network = [](const std::string&) {};
+  /// Called with the run's id and the URL of its network, after on_network and before any role is
+  /// started. A run in memory has no network.
+  std::function<void(std::int64_t run_id, const std::string& url)> on_run =
+      [](std::int64_t, const std::string&) {};
   /// Called when the operating system has the first step of the log, and perhaps again later.
   std::function<void()> on_logged_step = [] {};
 };

@@ -28,6 +28,8 @@ TEST(RefusedWordsTest, RefusesAnEmptyTextForEveryOptionAndArgumentThatNamesAFile
       {"run", scenario, "--log"},
       {"run", scenario, "--key"},
       {"run", "--resume"},
+      {"drive", scenario, "--log"},
+      {"drive", scenario, "--evdev"},
       {"run", ""},
       {"table", scenario, "--logs"},
       {"sweep", scenario, "--out"},

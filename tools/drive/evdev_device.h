@@ -1,0 +1,65 @@
+// An input device of the kernel (evdev): a gamepad, a wheel with pedals, or a keyboard.
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "tools/drive/evdev_map.h"
+#include "tools/drive/key_pedals.h"
+#include "tools/drive/pedal_source.h"
+
+struct libevdev;
+struct input_event;
+
+namespace fogline::drive {
+
+/// Parts of the map that the user gives; "" for the usual ones (UsualMap()).
+struct DeviceNames {
+  std::string throttle;
+  std::string brake;
+  std::string take_over;
+  std::string give_back;
+};
+
+/// A pedal counts as released until its axis has moved, because wheels report wrong values before.
+/// When the device is unplugged, nobody is present; when it is plugged in again, it is opened
+/// again.
+class EvdevDevice final : public PedalSource {
+ public:
+  /// @throws InputError if the device cannot be read, or has no pedals
+  EvdevDevice(std::filesystem::path path, const DeviceNames& names, const PersonSection& person);
+  ~EvdevDevice() override;
+
+  PedalState Read(TimePoint now) override;
+  int fd() const override { return fd_; }
+  std::int8_t kind() const override { return driver_input_t::EVDEV; }
+  std::string name() const override { return name_; }
+
+ private:
+  static constexpr Duration kOpenAgain = milliseconds(500);
+
+  /// @return why the device cannot be read; "" if it was opened
+  std::string Open();
+  void Close();
+  void ReadEvents(TimePoint now);
+  void Take(const input_event& event, TimePoint now);
+  AxisRange RangeOf(int code) const;
+  double TravelOf(const std::optional<PedalAxis>& pedal, bool moved) const;
+
+  std::filesystem::path path_;
+  DeviceNames names_;
+  libevdev* device_ = nullptr;  // nullptr while it is unplugged
+  int fd_ = -1;
+  std::string name_;
+  DeviceMap map_;
+  KeyPedals keys_;
+  bool throttle_moved_ = false;
+  bool brake_moved_ = false;
+  TimePoint at_{};
+  TimePoint open_at_{};  // when to try to open the device again
+};
+
+}  // namespace fogline::drive

@@ -1,0 +1,60 @@
+#include "tools/drive/evdev_map.h"
+
+#include <libevdev/libevdev.h>
+
+#include <fmt/core.h>
+
+#include "common/errors.h"
+#include "common/text.h"
+
+namespace fogline::drive {
+
+std::optional<DeviceMap> UsualMap(const DeviceFeatures& features) {
+  DeviceMap map;
+  if (features.gas_and_brake) {
+    map.throttle = PedalAxis{.code = ABS_GAS};
+    map.brake = PedalAxis{.code = ABS_BRAKE};
+  } else if (features.triggers && features.is_gamepad) {
+    map.throttle = PedalAxis{.code = ABS_RZ};
+    map.brake = PedalAxis{.code = ABS_Z};
+  } else if (features.triggers) {
+    map.throttle = PedalAxis{.code = ABS_Z, .inverted = true};
+    map.brake = PedalAxis{.code = ABS_RZ, .inverted = true};
+  } else if (!features.arrow_keys) {
+    return std::nullopt;
+  }
+  if (!map.throttle) {
+    map.take_over = KEY_SPACE;
+    map.give_back = KEY_G;
+  } else {
+    map.take_over = features.is_gamepad ? BTN_SOUTH : BTN_TRIGGER;
+    map.give_back = features.is_gamepad ? BTN_EAST : BTN_THUMB;
+  }
+  return map;
+}
+
+PedalAxis ParsePedal(std::string_view text, std::string_view option) {
+  const bool inverted = text.starts_with('-');
+  const std::string name(inverted ? text.substr(1) : text);
+  const int code = libevdev_event_code_from_name(EV_ABS, name.c_str());
+  if (code < 0) {
+    throw InputError(
+        fmt::format("error: {} {}: no axis; axes are named ABS_RZ, or -ABS_RZ if "
+                    "released at the greatest value; evtest DEVICE lists them",
+                    option, Shown(text)));
+  }
+  return {.code = code, .inverted = inverted};
+}
+
+int ParseButton(std::string_view text, std::string_view option) {
+  const int code = libevdev_event_code_from_name(EV_KEY, std::string(text).c_str());
+  if (code < 0) {
+    throw InputError(fmt::format(
+        "error: {} {}: no button; buttons are named BTN_SOUTH or KEY_SPACE; evtest DEVICE lists "
+        "them",
+        option, Shown(text)));
+  }
+  return code;
+}
+
+}  // namespace fogline::drive

@@ -1,0 +1,79 @@
+// Which axes of a device are pedals, and what their values mean.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace fogline::drive {
+
+/// The range of an axis, as the kernel states it.
+struct AxisRange {
+  int least = 0;
+  int most = 0;
+};
+
+/// At each end, this share of an axis counts as released or as full. Our choice: potentiometers of
+/// pedals rest within 1 % or so of their ends, and 3 % of a pedal's travel is not felt.
+inline constexpr double kDeadZone = 0.03;
+
+/// A pedal: an axis, and its direction.
+struct PedalAxis {
+  int code = -1;          // ABS_...
+  bool inverted = false;  // released at the greatest value
+
+  /// Travel in [0, 1] at this value.
+  double Travel(int value, const AxisRange& range) const {
+    if (range.most <= range.least) return 0;
+    const double span = static_cast<double>(range.most) - range.least;
+    const double share = (static_cast<double>(value) - range.least) / span;
+    const double travel = inverted ? 1 - share : share;
+    return std::clamp((travel - kDeadZone) / (1 - 2 * kDeadZone), 0.0, 1.0);
+  }
+};
+
+/// The raw value of an axis, scaled to [-1, 1].
+inline double Scaled(int value, const AxisRange& range) {
+  if (range.most <= range.least) return 0;
+  const double span = static_cast<double>(range.most) - range.least;
+  return std::clamp(2 * (static_cast<double>(value) - range.least) / span - 1, -1.0, 1.0);
+}
+
+/// What a device has.
+struct DeviceFeatures {
+  bool gas_and_brake = false;  // ABS_GAS and ABS_BRAKE
+  bool triggers = false;       // ABS_Z and ABS_RZ
+  bool is_gamepad = false;     // BTN_GAMEPAD
+  bool arrow_keys = false;     // KEY_UP and KEY_DOWN
+};
+
+/// How a device is used. Without pedals, its keys up and down are the pedals.
+struct DeviceMap {
+  std::optional<PedalAxis> throttle;
+  std::optional<PedalAxis> brake;
+  int take_over = -1;  // BTN_... or KEY_...
+  int give_back = -1;
+};
+
+/// The usual map of a device:
+///
+///     has ABS_GAS and ABS_BRAKE  these are the pedals
+///     gamepad                    right trigger (ABS_RZ) throttle, left trigger (ABS_Z) brake
+///     other with ABS_Z and RZ    wheel: ABS_Z throttle, ABS_RZ brake, both released at their
+///                                greatest value, as Logitech's wheels have it
+///     keyboard                   arrow up throttle, arrow down brake
+///
+/// Buttons: the south (A) and the east (B) button of a gamepad, the first two of a wheel, space and
+/// g of a keyboard.
+/// @return nullopt if the device has neither pedals nor keys
+std::optional<DeviceMap> UsualMap(const DeviceFeatures& features);
+
+/// A pedal as the user names it: "ABS_RZ", or "-ABS_RZ" if it is released at the greatest value.
+/// @throws InputError that names `option` if the kernel has no such axis
+PedalAxis ParsePedal(std::string_view text, std::string_view option);
+/// A button as the user names it: "BTN_SOUTH" or "KEY_SPACE". @throws InputError as ParsePedal()
+int ParseButton(std::string_view text, std::string_view option);
+
+}  // namespace fogline::drive

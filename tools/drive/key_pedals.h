@@ -1,0 +1,86 @@
+// Two keys as pedals: the pedals move at fixed rates while a key is down, so keys give every travel
+// and not only none and full.
+#pragma once
+
+#include <algorithm>
+#include <array>
+
+#include "common/clock.h"
+#include "scenario/sections/person.h"
+
+namespace fogline::drive {
+
+enum class PedalKey : std::uint8_t { kThrottle, kBrake };
+
+/// While its key is down, a pedal moves down with key_press_ps. Otherwise it moves back with
+/// key_release_ps. Only the newest key counts, because a driver has one foot for both pedals.
+///
+/// A terminal reports only characters: the first when the key goes down, and more while it stays
+/// down, the first of these after a delay. It does not report that a key goes up. So a character
+/// counts as a key that is down for kPress. Then the pedal keeps its place until it is known
+/// whether the key has stayed down: for kFirstDelay after the first character, and for kPress after
+/// another one. So a tap moves a pedal a little and lets it rest there for a moment, and a pedal
+/// goes back later than the finger.
+class KeyPedals {
+ public:
+  /// Characters of a key that is down come every 33 to 40 ms (Linux console, X11: 25 to 30 in a
+  /// second). Three times as long, so that a terminal over a network does not interrupt a pedal.
+  static constexpr Duration kPress = milliseconds(120);
+  /// The longest usual delay of the second character: X11's 660 ms (Linux console: 250 ms).
+  static constexpr Duration kFirstDelay = milliseconds(700);
+
+  explicit KeyPedals(const PersonSection& person)
+      : press_ps_(person.key_press_ps), release_ps_(person.key_release_ps) {}
+
+  /// A character of this key has come.
+  void Character(PedalKey key, TimePoint now) {
+    Key& one = keys_[static_cast<std::size_t>(key)];
+    const bool again = now < one.rests_until;
+    one.pressed_until = now + kPress;
+    one.rests_until = now + (again && one.seen ? kPress : kFirstDelay);
+    one.seen = true;
+    Key& other = keys_[1 - static_cast<std::size_t>(key)];
+    other.pressed_until = other.rests_until = now;
+  }
+
+  /// The key goes down or up, on a device that reports both.
+  void Hold(PedalKey key, bool down, TimePoint now) {
+    Key& one = keys_[static_cast<std::size_t>(key)];
+    one.pressed_until = one.rests_until = down ? TimePoint::max() : now;
+    if (!down) return;
+    Key& other = keys_[1 - static_cast<std::size_t>(key)];
+    other.pressed_until = other.rests_until = now;
+  }
+
+  /// Moves the pedals up to this time. Call it at least every 20 ms.
+  void MoveTo(TimePoint now) {
+    const double passed_s = moved_ == TimePoint() ? 0 : std::max(0.0, Seconds(now - moved_));
+    moved_ = now;
+    for (Key& key : keys_) {
+      if (now < key.pressed_until) {
+        key.travel = std::min(1.0, key.travel + press_ps_ * passed_s);
+      } else if (now >= key.rests_until) {
+        key.travel = std::max(0.0, key.travel - release_ps_ * passed_s);
+        key.seen = false;
+      }
+    }
+  }
+
+  double throttle() const { return keys_[0].travel; }
+  double brake() const { return keys_[1].travel; }
+
+ private:
+  struct Key {
+    TimePoint pressed_until{};
+    TimePoint rests_until{};
+    bool seen = false;  // a character has come since the pedal last went back
+    double travel = 0;
+  };
+
+  double press_ps_;
+  double release_ps_;
+  TimePoint moved_{};
+  std::array<Key, 2> keys_;
+};
+
+}  // namespace fogline::drive

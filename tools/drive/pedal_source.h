@@ -1,0 +1,46 @@
+// A device with pedals and buttons, as a seat reads it.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "common/clock.h"
+#include "fogline/driver_input_t.hpp"
+
+namespace fogline::drive {
+
+/// What a device says now.
+struct PedalState {
+  bool present = true;
+  double throttle = 0;  // in [0, 1]
+  double brake = 0;
+  std::vector<double> axes;  // raw values in [-1, 1]
+  std::int32_t buttons = 0;  // as in driver_input_t
+  TimePoint at{};            // when the newest input of the device came
+
+  /// Whether a person does the same; `at` does not count.
+  bool SameAs(const PedalState& other) const {
+    return present == other.present && throttle == other.throttle && brake == other.brake &&
+           axes == other.axes && buttons == other.buttons;
+  }
+};
+
+class PedalSource {
+ public:
+  virtual ~PedalSource() = default;
+  PedalSource(const PedalSource&) = delete;
+  PedalSource& operator=(const PedalSource&) = delete;
+
+  /// Reads what has come from the device. Does not wait.
+  virtual PedalState Read(TimePoint now) = 0;
+  /// Readable when the device has news; -1 if it has no descriptor now.
+  virtual int fd() const = 0;
+  virtual std::int8_t kind() const = 0;
+  virtual std::string name() const = 0;
+
+ protected:
+  PedalSource() = default;
+};
+
+}  // namespace fogline::drive

@@ -1,0 +1,143 @@
+#include "tools/drive/seat.h"
+
+#include <sodium.h>
+
+#include <algorithm>
+#include <exception>
+#include <utility>
+
+#include <fmt/core.h>
+
+#include "common/process/console.h"
+#include "common/process/poll.h"
+#include "services/graph.h"
+#include "services/host_modes.h"
+#include "services/runtime/transport/bus.h"
+#include "services/runtime/wire/driver_input.h"
+
+namespace fogline::drive {
+namespace {
+
+// How long the thread waits for its device or a message. Pedals of keys move in this time by at
+// most a fifth of their travel (key_press_ps at most 20).
+constexpr Duration kTick = milliseconds(10);
+
+std::int64_t DrawInstance() {
+  std::int64_t instance = 0;
+  while (instance == 0) randombytes_buf(&instance, sizeof(instance));
+  return instance;
+}
+
+/// What the person should know about a mode of HOST_COMMAND; "" if nothing.
+std::string_view TextOf(std::int8_t mode) {
+  switch (mode) {
+    case arbitration_t::REQUEST:
+      return ">>> take over, please";
+    case arbitration_t::REQUEST_URGENT:
+      return ">>> TAKE OVER NOW";
+    case arbitration_t::RECOVERING:
+      return ">>> you drive";
+    case arbitration_t::AUTOMATION:
+      return ">>> the automation drives";
+    default:
+      return IsLocked(mode) || InMinimalRisk(mode) ? ">>> the car stops by itself" : "";
+  }
+}
+
+}  // namespace
+
+std::string FirstBytes(const std::string& text, std::size_t most) {
+  if (text.size() <= most) return text;
+  std::size_t size = most;
+  while (size > 0 && (static_cast<unsigned char>(text[size]) & 0xC0) == 0x80) --size;
+  return text.substr(0, size);
+}
+
+InputMaker::InputMaker(std::int64_t run_id, std::int64_t instance, std::int8_t kind,
+                       const std::string& name) {
+  out_.header.run_id = run_id;
+  out_.header.step = -1;
+  out_.instance = instance;
+  out_.sequence = -1;
+  out_.latency_us = -1;
+  out_.device_kind = kind;
+  out_.device = FirstBytes(name, runtime::kMostDeviceBytes);
+}
+
+void InputMaker::SawTruth(const header_t& header) {
+  if (header.run_id == out_.header.run_id && header.step > out_.header.step) out_.header = header;
+}
+
+bool InputMaker::Due(const PedalState& state, TimePoint now) const {
+  if (out_.sequence < 0 || now - sent_at_ >= kEvery) return true;
+  return !state.SameAs(sent_) && now - sent_at_ >= kLeast;
+}
+
+const driver_input_t& InputMaker::Make(const PedalState& state, TimePoint now) {
+  using std::chrono::microseconds;
+  sent_ = state;
+  sent_at_ = now;
+  ++out_.sequence;
+  out_.time_us = duration_cast<microseconds>(state.at.time_since_epoch()).count();
+  out_.present = state.present ? 1 : 0;
+  out_.throttle = state.present ? std::clamp(state.throttle, 0.0, 1.0) : 0;
+  out_.brake = state.present ? std::clamp(state.brake, 0.0, 1.0) : 0;
+  out_.buttons = state.present ? state.buttons : 0;
+  out_.axes = state.axes;
+  out_.axes.resize(std::min<std::size_t>(state.axes.size(), runtime::kMostAxes));
+  out_.num_axes = static_cast<std::int32_t>(out_.axes.size());
+  return out_;
+}
+
+Seat::Seat(const std::string& url, std::int64_t run_id, const runtime::TrafficOptions& traffic,
+           std::unique_ptr<PedalSource> source)
+    : source_(std::move(source)), thread_([=, this] {
+        try {
+          Run(url, run_id, traffic);
+        } catch (const std::exception& error) {
+          Complain(fmt::format("fogline drive: error: the seat has ended: {}", error.what()));
+        }
+      }) {}
+
+Seat::~Seat() {
+  ends_ = true;
+  thread_.join();
+}
+
+void Seat::Run(const std::string& url, std::int64_t run_id,
+               const runtime::TrafficOptions& traffic) {
+  runtime::Bus bus(url);
+  // The faults of --faults are those of the roles.
+  runtime::Apply({.key_file = traffic.key_file, .faults = ""}, Role::kRunner, bus);
+  InputMaker maker(run_id, DrawInstance(), source_->kind(), source_->name());
+  bus.Subscribe(ChannelOf<truth_t>().name, [&](runtime::Arrival& arrival) {
+    if (const auto* truth = arrival.As<truth_t>()) maker.SawTruth(truth->header);
+  });
+  bus.Subscribe(ChannelOf<arbitration_t>().name, [&](runtime::Arrival& arrival) {
+    const auto* command = arrival.As<arbitration_t>();
+    if (command != nullptr && command->header.run_id == run_id) Tell(command->mode);
+  });
+  std::vector<std::uint8_t> bytes;
+  const auto send = [&](const PedalState& state, TimePoint now) {
+    runtime::Encode(maker.Make(state, now), bytes);
+    bus.Publish(ChannelOf<driver_input_t>().name, bytes);
+  };
+  while (!ends_) {
+    PollFor(source_->fd(), POLLIN, kTick);
+    bus.Drain();
+    const TimePoint now = Clock::now();
+    const PedalState state = source_->Read(now);
+    if (maker.Due(state, now)) send(state, now);
+  }
+  send({.present = false, .axes = {}}, Clock::now());
+}
+
+void Seat::Tell(std::int8_t mode) {
+  if (std::exchange(mode_, mode) == mode) return;
+  const std::string_view text = TextOf(mode);
+  if (text.empty()) return;
+  if (mode != arbitration_t::AUTOMATION) Draw("\a");
+  Notice(text);
+}
+
+}  // namespace fogline::drive

@@ -1,0 +1,61 @@
+// A seat: reads a device and publishes DRIVER_INPUT on the network of a run.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <thread>
+
+#include "services/runtime/transport/traffic_options.h"
+#include "tools/drive/pedal_source.h"
+
+namespace fogline::drive {
+
+/// Makes the messages of a seat, and says when one is due: at each change, and at least every 40
+/// ms, but at most 200 in a second. Both limits leave a fifth of the time to the ones that
+/// services/runtime/wire/driver_input.h allows.
+class InputMaker {
+ public:
+  static constexpr Duration kEvery = milliseconds(40);
+  static constexpr Duration kLeast = milliseconds(5);
+
+  InputMaker(std::int64_t run_id, std::int64_t instance, std::int8_t kind, const std::string& name);
+
+  /// The newest TRUTH that the seat knows. Headers of other runs are ignored.
+  void SawTruth(const header_t& header);
+  /// Whether this state must be sent now.
+  bool Due(const PedalState& state, TimePoint now) const;
+  /// The message of this state. It counts as sent. The message is valid until the next call.
+  const driver_input_t& Make(const PedalState& state, TimePoint now);
+
+ private:
+  driver_input_t out_{};
+  PedalState sent_;
+  TimePoint sent_at_{};
+};
+
+/// The text of at most `most` bytes with which a text begins; it ends with a whole character.
+std::string FirstBytes(const std::string& text, std::size_t most);
+
+/// A thread with a bus of its own. It tells the person what the car asks for.
+class Seat {
+ public:
+  Seat(const std::string& url, std::int64_t run_id, const runtime::TrafficOptions& traffic,
+       std::unique_ptr<PedalSource> source);
+  /// Says that nobody drives any more, and ends the thread.
+  ~Seat();
+  Seat(const Seat&) = delete;
+  Seat& operator=(const Seat&) = delete;
+
+ private:
+  void Run(const std::string& url, std::int64_t run_id, const runtime::TrafficOptions& traffic);
+  void Tell(std::int8_t mode);
+
+  std::unique_ptr<PedalSource> source_;
+  std::int8_t mode_ = 0;
+  std::atomic<bool> ends_ = false;
+  std::thread thread_;
+};
+
+}  // namespace fogline::drive

@@ -1,0 +1,123 @@
+// fogline drive: a run in real time in which a person drives.
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include <fmt/core.h>
+
+#include "common/interrupt.h"
+#include "services/log/log_of_run.h"
+#include "tools/cli/arguments.h"
+#include "tools/cli/help.h"
+#include "tools/cli/run_outcome.h"
+#include "tools/cli/transport_arguments.h"
+#include "tools/drive/evdev_device.h"
+#include "tools/drive/seat.h"
+#include "tools/drive/terminal_keys.h"
+#include "tools/fogline/verbs.h"
+
+namespace fogline {
+namespace {
+
+constexpr const char* kExamples =
+    R"(The run is in real time, with /person/drives=true. What you do is logged (channel
+DRIVER_INPUT), and fogline replay LOG --role driver computes the same commands again.
+
+--keys reads the terminal: arrow up throttle, arrow down brake, space or t take over,
+g give back. A pedal moves while its key is down (/person/key_press_ps) and back when
+it is up (/person/key_release_ps). A terminal does not report that a key goes up: a tap
+moves the pedal a little and lets it rest for 0.7 s; a key that stays down moves it on.
+A pedal goes back 0.12 s after the last repetition. With --evdev a keyboard reports
+both, so its pedals follow at once.
+
+--evdev reads a device of the kernel, such as /dev/input/event5: a gamepad (right
+trigger throttle, left trigger brake, A take over, B give back), a wheel with pedals, or
+a keyboard. The program needs the right to read the device. There is no force feedback.
+A pedal counts as released until it has moved once.
+
+If the device is unplugged, or its messages stop for /person/deadman_s, nobody drives:
+the pedals count as released, and the fallbacks of real time do their work.
+
+Examples:
+  fogline drive scenario/drive.json --keys
+  fogline drive scenario/drive.json --evdev /dev/input/event5
+  fogline drive scenario/drive.json --evdev /dev/input/event5 --throttle=-ABS_Y --brake=-ABS_Z
+  fogline drive scenario/drive.json --keys --set /person/take_over_by=button --seed 7)";
+
+struct DriveArguments {
+  explicit DriveArguments(CLI::App& verb) : scenario(verb), transport(verb, "udpm") {
+    CLI::Option* by_keys = verb.add_flag("--keys", keys, "Drive with the keys of this terminal");
+    CLI::Option* by_device =
+        verb.add_option("--evdev", device, "Drive with this input device")->excludes(by_keys);
+    const auto name = [&](const char* option, std::string& value, const char* what) {
+      verb.add_option(option, value, what)->needs(by_device);
+    };
+    name("--throttle", names.throttle,
+         "Axis of the throttle, such as ABS_RZ; -ABS_RZ if released at the greatest value");
+    name("--brake", names.brake, "Axis of the brake");
+    name("--take-over", names.take_over, "Button to take over, such as BTN_SOUTH");
+    name("--give-back", names.give_back, "Button to give back");
+    verb.add_option("--log", options.log, "Event log to write");
+    verb.add_flag("--force", force, "Replace the log if it exists");
+    verb.add_flag("--json", json, "Print the result as JSON");
+    verb.add_flag("--quiet", quiet, "Print only errors on stderr");
+    cli::ShowExitCodes(verb, {.interruptible = true});
+    verb.footer(kExamples);
+  }
+
+  cli::ScenarioArguments scenario;
+  cli::TransportArguments transport;
+  runner::ExperimentOptions options;
+  drive::DeviceNames names;
+  std::string device;
+  bool keys = false;
+  bool force = false;
+  bool json = false;
+  bool quiet = false;
+};
+
+/// @throws InputError if the device cannot be used
+std::unique_ptr<drive::PedalSource> MakeSource(const DriveArguments& arguments,
+                                               const PersonSection& person) {
+  if (arguments.keys) return std::make_unique<drive::TerminalKeys>(person);
+  if (arguments.device.empty()) {
+    throw InputError("error: give one of --keys and --evdev");
+  }
+  return std::make_unique<drive::EvdevDevice>(arguments.device, arguments.names, person);
+}
+
+int Drive(DriveArguments& arguments) {
+  runner::ExperimentOptions& options = arguments.options;
+  arguments.transport.Apply(options);
+  cli::RunInRealtime(options, 1);
+  options.announce = !arguments.quiet;
+  const Scenario scenario = arguments.scenario.Load({"/person/drives=true"});
+  cli::CheckPeriod(scenario, 1);
+  WatchInterrupts();
+  auto source = MakeSource(arguments, scenario.person);
+  log::LogOfRun log = options.log.empty() ? cli::FreshLog(arguments.scenario.file())
+                                          : cli::PrepareLog(options.log, arguments.force);
+  options.log = log.path();
+  options.on_logged_step = [&log] { log.RemoveOlder(); };
+  std::optional<drive::Seat> seat;
+  options.on_run = [&](std::int64_t run_id, const std::string& url) {
+    seat.emplace(url, run_id, options.traffic, std::move(source));
+  };
+  cli::RunOutcome outcome{.file = arguments.scenario.file(),
+                          .steps = scenario.steps,
+                          .result = runner::RunExperiment(scenario, options),
+                          .resumed = std::nullopt};
+  seat.reset();  // restores the terminal
+  return cli::PrintOutcome(outcome, arguments.json, "drive");
+}
+
+}  // namespace
+
+void AddDrive(CLI::App& app, cli::Action& action) {
+  CLI::App* verb = app.add_subcommand("drive", "Drive the host yourself, in real time");
+  const auto arguments = std::make_shared<DriveArguments>(*verb);
+  verb->callback([&action, arguments] { action = [arguments] { return Drive(*arguments); }; });
+}
+
+}  // namespace fogline
