@@ -41,6 +41,17 @@ M Sample(std::int64_t step) {
     message.scenario_hash = runtime::HashOf(kScenarioText);
     message.type_fingerprint = TypeFingerprint();
     message.waiting_for = "RADAR";
+  } else if constexpr (std::is_same_v<M, driver_input_t>) {
+    message.instance = 4711;
+    message.sequence = step;
+    message.latency_us = 17'000;
+    message.device_kind = driver_input_t::GAMEPAD;
+    message.device = "pad";
+    message.present = 1;
+    message.throttle = 0.25;
+    message.axes = {0.25, -1};
+    message.num_axes = 2;
+    message.buttons = driver_input_t::TAKE_OVER;
   } else if constexpr (std::is_same_v<M, resend_t>) {
     message.channel = "TRUTH";
     message.count = 1;
