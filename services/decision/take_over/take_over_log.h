@@ -52,7 +52,11 @@ class TakeOverLog {
   void Add(const arbitration_t& command, std::optional<double> human_mps2);
 
   const std::vector<TakeOverEntry>& entries() const { return entries_; }
+  /// Forgets the entries so far, for a caller that needs only the requests of a long run.
+  void DropEntries() { entries_.clear(); }
   const std::vector<TakeOverRequest>& requests() const { return requests_; }
+  /// The mode of the last command without emergency braking; AUTOMATION before the first command.
+  std::int8_t mode() const { return last_ ? last_->mode : arbitration_t::AUTOMATION; }
 
  private:
   std::int8_t DecidedMode(const arbitration_t& command) const;

@@ -75,6 +75,28 @@ TEST(TakeOverLogTest, TellsARequestFromItsBeginningToTheDriversFirstInput) {
   EXPECT_EQ(log.entries()[5].utime, 500'000);
 }
 
+TEST(TakeOverLogTest, KeepsItsRequestsWhenItsEntriesAreDropped) {
+  take_over::TakeOverLog log;
+  Add(log, Command(0, arbitration_t::AUTOMATION));
+  Add(log, Command(1, arbitration_t::REQUEST));
+  log.DropEntries();
+  EXPECT_THAT(log.entries(), IsEmpty());
+  Add(log, Command(2, arbitration_t::HANDOVER));
+  EXPECT_THAT(Texts(log), ElementsAre("acknowledgement"));
+  EXPECT_THAT(log.requests(),
+              ElementsAre(take_over::TakeOverRequest{.requested = 1, .acknowledged = 2}));
+}
+
+TEST(TakeOverLogTest, HasTheModeThatEmergencyBrakingHides) {
+  take_over::TakeOverLog log;
+  EXPECT_EQ(log.mode(), arbitration_t::AUTOMATION);
+  Add(log, Command(0, arbitration_t::REQUEST));
+  Add(log, Command(1, arbitration_t::EMERGENCY_BRAKING));
+  EXPECT_EQ(log.mode(), arbitration_t::REQUEST);
+  Add(log, Command(2, arbitration_t::HANDOVER));
+  EXPECT_EQ(log.mode(), arbitration_t::HANDOVER);
+}
+
 TEST(TakeOverLogTest, TellsOfAManoeuvreThatEndsInTheLock) {
   take_over::TakeOverLog log;
   Add(log, Command(0, arbitration_t::REQUEST));
