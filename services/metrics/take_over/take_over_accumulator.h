@@ -1,0 +1,60 @@
+// Collects the measures of all requests to take over in a run, step by step.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "fogline/arbitration_t.hpp"
+#include "fogline/truth_t.hpp"
+#include "services/decision/take_over/take_over_log.h"
+#include "services/metrics/averaged_jerk.h"
+#include "services/metrics/running.h"
+#include "services/metrics/surrogate.h"
+#include "services/metrics/take_over/take_over_measures.h"
+
+namespace fogline::metrics {
+
+/// Reads the steps of a run in order; steps may be missing. The times of a request are those of
+/// TakeOverLog, so `fogline events` lists the same times. The memory grows with the number of
+/// requests, and not with the length of the run.
+class TakeOverAccumulator {
+ public:
+  /// Adds a step.
+  /// @param command HOST_COMMAND of the step; nullptr if the message is missing. The state of a
+  ///     request then does not change in this step.
+  /// @param human_mps2 a_H, the driver's offer; nullopt if it is not known
+  void Add(const truth_t& truth, const arbitration_t* command, std::optional<double> human_mps2);
+
+  /// The measures of each request so far, in order of time.
+  std::vector<TakeOverMeasures> Result() const;
+
+ private:
+  /// Values of the judged interval, while it lasts.
+  struct Judged {
+    Mean deceleration_mps2;
+    // Only TTC and time gap are used. They do not depend on the section.
+    PairAccumulator pair{MeasuresSection{}};
+  };
+
+  void AddMotion(const truth_t& truth, std::optional<double> jerk_mps3);
+  void AddCommand(const truth_t& truth, const arbitration_t& command,
+                  std::optional<double> human_mps2);
+  void Begin(const truth_t& truth);
+  /// Adds what a step tells of the situation, also the step of the request.
+  void Look(const truth_t& truth);
+  void NoteTimes(std::int64_t utime);
+  void NoteOutcome(std::int8_t mode);
+  /// Ends the judged interval.
+  void End();
+  static void Finish(const Judged& judged, TakeOverMeasures& measures);
+
+  take_over::TakeOverLog log_;
+  AveragedJerk jerk_;
+  std::optional<double> fog_speed_mps_;  // speed when the present fog began; empty in clear air
+  std::vector<TakeOverMeasures> requests_;
+  std::int64_t requested_us_ = 0;  // time of the last request
+  std::optional<Judged> judged_;   // of the last request
+};
+
+}  // namespace fogline::metrics
