@@ -6,9 +6,8 @@
 
 namespace fogline::log {
 
-std::vector<driver_input_t> ReadDriverInputs(const std::filesystem::path& log,
-                                             std::int64_t run_id) {
-  std::vector<driver_input_t> inputs;
+void ForEachDriverInput(const std::filesystem::path& log, std::int64_t run_id,
+                        const std::function<void(const driver_input_t&)>& use) {
   EventLogReader reader(log);
   while (const auto event = reader.Next()) {
     if (event->channel != ChannelOf<driver_input_t>().name) continue;
@@ -18,8 +17,15 @@ std::vector<driver_input_t> ReadDriverInputs(const std::filesystem::path& log,
     const auto wrong =
         runtime::Examine(is_signed ? runtime::WithoutSignature(event->data) : event->data, input);
     if (wrong != nullptr || runtime::WrongIn(input) != nullptr) continue;
-    if (input.header.run_id == run_id) inputs.push_back(std::move(input));
+    if (input.header.run_id == run_id) use(input);
   }
+}
+
+std::vector<driver_input_t> ReadDriverInputs(const std::filesystem::path& log,
+                                             std::int64_t run_id) {
+  std::vector<driver_input_t> inputs;
+  ForEachDriverInput(log, run_id,
+                     [&inputs](const driver_input_t& input) { inputs.push_back(input); });
   return inputs;
 }
 

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <utility>
 #include <vector>
@@ -11,8 +12,12 @@
 
 namespace fogline::log {
 
-/// The DRIVER_INPUT messages of a run in the order of the log. Messages that are unsound, or of
-/// another run, are left out. @throws InputError if the log cannot be read
+/// Calls `use` for each DRIVER_INPUT of a run in the order of the log. Messages that are unsound,
+/// or of another run, are left out. @throws InputError if the log cannot be read
+void ForEachDriverInput(const std::filesystem::path& log, std::int64_t run_id,
+                        const std::function<void(const driver_input_t&)>& use);
+
+/// All these messages. @throws as ForEachDriverInput()
 std::vector<driver_input_t> ReadDriverInputs(const std::filesystem::path& log, std::int64_t run_id);
 
 /// The inputs of a run, to be found by what a DRIVER_COMMAND names.
