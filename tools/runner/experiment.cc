@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <set>
 #include <stdexcept>
 #include <utility>
 
@@ -14,11 +15,13 @@
 #include "scenario/io/loader.h"
 #include "services/closed_loop/closed_loop.h"
 #include "services/metrics/sample_decoder.h"
+#include "services/metrics/take_over/take_over_accumulator.h"
 #include "services/runtime/wire/digest.h"
 #include "tools/runner/bus_run.h"
 #include "tools/runner/direct_log.h"
 #include "tools/runner/kept_log.h"
 #include "tools/runner/log_keeper.h"
+#include "tools/runner/person_measures.h"
 
 namespace fogline::runner {
 namespace {
@@ -77,6 +80,7 @@ ExperimentResult Compute(const Scenario& scenario, const ExperimentOptions& opti
   StepWriter writer(digest, log ? &*log : nullptr);
   metrics::MetricsAccumulator measures(scenario);
   metrics::FollowerAccumulator followers;
+  metrics::TakeOverAccumulator take_overs;
   const TimePoint began = Clock::now();
   closed_loop::ClosedLoop loop(scenario);
   loop.Run(run_id, [&](const closed_loop::StepView& step) {
@@ -84,6 +88,7 @@ ExperimentResult Compute(const Scenario& scenario, const ExperimentOptions& opti
     const metrics::Sample sample = step.ToSample();
     measures.Add(sample);
     followers.Add(step.truth, step.follower);
+    take_overs.Add(step.truth, &step.host, step.driver.acceleration_mps2);
     if (options.samples) result.samples.push_back(sample);
     ++result.steps;
     if (log && result.steps == 1) {
@@ -100,6 +105,7 @@ ExperimentResult Compute(const Scenario& scenario, const ExperimentOptions& opti
   result.digest = digest.Hex();
   result.measures = measures.Result();
   result.followers = followers.Result();
+  result.take_overs = take_overs.Result();
   result.log = options.log;
   if (log) log->End(result);
   return result;
@@ -124,12 +130,39 @@ std::size_t PlaceOf(const ChannelInfo& channel) {
   return static_cast<std::size_t>(&channel - kChannels.data());
 }
 
-/// Reads a run from its log, without its measures.
+/// The measures of a run that need the messages themselves, and not only the samples.
+class MessageMeasures {
+ public:
+  /// Adds a step. @param messages shows which messages the step has
+  void Add(const log::StepMessages& messages, const metrics::SampleDecoder& decoder) {
+    followers_.Add(decoder.truth(), decoder.follower());
+    const bool commanded = !messages[IndexOf<arbitration_t>()].empty();
+    const bool offered = !messages[IndexOf<driver_command_t>()].empty();
+    const driver_command_t& driver = decoder.driver();
+    take_overs_.Add(decoder.truth(), commanded ? &decoder.host() : nullptr,
+                    offered ? std::optional(driver.acceleration_mps2) : std::nullopt);
+    if (offered && driver.input_instance != 0) seats_.insert(driver.input_instance);
+  }
+
+  /// @param run has the scenario and the name of the log
+  void PutInto(LoggedRun& run) const {
+    run.result.followers = followers_.Result();
+    run.result.take_overs = take_overs_.Result();
+    AddPersonMeasures(seats_, run);
+  }
+
+ private:
+  metrics::FollowerAccumulator followers_;
+  metrics::TakeOverAccumulator take_overs_;
+  std::set<std::int64_t> seats_;
+};
+
+/// Reads a run from its log, without the measures that need only the samples.
 /// @param use gets the sample of each step
 template <class Use>
 LoggedRun ReadSteps(const std::filesystem::path& log, const Use& use) {
   LoggedRun logged;
-  metrics::FollowerAccumulator followers;
+  MessageMeasures measures;
   metrics::SampleDecoder decoder;
   log::RunLogReader reader(log);
   while (const log::StepMessages* messages = reader.Next()) {
@@ -148,15 +181,15 @@ LoggedRun ReadSteps(const std::filesystem::path& log, const Use& use) {
                       PathText(log), reader.run().steps - 1));
     }
     use(*sample);
-    followers.Add(decoder.truth(), decoder.follower());
+    measures.Add(*messages, decoder);
   }
   static_cast<log::RunLog&>(logged) = reader.run();
   logged.result.seed = logged.scenario.seed;
   logged.result.steps = logged.steps;
   logged.result.digest = logged.digest;
   logged.result.log = log;
-  logged.result.followers = followers.Result();
   logged.result.realtime = logged.realtime;
+  measures.PutInto(logged);
   return logged;
 }
 

@@ -11,11 +11,13 @@
 #include "common/clock.h"
 #include "scenario/sections/scenario.h"
 #include "services/graph.h"
+#include "services/log/input_latency.h"
 #include "services/log/remains.h"
 #include "services/log/run_log.h"
 #include "services/metrics/follower_metrics.h"
 #include "services/metrics/run_metrics.h"
 #include "services/metrics/sample.h"
+#include "services/metrics/take_over/take_over_measures.h"
 #include "services/runtime/coordination/foreign_peers.h"
 #include "services/runtime/coordination/send_trouble.h"
 #include "services/runtime/transport/traffic_options.h"
@@ -90,9 +92,11 @@ struct ExperimentResult {
   bool checked = true;        // every byte of the log agrees with the recorder's reports
   std::filesystem::path log;  // empty if there is no log
   metrics::RunMetrics measures;
-  std::vector<metrics::FollowerMetrics> followers;  // nearest to the host first
-  std::vector<metrics::Sample> samples;             // if requested
-  std::optional<log::RealtimeFigures> realtime;     // only for a run in real time
+  std::vector<metrics::FollowerMetrics> followers;    // nearest to the host first
+  std::vector<metrics::TakeOverMeasures> take_overs;  // one for each request to take over
+  std::optional<log::InputLatency> input_latency;     // only for a run in which a person drove
+  std::vector<metrics::Sample> samples;               // if requested
+  std::optional<log::RealtimeFigures> realtime;       // only for a run in real time
 };
 
 /// Constructs every part of a run once, without a step. Fields whose values are valid one by one

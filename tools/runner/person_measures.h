@@ -1,0 +1,19 @@
+// Measures of a person who drives, from the DRIVER_INPUT messages in the log of a run.
+#pragma once
+
+#include <cstdint>
+#include <set>
+
+#include "tools/runner/experiment.h"
+
+namespace fogline::runner {
+
+/// Adds the input latency, and the times of the person's movements after each request to take over,
+/// to the result of a run. Reads the log once more, because the steps tell which requests there
+/// were.
+/// @param seats the seats (driver_input_t.instance) from which commands of the driver were made;
+///     other seats do not count. If there is none, nothing is added.
+/// @throws InputError
+void AddPersonMeasures(const std::set<std::int64_t>& seats, LoggedRun& run);
+
+}  // namespace fogline::runner
