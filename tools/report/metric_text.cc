@@ -55,6 +55,24 @@ std::string ListText(const std::vector<std::string>& names) {
   return text;
 }
 
+std::string_view OutcomeText(metrics::TakeOverEnd end) {
+  switch (end) {
+    case metrics::TakeOverEnd::kOpen:
+      return "open at the end of the run";
+    case metrics::TakeOverEnd::kTakenOver:
+      return "taken over";
+    case metrics::TakeOverEnd::kTakenOverLate:
+      return "taken over late, in the manoeuvre";
+    case metrics::TakeOverEnd::kMinimalRisk:
+      return "minimal risk manoeuvre";
+    case metrics::TakeOverEnd::kWithdrawn:
+      return "withdrawn";
+    case metrics::TakeOverEnd::kFallback:
+      return "fallback to the driver";
+  }
+  return "";
+}
+
 std::string CollisionText(const metrics::RunMetrics& measures) {
   if (!measures.collision_time_s) return "";
   return fmt::format("{} at {} s",

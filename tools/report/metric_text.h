@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "services/metrics/run_metrics.h"
+#include "services/metrics/take_over/take_over_measures.h"
 
 namespace fogline::report {
 
@@ -28,6 +29,9 @@ std::string MetricText(std::string_view name, double value, std::string_view uni
 
 /// Names as one text: "a, b and c".
 std::string ListText(const std::vector<std::string>& names);
+
+/// "taken over": the outcome of a request to take over.
+std::string_view OutcomeText(metrics::TakeOverEnd end);
 
 /// "the host hit the preceding car at 12.3 s"; "" without a collision.
 std::string CollisionText(const metrics::RunMetrics& measures);

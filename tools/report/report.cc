@@ -126,6 +126,17 @@ std::string CurvesSection(const std::optional<ReportCurves>& curves) {
   return Section("curves", "Every threshold, over seeds", CurvesContent(*curves));
 }
 
+std::string RequestsSection(std::span<const ReportRun> runs) {
+  std::string content = TakeOverTable(runs);
+  if (!content.empty()) {
+    content +=
+        "<p class=\"note\">Times begin with the request. The other measures are of the interval "
+        "from the request until the driver has recovered, the automation drives again, or the car "
+        "stands after a minimal risk manoeuvre.</p>\n";
+  }
+  return Section("take-overs", "Take-overs", content);
+}
+
 /// The values of a number in all runs: "7", or "7 to 9" if the runs differ.
 template <class Get>
 std::string RangeOf(std::span<const ReportRun> runs, Get get) {
@@ -192,6 +203,7 @@ std::string MakeReport(std::span<const ReportRun> runs, const std::optional<Repo
                {"figures_hidden", no_figures ? " hidden" : ""},
                {"figures", figures},
                {"measures", Section("measures", "Measures", MetricTable(runs))},
+               {"take_overs", RequestsSection(runs)},
                {"differences", Section("differences", "What differs between the scenarios",
                                        DifferenceTable(runs))},
                {"scenarios", Section("scenarios", "Scenarios", scenarios)},

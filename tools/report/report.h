@@ -13,6 +13,7 @@
 #include "scenario/sections/scenario.h"
 #include "services/metrics/fog_effect.h"
 #include "services/metrics/sample.h"
+#include "services/metrics/take_over/take_over_measures.h"
 #include "tools/stats/statistics.h"
 
 namespace fogline::report {
@@ -42,6 +43,7 @@ struct ReportRun {
   // track has recovered (metrics::PairedMetrics).
   std::optional<double> si_pct = {};
   std::optional<double> si_until_recovery_pct = {};
+  std::vector<metrics::TakeOverMeasures> take_overs = {};  // one for each request to take over
 };
 
 /// The paper's table. Standard deviations are over seeds; published values come from the scenario.

@@ -15,6 +15,7 @@
 #include "services/metrics/safety_improvement.h"
 #include "tools/report/figures.h"
 #include "tools/report/html.h"
+#include "tools/report/metric_text.h"
 #include "tools/stats/statistics.h"
 
 namespace fogline::report {
@@ -138,6 +139,29 @@ std::string HeadOf(const ReportMetric& measure) {
   return head;
 }
 
+/// The measures of a request to take over; NaN for a measure without a value.
+std::vector<ReportMetric> MeasuresOf(const metrics::TakeOverMeasures& request) {
+  std::vector<ReportMetric> measures;
+  metrics::VisitTakeOver(request, [&](std::string_view name, const std::optional<double>& value,
+                                      std::string_view unit, std::string_view description) {
+    measures.push_back({std::string(name), value.value_or(stats::kMissing), std::string(unit),
+                        std::string(description)});
+  });
+  return measures;
+}
+
+/// A row with a cell for each request; "" if no request has a value of this measure.
+std::string RowOf(std::span<const std::vector<ReportMetric>> requests, std::size_t measure) {
+  std::string row = fmt::format("<tr><th scope=\"row\">{}</th>", HeadOf(requests[0][measure]));
+  bool has_value = false;
+  for (const std::vector<ReportMetric>& request : requests) {
+    const ReportMetric& cell = request[measure];
+    has_value = has_value || !std::isnan(cell.value);
+    row += fmt::format("<td>{}</td>", MetricElement(cell.name, cell.value, cell.unit));
+  }
+  return has_value ? row + "</tr>\n" : "";
+}
+
 /// The scenario's fields by JSON pointer; empty if the text is not JSON.
 nlohmann::json FieldsOf(const ReportRun& run) {
   const auto scenario =
@@ -225,6 +249,25 @@ std::string MetricTable(std::span<const ReportRun> runs) {
     body += "</tr>\n";
   }
   return Scrolling("Measures of the runs", HeadOfRuns("Measure", runs), body);
+}
+
+std::string TakeOverTable(std::span<const ReportRun> runs) {
+  std::string head = "<tr><th scope=\"col\">Measure</th>";
+  std::string body = "<tr><th scope=\"row\">outcome</th>";
+  std::vector<std::vector<ReportMetric>> requests;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    for (std::size_t k = 0; k < runs[i].take_overs.size(); ++k) {
+      const metrics::TakeOverMeasures& request = runs[i].take_overs[k];
+      head += fmt::format("<th scope=\"col\"><i class=\"dot {}\"></i>{}, request {}</th>",
+                          RunStyle(i), EscapeHtml(RunName(runs, i)), k + 1);
+      body += fmt::format("<td>{}</td>", OutcomeText(request.outcome));
+      requests.push_back(MeasuresOf(request));
+    }
+  }
+  if (requests.empty()) return "";
+  body += "</tr>\n";
+  for (std::size_t i = 0; i < requests.front().size(); ++i) body += RowOf(requests, i);
+  return Scrolling("Requests to take over", head + "</tr>\n", body);
 }
 
 std::string DifferenceTable(std::span<const ReportRun> runs) {

@@ -20,6 +20,10 @@ std::string CurveTable(const ReportCurves& curves, std::span<const FrontPoint> p
 /// Every measure that any run has: one row for each measure, one column for each run.
 std::string MetricTable(std::span<const ReportRun> runs);
 
+/// The measures of requests to take over: one row for each measure, one column for each request.
+/// "" if no run has a request.
+std::string TakeOverTable(std::span<const ReportRun> runs);
+
 /// The scenario fields in which the runs differ, with one column for each run; "" if there are
 /// none.
 std::string DifferenceTable(std::span<const ReportRun> runs);

@@ -230,6 +230,27 @@ TEST(MakeReportTest, SaysHowManyOfManyDifferencesItLeavesOut) {
   EXPECT_THAT(SectionOf(report::MakeReport(runs, {}), "differences"), HasSubstr("and 10 more"));
 }
 
+TEST(MakeReportTest, HasNoTakeOversWithoutARequest) {
+  EXPECT_EQ(SectionOf(report::MakeReport(ExampleRuns(), {}), "take-overs"), "");
+}
+
+TEST(MakeReportTest, HasAColumnForEachRequestToTakeOverAndARowForEachMeasure) {
+  std::vector<report::ReportRun> runs = ExampleRuns();
+  runs[1].take_overs = {{.outcome = metrics::TakeOverEnd::kTakenOver,
+                         .requested_s = 2,
+                         .judged_s = 7,
+                         .reaction_time_s = 1.25,
+                         .speed_at_request_mps = 20},
+                        {.outcome = metrics::TakeOverEnd::kMinimalRisk, .requested_s = 31}};
+  const std::string section = SectionOf(report::MakeReport(runs, {}), "take-overs");
+  EXPECT_THAT(section, HasSubstr("threshold 0.2, request 1</th>"));
+  EXPECT_THAT(section, HasSubstr("threshold 0.2, request 2</th>"));
+  EXPECT_THAT(section, HasSubstr("<td>taken over</td><td>minimal risk manoeuvre</td></tr>"));
+  EXPECT_THAT(section, HasSubstr("<small>reaction_time_s</small></th>"
+                                 "<td><data value=\"1.25\">1.25</data></td><td>–</td></tr>"));
+  EXPECT_EQ(Count(section, "<tr>"), 1U + 5U) << "a measure that no request has has no row";
+}
+
 TEST(MakeReportTest, NamesACollisionInTheRunSelector) {
   report::ReportRun run = ExampleRun({.steps = 30});
   run.samples.back().collision = truth_t::COLLISION_FOLLOWER;
