@@ -1,0 +1,67 @@
+#include "tools/export/take_over_csv.h"
+
+#include <cstddef>
+#include <fstream>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "common/atomic_file.h"
+
+namespace fogline::exports {
+namespace {
+
+constexpr std::string_view kKeys = "log,seed,request,outcome,";
+
+std::string RequestColumns() {
+  std::string line(kKeys.substr(0, kKeys.size() - 1));
+  metrics::VisitTakeOver({}, [&line](std::string_view name, const auto&, std::string_view,
+                                     std::string_view) { line += fmt::format(",{}", name); });
+  log::VisitLatency(
+      {}, [&line](std::string_view name, const auto&, std::string_view, std::string_view) {
+        line += fmt::format(",input_latency_{}", name);
+      });
+  return line + '\n';
+}
+
+std::string Quoted(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
+  return quoted + '"';
+}
+
+void AppendRequest(const TakeOverRun& run, std::size_t index, std::string& text) {
+  const metrics::TakeOverMeasures& measures = run.take_overs[index];
+  text += fmt::format("{},{},{},{}", Quoted(run.log), run.seed, index + 1,
+                      metrics::NameOf(measures.outcome));
+  metrics::VisitTakeOver(
+      measures, [&text](std::string_view, const std::optional<double>& value, std::string_view,
+                        std::string_view) { text += value ? fmt::format(",{}", *value) : ","; });
+  log::VisitLatency(run.input_latency.value_or(log::InputLatency{}),
+                    [&](std::string_view, std::int64_t value, std::string_view, std::string_view) {
+                      text += run.input_latency ? fmt::format(",{}", value) : ",";
+                    });
+  text += '\n';
+}
+
+}  // namespace
+
+bool IsTakeOverCsv(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::string head(kKeys.size(), '\0');
+  in.read(head.data(), std::ssize(head));
+  return in.gcount() == std::ssize(head) && head == kKeys;
+}
+
+void WriteTakeOverCsv(std::span<const TakeOverRun> runs, const std::filesystem::path& file) {
+  std::string text = RequestColumns();
+  for (const TakeOverRun& run : runs) {
+    for (std::size_t i = 0; i < run.take_overs.size(); ++i) AppendRequest(run, i, text);
+  }
+  AtomicFile out(file);
+  out.Write(text);
+  out.Finish();
+}
+
+}  // namespace fogline::exports

@@ -1,0 +1,35 @@
+// Writes the requests to take over of many runs as one CSV file, with a line for each request.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "services/log/input_latency.h"
+#include "services/metrics/take_over/take_over_measures.h"
+
+namespace fogline::exports {
+
+/// The requests of one run.
+struct TakeOverRun {
+  std::string log;  // may contain any characters
+  std::int64_t seed = 0;
+  std::vector<metrics::TakeOverMeasures> take_overs;
+  std::optional<log::InputLatency> input_latency;
+};
+
+/// Whether WriteTakeOverCsv() could have written the file, judged by its beginning.
+bool IsTakeOverCsv(const std::filesystem::path& file);
+
+/// Writes a header line, and a line for each request. The columns are log, seed, request (from 1 on
+/// in each run), outcome, the measures of VisitTakeOver(), and the input latency of the run. A
+/// value that does not exist is empty. Numbers have enough digits to restore every bit. A name with
+/// a comma, a quote or a line end is in quotes (RFC 4180).
+/// @throws InputError if the file cannot be created; std::runtime_error when the disk is full;
+/// Interrupted
+void WriteTakeOverCsv(std::span<const TakeOverRun> runs, const std::filesystem::path& file);
+
+}  // namespace fogline::exports
