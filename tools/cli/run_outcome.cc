@@ -10,6 +10,7 @@
 #include "common/text.h"
 #include "services/runtime/wire/step_ring.h"
 #include "tools/cli/arguments.h"
+#include "tools/cli/measures/take_over_text.h"
 #include "tools/report/metric_text.h"
 
 namespace fogline::cli {
@@ -123,6 +124,7 @@ nlohmann::ordered_json ToJson(const RunOutcome& outcome) {
   json["verified"] = nullptr;
   if (result.verification) json["verified"] = VerificationJson(*result.verification);
   if (result.realtime) json["realtime"] = RealtimeJson(*result.realtime);
+  AddTakeOvers(result, json);
   json["metrics"] = nlohmann::ordered_json::parse(MetricsJson(result));
   return json;
 }
@@ -158,7 +160,7 @@ std::string ToText(const RunOutcome& outcome) {
   if (result.realtime) text += RealtimeText(*result.realtime);
   text += fmt::format("digest {}\n", result.digest);
   if (!result.log.empty()) text += fmt::format("log    {}\n", PathText(result.log));
-  return text + MetricsText(result);
+  return text + MetricsText(result) + TakeOversText(result);
 }
 
 int PrintOutcome(const RunOutcome& outcome, bool json, std::string_view verb) {

@@ -1,6 +1,8 @@
 // fogline events: lists the times at which each side drove, the outcome of every request to take
 // over, and every emergency braking. It reads only logs.
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -14,6 +16,7 @@
 #include "services/log/run_log.h"
 #include "tools/cli/arguments.h"
 #include "tools/cli/help.h"
+#include "tools/cli/measures/take_over_text.h"
 #include "tools/fogline/verbs.h"
 
 namespace fogline {
@@ -27,6 +30,7 @@ struct EventsArguments {
 struct RunEvents {
   log::RunLog run;
   take_over::TakeOverLog log;
+  std::vector<metrics::TakeOverMeasures> measures;  // of log.requests()
 };
 
 RunEvents ReadEvents(const std::filesystem::path& file) {
@@ -42,6 +46,9 @@ RunEvents ReadEvents(const std::filesystem::path& file) {
     events.log.Add(command, offered ? std::optional(driver.acceleration_mps2) : std::nullopt);
   }
   events.run = reader.run();
+  if (!events.log.requests().empty()) {
+    events.measures = runner::MeasureLoggedRun(file, events.run.scenario).result.take_overs;
+  }
   return events;
 }
 
@@ -55,6 +62,17 @@ std::array<RequestTime, 7> TimesOf(const take_over::TakeOverRequest& request) {
            {"effective", request.effective},
            {"manoeuvre", request.manoeuvre},
            {"standstill", request.standstill}}};
+}
+
+/// The measures of a request; nullptr if the log lacks TRUTH in the step of the request.
+const metrics::TakeOverMeasures* MeasuresOf(const RunEvents& events,
+                                            const take_over::TakeOverRequest& request) {
+  const double step_s = events.run.scenario.step_s;
+  const auto found = std::ranges::find_if(events.measures, [&](const auto& measures) {
+    return std::abs(measures.requested_s - static_cast<double>(request.requested) * step_s) <
+           step_s / 2;
+  });
+  return found == events.measures.end() ? nullptr : &*found;
 }
 
 nlohmann::ordered_json EventsJson(const RunEvents& events) {
@@ -77,6 +95,9 @@ nlohmann::ordered_json RequestsJson(const RunEvents& events) {
     for (const auto& [name, step] : TimesOf(request)) {
       const double time_s = static_cast<double>(step.value_or(0)) * events.run.scenario.step_s;
       row[fmt::format("{}_s", name)] = step ? nlohmann::ordered_json(time_s) : nullptr;
+    }
+    if (const auto* measures = MeasuresOf(events, request)) {
+      row["measures"] = cli::TakeOverJson(*measures);
     }
     rows.push_back(std::move(row));
   }
@@ -102,6 +123,9 @@ void PrintText(const std::filesystem::path& file, const RunEvents& events) {
       fmt::print(" {} {:.2f} s", name, static_cast<double>(*step) * events.run.scenario.step_s);
     }
     fmt::print("\n");
+    if (const auto* measures = MeasuresOf(events, request)) {
+      fmt::print("    {}\n", cli::TakeOverLine(*measures));
+    }
   }
 }
 
@@ -143,7 +167,8 @@ void AddEvents(CLI::App& app, cli::Action& action) {
       "Lists the events that a data recorder stores: changes of state, requests to take over\n"
       "and their escalation, acknowledgements, transfers, first effective inputs, manoeuvres,\n"
       "collision warnings and emergency braking.\n"
-      "Then lists the times of each request, from the start of the run. With the mode instant\n"
+      "Then lists the times of each request, from the start of the run, and its outcome and\n"
+      "measures (services/metrics/README.md defines them). With the mode instant\n"
       "of take_over the driver is not asked, so there are no requests and acknowledgements.\n\n"
       "Examples:\n"
       "  fogline run scenario/paper.json --set /arbitrator/take_over/mode=requested --log "

@@ -180,6 +180,19 @@ std::vector<runner::LoggedRun> ReadRuns(std::span<const std::filesystem::path> l
   return runs;
 }
 
+/// The measures of a run, and the latency of a person's inputs.
+std::vector<report::ReportMetric> MetricsOf(const runner::ExperimentResult& result) {
+  std::vector<report::ReportMetric> out = MetricsOf(result.measures);
+  if (!result.input_latency) return out;
+  log::VisitLatency(
+      *result.input_latency, [&out](std::string_view name, std::int64_t value,
+                                    std::string_view unit, std::string_view description) {
+        out.push_back({fmt::format("input_latency_{}", name), static_cast<double>(value),
+                       std::string(unit), std::string(description)});
+      });
+  return out;
+}
+
 /// The content of a run on the page. PageOf() moves the samples out of `run`.
 report::ReportRun PageOf(runner::LoggedRun& run, const std::string& name,
                          const metrics::PairedMetrics& paired) {
@@ -193,9 +206,10 @@ report::ReportRun PageOf(runner::LoggedRun& run, const std::string& name,
           .seed = run.result.seed,
           .digest = run.result.digest,
           .samples = std::move(run.result.samples),
-          .measures = MetricsOf(run.result.measures),
+          .measures = MetricsOf(run.result),
           .si_pct = paired.si_pct,
-          .si_until_recovery_pct = paired.si_until_recovery_pct};
+          .si_until_recovery_pct = paired.si_until_recovery_pct,
+          .take_overs = run.result.take_overs};
 }
 
 report::ReportCurves ComputeCurves(const ReportArguments& arguments) {

@@ -1,6 +1,9 @@
 // The car must ask the driver to take over. The run is the same on every transport, and its log
 // shows the request.
+#include <algorithm>
+#include <map>
 #include <string>
+#include <vector>
 
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
@@ -12,6 +15,8 @@ namespace fogline::test {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::Not;
+using ::testing::StartsWith;
 
 class TakeOverRunTest : public testing::Test {
  protected:
@@ -27,12 +32,32 @@ class TakeOverRunTest : public testing::Test {
   }
   std::string Log(const std::string& transport) const { return folder_.File(transport + ".lcm"); }
 
-  nlohmann::json Events() const {
-    const Outcome outcome = RunCommand({Program("fogline"), "events", Log("direct"), "--json"});
+  nlohmann::json Events() const { return FirstOf("events", Log("direct")); }
+  nlohmann::json Metrics() const { return FirstOf("metrics", Log("direct")); }
+  /// The log of a run whose driver need not be asked.
+  std::string LogWithoutARequest() const {
+    const std::string log = Log("paper");
+    RunOn("direct", "scenario/paper.json", log, {"/steps=250"});
+    return log;
+  }
+  /// The CSV file of these logs.
+  std::string TakeOvers(const std::vector<std::string>& logs) const {
+    const std::string file = folder_.File("take-overs.csv");
+    std::vector<std::string> words{Program("fogline"), "metrics", "--take-overs", file};
+    words.insert(words.end(), logs.begin(), logs.end());
+    const Outcome outcome = RunCommand(words);
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    return Content(file);
+  }
+
+ private:
+  static nlohmann::json FirstOf(const std::string& verb, const std::string& log) {
+    const Outcome outcome = RunCommand({Program("fogline"), verb, log, "--json"});
     EXPECT_EQ(outcome.code, 0) << outcome.err;
     return nlohmann::json::parse(outcome.out, nullptr, false).at(0);
   }
 
+ protected:
   ScratchFolder folder_;
 };
 
@@ -76,6 +101,104 @@ TEST_F(TakeOverRunTest, TellsOfTheManoeuvreOfADriverWhoStaysAway) {
   const Outcome text = RunCommand({Program("fogline"), "events", Log("direct")});
   EXPECT_THAT(text.out, HasSubstr("request to take over"));
   EXPECT_THAT(text.out, HasSubstr("DEMAND_URGENT -> MRM_COMFORT"));
+}
+
+TEST_F(TakeOverRunTest, IsMeasuredByEveryVerb) {
+  Run("direct", false);
+  const auto requests = Metrics()["take_overs"];
+  ASSERT_EQ(requests.size(), 1U);
+  const auto& measures = requests.at(0);
+  EXPECT_EQ(measures["outcome"], "taken_over");
+  const auto request = Events()["requests"].at(0);
+  EXPECT_EQ(request["measures"], measures);
+  const double requested_s = request["requested_s"];
+  EXPECT_NEAR(measures["requested_s"].get<double>(), requested_s, 1e-9);
+  for (const auto& [measure, time] :
+       std::map<std::string, std::string>{{"reaction_time_s", "acknowledged_s"},
+                                          {"take_over_time_s", "transferred_s"},
+                                          {"effective_input_time_s", "effective_s"}}) {
+    EXPECT_NEAR(measures[measure].get<double>(), request[time].get<double>() - requested_s, 1e-9)
+        << measure;
+  }
+  EXPECT_TRUE(measures["pedal_on_time_s"].is_null()) << "no person drives";
+  EXPECT_GT(measures["max_deceleration_mps2"], measures["mean_deceleration_mps2"]);
+
+  const Outcome text = RunCommand({Program("fogline"), "metrics", Log("direct")});
+  EXPECT_THAT(text.out, HasSubstr("\n  take-over 1: taken over\n    requested_s "));
+  const Outcome listed = RunCommand({Program("fogline"), "events", Log("direct")});
+  EXPECT_THAT(listed.out, HasSubstr("\n    taken over; reaction time 2."));
+  const std::string page = folder_.File("page.html");
+  RunCommand({Program("fogline"), "report", Log("direct"), "--output", page});
+  EXPECT_THAT(Content(page), HasSubstr("<h2 id=\"take-overs-title\">Take-overs</h2>"));
+}
+
+TEST_F(TakeOverRunTest, IsMeasuredDuringTheRunAsFromItsLog) {
+  const auto run = Run("direct", false);
+  EXPECT_EQ(run["take_overs"], Metrics()["take_overs"]);
+  EXPECT_EQ(run["take_overs"].size(), 1U);
+}
+
+TEST_F(TakeOverRunTest, OfADriverWhoStaysAwayIsAMinimalRiskManoeuvre) {
+  Run("direct", true);
+  const auto measures = Metrics()["take_overs"].at(0);
+  EXPECT_EQ(measures["outcome"], "minimal_risk");
+  EXPECT_NEAR(measures["manoeuvre_time_s"].get<double>(), 10, 1e-9);
+  EXPECT_TRUE(measures["take_over_time_s"].is_null());
+}
+
+TEST_F(TakeOverRunTest, LeavesNoTraceInARunWithoutARequest) {
+  const std::string log = LogWithoutARequest();
+  for (const char* verb : {"metrics", "events"}) {
+    for (const char* format : {"--json", ""}) {
+      std::vector<std::string> words{Program("fogline"), verb, log};
+      if (*format != '\0') words.emplace_back(format);
+      const Outcome outcome = RunCommand(words);
+      EXPECT_EQ(outcome.code, 0) << outcome.err;
+      EXPECT_THAT(outcome.out, Not(HasSubstr("take_overs"))) << verb << format;
+      EXPECT_THAT(outcome.out, Not(HasSubstr("take-over"))) << verb << format;
+      EXPECT_THAT(outcome.out, Not(HasSubstr("input_latency"))) << verb << format;
+    }
+  }
+  const std::string page = folder_.File("page.html");
+  RunCommand({Program("fogline"), "report", log, "--output", page});
+  EXPECT_THAT(Content(page), HasSubstr("<h2 id=\"measures-title\">"));
+  EXPECT_THAT(Content(page), Not(HasSubstr("take-overs")));
+}
+
+TEST_F(TakeOverRunTest, IsALineOfACsvFile) {
+  Run("direct", false);
+  Run("memq", true);
+  const std::string text = TakeOvers({Log("direct"), LogWithoutARequest(), Log("memq")});
+  EXPECT_THAT(text, StartsWith("log,seed,request,outcome,requested_s,"));
+  EXPECT_EQ(std::ranges::count(text, '\n'), 3);
+  EXPECT_THAT(text, HasSubstr("\n" + Log("direct") + ",1,1,taken_over,"));
+  EXPECT_THAT(text, HasSubstr("\n" + Log("memq") + ",1,1,minimal_risk,"));
+}
+
+TEST_F(TakeOverRunTest, ReplacesNoOtherFileByItsCsvFile) {
+  const std::string log = LogWithoutARequest();
+  const std::string before = Content(log);
+  const Outcome outcome = RunCommand({Program("fogline"), "metrics", log, "--take-overs", log});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_EQ(outcome.err, log +
+                             ": error: --take-overs: the file is no table of take-overs and is "
+                             "not replaced\n");
+  EXPECT_EQ(Content(log), before);
+  TakeOvers({log});
+  TakeOvers({log});  // a table of take-overs is replaced
+}
+
+TEST_F(TakeOverRunTest, WritesItsCsvFileAlsoToStdout) {
+  Run("direct", false);
+  const Outcome text =
+      RunCommand({Program("fogline"), "metrics", Log("direct"), "--take-overs", "/dev/stdout"});
+  EXPECT_EQ(text.code, 0) << text.err;
+  EXPECT_EQ(std::ranges::count(text.out, '\n'), 2) << text.out;
+  EXPECT_THAT(text.err, HasSubstr("take-over 1: taken over"));
+  const Outcome json = RunCommand(
+      {Program("fogline"), "metrics", Log("direct"), "--take-overs", "/dev/stdout", "--json"});
+  EXPECT_EQ(json.code, 2);
+  EXPECT_THAT(json.err, HasSubstr("--take-overs /dev/stdout uses stdout already"));
 }
 
 }  // namespace
