@@ -162,6 +162,8 @@ Bus::~Bus() {
   if (lcm_ != nullptr) lcm_destroy(lcm_);
 }
 
+std::int64_t Bus::replaced() const { return tcpq_ ? tcpq_->replaced() : 0; }
+
 void Bus::Secure(const MessageSigner& signer) {
   if (url_.starts_with("mpudpm://")) {
     throw InputError(

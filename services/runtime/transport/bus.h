@@ -123,6 +123,9 @@ class Bus {
   /// This descriptor is readable when Wait(0) would handle a message. With tcpq this is true only
   /// when all earlier messages have been handled.
   int fd() const { return fd_; }
+  /// Grows whenever fd() refers to another file: with tcpq, when the relay is lost or comes back.
+  /// Who has given a copy of fd() to epoll must then copy it again.
+  std::int64_t replaced() const;
   const std::string& url() const { return url_; }
 
  private:

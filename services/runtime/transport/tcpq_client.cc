@@ -24,8 +24,8 @@ namespace {
 // A relay must answer within kAnswerLimit, and accept a byte within kStallLimit.
 constexpr Duration kAnswerLimit = milliseconds(5000);
 constexpr Duration kStallLimit = milliseconds(5000);
-// The limit in place of kAnswerLimit when the client connects to a relay again. This limit is
-// short, because the process does nothing else in this time.
+// The limit in place of kAnswerLimit for a try to connect to a relay again. A relay that was
+// started again answers at once.
 constexpr Duration kSecondAnswerLimit = milliseconds(200);
 // The client stores at most this many bytes from the relay while the relay accepts no data.
 constexpr std::size_t kMaxReceived = 64 << 20;
@@ -36,6 +36,13 @@ constexpr std::size_t kReadEvery = 256 << 10;
 /// Opens a file that is never readable. The file replaces a lost connection, so that a program that
 /// polls the descriptor does not wake up.
 int QuietFile() { return eventfd(0, EFD_CLOEXEC); }
+
+std::runtime_error CannotReach(const Endpoint& relay, int error) {
+  return std::runtime_error(
+      error == ECONNREFUSED
+          ? fmt::format("no process listens on {}; start fogline-relay there", relay.ToString())
+          : fmt::format("cannot reach {}: {}", relay.ToString(), std::strerror(error)));
+}
 
 }  // namespace
 
@@ -51,9 +58,19 @@ Client::Client(const std::string& url, const Limits& limits)
       limits_(limits),
       parser_(kRelayMagic, limits),
       chunk_(kWorthACall) {
+  const TimePoint end = Clock::now() + kAnswerLimit;
   try {
-    fd_ = Connect(kAnswerLimit);
-    Greet(kAnswerLimit);
+    fd_ = BeginConnect();
+    while (!Connected(end - Clock::now())) {
+      if (Clock::now() >= end) throw CannotReach(endpoint_, ETIMEDOUT);
+    }
+    Greet();
+    while (!Greeted(end - Clock::now())) {
+      if (Clock::now() < end) continue;  // a signal has ended the wait, or a part has come
+      throw std::runtime_error(
+          fmt::format("{} takes connections but does not answer: is it a fogline-relay?",
+                      endpoint_.ToString()));
+    }
   } catch (...) {
     if (fd_ >= 0) close(fd_);
     throw;
@@ -64,7 +81,7 @@ Client::~Client() {
   if (fd_ >= 0) close(fd_);
 }
 
-int Client::Connect(Duration limit) const {
+int Client::BeginConnect() const {
   const int connection = socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
   if (connection < 0) {
     ThrowIfExhausted(errno, endpoint_.ToString());
@@ -76,47 +93,42 @@ int Client::Connect(Duration limit) const {
   address.sin_family = AF_INET;
   address.sin_port = htons(endpoint_.port);
   inet_pton(AF_INET, endpoint_.address.c_str(), &address.sin_addr);
-  int error = 0;
-  if (connect(connection, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) != 0) {
-    error = errno;
+  if (connect(connection, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) != 0 &&
+      errno != EINPROGRESS) {
+    const int error = errno;
+    close(connection);
+    throw CannotReach(endpoint_, error);
   }
-  if (error == EINPROGRESS) {
-    socklen_t size = sizeof(error);
-    error = ETIMEDOUT;
-    if (PollFor(connection, POLLOUT, limit) > 0) {
-      getsockopt(connection, SOL_SOCKET, SO_ERROR, &error, &size);
-    }
-  }
-  if (error == 0) return connection;
-  close(connection);
-  throw std::runtime_error(
-      error == ECONNREFUSED
-          ? fmt::format("no process listens on {}; start fogline-relay there", endpoint_.ToString())
-          : fmt::format("cannot reach {}: {}", endpoint_.ToString(), std::strerror(error)));
+  return connection;
 }
 
-void Client::Greet(Duration limit) {
+bool Client::Connected(Duration timeout) const {
+  if (!Ready(POLLOUT, timeout)) return false;
+  int error = 0;
+  socklen_t size = sizeof(error);
+  getsockopt(fd_, SOL_SOCKET, SO_ERROR, &error, &size);
+  if (error != 0) throw CannotReach(endpoint_, error);
+  return true;
+}
+
+void Client::Greet() {
   frame_.clear();
   AppendHello(kClientMagic, frame_);
   for (const std::string& pattern : patterns_) {
     AppendFrame(FrameType::kSubscribe, pattern, {}, frame_);
   }
   SendFrame();
-  const TimePoint end = Clock::now() + limit;
-  while (!parser_.Greeted()) {
-    if (!Ready(POLLIN, end - Clock::now())) {
-      if (Clock::now() < end) continue;  // a signal has ended the wait
-      throw std::runtime_error(
-          fmt::format("{} takes connections but does not answer: is it a fogline-relay?",
-                      endpoint_.ToString()));
-    }
+}
+
+bool Client::Greeted(Duration timeout) {
+  if (received_.empty()) {
+    if (!Ready(POLLIN, timeout)) return false;
     Receive();
-    parser_.Append(received_);
-    received_.clear();
-    if (!parser_.Greeted() && !parser_.error().empty()) {
-      throw Lost(endpoint_, parser_.error());
-    }
   }
+  parser_.Append(received_);
+  received_.clear();
+  if (!parser_.Greeted() && !parser_.error().empty()) throw Lost(endpoint_, parser_.error());
+  return parser_.Greeted();
 }
 
 void Client::Subscribe(std::string_view channel, std::string_view pattern, Handler handler) {
@@ -131,7 +143,7 @@ void Client::SubscribeAll(Watcher watcher) {
 
 void Client::Subscribe(std::string_view pattern) {
   patterns_.emplace_back(pattern);
-  if (lost_) return;  // Greet() subscribes when the relay is back
+  if (lost_ && phase_ != Phase::kGreeting) return;  // Greet() will subscribe
   frame_.clear();
   AppendFrame(FrameType::kSubscribe, pattern, {}, frame_);
   try {
@@ -235,6 +247,7 @@ void Client::Lose(const Lost& lost) {
   lost_ = true;
   trouble_ = lost.what();
   tries_ = 0;
+  phase_ = Phase::kNextTry;
   try_at_ = Clock::now();
   BeReplacedBy(QuietFile());
 }
@@ -242,27 +255,49 @@ void Client::Lose(const Lost& lost) {
 void Client::BeReplacedBy(int file) {
   dup3(file, fd_, O_CLOEXEC);
   close(file);
+  ++replaced_;
 }
 
 bool Client::ConnectAgain(Duration timeout) {
-  const TimePoint now = Clock::now();
-  if (tries_ > kTries || try_at_ - now > timeout) {
-    PollFor(-1, 0, timeout);
-    return false;
+  if (phase_ == Phase::kNextTry) {
+    const TimePoint now = Clock::now();
+    const Duration until_try = try_at_ - now;
+    if (tries_ > kTries || until_try > timeout) {
+      PollFor(-1, 0, timeout);
+      return false;
+    }
+    PollFor(-1, 0, until_try);
+    timeout -= std::max(Duration::zero(), until_try);
+    if (++tries_ > kTries) throw ConnectionLost(trouble_);
   }
-  PollFor(-1, 0, try_at_ - now);
-  try_at_ = Clock::now() + kTryEvery;
-  if (++tries_ > kTries) throw ConnectionLost(trouble_);
-  parser_ = FrameParser(kRelayMagic, limits_);
-  received_.clear();
-  next_.reset();
   try {
-    BeReplacedBy(Connect(kSecondAnswerLimit));
-    Greet(kSecondAnswerLimit);
+    return Try(timeout);
   } catch (const std::runtime_error&) {  // the relay is not back yet
     BeReplacedBy(QuietFile());
+    phase_ = Phase::kNextTry;
     return false;
   }
+}
+
+bool Client::Try(Duration timeout) {
+  const TimePoint now = Clock::now();
+  if (phase_ == Phase::kNextTry) {
+    try_at_ = now + kTryEvery;
+    answer_by_ = now + kSecondAnswerLimit;
+    parser_ = FrameParser(kRelayMagic, limits_);
+    received_.clear();
+    next_.reset();
+    BeReplacedBy(BeginConnect());
+    phase_ = Phase::kConnection;
+  }
+  if (now >= answer_by_) throw CannotReach(endpoint_, ETIMEDOUT);
+  timeout = std::min(timeout, answer_by_ - now);
+  if (phase_ == Phase::kConnection) {
+    if (!Connected(timeout)) return false;
+    Greet();
+    phase_ = Phase::kGreeting;
+  }
+  if (!Greeted(timeout)) return false;
   lost_ = false;
   return true;
 }

@@ -28,9 +28,10 @@ class ConnectionLost : public std::runtime_error {
 
 /// One connection, for one thread.
 ///
-/// Readable() restores a lost connection as soon as the relay is back. All messages in the meantime
-/// are lost. If the relay is not back after kTries tries, Readable() throws ConnectionLost once.
-/// After that, Readable() only waits, so that the process can end a run properly.
+/// Readable() restores a lost connection as soon as the relay is back, and never waits longer for
+/// this than its `timeout`. All messages in the meantime are lost. If the relay is not back after
+/// kTries tries, Readable() throws ConnectionLost once. After that, Readable() only waits, so that
+/// the process can end a run properly.
 class Client {
  public:
   using Handler = std::function<void(Bytes)>;
@@ -72,6 +73,9 @@ class Client {
 
   /// The descriptor stays the same when the connection is restored.
   int fd() const { return fd_; }
+  /// Grows whenever the descriptor refers to another file. A copy of the descriptor, and epoll,
+  /// still refer to the old file, which may be readable for ever.
+  std::int64_t replaced() const { return replaced_; }
   /// Why the connection was last lost.
   const std::string& trouble() const { return trouble_; }
   /// The URL with its address in numbers, as LCM's programs need it.
@@ -79,17 +83,25 @@ class Client {
 
  private:
   class Lost;
-  /// Connects a socket to the relay. @return the socket
-  int Connect(Duration limit) const;
-  /// Sends the client's greeting and its subscriptions, and waits until the relay has answered.
-  void Greet(Duration limit);
+  /// Begins to connect a socket to the relay. @return the socket
+  int BeginConnect() const;
+  /// Waits up to `timeout` until the socket is connected. @return whether it is
+  /// @throws std::runtime_error if the relay cannot be reached
+  bool Connected(Duration timeout) const;
+  /// Sends the client's greeting and its subscriptions.
+  void Greet();
+  /// Waits up to `timeout` for the relay's greeting. @return whether it has come
+  bool Greeted(Duration timeout);
   void Subscribe(std::string_view pattern);
   bool Ready(short events, Duration timeout) const;
   void SendFrame();
   void Receive();
   bool Parse();
-  /// Tries to connect again if a try is due. @return whether the relay is back
+  /// Goes on with a try to connect again, or begins one that is due. @return whether the relay is
+  /// back
   bool ConnectAgain(Duration timeout);
+  /// The steps of a try. Each of them waits up to `timeout`. @return whether the relay is back
+  bool Try(Duration timeout);
   /// Marks the connection as lost: nothing is sent or received until the relay is back.
   void Lose(const Lost& lost);
   /// Makes fd_ refer to this file.
@@ -108,10 +120,16 @@ class Client {
   std::vector<std::string> patterns_;  // subscriptions for the relay
   std::vector<std::pair<std::string, Handler>> handlers_;
   Watcher watcher_;
+  /// What a try to connect again waits for.
+  enum class Phase { kNextTry, kConnection, kGreeting };
+
   bool lost_ = false;
   std::string trouble_;
   int tries_ = 0;  // number of tries to connect again
-  TimePoint try_at_{};
+  Phase phase_ = Phase::kNextTry;
+  TimePoint try_at_{};     // the next try
+  TimePoint answer_by_{};  // the end of the try that is under way
+  std::int64_t replaced_ = 0;
 };
 
 }  // namespace fogline::runtime::tcpq
