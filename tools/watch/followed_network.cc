@@ -28,33 +28,47 @@ FollowedNetwork::FollowedNetwork(std::string url, bool follows, runtime::Bus::Wa
   if (follows) listener_.emplace(network_->bus.url());
 }
 
-FollowedNetwork::Network::Network(const std::string& url, const runtime::Bus::Watcher& watcher,
-                                  Senders& senders)
-    : bus(url), tap(PacketTap::Open(bus.url(), senders)) {
+FollowedNetwork::Network::Network(const std::string& url, const runtime::Bus::Watcher& watcher)
+    : bus(url) {
   bus.SubscribeAll(watcher);
 }
 
-void FollowedNetwork::Network::Drain(TimePoint now) {
+bool FollowedNetwork::Network::Drain(TimePoint now) {
   bus.Drain();
   // The tap comes second, so it has taken the packet of each message that the bus has handled.
   if (tap) tap->Drain(now);
+  return bus.replaced() != std::exchange(replaced, bus.replaced());
 }
 
 void FollowedNetwork::Open() {
+  std::unique_ptr<PacketTap> tap = network_ ? std::move(network_->tap) : nullptr;
   network_.reset();
-  network_.emplace(url_, watcher_, senders_);
+  network_.emplace(url_, watcher_);
+  network_->tap = tap ? std::move(tap) : Tap(network_->bus.url());
   ++generation_;
+}
+
+std::unique_ptr<PacketTap> FollowedNetwork::Tap(const std::string& url) {
+  try {
+    return PacketTap::Open(url, senders_);
+  } catch (const std::runtime_error& error) {  // the messages can be watched without it
+    tap_trouble_ = error.what();
+    return nullptr;
+  }
 }
 
 void FollowedNetwork::ForgetNames(std::int64_t unknown) {
   if (unknown - names_ < kMostNames) return;
   names_ = unknown;
-  CloseFollowed();  // Follow() opens it again
   Open();
+  if (!followed_) return;
+  std::unique_ptr<PacketTap> tap = std::move(followed_->tap);
+  CloseFollowed();
+  OpenFollowed(runs_.front(), std::move(tap));
 }
 
 void FollowedNetwork::Handle(TimePoint now) {
-  network_->Drain(now);
+  if (network_->Drain(now)) ++generation_;
   DrainFollowed(now);
   Follow(now);
 }
@@ -73,8 +87,14 @@ void FollowedNetwork::Follow(TimePoint now) {
   if (followed_ && runtime::SameNetwork(followed_->bus.url(), run.url)) return;
   CloseFollowed();
   if (runtime::SameNetwork(network_->bus.url(), run.url)) return;
+  OpenFollowed(run, nullptr);
+}
+
+void FollowedNetwork::OpenFollowed(const runtime::Announcement& run,
+                                   std::unique_ptr<PacketTap> tap) {
   try {
-    followed_.emplace(run.url, watcher_, senders_);
+    followed_.emplace(run.url, watcher_);
+    followed_->tap = tap ? std::move(tap) : Tap(followed_->bus.url());
     ++generation_;
   } catch (const std::exception&) {  // the address came from the network and may be invalid
     Leave(run.run_id);
@@ -84,7 +104,7 @@ void FollowedNetwork::Follow(TimePoint now) {
 void FollowedNetwork::DrainFollowed(TimePoint now) {
   if (!followed_) return;
   try {
-    followed_->Drain(now);
+    if (followed_->Drain(now)) ++generation_;
   } catch (const std::exception&) {  // its relay has ended
     Leave(runs_.front().run_id);
   }

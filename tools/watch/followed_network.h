@@ -32,8 +32,9 @@ class FollowedNetwork {
   void Handle(TimePoint now);
 
   /// LCM keeps every channel name that it hears while a network is open, at about 300 bytes each.
-  /// This function closes the networks and opens them again if there are too many names. Messages
-  /// of these milliseconds are missed.
+  /// This function closes the networks and opens them again if there are too many names. The
+  /// watcher misses the messages of these milliseconds. They do not count as lost, because the
+  /// packets are still counted.
   /// @param unknown messages so far on channels whose names were unknown
   void ForgetNames(std::int64_t unknown);
 
@@ -42,7 +43,8 @@ class FollowedNetwork {
   std::array<int, 2> descriptors() const {
     return {network_->bus.fd(), followed_ ? followed_->bus.fd() : -1};
   }
-  /// Changes when a network was opened or closed.
+  /// Changes when a network was opened or closed, or its relay was lost or has come back. A
+  /// descriptor may then have the same number and be another file.
   std::int64_t generation() const { return generation_; }
 
   /// The network of the followed run, or else the given network.
@@ -56,17 +58,24 @@ class FollowedNetwork {
   SendersView ViewSenders(TimePoint now) const { return senders_.View(now); }
   /// Whether packets have numbers, by which a loss is found. Those of a relay have none.
   bool numbered() const { return network_->tap || (followed_ && followed_->tap); }
+  /// Why packets that have numbers cannot be counted; "" if they are counted.
+  const std::string& tap_trouble() const { return tap_trouble_; }
 
  private:
   struct Network {
-    Network(const std::string& url, const runtime::Bus::Watcher& watcher, Senders& senders);
-    void Drain(TimePoint now);
+    Network(const std::string& url, const runtime::Bus::Watcher& watcher);
+    /// @return whether a descriptor has become another file
+    bool Drain(TimePoint now);
 
     runtime::Bus bus;
     std::unique_ptr<PacketTap> tap;  // nullptr if packets have no numbers
+    std::int64_t replaced = 0;       // of the bus
   };
 
   void Open();
+  void OpenFollowed(const runtime::Announcement& run, std::unique_ptr<PacketTap> tap);
+  /// @return nullptr if the packets have no numbers, or cannot be counted
+  std::unique_ptr<PacketTap> Tap(const std::string& url);
   void Follow(TimePoint now);
   void DrainFollowed(TimePoint now);
   void CloseFollowed();
@@ -82,6 +91,7 @@ class FollowedNetwork {
   std::optional<Network> followed_;        // the network of the followed run
   std::vector<std::int64_t> unreachable_;  // ids of runs
   TimePoint follow_at_{};
+  std::string tap_trouble_;
   std::int64_t generation_ = 0;
 };
 

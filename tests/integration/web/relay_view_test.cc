@@ -1,0 +1,95 @@
+// `fogline view` on the network of a relay that ends and comes back.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+#include <thread>
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+
+#include "services/runtime/transport/bus.h"
+#include "tests/integration/network/relay_fixture.h"
+#include "tests/integration/web/viewed.h"
+
+namespace fogline::test {
+namespace {
+
+using nlohmann::json;
+
+/// Processor time of a process, in seconds (proc(5): utime and stime).
+double ProcessorTime_s(pid_t pid) {
+  std::ifstream file("/proc/" + std::to_string(pid) + "/stat");
+  std::string text((std::istreambuf_iterator<char>(file)), {});
+  std::istringstream fields(text.substr(text.rfind(')') + 2));
+  std::string skipped;
+  for (int field = 3; field < 14; ++field) fields >> skipped;
+  double user = 0;
+  double system = 0;
+  fields >> user >> system;
+  return (user + system) / static_cast<double>(sysconf(_SC_CLK_TCK));
+}
+
+/// Publishes on a channel until the client is told of this channel.
+/// @return whether it is told within kFrameLimit
+bool Hears(WebClient& client, const std::string& url, const std::string& channel) {
+  runtime::Bus bus(url);
+  const TimePoint end = Clock::now() + kFrameLimit;
+  while (Clock::now() < end) {
+    bus.Publish(channel, Payload(10));
+    const WebFrame frame = client.Receive();  // a health message at the latest
+    if (frame.binary) continue;
+    const json text = json::parse(frame.bytes);
+    if (text["op"] == "channel" && text["name"] == channel) return true;
+  }
+  return false;
+}
+
+TEST(RelayViewTest, NeedsHardlyAnyProcessorTimeWhileTheRelayIsAwayAndThenGoesOn) {
+  Relay relay;
+  Viewed viewed({"--lcm-url", relay.url()});
+  ASSERT_NE(viewed.port(), 0) << viewed.process().Err();
+  WebClient client(viewed.port());
+  ASSERT_TRUE(Hears(client, relay.url(), "BEFORE"));
+  relay.process().Signal(SIGKILL);
+  relay.process().Wait();
+  const double before_s = ProcessorTime_s(viewed.process().pid());
+  // The test is about the length of this pause.
+  constexpr double kAway_s = 2;
+  std::this_thread::sleep_for(std::chrono::duration<double>(kAway_s));
+  const double needed_s = ProcessorTime_s(viewed.process().pid()) - before_s;
+  EXPECT_LT(needed_s, 0.1 * kAway_s);
+  Background again(
+      {Program("fogline-relay"), "--listen", "127.0.0.1:" + std::to_string(relay.port())});
+  ASSERT_TRUE(again.WaitForOut("\n")) << again.Err();
+  EXPECT_TRUE(Hears(client, relay.url(), "AFTERWARDS"));
+  EXPECT_EQ(viewed.End(), 0);
+}
+
+TEST(RelayViewTest, AnswersItsClientsWhileTheRelayDoesNotAnswer) {
+  namespace asio = boost::asio;
+  Relay relay;
+  Viewed viewed({"--lcm-url", relay.url()});
+  ASSERT_NE(viewed.port(), 0) << viewed.process().Err();
+  WebClient client(viewed.port());
+  ReceiveOp(client, "hello");
+  relay.process().Signal(SIGKILL);
+  relay.process().Wait();
+  // In place of the relay: connections are taken, and nobody answers.
+  asio::io_context context;
+  const asio::ip::tcp::acceptor silent(context, {asio::ip::address_v4::loopback(), relay.port()});
+  std::vector<double> took_s;
+  for (int i = 0; i < 20; ++i) {
+    const TimePoint asked = Clock::now();
+    client.Send("{}");
+    ReceiveOp(client, "error");
+    took_s.push_back(Seconds(Clock::now() - asked));
+    std::this_thread::sleep_for(milliseconds(70));  // so that the questions meet all moments
+  }
+  std::ranges::sort(took_s);
+  // If each try to connect blocked the program for 200 ms, most answers would wait for its end.
+  EXPECT_LT(took_s[took_s.size() / 2], 0.03);
+}
+
+}  // namespace
+}  // namespace fogline::test
