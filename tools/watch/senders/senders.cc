@@ -22,7 +22,16 @@ void Senders::Add(const SenderAddress& from, runtime::Bytes head, TimePoint now)
   Record& record = RecordOf(from);
   record.heard = now;
   record.sequence.Add(*packet, own_overflow_, now);
-  if (packet->First() && !IsHousekeeping(packet->channel)) Remember(packet->channel, record);
+  if (!packet->First() || IsHousekeeping(packet->channel)) return;
+  Remember(packet->channel, record);
+  if (!packet->Whole()) CountFragmented(packet->channel);
+}
+
+void Senders::CountFragmented(std::string_view channel) {
+  ++in_fragments_;
+  auto& channels = channels_in_fragments_;
+  const bool known = std::ranges::find(channels, channel) != channels.end();
+  if (!known && channels.size() < kMaxChannels) channels.emplace_back(channel);
 }
 
 Senders::Record& Senders::RecordOf(const SenderAddress& from) {
@@ -45,8 +54,12 @@ void Senders::Remember(std::string_view channel, Record& record) {
 }
 
 SendersView Senders::View(TimePoint now) const {
-  SendersView view{
-      .senders = {}, .forgotten = forgotten_, .not_lcm = not_lcm_, .own_overflow = own_overflow_};
+  SendersView view{.senders = {},
+                   .forgotten = forgotten_,
+                   .not_lcm = not_lcm_,
+                   .own_overflow = own_overflow_,
+                   .in_fragments = in_fragments_,
+                   .channels_in_fragments = channels_in_fragments_};
   for (const auto& [address, record] : records_) {
     if (record.channels.empty()) continue;
     view.senders.push_back({.address = address.ToString(),

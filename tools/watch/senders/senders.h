@@ -36,6 +36,8 @@ struct SendersView {
   std::int64_t forgotten = 0;       // senders that were dropped for lack of room
   std::int64_t not_lcm = 0;         // packets that LCM would not take
   std::int64_t own_overflow = 0;    // packets that this process dropped for lack of room
+  std::int64_t in_fragments = 0;    // messages larger than a datagram: Fogline does not take them
+  std::vector<std::string> channels_in_fragments;  // the first ones of their channels
 };
 
 /// Its memory is bounded for any input: when there is no room, it forgets the sender that has been
@@ -63,11 +65,14 @@ class Senders {
 
   Record& RecordOf(const SenderAddress& from);
   static void Remember(std::string_view channel, Record& record);
+  void CountFragmented(std::string_view channel);
 
   std::map<SenderAddress, Record> records_;
   std::int64_t forgotten_ = 0;
   std::int64_t not_lcm_ = 0;
   std::int64_t own_overflow_ = 0;
+  std::int64_t in_fragments_ = 0;
+  std::vector<std::string> channels_in_fragments_;
 };
 
 }  // namespace fogline::watch

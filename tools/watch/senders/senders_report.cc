@@ -10,11 +10,16 @@ namespace {
 
 constexpr const char* kRow = " {:<21}{:>10}{:>8}{:>8}{:>7}{:>7}{:>8}  {}";
 
-Line SenderLine(const SenderView& sender) {
-  std::string channels;
-  for (const std::string& channel : sender.channels) {
-    channels += (channels.empty() ? "" : ", ") + Printable(channel);
+std::string Joined(const std::vector<std::string>& channels) {
+  std::string text;
+  for (const std::string& channel : channels) {
+    text += (text.empty() ? "" : ", ") + Printable(channel);
   }
+  return text;
+}
+
+Line SenderLine(const SenderView& sender) {
+  std::string channels = Joined(sender.channels);
   if (sender.more_channels) channels += ", ...";
   const SenderSequence::Counts& counts = sender.counts;
   return {
@@ -42,11 +47,18 @@ std::vector<Line> SenderLines(const SendersView& view) {
   if (view.not_lcm > 0) {
     lines.push_back({fmt::format("{} packets were none of LCM", view.not_lcm), Line::Style::kBad});
   }
+  if (view.in_fragments > 0) lines.push_back({FragmentsText(view), Line::Style::kBad});
   if (view.forgotten > 0) {
     lines.push_back(
         {fmt::format("{} senders are not shown, because there were too many", view.forgotten)});
   }
   return lines;
+}
+
+std::string FragmentsText(const SendersView& view) {
+  if (view.in_fragments == 0) return "";
+  return fmt::format("{} messages are larger than a datagram ({}): they are not shown",
+                     view.in_fragments, Joined(view.channels_in_fragments));
 }
 
 nlohmann::ordered_json SendersJson(const SendersView& view) {

@@ -52,6 +52,26 @@ TEST(SendersTest, ShowsNoSenderOfSelfTestsAndBeaconsOnly) {
   EXPECT_THAT(view.senders[0].channels, ElementsAre("CAMERA"));
 }
 
+TEST(SendersTest, NamesChannelsOfMessagesInFragments) {
+  Senders senders;
+  Add(senders, kWorld, 0, "TRUTH");
+  EXPECT_EQ(FragmentsText(senders.View(kNow)), "");
+  for (std::uint8_t fragment = 0; fragment < 3; ++fragment) {
+    std::string packet("LC03\0\0\0\1\0\0\x10\0\0\0\0\0\0", 17);
+    packet += static_cast<char>(fragment);
+    packet += std::string("\0\3", 2);
+    if (fragment == 0) packet += std::string("CAM\033ERA\0", 8);
+    senders.Add(kWorld, {reinterpret_cast<const std::uint8_t*>(packet.data()), packet.size()},
+                kNow);
+  }
+  const SendersView view = senders.View(kNow);
+  EXPECT_EQ(view.in_fragments, 1);
+  EXPECT_EQ(view.senders[0].counts.received, 2);
+  const std::string text = FragmentsText(view);
+  EXPECT_THAT(text, HasSubstr("1 messages are larger than a datagram (CAM"));
+  EXPECT_EQ(text.find('\033'), std::string::npos);
+}
+
 TEST(SendersTest, RemembersOnlySoManySendersAndChannels) {
   Senders senders;
   for (std::size_t i = 0; i < Senders::kMaxSenders + 3; ++i) {
