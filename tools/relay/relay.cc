@@ -10,40 +10,24 @@ namespace fogline::relay {
 namespace {
 
 namespace asio = boost::asio;
-using boost::system::error_code;
-
-// Delay before the next try when a connection could not be accepted (no file descriptor is free).
-constexpr std::chrono::milliseconds kPause(100);
 
 }  // namespace
 
 Relay::Relay(asio::io_context& context, const tcp::endpoint& endpoint, const RelayOptions& options)
-    : context_(context), options_(options), acceptor_(context, endpoint), pause_(context) {
-  Accept();
+    : context_(context), options_(options), acceptor_(context, endpoint, lines_) {
+  acceptor_.Begin([this](tcp::socket socket) { Take(std::move(socket)); });
 }
 
 Relay::~Relay() = default;
 
-void Relay::Accept() {
-  acceptor_.async_accept([this](error_code error, tcp::socket socket) {
-    if (!acceptor_.is_open()) return;
-    if (error) {
-      lines_.Print(fmt::format("cannot take a connection: {}", error.message()));
-      pause_.expires_after(kPause);
-      pause_.async_wait([this](error_code stopped) {
-        if (!stopped) Accept();
-      });
-      return;
-    }
-    const auto client = std::make_shared<RelayClient>(*this, next_id_++, std::move(socket));
-    if (clients_.size() >= options_.clients) {
-      client->Drop(fmt::format("{} clients are connected already", clients_.size()));
-    } else {
-      clients_.emplace(next_id_ - 1, client);
-      client->Start();
-    }
-    Accept();
-  });
+void Relay::Take(tcp::socket socket) {
+  const std::uint64_t id = next_id_++;
+  const auto client = std::make_shared<RelayClient>(*this, id, std::move(socket));
+  if (clients_.size() >= options_.clients) {
+    return client->Drop(fmt::format("{} clients are connected already", clients_.size()));
+  }
+  clients_.emplace(id, client);
+  client->Start();
 }
 
 void Relay::Forward(const runtime::tcpq::Frame& message) {
@@ -67,9 +51,7 @@ void Relay::Leave(std::uint64_t id, const std::string& address, const std::strin
 }
 
 void Relay::Stop() {
-  error_code ignored;
-  acceptor_.close(ignored);
-  pause_.cancel();
+  acceptor_.Stop();
   for (const auto& [id, client] : clients_) client->Drop("");
 }
 

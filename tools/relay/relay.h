@@ -15,9 +15,9 @@
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
-#include <boost/asio/steady_timer.hpp>
 
 #include "common/clock.h"
+#include "common/process/acceptor.h"
 #include "common/process/line_budget.h"
 #include "services/runtime/wire/tcpq_frame.h"
 
@@ -43,7 +43,7 @@ class Relay {
 
   /// The address on which the relay listens. If port 0 was requested, the address has the port that
   /// the system has chosen.
-  tcp::endpoint endpoint() const { return acceptor_.local_endpoint(); }
+  tcp::endpoint endpoint() const { return acceptor_.endpoint(); }
 
   /// Ends all connections. The context then has no more work.
   void Stop();
@@ -54,7 +54,7 @@ class Relay {
  private:
   friend class RelayClient;
 
-  void Accept();
+  void Take(tcp::socket socket);
   void Forward(const runtime::tcpq::Frame& message);
   void Greeted() { ++served_; }
   void Sent(std::size_t bytes);
@@ -63,11 +63,10 @@ class Relay {
 
   boost::asio::io_context& context_;
   const RelayOptions options_;
-  tcp::acceptor acceptor_;
-  boost::asio::steady_timer pause_;  // runs after a connection could not be accepted
+  LineBudget lines_{"fogline-relay"};
+  Acceptor acceptor_;
   std::map<std::uint64_t, std::shared_ptr<RelayClient>> clients_;
   std::uint64_t next_id_ = 0;
-  LineBudget lines_{"fogline-relay"};
   const TimePoint began_ = Clock::now();
 
   std::uint64_t served_ = 0;
