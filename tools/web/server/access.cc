@@ -43,6 +43,10 @@ std::string_view WhyRefused(Verdict verdict) {
   return "";
 }
 
+Access::Access(Rules rules) : rules_(std::move(rules)) {
+  for (std::string& origin : rules_.origins) origin = NormalOrigin(origin);
+}
+
 bool Access::IsOurs(std::string_view host) const {
   std::string name = Lowered(host);
   const std::string port = fmt::format(":{}", rules_.port);
@@ -65,8 +69,8 @@ Verdict Access::OfPage(const RequestOrigin& request) const {
 
 Verdict Access::OfWebSocket(const RequestOrigin& request) const {
   if (!IsOurs(request.host)) return Verdict::kWrongHost;
-  const std::string origin = Lowered(request.origin);
-  const bool own = origin.empty() || origin == "http://" + Lowered(request.host);
+  const std::string origin = NormalOrigin(request.origin);
+  const bool own = origin.empty() || origin == NormalOrigin(fmt::format("http://{}", request.host));
   if (!own && std::ranges::find(rules_.origins, origin) == rules_.origins.end()) {
     return Verdict::kForeignOrigin;
   }
@@ -112,10 +116,19 @@ std::string_view QueryValue(std::string_view target, std::string_view name) {
   return "";
 }
 
-bool IsOrigin(std::string_view text) {
+std::string NormalOrigin(std::string_view origin) {
+  std::string normal = Lowered(origin);
+  const bool secure = normal.starts_with("https:");
+  const std::string_view port = secure ? ":443" : ":80";
+  if (normal.ends_with(port)) normal.resize(normal.size() - port.size());
+  return normal;
+}
+
+bool IsOrigin(std::string_view origin) {
+  const std::string text = Lowered(origin);
   for (const std::string_view scheme : {"http://", "https://"}) {
     if (!text.starts_with(scheme)) continue;
-    const std::string_view rest = text.substr(scheme.size());
+    const std::string_view rest = std::string_view(text).substr(scheme.size());
     return !rest.empty() && std::ranges::all_of(rest, [](char c) {
       return c > ' ' && c < 127 && std::string_view("/?#@\\").find(c) == std::string_view::npos;
     });

@@ -35,7 +35,7 @@ class Access {
     std::string token;                 // "": no token is needed
     std::vector<std::string> origins;  // further origins that may open a WebSocket
   };
-  explicit Access(Rules rules) : rules_(std::move(rules)) {}
+  explicit Access(Rules rules);
 
   /// Whether a file of the page may be sent. The files are no secret.
   Verdict OfPage(const RequestOrigin& request) const;
@@ -65,7 +65,11 @@ bool EqualInConstantTime(std::string_view a, std::string_view b);
 /// The value is as it stands there: nothing in it is decoded.
 std::string_view QueryValue(std::string_view target, std::string_view name);
 
-/// An origin as a browser sends it: "http://HOST" or "https://HOST", perhaps with a port, and
+/// An origin as a browser sends it: scheme and host in small letters, and without the scheme's
+/// default port.
+std::string NormalOrigin(std::string_view origin);
+
+/// An origin such as a browser sends it: "http://HOST" or "https://HOST", perhaps with a port, and
 /// without a path.
 bool IsOrigin(std::string_view text);
 

@@ -78,6 +78,20 @@ TEST(AccessTest, TakesOriginsThatTheUserAllows) {
             Verdict::kForeignOrigin);
 }
 
+TEST(AccessTest, ComparesOriginsAsBrowsersWriteThem) {
+  const auto verdict = [](const std::string& allowed, const char* origin) {
+    const Access access({.address = "127.0.0.1", .port = 7680, .origins = {allowed}});
+    return access.OfWebSocket(From("127.0.0.1:7680", origin));
+  };
+  EXPECT_EQ(verdict("HTTP://Lab1:80", "http://lab1"), Verdict::kAllowed);
+  EXPECT_EQ(verdict("http://lab1", "http://lab1:80"), Verdict::kAllowed);
+  EXPECT_EQ(verdict("https://App.Example:443", "https://app.example"), Verdict::kAllowed);
+  EXPECT_EQ(verdict("https://lab1:80", "https://lab1"), Verdict::kForeignOrigin);
+  EXPECT_EQ(verdict("http://lab1:443", "http://lab1"), Verdict::kForeignOrigin);
+  EXPECT_EQ(verdict("http://lab1:8080", "http://lab1:80"), Verdict::kForeignOrigin);
+  EXPECT_TRUE(IsOrigin("HTTP://Lab1:80"));
+}
+
 TEST(AccessTest, NeedsTheTokenForAWebSocketButNotForThePage) {
   const Access access = ForOthers();
   const std::string host = "192.168.1.5:7680";
