@@ -4,12 +4,16 @@
 
 #include <vector>
 
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+
 #include "services/runtime/transport/bus.h"
 #include "tests/integration/web/viewed.h"
 
 namespace fogline::test {
 namespace {
 
+using nlohmann::json;
 using testing::HasSubstr;
 using testing::Not;
 
@@ -139,7 +143,7 @@ TEST_F(ViewAccessTest, TurnsAway65thClient) {
   }
   EXPECT_EQ(StatusOfSocket({}), 503);
   EXPECT_EQ(StatusOf(Exchange(port(), GetRequest(port(), "/"))), 503);
-  EXPECT_TRUE(process().WaitForErr("64 clients are connected already"));
+  EXPECT_TRUE(process().WaitForErr("64 viewers are connected already"));
   clients.pop_back();
   // The place is free when the server has seen the end of the connection.
   const TimePoint end = Clock::now() + milliseconds(20'000);
@@ -194,6 +198,27 @@ TEST(ViewTokenTest, NeedsTheTokenWhenItListensForOthers) {
   EXPECT_TRUE(viewed.process().WaitForErr("refused: the token is missing or wrong"));
   // The token is a secret: only stdout has it.
   EXPECT_THAT(viewed.process().Err(), Not(HasSubstr(token)));
+}
+
+TEST(ViewTokenTest, LetsAViewerWithTheTokenInBesidesIdleConnections) {
+  Viewed viewed({"--lcm-url", runtime::FreshMulticastUrl()}, {"--listen", "127.0.0.1:0"});
+  ASSERT_NE(viewed.port(), 0) << viewed.process().Err();
+  const std::string token = viewed.address().substr(viewed.address().find("#token=") + 7);
+  boost::asio::io_context context;
+  std::vector<boost::asio::ip::tcp::socket> idle;
+  for (int i = 0; i < 200; ++i) {
+    idle.emplace_back(context).connect({boost::asio::ip::address_v4::loopback(), viewed.port()});
+  }
+  WebClient viewer(viewed.port(), {.target = "/ws?token=" + token});
+  EXPECT_EQ(ReceiveOp(viewer, "hello")["mode"], "live");
+  // More of them do not drive the viewer out.
+  for (int i = 0; i < 200; ++i) {
+    idle.emplace_back(context).connect({boost::asio::ip::address_v4::loopback(), viewed.port()});
+  }
+  const json health = ReceiveOp(viewer, "health");
+  EXPECT_EQ(health["viewers"], 1);
+  EXPECT_EQ(health["cut_off"], 0);
+  EXPECT_TRUE(viewed.process().WaitForErr("refused: opens no view, and others want its place"));
 }
 
 TEST(ViewOptionsTest, RefusesContradictions) {

@@ -23,12 +23,11 @@ namespace websocket = beast::websocket;
 using boost::system::error_code;
 using tcp = asio::ip::tcp;
 
-// A request must be there, and its answer taken, within this time.
-constexpr std::chrono::seconds kRequestLimit(10);
-// A WebSocket that sends nothing for half of this time gets a ping; without an answer it is closed.
-constexpr std::chrono::seconds kIdleLimit(60);
 // A client that is cut off may read the reason for this time.
 constexpr std::chrono::seconds kCutOffLimit(1);
+constexpr unsigned kBadRequest = 400;
+constexpr unsigned kHeaderTooLarge = 431;
+constexpr unsigned kUnavailable = 503;
 // While more bytes than this wait for a client, none of its frames is read.
 constexpr std::size_t kPauseBytes = 1 << 20;
 // Bytes that the kernel may keep for a client, in addition to those of the queue.
@@ -69,16 +68,16 @@ RequestOrigin OriginOf(const Request& request) {
 class BeastConnection final : public Connection,
                               public std::enable_shared_from_this<BeastConnection> {
  public:
-  BeastConnection(Server& server, std::uint64_t id, tcp::socket socket, Place place)
+  BeastConnection(Server& server, std::uint64_t id, tcp::socket socket)
       : Connection(server, id),
         address_(AddressOf(socket)),
-        place_(place),
         stream_(std::move(socket)),
         farewell_(context()) {}
 
   void Begin();
 
   void GoAway() override;
+  void GiveWay() override;
   const std::string& address() const override { return address_; }
   std::string_view protocol() const override { return protocol_; }
   std::size_t waiting() const override { return queue_.bytes(); }
@@ -89,6 +88,9 @@ class BeastConnection final : public Connection,
   using Socket = websocket::stream<beast::tcp_stream>;
 
   void Handle(error_code error);
+  void HandleError(error_code error);
+  void HandleRequest();
+  void Refuse(unsigned status, const std::string& why, std::string text);
   void Write(HttpAnswer answer);
   void Linger();
   void Upgrade();
@@ -101,7 +103,6 @@ class BeastConnection final : public Connection,
   void Leave();
 
   const std::string address_;
-  const Place place_;
   beast::tcp_stream stream_;  // until the WebSocket is opened
   beast::flat_buffer buffer_{Server::kMostFrameBytes + Server::kMostHeaderBytes};
   std::optional<http::request_parser<http::empty_body>> parser_;
@@ -128,44 +129,64 @@ void BeastConnection::Begin() {
   stream_.socket().set_option(asio::socket_base::send_buffer_size(kKernelBytes), ignored);
   parser_.emplace();
   parser_->header_limit(Server::kMostHeaderBytes);
-  stream_.expires_after(kRequestLimit);
+  stream_.expires_after(limits().request);
   http::async_read_header(
       stream_, buffer_, *parser_,
       [self = shared_from_this()](error_code error, std::size_t) { self->Handle(error); });
 }
 
 void BeastConnection::Handle(error_code error) {
-  constexpr unsigned kBadRequest = 400;
-  constexpr unsigned kHeaderTooLarge = 431;
-  constexpr unsigned kUnavailable = 503;
   if (gone_) return;
+  if (error) return HandleError(error);
+  HandleRequest();
+}
+
+void BeastConnection::HandleError(error_code error) {
+  if (error == beast::error::timeout) {
+    CountRefused(fmt::format("sends no request within {} s", Seconds(limits().request)));
+    return Leave();
+  }
   if (error == http::error::header_limit || error == http::error::buffer_overflow) {
-    return Write(Refusal(kHeaderTooLarge, "The headers are too large.\n"));
+    return Refuse(kHeaderTooLarge,
+                  fmt::format("sends more than {} KiB of headers", Server::kMostHeaderBytes >> 10),
+                  "The headers are too large.\n");
   }
-  if (error && error.category() == http::make_error_code(http::error::bad_method).category() &&
+  if (error.category() == http::make_error_code(http::error::bad_method).category() &&
       error != http::error::end_of_stream && error != http::error::partial_message) {
-    return Write(Refusal(kBadRequest, "This is no request of HTTP.\n"));
+    return Refuse(kBadRequest, "sends no request of HTTP", "This is no request of HTTP.\n");
   }
-  if (error) return Leave();
-  if (place_ == Place::kNone) {
-    return Write(Refusal(kUnavailable, "Too many clients are connected. Try again later.\n"));
-  }
+  Leave();
+}
+
+void BeastConnection::HandleRequest() {
   const Request& request = parser_->get();
   const RequestOrigin from = OriginOf(request);
-  const bool upgrade = websocket::is_upgrade(request);
-  if (upgrade && PathOf(from.target) == kSocketPath &&
-      access().OfWebSocket(from) == Verdict::kAllowed) {
+  const bool opens = websocket::is_upgrade(request) && PathOf(from.target) == kSocketPath &&
+                     access().OfWebSocket(from) == Verdict::kAllowed;
+  if (opens) {
     protocol_ = ChooseProtocol(TextOf(request[http::field::sec_websocket_protocol]));
-    if (!protocol_.empty()) return Upgrade();
-    return Write(
-        Refusal(kBadRequest, fmt::format("The subprotocols here are {}, {} and {}.\n",
-                                         kViewProtocol, kFoxgloveProtocol, kFoxgloveSdkProtocol)));
+    if (protocol_.empty()) {
+      return Write(Refusal(kBadRequest,
+                           fmt::format("The subprotocols here are {}, {} and {}.\n", kViewProtocol,
+                                       kFoxgloveProtocol, kFoxgloveSdkProtocol)));
+    }
+    if (TakePlace()) return Upgrade();
+  }
+  // Without a WebSocket the page would show nothing.
+  if (IsFull() && access().OfPage(from) == Verdict::kAllowed) {
+    return Refuse(kUnavailable, fmt::format("{} viewers are connected already", limits().viewers),
+                  "Too many viewers are connected. Try again later.\n");
   }
   Write(Answer({.method = TextOf(request.method_string()),
                 .from = from,
-                .if_none_match = TextOf(request[http::field::if_none_match]),
-                .upgrade = upgrade},
+                .if_none_match = TextOf(request[http::field::if_none_match])},
                access(), assets()));
+}
+
+/// Answers by a line of text. @param why for stderr
+void BeastConnection::Refuse(unsigned status, const std::string& why, std::string text) {
+  CountRefused(why);
+  Write(Refusal(status, std::move(text)));
 }
 
 void BeastConnection::Write(HttpAnswer answer) {
@@ -189,14 +210,18 @@ void BeastConnection::Write(HttpAnswer answer) {
   if (answer_.status != kNotModified) response_->content_length(body.size());
   const bool head = parser_->get().method() == http::verb::head;
   if (!head) response_->body() = {body.data(), body.size()};
-  stream_.expires_after(kRequestLimit);
-  http::async_write(stream_, *response_,
-                    [self = shared_from_this()](error_code error, std::size_t) {
-                      if (error || self->gone_) return self->Leave();
-                      self->stream_.socket().shutdown(tcp::socket::shutdown_send, error);
-                      self->stream_.expires_after(kCutOffLimit);
-                      self->Linger();
-                    });
+  stream_.expires_after(limits().request);
+  http::async_write(
+      stream_, *response_, [self = shared_from_this()](error_code error, std::size_t) {
+        if (error == beast::error::timeout) {
+          self->CountRefused(
+              fmt::format("does not take its answer within {} s", Seconds(self->limits().request)));
+        }
+        if (error || self->gone_) return self->Leave();
+        self->stream_.socket().shutdown(tcp::socket::shutdown_send, error);
+        self->stream_.expires_after(kCutOffLimit);
+        self->Linger();
+      });
 }
 
 // If a socket is closed while bytes of the client are unread, the client may lose the answer. So
@@ -215,8 +240,9 @@ void BeastConnection::Linger() {
 void BeastConnection::Upgrade() {
   stream_.expires_never();  // the WebSocket has limits of its own
   socket_.emplace(std::move(stream_));
-  socket_->set_option(websocket::stream_base::timeout{
-      .handshake_timeout = kRequestLimit, .idle_timeout = kIdleLimit, .keep_alive_pings = true});
+  socket_->set_option(websocket::stream_base::timeout{.handshake_timeout = limits().request,
+                                                      .idle_timeout = limits().silence,
+                                                      .keep_alive_pings = true});
   const bool named = !parser_->get()[http::field::sec_websocket_protocol].empty();
   socket_->set_option(websocket::stream_base::decorator(
       [named, protocol = protocol_](websocket::response_type& response) {
@@ -241,7 +267,6 @@ void BeastConnection::Open() {
   buffer_.clear();
   budget_.emplace(Clock::now());
   opened_ = true;
-  CountViewer();
   view().Opened(*this);
   Read();
 }
@@ -256,6 +281,10 @@ void BeastConnection::Read() {
       // Beast has sent the reason to the client.
       self->CountCutOff(
           fmt::format("sends more than {} KiB in a frame", Server::kMostFrameBytes >> 10));
+    }
+    if (error == beast::error::timeout && !self->reason_) {
+      self->CountCutOff(
+          fmt::format("does not answer a ping for {} s", Seconds(self->limits().silence)));
     }
     if (error) return self->Leave();
     self->TakeFrame();
@@ -316,6 +345,12 @@ void BeastConnection::GoAway() {
   if (!reason_) Close(CloseCode::kGoingAway, "the program ends", Server::kFarewell);
 }
 
+void BeastConnection::GiveWay() {
+  if (gone_) return;
+  CountRefused("opens no view, and others want its place");
+  Leave();
+}
+
 void BeastConnection::Close(CloseCode code, const std::string& why,
                             std::chrono::milliseconds limit) {
   reason_.emplace(static_cast<websocket::close_code>(code), why.substr(0, 120));
@@ -343,9 +378,9 @@ void BeastConnection::Leave() {
   asio::post(context(), [self = shared_from_this()] { self->LeaveServer(self->opened_); });
 }
 
-std::shared_ptr<Connection> Connection::Start(Server& server, std::uint64_t id, tcp::socket socket,
-                                              Place place) {
-  auto connection = std::make_shared<BeastConnection>(server, id, std::move(socket), place);
+std::shared_ptr<Connection> Connection::Start(Server& server, std::uint64_t id,
+                                              tcp::socket socket) {
+  auto connection = std::make_shared<BeastConnection>(server, id, std::move(socket));
   connection->Begin();
   return connection;
 }

@@ -18,15 +18,14 @@ namespace fogline::web {
 /// has ended. The server forgets it as soon as it has left.
 class Connection : public Client {
  public:
-  /// Whether there is a place for this client. Without one it is told to come again later.
-  enum class Place { kFree, kNone };
-
   /// Serves the client while the server's context runs.
   static std::shared_ptr<Connection> Start(Server& server, std::uint64_t id,
-                                           boost::asio::ip::tcp::socket socket, Place place);
+                                           boost::asio::ip::tcp::socket socket);
 
   /// Closes the connection, because the program ends.
   virtual void GoAway() = 0;
+  /// Closes a connection that has opened no WebSocket, because others want its place.
+  virtual void GiveWay() = 0;
 
  protected:
   Connection(Server& server, std::uint64_t id) : server_(server), id_(id) {}
@@ -37,22 +36,23 @@ class Connection : public Client {
   const Access& access() const { return server_.access_; }
   std::span<const Asset> assets() const { return server_.assets_; }
   View& view() const { return server_.view_; }
-  /// Counts this client as a viewer.
-  void CountViewer() const { ++server_.counts_.viewers; }
+  const ServerLimits& limits() const { return server_.limits_; }
+  bool IsFull() const { return server_.IsFull(); }
+  /// Makes this client a viewer. @return false if there are too many
+  [[nodiscard]] bool TakePlace() { return has_place_ = server_.TakePlace(id_); }
   void CountCutOff(const std::string& why) const { server_.CountCutOff(address(), why); }
   void CountRefused(std::string_view why) const { server_.CountRefused(address(), why); }
-  /// The server forgets this connection. @param opened whether it was a viewer
+  /// The server forgets this connection. @param opened whether the view knows it
   void LeaveServer(bool opened) {
-    if (opened) {
-      --server_.counts_.viewers;
-      server_.view_.Closed(*this);
-    }
+    if (has_place_) --server_.counts_.viewers;
+    if (opened) server_.view_.Closed(*this);
     server_.Leave(id_);
   }
 
  private:
   Server& server_;
   const std::uint64_t id_;
+  bool has_place_ = false;  // it counts as a viewer
 };
 
 }  // namespace fogline::web

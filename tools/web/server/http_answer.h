@@ -19,7 +19,6 @@ struct HttpRequest {
   std::string_view method;
   RequestOrigin from;
   std::string_view if_none_match;  // the ETag that the browser has; "": none
-  bool upgrade = false;            // whether it asks for a WebSocket
 };
 
 struct HttpAnswer {

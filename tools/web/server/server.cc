@@ -1,5 +1,6 @@
 #include "tools/web/server/server.h"
 
+#include <algorithm>
 #include <utility>
 
 #include <fmt/core.h>
@@ -7,63 +8,68 @@
 #include "tools/web/server/connection.h"
 
 namespace fogline::web {
-namespace {
 
 namespace asio = boost::asio;
-using boost::system::error_code;
-
-// Delay before the next try when a connection could not be accepted (no file descriptor is free).
-constexpr std::chrono::milliseconds kPause(100);
-// Connections beyond Server::kMostClients that may wait for their answer "503".
-constexpr std::size_t kMostTurnedAway = 16;
-
-}  // namespace
+using asio::ip::address;
 
 Server::Server(asio::io_context& context, const ServerOptions& options,
                std::span<const Asset> assets, View& view)
     : context_(context),
       assets_(assets),
       view_(view),
-      acceptor_(context, tcp::endpoint(asio::ip::make_address(options.address), options.port)),
+      limits_(options.limits),
+      acceptor_(context, {asio::ip::make_address(options.address), options.port}, lines_),
       access_({.address = options.address,
-               .port = acceptor_.local_endpoint().port(),
+               .port = acceptor_.endpoint().port(),
                .token = options.token,
-               .origins = options.origins}),
-      pause_(context) {
-  Accept();
+               .origins = options.origins}) {
+  acceptor_.Begin([this](tcp::socket socket) { Take(std::move(socket)); });
 }
 
 Server::~Server() = default;
 
-void Server::Accept() {
-  acceptor_.async_accept([this](error_code error, tcp::socket socket) {
-    if (!acceptor_.is_open()) return;
-    if (error) {
-      lines_.Print(fmt::format("cannot take a connection: {}", error.message()));
-      pause_.expires_after(kPause);
-      pause_.async_wait([this](error_code stopped) {
-        if (!stopped) Accept();
-      });
-      return;
-    }
-    Take(std::move(socket));
-    Accept();
-  });
-}
-
 void Server::Take(tcp::socket socket) {
-  const std::size_t taken = connections_.size();
-  const auto place = taken < kMostClients ? Connection::Place::kFree : Connection::Place::kNone;
-  if (place == Connection::Place::kNone) {
-    ++counts_.cut_off;
-    lines_.Print(fmt::format("a client turned away: {} clients are connected already", taken));
-  }
-  if (taken >= kMostClients + kMostTurnedAway) return;  // closes the socket
+  boost::system::error_code error;
+  const address host = socket.remote_endpoint(error).address();
+  if (error) return;  // it has left already
+  MakeRoomFor(host);
   const std::uint64_t id = next_id_++;
-  connections_.emplace(id, Connection::Start(*this, id, std::move(socket), place));
+  callers_.emplace(id, host);
+  connections_.emplace(id, Connection::Start(*this, id, std::move(socket)));
 }
 
-void Server::Leave(std::uint64_t id) { connections_.erase(id); }
+void Server::MakeRoomFor(const address& host) {
+  std::map<address, std::size_t> callers;
+  for (const auto& [id, of] : callers_) ++callers[of];
+  if (callers[host] >= limits_.callers_of_one) return CloseOldestOf(host);
+  if (callers_.size() < limits_.callers) return;
+  CloseOldestOf(
+      std::ranges::max_element(callers, {}, [](const auto& count) { return count.second; })->first);
+}
+
+void Server::CloseOldestOf(const address& host) {
+  const auto oldest =
+      std::ranges::find(callers_, host, [](const auto& caller) { return caller.second; });
+  const auto connection = connections_.at(oldest->first);
+  callers_.erase(oldest);
+  connection->GiveWay();
+}
+
+bool Server::IsFull() const {
+  return counts_.viewers >= static_cast<std::int64_t>(limits_.viewers);
+}
+
+bool Server::TakePlace(std::uint64_t id) {
+  if (IsFull()) return false;
+  callers_.erase(id);
+  ++counts_.viewers;
+  return true;
+}
+
+void Server::Leave(std::uint64_t id) {
+  callers_.erase(id);
+  connections_.erase(id);
+}
 
 void Server::CountCutOff(const std::string& address, const std::string& why) {
   ++counts_.cut_off;
@@ -76,9 +82,7 @@ void Server::CountRefused(const std::string& address, std::string_view why) {
 }
 
 void Server::Stop() {
-  error_code ignored;
-  acceptor_.close(ignored);
-  pause_.cancel();
+  acceptor_.Stop();
   const auto connections = connections_;
   for (const auto& [id, connection] : connections) connection->GoAway();
 }

@@ -2,7 +2,8 @@
 // nothing blocks it. It knows nothing of runs and logs: a View does.
 //
 // Every limit protects the other clients and the memory of this process. A client that exceeds a
-// limit is closed, counted, and named on stderr.
+// limit is closed, counted, and named on stderr. A connection that has not opened a WebSocket (a
+// caller) has limits of its own. So whoever may not look cannot take the places of viewers.
 #pragma once
 
 #include <chrono>
@@ -16,9 +17,10 @@
 #include <vector>
 
 #include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/address.hpp>
 #include <boost/asio/ip/tcp.hpp>
-#include <boost/asio/steady_timer.hpp>
 
+#include "common/process/acceptor.h"
 #include "common/process/line_budget.h"
 #include "tools/web/server/access.h"
 #include "tools/web/server/assets.h"
@@ -35,7 +37,6 @@ inline constexpr std::string_view kFoxgloveSdkProtocol = "foxglove.sdk.v1";
 enum class CloseCode : std::uint16_t {
   kGoingAway = 1001,        // the program ends
   kPolicyViolation = 1008,  // the client sends too many frames
-  kTooBig = 1009,           // the client sends a frame that is too large
   kTryAgainLater = 1013,    // the client does not take its bytes
 };
 
@@ -72,18 +73,33 @@ class View {
   virtual void Closed(Client& client) = 0;
 };
 
+/// Bounds of a server that tests make smaller.
+struct ServerLimits {
+  std::size_t viewers = 64;  // WebSockets
+  // A browser opens at most 6 connections for a page at a time.
+  std::size_t callers = 64;
+  std::size_t callers_of_one = 32;  // from one address
+  // A request must be there, and its answer taken, within this time.
+  std::chrono::milliseconds request{10'000};
+  // A WebSocket that sends nothing for half of this time gets a ping; without an answer it is
+  // closed.
+  std::chrono::milliseconds silence{60'000};
+};
+
 struct ServerOptions {
   std::string address = "127.0.0.1";  // IPv4 in numbers
   std::uint16_t port = 0;             // 0: the system chooses a port
   std::string token;                  // see Access::Rules
   std::vector<std::string> origins;   // see Access::Rules
+  ServerLimits limits;
 };
 
 /// Numbers since the start of the server.
 struct ServerCounts {
   std::int64_t viewers = 0;  // WebSockets that are open now
-  std::int64_t cut_off = 0;  // clients that exceeded a limit
-  std::int64_t refused = 0;  // requests with a wrong Host, Origin or token
+  std::int64_t cut_off = 0;  // viewers that exceeded a limit
+  // Callers that exceeded a limit, or had a wrong Host, Origin or token.
+  std::int64_t refused = 0;
 };
 
 class Connection;
@@ -92,7 +108,6 @@ class Server {
  public:
   using tcp = boost::asio::ip::tcp;
 
-  static constexpr std::size_t kMostClients = 64;
   static constexpr std::size_t kMostHeaderBytes = 8 << 10;
   static constexpr std::size_t kMostFrameBytes = 64 << 10;
 
@@ -116,23 +131,30 @@ class Server {
  private:
   friend class Connection;
 
-  void Accept();
   void Take(tcp::socket socket);
+  /// Closes the oldest caller of an address that has its share, or of the address that has most
+  /// callers if there are too many in all.
+  void MakeRoomFor(const boost::asio::ip::address& host);
+  void CloseOldestOf(const boost::asio::ip::address& host);
+  /// Makes a caller a viewer. @return false if there are too many viewers
+  bool TakePlace(std::uint64_t id);
+  bool IsFull() const;
   void Leave(std::uint64_t id);
-  /// Counts a client that exceeds a limit, and names it on stderr.
+  /// Counts a viewer that exceeds a limit, and names it on stderr.
   void CountCutOff(const std::string& address, const std::string& why);
   void CountRefused(const std::string& address, std::string_view why);
 
   boost::asio::io_context& context_;
   std::span<const Asset> assets_;
   View& view_;
-  tcp::acceptor acceptor_;
+  const ServerLimits limits_;
+  LineBudget lines_{"fogline-web"};
+  Acceptor acceptor_;
   Access access_;
-  boost::asio::steady_timer pause_;  // runs after a connection could not be accepted
   std::map<std::uint64_t, std::shared_ptr<Connection>> connections_;
+  std::map<std::uint64_t, boost::asio::ip::address> callers_;  // the oldest first
   std::uint64_t next_id_ = 0;
   ServerCounts counts_;
-  LineBudget lines_{"fogline-web"};
 };
 
 }  // namespace fogline::web

@@ -1,0 +1,238 @@
+// The limits of docs/view.md, one test for each: who exceeds it is closed, counted and named on
+// stderr, and the server goes on. The times are shorter here.
+#include <gmock/gmock-matchers.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <future>
+#include <optional>
+#include <thread>
+
+#include <boost/asio/post.hpp>
+#include <boost/asio/read.hpp>
+#include <boost/asio/write.hpp>
+
+#include "common/clock.h"
+#include "tests/support/command.h"
+#include "tests/support/web_client.h"
+#include "tools/web/server/server.h"
+
+namespace fogline::web {
+namespace {
+
+using boost::asio::ip::tcp;
+using test::Exchange;
+using test::GetRequest;
+using test::StatusOf;
+using test::WebClient;
+using ::testing::HasSubstr;
+
+constexpr Duration kPatience = milliseconds(20'000);
+constexpr std::chrono::milliseconds kShort(300);
+
+/// Sends each frame back; after "flood" more than may wait for a client.
+class EchoView final : public View {
+ public:
+  void Opened(Client&) override {}
+  void Received(Client& client, std::string_view bytes, bool) override {
+    if (bytes != "flood") return client.Send(TextFrame(std::string(bytes)));
+    for (int i = 0; i < 32; ++i) client.Send(TextFrame(std::string(1 << 20, 'x')));
+  }
+  void Idle(Client&) override {}
+  void Closed(Client&) override {}
+};
+
+/// A server in a thread of its own. stderr is captured.
+class ServerLimitsTest : public ::testing::Test {
+ protected:
+  void Serve(const ServerLimits& limits, const std::string& address = "127.0.0.1") {
+    ::testing::internal::CaptureStderr();
+    server_.emplace(context_, ServerOptions{.address = address, .origins = {}, .limits = limits},
+                    kAssets, view_);
+    thread_ = std::thread([this] { context_.run(); });
+  }
+  void TearDown() override { End(); }
+
+  /// Ends the server. @return what it has said on stderr
+  std::string End() {
+    if (!thread_.joinable()) return "";
+    boost::asio::post(context_, [this] { server_->Stop(); });
+    thread_.join();
+    return ::testing::internal::GetCapturedStderr();
+  }
+  std::uint16_t port() const { return server_->access().rules().port; }
+  ServerCounts Counts() {
+    std::promise<ServerCounts> counts;
+    boost::asio::post(context_, [&] { counts.set_value(server_->counts()); });
+    return counts.get_future().get();
+  }
+  /// Waits until a count has this value. @return whether it has
+  bool Waits(std::int64_t ServerCounts::*count, std::int64_t value) {
+    const TimePoint end = Clock::now() + kPatience;
+    while (Counts().*count != value && Clock::now() < end) {
+      std::this_thread::sleep_for(test::kLookEvery);
+    }
+    return Counts().*count == value;
+  }
+  /// A connection that sends nothing. @param host its own address
+  tcp::socket Connect(const std::string& host = "127.0.0.1") {
+    tcp::socket socket(own_);
+    socket.open(tcp::v4());
+    socket.set_option(boost::asio::socket_base::receive_buffer_size(4096));
+    socket.bind({boost::asio::ip::make_address(host), 0});
+    socket.connect({boost::asio::ip::address_v4::loopback(), port()});
+    return socket;
+  }
+  /// Waits until the server closes a connection. @return whether it does
+  static bool IsClosed(tcp::socket& socket) {
+    boost::system::error_code error;
+    socket.non_blocking(true);
+    char byte = 0;
+    const TimePoint end = Clock::now() + kPatience;
+    while (Clock::now() < end) {
+      socket.read_some(boost::asio::buffer(&byte, 1), error);
+      if (error && error != boost::asio::error::would_block) return true;
+      std::this_thread::sleep_for(test::kLookEvery);
+    }
+    return false;
+  }
+  void ExpectServes() {
+    WebClient client(port());
+    client.Send("still there");
+    EXPECT_EQ(client.Receive().bytes, "still there");
+  }
+
+  static inline const std::string kLarge = std::string(16 << 20, 'x');
+  static inline const std::array<Asset, 2> kAssets{
+      Asset{"/index.html", "text/html; charset=utf-8", "\"e1\"", "<p>"},
+      Asset{"/large", "text/plain", "\"e2\"", kLarge}};
+
+  boost::asio::io_context own_;
+  boost::asio::io_context context_;
+  EchoView view_;
+  std::optional<Server> server_;
+  std::thread thread_;
+};
+
+TEST_F(ServerLimitsTest, Viewers) {
+  Serve({.viewers = 2});
+  std::optional<WebClient> first(port());
+  WebClient second(port());
+  ASSERT_TRUE(Waits(&ServerCounts::viewers, 2));
+  try {
+    WebClient third(port());
+    ADD_FAILURE() << "a third viewer has a place";
+  } catch (const test::WebRefused& refused) {
+    EXPECT_EQ(refused.status(), 503);
+  }
+  EXPECT_EQ(StatusOf(Exchange(port(), GetRequest(port(), "/"))), 503);
+  EXPECT_EQ(Counts().refused, 2);
+  first.reset();
+  ASSERT_TRUE(Waits(&ServerCounts::viewers, 1));
+  ExpectServes();
+  EXPECT_THAT(End(), HasSubstr("refused: 2 viewers are connected already"));
+}
+
+TEST_F(ServerLimitsTest, CallersOfOneAddress) {
+  Serve({.callers_of_one = 2}, "0.0.0.0");
+  tcp::socket other = Connect("127.0.0.2");
+  tcp::socket oldest = Connect();
+  tcp::socket newer = Connect();
+  tcp::socket newest = Connect();
+  EXPECT_TRUE(IsClosed(oldest));
+  EXPECT_EQ(Counts().refused, 1);
+  EXPECT_EQ(StatusOf(Exchange(port(), GetRequest(port(), "/"))), 200);
+  EXPECT_EQ(Counts().refused, 2);  // that of `newer`
+  // The callers of another address keep their places.
+  const std::string request = GetRequest(port(), "/");
+  boost::asio::write(other, boost::asio::buffer(request));
+  std::string answer(12, ' ');
+  boost::asio::read(other, boost::asio::buffer(answer));
+  EXPECT_EQ(answer, "HTTP/1.1 200");
+  EXPECT_THAT(End(), HasSubstr("refused: opens no view, and others want its place"));
+}
+
+TEST_F(ServerLimitsTest, CallersInAll) {
+  Serve({.callers = 3, .callers_of_one = 2}, "0.0.0.0");
+  tcp::socket other = Connect("127.0.0.2");
+  tcp::socket oldest = Connect("127.0.0.3");
+  tcp::socket newer = Connect("127.0.0.3");
+  tcp::socket newest = Connect("127.0.0.4");
+  EXPECT_TRUE(IsClosed(oldest));
+  EXPECT_EQ(Counts().refused, 1);
+  ExpectServes();
+  EXPECT_THAT(End(), HasSubstr("127.0.0.3:"));
+}
+
+TEST_F(ServerLimitsTest, HeadersOfARequest) {
+  Serve({});
+  const std::string lines = "X-Long: " + std::string(9000, 'x') + "\r\n";
+  EXPECT_EQ(StatusOf(Exchange(port(), GetRequest(port(), "/", lines))), 431);
+  EXPECT_EQ(Counts().refused, 1);
+  ExpectServes();
+  EXPECT_THAT(End(), HasSubstr("refused: sends more than 8 KiB of headers"));
+}
+
+TEST_F(ServerLimitsTest, TimeForARequest) {
+  Serve({.request = kShort});
+  tcp::socket idle = Connect();
+  EXPECT_TRUE(IsClosed(idle));
+  EXPECT_EQ(Counts().refused, 1);
+  ExpectServes();
+  EXPECT_THAT(End(), HasSubstr("refused: sends no request within 0.3 s"));
+}
+
+TEST_F(ServerLimitsTest, TimeToTakeAnAnswer) {
+  Serve({.request = kShort});
+  tcp::socket lazy = Connect();
+  boost::asio::write(lazy, boost::asio::buffer(GetRequest(port(), "/large")));
+  EXPECT_TRUE(Waits(&ServerCounts::refused, 1));
+  ExpectServes();
+  EXPECT_THAT(End(), HasSubstr("refused: does not take its answer within 0.3 s"));
+}
+
+TEST_F(ServerLimitsTest, BytesThatWaitForAClient) {
+  Serve({});
+  WebClient client(port(), {.receive_bytes = 4096});
+  client.Send("flood");
+  EXPECT_TRUE(Waits(&ServerCounts::cut_off, 1));
+  ExpectServes();
+  EXPECT_THAT(End(), HasSubstr("cut off: does not read; "));
+}
+
+TEST_F(ServerLimitsTest, FrameOfAClient) {
+  Serve({});
+  WebClient client(port());
+  client.Send(std::string(Server::kMostFrameBytes, 'x'));
+  EXPECT_EQ(client.Receive().bytes.size(), Server::kMostFrameBytes);
+  client.Send(std::string(Server::kMostFrameBytes + 1, 'x'));
+  EXPECT_THROW(client.Receive(), test::WebClosed);
+  EXPECT_TRUE(Waits(&ServerCounts::cut_off, 1));
+  ExpectServes();
+  EXPECT_THAT(End(), HasSubstr("cut off: sends more than 64 KiB in a frame"));
+}
+
+TEST_F(ServerLimitsTest, FramesOfAClient) {
+  Serve({});
+  WebClient client(port());
+  try {
+    // On a machine that sends fewer than 200 frames a second, this would take for ever.
+    for (int i = 0; i < 100'000; ++i) client.Send("x");
+  } catch (const test::WebClosed&) {
+  }
+  EXPECT_TRUE(Waits(&ServerCounts::cut_off, 1));
+  ExpectServes();
+  EXPECT_THAT(End(), HasSubstr("cut off: sends more than 200 frames a second"));
+}
+
+TEST_F(ServerLimitsTest, TimeWithoutAnAnswerToAPing) {
+  Serve({.silence = kShort});
+  WebClient deaf(port());  // answers only while it is asked to receive
+  EXPECT_TRUE(Waits(&ServerCounts::cut_off, 1));
+  EXPECT_EQ(Counts().viewers, 0);
+  ExpectServes();
+  EXPECT_THAT(End(), HasSubstr("cut off: does not answer a ping for 0.3 s"));
+}
+
+}  // namespace
+}  // namespace fogline::web
