@@ -54,8 +54,7 @@ void RunEvents::Add(const arbitration_t& command, std::optional<double> human_mp
   command_step_ = command.header.step;
   NoteAlarm(command);
   take_over_.Add(command, human_mps2);
-  for (; taken_ < take_over_.entries().size(); ++taken_) {
-    const take_over::TakeOverEntry& entry = take_over_.entries()[taken_];
+  for (const take_over::TakeOverEntry& entry : take_over_.TakeEntries()) {
     if (!IsBeginning(entry)) Note(entry, KindOf(entry), std::string(entry.logged));
   }
 }

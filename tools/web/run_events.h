@@ -36,6 +36,7 @@ class RunEvents {
   const std::vector<RunEvent>& events() const { return events_; }
   /// Events beyond kMost.
   std::size_t left_out() const { return left_out_; }
+  const take_over::TakeOverLog& take_over() const { return take_over_; }
 
  private:
   template <class Message>
@@ -43,7 +44,6 @@ class RunEvents {
   void NoteAlarm(const arbitration_t& command);
 
   take_over::TakeOverLog take_over_;
-  std::size_t taken_ = 0;  // entries of take_over_ that have become events
   std::int64_t truth_step_ = -1;
   std::int64_t command_step_ = -1;
   bool fog_ = false;

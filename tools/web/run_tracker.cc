@@ -1,7 +1,9 @@
 #include "tools/web/run_tracker.h"
 
 #include <algorithm>
+#include <utility>
 
+#include "scenario/io/json.h"
 #include "services/graph.h"
 #include "tools/watch/step_sequence.h"
 
@@ -34,17 +36,41 @@ void RunTracker::HearRun(runtime::Bytes bytes, TimePoint now) {
   stopped_ = run.phase == run_t::STOP;
   const bool known = parts_.Complete();
   if (!parts_.Add(run) || known || !parts_.Complete() || !parts_.HashHolds()) return;
-  shown_ = {.run_id = run.header.run_id,
-            .scenario_text = parts_.Text(),
-            .realtime = run.realtime != 0,
-            .pace = run.pace};
+  Show({.run_id = run.header.run_id,
+        .scenario_text = parts_.Text(),
+        .realtime = run.realtime != 0,
+        .pace = run.pace});
+}
+
+void RunTracker::Show(RunFacts run) {
+  // The text may be from anybody. Our own parser bounds its depth before others recurse into it.
+  DiagnosticList mistakes;
+  std::string text = ParseJson(run.scenario_text, 0, mistakes) ? RunText(run) : "";
+  if (text.empty()) {
+    ++refused_scenarios_;
+    return;
+  }
+  shown_ = std::move(run);
+  shown_text_ = std::move(text);
+  taken_ = 0;
   ++runs_;
+}
+
+std::vector<RunEvent> RunTracker::TakeEvents() {
+  const auto& all = events_.events();
+  const auto begin = all.begin() + static_cast<std::ptrdiff_t>(std::exchange(taken_, all.size()));
+  return {begin, all.end()};
+}
+
+void RunTracker::ForgetEvents() {
+  events_ = {};
+  taken_ = 0;
 }
 
 void RunTracker::Begin(const run_t& run) {
   run_id_ = run.header.run_id;
   parts_ = {};
-  events_ = {};
+  ForgetEvents();
   newest_ = -1;
   offered_ = false;
 }
@@ -54,7 +80,7 @@ void RunTracker::HearStep(std::size_t channel, runtime::Bytes bytes) {
   const std::int64_t step = runtime::ReadInt64(bytes, runtime::kStepOffset);
   if (step < 0 || step > watch::StepSequence::kMaxStep) return;
   if (step < newest_ - kPlayedAgain || (step == 0 && newest_ > 0)) {
-    events_ = {};
+    ForgetEvents();
     newest_ = step;
   }
   newest_ = std::max(newest_, step);

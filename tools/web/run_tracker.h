@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "common/clock.h"
@@ -28,23 +29,35 @@ class RunTracker {
 
   /// The run whose scenario is known; nullopt if there is none.
   const std::optional<RunFacts>& run() const { return shown_; }
+  /// RunText() of run(); "" if there is none.
+  const std::string& run_text() const { return shown_text_; }
   /// Grows by one with each new run().
   std::int64_t runs() const { return runs_; }
+  /// Complete scenarios that are no JSON objects. Their runs are not shown.
+  std::int64_t refused_scenarios() const { return refused_scenarios_; }
   /// The events of the run so far.
   const std::vector<RunEvent>& events() const { return events_.events(); }
+  /// The events since the last call. They begin again with each new run(), and when a run is played
+  /// again.
+  std::vector<RunEvent> TakeEvents();
 
  private:
   void HearRun(runtime::Bytes bytes, TimePoint now);
   void HearStep(std::size_t channel, runtime::Bytes bytes);
   void Begin(const run_t& run);
+  void Show(RunFacts run);
+  void ForgetEvents();
 
   std::optional<std::int64_t> run_id_;
   TimePoint heard_{};
   bool stopped_ = false;
   runtime::ScenarioParts parts_;
   std::optional<RunFacts> shown_;
+  std::string shown_text_;
   std::int64_t runs_ = 0;
+  std::int64_t refused_scenarios_ = 0;
   RunEvents events_;
+  std::size_t taken_ = 0;     // events that TakeEvents() has returned
   std::int64_t newest_ = -1;  // step
   truth_t truth_{};
   arbitration_t command_{};

@@ -1,6 +1,7 @@
 #include "services/decision/take_over/take_over_log.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "services/host_modes.h"
 
@@ -57,6 +58,11 @@ void TakeOverLog::Add(const arbitration_t& command, std::optional<double> human_
   AddDecided(decided, human_mps2);
   AddEmergency(command);
   last_sent_ = command.mode;
+}
+
+std::vector<TakeOverEntry> TakeOverLog::TakeEntries() {
+  if (requests_.size() > 1) requests_.erase(requests_.begin(), requests_.end() - 1);
+  return std::exchange(entries_, {});
 }
 
 std::int8_t TakeOverLog::DecidedMode(const arbitration_t& command) const {

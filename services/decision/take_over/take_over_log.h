@@ -57,6 +57,9 @@ class TakeOverLog {
   const std::vector<TakeOverRequest>& requests() const { return requests_; }
   /// The mode of the last command without emergency braking; AUTOMATION before the first command.
   std::int8_t mode() const { return last_ ? last_->mode : arbitration_t::AUTOMATION; }
+  /// Removes the entries so far, and all requests but the last one, which may still change. So a
+  /// reader of an endless run needs bounded memory. @return the entries
+  std::vector<TakeOverEntry> TakeEntries();
 
  private:
   std::int8_t DecidedMode(const arbitration_t& command) const;

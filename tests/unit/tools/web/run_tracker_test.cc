@@ -12,9 +12,9 @@ namespace {
 class Speaker {
  public:
   Speaker(RunTracker& tracker, std::int64_t run_id, std::size_t length = 2500)
-      : tracker_(tracker),
-        run_id_(run_id),
-        text_("{\"title\": \"" + std::string(length, 'a') + "\"}") {}
+      : Speaker(tracker, run_id, "{\"title\": \"" + std::string(length, 'a') + "\"}") {}
+  Speaker(RunTracker& tracker, std::int64_t run_id, std::string text)
+      : tracker_(tracker), run_id_(run_id), text_(std::move(text)) {}
 
   /// Sends one part of the scenario. @return the number of parts
   std::size_t Part(std::size_t part, TimePoint now, std::int8_t phase = run_t::GO) {
@@ -117,6 +117,46 @@ TEST(RunTrackerTest, BeginsAgainWhenARunIsPlayedAgain) {
   EXPECT_TRUE(tracker.events().empty());
   run.Truth(40, true, kBegin);
   EXPECT_EQ(tracker.events().size(), 1U);
+}
+
+TEST(RunTrackerTest, TellsEachEventOnceAndAllOfARunThatIsPlayedAgain) {
+  RunTracker tracker;
+  Speaker run(tracker, 5);
+  run.Truth(1, true, kBegin);  // of a run that is not followed
+  run.AllParts(kBegin);
+  run.Truth(0, false, kBegin);
+  run.Truth(40, true, kBegin);
+  EXPECT_EQ(tracker.TakeEvents().size(), 1U);
+  EXPECT_EQ(tracker.TakeEvents().size(), 0U);
+  // The run is played again, and has as many events as before, until somebody asks for them.
+  run.Truth(0, false, kBegin);
+  run.Truth(30, true, kBegin);
+  const std::vector<RunEvent> again = tracker.TakeEvents();
+  ASSERT_EQ(again.size(), 1U);
+  EXPECT_EQ(again[0].step, 30);
+}
+
+TEST(RunTrackerTest, TellsTheEventsAgainWhenTheScenarioIsKnown) {
+  RunTracker tracker;
+  Speaker run(tracker, 5);
+  run.Part(0, kBegin);
+  run.Truth(3, true, kBegin);
+  EXPECT_EQ(tracker.TakeEvents().size(), 1U);
+  run.AllParts(kBegin);
+  EXPECT_EQ(tracker.TakeEvents().size(), 1U);
+}
+
+TEST(RunTrackerTest, ShowsNoScenarioThatIsNoObject) {
+  std::string deep;
+  for (int i = 0; i < 100'000; ++i) deep += "[";
+  for (const std::string& text :
+       {std::string("[1]"), std::string("no JSON"), std::string("5"), "{\"a\": " + deep}) {
+    RunTracker tracker;
+    Speaker(tracker, 5, text).AllParts(kBegin);
+    EXPECT_FALSE(tracker.run()) << text.substr(0, 10);
+    EXPECT_EQ(tracker.run_text(), "");
+    EXPECT_EQ(tracker.refused_scenarios(), 1);
+  }
 }
 
 TEST(RunTrackerTest, SurvivesWhateverComes) {
