@@ -62,6 +62,7 @@ LiveView::LiveView(asio::io_context& context, LiveOptions options)
   if (options.key) signer_.emplace(*options.key, std::nullopt);
   Wait();
   WaitForHealth();
+  if (!network_.tap_trouble().empty()) lines_.Print(network_.tap_trouble());
 }
 
 void LiveView::Stop() {
@@ -142,7 +143,7 @@ void LiveView::Opened(Client& client) {
   }
   client.Send(TextFrame(HelloText(url(), channels_.others())));
   if (!tracker_.run()) return;
-  client.Send(TextFrame(RunText(*tracker_.run())));
+  client.Send(TextFrame(tracker_.run_text()));
   for (const RunEvent& event : tracker_.events()) client.Send(TextFrame(EventText(event)));
 }
 
@@ -244,13 +245,9 @@ void LiveView::TellNews() {
   }
   if (told_run_ != tracker_.runs()) {
     told_run_ = tracker_.runs();
-    told_events_ = 0;
-    SendToAll(RunText(*tracker_.run()));
+    SendToAll(tracker_.run_text());
   }
-  if (told_events_ > tracker_.events().size()) told_events_ = 0;  // a run is played again
-  for (; told_events_ < tracker_.events().size(); ++told_events_) {
-    SendToAll(EventText(tracker_.events()[told_events_]));
-  }
+  for (const RunEvent& event : tracker_.TakeEvents()) SendToAll(EventText(event));
 }
 
 // ---- health ------------------------------------------------------------------------------------
@@ -264,17 +261,35 @@ void LiveView::WaitForHealth() {
   });
 }
 
+void LiveView::NameTrouble(const watch::SendersView& senders) {
+  if (named_scenarios_ != tracker_.refused_scenarios()) {
+    named_scenarios_ = tracker_.refused_scenarios();
+    lines_.Print(fmt::format("{} runs are not shown: their scenarios are no JSON objects",
+                             named_scenarios_));
+  }
+  if (named_fragmented_ != senders.channels_in_fragments.size()) {
+    named_fragmented_ = senders.channels_in_fragments.size();
+    lines_.Print(watch::FragmentsText(senders));
+  }
+}
+
 std::string LiveView::Health() {
   const watch::TrafficView traffic = statistics_[turn_].Observe(Clock::now());
   turn_ = (turn_ + 1) % kTurns;
   const watch::SendersView senders = network_.ViewSenders(Clock::now());
+  NameTrouble(senders);
   nlohmann::ordered_json json{{"op", "health"},
                               {"traffic", watch::TrafficJson(traffic, url())},
                               {"senders", nullptr},
+                              {"senders_note", network_.tap_trouble()},
                               {"own_overflow", senders.own_overflow},
+                              {"too_large", senders.in_fragments},
+                              {"too_large_channels", senders.channels_in_fragments},
+                              {"refused_scenarios", tracker_.refused_scenarios()},
                               {"unverified", unverified_},
                               {"viewers", server_ ? server_->counts().viewers : 0},
-                              {"cut_off", server_ ? server_->counts().cut_off : 0}};
+                              {"cut_off", server_ ? server_->counts().cut_off : 0},
+                              {"refused", server_ ? server_->counts().refused : 0}};
   for (auto& run : json["traffic"]["runs"]) {  // JavaScript rounds numbers beyond 2^53
     run["run_id"] = std::to_string(run["run_id"].get<std::int64_t>());
   }

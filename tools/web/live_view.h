@@ -12,6 +12,7 @@
 #include <boost/asio/posix/stream_descriptor.hpp>
 #include <boost/asio/steady_timer.hpp>
 
+#include "common/process/line_budget.h"
 #include "services/runtime/wire/message_signer.h"
 #include "tools/watch/followed_network.h"
 #include "tools/watch/traffic_statistics.h"
@@ -77,6 +78,8 @@ class LiveView final : public View {
   void Translate(Viewer& viewer, std::string_view messages);
   void TellNews();
   void TellChannel(const KnownChannel& channel);
+  /// Names on stderr what cannot be shown.
+  void NameTrouble(const watch::SendersView& senders);
   /// Sends a text to the clients that speak our own protocol.
   void SendToAll(std::string text);
   std::string Health();
@@ -91,7 +94,9 @@ class LiveView final : public View {
   MessageRing ring_;
   RunTracker tracker_;
   std::int64_t told_run_ = 0;
-  std::size_t told_events_ = 0;
+  std::int64_t named_scenarios_ = 0;  // refused scenarios that were named on stderr
+  std::size_t named_fragmented_ = 0;  // channels of too large messages that were named
+  LineBudget lines_{"fogline-web"};
   std::int64_t unverified_ = 0;
   watch::FollowedNetwork network_;
   std::int64_t generation_ = -1;  // of the descriptors below

@@ -2,6 +2,7 @@
 // not notice them.
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
+#include <lcm/lcm.h>
 
 #include <map>
 #include <set>
@@ -187,6 +188,26 @@ TEST(LiveViewTest, NamesChannelsOfOtherPrograms) {
   EXPECT_EQ(health["senders"][0]["lost"], 0);
   WebClient late(viewed.port());
   EXPECT_EQ(ReceiveOp(late, "hello")["channels"].size(), kNumChannels + 1);
+}
+
+TEST(LiveViewTest, NamesMessagesThatAreLargerThanADatagram) {
+  const std::string url = runtime::FreshMulticastUrl();
+  Viewed viewed({"--lcm-url", url});
+  ASSERT_NE(viewed.port(), 0) << viewed.process().Err();
+  WebClient client(viewed.port());
+  lcm_t* lcm = lcm_create(url.c_str());
+  ASSERT_NE(lcm, nullptr);
+  const std::vector<std::uint8_t> picture(100'000, 1);
+  EXPECT_EQ(lcm_publish(lcm, "CAMERA", picture.data(), static_cast<unsigned>(picture.size())), 0);
+  lcm_destroy(lcm);
+  json health;
+  const TimePoint end = Clock::now() + kPatience;
+  do {
+    health = ReceiveOp(client, "health");
+  } while (health["too_large"] == 0 && Clock::now() < end);
+  EXPECT_EQ(health["too_large"], 1);
+  EXPECT_EQ(health["too_large_channels"], json::array({"CAMERA"}));
+  EXPECT_TRUE(viewed.process().WaitForErr("1 messages are larger than a datagram (CAMERA)"));
 }
 
 TEST(LiveViewTest, LeavesTheDigestOfARunAsItIsWith20Viewers) {
