@@ -209,12 +209,28 @@ int Resume(RunArguments& arguments) {
   return Print(arguments, outcome);
 }
 
+/// Runs. If the run fails while it is shown, the error is printed at once, so that the user can
+/// read it beside the log. @return the exit code
+int RunShown(RunArguments& arguments, processes::RunViewer& viewer) {
+  try {
+    return arguments.resume.empty() ? RunNew(arguments) : Resume(arguments);
+  } catch (const InputError&) {
+    throw;
+  } catch (const Interrupted&) {
+    throw;
+  } catch (const std::exception& error) {
+    if (!viewer.Runs() || std::ferror(stdout) != 0) throw;
+    Complain(fmt::format("fogline run: error: {}", error.what()));
+    return kRunFailed;
+  }
+}
+
 /// Runs, and shows the run in a browser. When it is over, shows its log until Ctrl-C.
 int RunAndView(RunArguments& arguments) {
   runner::ExperimentOptions& options = arguments.options;
   processes::RunViewer viewer(runtime::ToArguments({.key_file = options.traffic.key_file}));
   options.on_network = [&viewer](const std::string& url) { viewer.ShowNetwork(url); };
-  const int code = arguments.resume.empty() ? RunNew(arguments) : Resume(arguments);
+  const int code = RunShown(arguments, viewer);
   std::fflush(stdout);
   viewer.ShowLog(options.log);
   while (viewer.Runs() && !WasInterrupted()) std::this_thread::sleep_for(milliseconds(50));

@@ -5,9 +5,14 @@
 #include <sys/types.h>
 
 #include <filesystem>
+#include <optional>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
+
+#include "common/clock.h"
+#include "tools/processes/child.h"
 
 namespace fogline::processes {
 
@@ -20,22 +25,31 @@ class RunViewer {
   RunViewer& operator=(const RunViewer&) = delete;
 
   /// Shows the run on this network. Returns when the page can be opened, so that it misses nothing.
+  /// If fogline-web takes longer than a second, a warning says so, and the run does not wait: the
+  /// address is printed when fogline-web listens.
   void ShowNetwork(const std::string& url);
   /// Shows a log in place of the network, at the same address: pages that are open connect again.
+  /// Does nothing if the page of the network could not be shown.
   void ShowLog(const std::filesystem::path& log);
   /// Whether fogline-web runs. It ends by itself only if it fails.
   bool Runs();
 
  private:
   /// @param more the arguments that say what is shown, and where
-  void Start(const std::vector<std::string>& more);
+  /// @return false if it cannot be started
+  bool Start(const std::vector<std::string>& more);
+  /// Waits for the address, and prints it. @return false if there is none in time
+  bool TakeAddress(Duration limit);
+  void TakeAddressLater();
   void End();
   void Say(const std::string& trouble);
 
   std::vector<std::string> traffic_;
   pid_t pid_ = -1;
-  std::string address_;  // "http://127.0.0.1:7680/"; "": nothing was shown
-  bool said_ = false;    // the user knows that there is no page
+  std::optional<Pipe> output_;  // its stdout
+  std::string address_;         // "http://127.0.0.1:7680/"; "": nothing was shown
+  bool said_ = false;           // the user knows that there is no page
+  std::jthread late_;           // takes an address that did not come in time
 };
 
 }  // namespace fogline::processes

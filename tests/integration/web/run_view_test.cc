@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <fstream>
 
 #include "tests/integration/web/viewed.h"
 
@@ -29,6 +30,20 @@ std::uint16_t PortIn(const std::string& err) {
   return static_cast<std::uint16_t>(std::stoi(err.substr(at + kBefore.size())));
 }
 
+/// The frame "log" of the server at a port, as soon as it shows a log; an empty object if it shows
+/// none within kPatience.
+json LogAt(std::uint16_t port) {
+  const TimePoint end = Clock::now() + kPatience;
+  while (Clock::now() < end) {
+    try {
+      WebClient page(port);
+      if (ReceiveOp(page, "hello")["mode"] == "log") return ReceiveOp(page, "log");
+    } catch (const std::exception&) {  // nobody listens between the two programs
+    }
+  }
+  return json::object();
+}
+
 TEST(RunViewTest, ShowsTheRunAndThenItsLogUntilCtrlC) {
   const ScratchFolder folder;
   const std::string log = folder.File("run.lcm");
@@ -45,33 +60,83 @@ TEST(RunViewTest, ShowsTheRunAndThenItsLogUntilCtrlC) {
   }
   ASSERT_TRUE(run.WaitForOut("\"digest\"", kPatience));
   // THEN a page that connects again gets the log
-  std::string mode;
-  const TimePoint end = Clock::now() + kPatience;
-  while (mode != "log" && Clock::now() < end) {
-    try {
-      WebClient page(port);
-      mode = ReceiveOp(page, "hello")["mode"];
-      if (mode == "log") {
-        EXPECT_EQ(ReceiveOp(page, "log")["last_step"], 59);
-      }
-    } catch (const std::exception&) {  // nobody listens between the two programs
-    }
-  }
-  EXPECT_EQ(mode, "log");
+  EXPECT_EQ(LogAt(port)["last_step"], 59);
   EXPECT_TRUE(IsAlive(run.pid()));
   run.Signal(SIGINT);
   EXPECT_EQ(run.Wait(), 0) << run.Err();
   EXPECT_EQ(json::parse(run.Out())["steps"], 60);
 }
 
-TEST(RunViewTest, RunsWithoutAViewerThatCannotBeStarted) {
-  // GIVEN the programs without fogline-web
-  const ScratchFolder folder;
+/// Puts the programs into a folder, without fogline-web.
+void LinkProgramsTo(const ScratchFolder& folder) {
   for (const auto& entry : std::filesystem::directory_iterator(ProgramDirectory())) {
     const std::string name = entry.path().filename();
     if (!name.starts_with("fogline") || name == "fogline-web") continue;
     std::filesystem::create_hard_link(entry.path(), folder.path() / name);
   }
+}
+
+TEST(RunViewTest, WaitsOneSecondForAViewerThatHangs) {
+  const ScratchFolder folder;
+  LinkProgramsTo(folder);
+  const std::string hangs = folder.File("fogline-web");
+  std::ofstream(hangs) << "#!/bin/sh\nexec sleep 600\n";
+  std::filesystem::permissions(hangs, std::filesystem::perms::owner_all);
+  const TimePoint began = Clock::now();
+  Background run(
+      RunAndView(folder.File("fogline"), folder.File("run.lcm"), {"--set", "/steps=30"}));
+  ASSERT_TRUE(run.WaitForErr("--view: fogline-web does not listen after 1 s", kPatience));
+  EXPECT_LT(Clock::now() - began, milliseconds(9000));
+  EXPECT_EQ(run.Wait(), 0) << run.Err();
+  EXPECT_EQ(json::parse(run.Out())["steps"], 30);
+  EXPECT_THAT(run.Err(), HasSubstr("--view: fogline-web does not listen; the run"));
+}
+
+TEST(RunViewTest, PrintsTheAddressOfAViewerThatIsSlow) {
+  const ScratchFolder folder;
+  LinkProgramsTo(folder);
+  const std::string slow = folder.File("fogline-web");
+  const std::string go = folder.File("go");
+  std::ofstream(slow) << "#!/bin/sh\nwhile [ ! -e " << go << " ]; do sleep 0.1; done\nexec "
+                      << Program("fogline-web") << " \"$@\"\n";
+  std::filesystem::permissions(slow, std::filesystem::perms::owner_all);
+  Background run(RunAndView(folder.File("fogline"), folder.File("run.lcm"), {"--pace", "1"}));
+  ASSERT_TRUE(run.WaitForErr("does not listen after 1 s", kPatience)) << run.Err();
+  std::ofstream(go) << "now";
+  ASSERT_TRUE(run.WaitForErr("view: http://127.0.0.1:", kPatience)) << run.Err();
+  ASSERT_TRUE(run.WaitForErr("/\n", kPatience));
+  WebClient live(PortIn(run.Err()));
+  EXPECT_EQ(ReceiveOp(live, "run")["steps"], 500);
+  run.Signal(SIGINT);
+  EXPECT_EQ(run.Wait(), 130) << run.Err();
+}
+
+TEST(RunViewTest, ShowsTheLogOfARunThatFails) {
+  const ScratchFolder folder;
+  Background run(
+      RunAndView(Program("fogline"), folder.File("run.lcm"), {"--pace", "1", "--restarts", "0"}));
+  ASSERT_TRUE(run.WaitForErr("/\n", kPatience)) << run.Err();
+  const std::uint16_t port = PortIn(run.Err());
+  {
+    WebClient live(port);
+    EXPECT_EQ(ReceiveOp(live, "run")["steps"], 500);
+    ReceiveKind(live, 1);
+  }
+  ASSERT_TRUE(GrowsTo(20'000, folder.File("run.lcm")));
+  const pid_t radar = PidOf(run.Err(), "radar");
+  ASSERT_GT(radar, 0) << run.Err();
+  kill(radar, SIGKILL);
+  ASSERT_TRUE(run.WaitForErr("fogline run: error: ", kPatience)) << run.Err();
+  EXPECT_FALSE(LogAt(port)["complete"]);
+  EXPECT_TRUE(IsAlive(run.pid()));
+  run.Signal(SIGINT);
+  EXPECT_EQ(run.Wait(), 3) << run.Err();
+}
+
+TEST(RunViewTest, RunsWithoutAViewerThatCannotBeStarted) {
+  // GIVEN the programs without fogline-web
+  const ScratchFolder folder;
+  LinkProgramsTo(folder);
   // WHEN a run shall be shown
   const Outcome run = RunCommand(
       RunAndView(folder.File("fogline"), folder.File("run.lcm"), {"--set", "/steps=30"}));
