@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import {test} from "node:test";
 
-import {browser, open, recordedRun, scratch, shows, view} from "./window.js";
+import {browser, open, recordedRun, scratch, serve, shows, view} from "./window.js";
 
 test("the key of the printed address opens the page, and leaves the address", async (t) => {
   const log = recordedRun(scratch(t));
@@ -21,4 +21,27 @@ test("a page without the key says what is missing", async (t) => {
   const page = await open(t, await browser(t), address.replace(/#.*/, ""));
   await page.waitForFunction(() => document.getElementById("problem").textContent.includes("contains a key"));
   page.trouble = page.trouble.filter((words) => !words.includes("WebSocket"));  // the refusal itself
+});
+
+test("the new address of a server that was started again works in the same tab", async (t) => {
+  const log = recordedRun(scratch(t));
+  const {server, address} = await serve(t, [log, "--listen", "127.0.0.1"]);
+  const page = await open(t, await browser(t), address);
+  await shows(page, 0);
+  const state = (wanted) => page.waitForFunction(
+    (name) => document.getElementById("origin").dataset.state === name, wanted);
+  await state("log");
+  server.kill("SIGINT");
+  await server.ended;
+  await state("lost");
+  const {host} = new URL(address);
+  const again = await view(t, [log, "--listen", host]);
+  assert.equal(new URL(again).host, host);
+  assert.notEqual(again, address);
+  await page.evaluate((pasted) => { location.href = pasted; }, again);
+  await state("log");
+  assert.ok(!page.url().includes("token"), page.url());
+  await page.reload();
+  await shows(page, 0);
+  page.trouble = page.trouble.filter((words) => !words.includes("WebSocket"));  // while nobody listened
 });

@@ -86,13 +86,19 @@ export async function until(look, what) {
 
 /** Starts `fogline view`. @return the address that it prints */
 export async function view(t, args) {
+  return (await serve(t, args)).address;
+}
+
+/** Starts `fogline view`. @return {server, address}: its process, and the address that it prints */
+export async function serve(t, args) {
   const place = args.includes("--listen") ? [] : ["--port", "0"];
   const server = background(t, FOGLINE, ["view", "--no-browser", ...place, ...args]);
   server.on("exit", (code) => { server.code = code; });
-  return until(() => {
+  const address = await until(() => {
     assert.equal(server.code, undefined, server.said);
     return server.said.match(/http:\/\/\S+/)?.[0];
   }, "the address of fogline view");
+  return {server, address};
 }
 
 /** Starts a browser for the test. */

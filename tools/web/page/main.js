@@ -70,8 +70,11 @@ class Page {
       this.curves.resize();
     });
     sizes.observe(byId("main"));
-    addEventListener("hashchange", () => {
-      const {step} = readFragment(location.hash);
+    addEventListener("hashchange", ({newURL}) => {
+      // Since then keepAddress() may have put the shown moment into the address.
+      const {hash} = new URL(newURL);
+      const {step, token} = readFragment(hash);
+      if (token) this.takeNewToken(hash);
       if (step !== null && this.store) this.goTo(step);
     });
     byId("parts").addEventListener("click", (event) => {
@@ -80,6 +83,12 @@ class Page {
       event.preventDefault();  // the fragment of the address is the moment
       this.showPart(link.getAttribute("href").slice(1));
     });
+  }
+
+  /** The reader has pasted the address of a server that was started again. */
+  takeNewToken(hash) {
+    this.token = takeToken(hash);
+    this.wire.moveTo(socketUrl(location, this.token));
   }
 
   actions() {
@@ -304,19 +313,19 @@ class Page {
     this.timebar.draw({clock, store, step, time, run, isLive: this.isLive}, modes, lambdas,
                       this.events, theme);
     this.timebar.drawEvents(this.events, step, run);
-    this.drawHealth(step);
+    this.drawHealth();
     this.keepAddress(step);
     setAttribute(document.body, "data-step", String(this.frameStep ?? ""));
   }
 
-  drawHealth(step) {
+  drawHealth() {
     if (this.isLive && this.healthIsNew) {
       this.healthIsNew = false;
       this.health.drawLive(this.lastHealth, this.store.run, this.store.statuses);
     }
-    if (!this.isLive && this.log && this.healthStep !== step) {
-      this.healthStep = step;
-      this.health.drawLog(this.log, this.run, this.store.statuses, step);
+    if (!this.isLive && this.log && this.healthLog !== this.log) {
+      this.healthLog = this.log;
+      this.health.drawLog(this.log, this.run);
     }
   }
 

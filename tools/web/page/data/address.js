@@ -15,8 +15,8 @@ export function fragmentOf(step, token) {
 }
 
 /** Takes the token out of the address, where it would be seen, and keeps it for this tab. */
-export function takeToken() {
-  const {step, token} = readFragment(location.hash);
+export function takeToken(hash = location.hash) {
+  const {step, token} = readFragment(hash);
   if (token) {
     sessionStorage.setItem(TOKEN, token);
     history.replaceState(null, "", step === null ? location.pathname : fragmentOf(step, ""));

@@ -16,7 +16,6 @@ export class LogStore {
     this.chunks = new Map();   // by number; the last used one stands last
     this.wanted = new Map();   // series by field name
     this.details = new Map();
-    this.statuses = new Map();
     this.fetching = null;      // number of the chunk that is under way
     this.next = null;          // number of the chunk that is wanted after it
     this.firstStep = 0;
@@ -59,8 +58,7 @@ export class LogStore {
     for (const {channel: id, bytes} of chunk.messages.get(step) ?? []) {
       const channel = this.catalogue.channels.get(id);
       const message = this.catalogue.decode(channel, bytes);
-      if (message && channel.name === "STATUS") this.statuses.set(message.role, message);
-      else if (message) frame[channel.name] = message;
+      if (message) frame[channel.name] = message;
     }
     chunk.step = step;
     chunk.frame = frame;

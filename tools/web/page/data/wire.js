@@ -87,11 +87,28 @@ export class Wire {
     this.socket.onclose = () => this.lose();
   }
 
-  lose() {
+  /** Connects to another address, such as one with a new key. */
+  moveTo(url) {
+    if (url === this.url) return;
+    this.url = url;
+    clearTimeout(this.retrying);
+    this.retry_ms = RETRY_MS.first;
+    const old = this.socket;
+    old.onopen = old.onmessage = old.onclose = null;
+    old.close();
+    this.rejectAll();
+    this.connect();
+  }
+
+  rejectAll() {
     for (const {reject} of this.waiting.values()) reject(new Error("the connection was lost"));
     this.waiting.clear();
+  }
+
+  lose() {
+    this.rejectAll();
     this.on.state(this.wasOpen ? "lost" : "refused");
-    setTimeout(() => this.connect(), this.retry_ms);
+    this.retrying = setTimeout(() => this.connect(), this.retry_ms);
     this.retry_ms = RETRY_MS.then;
   }
 

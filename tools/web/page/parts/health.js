@@ -2,8 +2,8 @@
 
 import {byId, make, say, setAttribute} from "../draw/dom.js";
 import {count, decimal, share} from "../draw/format.js";
+import {lacksOf, lossesOf} from "../data/losses.js";
 
-const STATES = ["WAITING", "READY", "RUNNING", "DONE", "FAILED", "LEFT"];
 const INPUT_STATES = ["awaited", "OK", "stale", "lost"];
 
 function refusals(refused) {
@@ -101,45 +101,33 @@ export class Health {
     const channels = [...(shown?.channels ?? []), ...(health.traffic?.others ?? [])];
     this.fill("channels", channels.map(channelRow));
     const bad = roles.filter((role) => grade(role, statuses.get(role.role)) === "bad");
-    const lost = (health.senders ?? []).reduce((sum, sender) => sum + sender.lost, 0);
-    this.conclude(bad, roles, lost, health);
+    this.conclude(bad, roles, health);
   }
 
-  conclude(bad, roles, lost, health) {
+  conclude(bad, roles, health) {
+    const losses = lossesOf(health, count);
     const names = bad.map(({role}) => role).join(", ");
     const first = roles.length === 0 ? "No role has reported yet."
       : bad.length === 0 ? `All ${roles.length} roles answer.`
       : bad.length === 1 ? `One role is in trouble: ${names}.`
       : `${bad.length} roles are in trouble: ${names}.`;
-    const second = lost ? ` ${count(lost)} packets were lost on the network.`
-                        : " No packet was lost.";
-    setAttribute(this.summary, "data-grade", bad.length ? "bad" : lost ? "note" : "good");
-    say(this.summary, first + second);
+    const overall = bad.length ? "bad" : losses.count ? "note" : "good";
+    setAttribute(this.summary, "data-grade", overall);
+    say(this.summary, `${first} ${losses.words}`);
     const viewers = health.viewers ?? 1;
-    const facts = [health.traffic?.lcm_url, viewers === 1 ? "1 viewer" : `${count(viewers)} viewers`];
-    if (health.own_overflow) {
-      facts.push(`this viewer itself missed ${count(health.own_overflow)} packets`);
-    }
-    if (health.cut_off) facts.push(`${count(health.cut_off)} slow viewers were cut off`);
+    const facts = [health.traffic?.lcm_url, viewers === 1 ? "1 viewer" : `${count(viewers)} viewers`,
+                   ...lacksOf(health, count)];
     say(this.network, facts.filter(Boolean).join(" · "));
   }
 
-  /** Shows a recorded run: its completeness, and the roles' last STATUS if the log has any. */
-  drawLog(log, run, statuses, step) {
-    const roles = [...statuses.values()].map((status) => ({
-      role: status.role, state: STATES[status.state], step: status.header.step, silent: false,
-      age_s: Math.max(0, (step - status.header.step) * run.step_s),
-      repairs_asked: status.repairs_asked, repairs_served: status.repairs_served,
-      error: status.error, waiting_for: status.waiting_for}));
-    this.fill("roles", roles.map((role) => roleRow(role, statuses.get(role.role))));
-    this.fill("senders", []);
-    this.fill("channels", []);
+  /** Shows a recorded run: its completeness. Roles, senders and channels are those of a live run. */
+  drawLog(log, run) {
+    for (const part of Object.keys(this.parts)) this.fill(part, []);
     setAttribute(this.summary, "data-grade", log.complete ? "good" : "note");
     const steps = log.last_step - log.first_step + 1;
     say(this.summary, `${log.complete ? "The log is complete" : "The log is not complete"}: ` +
       `${count(steps)} of ${count(run.steps ?? steps)} steps.${log.note ? ` ${log.note}` : ""}`);
-    const status = roles.length ? "" : "A log of a run in lockstep has no reports of the roles.";
-    say(this.network, [`${log.file}, run ${run.run_id}`, status].filter(Boolean).join(" · "));
+    say(this.network, `${log.file}, run ${run.run_id} · A live run also shows its roles, senders ` +
+      "and channels here.");
   }
 }
-

@@ -1,0 +1,29 @@
+import assert from "node:assert/strict";
+import {test} from "node:test";
+
+import {lacksOf, lossesOf} from "../../../../../../tools/web/page/data/losses.js";
+
+test("lost packets are counted over all senders", () => {
+  assert.deepEqual(lossesOf({senders: [{lost: 0}, {lost: 0}]}), {count: 0, words: "No packet was lost."});
+  assert.equal(lossesOf({senders: [{lost: 1}]}).words, "One packet was lost on the network.");
+  assert.deepEqual(lossesOf({senders: [{lost: 1}, {lost: 2}]}),
+                   {count: 3, words: "3 packets were lost on the network."});
+});
+
+test("a network without numbers is not said to lose nothing", () => {
+  assert.deepEqual(lossesOf({senders: null, senders_note: "", traffic: {lcm_url: "tcpq://127.0.0.1:7700"}}),
+                   {count: 0, words: "Lost packets: not known over tcpq."});
+  assert.equal(lossesOf({senders: null, senders_note: "no such option", traffic: {lcm_url: "udpm://x"}}).words,
+               "Lost packets: not known: no such option.");
+});
+
+test("whatever is not shown, and whoever is refused, has words", () => {
+  assert.deepEqual(lacksOf({own_overflow: 0, too_large: 0, refused_scenarios: 0, cut_off: 0, refused: 0}), []);
+  assert.deepEqual(
+    lacksOf({own_overflow: 1, too_large: 2, too_large_channels: ["CAMERA", "MAP"], refused_scenarios: 3,
+             cut_off: 4, refused: 5}),
+    ["this viewer itself missed 1 packets",
+     "2 messages are larger than a datagram and not shown (CAMERA, MAP)",
+     "3 runs without a valid scenario are not shown", "4 viewers were cut off",
+     "5 connections were refused"]);
+});
