@@ -1,8 +1,6 @@
 // Every message type: from the bytes to the values that a reader gets. Input: an index into
 // kChannels, then the message.
 #include <algorithm>
-#include <array>
-#include <utility>
 
 #include "services/runtime/wire/arrival.h"
 #include "tests/fuzz/samples.h"
@@ -46,41 +44,21 @@ void DemandNoOther(runtime::Bytes bytes) {
   Demand(!runtime::Decode(bytes, message), "a message is of one type only");
 }
 
-template <std::size_t... I>
-void TryAll(std::size_t channel, runtime::Bytes bytes, std::index_sequence<I...>) {
-  (
-      [&] {
-        using M = typename std::tuple_element_t<I, decltype(kGraph)>::Message;
-        if (channel == I) DemandOneMeaning<M>(bytes);
-        const bool of_another =
-            bytes.size() >= runtime::kHeaderEnd && runtime::ReadInt64(bytes, 0) != M::getHash();
-        if (of_another) DemandNoOther<M>(bytes);
-      }(),
-      ...);
-}
-
 }  // namespace
 
-std::vector<Input> Seeds() {
-  std::vector<Input> seeds;
-  std::apply(
-      [&](const auto&... each) {
-        const auto add = [&]<class M>(const M& message) {
-          Input seed = Encoded(message);
-          seed.insert(seed.begin(), static_cast<std::uint8_t>(IndexOf<M>()));
-          seeds.push_back(std::move(seed));
-        };
-        (add(Sample<typename std::decay_t<decltype(each)>::Message>(1)), ...);
-      },
-      kGraph);
-  return seeds;
-}
+std::vector<Input> Seeds() { return SeedOfEachType(); }
 
 }  // namespace fogline::fuzz
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return 0;
-  fogline::fuzz::TryAll(data[0] % fogline::kNumChannels, {data + 1, size - 1},
-                        std::make_index_sequence<fogline::kNumChannels>{});
+  const std::size_t channel = data[0] % fogline::kNumChannels;
+  const fogline::runtime::Bytes bytes(data + 1, size - 1);
+  fogline::fuzz::ForEachType([&]<class M>(std::size_t place) {
+    if (place == channel) fogline::fuzz::DemandOneMeaning<M>(bytes);
+    const bool of_another = bytes.size() >= fogline::runtime::kHeaderEnd &&
+                            fogline::runtime::ReadInt64(bytes, 0) != M::getHash();
+    if (of_another) fogline::fuzz::DemandNoOther<M>(bytes);
+  });
   return 0;
 }

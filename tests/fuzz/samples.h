@@ -1,7 +1,11 @@
 // Valid messages and logs. Targets make seeds from them.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <string>
+#include <tuple>
+#include <type_traits>
 #include <vector>
 
 #include "services/graph.h"
@@ -68,6 +72,29 @@ Input Encoded(const M& message) {
   Input bytes;
   runtime::Encode(message, bytes);
   return bytes;
+}
+
+/// Calls `handle`.operator()<M>(i) for each type M of kGraph; i is its place in kChannels.
+template <class Handle>
+void ForEachType(const Handle& handle) {
+  std::apply(
+      [&](const auto&... each) {
+        const auto call = [&]<class M>(std::type_identity<M>) {
+          handle.template operator()<M>(IndexOf<M>());
+        };
+        (call(std::type_identity<typename std::decay_t<decltype(each)>::Message>()), ...);
+      },
+      kGraph);
+}
+
+/// For each type its place in kChannels in one byte, and then a message.
+inline std::vector<Input> SeedOfEachType() {
+  std::vector<Input> seeds;
+  ForEachType([&seeds]<class M>(std::size_t place) {
+    Input& seed = seeds.emplace_back(Encoded(Sample<M>(1)));
+    seed.insert(seed.begin(), static_cast<std::uint8_t>(place));
+  });
+  return seeds;
 }
 
 /// The RUN messages that carry a text in parts of `part_size` characters.

@@ -6,11 +6,11 @@
 #include <cmath>
 #include <string>
 #include <type_traits>
-#include <utility>
 
 #include <nlohmann/json.hpp>
 
 #include "tests/fuzz/samples.h"
+#include "tests/support/numeric_fields.h"
 #include "tools/web/types/decode.h"
 #include "tools/web/types/description.h"
 #include "tools/web/types/field_reader.h"
@@ -34,9 +34,9 @@ const web::LcmTypes& OtherTypes() {
 /// A type, and a reader for each of its numbers.
 struct Reading {
   explicit Reading(const web::LcmTypes& all, const web::LcmStruct& of) : types(all), type(of) {
-    for (const web::NumericField& field : web::NumericFields(types, type)) {
-      paths.push_back(web::ParsePath(field.path));
-      readers.emplace_back(types, type, field.path);
+    for (const std::string& path : test::NumericFields(types, type).paths()) {
+      paths.push_back(web::ParsePath(path));
+      readers.emplace_back(types, type, path);
     }
   }
   const web::LcmTypes& types;
@@ -176,31 +176,10 @@ void DemandBounded(runtime::Bytes rest) {
   Took();
 }
 
-template <std::size_t... I>
-void TryAll(std::size_t channel, runtime::Bytes bytes, std::index_sequence<I...>) {
-  if (channel == kNumChannels) return DemandBounded(bytes);
-  (
-      [&] {
-        using M = typename std::tuple_element_t<I, decltype(kGraph)>::Message;
-        if (channel == I) DemandAsGenerated<M>(bytes);
-      }(),
-      ...);
-}
-
 }  // namespace
 
 std::vector<Input> Seeds() {
-  std::vector<Input> seeds;
-  std::apply(
-      [&](const auto&... each) {
-        const auto add = [&]<class M>(const M& message) {
-          Input seed = Encoded(message);
-          seed.insert(seed.begin(), static_cast<std::uint8_t>(IndexOf<M>()));
-          seeds.push_back(std::move(seed));
-        };
-        (add(Sample<typename std::decay_t<decltype(each)>::Message>(1)), ...);
-      },
-      kGraph);
+  std::vector<Input> seeds = SeedOfEachType();
   Input other{static_cast<std::uint8_t>(kNumChannels), 0, 1, 2, 0, 1, 0, 2};  // rows, cols, grid
   for (int part = 0; part < 2; ++part) {
     other.insert(other.end(), {7, 1, 0, 0, 0, 2, 'a', 0, 1, 0x3f, 0x80, 0, 0});
@@ -215,7 +194,14 @@ std::vector<Input> Seeds() {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return 0;
-  fogline::fuzz::TryAll(data[0] % (fogline::kNumChannels + 1), {data + 1, size - 1},
-                        std::make_index_sequence<fogline::kNumChannels>{});
+  const std::size_t channel = data[0] % (fogline::kNumChannels + 1);
+  const fogline::runtime::Bytes bytes(data + 1, size - 1);
+  if (channel == fogline::kNumChannels) {
+    fogline::fuzz::DemandBounded(bytes);
+  } else {
+    fogline::fuzz::ForEachType([&]<class M>(std::size_t place) {
+      if (place == channel) fogline::fuzz::DemandAsGenerated<M>(bytes);
+    });
+  }
   return 0;
 }

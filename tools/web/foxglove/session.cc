@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/text.h"
+#include "tools/web/little_endian.h"
 #include "tools/web/types/decode.h"
 #include "tools/web/types/description.h"
 
@@ -78,13 +79,6 @@ const Json* ListIn(const Json& request, const char* key) {
   return list != request.end() && list->is_array() ? &*list : nullptr;
 }
 
-template <class Number>
-void AppendLittleEndian(Number number, std::string& bytes) {
-  for (std::size_t i = 0; i < sizeof(number); ++i) {
-    bytes += static_cast<char>(number >> (8 * i) & 0xff);
-  }
-}
-
 std::string WhyNotBinary(std::string_view bytes) {
   if (bytes.empty()) return "a binary frame is empty";
   const auto opcode = static_cast<unsigned char>(bytes.front());
@@ -111,16 +105,12 @@ class Errors {
 
 }  // namespace
 
-Session::Session(const Channels& channels, ServerInfo info)
-    : channels_(channels), info_(std::move(info)) {}
-
 std::vector<Frame> Session::Opened() const {
   Json server{{"op", "serverInfo"},
-              {"name", info_.name},
+              {"name", "fogline view"},
               {"capabilities", Json::array()},
               {"supportedEncodings", Json::array()},
               {"metadata", Json::object()}};
-  if (!info_.session_id.empty()) server["sessionId"] = info_.session_id;
   Json channels = Json::array();
   for (const Channel& channel : channels_.all()) {
     channels.push_back(ChannelJson(channels_.types(), channel));
@@ -203,8 +193,8 @@ std::optional<Frame> Session::Message(std::uint32_t channel, std::uint64_t time_
     return std::nullopt;
   }
   Frame frame{.binary = true, .bytes = std::string(1, kMessageData)};
-  AppendLittleEndian(subscription->second, frame.bytes);
-  AppendLittleEndian(time_ns, frame.bytes);
+  PutLittleEndian(subscription->second, frame.bytes);
+  PutLittleEndian(time_ns, frame.bytes);
   frame.bytes += json->dump();
   return frame;
 }

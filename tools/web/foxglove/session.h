@@ -3,7 +3,6 @@
 // socket: frames go in and out.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -17,11 +16,6 @@
 
 namespace fogline::web::foxglove {
 
-/// The subprotocols of a WebSocket connection that a session speaks. Viewers of today ask for both
-/// or for the second one; the frames that a session sends and takes are the same in both.
-inline constexpr std::array<std::string_view, 2> kSubprotocols{"foxglove.websocket.v1",
-                                                               "foxglove.sdk.v1"};
-
 /// One WebSocket message.
 struct Frame {
   bool binary = false;
@@ -30,19 +24,13 @@ struct Frame {
   bool operator==(const Frame&) const = default;
 };
 
-/// What a client is told about the server.
-struct ServerInfo {
-  std::string name = "fogline view";
-  std::string session_id;  // distinguishes a new server from a new connection; "": none
-};
-
 /// A client subscribes to channels and gets their messages as JSON (DecodeJson()). It can send
 /// nothing else: Fogline's viewers never change a run. Each frame that the session cannot accept is
 /// counted and answered by one status of level error.
 class Session {
  public:
   /// @param channels must outlive the session
-  explicit Session(const Channels& channels, ServerInfo info = {});
+  explicit Session(const Channels& channels) : channels_(channels) {}
 
   /// The frames with which the server begins.
   std::vector<Frame> Opened() const;
@@ -75,7 +63,6 @@ class Session {
   std::string Unsubscribe(const nlohmann::ordered_json& request);
 
   const Channels& channels_;
-  ServerInfo info_;
   std::map<std::uint32_t, std::uint32_t> subscriptions_;  // channel -> the client's number for it
   std::int64_t refused_ = 0;
   std::int64_t undecodable_ = 0;

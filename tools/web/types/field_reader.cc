@@ -37,25 +37,6 @@ void CheckIndices(const LcmMember& member, const PathPart& part) {
   }
 }
 
-/// Size of a member if it is the same in each message.
-std::optional<std::size_t> FixedSize(const LcmTypes& types, const LcmMember& member) {
-  std::size_t size = 0;
-  if (!member.primitive) {
-    const auto& nested = types.StructOf(member).fixed_size;
-    if (!nested) return std::nullopt;
-    size = *nested;
-  } else if (*member.primitive == LcmPrimitive::kString) {
-    return std::nullopt;
-  } else {
-    size = WireSize(*member.primitive);
-  }
-  for (const LcmDimension& dimension : member.dimensions) {
-    if (!dimension.fixed) return std::nullopt;
-    size *= *dimension.fixed;
-  }
-  return size;
-}
-
 /// The place of an element among all elements of a member; nullopt if there is no such element.
 std::optional<std::size_t> PlaceOf(const std::vector<std::size_t>& indices, const Extent& extent) {
   std::size_t place = 0;
@@ -84,7 +65,7 @@ FieldReader::FieldReader(const LcmTypes& types, const LcmStruct& type, std::stri
     Stride stride;
     for (const LcmMember& before : within->members) {
       if (&before == &target) break;
-      const auto fixed = FixedSize(types, before);
+      const auto fixed = types.FixedSize(before);
       if (fixed && !before.length_slot) {
         stride.bytes += *fixed;
         continue;

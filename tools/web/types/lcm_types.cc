@@ -27,24 +27,6 @@ bool Means(std::string_view named, const LcmStruct& user, const LcmStruct& type)
   return named == type.name && user.package == type.package;
 }
 
-/// Size of a member on the wire if it never varies.
-std::optional<std::size_t> FixedSize(const LcmMember& member, const LcmStruct* nested) {
-  std::optional<std::size_t> size;
-  if (nested != nullptr) {
-    size = nested->fixed_size;
-  } else if (*member.primitive != LcmPrimitive::kString) {
-    size = WireSize(*member.primitive);
-  }
-  for (const LcmDimension& dimension : member.dimensions) {
-    if (!size || !dimension.fixed) return std::nullopt;
-    // No message has room for more. Without this limit the product could overflow.
-    if (*dimension.fixed > kLargestMessage) return std::nullopt;
-    *size *= *dimension.fixed;
-    if (*size > kLargestMessage) return std::nullopt;
-  }
-  return size;
-}
-
 std::vector<LcmStruct> ParseTexts() {
   std::vector<LcmStruct> structs;
   for (const LcmText& text : LcmTexts()) {
@@ -80,6 +62,23 @@ LcmTypes::LcmTypes(std::vector<LcmStruct> structs) : structs_(std::move(structs)
 }
 
 /// Computes fingerprint and size of a struct, after those of the structs in it.
+std::optional<std::size_t> LcmTypes::FixedSize(const LcmMember& member) const {
+  std::optional<std::size_t> size;
+  if (!member.primitive) {
+    size = StructOf(member).fixed_size;
+  } else if (*member.primitive != LcmPrimitive::kString) {
+    size = WireSize(*member.primitive);
+  }
+  for (const LcmDimension& dimension : member.dimensions) {
+    if (!size || !dimension.fixed) return std::nullopt;
+    // No message has room for more. Without this limit the product could overflow.
+    if (*dimension.fixed > kLargestMessage) return std::nullopt;
+    *size *= *dimension.fixed;
+    if (*size > kLargestMessage) return std::nullopt;
+  }
+  return size;
+}
+
 void LcmTypes::Complete(std::size_t place, std::vector<int>& states) {
   if (states[place] == kComplete) return;
   LcmStruct& type = structs_[place];
@@ -91,13 +90,11 @@ void LcmTypes::Complete(std::size_t place, std::vector<int>& states) {
   auto sum = static_cast<std::uint64_t>(OwnHash(type));
   type.fixed_size = 0;
   for (const LcmMember& member : type.members) {
-    const LcmStruct* nested = nullptr;
     if (!member.primitive) {
       Complete(member.nested, states);
-      nested = &structs_[member.nested];
-      sum += static_cast<std::uint64_t>(nested->fingerprint);
+      sum += static_cast<std::uint64_t>(StructOf(member).fingerprint);
     }
-    const auto size = FixedSize(member, nested);
+    const auto size = FixedSize(member);
     if (!size || !type.fixed_size) {
       type.fixed_size.reset();
     } else {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -25,6 +26,8 @@ class LcmTypes {
   const LcmStruct* TypeOf(Bytes message) const;
   /// The struct of a member. @pre the member is no primitive
   const LcmStruct& StructOf(const LcmMember& member) const { return structs_[member.nested]; }
+  /// Size of a member on the wire; nullopt if it varies, or no message has room for it.
+  std::optional<std::size_t> FixedSize(const LcmMember& member) const;
 
  private:
   void Complete(std::size_t place, std::vector<int>& states);

@@ -43,16 +43,15 @@ class SessionTest : public testing::Test {
   }
 
   Channels channels_{FoglineTypes()};
-  Session session_{channels_, {.name = "lab", .session_id = "17"}};
+  Session session_{channels_};
 };
 
 TEST_F(SessionTest, BeginsWithServerInfoAndAllChannels) {
   const std::vector<Frame> frames = session_.Opened();
   ASSERT_EQ(frames.size(), 2U);
   EXPECT_FALSE(frames[0].binary);
-  EXPECT_EQ(frames[0].bytes,
-            R"({"op":"serverInfo","name":"lab","capabilities":[],"supportedEncodings":[],)"
-            R"("metadata":{},"sessionId":"17"})");
+  EXPECT_EQ(frames[0].bytes, R"({"op":"serverInfo","name":"fogline view","capabilities":[],)"
+                             R"("supportedEncodings":[],"metadata":{}})");
   const Json advertise = Json::parse(frames[1].bytes);
   EXPECT_EQ(advertise["op"], "advertise");
   ASSERT_EQ(advertise["channels"].size(), 2U);

@@ -6,7 +6,6 @@
 #include <nlohmann/json.hpp>
 
 #include "services/graph.h"
-#include "tools/web/types/fields.h"
 
 namespace fogline::web {
 namespace {
@@ -93,28 +92,6 @@ TEST(DescriptionTest, MakesSchemasOfOneTypeEach) {
   EXPECT_EQ(track["properties"]["header"]["properties"]["step"]["type"], "integer");
   const Json radar = SchemaJson(FoglineTypes(), *FoglineTypes().Named("radar_t"));
   EXPECT_THAT(radar["properties"]["range_rate_mps"].dump(), HasSubstr("[m/s]"));
-}
-
-TEST(FieldsTest, ListsEveryNumberWithCommentAndUnit) {
-  const auto fields = NumericFields(FoglineTypes(), *FoglineTypes().Named("track_t"));
-  std::vector<std::string> paths;
-  for (const NumericField& field : fields) paths.push_back(field.path);
-  EXPECT_EQ(paths.size(), 3U + 1 + 3 + 9 + 3 + 3 + 3);
-  EXPECT_EQ(paths.front(), "header.run_id");
-  EXPECT_THAT(paths, ::testing::Contains("covariance[2][1]"));
-  const auto radar = NumericFields(FoglineTypes(), *FoglineTypes().Named("radar_t"));
-  EXPECT_EQ(radar[4].path, "range_m");
-  EXPECT_EQ(radar[4].unit, "m");
-  EXPECT_THAT(radar[4].comment, HasSubstr("Measured distance"));
-}
-
-TEST(FieldsTest, LeavesOutTextsAndLimitsArrays) {
-  const auto fields =
-      NumericFields(FoglineTypes(), *FoglineTypes().Named("status_t"), {.varying = 1});
-  for (const NumericField& field : fields) {
-    EXPECT_NE(field.path, "role");
-    EXPECT_EQ(field.path.find("[1]"), std::string::npos) << field.path;
-  }
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 
 #include "common/errors.h"
 #include "services/runtime/wire/wire.h"
+#include "tests/support/numeric_fields.h"
 #include "tools/web/types/decode.h"
 #include "tools/web/types/fields.h"
 
@@ -111,18 +112,17 @@ TEST(FieldReaderTest, ReadsEveryListedFieldAsTheDecoderDoes) {
   truth_t truth = Truth();
   const std::vector<std::uint8_t> bytes = Encoded(truth);
   const nlohmann::ordered_json json = *DecodeJson(FoglineTypes(), Type("truth_t"), bytes);
-  const auto fields = NumericFields(FoglineTypes(), Type("truth_t"), {.varying = 2});
-  EXPECT_EQ(fields.size(), 25U);
-  for (const NumericField& field : fields) {
+  const test::NumericFields fields(FoglineTypes(), Type("truth_t"), {.varying = 2});
+  EXPECT_EQ(fields.paths().size(), 25U);
+  for (const std::string& path : fields.paths()) {
     nlohmann::ordered_json value = json;
-    for (const PathPart& part : ParsePath(field.path)) {
+    for (const PathPart& part : ParsePath(path)) {
       value = value.at(part.name);
       for (const std::size_t index : part.indices) value = value.at(index);
     }
     const double expected =
         value.is_boolean() ? (value.get<bool>() ? 1.0 : 0.0) : value.get<double>();
-    EXPECT_EQ(FieldReader(FoglineTypes(), Type("truth_t"), field.path)(bytes), expected)
-        << field.path;
+    EXPECT_EQ(FieldReader(FoglineTypes(), Type("truth_t"), path)(bytes), expected) << path;
   }
 }
 
