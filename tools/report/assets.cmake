@@ -1,9 +1,9 @@
 # cmake -DOUT=FILE.cc -DDIR=FOLDER -P assets.cmake: writes the definitions for assets.h. Each file
-# becomes a raw string. So the program contains its page, and needs no path to the page at run time.
+# becomes a raw string, or several files one. So the program contains its page, and needs no path to the page at run time.
 set(uplot ../../node_modules/uplot)
 set(assets
   kPageHtml=page.html
-  kPageCss=page.css
+  kPageCss=base.css,page.css
   kModelJs=model.js
   kScrollJs=scroll.js
   kChartJs=chart.js
@@ -23,7 +23,12 @@ foreach(asset IN LISTS assets)
   string(REPLACE "=" ";" asset "${asset}")
   list(GET asset 0 name)
   list(GET asset 1 file)
-  file(READ "${DIR}/${file}" text)
+  string(REPLACE "," ";" files "${file}")
+  set(text)
+  foreach(part IN LISTS files)
+    file(READ "${DIR}/${part}" content)
+    string(APPEND text "${content}")
+  endforeach()
   string(APPEND source "const std::string_view ${name} = R\"asset(${text})asset\";\n")
 endforeach()
 file(READ "${DIR}/${uplot}/package.json" package)

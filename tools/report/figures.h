@@ -18,7 +18,7 @@ struct Column {
   double (*value)(std::span<const metrics::Sample> samples, std::size_t index);
 };
 
-/// Colours on white paper, as in page.css. RunStyle() distinguishes runs beyond the last colour.
+/// Colours on white paper, as in base.css. RunStyle() distinguishes runs beyond the last colour.
 /// The colours are tested under simulated protanopia and deuteranopia (Machado, Oliveira &
 /// Fernandes 2009). Any two of the first five colours are at least 25 apart in CIELAB, and any two
 /// of all eight colours at least 15. On white each colour has a contrast of 3 or more.
