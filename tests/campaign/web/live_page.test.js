@@ -3,9 +3,10 @@ import assert from "node:assert/strict";
 import path from "node:path";
 import {test} from "node:test";
 
-import {background, breaches, browser, median, open, scratch, view} from "./window.js";
+import {background, breaches, browser, median, open, scratch, until, view} from "./window.js";
 
 const {FOGLINE} = process.env;
+const FOGLINE_RELAY = path.join(path.dirname(FOGLINE), "fogline-relay");
 const SCENARIO = "scenario/dense_fog.json";
 
 /** A multicast port of this test alone. */
@@ -58,29 +59,59 @@ test("a page that opens late has the history of the run", async (t) => {
   assert.ok(await late.evaluate(() => foglinePage.curves.charts[0].chart.data[0].length) > 20);
 });
 
-test("messages at 100 Hz are drawn with 30 frames a second", async (t) => {
+/** Frames per second that a page gets when it only counts them. */
+function framesPerSecond(page, seconds) {
+  return page.evaluate(async (limit_ms) => {
+    const began = performance.now();
+    let frames = 0;
+    for (; performance.now() - began < limit_ms; ++frames) await new Promise(requestAnimationFrame);
+    return (1000 * frames) / (performance.now() - began);
+  }, 1000 * seconds);
+}
+
+// The goal is 30 frames a second. Whether a machine reaches them depends on its graphics processor
+// and its load, so the test prints the rate beside that of an empty page, and demands what holds on
+// each machine.
+test("at 100 Hz each frame shows the newest step that has come", async (t) => {
   const network = url();
-  const page = await open(t, await browser(t), await view(t, ["--lcm-url", network]));
+  const started = await browser(t);
+  const address = await view(t, ["--lcm-url", network]);
   run(t, network, "--realtime", "--set", "/step_s=0.01", "--set", "/steps=6000");
+  const empty = await started.newPage();
+  const reachable = await framesPerSecond(empty, 3);
+  await empty.close();
+  const page = await open(t, started, address);
   await page.waitForFunction(() => Number(document.body.dataset.step) >= 300);
   const found = await page.evaluate(async () => {
     const {frames} = foglinePage;
     const began = performance.now();
     const ages = [];
+    const behind = [];
     while (performance.now() - began < 5000) {
       await new Promise(requestAnimationFrame);
       ages.push(Date.now() - foglinePage.store.arrived_ms);
+      behind.push(foglinePage.store.lastStep - Number(document.body.dataset.step));
     }
-    return {ages, perSecond: (1000 * (foglinePage.frames - frames)) / (performance.now() - began),
-            level: foglinePage.budget.level};
+    return {ages, behind, level: foglinePage.budget.level,
+            perSecond: (1000 * (foglinePage.frames - frames)) / (performance.now() - began)};
   });
   found.ages.sort((a, b) => a - b);
-  const late = found.ages[Math.floor(0.95 * found.ages.length)];
-  t.diagnostic(`100 Hz: ${found.perSecond.toFixed(1)} frames/s; the newest message is ` +
-               `${median(found.ages)} ms old when drawn (95th percentile ${late} ms); ` +
-               `budget level ${found.level}`);
-  // The goal is 30. A busy machine without a graphics processor draws less, but not nothing.
-  assert.ok(found.perSecond > 5);
+  t.diagnostic("figure: " + JSON.stringify({
+    frames_per_s: Number(found.perSecond.toFixed(1)), empty_page_per_s: Number(reachable.toFixed(1)),
+    ratio: Number((found.perSecond / reachable).toFixed(2)), message_age_ms: {
+      p50: median(found.ages), p95: found.ages[Math.floor(0.95 * found.ages.length)]},
+    budget_level: found.level}));
+  assert.ok(found.behind.length > 5, "frames go on");
+  assert.deepEqual(new Set(found.behind), new Set([0]));
+});
+
+test("over tcpq the page does not say that nothing was lost", async (t) => {
+  const relay = background(t, FOGLINE_RELAY, ["--listen", "127.0.0.1:0"]);
+  const network = await until(() => relay.said.match(/tcpq:\/\/\S+/)?.[0], "the address of the relay");
+  const page = await open(t, await browser(t), await view(t, ["--lcm-url", network]));
+  run(t, network, "--pace", "1");
+  await page.waitForFunction(() => /^All 9 roles answer\. Lost packets: not known over tcpq\.$/.test(
+    document.getElementById("health-summary").textContent));
 });
 
 test("the page finds the server again after it was away", async (t) => {
