@@ -90,6 +90,7 @@ void LiveView::Hear(std::string_view channel, runtime::Bytes bytes) {
   if (!id) return;
   ring_.Add({.channel = *id, .wall_ms = WallClock_ms(), .bytes = bytes});
   tracker_.Hear(*id, bytes, now);
+  if (teller_ && *id < kNumChannels) teller_(*id, bytes);
 }
 
 void LiveView::Handle() {
@@ -137,7 +138,7 @@ void LiveView::Opened(Client& client) {
   Viewer& viewer = viewers_[client.id()];
   viewer.client = &client;
   viewer.place = ring_.end();
-  if (client.protocol() != kViewProtocol) {
+  if (IsFoxglove(client.protocol())) {
     viewer.foxglove.emplace(foxglove_channels_);
     return SendFrames(client, viewer.foxglove->Opened());
   }

@@ -4,9 +4,11 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/posix/stream_descriptor.hpp>
@@ -43,6 +45,10 @@ class LiveView final : public View {
 
   /// The server whose numbers the clients get. It must live as long as the view is not stopped.
   void Show(const Server& server) { server_ = &server; }
+  /// Each message of a channel of the graph also goes to `teller`, with the channel's place in
+  /// kChannels. An empty function ends this.
+  using Teller = std::function<void(std::size_t channel, runtime::Bytes bytes)>;
+  void TellMessages(Teller teller) { teller_ = std::move(teller); }
   /// The context then has no more work of this view.
   void Stop();
 
@@ -93,6 +99,7 @@ class LiveView final : public View {
   std::size_t told_channels_ = 0;  // channels that the clients know
   MessageRing ring_;
   RunTracker tracker_;
+  Teller teller_;
   std::int64_t told_run_ = 0;
   std::int64_t named_scenarios_ = 0;  // refused scenarios that were named on stderr
   std::size_t named_fragmented_ = 0;  // channels of too large messages that were named

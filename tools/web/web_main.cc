@@ -1,5 +1,5 @@
 // fogline view, a program of its own: shows the run that is on the network, or a log, in a browser.
-// It only listens: it never sends a message to a run.
+// Without --seat it only listens: it then never sends a message to a run.
 #include <chrono>
 #include <cstdint>
 #include <cstdio>
@@ -28,6 +28,7 @@
 #include "tools/web/browser.h"
 #include "tools/web/live_view.h"
 #include "tools/web/log/log_view.h"
+#include "tools/web/seat/seat_view.h"
 #include "tools/web/server/server.h"
 
 namespace fogline::web {
@@ -47,6 +48,10 @@ newest run that is announced on this machine. With LOG it shows a recorded run, 
 that was cut off. It prints the address of the page, and opens it in a browser if there
 is a screen. Ctrl-C ends it. Any number of people may look, up to 64 connections at a
 time. Nobody who looks can change a run: the program sends no message to it.
+
+With --seat one person can drive, at the page /drive (docs/drive.md). The program then prints
+two addresses: first the one of this page, then the one for those who look. It sends what the
+person does to the run, and nothing else.
 
 Only this machine can see the page, unless --listen names an address for others. The
 printed address then has a token. Whoever has the address can see everything; the
@@ -80,6 +85,7 @@ struct ViewArguments {
                     "(repeatable)")
         ->allow_extra_args(false);
     verb.add_flag("--no-browser", no_browser, "Only print the address");
+    verb.add_flag("--seat", seat, "One person may drive in the run, at the page /drive");
     verb.add_option("--open-at", open_at, "Step of the log that the page shows first")
         ->check(CLI::Range(0, 1'000'000'000));
     cli::ShowExitCodes(verb, {.done = "ended by Ctrl-C, SIGTERM or SIGHUP"});
@@ -95,6 +101,7 @@ struct ViewArguments {
   CLI::Option* port_said = nullptr;
   std::vector<std::string> origins;
   bool no_browser = false;
+  bool seat = false;
   std::optional<std::int64_t> open_at;
 };
 
@@ -110,6 +117,9 @@ void CheckTogether(const ViewArguments& arguments) {
   if (!live && !arguments.traffic.key_file.empty()) {
     throw InputError("error: --key: for the messages of a network; a log has no signatures");
   }
+  if (!live && arguments.seat) {
+    throw InputError("error: --seat: nobody can drive in a log; leave out LOG");
+  }
   for (const std::string& origin : arguments.origins) {
     if (IsOrigin(origin)) continue;
     throw InputError(
@@ -120,13 +130,15 @@ void CheckTogether(const ViewArguments& arguments) {
 
 /// @throws InputError if --listen names no address
 ServerOptions OptionsOf(const ViewArguments& arguments) {
-  ServerOptions options{.port = arguments.port, .origins = arguments.origins};
+  ServerOptions options{
+      .port = arguments.port, .origins = arguments.origins, .seat = arguments.seat};
   if (arguments.listen_said->count() == 0) return options;
   const auto endpoint = runtime::tcpq::Resolve(arguments.listen, "--listen");
   options.address = endpoint.address;
   const bool has_port = arguments.listen.find(':') != std::string::npos;
   options.port = has_port ? endpoint.port : kDefaultPort;
   options.token = DrawToken();
+  if (arguments.seat) options.driver_token = DrawToken();
   return options;
 }
 
@@ -155,12 +167,14 @@ std::unique_ptr<Server> Listen(asio::io_context& context, const ViewArguments& a
   }
 }
 
-/// Prints the address, and opens it.
+/// Prints the addresses, and opens the first one.
 void Say(const ViewArguments& arguments, const Server& server) {
   const std::string step =
       arguments.open_at ? fmt::format("step={}", *arguments.open_at) : std::string();
-  const std::string url = server.access().Url(step);
+  const std::string view = server.access().Url(step);
+  const std::string url = arguments.seat ? server.access().DriveUrl() : view;
   fmt::print("{}\n", url);
+  if (arguments.seat) fmt::print("{}\n", view);
   std::fflush(stdout);
   // Every user of the machine can read the arguments of the opener, so it gets no token.
   const bool has_token = url.find("token=") != std::string::npos;
@@ -199,12 +213,19 @@ int RunView(const ViewArguments& arguments) {
   RequirePage(arguments);
   asio::io_context context(1);
   if (arguments.log.empty()) {
-    LiveView view(context, {.url = arguments.network.Url(),
-                            .follows = arguments.network.Follows(),
-                            .key = runtime::KeyOf(arguments.traffic)});
-    const auto server = Listen(context, arguments, view);
+    const std::optional<runtime::SigningKey> key = runtime::KeyOf(arguments.traffic);
+    LiveView view(
+        context,
+        {.url = arguments.network.Url(), .follows = arguments.network.Follows(), .key = key});
+    std::optional<SeatView> seat;
+    if (arguments.seat) seat.emplace(context, view, key);
+    View& shown = seat ? static_cast<View&>(*seat) : view;
+    const auto server = Listen(context, arguments, shown);
     view.Show(*server);
-    Serve(context, arguments, *server, [&view] { view.Stop(); });
+    Serve(context, arguments, *server, [&] {
+      if (seat) seat->Stop();
+      view.Stop();
+    });
     return kDone;
   }
   LogView view(arguments.log);

@@ -75,20 +75,29 @@ Verdict Access::OfWebSocket(const RequestOrigin& request) const {
     return Verdict::kForeignOrigin;
   }
   const std::string_view token = QueryValue(request.target, "token");
-  if (!rules_.token.empty() && !EqualInConstantTime(token, rules_.token)) {
+  const std::string& needed = request.drives ? rules_.driver_token : rules_.token;
+  if (!needed.empty() && !EqualInConstantTime(token, needed)) {
     return Verdict::kWrongToken;
   }
   return Verdict::kAllowed;
 }
 
-std::string Access::Url(std::string_view more) const {
+std::string Access::UrlOf(std::string_view path, std::string_view fragment) const {
   // 0.0.0.0 stands for every address of this machine. A browser on this machine needs one of them.
   const std::string address = rules_.address == kEveryAddress ? "127.0.0.1" : rules_.address;
+  return fmt::format("http://{}:{}{}{}{}", address, rules_.port, path, fragment.empty() ? "" : "#",
+                     fragment);
+}
+
+std::string Access::Url(std::string_view more) const {
   std::string fragment = rules_.token.empty() ? "" : "token=" + rules_.token;
   if (!fragment.empty() && !more.empty()) fragment += '&';
   fragment += more;
-  return fmt::format("http://{}:{}/{}{}", address, rules_.port, fragment.empty() ? "" : "#",
-                     fragment);
+  return UrlOf("/", fragment);
+}
+
+std::string Access::DriveUrl() const {
+  return UrlOf(kDrivePath, rules_.driver_token.empty() ? "" : "token=" + rules_.driver_token);
 }
 
 std::string DrawToken() {

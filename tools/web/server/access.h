@@ -5,7 +5,8 @@
 // server listens: a foreign name that was pointed at this machine (DNS rebinding) stays in this
 // header. And the Origin header, which a browser sends with a WebSocket, must be that of our own
 // page. If the server listens for other machines, a WebSocket also needs a token, which only the
-// printed address contains.
+// printed address contains. There is one token for those who look, and another one for the person
+// who drives.
 #pragma once
 
 #include <cstdint>
@@ -14,6 +15,9 @@
 #include <vector>
 
 namespace fogline::web {
+
+/// The path of the participant's page.
+inline constexpr std::string_view kDrivePath = "/drive";
 
 enum class Verdict { kAllowed, kWrongHost, kForeignOrigin, kWrongToken };
 
@@ -25,6 +29,7 @@ struct RequestOrigin {
   std::string_view host;
   std::string_view origin;
   std::string_view target;  // the path, perhaps with "?token=..."
+  bool drives = false;      // whether it asks for the seat
 };
 
 class Access {
@@ -34,6 +39,8 @@ class Access {
     std::uint16_t port = 0;            // the port on which it listens
     std::string token;                 // "": no token is needed
     std::vector<std::string> origins;  // further origins that may open a WebSocket
+    bool seat = false;                 // whether somebody may drive
+    std::string driver_token;          // in place of `token`, for the one who drives
   };
   explicit Access(Rules rules);
 
@@ -46,11 +53,14 @@ class Access {
   /// browser does not send this part to any server.
   /// @param more further parts behind '#', such as "step=190"; "" for none
   std::string Url(std::string_view more = "") const;
+  /// The address of the participant's page, with the driver's token.
+  std::string DriveUrl() const;
 
   const Rules& rules() const { return rules_; }
 
  private:
   bool IsOurs(std::string_view host) const;
+  std::string UrlOf(std::string_view path, std::string_view fragment) const;
 
   Rules rules_;
 };

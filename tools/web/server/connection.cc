@@ -44,12 +44,14 @@ std::string_view TextOf(beast::string_view text) { return {text.data(), text.siz
 
 /// The first subprotocol of the header that the server knows. The header may name several.
 /// @return kViewProtocol if the header is empty; "" if the server knows none of them
-std::string_view ChooseProtocol(std::string_view header) {
+/// @param seat whether somebody may drive
+std::string_view ChooseProtocol(std::string_view header, bool seat) {
   if (header.empty()) return kViewProtocol;
   for (const auto& token : http::token_list(beast::string_view(header.data(), header.size()))) {
     for (const std::string_view known : {kViewProtocol, kFoxgloveProtocol, kFoxgloveSdkProtocol}) {
       if (TextOf(token) == known) return known;
     }
+    if (seat && TextOf(token) == kDriveProtocol) return kDriveProtocol;
   }
   return "";
 }
@@ -57,10 +59,11 @@ std::string_view ChooseProtocol(std::string_view header) {
 using Request = http::request<http::empty_body>;
 using Response = http::response<http::span_body<const char>>;
 
-RequestOrigin OriginOf(const Request& request) {
+RequestOrigin OriginOf(const Request& request, std::string_view protocol) {
   return {.host = TextOf(request[http::field::host]),
           .origin = TextOf(request[http::field::origin]),
-          .target = TextOf(request.target())};
+          .target = TextOf(request.target()),
+          .drives = protocol == kDriveProtocol};
 }
 
 }  // namespace
@@ -87,6 +90,9 @@ class BeastConnection final : public Connection,
  private:
   using Socket = websocket::stream<beast::tcp_stream>;
 
+  std::size_t MostFrameBytes() const {
+    return protocol_ == kDriveProtocol ? Server::kMostSeatFrameBytes : Server::kMostFrameBytes;
+  }
   void Handle(error_code error);
   void HandleError(error_code error);
   void HandleRequest();
@@ -160,15 +166,18 @@ void BeastConnection::HandleError(error_code error) {
 
 void BeastConnection::HandleRequest() {
   const Request& request = parser_->get();
-  const RequestOrigin from = OriginOf(request);
+  protocol_ =
+      ChooseProtocol(TextOf(request[http::field::sec_websocket_protocol]), access().rules().seat);
+  const RequestOrigin from = OriginOf(request, protocol_);
   const bool opens = websocket::is_upgrade(request) && PathOf(from.target) == kSocketPath &&
                      access().OfWebSocket(from) == Verdict::kAllowed;
   if (opens) {
-    protocol_ = ChooseProtocol(TextOf(request[http::field::sec_websocket_protocol]));
     if (protocol_.empty()) {
-      return Write(Refusal(kBadRequest,
-                           fmt::format("The subprotocols here are {}, {} and {}.\n", kViewProtocol,
-                                       kFoxgloveProtocol, kFoxgloveSdkProtocol)));
+      return Write(
+          Refusal(kBadRequest, fmt::format("The subprotocols here are {}{}{}, {} and {}.\n",
+                                           kViewProtocol, access().rules().seat ? ", " : "",
+                                           access().rules().seat ? kDriveProtocol : "",
+                                           kFoxgloveProtocol, kFoxgloveSdkProtocol)));
     }
     if (TakePlace()) return Upgrade();
   }
@@ -254,7 +263,7 @@ void BeastConnection::Upgrade() {
         response.set(http::field::sec_websocket_protocol,
                      beast::string_view(protocol.data(), protocol.size()));
       }));
-  socket_->read_message_max(Server::kMostFrameBytes);
+  socket_->read_message_max(MostFrameBytes());
   socket_->auto_fragment(false);
   socket_->async_accept(parser_->get(), [self = shared_from_this()](error_code error) {
     if (error || self->gone_) return self->Leave();
@@ -265,7 +274,8 @@ void BeastConnection::Upgrade() {
 void BeastConnection::Open() {
   parser_.reset();
   buffer_.clear();
-  budget_.emplace(Clock::now());
+  budget_.emplace(Clock::now(),
+                  protocol_ == kDriveProtocol ? FrameBudget::kSeatFrames : FrameBudget::kFrames);
   opened_ = true;
   view().Opened(*this);
   Read();
@@ -280,7 +290,7 @@ void BeastConnection::Read() {
     if (error == websocket::error::message_too_big) {
       // Beast has sent the reason to the client.
       self->CountCutOff(
-          fmt::format("sends more than {} KiB in a frame", Server::kMostFrameBytes >> 10));
+          fmt::format("sends more than {} KiB in a frame", self->MostFrameBytes() >> 10));
     }
     if (error == beast::error::timeout && !self->reason_) {
       self->CountCutOff(
@@ -294,7 +304,7 @@ void BeastConnection::Read() {
 void BeastConnection::TakeFrame() {
   if (!reason_ && !budget_->Take(Clock::now())) {
     CutOff(CloseCode::kPolicyViolation,
-           fmt::format("sends more than {} frames a second", FrameBudget::kFrames));
+           fmt::format("sends more than {} frames a second", budget_->frames()));
   }
   if (!reason_) {
     const auto bytes = buffer_.cdata();

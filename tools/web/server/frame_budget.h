@@ -8,16 +8,22 @@
 namespace fogline::web {
 
 /// A token bucket: it is full at the beginning, each frame takes one token, and it fills up again
-/// at a constant rate. So a client may send `kFrames` frames at once, and then as many a second.
+/// at a constant rate. So a client may send `frames` frames at once, and then as many a second.
 class FrameBudget {
  public:
   static constexpr double kFrames = 200;
+  /// Of a client that drives. The seat itself refuses more than 250 inputs a second; a client that
+  /// sends twice as many heeds no answer.
+  static constexpr double kSeatFrames = 500;
 
-  explicit FrameBudget(TimePoint now) : at_(now) {}
+  explicit FrameBudget(TimePoint now, double frames = kFrames)
+      : frames_(frames), left_(frames), at_(now) {}
+
+  double frames() const { return frames_; }
 
   /// Counts a frame. @return false if there are too many
   [[nodiscard]] bool Take(TimePoint now) {
-    left_ = std::min(kFrames, left_ + kFrames * Seconds(now - at_));
+    left_ = std::min(frames_, left_ + frames_ * Seconds(now - at_));
     at_ = now;
     if (left_ < 1) return false;
     left_ -= 1;
@@ -25,7 +31,8 @@ class FrameBudget {
   }
 
  private:
-  double left_ = kFrames;
+  double frames_;
+  double left_;
   TimePoint at_;
 };
 

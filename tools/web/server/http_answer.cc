@@ -53,7 +53,9 @@ HttpAnswer Answer(const HttpRequest& request, const Access& access, std::span<co
     answer.headers.emplace_back("Upgrade", "websocket");
     return answer;
   }
-  const std::string_view wanted = path == "/" ? "/index.html" : path;
+  const std::string_view wanted = path == "/"          ? "/index.html"
+                                  : path == kDrivePath ? "/drive.html"
+                                                       : path;
   const auto asset = std::ranges::find(assets, wanted, &Asset::path);
   if (asset == assets.end()) return Refusal(kNotFound, "There is no such file here.\n");
   HttpAnswer answer;

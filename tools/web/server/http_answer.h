@@ -35,7 +35,7 @@ struct HttpAnswer {
 std::vector<std::pair<std::string_view, std::string_view>> SafetyHeaders();
 
 /// The answer to a request that does not open a WebSocket, or that may not open one. Only GET is
-/// known. "/" is "/index.html"; a query behind a path is ignored.
+/// known. "/" is "/index.html", "/drive" is "/drive.html"; a query behind a path is ignored.
 HttpAnswer Answer(const HttpRequest& request, const Access& access, std::span<const Asset> assets);
 
 /// An answer that has only a line of text.

@@ -22,7 +22,9 @@ Server::Server(asio::io_context& context, const ServerOptions& options,
       access_({.address = options.address,
                .port = acceptor_.endpoint().port(),
                .token = options.token,
-               .origins = options.origins}) {
+               .origins = options.origins,
+               .seat = options.seat,
+               .driver_token = options.driver_token}) {
   acceptor_.Begin([this](tcp::socket socket) { Take(std::move(socket)); });
 }
 

@@ -28,10 +28,16 @@
 
 namespace fogline::web {
 
-/// The subprotocols of WebSockets: our own, and both names of Foxglove's.
+/// The subprotocols of WebSockets: our own for those who look and for the one who drives, and both
+/// names of Foxglove's.
 inline constexpr std::string_view kViewProtocol = "fogline.view.v1";
+inline constexpr std::string_view kDriveProtocol = "fogline.drive.v1";
 inline constexpr std::string_view kFoxgloveProtocol = "foxglove.websocket.v1";
 inline constexpr std::string_view kFoxgloveSdkProtocol = "foxglove.sdk.v1";
+
+constexpr bool IsFoxglove(std::string_view protocol) {
+  return protocol == kFoxgloveProtocol || protocol == kFoxgloveSdkProtocol;
+}
 
 /// Codes with which the server closes a WebSocket (RFC 6455, 7.4.1; 1013 is from IANA's registry).
 enum class CloseCode : std::uint16_t {
@@ -92,6 +98,8 @@ struct ServerOptions {
   std::string token;                  // see Access::Rules
   std::vector<std::string> origins;   // see Access::Rules
   ServerLimits limits;
+  bool seat = false;         // see Access::Rules
+  std::string driver_token;  // see Access::Rules
 };
 
 /// Numbers since the start of the server.
@@ -110,6 +118,8 @@ class Server {
 
   static constexpr std::size_t kMostHeaderBytes = 8 << 10;
   static constexpr std::size_t kMostFrameBytes = 64 << 10;
+  /// Of a client that drives: an input has less than 1 KiB.
+  static constexpr std::size_t kMostSeatFrameBytes = 4 << 10;
 
   /// Listens, and accepts while the context runs.
   /// @param view must live as long as the server

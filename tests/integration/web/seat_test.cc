@@ -1,0 +1,309 @@
+// `fogline view --seat`: what a page says becomes DRIVER_INPUT on the network of the run. The run
+// is played by the test: it sends TRUTH and hears DRIVER_INPUT, as the driver role does.
+#include <gmock/gmock-matchers.h>
+#include <gtest/gtest.h>
+
+#include <optional>
+
+#include "services/runtime/transport/bus.h"
+#include "services/runtime/wire/driver_input.h"
+#include "services/runtime/wire/message_signer.h"
+#include "tests/integration/web/viewed.h"
+
+namespace fogline::test {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+using testing::Not;
+
+constexpr std::chrono::seconds kPatience(60);
+constexpr std::int64_t kRunId = 4711;
+
+WebClient Page(std::uint16_t port, const std::string& target = "/ws") {
+  return WebClient(port, {.target = target, .protocol = "fogline.drive.v1"});
+}
+
+std::string Braking(std::int64_t sequence, double brake = 0.5) {
+  return json{{"op", "input"},
+              {"sequence", sequence},
+              {"age_ms", 3},
+              {"present", true},
+              {"throttle", 0},
+              {"brake", brake},
+              {"axes", {0.25, -1}},
+              {"buttons", {"take_over"}},
+              {"device", {{"kind", "wheel"}, {"name", "G29"}}},
+              {"latency_ms", 21}}
+      .dump();
+}
+
+/// The network of a run. It sends TRUTH, and keeps the DRIVER_INPUT that come.
+class Network {
+ public:
+  explicit Network(const std::optional<runtime::SigningKey>& key = std::nullopt) : bus_(url_) {
+    if (key) bus_.Secure(runtime::MessageSigner(*key, std::nullopt));
+    bus_.Subscribe(ChannelOf<driver_input_t>().name, [this](runtime::Arrival& arrival) {
+      const auto* input = arrival.As<driver_input_t>();
+      ASSERT_NE(input, nullptr);
+      EXPECT_EQ(runtime::WrongIn(*input), nullptr);
+      heard_.push_back(*input);
+    });
+  }
+
+  const std::string& url() const { return url_; }
+  runtime::Bus& bus() { return bus_; }
+  std::vector<driver_input_t>& heard() { return heard_; }
+
+  void SendTruth(std::int64_t step) {
+    truth_t truth{};
+    truth.header = {.run_id = kRunId, .step = step, .utime = step * 20'000};
+    runtime::Encode(truth, bytes_);
+    bus_.Publish(ChannelOf<truth_t>().name, bytes_);
+  }
+  /// The first message from now on that fits. @throws std::runtime_error after kPatience
+  template <class Fits>
+  driver_input_t Hear(const Fits& fits) {
+    const TimePoint end = Clock::now() + kPatience;
+    heard_.clear();
+    while (Clock::now() < end) {
+      bus_.Wait(milliseconds(20));
+      for (const driver_input_t& input : heard_) {
+        if (fits(input)) return input;
+      }
+    }
+    throw std::runtime_error("no such DRIVER_INPUT comes");
+  }
+
+ private:
+  std::string url_ = runtime::FreshMulticastUrl();
+  runtime::Bus bus_;
+  std::vector<driver_input_t> heard_;
+  std::vector<std::uint8_t> bytes_;
+};
+
+bool IsThere(const driver_input_t& input) { return input.present; }
+bool IsAway(const driver_input_t& input) { return !input.present; }
+
+class SeatPageTest : public testing::Test {
+ protected:
+  void SetUp() override { ASSERT_NE(viewed_.port(), 0) << viewed_.process().Err(); }
+  std::uint16_t port() const { return viewed_.port(); }
+
+  Network network_;
+  Viewed viewed_{{"--seat", "--lcm-url", network_.url()}};
+};
+
+TEST_F(SeatPageTest, PrintsTheAddressOfThePageAndThatOfTheView) {
+  const std::string host = "http://127.0.0.1:" + std::to_string(port());
+  ASSERT_TRUE(viewed_.process().WaitForOut(host + "/\n", kPatience));
+  EXPECT_EQ(viewed_.process().Out(), host + "/drive\n" + host + "/\n");
+  EXPECT_EQ(StatusOf(Exchange(port(), GetRequest(port(), "/drive"))), 200);
+}
+
+TEST_F(SeatPageTest, AnInputIsPublishedWithTheNewestStep) {
+  WebClient page = Page(port());
+  EXPECT_EQ(page.protocol(), "fogline.drive.v1");
+  ReceiveOp(page, "hello");
+  EXPECT_EQ(ReceiveOp(page, "seat")["state"], "yours");
+  // The seat has heard the step when a message names it.
+  network_.SendTruth(7);
+  network_.Hear([](const driver_input_t& input) { return input.header.step == 7; });
+  page.Send(Braking(40));
+  const driver_input_t input = network_.Hear(IsThere);
+  EXPECT_EQ(input.header.run_id, kRunId);
+  EXPECT_EQ(input.header.step, 7);
+  EXPECT_EQ(input.header.utime, 140'000);
+  EXPECT_NE(input.instance, 0);
+  EXPECT_EQ(input.brake, 0.5);
+  EXPECT_EQ(input.buttons, driver_input_t::TAKE_OVER);
+  EXPECT_EQ(input.device, "G29");
+  EXPECT_EQ(input.latency_us, 21'000);
+  const json published = ReceiveOp(page, "published");
+  EXPECT_EQ(published["sequence"], 40);
+  EXPECT_EQ(published["input"], input.sequence);
+  EXPECT_EQ(published["instance"], std::to_string(input.instance));
+  // The time is CLOCK_MONOTONIC, which this process has, too.
+  const double now_us = 1e6 * Seconds(Clock::now().time_since_epoch());
+  EXPECT_GT(static_cast<double>(input.time_us), now_us - 60e6);
+  EXPECT_LT(static_cast<double>(input.time_us), now_us);
+}
+
+TEST_F(SeatPageTest, APageSeesTheRun) {
+  WebClient page = Page(port());
+  network_.SendTruth(3);
+  const auto messages = MessagesOf(ReceiveKind(page, 1));
+  ASSERT_FALSE(messages.empty());
+}
+
+TEST_F(SeatPageTest, AClosedSocketReleasesThePedalsAtOnce) {
+  std::optional<WebClient> page(Page(port()));
+  page->Send(Braking(0));
+  const driver_input_t there = network_.Hear(IsThere);
+  const TimePoint closed = Clock::now();
+  page.reset();
+  const driver_input_t away = network_.Hear(IsAway);
+  // Not by silence: that would take 300 ms.
+  EXPECT_LT(Clock::now() - closed, milliseconds(250));
+  EXPECT_EQ(away.brake, 0);
+  EXPECT_EQ(away.buttons, 0);
+  EXPECT_EQ(away.instance, there.instance);
+  EXPECT_EQ(away.sequence, there.sequence + 1);
+}
+
+TEST_F(SeatPageTest, ASilentPageDrivesNoMoreAndIsTold) {
+  WebClient page = Page(port());
+  page.Send(Braking(0));
+  network_.Hear(IsThere);
+  const TimePoint silent = Clock::now();
+  network_.Hear(IsAway);
+  EXPECT_GT(Clock::now() - silent, milliseconds(250));
+  ReceiveOp(page, "seat");  // yours
+  EXPECT_EQ(ReceiveOp(page, "seat")["state"], "lost");
+  EXPECT_TRUE(viewed_.process().WaitForErr("its page is silent"));
+  // From then on the run hears every 50 ms that nobody drives.
+  const driver_input_t first = network_.Hear(IsAway);
+  const driver_input_t second = network_.Hear(
+      [&](const driver_input_t& input) { return input.sequence > first.sequence + 5; });
+  EXPECT_FALSE(second.present);
+  page.Send(Braking(1));
+  network_.Hear(IsThere);
+  EXPECT_EQ(ReceiveOp(page, "seat")["state"], "yours");
+}
+
+TEST_F(SeatPageTest, TheSecondPageIsToldThatTheSeatIsTaken) {
+  std::optional<WebClient> first(Page(port()));
+  ReceiveOp(*first, "seat");
+  {
+    WebClient second = Page(port());
+    EXPECT_EQ(ReceiveOp(second, "seat")["state"], "taken");
+    EXPECT_TRUE(viewed_.process().WaitForErr("another page has the seat"));
+    second.Send(Braking(0));
+    EXPECT_THAT(ReceiveOp(second, "error")["message"].get<std::string>(),
+                HasSubstr("another page"));
+  }
+  first->Send(Braking(0));
+  network_.Hear(IsThere);
+  first.reset();
+  network_.Hear(IsAway);
+  WebClient third = Page(port());
+  EXPECT_EQ(ReceiveOp(third, "seat")["state"], "yours");
+}
+
+TEST_F(SeatPageTest, AViewerCannotDriveAndADriverCannotAsk) {
+  WebClient viewer(port());
+  viewer.Send(Braking(0));
+  EXPECT_EQ(ReceiveOp(viewer, "error")["id"], nullptr);
+  WebClient page = Page(port());
+  page.Send(R"({"op":"history","id":1})");
+  EXPECT_THAT(ReceiveOp(page, "error")["message"].get<std::string>(), HasSubstr("\"input\""));
+  network_.Hear(IsAway);
+}
+
+TEST_F(SeatPageTest, RefusesCountsAndNamesWhatIsOutOfRange) {
+  WebClient page = Page(port());
+  page.Send(Braking(0, 1.5));
+  EXPECT_THAT(ReceiveOp(page, "error")["message"].get<std::string>(), HasSubstr("\"brake\""));
+  page.Send("{");
+  page.Send("\1\2", true);
+  EXPECT_TRUE(viewed_.process().WaitForErr("refused (1 so far): \"brake\""));
+  EXPECT_TRUE(viewed_.process().WaitForErr("refused (2 so far): this frame is no JSON"));
+  EXPECT_TRUE(viewed_.process().WaitForErr("refused (3 so far): inputs are text frames"));
+  page.Send(Braking(1));
+  network_.Hear(IsThere);
+}
+
+TEST_F(SeatPageTest, ClosesAPageThatSendsALargeFrame) {
+  WebClient page = Page(port());
+  page.Send(std::string((4 << 10) + 1, ' '));
+  EXPECT_EQ(CloseCodeOf(page), 1009);
+  EXPECT_TRUE(viewed_.process().WaitForErr("cut off: sends more than 4 KiB in a frame"));
+}
+
+TEST_F(SeatPageTest, RefusesAFloodAndThenClosesThePage) {
+  WebClient page = Page(port());
+  try {
+    for (int i = 0; i < 100'000; ++i) page.Send(Braking(i));
+  } catch (const WebClosed&) {
+    // As it should.
+  }
+  EXPECT_TRUE(viewed_.process().WaitForErr("more than 250 inputs a second"));
+  EXPECT_TRUE(viewed_.process().WaitForErr("cut off: sends more than 500 frames a second"));
+  network_.Hear(IsAway);
+}
+
+TEST_F(SeatPageTest, RefusesAPageOfAnotherOrigin) {
+  EXPECT_THROW(WebClient(port(), {.protocol = "fogline.drive.v1", .origin = "http://evil.example"}),
+               WebRefused);
+  EXPECT_TRUE(viewed_.process().WaitForErr("refused: a page of another origin asks"));
+}
+
+TEST_F(SeatPageTest, TheEndOfTheProgramReleasesThePedals) {
+  WebClient page = Page(port());
+  page.Send(Braking(0));
+  network_.Hear(IsThere);
+  viewed_.process().Signal(SIGINT);
+  network_.Hear(IsAway);
+  EXPECT_EQ(viewed_.process().Wait(), 0);
+}
+
+TEST(SeatAccessTest, TheDriverHasATokenOfItsOwn) {
+  const Network network;
+  Viewed viewed({"--seat", "--lcm-url", network.url()}, {"--listen", "127.0.0.1:0"});
+  ASSERT_NE(viewed.port(), 0) << viewed.process().Err();
+  ASSERT_TRUE(viewed.process().WaitForOut("/#token=", kPatience));
+  const auto token_behind = [&](const std::string& path) {
+    const std::string out = viewed.process().Out();
+    return out.substr(out.find(path + "#token=") + path.size() + 7, 32);
+  };
+  const std::string driver = token_behind("/drive");
+  const std::string viewer = token_behind(std::to_string(viewed.port()) + "/");
+  EXPECT_NE(driver, viewer);
+  const auto status = [&](const std::string& protocol, const std::string& token) {
+    try {
+      const WebClient client(viewed.port(), {.target = "/ws?token=" + token, .protocol = protocol});
+      return 101;
+    } catch (const WebRefused& refused) {
+      return refused.status();
+    }
+  };
+  EXPECT_EQ(status("fogline.drive.v1", driver), 101);
+  EXPECT_EQ(status("fogline.drive.v1", viewer), 403);
+  EXPECT_EQ(status("fogline.drive.v1", ""), 403);
+  EXPECT_EQ(status("fogline.view.v1", viewer), 101);
+  EXPECT_EQ(status("fogline.view.v1", driver), 403);
+  // The tokens are secrets: only stdout has them.
+  EXPECT_THAT(viewed.process().Err(), Not(HasSubstr(driver)));
+}
+
+TEST(SeatAccessTest, WithoutTheOptionThereIsNoSeat) {
+  Viewed viewed({"--lcm-url", runtime::FreshMulticastUrl()});
+  ASSERT_NE(viewed.port(), 0) << viewed.process().Err();
+  EXPECT_THROW(Page(viewed.port()), WebRefused);
+}
+
+TEST(SeatAccessTest, ALogHasNoSeat) {
+  const Outcome outcome =
+      RunCommand({Program("fogline"), "view", "--no-browser", "--seat", "a.lcm"});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("--seat"));
+}
+
+TEST(SeatKeyTest, SignsWithTheKeyOfTheRun) {
+  const ScratchFolder folder;
+  const std::string file = folder.File("run.key");
+  runtime::SigningKey::Create(file);
+  Network network(runtime::SigningKey::Load(file));
+  Viewed viewed({"--seat", "--lcm-url", network.url(), "--key", file});
+  ASSERT_NE(viewed.port(), 0) << viewed.process().Err();
+  WebClient page = Page(viewed.port());
+  network.SendTruth(2);
+  network.Hear([](const driver_input_t& input) { return input.header.step == 2; });
+  page.Send(Braking(0));
+  network.Hear(IsThere);
+  EXPECT_EQ(network.bus().unverified().not_signed, 0);
+  EXPECT_EQ(network.bus().unverified().badly_signed, 0);
+}
+
+}  // namespace
+}  // namespace fogline::test

@@ -1,0 +1,156 @@
+#include "tools/web/seat/seat.h"
+
+#include <gmock/gmock-matchers.h>
+#include <gtest/gtest.h>
+
+namespace fogline::web {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+constexpr std::uint64_t kAnna = 3;
+constexpr std::uint64_t kBert = 4;
+
+/// A seat, and a clock that begins at 100 s.
+class SeatTest : public testing::Test {
+ protected:
+  TimePoint At(double ms) const {
+    return TimePoint(std::chrono::seconds(100)) +
+           duration_cast<Duration>(std::chrono::duration<double, std::milli>(ms));
+  }
+  static SeatInput Brakes() {
+    return {.age_ms = 5,
+            .present = true,
+            .brake = 0.5,
+            .axes = {0.25},
+            .buttons = driver_input_t::TAKE_OVER,
+            .device_kind = driver_input_t::WHEEL,
+            .device = "G29",
+            .latency_ms = 17};
+  }
+  static void ExpectNobody(const std::optional<driver_input_t>& message) {
+    ASSERT_TRUE(message);
+    EXPECT_FALSE(message->present);
+    EXPECT_EQ(message->throttle, 0);
+    EXPECT_EQ(message->brake, 0);
+    EXPECT_EQ(message->buttons, 0);
+    EXPECT_EQ(runtime::WrongIn(*message), nullptr);
+  }
+
+  Seat seat_{99};
+};
+
+TEST_F(SeatTest, AnInputBecomesAMessage) {
+  seat_.Hear({.run_id = 7, .step = 12, .utime = 240'000});
+  ASSERT_TRUE(seat_.Sit(kAnna, At(0)));
+  const auto message = seat_.Take(kAnna, Brakes(), At(10)).message;
+  ASSERT_TRUE(message);
+  EXPECT_EQ(message->header.run_id, 7);
+  EXPECT_EQ(message->header.step, 12);
+  EXPECT_EQ(message->header.utime, 240'000);
+  EXPECT_EQ(message->instance, 99);
+  EXPECT_EQ(message->sequence, 0);
+  EXPECT_EQ(message->time_us, 100'005'000);  // 5 ms before the frame came
+  EXPECT_EQ(message->latency_us, 17'000);
+  EXPECT_EQ(message->device_kind, driver_input_t::WHEEL);
+  EXPECT_EQ(message->device, "G29");
+  EXPECT_TRUE(message->present);
+  EXPECT_EQ(message->brake, 0.5);
+  EXPECT_EQ(message->num_axes, 1);
+  EXPECT_THAT(message->axes, ElementsAre(0.25));
+  EXPECT_EQ(message->buttons, driver_input_t::TAKE_OVER);
+  EXPECT_EQ(runtime::WrongIn(*message), nullptr);
+  EXPECT_EQ(seat_.Take(kAnna, Brakes(), At(20)).message->sequence, 1);
+}
+
+TEST_F(SeatTest, BeforeARunItHasNoStep) {
+  const auto message = seat_.Look(At(0));
+  ExpectNobody(message);
+  EXPECT_EQ(message->header.step, -1);
+  EXPECT_EQ(message->latency_us, -1);
+}
+
+TEST_F(SeatTest, OnlyOneClientDrives) {
+  EXPECT_TRUE(seat_.Sit(kAnna, At(0)));
+  EXPECT_FALSE(seat_.Sit(kBert, At(0)));
+  EXPECT_TRUE(seat_.Sit(kAnna, At(0)));
+  const Seat::Taken refused = seat_.Take(kBert, Brakes(), At(1));
+  EXPECT_FALSE(refused.message);
+  EXPECT_THAT(refused.why, HasSubstr("another page"));
+  EXPECT_FALSE(seat_.Leave(kBert, At(2)));
+  EXPECT_TRUE(seat_.Take(kAnna, Brakes(), At(3)).message);
+}
+
+TEST_F(SeatTest, WhoLeavesReleasesThePedalsAtOnce) {
+  seat_.Sit(kAnna, At(0));
+  seat_.Take(kAnna, Brakes(), At(1));
+  ExpectNobody(seat_.Leave(kAnna, At(2)));
+  EXPECT_TRUE(seat_.Sit(kBert, At(3)));
+  EXPECT_EQ(seat_.Take(kBert, Brakes(), At(4)).message->sequence, 2);
+}
+
+TEST_F(SeatTest, APageThatIsSilentFor300msDrivesNoMore) {
+  seat_.Sit(kAnna, At(0));
+  seat_.Take(kAnna, Brakes(), At(100));
+  EXPECT_EQ(seat_.next_look(), At(400));
+  EXPECT_FALSE(seat_.Look(At(399)));
+  EXPECT_FALSE(seat_.lost());
+  ExpectNobody(seat_.Look(At(400)));
+  EXPECT_TRUE(seat_.lost());
+  // Then every 50 ms.
+  EXPECT_EQ(seat_.next_look(), At(450));
+  EXPECT_FALSE(seat_.Look(At(449)));
+  ExpectNobody(seat_.Look(At(450)));
+  // Its next input counts.
+  EXPECT_TRUE(seat_.Take(kAnna, Brakes(), At(460)).message->present);
+  EXPECT_FALSE(seat_.lost());
+  EXPECT_FALSE(seat_.Look(At(500)));
+}
+
+TEST_F(SeatTest, WhileNobodyHasTheSeatItSaysSoEvery50ms) {
+  for (int i = 0; i < 5; ++i) {
+    ExpectNobody(seat_.Look(At(50 * i)));
+    EXPECT_FALSE(seat_.Look(At(50 * i + 49)));
+    EXPECT_EQ(seat_.next_look(), At(50 * (i + 1)));
+  }
+}
+
+TEST_F(SeatTest, AClientThatSitsAndSaysNothingIsSilent) {
+  seat_.Look(At(0));
+  seat_.Sit(kAnna, At(10));
+  EXPECT_FALSE(seat_.Look(At(300)));
+  ExpectNobody(seat_.Look(At(310)));
+  EXPECT_TRUE(seat_.lost());
+}
+
+TEST_F(SeatTest, AnInputOfNobodyHasReleasedPedals) {
+  seat_.Sit(kAnna, At(0));
+  SeatInput away = Brakes();
+  away.present = false;
+  ExpectNobody(seat_.Take(kAnna, away, At(1)).message);
+  // It is no silence: the page says that nobody drives.
+  EXPECT_FALSE(seat_.lost());
+}
+
+TEST_F(SeatTest, TakesAtMost250InputsASecond) {
+  seat_.Sit(kAnna, At(0));
+  int taken = 0;
+  std::string why;
+  for (int ms = 0; ms < 10'000; ++ms) {
+    const Seat::Taken now = seat_.Take(kAnna, Brakes(), At(ms));
+    taken += now.message ? 1 : 0;
+    if (!now.message) why = now.why;
+  }
+  EXPECT_GE(taken, 2500);
+  EXPECT_LE(taken, 2500 + static_cast<int>(runtime::kMostInputsAtOnce));
+  EXPECT_THAT(why, HasSubstr("250 inputs a second"));
+  // That nobody drives any more is taken all the same.
+  SeatInput away = Brakes();
+  away.present = false;
+  while (seat_.Take(kAnna, Brakes(), At(10'000)).message) continue;
+  ExpectNobody(seat_.Take(kAnna, away, At(10'000)).message);
+}
+
+}  // namespace
+}  // namespace fogline::web

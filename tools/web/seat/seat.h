@@ -1,0 +1,67 @@
+// Who drives at the page, and what the run is told about it: the rules, without sockets and clocks.
+//
+// One client has the seat. Each of its inputs becomes a DRIVER_INPUT. While nobody has the seat, or
+// while the client that has it is silent, the run is told every kInputEvery that nobody drives: so
+// a run that hears nothing knows that something is wrong.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "common/clock.h"
+#include "fogline/driver_input_t.hpp"
+#include "services/runtime/node/rate_limiter.h"
+#include "services/runtime/wire/driver_input.h"
+#include "tools/web/seat/seat_frame.h"
+
+namespace fogline::web {
+
+class Seat {
+ public:
+  /// A page that has been silent for so long drives no more. A page sends every 50 ms, so six
+  /// frames in a row are then missing. It is also the default of /person/deadman_s.
+  static constexpr Duration kSilent = milliseconds(300);
+
+  /// @param instance of DRIVER_INPUT; not 0
+  explicit Seat(std::int64_t instance);
+
+  /// The header of the newest TRUTH, or of a run that has not begun (step -1).
+  void Hear(const header_t& header) { message_.header = header; }
+  const header_t& header() const { return message_.header; }
+
+  /// A client wants to drive. @return whether it has the seat now; otherwise another one has it
+  bool Sit(std::uint64_t client, TimePoint now);
+  /// A client leaves. @return the message that nobody drives any more, if it had the seat
+  std::optional<driver_input_t> Leave(std::uint64_t client, TimePoint now);
+
+  struct Taken {
+    std::optional<driver_input_t> message;  // to be sent now
+    std::string why;                        // why the input is refused, if there is no message
+  };
+  Taken Take(std::uint64_t client, const SeatInput& input, TimePoint now);
+
+  /// The message that is due because nobody drives, if one is due.
+  std::optional<driver_input_t> Look(TimePoint now);
+  /// The next time at which Look() may have a message.
+  TimePoint next_look() const;
+
+  bool Has(std::uint64_t client) const { return client_ == client; }
+  std::optional<std::uint64_t> client() const { return client_; }
+  /// Whether somebody has the seat, but is silent.
+  bool lost() const { return client_ && silent_; }
+
+ private:
+  driver_input_t Next(TimePoint now);
+  driver_input_t Nobody(TimePoint now);
+
+  driver_input_t message_{};  // the last one
+  std::int64_t sent_ = 0;     // messages
+  TimePoint sent_at_{};
+  std::optional<std::uint64_t> client_;
+  TimePoint heard_at_{};
+  bool silent_ = true;
+  runtime::RateLimiter limiter_{runtime::kMostInputsPerSecond, runtime::kMostInputsAtOnce};
+};
+
+}  // namespace fogline::web

@@ -1,0 +1,40 @@
+// What the participant's page says, read from a text frame (fogline.drive.v1 in docs/view.md).
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace fogline::web {
+
+/// An input of the person at the page. Every number is in the range of DRIVER_INPUT.
+struct SeatInput {
+  std::int64_t sequence = 0;  // the page's own number
+  double age_ms = 0;          // time since the newest input of the device
+  bool present = false;       // false: nobody drives
+  double throttle = 0;        // [0, 1]
+  double brake = 0;           // [0, 1]
+  std::vector<double> axes;   // of the device, in [-1, 1]
+  std::int32_t buttons = 0;   // bits of driver_input_t
+  std::int8_t device_kind = 0;
+  std::string device;
+  std::optional<double> latency_ms;  // the newest measurement
+};
+
+/// A frame that is refused, with the reason for its sender and for stderr.
+struct BadSeatFrame {
+  std::string why;
+};
+
+using SeatFrame = std::variant<SeatInput, BadSeatFrame>;
+
+/// The longest time in ms that a page may name: an hour. A page says longer times as this one.
+inline constexpr double kMostSeatTime_ms = 3'600'000;
+
+/// Never throws: whatever is wrong with the text becomes a BadSeatFrame.
+SeatFrame ParseSeatFrame(std::string_view text);
+
+}  // namespace fogline::web

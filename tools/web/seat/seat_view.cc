@@ -1,0 +1,153 @@
+#include "tools/web/seat/seat_view.h"
+
+#include <sodium.h>
+
+#include <utility>
+#include <variant>
+
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
+
+#include "fogline/run_t.hpp"
+#include "fogline/truth_t.hpp"
+#include "services/graph.h"
+#include "services/runtime/wire/wire.h"
+
+namespace fogline::web {
+namespace {
+
+// Delay before the network is opened again after it could not be reached.
+constexpr Duration kOpenAgain = milliseconds(1000);
+
+/// A random number that is not 0.
+std::int64_t DrawInstance() {
+  std::int64_t instance = 0;
+  while (instance == 0) randombytes_buf(&instance, sizeof(instance));
+  return instance;
+}
+
+}  // namespace
+
+SeatView::SeatView(boost::asio::io_context& context, LiveView& live,
+                   std::optional<runtime::SigningKey> key)
+    : live_(live), key_(std::move(key)), seat_(DrawInstance()), look_(context) {
+  live_.TellMessages([this](std::size_t channel, runtime::Bytes bytes) { Hear(channel, bytes); });
+  Open();
+  WaitToLook();
+}
+
+void SeatView::Stop() {
+  stopped_ = true;
+  look_.cancel();
+  live_.TellMessages({});
+  if (!seat_.client()) return;
+  if (const auto message = seat_.Leave(*seat_.client(), Clock::now())) Publish(*message);
+}
+
+// ---- the network -------------------------------------------------------------------------------
+
+void SeatView::Open() {
+  url_ = live_.url();
+  bus_.emplace(url_);
+  if (key_) bus_->Secure(runtime::MessageSigner(*key_, ChannelOf<driver_input_t>().from));
+}
+
+void SeatView::Publish(const driver_input_t& message) {
+  const TimePoint now = Clock::now();
+  if (url_ != live_.url() || (!bus_ && now >= open_at_)) {
+    open_at_ = now + kOpenAgain;
+    bus_.reset();
+    try {
+      Open();
+    } catch (const std::exception& error) {  // another run's network
+      lines_.Print(fmt::format("DRIVER_INPUT cannot be sent: {}", error.what()));
+    }
+  }
+  if (!bus_) return;
+  runtime::Encode(message, bytes_);
+  bus_->Publish(ChannelOf<driver_input_t>().name, bytes_);
+  const runtime::Bus::FailedSends& failed = bus_->failed_sends();
+  if (failed.since) lines_.Print(fmt::format("DRIVER_INPUT cannot be sent: {}", failed.error));
+}
+
+void SeatView::Hear(std::size_t channel, runtime::Bytes bytes) {
+  if (channel == IndexOf<truth_t>()) {
+    if (truth_t truth; runtime::Decode(bytes, truth)) seat_.Hear(truth.header);
+  } else if (channel == IndexOf<run_t>()) {
+    run_t run;
+    if (!runtime::Decode(bytes, run) || run.header.run_id == seat_.header().run_id) return;
+    seat_.Hear({.run_id = run.header.run_id, .step = -1, .utime = 0});
+  }
+}
+
+void SeatView::WaitToLook() {
+  look_.expires_at(seat_.next_look());
+  look_.async_wait([this](boost::system::error_code stopped) {
+    if (stopped || stopped_) return;
+    Look();
+    WaitToLook();
+  });
+}
+
+void SeatView::Look() {
+  if (bus_) bus_->Drain();  // a relay's connection needs it
+  if (const auto message = seat_.Look(Clock::now())) Publish(*message);
+  if (!seat_.lost() || std::exchange(told_lost_, true)) return;
+  Client& client = *drivers_.at(*seat_.client());
+  lines_.Print(fmt::format("{} drives no more: its page is silent", client.address()));
+  Say(client, "lost");
+}
+
+// ---- clients -----------------------------------------------------------------------------------
+
+void SeatView::Say(Client& client, std::string_view state) {
+  client.Send(TextFrame(nlohmann::json{{"op", "seat"}, {"state", state}}.dump()));
+}
+
+void SeatView::Opened(Client& client) {
+  live_.Opened(client);
+  if (client.protocol() != kDriveProtocol) return;
+  drivers_[client.id()] = &client;
+  const bool sits = seat_.Sit(client.id(), Clock::now());
+  told_lost_ = told_lost_ && !sits;
+  if (!sits) {
+    lines_.Print(fmt::format("{} may not drive: another page has the seat", client.address()));
+  }
+  Say(client, sits ? "yours" : "taken");
+}
+
+void SeatView::Closed(Client& client) {
+  if (drivers_.erase(client.id()) > 0) {
+    if (const auto message = seat_.Leave(client.id(), Clock::now())) Publish(*message);
+  }
+  live_.Closed(client);
+}
+
+void SeatView::Received(Client& client, std::string_view bytes, bool binary) {
+  if (client.protocol() != kDriveProtocol) return live_.Received(client, bytes, binary);
+  if (binary) return Refuse(client, "inputs are text frames");
+  const SeatFrame frame = ParseSeatFrame(bytes);
+  if (const auto* bad = std::get_if<BadSeatFrame>(&frame)) return Refuse(client, bad->why);
+  Take(client, std::get<SeatInput>(frame));
+}
+
+void SeatView::Take(Client& client, const SeatInput& input) {
+  const Seat::Taken taken = seat_.Take(client.id(), input, Clock::now());
+  if (!taken.message) return Refuse(client, taken.why);
+  Publish(*taken.message);
+  if (std::exchange(told_lost_, false)) Say(client, "yours");
+  client.Send(TextFrame(nlohmann::json{{"op", "published"},
+                                       {"sequence", input.sequence},
+                                       {"instance", std::to_string(taken.message->instance)},
+                                       {"input", taken.message->sequence}}
+                            .dump()));
+}
+
+void SeatView::Refuse(Client& client, const std::string& why) {
+  ++refused_;
+  lines_.Print(
+      fmt::format("{}: an input is refused ({} so far): {}", client.address(), refused_, why));
+  client.Send(TextFrame(ErrorText(std::nullopt, why)));
+}
+
+}  // namespace fogline::web

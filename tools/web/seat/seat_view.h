@@ -1,0 +1,66 @@
+// A live view with a seat: what its clients see, and one client that drives. It publishes the
+// inputs of this client as DRIVER_INPUT on the network of the run, and nothing else.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/steady_timer.hpp>
+
+#include "common/process/line_budget.h"
+#include "services/runtime/transport/bus.h"
+#include "tools/web/live_view.h"
+#include "tools/web/seat/seat.h"
+#include "tools/web/server/server.h"
+
+namespace fogline::web {
+
+class SeatView final : public View {
+ public:
+  /// Publishes while the context runs.
+  /// @param live must live as long as this view, and hear no more messages after it
+  /// @param key signs the messages, if there is one
+  /// @throws InputError, std::runtime_error as runtime::Bus()
+  SeatView(boost::asio::io_context& context, LiveView& live,
+           std::optional<runtime::SigningKey> key);
+
+  /// The context then has no more work of this view. Tells the run that nobody drives.
+  void Stop();
+
+  void Opened(Client& client) override;
+  void Received(Client& client, std::string_view bytes, bool binary) override;
+  void Idle(Client& client) override { live_.Idle(client); }
+  void Closed(Client& client) override;
+
+ private:
+  void Hear(std::size_t channel, runtime::Bytes bytes);
+  void Take(Client& client, const SeatInput& input);
+  void Refuse(Client& client, const std::string& why);
+  void Say(Client& client, std::string_view state);
+  void Look();
+  void WaitToLook();
+  void Open();
+  void Publish(const driver_input_t& message);
+
+  LiveView& live_;
+  std::optional<runtime::SigningKey> key_;
+  Seat seat_;
+  std::map<std::uint64_t, Client*> drivers_;  // clients of fogline.drive.v1
+  std::int64_t refused_ = 0;                  // frames of them
+  bool told_lost_ = false;                    // the client that has the seat knows that it is lost
+  std::string url_;                           // of the bus
+  std::optional<runtime::Bus> bus_;           // nullopt: the network is away
+  TimePoint open_at_{};
+  std::vector<std::uint8_t> bytes_;
+  boost::asio::steady_timer look_;
+  LineBudget lines_{"fogline-web"};
+  bool stopped_ = false;
+};
+
+}  // namespace fogline::web
