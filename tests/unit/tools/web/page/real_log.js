@@ -31,7 +31,7 @@ export function describedTypes() {
 }
 
 /** [{channel, bytes}] of an event log. */
-function readEvents(file) {
+export function readEvents(file) {
   const log = readFileSync(file);
   const events = [];
   for (let at = 0; at < log.length;) {

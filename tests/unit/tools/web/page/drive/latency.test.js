@@ -1,0 +1,66 @@
+import assert from "node:assert/strict";
+import {test} from "node:test";
+
+import {Latency} from "../../../../../../tools/web/page/drive/latency.js";
+
+/** One measurement of so many ms. */
+function measure(latency, began_ms, value_ms) {
+  latency.sent(latency.count, began_ms, began_ms);
+  latency.published(latency.count, latency.count);
+  latency.commanded(latency.count);
+  return latency.drawn(began_ms + value_ms);
+}
+
+test("it lasts from the input to the first frame after a command that was made from it", () => {
+  const latency = new Latency();
+  latency.sent(5, 1000, 1001);
+  assert.equal(latency.drawn(1010), null);
+  latency.commanded(40);         // its number is not known yet
+  assert.equal(latency.drawn(1015), null);
+  latency.published(5, 41);
+  latency.commanded(40);         // made from an older input
+  assert.equal(latency.drawn(1020), null);
+  latency.commanded(42);         // made from a newer one
+  assert.equal(latency.drawn(1033), 33);
+  assert.equal(latency.newest, 33);
+  assert.equal(latency.drawn(1050), null);
+});
+
+test("one input is followed at a time, and forgotten if no step uses it", () => {
+  const latency = new Latency();
+  latency.sent(1, 0, 0);
+  latency.sent(2, 100, 100);
+  latency.published(2, 9);
+  latency.commanded(9);
+  assert.equal(latency.drawn(150), null);
+  latency.sent(3, 3000, 3000);
+  latency.published(3, 10);
+  latency.commanded(10);
+  assert.equal(latency.drawn(3020), 20);
+  latency.sent(4, 4000, 4000);
+  latency.forget();
+  latency.published(4, 11);
+  latency.commanded(11);
+  assert.equal(latency.drawn(4020), null);
+});
+
+test("the percentile is the nearest rank of what was measured", () => {
+  const latency = new Latency();
+  assert.equal(latency.percentile(0.95), null);
+  for (let i = 1; i <= 100; ++i) measure(latency, 10000 * i, i);
+  assert.equal(latency.percentile(0.95), 95);
+  assert.equal(latency.percentile(0.5), 50);
+  assert.equal(latency.percentile(1), 100);
+});
+
+test("a measurement above 100 ms warns until ten good ones have come", () => {
+  const latency = new Latency();
+  measure(latency, 0, 100);
+  assert.equal(latency.isHigh, false);
+  measure(latency, 1000, 101);
+  assert.equal(latency.isHigh, true);
+  for (let i = 1; i <= 9; ++i) measure(latency, 2000 * i, 20);
+  assert.equal(latency.isHigh, true);
+  measure(latency, 90000, 20);
+  assert.equal(latency.isHigh, false);
+});

@@ -1,0 +1,149 @@
+// Which axis or button of a device is which pedal, and how far it moves. It knows no document: the
+// browser's localStorage comes as an argument.
+//
+// A calibration: {throttle: PEDAL, brake: PEDAL, take_over: BUTTON, give_back: BUTTON}. A PEDAL is
+// {axis or button, released, pressed, dead}: the raw values of the released and of the fully
+// pressed pedal, and the share of its way that is no input. `pressed` may be below `released`. A
+// BUTTON is the number of a button, or null.
+
+const KEPT_UNDER = "fogline.drive.calibration.";
+const MOST_DEAD = 0.3;      // a larger dead zone would leave too little of the pedal's way
+const DEFAULT_DEAD = 0.03;  // our choice: the rest position of consumer pedals moves by 1 to 2 %
+// A pedal has a way of 2 (an axis) or 1 (a button). Less than this is noise, or another axis that
+// moves a little at the same time.
+const LEAST_WAY = 0.4;
+
+/**
+ * The calibration of gamepads with the browser's "standard" mapping: the right and the left trigger
+ * (W3C Gamepad, 8: buttons 7 and 6) are throttle and brake, the lower and the right button (0 and
+ * 1) take over and give back.
+ */
+const STANDARD = {
+  throttle: {button: 7, released: 0, pressed: 1, dead: DEFAULT_DEAD},
+  brake: {button: 6, released: 0, pressed: 1, dead: DEFAULT_DEAD},
+  take_over: 0,
+  give_back: 1,
+};
+
+/** The raw value of an axis or of a button; null if the device has none of this number. */
+export function rawOf(pad, {axis, button}) {
+  const value = axis === undefined ? pad.buttons[button]?.value : pad.axes[axis];
+  return Number.isFinite(value) ? value : null;
+}
+
+/** Where a pedal is, in [0, 1]; null if the device has no such axis. */
+export function pedalValue(pad, pedal) {
+  const raw = rawOf(pad, pedal);
+  if (raw === null) return null;
+  const way = (raw - pedal.released) / (pedal.pressed - pedal.released);
+  const beyond = (way - pedal.dead) / (1 - pedal.dead);
+  return Math.min(1, Math.max(0, beyond));
+}
+
+export const isDown = (pad, button) => button !== null && pad.buttons[button]?.pressed === true;
+
+/** The same pedal the other way round. */
+export const inverted = (pedal) => ({...pedal, released: pedal.pressed, pressed: pedal.released});
+
+/** The same pedal with another dead zone, as far as that is sensible. */
+export function withDeadZone(pedal, dead) {
+  return {...pedal, dead: Number.isFinite(dead) ? Math.min(MOST_DEAD, Math.max(0, dead)) : 0};
+}
+
+function isPedal(pedal) {
+  const {axis, button, released, pressed, dead} = pedal ?? {};
+  const place = axis ?? button;
+  return Number.isInteger(place) && place >= 0 && (axis === undefined) !== (button === undefined) &&
+    [released, pressed, dead].every(Number.isFinite) && released !== pressed && dead >= 0 &&
+    dead <= MOST_DEAD;
+}
+
+const isButton = (button) => button === null || (Number.isInteger(button) && button >= 0);
+
+/** Whether a device can drive with it. */
+export function isComplete(calibration) {
+  return isPedal(calibration?.throttle) && isPedal(calibration?.brake) &&
+    isButton(calibration.take_over) && isButton(calibration.give_back);
+}
+
+/**
+ * The kept calibration of a device, else that of its mapping, else null: then the person has to
+ * calibrate it first. What was kept is believed only if it is complete.
+ */
+export function calibrationOf(storage, {id, mapping}) {
+  try {
+    const kept = JSON.parse(storage.getItem(KEPT_UNDER + id));
+    if (isComplete(kept)) return kept;
+  } catch {
+    // Somebody else has written there, or the browser keeps nothing.
+  }
+  return mapping === "standard" ? structuredClone(STANDARD) : null;
+}
+
+/** @return whether the browser has kept it */
+export function keepCalibration(storage, {id}, calibration) {
+  try {
+    storage.setItem(KEPT_UNDER + id, JSON.stringify(calibration));
+    return true;
+  } catch {
+    return false;
+  }
+}
+
+/** Forgets what was kept of a device. */
+export function forgetCalibration(storage, {id}) {
+  try {
+    storage.removeItem(KEPT_UNDER + id);
+  } catch {
+    // The browser keeps nothing.
+  }
+}
+
+/**
+ * Learns a pedal while a person presses it fully and releases it. A browser may report 0 for an
+ * axis that has not moved yet, so the rest position is the last value and not the first one.
+ */
+export class PedalLesson {
+  constructor() {
+    this.seen = new Map();  // by place: {axis or button, least, most, last}
+  }
+
+  see(pad) {
+    pad.axes.forEach((value, axis) => this.note(`axis ${axis}`, {axis}, value));
+    pad.buttons.forEach(({value}, button) => this.note(`button ${button}`, {button}, value));
+  }
+
+  note(place, source, value) {
+    const {least = value, most = value} = this.seen.get(place) ?? {};
+    this.seen.set(place, {...source, least: Math.min(least, value), most: Math.max(most, value),
+                          last: value});
+  }
+
+  /** The pedal that has moved farthest; null if nothing has moved far enough. */
+  result() {
+    let best = null;
+    for (const {least, most, last, ...source} of this.seen.values()) {
+      const pressed = most - last > last - least ? most : least;
+      const way = Math.abs(pressed - last);
+      if (way >= LEAST_WAY && way > (best?.way ?? 0)) {
+        best = {way, pedal: {...source, released: last, pressed, dead: DEFAULT_DEAD}};
+      }
+    }
+    return best?.pedal ?? null;
+  }
+}
+
+/** Learns a button: the first one that goes down. */
+export class ButtonLesson {
+  constructor() {
+    this.before = null;
+  }
+
+  /** @return the number of the button; null if none has gone down yet */
+  see(pad) {
+    const down = pad.buttons.map(({pressed}) => pressed);
+    const found = this.before ? down.findIndex((now, i) => now && !this.before[i]) : -1;
+    this.before = down;
+    return found < 0 ? null : found;
+  }
+}

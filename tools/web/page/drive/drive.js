@@ -1,0 +1,267 @@
+// The participant's page: shows the road, says who drives, and sends what the person does.
+
+import {socketUrl} from "../data/wire.js";
+import {Catalogue} from "../data/catalogue.js";
+import {Budget} from "../draw/budget.js";
+import {byId, darkScheme, make, reducedMotion, say, setAttribute} from "../draw/dom.js";
+import {decimal, kmh, withUnit} from "../draw/format.js";
+import {Alarm} from "./alarm.js";
+import {Latency} from "./latency.js";
+import {backOf, Newest} from "./newest.js";
+import {isDriving, Person} from "./person.js";
+import {ratesOf} from "./ramps.js";
+import {SeatWire, takeDriverToken} from "./seat_wire.js";
+import {LEAST_GAP_MS, LOOK_EVERY_MS, Sender} from "./sender.js";
+import {Setup} from "./setup.js";
+import {Countdown, told, whyAwayInWords} from "./told.js";
+
+const GONE_MS = 2000;  // without the server for so long after a run: it is over
+const VIEW_FILE = "./driver_view.js";  // three.js is in this file, which is loaded on its own
+
+class Drive {
+  constructor() {
+    this.person = new Person();
+    this.sender = new Sender();
+    this.latency = new Latency();
+    this.alarm = new Alarm();
+    this.countdown = new Countdown();
+    this.budget = new Budget();
+    this.newest = null;
+    this.view = null;
+    this.instance = "";
+    this.state = "";         // of the seat: yours, taken, lost; "": not known
+    this.back = backOf(location.hash, location.hostname);
+    this.setup = new Setup(this.person, (open) => this.set("busy", open));
+    this.loadView();
+    this.listen();
+    this.wire = new SeatWire(socketUrl(location, takeDriverToken()), {
+      text: (object) => this.receive(object),
+      messages: (messages) => this.take(messages),
+      state: (state) => this.showConnection(state),
+    });
+    setInterval(() => this.pump(), LOOK_EVERY_MS);
+    requestAnimationFrame((now) => this.loop(now));
+  }
+
+  async loadView() {
+    try {
+      const {DriverView} = await import(VIEW_FILE);
+      this.view = new DriverView(byId("driver-view"));
+      this.view.setScheme(darkScheme.matches ? "dark" : "light");
+    } catch (problem) {
+      byId("picture").append(make("p", {class: "no-view"},
+        `The driver’s view needs WebGL, which this browser does not offer. (${problem.message})`));
+    }
+  }
+
+  // ---- what the person does ---------------------------------------------------------------------
+
+  listen() {
+    darkScheme.addEventListener("change", () => this.view?.setScheme(darkScheme.matches ? "dark" : "light"));
+    addEventListener("keydown", (event) => this.key(event, true));
+    addEventListener("keyup", (event) => this.key(event, false));
+    addEventListener("blur", () => this.set("focused", false));
+    addEventListener("focus", () => this.set("focused", true));
+    document.addEventListener("visibilitychange", () => this.set("visible", !document.hidden));
+    addEventListener("pagehide", () => this.set("visible", false));
+    for (const name of ["gamepadconnected", "gamepaddisconnected"]) addEventListener(name, () => this.pump());
+    byId("begin").addEventListener("click", () => this.begin());
+    byId("try-sound").addEventListener("click", () => {
+      this.alarm.allow();
+      this.alarm.context?.resume().then(() => this.alarm.change());
+    });
+    byId("again").addEventListener("click", () => this.wire.again());
+    addEventListener("hashchange", () => {  // the address of another program in the same tab
+      if (location.hash) this.wire.again(socketUrl(location, takeDriverToken()));
+    });
+    for (const [id, button] of [["take-over", "take_over"], ["give-back", "give_back"]]) {
+      byId(id).addEventListener("click", ({timeStamp}) => {
+        this.person.press(button, timeStamp);
+        this.pump();
+      });
+    }
+    this.person.set("focused", document.hasFocus());
+    this.person.set("visible", !document.hidden);
+  }
+
+  begin() {
+    this.alarm.allow();
+    this.set("begun", !this.person.begun);
+  }
+
+  /** Sets what decides whether somebody drives, and tells it at once. */
+  set(name, value) {
+    this.person.set(name, value);
+    this.pump();
+  }
+
+  key(event, down) {
+    const {key, ctrlKey, altKey, metaKey, repeat, target, timeStamp} = event;
+    if (!isDriving(key) || (down && (ctrlKey || altKey || metaKey))) return;
+    if (down && target.matches?.("input, select, textarea")) return;
+    // A key that repeats was pressed before, perhaps by a person who has been away since.
+    if (!repeat && !this.person.key(key, down, timeStamp)) return;
+    event.preventDefault();  // the arrows would scroll
+    if (repeat) return;
+    this.alarm.allow();
+    this.pump();
+  }
+
+  /** Looks at the devices, and sends a frame if one is due. */
+  pump() {
+    const now = performance.now();
+    const pads = navigator.getGamepads?.() ?? [];
+    this.person.look(pads, now);
+    this.setup.look(pads);
+    const input = this.person.input(now);
+    this.input = input;
+    if (!this.wire?.isOpen) return;
+    if (!this.sender.isDue(input, now)) {
+      if (this.sender.isHeldBack(input)) this.pumpSoon();
+      return;
+    }
+    const {touched_ms} = this.person;
+    const frame = this.sender.next(input, now, touched_ms, this.latency.newest);
+    this.wire.send(frame);
+    if (input.present && touched_ms !== null && touched_ms !== this.followed_ms) {
+      this.followed_ms = touched_ms;
+      this.latency.sent(frame.sequence, touched_ms, now);
+    }
+  }
+
+  pumpSoon() {
+    clearTimeout(this.soon);
+    this.soon = setTimeout(() => this.pump(), LEAST_GAP_MS);
+  }
+
+  // ---- what the server says -----------------------------------------------------------------------
+
+  showConnection(state) {
+    const words = {open: "Connected", lost: "No connection, trying again", refused: "No connection"}[state];
+    setAttribute(byId("origin"), "data-state", state === "open" ? "live" : "lost");
+    say(byId("origin-words"), words);
+    byId("problem").hidden = state !== "refused";
+    say(byId("problem"), state !== "refused" ? "" : "The seat does not answer. Open exactly the address " +
+        "that the program has printed: for other machines the address contains a key.");
+    this.sender.begin();
+    this.latency.forget();
+    if (state !== "open") this.sit("");
+    clearTimeout(this.goneTimer);
+    if (state === "lost" && this.newest?.step >= 0) this.goneTimer = setTimeout(() => this.goBack(), GONE_MS);
+  }
+
+  receive(object) {
+    if (object.op === "hello") this.newest = new Newest(new Catalogue(object));
+    if (object.op === "run") this.setRun(object);
+    if (object.op === "seat") this.sit(object.state);
+    if (object.op === "published") {
+      this.instance = object.instance;
+      this.latency.published(object.sequence, object.input);
+    }
+    if (object.op === "error") console.warn(object.message);
+  }
+
+  setRun(run) {
+    this.newest.setRun(run);
+    this.person.ramps.rates = ratesOf(run.scenario);
+    this.length_m = run.scenario?.world?.vehicle_length_m ?? 4.5;
+  }
+
+  sit(state) {
+    this.state = state;
+    // A lost seat is still this page's: its next frame takes it again.
+    this.set("seated", state === "yours" || state === "lost");
+  }
+
+  /** The run is over: to the page from which the person came, if there is one. */
+  goBack() {
+    if (this.back !== "") location.replace(this.back);
+    this.back = "";
+  }
+
+  take(messages) {
+    const now = performance.now();
+    for (const message of messages) {
+      const taken = this.newest?.add(message, now);
+      if (taken?.name !== "DRIVER_COMMAND") continue;
+      const {input_instance, input_sequence} = taken.message;
+      if (String(input_instance) === this.instance) this.latency.commanded(Number(input_sequence));
+    }
+    if (this.newest?.isOver) this.goBack();
+  }
+
+  // ---- drawing --------------------------------------------------------------------------------------
+
+  loop(now) {
+    requestAnimationFrame((next) => this.loop(next));
+    this.pump();
+    this.budget.frame(now);
+    this.draw();
+    this.latency.drawn(performance.now());
+    this.drawLatency();
+  }
+
+  draw() {
+    const {frame = {}, run} = this.newest ?? {};
+    const state = told(frame.HOST_COMMAND);
+    const time_s = Number(frame.HOST_COMMAND?.header.utime ?? 0) / 1e6;
+    const left = this.countdown.see(state.asks, time_s, run?.scenario?.arbitrator?.take_over?.lead_s ?? 10);
+    this.alarm.sound(state);
+    if (this.side !== undefined && this.side !== state.side) this.alarm.change();
+    this.side = state.side;
+    this.drawState(state, left);
+    this.drawPerson(state);
+    this.drawRoad(frame.TRUTH);
+    setAttribute(document.body, "data-step", String(this.newest?.step ?? ""));
+  }
+
+  drawState({side, words, asks, urgent}, left) {
+    setAttribute(byId("now"), "data-side", side);
+    say(byId("who"), words);
+    say(byId("announcement"), words);
+    const request = byId("request");
+    request.hidden = !asks;
+    setAttribute(request, "data-urgent", String(urgent));
+    if (!left) return;
+    say(byId("request-words"), words);
+    say(byId("request-left"), withUnit(decimal(Math.ceil(left.left_s), 0), "s"));
+    byId("request-bar").value = left.share;
+  }
+
+  drawPerson({side}) {
+    const why = this.person.whyAway();
+    const words = this.state === "" ? "" : whyAwayInWords(why);
+    say(byId("away"), words);
+    byId("away").hidden = words === "";
+    byId("again").hidden = this.state !== "taken";
+    say(byId("begin"), this.person.begun ? "Pause" : "Begin");
+    setAttribute(document.body, "data-present", String(why === ""));
+    byId("take-over").disabled = why !== "" || side === "human";
+    byId("give-back").disabled = why !== "" || side !== "human";
+    const {throttle = 0, brake = 0} = this.input ?? {};
+    byId("throttle").value = throttle;
+    byId("brake").value = brake;
+    say(byId("device-name"), this.person.device.name);
+    byId("arrow-keys").hidden = this.person.device.kind !== "keyboard";
+  }
+
+  drawRoad(truth) {
+    if (!truth) return;
+    say(byId("speed"), kmh(truth.host_speed_mps));
+    const {run, taken_ms} = this.newest;
+    const ahead_s = reducedMotion.matches || truth.last ? 0
+      : Math.min(run?.step_s ?? 0.1, Math.max(0, (performance.now() - taken_ms) / 1000) * (run?.pace || 1));
+    const {ratio, every} = this.budget.now;
+    this.turn = (this.turn ?? 0) + 1;
+    if (this.turn % every !== 0) return;
+    this.view?.draw({frame: {TRUTH: truth}, ahead_s, length_m: this.length_m ?? 4.5}, ratio);
+  }
+
+  drawLatency() {
+    const {newest, isHigh} = this.latency;
+    say(byId("latency"), newest === null ? "–" : withUnit(decimal(newest, 0), "ms"));
+    byId("latency-warning").hidden = !isHigh;
+  }
+}
+
+window.foglineDrive = new Drive();

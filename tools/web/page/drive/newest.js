@@ -1,0 +1,64 @@
+// The newest messages of the run that the participant's page needs. It keeps no history.
+
+import {headerOf} from "../data/catalogue.js";
+
+const NEEDED = new Set(["TRUTH", "HOST_COMMAND", "DRIVER_COMMAND"]);
+const STOP = 2;  // run_t.phase
+
+/**
+ * Where to go after the run: the part "back=URL" behind "#", if the URL is a page of this machine or
+ * of the machine of this page. Any other URL is ignored, because an address can be forged. "": stay.
+ */
+export function backOf(fragment, hostname) {
+  const back = new URLSearchParams(fragment.replace(/^#/, "")).get("back") ?? "";
+  if (!URL.canParse(back)) return "";
+  const {protocol, hostname: there, href} = new URL(back);
+  const isNear = there === hostname || there === "127.0.0.1" || there === "localhost";
+  return protocol === "http:" && isNear ? href : "";
+}
+
+export class Newest {
+  constructor(catalogue) {
+    this.catalogue = catalogue;
+    this.run = null;
+    this.forget(null);
+  }
+
+  forget(runId) {
+    this.runId = runId;
+    this.frame = {};        // {NAME: message}
+    this.steps = {};
+    this.taken_ms = 0;      // clock of the page at the newest TRUTH
+    this.isOver = false;    // the run has ended
+  }
+
+  get step() { return this.steps.TRUTH ?? -1; }
+
+  setRun(run) {
+    const id = BigInt.asIntN(64, BigInt(run.run_id));
+    if (id !== this.runId) this.forget(id);
+    this.run = run;
+  }
+
+  /** Takes a message of the network. @return its decoded form if it is new and needed, else null */
+  add({channel: id, bytes}, now_ms) {
+    const channel = this.catalogue.channels.get(id);
+    if (channel?.name === "RUN") this.seeRun(channel, bytes);
+    if (!NEEDED.has(channel?.name)) return null;
+    const header = headerOf(bytes);
+    if (!header) return null;
+    this.runId ??= header.run_id;  // the server has not said yet which run it follows
+    if (header.run_id !== this.runId || header.step <= (this.steps[channel.name] ?? -1)) return null;
+    const message = this.catalogue.decode(channel, bytes);
+    if (!message) return null;
+    this.frame[channel.name] = message;
+    this.steps[channel.name] = header.step;
+    if (channel.name === "TRUTH") this.taken_ms = now_ms;
+    return {name: channel.name, message};
+  }
+
+  seeRun(channel, bytes) {
+    const run = this.catalogue.decode(channel, bytes);
+    if (run && run.phase === STOP && this.step >= 0 && BigInt(run.header.run_id) === this.runId) this.isOver = true;
+  }
+}

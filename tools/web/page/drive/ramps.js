@@ -1,0 +1,55 @@
+// Arrow keys as pedals. A key is down or up, so each pedal follows its key by a ramp. It knows no
+// document.
+
+// Until the page knows the scenario: the defaults of /person/key_press_ps and key_release_ps.
+const RATES = {press_ps: 1.5, release_ps: 4};
+
+// A longer time between two looks is a pause of the page, and no time in which a key was held. It is
+// twice the time after which the page looks at the latest (sender.js), and more.
+const MOST_PASSED_S = 0.1;
+
+/** The rates of a scenario: shares of a pedal's way per second, while its key is down and up. */
+export function ratesOf(scenario) {
+  const {key_press_ps: press_ps, key_release_ps: release_ps} = scenario?.person ?? {};
+  return press_ps > 0 && release_ps > 0 ? {press_ps, release_ps} : RATES;
+}
+
+export class Ramps {
+  constructor(rates = RATES) {
+    this.rates = rates;
+    this.held = {throttle: false, brake: false};
+    this.value = {throttle: 0, brake: 0};
+    this.at_ms = null;
+  }
+
+  /** @param pedal "throttle" or "brake" */
+  hold(pedal, down, now_ms) {
+    this.advance(now_ms);
+    this.held[pedal] = down;
+  }
+
+  /** Releases both keys and both pedals at once: nobody is at the keyboard. */
+  drop() {
+    this.held = {throttle: false, brake: false};
+    this.value = {throttle: 0, brake: 0};
+  }
+
+  follow(pedal, down, passed_s) {
+    const moved = down ? this.value[pedal] + this.rates.press_ps * passed_s
+                       : this.value[pedal] - this.rates.release_ps * passed_s;
+    this.value[pedal] = Math.min(1, Math.max(0, moved));
+  }
+
+  /**
+   * Moves the pedals on to this time. The brake wins: while its key is down, the throttle comes
+   * back, as a driver has one foot for both.
+   * @return {throttle, brake} in [0, 1]
+   */
+  advance(now_ms) {
+    const passed_s = Math.min(MOST_PASSED_S, Math.max(0, now_ms - (this.at_ms ?? now_ms)) / 1000);
+    this.at_ms = now_ms;
+    this.follow("throttle", this.held.throttle && !this.held.brake, passed_s);
+    this.follow("brake", this.held.brake, passed_s);
+    return {...this.value};
+  }
+}

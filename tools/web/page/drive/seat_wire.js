@@ -1,0 +1,65 @@
+// The connection to the seat: the protocol fogline.drive.v1 (docs/view.md).
+
+import {readFragment} from "../data/address.js";
+import {readFrame} from "../data/wire.js";
+
+const PROTOCOL = "fogline.drive.v1";
+const TOKEN = "fogline.drive.token";
+const RETRY_MS = 1000;  // after the connection was lost
+
+/**
+ * Takes the driver's token out of the address, where it would be seen, and keeps it for this tab. It
+ * is another one than that of the view.
+ */
+export function takeDriverToken() {
+  const {token} = readFragment(location.hash);
+  if (token) sessionStorage.setItem(TOKEN, token);
+  if (location.hash) history.replaceState(null, "", location.pathname);
+  return sessionStorage.getItem(TOKEN) ?? "";
+}
+
+/**
+ * Keeps a connection. It calls `on.text(object)`, `on.messages(messages)` and
+ * `on.state("open", "lost" or "refused")`: "refused" if there never was a connection.
+ */
+export class SeatWire {
+  constructor(url, on) {
+    this.url = url;
+    this.on = on;
+    this.wasOpen = false;
+    this.connect();
+  }
+
+  get isOpen() { return this.socket.readyState === WebSocket.OPEN; }
+
+  connect() {
+    clearTimeout(this.retry);
+    this.socket = new WebSocket(this.url, [PROTOCOL]);
+    this.socket.binaryType = "arraybuffer";
+    this.socket.onopen = () => {
+      this.wasOpen = true;
+      this.on.state("open");
+    };
+    this.socket.onmessage = ({data}) => {
+      if (typeof data === "string") this.on.text(JSON.parse(data));
+      else this.on.messages(readFrame(data).messages ?? []);
+    };
+    this.socket.onclose = () => {
+      this.on.state(this.wasOpen ? "lost" : "refused");
+      this.retry = setTimeout(() => this.connect(), RETRY_MS);
+    };
+  }
+
+  /** Connects anew, to ask for the seat once more. @param url perhaps with another token */
+  again(url = this.url) {
+    this.url = url;
+    const {socket} = this;
+    socket.onopen = socket.onmessage = socket.onclose = null;
+    socket.close();
+    this.connect();
+  }
+
+  send(object) {
+    this.socket.send(JSON.stringify(object));
+  }
+}

@@ -1,0 +1,62 @@
+// What the person is told about the run: who drives, and the request to take over. Nothing of
+// sensors, thresholds or conflict. It knows no document.
+
+import {modeOf} from "../data/modes.js";
+
+const TOLD = {
+  AUTOMATION: "The automation drives",
+  HUMAN: "You drive",
+  MINIMAL_RISK: "The car stops by itself",
+  REQUEST: "Take over",
+  REQUEST_URGENT: "Take over now",
+  HANDOVER: "Your answer has come; the automation still drives",
+  RECOVERING: "You drive",
+  MRM_COMFORT: "The car stops by itself",
+  MRM_EMERGENCY: "The car stops by itself, quickly",
+  MRM_DONE: "The car stands",
+  MRM_FAILED: "The car cannot stop by itself",
+  EMERGENCY_BRAKING: "The car brakes in an emergency",
+};
+
+/** {side, words, asks, urgent} for a HOST_COMMAND; without one nobody has begun. */
+export function told(command) {
+  if (!command) return {side: "unknown", words: "The drive has not begun", asks: false, urgent: false};
+  const {name, side, asks: waits = false, urgent = false} = modeOf(command.mode, command.lambda_human);
+  const asks = waits && name !== "HANDOVER";  // then the person has answered
+  const drives = side === "human" ? TOLD.HUMAN : TOLD.AUTOMATION;
+  const words = name === "COLLISION_WARNING" ? `Collision warning. ${drives}`
+    : TOLD[name] ?? "Nobody has said who drives";
+  return {side, words, asks, urgent};
+}
+
+/** Counts down a request to take over. */
+export class Countdown {
+  constructor() {
+    this.since_s = null;
+  }
+
+  /**
+   * @param asks whether HOST_COMMAND of this time asks; time_s of the run; lead_s of the scenario
+   * @return {left_s, share}, or null if nobody is asked
+   */
+  see(asks, time_s, lead_s) {
+    if (!asks) this.since_s = null;
+    if (!asks) return null;
+    if (this.since_s === null || time_s < this.since_s) this.since_s = time_s;
+    const left_s = Math.max(0, this.since_s + lead_s - time_s);
+    return {left_s, share: lead_s > 0 ? left_s / lead_s : 0};
+  }
+}
+
+const WHY_AWAY = {
+  "not begun": "Press “Begin” when you are ready.",
+  "no seat": "Somebody else drives.",
+  hidden: "This page was hidden, so nobody drives.",
+  blurred: "Another window has the keyboard, so nobody drives. Click here to go on.",
+  busy: "A dialog is open, so nobody drives.",
+  unplugged: "The device is unplugged, so nobody drives. Plug it in, or choose another one.",
+  "not calibrated": "Calibrate the device first (button “Device”).",
+};
+
+/** Why the person does not drive, in words; "" if they do. */
+export const whyAwayInWords = (why) => WHY_AWAY[why] ?? "";
