@@ -96,20 +96,30 @@ pid_t StartChild(const std::filesystem::path& program, const std::vector<std::st
   return pid;
 }
 
-std::string FirstLineOf(int output, Duration limit) {
+std::vector<std::string> LinesOf(int output, std::size_t count, Duration limit) {
+  std::vector<std::string> lines;
   std::string text;
   const TimePoint end = Clock::now() + limit;
   std::array<char, 256> buffer{};
-  while (text.find('\n') == std::string::npos) {
+  while (true) {
+    for (std::size_t at = 0; lines.size() < count; text.erase(0, at + 1)) {
+      at = text.find('\n');
+      if (at == std::string::npos) break;
+      lines.push_back(text.substr(0, at));
+    }
     pollfd waited{.fd = output, .events = POLLIN, .revents = 0};
     const auto left = Milliseconds(end - Clock::now());
-    if (left <= 0) return "";
+    if (lines.size() == count || left <= 0) return lines;
     if (poll(&waited, 1, static_cast<int>(left)) <= 0) continue;
     const ssize_t size = read(output, buffer.data(), buffer.size());
-    if (size <= 0) return "";
+    if (size <= 0) return lines;
     text.append(buffer.data(), static_cast<std::size_t>(size));
   }
-  return text.substr(0, text.find('\n'));
+}
+
+std::string FirstLineOf(int output, Duration limit) {
+  const std::vector<std::string> lines = LinesOf(output, 1, limit);
+  return lines.empty() ? "" : lines.front();
 }
 
 std::string HowItEnded(int status) {

@@ -3,6 +3,7 @@
 
 #include <sys/types.h>
 
+#include <cstddef>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -34,6 +35,10 @@ struct Pipe {
   int read = -1;
   int write = -1;
 };
+
+/// The first lines that a child prints, without their line feeds; fewer if it ends or is too slow.
+/// @param output the read end of the pipe that is the child's stdout
+std::vector<std::string> LinesOf(int output, std::size_t count, Duration limit);
 
 /// The first line that a child prints, without its line feed; "" if none comes in time.
 /// @param output the read end of the pipe that is the child's stdout

@@ -3,10 +3,12 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <fmt/core.h>
 
 #include "common/interrupt.h"
+#include "common/process/console.h"
 #include "services/log/log_of_run.h"
 #include "tools/cli/arguments.h"
 #include "tools/cli/help.h"
@@ -16,6 +18,7 @@
 #include "tools/drive/seat.h"
 #include "tools/drive/terminal_keys.h"
 #include "tools/fogline/verbs.h"
+#include "tools/processes/page_seat.h"
 
 namespace fogline {
 namespace {
@@ -23,6 +26,11 @@ namespace {
 constexpr const char* kExamples =
     R"(The run is in real time, with /person/drives=true. What you do is logged (channel
 DRIVER_INPUT), and fogline replay LOG --role driver computes the same commands again.
+
+Without --keys and --evdev you drive at a page in the browser, with its keys, a gamepad or
+a wheel. The program prints the addresses of this page and of the view of the run, and
+waits until you press "Begin". Only this machine can open them, unless --listen names an
+address for others. Each of the printed addresses then has a token of its own.
 
 --keys reads the terminal: arrow up throttle, arrow down brake, space or t take over,
 g give back. A pedal moves while its key is down (/person/key_press_ps) and back when
@@ -40,6 +48,8 @@ If the device is unplugged, or its messages stop for /person/deadman_s, nobody d
 the pedals count as released, and the fallbacks of real time do their work.
 
 Examples:
+  fogline drive scenario/drive.json
+  fogline drive scenario/drive.json --listen 192.168.1.5
   fogline drive scenario/drive.json --keys
   fogline drive scenario/drive.json --evdev /dev/input/event5
   fogline drive scenario/drive.json --evdev /dev/input/event5 --throttle=-ABS_Y --brake=-ABS_Z
@@ -58,6 +68,11 @@ struct DriveArguments {
     name("--brake", names.brake, "Axis of the brake");
     name("--take-over", names.take_over, "Button to take over, such as BTN_SOUTH");
     name("--give-back", names.give_back, "Button to give back");
+    for (CLI::Option* of_page :
+         {verb.add_option("--listen", listen, "ADDRESS[:PORT] at which others may open the page"),
+          verb.add_flag("--no-browser", no_browser, "Only print the addresses of the page")}) {
+      of_page->excludes(by_keys)->excludes(by_device);
+    }
     verb.add_option("--log", options.log, "Event log to write");
     verb.add_flag("--force", force, "Replace the log if it exists");
     verb.add_flag("--json", json, "Print the result as JSON");
@@ -71,20 +86,38 @@ struct DriveArguments {
   runner::ExperimentOptions options;
   drive::DeviceNames names;
   std::string device;
+  std::string listen;
+  bool no_browser = false;
   bool keys = false;
   bool force = false;
   bool json = false;
   bool quiet = false;
 };
 
+/// Whether the person drives at the page.
+bool AtPage(const DriveArguments& arguments) { return !arguments.keys && arguments.device.empty(); }
+
+/// @return nullptr if the person drives at the page
 /// @throws InputError if the device cannot be used
 std::unique_ptr<drive::PedalSource> MakeSource(const DriveArguments& arguments,
                                                const PersonSection& person) {
   if (arguments.keys) return std::make_unique<drive::TerminalKeys>(person);
-  if (arguments.device.empty()) {
-    throw InputError("error: give one of --keys and --evdev");
-  }
+  if (AtPage(arguments)) return nullptr;
   return std::make_unique<drive::EvdevDevice>(arguments.device, arguments.names, person);
+}
+
+/// Opens the page on a network, and waits until the person is ready.
+/// @throws Interrupted, std::runtime_error if there is no page
+std::unique_ptr<processes::PageSeat> OpenPage(const DriveArguments& arguments,
+                                              const std::string& url) {
+  std::vector<std::string> more;
+  if (!arguments.listen.empty()) more = {"--listen", arguments.listen};
+  if (arguments.no_browser) more.emplace_back("--no-browser");
+  auto page = std::make_unique<processes::PageSeat>(url, arguments.options.traffic, more);
+  Notice("drive: " + page->drive_address());
+  Notice("view: " + page->view_address());
+  if (!page->WaitForPerson()) throw Interrupted("interrupted before the drive began");
+  return page;
 }
 
 int Drive(DriveArguments& arguments) {
@@ -101,14 +134,19 @@ int Drive(DriveArguments& arguments) {
   options.log = log.path();
   options.on_logged_step = [&log] { log.RemoveOlder(); };
   std::optional<drive::Seat> seat;
+  std::unique_ptr<processes::PageSeat> page;
+  options.on_network = [&](const std::string& url) {
+    if (AtPage(arguments)) page = OpenPage(arguments, url);
+  };
   options.on_run = [&](std::int64_t run_id, const std::string& url) {
-    seat.emplace(url, run_id, options.traffic, std::move(source));
+    if (source) seat.emplace(url, run_id, options.traffic, std::move(source));
   };
   cli::RunOutcome outcome{.file = arguments.scenario.file(),
                           .steps = scenario.steps,
                           .result = runner::RunExperiment(scenario, options),
                           .resumed = std::nullopt};
   seat.reset();  // restores the terminal
+  if (page) page->Runs();  // says it if the page has failed
   return cli::PrintOutcome(outcome, arguments.json, "drive");
 }
 

@@ -1,0 +1,136 @@
+// `fogline drive` at the page: the verb, fogline-web and the whole run. The test is the page: a
+// client of the WebSocket that sends what the page would send.
+#include <gmock/gmock-matchers.h>
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <optional>
+#include <thread>
+
+#include "services/log/run_log.h"
+#include "services/runtime/transport/bus.h"
+#include "tests/integration/drive/driven_run.h"
+#include "tests/integration/web/viewed.h"
+
+namespace fogline::test {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+
+constexpr std::chrono::seconds kPatience(60);
+
+std::uint16_t PortIn(const std::string& err) {
+  constexpr std::string_view kBefore = "drive: http://127.0.0.1:";
+  const std::size_t at = err.find(kBefore);
+  if (at == std::string::npos) return 0;
+  return static_cast<std::uint16_t>(std::stoi(err.substr(at + kBefore.size())));
+}
+
+/// A page with a person who brakes a little, until the destructor.
+class Person {
+ public:
+  explicit Person(std::uint16_t port)
+      : client_(port, {.protocol = "fogline.drive.v1"}), thread_([this] { Drive(); }) {}
+  ~Person() {
+    ends_ = true;
+    thread_.join();
+  }
+  Person(const Person&) = delete;
+  Person& operator=(const Person&) = delete;
+
+ private:
+  void Drive() {
+    constexpr milliseconds kEvery(30);  // the rule of a page: a frame at least every 50 ms
+    try {
+      for (std::int64_t sequence = 0; !ends_; ++sequence) {
+        client_.Send(json{
+            {"op", "input"},
+            {"sequence", sequence},
+            {"age_ms", 0},
+            {"present", true},
+            {"throttle", 0},
+            {"brake", 0.25},
+            {"axes", json::array()},
+            {"buttons", json::array({"take_over"})},
+            {"device", {{"kind", "keyboard"}, {"name", "Keyboard"}}},
+            {"latency_ms",
+             12}}.dump());
+        const TimePoint next = Clock::now() + kEvery;
+        while (Clock::now() < next) client_.Receive();  // the run's messages come all the time
+      }
+    } catch (const std::exception&) {
+      // The run has ended.
+    }
+  }
+
+  WebClient client_;
+  std::atomic<bool> ends_ = false;
+  std::thread thread_;
+};
+
+std::vector<std::string> DriveAtPage(const std::string& log, std::vector<std::string> more = {}) {
+  more.insert(more.begin(),
+              {"env", "-u", "DISPLAY", "-u", "WAYLAND_DISPLAY", Program("fogline"), "drive",
+               kDriveScenario, "--json", "--log", log, "--lcm-url", runtime::FreshMulticastUrl()});
+  for (const std::string& setting : AlwaysAsked()) {
+    more.push_back("--set");
+    more.push_back(setting);
+  }
+  return more;
+}
+
+TEST(DriveAtPageInRealtimeTest, TheRunBeginsWithThePersonAndIsDrivenByTheirInputs) {
+  const ScratchFolder folder;
+  const std::string log = folder.File("drive.lcm");
+  Background run(DriveAtPage(log, {"--set", "/steps=200"}));
+  ASSERT_TRUE(run.WaitForErr("view: http://127.0.0.1:", kPatience)) << run.Err();
+  EXPECT_THAT(run.Err(), HasSubstr("/drive\n"));
+  const Person person(PortIn(run.Err()));
+  EXPECT_EQ(run.Wait(), 0) << run.Err();
+  // The driver has used the inputs, and the person has got authority.
+  log::RunLogReader reader(log);
+  std::int64_t of_person = 0;
+  std::int64_t human = 0;
+  while (const log::StepMessages* step = reader.Next()) {
+    driver_command_t command;
+    arbitration_t host;
+    // In real time a message of a step may be missing.
+    if (!runtime::Decode((*step)[IndexOf<driver_command_t>()], command)) continue;
+    if (!runtime::Decode((*step)[IndexOf<arbitration_t>()], host)) continue;
+    of_person += command.input_sequence >= 0 ? 1 : 0;
+    human += host.lambda_human > 0 ? 1 : 0;
+  }
+  EXPECT_GT(of_person, 100);
+  EXPECT_GT(human, 50);
+}
+
+TEST(DriveAtPageTest, CtrlCEndsTheWaitForThePerson) {
+  const ScratchFolder folder;
+  Background run(DriveAtPage(folder.File("drive.lcm")));
+  ASSERT_TRUE(run.WaitForErr("view: http://127.0.0.1:", kPatience)) << run.Err();
+  run.Signal(SIGINT);
+  EXPECT_EQ(run.Wait(), 130) << run.Err();
+}
+
+TEST(DriveAtPageTest, ForOthersBothAddressesHaveTokens) {
+  const ScratchFolder folder;
+  Background run(DriveAtPage(folder.File("drive.lcm"), {"--listen", "127.0.0.1:0"}));
+  ASSERT_TRUE(run.WaitForErr("view: http://127.0.0.1:", kPatience)) << run.Err();
+  EXPECT_THAT(run.Err(), HasSubstr("/drive#token="));
+  EXPECT_THAT(run.Err(), HasSubstr("/#token="));
+  run.Signal(SIGINT);
+  EXPECT_EQ(run.Wait(), 130) << run.Err();
+}
+
+TEST(DriveAtPageTest, RefusesOptionsOfThePageWithAnotherDevice) {
+  for (const char* option : {"--listen=127.0.0.1", "--no-browser"}) {
+    const Outcome outcome =
+        RunCommand({Program("fogline"), "drive", kDriveScenario, "--evdev", "/dev/null", option});
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_THAT(outcome.err, HasSubstr("excludes"));
+  }
+}
+
+}  // namespace
+}  // namespace fogline::test

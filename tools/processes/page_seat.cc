@@ -1,0 +1,87 @@
+#include "tools/processes/page_seat.h"
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <stdexcept>
+#include <thread>
+#include <utility>
+
+#include <fmt/core.h>
+
+#include "common/clock.h"
+#include "common/interrupt.h"
+#include "common/process/console.h"
+#include "services/graph.h"
+#include "services/runtime/transport/bus.h"
+#include "tools/processes/child.h"
+
+namespace fogline::processes {
+namespace {
+
+// fogline-web listens within this time, also on a busy machine.
+constexpr Duration kSeatLimit = milliseconds(10'000);
+// fogline-web ends within this time after SIGTERM. After that it is killed.
+constexpr Duration kSeatFarewell = milliseconds(2000);
+// How often a wait looks whether it must end.
+constexpr Duration kLook = milliseconds(50);
+
+}  // namespace
+
+PageSeat::PageSeat(const std::string& url, const runtime::TrafficOptions& traffic,
+                   const std::vector<std::string>& more)
+    : url_(url), traffic_({.key_file = traffic.key_file, .faults = {}}) {
+  std::vector<std::string> arguments{"--seat", "--lcm-url", url};
+  for (const std::string& argument : runtime::ToArguments(traffic_)) arguments.push_back(argument);
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  Pipe output;
+  pid_ = StartChild(ProgramBeside("fogline-web"), arguments, output.write);
+  close(std::exchange(output.write, -1));
+  const std::vector<std::string> lines = LinesOf(output.read, 2, kSeatLimit);
+  if (lines.size() < 2) {
+    End();
+    throw std::runtime_error("fogline-web does not listen, so nobody can drive at a page");
+  }
+  drive_address_ = lines[0];
+  view_address_ = lines[1];
+}
+
+PageSeat::~PageSeat() { End(); }
+
+bool PageSeat::WaitForPerson() {
+  runtime::Bus bus(url_);
+  runtime::Apply(traffic_, Role::kDriver, bus);
+  bool present = false;
+  bus.Subscribe(ChannelOf<driver_input_t>().name, [&present](runtime::Arrival& arrival) {
+    const auto* input = arrival.As<driver_input_t>();
+    present = present || (input != nullptr && input->present);
+  });
+  while (!present && !WasInterrupted()) {
+    bus.Wait(kLook);
+    if (!Runs()) throw std::runtime_error("nobody can drive at a page that is not there");
+  }
+  return present;
+}
+
+bool PageSeat::Runs() {
+  int status = 0;
+  if (pid_ >= 0 && waitpid(pid_, &status, WNOHANG) == pid_) {
+    pid_ = -1;
+    Complain("fogline-web " + HowItEnded(status) + "; nobody can drive any more");
+  }
+  return pid_ >= 0;
+}
+
+void PageSeat::End() {
+  if (pid_ < 0) return;
+  kill(pid_, SIGTERM);
+  const TimePoint end = Clock::now() + kSeatFarewell;
+  while (waitpid(pid_, nullptr, WNOHANG) == 0) {
+    if (Clock::now() > end) kill(pid_, SIGKILL);
+    std::this_thread::sleep_for(milliseconds(5));
+  }
+  pid_ = -1;
+}
+
+}  // namespace fogline::processes

@@ -1,0 +1,46 @@
+// The participant's page of `fogline drive`: fogline-web with a seat, as a child. The destructor
+// ends it.
+#pragma once
+
+#include <sys/types.h>
+
+#include <string>
+#include <vector>
+
+#include "services/runtime/transport/traffic_options.h"
+
+namespace fogline::processes {
+
+class PageSeat {
+ public:
+  /// Starts the page on this network. Returns when it can be opened.
+  /// @param more arguments of fogline-web, such as --listen ADDRESS
+  /// @throws std::runtime_error if there is no page
+  PageSeat(const std::string& url, const runtime::TrafficOptions& traffic,
+           const std::vector<std::string>& more);
+  ~PageSeat();
+  PageSeat(const PageSeat&) = delete;
+  PageSeat& operator=(const PageSeat&) = delete;
+
+  /// The address of the participant's page, and that of the page for those who look.
+  const std::string& drive_address() const { return drive_address_; }
+  const std::string& view_address() const { return view_address_; }
+
+  /// Waits until a person at the page is ready to drive.
+  /// @return false if the user has interrupted this program
+  /// @throws std::runtime_error if fogline-web ends
+  bool WaitForPerson();
+  /// Whether fogline-web runs. It ends by itself only if it fails; that is said once.
+  bool Runs();
+
+ private:
+  void End();
+
+  std::string url_;
+  runtime::TrafficOptions traffic_;
+  pid_t pid_ = -1;
+  std::string drive_address_;
+  std::string view_address_;
+};
+
+}  // namespace fogline::processes
