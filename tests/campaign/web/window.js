@@ -113,10 +113,12 @@ export async function browser(t) {
 
 /**
  * Opens an address. `page.trouble` has the page's errors, its violations of the content security
- * policy, and its requests to other hosts; it must be empty at the end of the test.
+ * policy, and its requests to other hosts; it must be empty at the end of the test. `prepare` gets
+ * the page's context before the page is loaded.
  */
-export async function open(t, started, address, {size = DESKTOP, ...options} = {}) {
+export async function open(t, started, address, {size = DESKTOP, prepare = null, ...options} = {}) {
   const context = await started.newContext({viewport: size, ...options});
+  if (prepare) await prepare(context);
   const page = await context.newPage();
   page.setDefaultTimeout(PATIENCE_MS);
   page.trouble = [];

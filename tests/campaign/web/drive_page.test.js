@@ -1,0 +1,243 @@
+// The participant's page: what a person does there, and that nobody drives when nobody is there.
+// The tests play the person; DRIVER_INPUT is read from the network.
+import assert from "node:assert/strict";
+import {test} from "node:test";
+
+import {begin, drives, freshNetwork, listener, seat, setPad, withFakePads} from "./seat.js";
+import {breaches, browser, DESKTOP, open, PHONE, until} from "./window.js";
+
+/** A page that is open and drives, and what the run hears. */
+async function seated(t, {pads = false, ...options} = {}) {
+  const network = freshNetwork();
+  const {server, drive, view} = await seat(t, network);
+  const run = await listener(t, view);
+  const started = await browser(t);
+  const page = await open(t, started, drive, {prepare: pads ? withFakePads : null, ...options});
+  return {server, drive, view, run, page, started};
+}
+
+const close = (a, b) => Math.abs(a - b) < 1e-6;
+
+test("the arrows are the pedals, T and G the buttons", async (t) => {
+  const {run, page} = await seated(t);
+  assert.equal(run.newest()?.present ?? false, false);
+  await begin(page);
+  await drives(page, true);
+  await page.keyboard.down("ArrowDown");
+  const braking = await run.next(({brake}) => brake === 1, "the whole brake");
+  assert.equal(braking.message.throttle, 0);
+  assert.equal(braking.message.present, true);
+  assert.equal(braking.message.device, "Keyboard");
+  const ramp = run.heard.map(({message}) => message.brake).filter((brake) => brake > 0 && brake < 1);
+  assert.ok(ramp.length > 5, `the key is a ramp: ${ramp}`);
+  await page.keyboard.up("ArrowDown");
+  await run.next(({brake}) => brake === 0, "the released brake");
+  await page.keyboard.down("ArrowUp");
+  await run.next(({throttle}) => throttle > 0.5, "the throttle");
+  await page.keyboard.up("ArrowUp");
+  await page.keyboard.press("t");
+  await run.next(({buttons}) => buttons === 1, "the button to take over");
+  await page.keyboard.press("g");
+  await run.next(({buttons}) => buttons === 2, "the button to give back");
+  await run.next(({buttons}) => buttons === 0, "released buttons");
+  // No gap is longer than the rule says, and there are not too many messages.
+  const times = run.heard.map(({message}) => Number(message.time_us));
+  assert.ok(times.length > 20);
+  const numbers = run.heard.map(({message}) => message.sequence);
+  assert.deepEqual(numbers, numbers.map((_, i) => numbers[0] + i));
+});
+
+test("a wheel is calibrated in the page, drives, and is known again", async (t) => {
+  const {run, page} = await seated(t, {pads: true});
+  await setPad(page, {axes: [0, 0]});  // a browser says 0 before an axis has moved
+  await page.click("#setup-open");
+  await page.selectOption("#device", "Test Wheel");
+  for (const [name, axis] of [["throttle", 0], ["brake", 1]]) {
+    await page.click(`#learn-${name}`);
+    for (const value of [1, 0, -1, 0, 1]) {
+      const axes = [1, 1];
+      axes[axis] = value;
+      await setPad(page, {axes});
+      await page.waitForFunction(([place, wanted]) => foglineDrive.person.pad.axes[place] === wanted,
+                                 [axis, value]);
+    }
+    await page.click(`#learn-${name}`);
+    await page.waitForFunction(([id, wanted]) => document.getElementById(id).textContent === wanted,
+                               [`place-${name}`, `axis ${axis}`]);
+  }
+  for (const [name, button] of [["take_over", 2], ["give_back", 3]]) {
+    await page.click(`#learn-${name}`);
+    await page.waitForFunction(() => foglineDrive.setup.lesson?.teacher.before);
+    await setPad(page, {down: [button]});
+    await page.waitForFunction(([id, wanted]) => document.getElementById(id).textContent === wanted,
+                               [`place-${name}`, `button ${button}`]);
+    await setPad(page);
+  }
+  await page.fill("#dead-brake", "20");
+  await page.click("#setup-close");
+  await begin(page);
+  await drives(page, true);
+  await setPad(page, {axes: [1, 0], down: [2]});
+  const half = (await run.next(({brake}) => brake > 0, "the brake of the wheel")).message;
+  assert.ok(close(half.brake, 0.375), `half of the way with a dead zone of 0.2: ${half.brake}`);
+  assert.deepEqual([half.buttons, half.device, half.axes], [1, "Test Wheel", [1, 0]]);
+  assert.equal(half.device_kind, 2);
+  // The other way round, and after a reload it is still so.
+  await page.click("#setup-open");
+  await page.click("#invert-throttle");
+  await page.click("#setup-close");
+  await page.reload();
+  await setPad(page, {axes: [-1, 1]});
+  await page.waitForFunction(() => foglineDrive.person.device.id === "Test Wheel");
+  await begin(page);
+  await drives(page, true);
+  await setPad(page, {axes: [1, 1]});
+  await run.next(({throttle, present}) => present && throttle === 1, "the inverted throttle");
+});
+
+test("a gamepad with the standard mapping drives at once; unplugged, nobody drives", async (t) => {
+  const {run, page} = await seated(t, {pads: true});
+  const pad = {id: "Test Pad", mapping: "standard", axes: [0, 0, 0, 0]};
+  await page.evaluate(() => localStorage.setItem("fogline.drive.device", "Test Pad"));
+  await page.evaluate((state) => {
+    window.fakePads = [{...state, connected: true, index: 0, timestamp: 0,
+                        buttons: Array.from({length: 17}, () => ({pressed: false, value: 0}))}];
+  }, pad);
+  await page.waitForFunction(() => foglineDrive.person.device.id === "Test Pad");
+  await begin(page);
+  await drives(page, true);
+  await page.evaluate(() => {
+    const [pad] = window.fakePads;
+    pad.buttons = pad.buttons.map((button, i) => (i === 6 ? {pressed: true, value: 1} : button));
+    window.fakePads = [{...pad}];
+  });
+  await run.next(({brake}) => brake === 1, "the left trigger");
+  await page.evaluate(() => {
+    window.fakePads = [null];
+    dispatchEvent(new Event("gamepaddisconnected"));
+  });
+  const away = (await run.next(({present}) => !present, "an unplugged device")).message;
+  assert.deepEqual([away.brake, away.throttle, away.buttons], [0, 0, 0]);
+  assert.match(await page.locator("#away").innerText(), /unplugged/);
+});
+
+/** Somebody brakes with a key, then something happens, and then nobody drives. */
+async function leaves(t, happens, why) {
+  const all = await seated(t);
+  const {run, page} = all;
+  await begin(page);
+  await drives(page, true);
+  await page.keyboard.down("ArrowDown");
+  await run.next(({brake}) => brake === 1, "the brake");
+  const away = run.next(({present}) => !present, "that nobody drives");
+  await happens(all);
+  const {message} = await away;
+  assert.deepEqual([message.brake, message.throttle, message.buttons], [0, 0, 0]);
+  if (why) await page.waitForFunction((words) => document.getElementById("away").textContent.includes(words), why);
+  return all;
+}
+
+test("a hidden tab does not drive", async (t) => {
+  await leaves(t, async ({page}) => {
+    await page.evaluate(() => {
+      Object.defineProperty(document, "hidden", {value: true, configurable: true});
+      document.dispatchEvent(new Event("visibilitychange"));
+    });
+  }, "hidden");
+});
+
+test("a window without the keyboard does not drive, and comes back with released pedals", async (t) => {
+  const {page, run} = await leaves(t, ({page: one}) => one.evaluate(() => { dispatchEvent(new Event("blur")); }),
+                                   "Another window");
+  await page.evaluate(() => { dispatchEvent(new Event("focus")); });
+  const back = await run.next(({present}) => present, "that somebody is back");
+  assert.equal(back.message.brake, 0);
+});
+
+test("an open dialog does not drive", async (t) => {
+  await leaves(t, ({page}) => page.click("#setup-open"), "dialog");
+});
+
+test("a page that is busy for 300 ms does not drive, and is told", async (t) => {
+  const {page, server} = await leaves(t, ({page: one}) => one.evaluate(() => {
+    const end = performance.now() + 900;
+    while (performance.now() < end) continue;
+  }));
+  await until(() => server.said.includes("its page is silent"), "the notice of the silence");
+  await drives(page, true);  // its next input takes the seat again
+});
+
+test("a page that is closed, or has lost its socket, does not drive", async (t) => {
+  await leaves(t, ({page}) => page.evaluate(() => foglineDrive.wire.socket.close()));
+  await leaves(t, ({page}) => page.close());
+});
+
+test("the second driver is told that the seat is taken, and may ask again", async (t) => {
+  const {page, drive, started, run} = await seated(t);
+  await begin(page);
+  await drives(page, true);
+  const second = await open(t, started, drive);
+  await begin(second);
+  await second.waitForFunction(() => foglineDrive.state === "taken");
+  await second.waitForFunction(() => document.getElementById("away").textContent.includes("Somebody else"));
+  await second.keyboard.down("ArrowDown");
+  await drives(second, false);
+  assert.equal(run.heard.some(({message}) => message.brake > 0), false);
+  await second.keyboard.up("ArrowDown");
+  await page.close();
+  await second.click("#again");
+  await drives(second, true);
+});
+
+test("with --listen only the driver's token gives the seat", async (t) => {
+  const {drive, view} = await seat(t, freshNetwork(), ["--listen", "127.0.0.1:0"]);
+  const started = await browser(t);
+  const page = await open(t, started, drive);
+  await page.waitForFunction(() => foglineDrive.state === "yours");
+  assert.ok(!page.url().includes("token"), page.url());
+  const wrong = await open(t, started, drive.replace(/#.*/, new URL(view).hash));
+  await wrong.waitForFunction(() => document.getElementById("problem").textContent.includes("contains a key"));
+  wrong.trouble = wrong.trouble.filter((words) => !words.includes("WebSocket"));  // the refusal itself
+  await wrong.close();
+});
+
+for (const [name, options] of [["desktop", {size: DESKTOP}], ["phone", {size: PHONE}],
+                               ["dark", {size: DESKTOP, colorScheme: "dark"}]]) {
+  test(`the page breaks no rule of accessibility and fits its window (${name})`, async (t) => {
+    const {page} = await seated(t, {pads: true, ...options});
+    await begin(page);
+    await drives(page, true);
+    assert.deepEqual(await breaches(page), []);
+    const wide = await page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
+    assert.ok(wide <= 0, `the page is ${wide} px too wide`);
+    await page.evaluate(() => {
+      document.getElementById("request").hidden = false;
+      foglineDrive.drawState = () => {};
+    });
+    assert.deepEqual(await breaches(page), []);
+    await page.click("#setup-open");
+    await setPad(page);
+    await page.selectOption("#device", "Test Wheel");
+    assert.deepEqual(await breaches(page), []);
+  });
+}
+
+test("everything works with the keyboard alone", async (t) => {
+  const {page} = await seated(t);
+  await page.waitForFunction(() => foglineDrive.state === "yours");
+  const reached = [];
+  for (let i = 0; i < 4; ++i) {
+    await page.keyboard.press("Tab");
+    reached.push(await page.evaluate(() => document.activeElement.id));
+    if (reached.at(-1) === "begin") break;
+  }
+  assert.deepEqual(reached, ["setup-open", "begin"]);
+  await page.keyboard.press("Enter");
+  await drives(page, true);
+});
+
+test("the page says nothing of conflict, threshold or condition", async (t) => {
+  const {page} = await seated(t);
+  const words = await page.evaluate(() => document.documentElement.textContent);
+  assert.doesNotMatch(words, /conflict|threshold|condition|lidar|radar|gap/i);
+});

@@ -1,0 +1,106 @@
+// `fogline view --seat`, its participant's page in headless Chromium, and what the run hears of it.
+
+import assert from "node:assert/strict";
+
+import WebSocket from "ws";
+
+import {Catalogue} from "../../../tools/web/page/data/catalogue.js";
+import {readFrame} from "../../../tools/web/page/data/wire.js";
+import {background, until} from "./window.js";
+
+const {FOGLINE} = process.env;
+
+/** A multicast network of this test alone. */
+export const freshNetwork = () =>
+  `udpm://239.255.76.67:${20000 + Math.floor(Math.random() * 20000)}?ttl=0`;
+
+/** Starts a program with a seat. @return {server, drive, view}: the process and both addresses */
+export async function seat(t, network, args = []) {
+  const place = args.includes("--listen") ? [] : ["--port", "0"];
+  const server = background(t, FOGLINE, ["view", "--seat", "--no-browser", "--lcm-url", network,
+                                         ...place, ...args]);
+  server.on("exit", (code) => { server.code = code; });
+  const [drive, view] = await until(() => {
+    assert.equal(server.code, undefined, server.said);
+    const found = server.said.match(/http:\/\/\S+(?=\n)/g) ?? [];
+    return found.length >= 2 && found;
+  }, "both addresses");
+  return {server, drive, view};
+}
+
+/** The target of the WebSocket of an address, with its token. */
+export function socketOf(address) {
+  const {host, hash} = new URL(address);
+  const token = new URLSearchParams(hash.slice(1)).get("token");
+  return `ws://${host}/ws${token ? `?token=${token}` : ""}`;
+}
+
+/**
+ * Hears the network of a seat as a viewer. `heard` has all messages of the wanted channels in the
+ * order of their arrival: {name, message, at_ms}.
+ */
+export async function listener(t, address, names = ["DRIVER_INPUT"]) {
+  const socket = new WebSocket(socketOf(address), ["fogline.view.v1"]);
+  socket.binaryType = "arraybuffer";
+  const heard = [];
+  let catalogue = null;
+  socket.on("message", (data, isBinary) => {
+    if (!isBinary) {
+      const object = JSON.parse(data);
+      if (object.op === "hello") catalogue = new Catalogue(object);
+      return;
+    }
+    const frame = readFrame(data);
+    for (const {channel: id, bytes} of frame.messages ?? []) {
+      const channel = catalogue.channels.get(id);
+      if (!names.includes(channel?.name)) continue;
+      const message = catalogue.decode(channel, bytes);
+      assert.ok(message, `${channel.name} can be decoded`);
+      heard.push({name: channel.name, message, at_ms: performance.now()});
+    }
+  });
+  t.after(() => socket.close());
+  await until(() => catalogue, "the hello of the view");
+  return {
+    heard,
+    newest: (name = "DRIVER_INPUT") => heard.findLast((one) => one.name === name)?.message,
+    /** The first message from now on that fits. */
+    async next(fits, what, name = "DRIVER_INPUT") {
+      const from = heard.length;
+      return until(() => heard.slice(from).find((one) => one.name === name && fits(one.message)), what);
+    },
+  };
+}
+
+/** Opens the participant's page with gamepads that the test can move: `window.fakePads`. */
+export async function withFakePads(context) {
+  await context.addInitScript(() => {
+    window.fakePads = [];
+    navigator.getGamepads = () => window.fakePads;
+  });
+}
+
+/** Sets a faked gamepad: its axes, and the buttons that are down. */
+export async function setPad(page, {id = "Test Wheel", axes = [1, 1], down = [], connected = true,
+                                    mapping = ""} = {}) {
+  await page.evaluate((state) => {
+    const before = window.fakePads.find((pad) => pad.id === state.id);
+    const pad = {...state, index: 0, timestamp: performance.now(),
+                 buttons: [0, 1, 2, 3].map((i) => (
+                   {pressed: state.down.includes(i), touched: false, value: state.down.includes(i) ? 1 : 0}))};
+    window.fakePads = state.connected ? [pad] : [];
+    if (!before && state.connected) dispatchEvent(new Event("gamepadconnected"));
+    if (before && !state.connected) dispatchEvent(new Event("gamepaddisconnected"));
+  }, {id, axes, down, connected, mapping});
+}
+
+/** Waits until the page drives, or does not. */
+export async function drives(page, whether) {
+  await page.waitForFunction((wanted) => document.body.dataset.present === wanted, String(whether));
+}
+
+/** The person is ready. */
+export async function begin(page) {
+  await page.waitForFunction(() => foglineDrive.state !== "");
+  await page.click("#begin");
+}
