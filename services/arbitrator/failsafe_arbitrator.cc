@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "common/whole_steps.h"
+
 namespace fogline::arbitrator {
 namespace {
 
@@ -34,7 +36,8 @@ FailsafeArbitrator::FailsafeArbitrator(const Scenario& scenario)
     : arbitrator_(scenario),
       pairs_(scenario.health),
       minimal_risk_(scenario.minimal_risk, scenario.step_s),
-      person_(scenario.person.drives) {
+      person_(scenario.person.drives),
+      person_due_step_(StepsUntil(scenario.person.deadman_s, scenario.step_s)) {
   out_.threshold = scenario.arbitrator.threshold;
 }
 
@@ -47,7 +50,8 @@ const arbitration_t& FailsafeArbitrator::Step(const header_t& header,
     arbitrator_.Observe(pairs_.radar(), pairs_.lidar(), OrNone(inputs.track));
   }
   if (pairs_.has_pair()) Regular(inputs, AutomationOffer(inputs, pairs));
-  decision_ = Judge(inputs, pairs);
+  person_came_ = person_came_ || OrNone(inputs.driver).readiness > 0;
+  decision_ = Judge(header.step, inputs, pairs);
   switch (decision_) {
     case Decision::kRegular:
       break;
@@ -82,21 +86,24 @@ void FailsafeArbitrator::Regular(const ArbitratorInputs& inputs, Offer automatio
 }
 
 // A person may be gone although the driver's process sends its messages: nobody sits at a seat, or
-// the seat is silent. The readiness then is 0.
-Offer FailsafeArbitrator::HumanOffer(const ArbitratorInputs& inputs) const {
+// the seat is silent. The readiness then is 0. At the start of the run the first input of the
+// person may not have come yet.
+Offer FailsafeArbitrator::HumanOffer(std::int64_t step, const ArbitratorInputs& inputs) const {
   const Offer offer = OfferOf(inputs.driver.state);
   const bool absent = person_ && offer == kThere && inputs.driver.newest->readiness <= 0;
-  return absent ? kGone : offer;
+  if (!absent) return offer;
+  return !person_came_ && step < person_due_step_ ? kNotYet : kGone;
 }
 
-Decision FailsafeArbitrator::Judge(const ArbitratorInputs& inputs, InputState pairs) const {
+Decision FailsafeArbitrator::Judge(std::int64_t step, const ArbitratorInputs& inputs,
+                                   InputState pairs) const {
   if (minimal_risk_.begun()) return Decision::kMinimalRisk;
   if (arbitrator_.in_manoeuvre()) return Decision::kRegular;
   if (demanded_) return Decision::kMinimalRisk;
   const Offer automation = AutomationOffer(inputs, pairs);
   // If the automation has failed, there is no time to ask the driver.
   const bool unasked = automation == kGone && arbitrator_.must_ask();
-  const Offer human = unasked ? kGone : HumanOffer(inputs);
+  const Offer human = unasked ? kGone : HumanOffer(step, inputs);
   const bool disputed = pairs_.has_pair() && arbitrator_.wants_human();
   return Decide(automation, human, disputed ? kDisputed : kCalm);
 }

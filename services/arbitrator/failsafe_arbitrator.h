@@ -56,9 +56,9 @@ class FailsafeArbitrator {
   Decision decision() const { return decision_; }
 
  private:
-  Offer HumanOffer(const ArbitratorInputs& inputs) const;
+  Offer HumanOffer(std::int64_t step, const ArbitratorInputs& inputs) const;
   void Regular(const ArbitratorInputs& inputs, Offer automation);
-  Decision Judge(const ArbitratorInputs& inputs, InputState pairs) const;
+  Decision Judge(std::int64_t step, const ArbitratorInputs& inputs, InputState pairs) const;
   void Drive(std::int8_t mode, double acceleration_mps2);
   void Stop(const ego_t& ego);
 
@@ -66,6 +66,8 @@ class FailsafeArbitrator {
   SensorPairs pairs_;
   models::MinimalRisk minimal_risk_;
   bool person_;  // whether a person drives
+  bool person_came_ = false;
+  std::int64_t person_due_step_;  // a person who has not come by this step is gone
   bool demanded_ = false;
   Decision decision_ = Decision::kHold;
   // Acceleration and mode of the last decision, before emergency braking.

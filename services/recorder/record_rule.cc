@@ -31,7 +31,9 @@ RecordRule::RecordRule(runtime::Parts& parts, const Scenario& scenario)
       overdue_(duration_cast<Duration>(
           kOverduePeriods *
           std::chrono::duration<double>(runtime::PeriodOf(scenario, parts.run.pace)))),
-      inputs_per_s_(kSeats * runtime::kMostInputsPerSecond, kSeats * runtime::kMostInputsAtOnce) {}
+      inputs_per_s_(kSeats * runtime::kMostInputsPerSecond, kSeats * runtime::kMostInputsAtOnce) {
+  ListenToInputs();
+}
 
 void RecordRule::Listen() {
   listening_ = true;
@@ -40,6 +42,10 @@ void RecordRule::Listen() {
     if (status == nullptr || status->header.run_id != *parts_.run.id) return;
     Hear(IndexOf<status_t>(), arrival.bytes());
   });
+}
+
+// The driver takes inputs from the first TRUTH on. At that time this recorder has joined.
+void RecordRule::ListenToInputs() {
   // The driver refuses what is unsound, and counts it.
   parts_.bus.Subscribe(ChannelOf<driver_input_t>().name, [this](runtime::Arrival& arrival) {
     const auto* input = arrival.As<driver_input_t>();

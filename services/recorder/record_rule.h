@@ -67,6 +67,7 @@ class RecordRule final : public runtime::FireRule {
   bool GivenUp(std::int64_t step, TimePoint now);
   void AskForHoles(TimePoint now);
   void Listen();
+  void ListenToInputs();
   void Hear(std::size_t channel, runtime::Bytes bytes);
 
   runtime::Parts& parts_;

@@ -7,7 +7,8 @@
 
 namespace fogline::runtime {
 
-/// Subscribes to DRIVER_INPUT. Messages that are refused are counted in the role's STATUS.
+/// Subscribes to DRIVER_INPUT. Messages that are refused are counted in the role's STATUS. Messages
+/// that come before the role's first TRUTH have no effect.
 class LiveInput {
  public:
   /// @param parts of the role, which has joined

@@ -206,5 +206,31 @@ TEST_F(FailsafePersonTest, StopsWhenTheAutomationIsLostAndNobodyIsThere) {
   EXPECT_EQ(Step().mode, arbitration_t::MINIMAL_RISK);
 }
 
+/// A person who need not be asked.
+Scenario InstantPerson() {
+  Scenario scenario = AskingAPerson();
+  scenario.arbitrator.take_over.mode = TakeOverMode::kInstant;
+  return scenario;
+}
+
+class FailsafeFirstInputTest : public FailsafeTakeOverTest {
+ protected:
+  FailsafeFirstInputTest() : FailsafeTakeOverTest(InstantPerson()) { driver_.readiness = 0; }
+};
+
+TEST_F(FailsafeFirstInputTest, IsAwaitedAtTheStartOfTheRun) {
+  EXPECT_EQ(Step().mode, arbitration_t::AUTOMATION) << "the first command holds";
+  EXPECT_EQ(Step().mode, arbitration_t::AUTOMATION);
+  driver_.readiness = 1;
+  EXPECT_EQ(Step().mode, arbitration_t::HUMAN);
+  driver_.readiness = 0;
+  EXPECT_EQ(Step().mode, arbitration_t::MINIMAL_RISK) << "the person was there, and has gone";
+}
+
+TEST_F(FailsafeFirstInputTest, IsNotAwaitedLongerThanTheDeadmansTime) {
+  for (int k = 0; k < 3; ++k) EXPECT_EQ(Step().mode, arbitration_t::AUTOMATION) << k;
+  EXPECT_EQ(Step().mode, arbitration_t::MINIMAL_RISK) << "0.3 s";
+}
+
 }  // namespace
 }  // namespace fogline
