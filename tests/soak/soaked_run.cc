@@ -15,14 +15,8 @@
 namespace fogline::test {
 namespace {
 
-// A time limit of ten times the duration of a run. `fogline run` itself would wait longer, at least
-// for its stall timeout.
-constexpr std::chrono::seconds kPatience(60);
 // The value of Background::Wait() for a process that SIGKILL has ended.
 constexpr int kKilled = 128 + SIGKILL;
-// With ttl=1, messages go over the interface to which the route leads. With the default ttl=0,
-// messages go over loopback.
-constexpr const char* kUrl = "udpm://239.255.76.67:7700?ttl=1";
 // The roles that this program starts itself, with their machines. The runner starts the recorder on
 // the first machine.
 constexpr std::pair<Role, std::size_t> kByHand[] = {

@@ -13,6 +13,9 @@ namespace fogline::test {
 
 /// The interval at which a test checks a condition outside of its process.
 inline constexpr std::chrono::milliseconds kLookEvery(5);
+/// A time limit. Programs start and messages arrive earlier even when every processor is busy, and
+/// so do a Java virtual machine and a browser.
+inline constexpr std::chrono::seconds kPatience(60);
 
 /// The folder of the built programs, and the folder of the sources.
 std::filesystem::path ProgramDirectory();

@@ -14,6 +14,11 @@
 
 namespace fogline::test {
 
+/// The URL of a run whose messages go over a network of its own. With ttl=1, messages go over the
+/// interface to which the route leads. With the default ttl=0, messages go over loopback. All tests
+/// use one group and port, because each test has networks of its own.
+inline constexpr const char* kUrl = "udpm://239.255.76.67:7700?ttl=1";
+
 /// The reason why this process cannot make machines, such as "unshare: Operation not permitted"; ""
 /// if it can make them.
 std::string WhyNoMachines();

@@ -1,5 +1,8 @@
-// The verbs of `fogline`, as its help lists them.
+// The verbs of `fogline`, as its help lists them, and the command lines that they refuse.
 #pragma once
+
+#include <gmock/gmock-matchers.h>
+#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <sstream>
@@ -15,6 +18,17 @@ inline std::vector<std::string> Lines(const std::string& text) {
   std::istringstream stream(text);
   for (std::string line; std::getline(stream, line);) lines.push_back(line);
   return lines;
+}
+
+/// The error text of a refused command line of `fogline`: exit code 2, nothing on stdout, one line
+/// on stderr.
+inline std::string ErrorOf(std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), Program("fogline"));
+  const Outcome outcome = RunCommand(arguments);
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_EQ(outcome.out, "");
+  EXPECT_THAT(Lines(outcome.err), testing::SizeIs(1));
+  return outcome.err;
 }
 
 inline std::vector<std::string> Verbs() {

@@ -35,9 +35,6 @@ inline constexpr std::string_view kFrame = R"(<!DOCTYPE html><body style="margin
 <script>document.getElementById("hold").contentDocument.open();</script>
 <iframe style="border:0;width:{}px;height:{}px" srcdoc="{}"></iframe>)";
 
-/// The time limit for a browser on a busy machine. A page takes about a second.
-inline constexpr std::chrono::seconds kPatience(60);
-
 /// This script runs before everything else in the page and collects its errors.
 inline constexpr std::string_view kWatch = R"(<script>
 const problems = [];

@@ -1,6 +1,5 @@
 // The report of runs in a real browser: it draws its figures, stays within the width of a phone,
 // and responds to the reader.
-#include <limits>
 #include <span>
 #include <string>
 #include <string_view>
@@ -367,7 +366,6 @@ TEST_F(ReportInBrowserTest, ComparesRunsOfDifferentLengthAndStep) {
 }
 
 TEST_F(ReportInBrowserTest, ShowsRunsWithoutFollowerOrStepsWithoutAnError) {
-  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   std::vector<report::ReportRun> runs = ExampleRuns(60);
   runs[0].samples.clear();
   for (metrics::Sample& sample : runs[1].samples) {

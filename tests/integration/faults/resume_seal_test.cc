@@ -17,8 +17,6 @@ namespace {
 
 using testing::HasSubstr;
 
-constexpr int kSteps = kResumeSteps;
-
 class ResumeOfCompleteLogTest : public ResumeTest {
  protected:
   /// Copies whole.lcm without its seal, like the log of a runner that died after the last step.
@@ -54,7 +52,7 @@ TEST_F(ResumeOfCompleteLogTest, SaysTheResultAgainAndComputesNothing) {
   EXPECT_EQ(outcome.code, 0);
   EXPECT_EQ(outcome.err, log_ + ": the run is complete\n");
   const auto result = ExpectSameEnd(whole);
-  EXPECT_EQ(result["resumed_steps"], kSteps);
+  EXPECT_EQ(result["resumed_steps"], kResumeSteps);
   EXPECT_EQ(result["transport"], nullptr);
   EXPECT_EQ(result["log"], log_);
   EXPECT_EQ(ExpectSameEnd(whole, {"--verify"})["verified"]["roles"].size(), 8U);
@@ -79,8 +77,8 @@ TEST_F(ResumeOfCompleteLogTest, ComputesAgainWhatItGoesOnFrom) {
   };
   expect_found(resume(250, {"--transport", "memq"}));
   EXPECT_EQ(resume(250, {"--transport", "memq", "--no-verify"}).code, 0);
-  expect_found(resume(kSteps, {}));
-  EXPECT_EQ(resume(kSteps, {"--no-verify"}).code, 0);
+  expect_found(resume(kResumeSteps, {}));
+  EXPECT_EQ(resume(kResumeSteps, {"--no-verify"}).code, 0);
 }
 
 TEST_F(ResumeOfCompleteLogTest, VerifiesAndSealsTheLogOfARunnerThatDiedBeforeItSealed) {

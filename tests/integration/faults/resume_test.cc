@@ -17,8 +17,6 @@ namespace {
 using testing::ContainsRegex;
 using testing::HasSubstr;
 
-constexpr int kSteps = kResumeSteps;
-
 TEST_F(ResumeAfterKillTest, RunnersKilledAtRandomStepsChangeNoResult) {
   ExpectKilledRunnersChangeNoResult(3);
 }
@@ -31,14 +29,14 @@ TEST_F(ResumeTest, GoesOnOverAnotherTransportThanItBeganWith) {
   const auto whole = Undisturbed();
   for (const char* transport : {"direct", "memq", "tcpq"}) {
     std::filesystem::remove(log_);
-    SeenRun(Paper(kSteps) + kPaced, log_).KillAtStep(150);
+    SeenRun(Paper(kResumeSteps) + kPaced, log_).KillAtStep(150);
     EXPECT_EQ(ExpectSameEnd(whole, {"--transport", transport})["transport"], transport);
   }
 }
 
 TEST_F(ResumeTest, GoesOnAfterItHasBeenKilledWhileItWentOn) {
   const auto whole = Undisturbed();
-  SeenRun(Paper(kSteps) + kPaced, log_).KillAtStep(50);
+  SeenRun(Paper(kResumeSteps) + kPaced, log_).KillAtStep(50);
   for (int i = 0; i < 2; ++i) {
     const auto size = std::filesystem::file_size(log_);
     Background again(Words{Program("fogline"), "run", "--resume", log_} + kPaced);
@@ -51,7 +49,7 @@ TEST_F(ResumeTest, GoesOnAfterItHasBeenKilledWhileItWentOn) {
 
 TEST_F(ResumeTest, RefusesNoMessageOfARunThatGoesOnUndisturbed) {
   const auto whole = Undisturbed();
-  SeenRun(Paper(kSteps) + kPaced, log_).KillAtStep(200);
+  SeenRun(Paper(kResumeSteps) + kPaced, log_).KillAtStep(200);
   const auto result = ExpectSameEnd(whole);
   for (const auto& [kind, count] : result["refused"].items()) EXPECT_EQ(count, 0) << kind;
   EXPECT_EQ(result["verified"]["roles"].size(), 8U);
@@ -64,7 +62,7 @@ TEST_F(ResumeTest, GoesOnWithTheRolesFromElsewhereThatHaveOutlivedTheirRunner) {
   for (const Words& sealed : {Words{}, Words{"--key", key}}) {
     std::filesystem::remove(log_);
     // GIVEN a driver that was started from another shell
-    SeenRun seen(Paper(kSteps) + kPaced + Words{"--external", "driver"} + sealed, log_);
+    SeenRun seen(Paper(kResumeSteps) + kPaced + Words{"--external", "driver"} + sealed, log_);
     Background driver(Words{Program("fogline-driver"), "--lcm-url", seen.url()} + sealed);
     // WHEN the runner dies, THEN the same driver continues with the next runner
     seen.KillAtStep(150);
@@ -81,7 +79,7 @@ TEST_F(ResumeTest, IsSaidWhereARunIsInterruptedOrFails) {
   const std::string command = "\n  to go on: fogline run --resume " + log_;
   const std::string path = "PATH=" + ProgramDirectory().string() + ":$PATH ";
   {
-    SeenRun seen(Paper(kSteps) + kPaced, log_);
+    SeenRun seen(Paper(kResumeSteps) + kPaced, log_);
     seen.WaitForStep(100);
     seen.run().Signal(SIGINT);
     ASSERT_EQ(seen.run().Wait(), 130);
@@ -151,7 +149,7 @@ TEST_F(ResumeTest, RefusesARunInRealTime) {
 }
 
 TEST_F(ResumeTest, RefusesTheLogOfARunThatIsUnderWay) {
-  Background run(Paper(kSteps) + Words{"--pace", "1", "--log", log_});
+  Background run(Paper(kResumeSteps) + Words{"--pace", "1", "--log", log_});
   ASSERT_TRUE(GrowsTo(20'000, log_)) << run.Err();
   const Outcome outcome = Resume();
   EXPECT_EQ(outcome.code, 2);

@@ -7,8 +7,6 @@
 #include <chrono>
 #include <csignal>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <optional>
 #include <string>
@@ -26,11 +24,6 @@ namespace {
 using ::testing::StartsWith;
 using Words = std::vector<std::string>;
 using FilesByName = std::map<std::string, std::string>;  // the contents of each file
-
-std::string Content(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
 
 /// An export into a folder in which one file is a pipe that no process reads. The export waits at
 /// this pipe after it has written some of its files.

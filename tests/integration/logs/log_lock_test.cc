@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "services/runtime/transport/bus.h"
+#include "tests/integration/logs/log_integrity_fixture.h"
 #include "tests/support/children.h"
 #include "tests/support/command.h"
 
@@ -22,12 +23,6 @@ namespace {
 
 using testing::HasSubstr;
 using testing::StartsWith;
-
-std::vector<std::string> With(std::vector<std::string> command,
-                              const std::vector<std::string>& more) {
-  command.insert(command.end(), more.begin(), more.end());
-  return command;
-}
 
 bool HoldsALock(pid_t pid) {
   std::ifstream locks("/proc/locks");

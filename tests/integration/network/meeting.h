@@ -15,9 +15,6 @@
 
 namespace fogline::test {
 
-// A time limit. Programs start and messages arrive earlier even when every processor is busy.
-inline constexpr std::chrono::seconds kPatience(30);
-
 /// A multicast address that the variable LCM_DEFAULT_URL gives to all programs of a test.
 class Meeting {
  public:

@@ -18,9 +18,6 @@ namespace {
 
 using testing::HasSubstr;
 
-// All tests use one group and port, because each test has networks of its own.
-constexpr const char* kUrl = "udpm://239.255.76.67:7700?ttl=1";
-
 TEST_F(NetworkTest, LosingThreeOfTenDatagramsInTheKernelChangesNoResult) {
   const Machine machine("lossy");
   machine.RouteMulticastToItself();
@@ -189,7 +186,6 @@ TEST_F(NetworkTest, OfTwoProcessesOfOneRoleOneTakesPartAndTheOtherWaits) {
   };
   // The runner does not wait for the end of its driver. Even on a busy machine the driver ends
   // within kPatience.
-  constexpr auto kPatience = std::chrono::seconds(20);
   const TimePoint end = Clock::now() + kPatience;
   while (ended() == 0 && Clock::now() < end) std::this_thread::sleep_for(kLookEvery);
   EXPECT_EQ(ended(), 1);

@@ -23,8 +23,6 @@ using testing::AllOf;
 using testing::ContainsRegex;
 using testing::HasSubstr;
 
-constexpr const char* kUrl = "udpm://239.255.76.67:7700?ttl=1";
-
 /// A failure of the network, and the shell commands that begin and end the failure.
 struct Outage {
   std::string name;

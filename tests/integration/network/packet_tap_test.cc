@@ -18,9 +18,6 @@ namespace {
 
 using watch::SenderView;
 
-// A time limit. Packets arrive earlier, even when every processor is busy.
-constexpr Duration kPatience = milliseconds(30'000);
-
 /// The view of the sender on this channel; an empty one if there is none.
 SenderView SenderOn(const watch::Senders& senders, const std::string& channel) {
   for (const SenderView& sender : senders.View(Clock::now()).senders) {

@@ -14,7 +14,6 @@
 
 namespace fogline::test {
 
-inline constexpr std::chrono::seconds kPatience(20);
 using Payload = std::vector<std::uint8_t>;
 
 /// A relay on a free port.

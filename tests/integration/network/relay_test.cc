@@ -37,8 +37,8 @@ std::vector<std::string> RunCommandLine(const std::string& transport, const std:
 
 std::string DigestOf(const Outcome& run) {
   EXPECT_EQ(run.code, 0) << run.err;
-  const auto json = nlohmann::json::parse(run.out, nullptr, false);
-  return json.is_object() ? json["digest"].get<std::string>() : "";
+  const auto document = nlohmann::json::parse(run.out, nullptr, false);
+  return document.is_object() ? document["digest"].get<std::string>() : "";
 }
 
 // ---- messages ----------------------------------------------------------------------------------

@@ -18,7 +18,7 @@ namespace fogline::test {
 namespace {
 
 using testing::HasSubstr;
-using Message = std::vector<std::uint8_t>;
+using Payload = std::vector<std::uint8_t>;
 
 /// Receives all traffic of a network and publishes arbitrary messages. The intruder has no key.
 class Intruder {
@@ -34,7 +34,7 @@ class Intruder {
   /// AccompanyUntilTheEnd() listens until the run has ended, and calls this function with every
   /// message. AccompanyUntilTheEnd() skips repeated messages, messages of `other_runs`, and the
   /// intruder's own messages.
-  using Answer = std::function<void(const std::string& channel, const Message& message)>;
+  using Answer = std::function<void(const std::string& channel, const Payload& message)>;
   void AccompanyUntilTheEnd(const Background& run, const std::set<std::int64_t>& other_runs,
                             const Answer& answer) {
     std::size_t done = 0;
@@ -49,14 +49,14 @@ class Intruder {
     }
   }
 
-  void Say(const std::string& channel, const Message& message) {
+  void Say(const std::string& channel, const Payload& message) {
     if (message.size() > runtime::kMaxMessageBytes) return;
     said_.insert(message);
     bus_.Publish(channel, message);
     ++count_;
   }
 
-  const std::vector<std::pair<std::string, Message>>& heard() const { return heard_; }
+  const std::vector<std::pair<std::string, Payload>>& heard() const { return heard_; }
   int count() const { return count_; }
 
   static std::int64_t RunIdOf(runtime::Bytes message) {
@@ -65,19 +65,19 @@ class Intruder {
 
  private:
   void Hear(const std::string& channel, runtime::Bytes bytes) {
-    Message message(bytes.begin(), bytes.end());
+    Payload message(bytes.begin(), bytes.end());
     if (known_.insert(message).second) heard_.emplace_back(channel, std::move(message));
   }
 
   runtime::Bus bus_;
-  std::set<Message> known_;
-  std::set<Message> said_;
-  std::vector<std::pair<std::string, Message>> heard_;
+  std::set<Payload> known_;
+  std::set<Payload> said_;
+  std::vector<std::pair<std::string, Payload>> heard_;
   int count_ = 0;
 };
 
 /// A message with other contents and a later step, for which the receivers still wait.
-Message Forged(Message payload) {
+Payload Forged(Payload payload) {
   constexpr std::uint8_t kStepsAhead = 3;
   payload[runtime::kStepOffset + 7] =
       static_cast<std::uint8_t>(payload[runtime::kStepOffset + 7] + kStepsAhead);
@@ -85,7 +85,7 @@ Message Forged(Message payload) {
   return payload;
 }
 
-Message Copy(runtime::Bytes bytes) { return {bytes.begin(), bytes.end()}; }
+Payload Copy(runtime::Bytes bytes) { return {bytes.begin(), bytes.end()}; }
 
 class SignedTrafficTest : public testing::Test {
  protected:
@@ -129,7 +129,7 @@ TEST_F(SignedTrafficTest,
   Intruder intruder(url_);
   // GIVEN all messages of an earlier run with the same key
   Background earlier(Run({"--key", key_, "--set", "/steps=30"}));
-  intruder.AccompanyUntilTheEnd(earlier, {}, [](const std::string&, const Message&) {});
+  intruder.AccompanyUntilTheEnd(earlier, {}, [](const std::string&, const Payload&) {});
   ResultOf(earlier);
   const auto recorded = intruder.heard();
   ASSERT_GT(recorded.size(), 300U);
@@ -140,13 +140,13 @@ TEST_F(SignedTrafficTest,
   std::size_t next = 0;
   Background run(Run({"--key", key_, "--set", "/steps=60", "--pace", "3"}));
   intruder.AccompanyUntilTheEnd(run, {earlier_id},
-                                [&](const std::string& channel, const Message& message) {
-                                  const Message payload = Copy(runtime::WithoutSignature(message));
-                                  Message forged = Forged(payload);
+                                [&](const std::string& channel, const Payload& message) {
+                                  const Payload payload = Copy(runtime::WithoutSignature(message));
+                                  Payload forged = Forged(payload);
                                   if (channel == "RUN") forged[runtime::kHeaderEnd] = run_t::STOP;
-                                  Message altered = message;
+                                  Payload altered = message;
                                   altered[payload.size() - 1] ^= 1;
-                                  for (const Message& attack : {forged, altered, message})
+                                  for (const Payload& attack : {forged, altered, message})
                                     intruder.Say(channel, attack);
                                   intruder.Say(channel, Copy(wrong_key.Sign(channel, forged)));
                                   if (channel != "LIDAR" && channel != "RESEND") {
@@ -171,16 +171,16 @@ TEST_F(SignedTrafficTest, ARoleFromElsewhereTakesNoPartInARunThatIsReplayed) {
   Intruder intruder(url_);
   // GIVEN all RUN messages of an earlier run with the same key
   Background earlier(Run({"--key", key_, "--set", "/steps=30"}));
-  intruder.AccompanyUntilTheEnd(earlier, {}, [](const std::string&, const Message&) {});
+  intruder.AccompanyUntilTheEnd(earlier, {}, [](const std::string&, const Payload&) {});
   ResultOf(earlier);
-  std::vector<Message> announcements;
+  std::vector<Payload> announcements;
   for (const auto& [channel, message] : intruder.heard()) {
     if (channel == "RUN") announcements.push_back(message);
   }
   ASSERT_GT(announcements.size(), 3U);
   const std::int64_t earlier_id = Intruder::RunIdOf(announcements.front());
   const auto replay = [&] {
-    for (const Message& message : announcements) intruder.Say("RUN", message);
+    for (const Payload& message : announcements) intruder.Say("RUN", message);
   };
   // WHEN these messages are replayed for a second to a driver that waits for a run
   Background driver({Program("fogline-driver"), "--lcm-url", url_, "--key", key_});
@@ -192,7 +192,7 @@ TEST_F(SignedTrafficTest, ARoleFromElsewhereTakesNoPartInARunThatIsReplayed) {
   // THEN the driver takes part in the next genuine run
   Background run(Run({"--key", key_, "--external", "driver", "--set", "/steps=30"}));
   intruder.AccompanyUntilTheEnd(run, {earlier_id},
-                                [&](const std::string&, const Message&) { replay(); });
+                                [&](const std::string&, const Payload&) { replay(); });
   EXPECT_EQ(ResultOf(run)["digest"], Undisturbed("/steps=30"));
   EXPECT_EQ(driver.Wait(), 0) << driver.Err();
 }
@@ -202,12 +202,12 @@ TEST_F(SignedTrafficTest, UnsoundMessagesHaveNoEffectOnAnUnsignedRunEither) {
   lcm_t* lcm = lcm_create(url_.c_str());
   ASSERT_NE(lcm, nullptr);
   Background run(Run({"--set", "/steps=60", "--pace", "3"}));
-  intruder.AccompanyUntilTheEnd(run, {}, [&](const std::string& channel, const Message& message) {
+  intruder.AccompanyUntilTheEnd(run, {}, [&](const std::string& channel, const Payload& message) {
     const auto* info = std::ranges::find(kChannels, channel, &ChannelInfo::name);
     if (info->pace != Pace::kStep) return;
-    Message other_type = Forged(message);
+    Payload other_type = Forged(message);
     other_type[0] ^= 1;
-    Message too_long = Forged(message);
+    Payload too_long = Forged(message);
     too_long.push_back(0);
     intruder.Say(channel, other_type);
     intruder.Say(channel, too_long);
@@ -216,12 +216,12 @@ TEST_F(SignedTrafficTest, UnsoundMessagesHaveNoEffectOnAnUnsignedRunEither) {
       ASSERT_TRUE(runtime::Decode(message, command));
       command.header.step += 3;
       command.acceleration_mps2 = std::numeric_limits<double>::quiet_NaN();
-      Message nan;
+      Payload nan;
       runtime::Encode(command, nan);
       intruder.Say(channel, nan);
       // This message is sent in fragments. The kernel's filter drops them before LCM's parser gets
       // them.
-      const Message huge(300'000, 1);
+      const Payload huge(300'000, 1);
       lcm_publish(lcm, channel.c_str(), huge.data(), static_cast<unsigned>(huge.size()));
     }
   });
@@ -274,7 +274,7 @@ TEST_F(SignedTrafficTest, TakesTheKeyFromTheEnvironment) {
   }());
   Intruder intruder(url_);
   bool signed_steps = false;
-  intruder.AccompanyUntilTheEnd(run, {}, [&](const std::string& channel, const Message& message) {
+  intruder.AccompanyUntilTheEnd(run, {}, [&](const std::string& channel, const Payload& message) {
     signed_steps = signed_steps || (channel == "TRUTH" && runtime::LooksSigned(message));
   });
   EXPECT_EQ(ResultOf(run)["digest"], Undisturbed("/steps=20"));

@@ -13,17 +13,16 @@ namespace {
 
 using testing::HasSubstr;
 
-constexpr const char* kUrl = "udpm://239.255.76.67:7700?ttl=1";
-constexpr int kRate_hz = 20;
+constexpr int kDeafRunRate_hz = 20;
 
 class DeafRoleTest : public NetworkTest {
  protected:
   std::vector<std::string> RealtimeRun(int seconds, const std::vector<std::string>& more) {
     std::vector<std::string> arguments{"--realtime",
                                        "--set",
-                                       "/step_s=" + std::to_string(1.0 / kRate_hz),
+                                       "/step_s=" + std::to_string(1.0 / kDeafRunRate_hz),
                                        "--set",
-                                       "/steps=" + std::to_string(seconds * kRate_hz),
+                                       "/steps=" + std::to_string(seconds * kDeafRunRate_hz),
                                        "--lcm-url",
                                        kUrl};
     arguments.insert(arguments.end(), more.begin(), more.end());
@@ -66,7 +65,7 @@ TEST_F(DeafRoleTest, IsNamedAndStartedAgainAndComputesWhenItHears) {
     EXPECT_NE(role["role"], "fusion") << "no role published the input that it lacked";
   }
   EXPECT_TRUE(radar) << result["restarts"];
-  EXPECT_GE(NewestStepOf("RADAR"), kSeconds * kRate_hz - 5);
+  EXPECT_GE(NewestStepOf("RADAR"), kSeconds * kDeafRunRate_hz - 5);
   // AND the run fails, because the log lacks about two seconds
   EXPECT_THAT(run.Err(), HasSubstr(kNotWhole));
 }
@@ -100,7 +99,7 @@ TEST_F(DeafRoleTest, FromElsewhereIsNamed) {
                              " on lab2) is deaf: it has heard no TRUTH for "));
   lab[1].LoseNothing();
   EXPECT_EQ(run.Wait(), 0) << run.Err();
-  EXPECT_GE(NewestStepOf("DRIVER_COMMAND"), kSeconds * kRate_hz - 5);
+  EXPECT_GE(NewestStepOf("DRIVER_COMMAND"), kSeconds * kDeafRunRate_hz - 5);
 }
 
 }  // namespace

@@ -22,10 +22,7 @@ namespace {
 
 using testing::HasSubstr;
 
-constexpr const char* kUrl = "udpm://239.255.76.67:7700?ttl=1";
-constexpr int kRate_hz = 50;
-// A time limit, far longer than any wait in these tests, even on a busy machine.
-constexpr Duration kPatience = std::chrono::seconds(30);
+constexpr int kLossyRunRate_hz = 50;
 
 /// Receives, on the machine of a run, the newest step of the world and the STOP of the runner.
 class Listener {
@@ -73,8 +70,9 @@ class LossyNetworkInRealtimeTest : public NetworkTest {
   }
   /// The command line of a run in real time, with 50 steps per second.
   std::vector<std::string> RealtimeRun(int steps) {
-    return machine_->On(Run({"--realtime", "--set", "/step_s=" + std::to_string(1.0 / kRate_hz),
-                             "--set", "/steps=" + std::to_string(steps), "--lcm-url", kUrl}));
+    return machine_->On(
+        Run({"--realtime", "--set", "/step_s=" + std::to_string(1.0 / kLossyRunRate_hz), "--set",
+             "/steps=" + std::to_string(steps), "--lcm-url", kUrl}));
   }
   /// Makes the network lose everything for this time. The tests are about the length of this pause.
   void LoseEverythingFor(Duration time) const {
@@ -121,14 +119,14 @@ TEST_F(LossyNetworkInRealtimeTest, ThatLosesAThirdAllTheTimeLeavesNoRoleDeaf) {
 }
 
 TEST_F(LossyNetworkInRealtimeTest, NearTheEndOfTheRunSendsNoRecorderAwayBeforeStop) {
-  constexpr int kSteps = 3 * kRate_hz;
+  constexpr int kSteps = 3 * kLossyRunRate_hz;
   Listener listener(*machine_);
   Background run(RealtimeRun(kSteps));
   ASSERT_TRUE(run.WaitForErr("processes: "));
   const pid_t recorder = PidOf(run.Err(), "recorder");
   ASSERT_NE(recorder, 0) << run.Err();
   // WHEN the network loses everything for half of the last second
-  ASSERT_TRUE(listener.WaitForStep(kSteps - kRate_hz)) << run.Err();
+  ASSERT_TRUE(listener.WaitForStep(kSteps - kLossyRunRate_hz)) << run.Err();
   LoseEverythingFor(milliseconds(500));
   // THEN the recorder lives until the runner sends STOP, and the log has the last step
   EXPECT_TRUE(listener.LivesUntilStop(recorder)) << run.Err();
@@ -142,8 +140,8 @@ TEST_F(LossyNetworkInRealtimeTest, NearTheEndOfTheRunSendsNoRecorderAwayBeforeSt
 
 TEST_F(LossyNetworkInRealtimeTest, ForLongerThanMessagesAreKeptFailsTheRun) {
   Listener listener(*machine_);
-  Background run(RealtimeRun(4 * kRate_hz));
-  ASSERT_TRUE(listener.WaitForStep(kRate_hz)) << run.Err();
+  Background run(RealtimeRun(4 * kLossyRunRate_hz));
+  ASSERT_TRUE(listener.WaitForStep(kLossyRunRate_hz)) << run.Err();
   // A second has 50 steps. The world and the roles can send only the last 32 steps again.
   LoseEverythingFor(milliseconds(1000));
   EXPECT_EQ(run.Wait(), kFailed);

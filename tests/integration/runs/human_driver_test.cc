@@ -14,8 +14,8 @@ namespace {
 using Words = std::vector<std::string>;
 
 /// Fog early in a short run, in which the driver takes over.
-const Words kFoggy{"/steps=60",      "/fog/model=beam",   "/fog/visibility_m=40",
-                   "/fog/start_s=1", "/fog/duration_s=3", "/arbitrator/threshold=0.5"};
+const Words kFogForTheDriver{"/steps=60",      "/fog/model=beam",   "/fog/visibility_m=40",
+                             "/fog/start_s=1", "/fog/duration_s=3", "/arbitrator/threshold=0.5"};
 
 struct Weakness {
   std::string name;
@@ -37,7 +37,7 @@ class HumanDriverTest : public testing::Test {
  protected:
   /// @param more further arguments
   nlohmann::json Run(const std::string& transport, const Words& fields, const Words& more = {}) {
-    Words all = kFoggy;
+    Words all = kFogForTheDriver;
     all.insert(all.end(), fields.begin(), fields.end());
     return RunOn(transport, "scenario/paper.json", folder_.File(transport + ".lcm"), all, more);
   }

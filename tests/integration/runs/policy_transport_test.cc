@@ -14,17 +14,17 @@ namespace fogline::test {
 namespace {
 
 /// The LiDAR loses the car at about step 15. Transfers between automation and human are smooth.
-const std::vector<std::string> kFoggy{"/steps=60",
-                                      "/fog/start_s=1",
-                                      "/fog/duration_s=4",
-                                      "/arbitrator/transfer/profile=sigmoid",
-                                      "/arbitrator/transfer/gate=true",
-                                      "/arbitrator/transfer/hysteresis=sprt",
-                                      "/arbitrator/transfer/min_dwell_s=1"};
+const std::vector<std::string> kFogWithSmoothTransfers{"/steps=60",
+                                                       "/fog/start_s=1",
+                                                       "/fog/duration_s=4",
+                                                       "/arbitrator/transfer/profile=sigmoid",
+                                                       "/arbitrator/transfer/gate=true",
+                                                       "/arbitrator/transfer/hysteresis=sprt",
+                                                       "/arbitrator/transfer/min_dwell_s=1"};
 
 void ExpectOneDigest(std::string_view policy, const std::vector<std::string>& more = {}) {
   const ScratchFolder folder;
-  std::vector<std::string> fields = kFoggy;
+  std::vector<std::string> fields = kFogWithSmoothTransfers;
   fields.push_back("/arbitrator/policy=" + std::string(policy));
   fields.insert(fields.end(), more.begin(), more.end());
   ExpectTheSameOnAnyTransport(

@@ -24,8 +24,6 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-// A time limit. Messages on one machine take far less time, also when every processor is busy.
-constexpr Duration kPatience = std::chrono::seconds(30);
 // The requester of this test's RESEND messages.
 constexpr const char* kTest = "test";
 

@@ -85,11 +85,6 @@ class CalibrateTest : public testing::Test {
   }
 };
 
-std::string TextOf(const std::string& file) {
-  std::ifstream stream(file);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
-
 // A search ends when every number of the table is within 0.001 points of the target. Here 1 % of
 // the offset's range moves the table by only 0.07 points. So the search finds a field within a few
 // thousandths of its range: 0.4 mm of the offset, 1.5 mm of the fog's bias, 4 ms of the headway.
@@ -137,7 +132,7 @@ TEST_F(CalibrateTest, WritesTheScenarioWithWhatItFound) {
   std::string expected = kScenario;
   expected.replace(expected.find("0.3 }"), 3, found["fields"][0]["value"].dump());
   expected.replace(expected.find("Without noise"), 13, "Found");
-  EXPECT_EQ(TextOf(out_), expected);
+  EXPECT_EQ(Content(out_), expected);
   EXPECT_EQ(RunFogline({"check", out_}).code, 0);
   // AND the table of this file equals the table that calibrate reported
   const Outcome table =
@@ -233,9 +228,9 @@ TEST_F(EnsembleOfCalibrateTest, WritesItsSetsAndTheirTable) {
     }
     EXPECT_LE(set["search"]["distance"], 40);
     EXPECT_LE(set["fresh"]["distance"], 40);
-    EXPECT_THAT(TextOf(file), testing::HasSubstr("Made by: fogline calibrate " + scenario_));
+    EXPECT_THAT(Content(file), testing::HasSubstr("Made by: fogline calibrate " + scenario_));
   }
-  EXPECT_THAT(TextOf(sets_ + "/sets.csv"), testing::StartsWith("quantity,unit,lowest,"));
+  EXPECT_THAT(Content(sets_ + "/sets.csv"), testing::StartsWith("quantity,unit,lowest,"));
   // AND calibrate replaces the sets only with --force
   const Outcome again = RunFogline(Search({"--ensemble", "1"}));
   EXPECT_EQ(again.code, 2);

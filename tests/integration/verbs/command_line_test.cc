@@ -31,16 +31,6 @@ std::string HelpOf(std::vector<std::string> command) {
   return help.out;
 }
 
-/// The error text of a refused command line: exit code 2, nothing on stdout, one line on stderr.
-std::string ErrorOf(std::vector<std::string> arguments) {
-  arguments.insert(arguments.begin(), Program("fogline"));
-  const Outcome outcome = RunCommand(arguments);
-  EXPECT_EQ(outcome.code, 2);
-  EXPECT_EQ(outcome.out, "");
-  EXPECT_THAT(Lines(outcome.err), SizeIs(1));
-  return outcome.err;
-}
-
 /// Checks a help text: exit codes, at least one example, no line too long for a terminal.
 void ExpectWholeHelp(const std::vector<std::string>& command) {
   SCOPED_TRACE(command.front() + " " + command.back());

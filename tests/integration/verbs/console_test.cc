@@ -9,7 +9,6 @@
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <iterator>
 #include <string>
 #include <thread>
@@ -28,14 +27,6 @@ namespace {
 
 using testing::HasSubstr;
 using Words = std::vector<std::string>;
-
-// A time limit, longer than a run of 20 steps takes on a busy machine.
-constexpr std::chrono::seconds kPatience(60);
-
-std::string Content(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
 
 /// A shell that executes `before`, such as "exec 2>/dev/full", and then the command.
 Words Shell(const std::string& before, Words command) {

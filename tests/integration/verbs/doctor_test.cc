@@ -21,9 +21,6 @@ namespace {
 using nlohmann::json;
 using testing::HasSubstr;
 
-// A time limit. Programs start and messages arrive earlier even when every processor is busy.
-constexpr std::chrono::seconds kPatience(30);
-
 /// Levels of all findings of one check.
 std::multiset<std::string> Levels(const json& document, const std::string& check) {
   std::multiset<std::string> levels;

@@ -88,13 +88,13 @@ TEST_F(JsonOutputTest, NamesThePageAndTheRunsOfAReport) {
   const std::string page = File("report.html");
   const Outcome outcome =
       RunCommand({Program("fogline"), "report", log_, "--output", page, "--json"});
-  const auto json = nlohmann::json::parse(outcome.out, nullptr, false);
-  EXPECT_EQ(json["report"], page);
-  EXPECT_EQ(json["png"], nullptr);
-  ASSERT_EQ(json["runs"].size(), 1U);
-  EXPECT_EQ(json["runs"][0]["log"], log_);
-  EXPECT_EQ(json["runs"][0]["seed"], 1);
-  EXPECT_EQ(json["runs"][0]["complete"], true);
+  const auto document = nlohmann::json::parse(outcome.out, nullptr, false);
+  EXPECT_EQ(document["report"], page);
+  EXPECT_EQ(document["png"], nullptr);
+  ASSERT_EQ(document["runs"].size(), 1U);
+  EXPECT_EQ(document["runs"][0]["log"], log_);
+  EXPECT_EQ(document["runs"][0]["seed"], 1);
+  EXPECT_EQ(document["runs"][0]["complete"], true);
 }
 
 TEST_F(JsonOutputTest, NamesTheFileOfAKey) {

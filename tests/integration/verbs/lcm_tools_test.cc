@@ -23,9 +23,6 @@ namespace {
 using std::chrono::seconds;
 using testing::HasSubstr;
 
-// A Java virtual machine starts, and a window opens, within this time even on a busy machine.
-constexpr seconds kPatience(60);
-
 using Payload = std::vector<std::uint8_t>;
 
 /// The payloads of a log or a network by channel, in order of arrival.
@@ -98,7 +95,7 @@ class Logger {
 
   /// Waits until lcm-logger has logged everything that was sent so far.
   [[nodiscard]] bool CatchUp(const std::string& mark) {
-    return Mark(bus_, mark, [&] { return Content().find(mark) != std::string::npos; });
+    return Mark(bus_, mark, [&] { return Content(file_).find(mark) != std::string::npos; });
   }
   /// Ends lcm-logger with Ctrl-C, as a person does. @return its exit code
   int End() {
@@ -107,13 +104,6 @@ class Logger {
   }
 
  private:
-  std::string Content() const {
-    std::ifstream in(file_, std::ios::binary);
-    std::ostringstream content;
-    content << in.rdbuf();
-    return content.str();
-  }
-
   runtime::Bus& bus_;
   const std::string file_;
   Background process_;

@@ -6,21 +6,12 @@
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 
-#include "tests/support/command.h"
+#include "tests/support/verbs.h"
 
 namespace fogline::test {
 namespace {
 
 using ::testing::HasSubstr;
-
-/// The error text of a refused command line: exit code 2, nothing on stdout.
-std::string ErrorOf(std::vector<std::string> arguments) {
-  arguments.insert(arguments.begin(), Program("fogline"));
-  const Outcome outcome = RunCommand(arguments);
-  EXPECT_EQ(outcome.code, 2);
-  EXPECT_EQ(outcome.out, "");
-  return outcome.err;
-}
 
 TEST(RefusedWordsTest, RefusesAnEmptyTextForEveryOptionAndArgumentThatNamesAFileOrFolder) {
   const std::string scenario = "scenario/paper.json";

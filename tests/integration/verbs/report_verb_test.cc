@@ -25,11 +25,6 @@ Outcome Report(std::vector<std::string> arguments) {
   return RunCommand(arguments);
 }
 
-std::string Read(const std::string& file) {
-  std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
-
 /// The data that the page gives to its script.
 nlohmann::json DataOf(const std::string& page) {
   constexpr std::string_view kBegin = "id=\"report-data\">";
@@ -61,7 +56,7 @@ TEST(ReportVerbTest, DrawsTheValuesOfTheTable) {
                                     "--thresholds", "0.2:0.8:7", "--seeds", "3:12", "--json"});
   ASSERT_EQ(table.code, 0) << table.err;
   // THEN curves and table agree to the last bit
-  const nlohmann::json curves = DataOf(Read(file))["curves"];
+  const nlohmann::json curves = DataOf(Content(file))["curves"];
   const nlohmann::json rows = nlohmann::json::parse(table.out)["rows"];
   ASSERT_EQ(rows.size(), 7U);
   for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -86,7 +81,7 @@ TEST(ReportVerbTest, PutsTheRunWithoutTradedControlFirstWhateverTheOrderOfLogs) 
       Report({log("a.lcm", "/arbitrator/threshold=0.8"), log("b.lcm", "/arbitrator/threshold=0.2"),
               log("c.lcm", "/arbitrator/policy=none"), "--output", folder.File("report.html")});
   ASSERT_EQ(report.code, 0) << report.err;
-  const nlohmann::json runs = DataOf(Read(folder.File("report.html")))["runs"];
+  const nlohmann::json runs = DataOf(Content(folder.File("report.html")))["runs"];
   ASSERT_EQ(runs.size(), 3U);
   EXPECT_EQ(runs[0]["name"], "without traded control");
   EXPECT_EQ(runs[1]["name"], "threshold 0.8");
@@ -100,13 +95,13 @@ TEST(ReportVerbTest, TellsRunsOfSeveralSeedsAndEqualOnesApart) {
                                  Log(folder, "a.lcm", {}), Log(folder, "b.lcm", {}),
                                  Log(folder, "c.lcm", {"--seed", "2"}), "-o", page});
   ASSERT_EQ(report.code, 0) << report.err;
-  const nlohmann::json runs = DataOf(Read(page))["runs"];
+  const nlohmann::json runs = DataOf(Content(page))["runs"];
   EXPECT_EQ(runs[0]["name"], "without traded control, seed 1");
   EXPECT_EQ(runs[1]["name"], "threshold 0.5, seed 1, a.lcm");
   EXPECT_EQ(runs[2]["name"], "threshold 0.5, seed 1, b.lcm");
   EXPECT_EQ(runs[3]["name"], "threshold 0.5, seed 2");
-  EXPECT_THAT(Read(page), HasSubstr("<span class=\"origin\">a.lcm · Traded control in fog"));
-  EXPECT_THAT(Read(page), HasSubstr(">Seed</th>"));
+  EXPECT_THAT(Content(page), HasSubstr("<span class=\"origin\">a.lcm · Traded control in fog"));
+  EXPECT_THAT(Content(page), HasSubstr(">Seed</th>"));
 }
 
 TEST(ReportVerbTest, WritesThePageOfALogThatIsCutOffMarksItThereAndExitsWith1) {
@@ -124,13 +119,13 @@ TEST(ReportVerbTest, WritesThePageOfALogThatIsCutOffMarksItThereAndExitsWith1) {
   EXPECT_THAT(report.err, ContainsRegex(cut + ": cut off after event [^;]*; .*; ends after step "
                                               "[0-9]+ of 220"));
   // AND the page reports the missing part only for the cut run
-  const nlohmann::json runs = DataOf(Read(page))["runs"];
+  const nlohmann::json runs = DataOf(Content(page))["runs"];
   EXPECT_EQ(runs[0]["badge"], "");
   const std::string badge = runs[1]["badge"];
   EXPECT_THAT(badge, ContainsRegex("^incomplete: ends after step [0-9]+ of 220$"));
-  EXPECT_THAT(Read(page), HasSubstr(">" + badge + "</span>"));
-  EXPECT_THAT(Read(page), ContainsRegex("<span class=\"origin\">cut off after event [^<]*; ends "
-                                        "after step [0-9]+ of 220"));
+  EXPECT_THAT(Content(page), HasSubstr(">" + badge + "</span>"));
+  EXPECT_THAT(Content(page), ContainsRegex("<span class=\"origin\">cut off after event [^<]*; ends "
+                                           "after step [0-9]+ of 220"));
   // AND a page of the whole log alone succeeds
   EXPECT_EQ(Report({whole, "--output", page}).code, 0);
 }
@@ -143,12 +138,12 @@ TEST(ReportVerbTest, ReplacesAPageAndNoOtherFile) {
   EXPECT_EQ(Report({log, "-o", page}).code, 0) << "the page of before";
   std::ofstream(folder.File("drawing.svg")) << "<svg></svg>";
   for (const std::string& other : {log, folder.File("drawing.svg")}) {
-    const std::string before = Read(other);
+    const std::string before = Content(other);
     const Outcome report = Report({log, "-o", other});
     EXPECT_EQ(report.code, 2);
     EXPECT_EQ(report.err,
               other + ": error: --output: the file is no HTML page and is not replaced\n");
-    EXPECT_EQ(Read(other), before);
+    EXPECT_EQ(Content(other), before);
   }
 }
 
@@ -194,9 +189,9 @@ TEST(ReportVerbTest, WritesTheFiguresAsPngSvgAndPdfIntoTheFoldersAskedFor) {
       Report({Log(folder, "run.lcm", {}), "-o", folder.File("report.html"), "--png",
               folder.File("pixels"), "--svg", folder.File("lines"), "--pdf", folder.File("lines")});
   EXPECT_EQ(report.code, 0) << report.err;
-  EXPECT_THAT(Read(folder.File("pixels/figure-1-speeds.png")), StartsWith("\x89PNG"));
-  EXPECT_THAT(Read(folder.File("lines/figure-1-speeds.svg")), HasSubstr("<svg"));
-  EXPECT_THAT(Read(folder.File("lines/figure-1-speeds.pdf")), StartsWith("%PDF-"));
+  EXPECT_THAT(Content(folder.File("pixels/figure-1-speeds.png")), StartsWith("\x89PNG"));
+  EXPECT_THAT(Content(folder.File("lines/figure-1-speeds.svg")), HasSubstr("<svg"));
+  EXPECT_THAT(Content(folder.File("lines/figure-1-speeds.pdf")), StartsWith("%PDF-"));
   const auto count = [](const std::string& path) {
     return std::distance(std::filesystem::directory_iterator(path), {});
   };

@@ -17,9 +17,6 @@ namespace {
 using std::chrono::seconds;
 using testing::HasSubstr;
 
-// A time limit. Programs start and messages arrive earlier even when every processor is busy.
-constexpr seconds kPatience(30);
-
 /// A simulated installation of Java and of jars. Its program `java` prints the arguments of the
 /// call.
 class Parts {

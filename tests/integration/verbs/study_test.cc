@@ -34,16 +34,11 @@ Outcome Study(std::vector<std::string> arguments) {
   return RunCommand(arguments);
 }
 
-std::string Read(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
-
 /// The files of a folder by name, with their bytes.
 std::vector<std::pair<std::string, std::string>> Files(const std::filesystem::path& folder) {
   std::vector<std::pair<std::string, std::string>> files;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-    files.emplace_back(entry.path().filename(), Read(entry.path()));
+    files.emplace_back(entry.path().filename(), Content(entry.path()));
   }
   std::ranges::sort(files);
   return files;
@@ -87,19 +82,19 @@ TEST(StudyVerbTest, WritesWhatItSaysAndTheSameBytesWhateverTheNumberOfJobs) {
   EXPECT_THAT(second.out, testing::EndsWith(two + "/conflict.html\n" + two + "/conflict.md\n"));
   for (const auto& [name, content] : Files(two)) EXPECT_THAT(second.out, HasSubstr(name + "\n"));
   // AND the table has every detector in two fog models, five visibilities and four noises
-  const std::map<std::string, int> detectors = CountByMeasure(Read(one + "/conflict.csv"));
+  const std::map<std::string, int> detectors = CountByMeasure(Content(one + "/conflict.csv"));
   for (const conflict::ConflictMeasureRow& row : conflict::ConflictMeasures()) {
     EXPECT_TRUE(detectors.contains(std::string(row.name))) << row.name;
   }
   EXPECT_TRUE(detectors.contains("nis + window + sign"));
   for (const auto& [detector, rows] : detectors) EXPECT_EQ(rows, 2 * 5 * 4) << detector;
-  EXPECT_THAT(Read(one + "/conflict.md"), HasSubstr(said["studies"][0]["answer"]));
+  EXPECT_THAT(Content(one + "/conflict.md"), HasSubstr(said["studies"][0]["answer"]));
 }
 
 TEST(StudyVerbTest, DelaysAreFromFogToAlarmAndNoMeasureOfARun) {
   const ScratchFolder folder;
   ASSERT_EQ(Study({"conflict", "--seeds", "1", "--out", folder.path()}).code, 0);
-  const std::string page = Read(folder.File("conflict.html"));
+  const std::string page = Content(folder.File("conflict.html"));
   EXPECT_THAT(page, HasSubstr("<th scope=\"col\">fog to alarm (s)</th>"));
   EXPECT_THAT(page, HasSubstr("It is not deception_to_alarm_s of a run"));
 }
@@ -108,7 +103,7 @@ TEST(StudyVerbTest, MakesEveryStudyOfOneSeedIntoOnePage) {
   const ScratchFolder folder;
   const Outcome all = Study({"all", "--seeds", "7", "--out", folder.path(), "--json"});
   ASSERT_EQ(all.code, 0) << all.err;
-  const std::string page = Read(folder.File("studies.html"));
+  const std::string page = Content(folder.File("studies.html"));
   EXPECT_THAT(page, StartsWith("<!DOCTYPE html>"));
   const nlohmann::json said = nlohmann::json::parse(all.out);
   EXPECT_EQ(said["studies"].size(), 9U);
@@ -137,7 +132,7 @@ TEST(StudyVerbTest, EveryCarOfTheVehicleStudyDrivesInAWayOfItsOwn) {
   const ScratchFolder folder;
   const Outcome made = Study({"vehicle", "--seeds", "1:2", "--out", folder.path()});
   ASSERT_EQ(made.code, 0) << made.err;
-  const auto variants = ByVariantAndCase(Read(folder.File("vehicle.csv")));
+  const auto variants = ByVariantAndCase(Content(folder.File("vehicle.csv")));
   ASSERT_EQ(variants.size(), 3U);
   for (const auto& [variant, cases] : variants) {
     EXPECT_GT(cases.size(), 10U);
@@ -190,7 +185,7 @@ TEST(StudyVerbTest, EveryFindingRestsOnClaimsOfItsStudies) {
                     '"');
     }
   }
-  std::istringstream page(Read(SourceDirectory() / "docs/findings.md"));
+  std::istringstream page(Content(SourceDirectory() / "docs/findings.md"));
   int findings = 0;
   int of_finding = 1;
   for (std::string line; std::getline(page, line);) {
@@ -237,7 +232,7 @@ TEST(StudyVerbTest, EveryFindingSaysInWhichParameterSetsItHolds) {
     said[number] = says.substr(sentence);
     said[number][0] = static_cast<char>(std::toupper(static_cast<unsigned char>(said[number][0])));
   }
-  const std::string findings = Read(SourceDirectory() / "docs/findings.md");
+  const std::string findings = Content(SourceDirectory() / "docs/findings.md");
   for (const auto& [number, sentence] : SentencesOnSets(findings)) {
     if (sentence.starts_with("Not examined")) {
       EXPECT_FALSE(said.contains(number)) << sentence;
@@ -252,8 +247,8 @@ TEST(StudyVerbTest, EveryFindingSaysInWhichParameterSetsItHolds) {
 TEST(StudyVerbTest, TheComparisonsOnParameterSetsAreThoseOfTheirFinding) {
   const ScratchFolder folder;
   ASSERT_EQ(Study({"ensemble", "--seeds", "1", "--out", folder.path()}).code, 0);
-  const std::string findings = Read(SourceDirectory() / "docs/findings.md");
-  std::istringstream csv(Read(folder.File("ensemble.csv")));
+  const std::string findings = Content(SourceDirectory() / "docs/findings.md");
+  std::istringstream csv(Content(folder.File("ensemble.csv")));
   std::string line;
   std::getline(csv, line);
   int rows = 0;

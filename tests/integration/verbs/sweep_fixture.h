@@ -28,14 +28,7 @@ inline Words operator+(Words words, const Words& more) {
   return words;
 }
 
-inline std::string Content(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
-
-inline std::int64_t Lines(const std::string& text) { return std::ranges::count(text, '\n'); }
+inline std::int64_t CountLines(const std::string& text) { return std::ranges::count(text, '\n'); }
 
 /// A folder for sweep files, and commands that sweep scenario/paper.json into it.
 class SweepFixture : public testing::Test {
@@ -72,7 +65,7 @@ class SweepFixture : public testing::Test {
   /// because the sweep reports to no other process. @return false after a minute
   bool WaitForLines(const std::string& name, std::int64_t lines) const {
     const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(60);
-    while (Lines(Content(File(name))) < lines) {
+    while (CountLines(Content(File(name))) < lines) {
       if (std::chrono::steady_clock::now() > end) return false;
       std::this_thread::sleep_for(std::chrono::milliseconds(2));
     }

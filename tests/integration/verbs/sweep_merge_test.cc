@@ -60,7 +60,7 @@ TEST_F(SweepMergeTest, RefusesAWrongMergeInOneLineAndLeavesNoFile) {
     const Outcome merge = Merge(files, "merged.csv");
     EXPECT_EQ(merge.code, 2) << merge.err;
     EXPECT_EQ(merge.out, "");
-    EXPECT_EQ(Lines(merge.err), 1) << merge.err;
+    EXPECT_EQ(CountLines(merge.err), 1) << merge.err;
     EXPECT_EQ(FilesInFolder(), before);
     return merge.err;
   };
@@ -100,7 +100,7 @@ TEST_F(SweepMergeTest, DoesNotMergeOverAFileThatIsThere) {
   EXPECT_EQ(Content(File("there.csv")), "precious");
   Made("sweep.csv", kShort + Words{"--seeds", "7:7"});
   EXPECT_EQ(RunCommand(forced + Words{File("sweep.csv")}).code, 0);
-  EXPECT_EQ(Lines(Content(File("sweep.csv"))), 1 + 4);
+  EXPECT_EQ(CountLines(Content(File("sweep.csv"))), 1 + 4);
   const Outcome onto_shard =
       RunCommand({Program("fogline"), "sweep", "--force", "--out", File(shards[0]), "--merge",
                   File(shards[0]), File(shards[1])});
@@ -138,7 +138,7 @@ TEST_F(SweepMergeTest, NamesEachFileWhoseRowsItCannotCheck) {
   };
   // GIVEN two files that were copied without their checksum files, and a file whose checksum file
   // is empty. The first file has no rows, so there is nothing to check in it
-  ASSERT_EQ(Lines(Content(File(shards[0]))), 1);
+  ASSERT_EQ(CountLines(Content(File(shards[0]))), 1);
   std::filesystem::remove(File(shards[0] + ".sums"));
   std::filesystem::remove(File(shards[1] + ".sums"));
   std::filesystem::resize_file(File(shards[3] + ".sums"), 0);
@@ -147,15 +147,16 @@ TEST_F(SweepMergeTest, NamesEachFileWhoseRowsItCannotCheck) {
   EXPECT_EQ(merge.out, "3 rows\n" + File("merged.csv") + "\n");
   EXPECT_EQ(merge.err, warning(shards[1]) + warning(shards[3]));
   // AND --json names these files. The list in --json is empty if all files were checked
-  const Words json{Program("fogline"), "sweep", "--json", "--force", "--out", File("merged.csv")};
+  const Words with_json{Program("fogline"), "sweep", "--json",
+                        "--force",          "--out", File("merged.csv")};
   const Words merge_all{"--merge", File(shards[0]), File(shards[1]), File(shards[2]),
                         File(shards[3])};
-  const Outcome as_json = RunCommand(json + merge_all);
+  const Outcome as_json = RunCommand(with_json + merge_all);
   EXPECT_EQ(as_json.err, merge.err);
   EXPECT_EQ(nlohmann::json::parse(as_json.out)["unchecked"],
             (Words{File(shards[1]), File(shards[3])}));
   const Words whole = Shards(2, kShort + Words{"--seeds", "1:2"});
-  const Outcome checked = RunCommand(json + Words{"--merge", File(whole[0]), File(whole[1])});
+  const Outcome checked = RunCommand(with_json + Words{"--merge", File(whole[0]), File(whole[1])});
   EXPECT_EQ(checked.err, "");
   EXPECT_EQ(nlohmann::json::parse(checked.out)["unchecked"], nlohmann::json::array());
 }

@@ -24,7 +24,7 @@ TEST_F(SweepTest, WritesTheSameFileWhateverTheNumberOfJobs) {
   const Words sweep =
       kShort + kThresholds + Words{"--grid", "/fog/bias_m=0.2,0.3", "--seeds", "1:40"};
   const std::string one = Made("one.csv", sweep + Words{"--jobs", "1"});
-  EXPECT_EQ(Lines(one), 1 + 3 * 2 * 40);
+  EXPECT_EQ(CountLines(one), 1 + 3 * 2 * 40);
   EXPECT_EQ(Made("two.csv", sweep + Words{"--jobs", "2"}), one);
   EXPECT_EQ(Made("many.csv", sweep + Words{"--jobs", "9"}), one);
   EXPECT_EQ(Content(File("two.csv.json")), Content(File("one.csv.json")));
@@ -55,7 +55,7 @@ TEST_F(SweepTest, GoesOnAfterAKillWithoutLosingOrRepeatingARow) {
     ASSERT_TRUE(WaitForLines(name, lines));
     killed.Signal(SIGKILL);
     ASSERT_EQ(killed.Wait(), 128 + SIGKILL) << "it had ended before";
-    ASSERT_LT(Lines(Content(File(name))), Lines(whole));
+    ASSERT_LT(CountLines(Content(File(name))), CountLines(whole));
     // WHEN the same command is called again
     const Outcome resumed = Sweep(name, sweep);
     // THEN the sweep reports how many rows the file had, and the file equals that of an undisturbed
@@ -93,7 +93,7 @@ TEST_F(SweepTest, EndsAtCtrlCWithWholeUnitsAndGoesOn) {
   EXPECT_THAT(stopped.Err(), HasSubstr("call it again to go on\n"));
   const std::string part = Content(File("stopped.csv"));
   EXPECT_TRUE(whole.starts_with(part));
-  EXPECT_EQ((Lines(part) - 1) % 3, 0);
+  EXPECT_EQ((CountLines(part) - 1) % 3, 0);
   EXPECT_TRUE(Made("stopped.csv", sweep) == whole);
 }
 
@@ -180,14 +180,14 @@ TEST_F(SweepTest, NoticesADigitThatItHasNotWritten) {
   std::filesystem::remove(File("file.csv.sums"));
   EXPECT_EQ(Sweep("file.csv", sweep).code, 0);
   std::filesystem::resize_file(File("file.csv"), text.size());
-  EXPECT_EQ(Lines(Made("file.csv", sweep)), Lines(whole));
+  EXPECT_EQ(CountLines(Made("file.csv", sweep)), CountLines(whole));
 }
 
 TEST_F(SweepTest, HasTheSameChecksumsWhereverAKillHasTornThem) {
   const Words sweep = kShort + kThresholds + Words{"--seeds", "1:3", "--jobs", "1"};
   const std::string whole = Made("torn.csv", sweep);
   const std::string sums = Content(File("torn.csv.sums"));
-  EXPECT_EQ(Lines(sums), 9);
+  EXPECT_EQ(CountLines(sums), 9);
   for (std::size_t cut = 1; cut <= sums.size(); cut += 4) {
     std::filesystem::resize_file(File("torn.csv.sums"), cut);
     EXPECT_EQ(Made("torn.csv", sweep), whole) << "cut at " << cut;
@@ -313,7 +313,7 @@ TEST_F(SweepTest, NamesTheFirstRowThatCannotBeComputedAndKeepsThoseBefore) {
     EXPECT_THAT(outcome.err,
                 StartsWith("scenario/paper.json: error: ACC: the weights make an ill-conditioned"));
     EXPECT_THAT(outcome.err, EndsWith(" (at /acc/weight_distance=1e6, seed 1)\n"));
-    EXPECT_EQ(Lines(Content(File(jobs))), 1 + 4) << jobs;
+    EXPECT_EQ(CountLines(Content(File(jobs))), 1 + 4) << jobs;
   }
 }
 

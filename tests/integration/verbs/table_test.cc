@@ -5,6 +5,7 @@
 
 #include "services/runtime/transport/bus.h"
 #include "tests/support/command.h"
+#include "tests/support/verbs.h"
 
 namespace fogline::test {
 namespace {
@@ -119,46 +120,44 @@ TEST(TableOverSeedsTest, SaysWhichSeedsAndThatOneNumberIsOneSeed) {
   EXPECT_THAT(one.out, HasSubstr("\nseed 1000\n"));
   EXPECT_EQ(one.err, "--seeds 1000 is the one seed 1000; seeds 1 to 1000 are --seeds 1:1000\n");
   EXPECT_EQ(table({"--seeds", "1000:1000"}).err, "");
-  const auto json = nlohmann::json::parse(table({"--seeds", "3:5", "--json"}).out);
-  EXPECT_EQ(json["seeds"], 3);
-  EXPECT_EQ(json["first_seed"], 3);
-  EXPECT_EQ(json["last_seed"], 5);
+  const auto document = nlohmann::json::parse(table({"--seeds", "3:5", "--json"}).out);
+  EXPECT_EQ(document["seeds"], 3);
+  EXPECT_EQ(document["first_seed"], 3);
+  EXPECT_EQ(document["last_seed"], 5);
 }
 
 /// The error text of `fogline table` for arguments that it refuses.
-std::string ErrorOf(const std::vector<std::string>& more) {
-  std::vector<std::string> command{Program("fogline"), "table", "scenario/paper.json"};
-  command.insert(command.end(), more.begin(), more.end());
-  const Outcome outcome = RunCommand(command);
-  EXPECT_EQ(outcome.code, 2);
-  EXPECT_EQ(outcome.out, "");
-  return outcome.err;
+std::string TableErrorOf(const std::vector<std::string>& more) {
+  std::vector<std::string> arguments{"table", "scenario/paper.json"};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  return ErrorOf(arguments);
 }
 
 TEST(TableArgumentsTest, RefuseToSetWhatTheTableVariesItself) {
-  EXPECT_EQ(ErrorOf({"--set", "/arbitrator/policy=none"}),
+  EXPECT_EQ(TableErrorOf({"--set", "/arbitrator/policy=none"}),
             "scenario/paper.json: error: /arbitrator/policy is none, which uses no threshold; "
             "these policies do: traded, adaptive, availability, traded_isolating\n");
-  EXPECT_THAT(ErrorOf({"--set", "/arbitrator/policy=isolate"}),
+  EXPECT_THAT(TableErrorOf({"--set", "/arbitrator/policy=isolate"}),
               HasSubstr("/arbitrator/policy is isolate, which uses no threshold"));
   const ScratchFolder folder;
-  EXPECT_EQ(ErrorOf({"--logs", folder.File("slip/logs")}),
+  EXPECT_EQ(TableErrorOf({"--logs", folder.File("slip/logs")}),
             folder.File("slip/logs") + ": error: --logs: there is no folder " +
                 folder.File("slip") + "\n");
-  EXPECT_EQ(ErrorOf({"--logs", "/proc"}),
+  EXPECT_EQ(TableErrorOf({"--logs", "/proc"}),
             "/proc: error: --logs: cannot write: No such file or directory\n");
-  EXPECT_EQ(ErrorOf({"--set", "/arbitrator/threshold=0.3"}),
+  EXPECT_EQ(TableErrorOf({"--set", "/arbitrator/threshold=0.3"}),
             "fogline table: error: --set /arbitrator/threshold: the thresholds are those of "
             "--thresholds\n");
-  EXPECT_EQ(ErrorOf({"--seeds", "1:2", "--set", "/seed=3"}),
+  EXPECT_EQ(TableErrorOf({"--seeds", "1:2", "--set", "/seed=3"}),
             "fogline table: error: --set /seed: the seeds are those of --seeds\n");
-  EXPECT_EQ(ErrorOf({"--seeds", "1:2", "--seed", "3"}),
+  EXPECT_EQ(TableErrorOf({"--seeds", "1:2", "--seed", "3"}),
             "fogline table: error: --seed excludes --seeds (see fogline table --help)\n");
 }
 
 TEST(TableArgumentsTest, RefuseARoleFromElsewhereWhereItCannotJoin) {
-  EXPECT_THAT(ErrorOf({"--external", "driver"}), HasSubstr("one process"));
-  EXPECT_THAT(ErrorOf({"--external", "driver", "--transport", "udpm"}), HasSubstr("--lcm-url"));
+  EXPECT_THAT(TableErrorOf({"--external", "driver"}), HasSubstr("one process"));
+  EXPECT_THAT(TableErrorOf({"--external", "driver", "--transport", "udpm"}),
+              HasSubstr("--lcm-url"));
 }
 
 TEST(TableOfRunsTest, IsTheSameWithADriverFromElsewhereThatIsStartedForEveryRun) {

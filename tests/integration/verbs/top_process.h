@@ -12,8 +12,6 @@
 
 namespace fogline::test {
 
-// A time limit. Programs start and messages arrive earlier, even when every processor is busy.
-inline constexpr std::chrono::seconds kPatience(30);
 // The time for which top watches. It is longer than any test with top.
 inline constexpr std::chrono::seconds kTopFor(240);
 

@@ -17,8 +17,6 @@ namespace {
 using nlohmann::json;
 using testing::HasSubstr;
 
-constexpr std::chrono::seconds kPatience(60);
-
 std::vector<std::string> RunOn(const std::string& url, const std::string& log, int steps,
                                const std::string& pace) {
   return {Program("fogline"),

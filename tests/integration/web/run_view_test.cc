@@ -13,8 +13,6 @@ namespace {
 using nlohmann::json;
 using testing::HasSubstr;
 
-constexpr std::chrono::seconds kPatience(60);
-
 /// Without a screen, so that no browser is opened.
 std::vector<std::string> RunAndView(const std::string& program, const std::string& log,
                                     std::vector<std::string> more = {}) {

@@ -23,6 +23,9 @@
 
 namespace fogline::test {
 
+// More than the rounding of accelerations and speeds in one step.
+inline constexpr double kRounding = 1e-9;
+
 /// One channel at its reader: the newest message and the state of the input.
 template <class M>
 class Line {

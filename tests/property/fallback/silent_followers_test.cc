@@ -14,12 +14,12 @@
 namespace fogline {
 namespace {
 
+using test::kRounding;
 using test::Moment;
 using test::RealTimeLoop;
 
 constexpr std::size_t kCars = 5;
-constexpr double kRounding = 1e-9;
-constexpr std::int64_t kInForce = 4;  // periods from the last command to the fallback
+constexpr std::int64_t kUntilFallback = 4;  // periods from the last command to the fallback
 
 /// The paper's scenario with people and ACCs behind the host.
 Scenario Column() {
@@ -45,7 +45,7 @@ TEST(SilentFollowersTest, EachStopsWithinTheLimitsAndTheHostGoesOn) {
       const std::int64_t step = m.truth.header.step;
       for (std::size_t car = 0; car < kCars; ++car) {
         const double applied_mps2 = m.truth.follower_acceleration_mps2[car];
-        if (step > death + kInForce) {
+        if (step > death + kUntilFallback) {
           ASSERT_TRUE(m.vehicle.follower_in_minimal_risk());
           ASSERT_LE(std::abs(applied_mps2 - last_mps2[car]), change_mps2) << "car " << car;
           ASSERT_GE(applied_mps2,

@@ -16,10 +16,10 @@
 namespace fogline {
 namespace {
 
+using test::kRounding;
 using test::Moment;
 using test::RealTimeLoop;
 
-constexpr double kRounding = 1e-9;
 constexpr std::int64_t kDetection = 3;  // periods
 constexpr std::int64_t kInForce = 1;    // periods from the detection until the fallback is in force
 constexpr std::int64_t kBetweenDeaths = 13;  // steps

@@ -12,7 +12,7 @@ namespace fogline {
 namespace {
 
 // The mistakes in a text, as a user sees them.
-std::vector<Diagnostic> DiagnosticsOf(std::string_view text) {
+std::vector<Diagnostic> JsonDiagnosticsOf(std::string_view text) {
   DiagnosticList list;
   ParseJson(text, 0, list);
   if (list.empty()) return {};
@@ -24,7 +24,7 @@ std::vector<Diagnostic> DiagnosticsOf(std::string_view text) {
 }
 
 std::string PlaceOf(std::string_view text) {
-  const std::vector<Diagnostic> diagnostics = DiagnosticsOf(text);
+  const std::vector<Diagnostic> diagnostics = JsonDiagnosticsOf(text);
   if (diagnostics.size() != 1) return std::to_string(diagnostics.size()) + " mistakes";
   return std::to_string(diagnostics[0].line) + ":" + std::to_string(diagnostics[0].column);
 }
@@ -88,7 +88,7 @@ TEST(JsonTest, RefusesWhatOnlyLooksLikeJson) {
   for (const std::string_view text :
        {"NaN", "[Infinity]", "[-Infinity]", "[+1]", "[.5]", "[1.]", "{'a':1}", "[1,]", "// x\n1",
         "[1e999]", "[\"\\ud800\"]", "[\"\xff\"]", "1 2", "\xef\xbb", "[tru]", "{1:2}"}) {
-    const std::vector<Diagnostic> diagnostics = DiagnosticsOf(text);
+    const std::vector<Diagnostic> diagnostics = JsonDiagnosticsOf(text);
     ASSERT_EQ(diagnostics.size(), 1U) << text;
     EXPECT_EQ(diagnostics[0].rule, "syntax") << text;
   }
@@ -101,7 +101,7 @@ TEST(JsonTest, RefusesANulByteWhereverItIs) {
 
 TEST(JsonTest, ReportsEveryDuplicateKeyWithItsPointer) {
   const auto diagnostics =
-      DiagnosticsOf(R"({"a": [{"x/y": 1, "b": 2, "x/y": 3, "x/y": 4}], "a": 5})");
+      JsonDiagnosticsOf(R"({"a": [{"x/y": 1, "b": 2, "x/y": 3, "x/y": 4}], "a": 5})");
   std::vector<std::string> pointers;
   for (const Diagnostic& diagnostic : diagnostics) {
     EXPECT_EQ(diagnostic.rule, "duplicate-key");
@@ -114,9 +114,9 @@ TEST(JsonTest, RefusesDepthBeyondItsLimitWithoutRecursion) {
   const auto nested = [](std::size_t depth) {
     return std::string(depth, '[') + std::string(depth, ']');
   };
-  EXPECT_TRUE(DiagnosticsOf(nested(32)).empty());
+  EXPECT_TRUE(JsonDiagnosticsOf(nested(32)).empty());
   for (const std::size_t depth : {std::size_t{33}, std::size_t{5'000'000}}) {
-    const auto diagnostics = DiagnosticsOf(nested(depth));
+    const auto diagnostics = JsonDiagnosticsOf(nested(depth));
     ASSERT_EQ(diagnostics.size(), 1U);
     EXPECT_EQ(diagnostics[0].rule, "too-large");
     EXPECT_EQ(diagnostics[0].column, 33);
@@ -126,13 +126,13 @@ TEST(JsonTest, RefusesDepthBeyondItsLimitWithoutRecursion) {
 TEST(JsonTest, RefusesMoreValuesThanAnyScenarioHas) {
   std::string text = "[0";
   for (int i = 0; i < 2'000'000; ++i) text += ",0";
-  const auto diagnostics = DiagnosticsOf(text + "]");
+  const auto diagnostics = JsonDiagnosticsOf(text + "]");
   ASSERT_EQ(diagnostics.size(), 1U);
   EXPECT_EQ(diagnostics[0].rule, "too-large");
 }
 
 TEST(JsonTest, RefusesATextBeyondItsLimitWithoutReadingIt) {
-  const auto diagnostics = DiagnosticsOf(std::string(kMaxFileBytes + 1, ' '));
+  const auto diagnostics = JsonDiagnosticsOf(std::string(kMaxFileBytes + 1, ' '));
   ASSERT_EQ(diagnostics.size(), 1U);
   EXPECT_EQ(diagnostics[0].rule, "too-large");
 }

@@ -19,7 +19,7 @@ Scenario With(const std::vector<std::string>& overrides) {
 }
 
 // The first line of the error text for an override.
-std::string ErrorOf(const std::string& override_text, std::string_view text = kText) {
+std::string OverrideErrorOf(const std::string& override_text, std::string_view text = kText) {
   try {
     ParseScenario(text, "f", {override_text});
     return "";
@@ -57,62 +57,64 @@ TEST(OverrideTest, ComesBeforeTheCheckOfTheFile) {
 }
 
 TEST(OverrideTest, IsNamedWithFieldRangeAndSuggestion) {
-  EXPECT_EQ(ErrorOf("/arbitrator/threshold=1.5"),
+  EXPECT_EQ(OverrideErrorOf("/arbitrator/threshold=1.5"),
             "--set /arbitrator/threshold=1.5: error: /arbitrator/threshold: 1.5 is outside [0, 1]");
-  EXPECT_EQ(ErrorOf("/step_s=fast"),
+  EXPECT_EQ(OverrideErrorOf("/step_s=fast"),
             "--set /step_s=fast: error: /step_s: must be a number in [0.001, 1] s, not the text "
             "\"fast\"");
-  EXPECT_EQ(ErrorOf("/fog/model=beem"),
+  EXPECT_EQ(OverrideErrorOf("/fog/model=beem"),
             "--set /fog/model=beem: error: /fog/model: \"beem\" is not one of \"none\", \"bias\", "
             "\"beam\", \"modes\"; did you mean \"beam\"?");
 }
 
 TEST(OverrideTest, SuggestsTheFieldThatIsMeant) {
-  EXPECT_EQ(ErrorOf("/arbitrator/treshold=1"),
+  EXPECT_EQ(OverrideErrorOf("/arbitrator/treshold=1"),
             "--set /arbitrator/treshold=1: error: /arbitrator/treshold: no such field; did you "
             "mean \"/arbitrator/threshold\"?");
-  EXPECT_EQ(ErrorOf("/visibility_m=50"),
+  EXPECT_EQ(OverrideErrorOf("/visibility_m=50"),
             "--set /visibility_m=50: error: /visibility_m: no such field; did you mean "
             "\"/fog/visibility_m\"?");
-  EXPECT_THAT(ErrorOf("/lead/breakpoints/1/sped_mps=8"),
+  EXPECT_THAT(OverrideErrorOf("/lead/breakpoints/1/sped_mps=8"),
               testing::HasSubstr("did you mean \"/lead/breakpoints/1/speed_mps\"?"));
-  EXPECT_EQ(ErrorOf("fog.model=beam"),
+  EXPECT_EQ(OverrideErrorOf("fog.model=beam"),
             "--set fog.model=beam: error: must be /pointer=value, such as "
             "/arbitrator/threshold=0.8; did you mean \"/fog/model\"?");
 }
 
 TEST(OverrideTest, RefusesAnItemThatIsNotThere) {
-  EXPECT_EQ(ErrorOf("/lead/breakpoints/2/speed_mps=8"),
+  EXPECT_EQ(OverrideErrorOf("/lead/breakpoints/2/speed_mps=8"),
             "--set /lead/breakpoints/2/speed_mps=8: error: /lead/breakpoints/2/speed_mps: no such "
             "item: /lead/breakpoints has 2 items, counted from 0");
-  EXPECT_THAT(ErrorOf("/published/0/threshold=1"), testing::HasSubstr("/published has 0 items"));
-  EXPECT_THAT(ErrorOf("/published/99999999999999999999/threshold=1"),
+  EXPECT_THAT(OverrideErrorOf("/published/0/threshold=1"),
               testing::HasSubstr("/published has 0 items"));
-  EXPECT_THAT(ErrorOf("/lead/breakpoints/*/speed_mps=1"), testing::HasSubstr("no such item"));
+  EXPECT_THAT(OverrideErrorOf("/published/99999999999999999999/threshold=1"),
+              testing::HasSubstr("/published has 0 items"));
+  EXPECT_THAT(OverrideErrorOf("/lead/breakpoints/*/speed_mps=1"),
+              testing::HasSubstr("no such item"));
   // "00" is not another name of item 0.
-  EXPECT_NE(ErrorOf("/lead/breakpoints/00/speed_mps=1"), "");
+  EXPECT_NE(OverrideErrorOf("/lead/breakpoints/00/speed_mps=1"), "");
 }
 
 TEST(OverrideTest, RefusesWhatIsNoOverride) {
   for (const char* text : {"", "=", "/", "/=1", "steps", "/steps", "steps=1", "\xff=1"}) {
-    EXPECT_THAT(ErrorOf(text), testing::HasSubstr("must be /pointer=value")) << text;
+    EXPECT_THAT(OverrideErrorOf(text), testing::HasSubstr("must be /pointer=value")) << text;
   }
 }
 
 TEST(OverrideTest, ShowsNoControlCharacterOfItsText) {
-  EXPECT_EQ(ErrorOf("/title=\x1b[31m").find('\x1b'), std::string::npos);
-  EXPECT_EQ(ErrorOf("/\x1b=1").find('\x1b'), std::string::npos);
+  EXPECT_EQ(OverrideErrorOf("/title=\x1b[31m").find('\x1b'), std::string::npos);
+  EXPECT_EQ(OverrideErrorOf("/\x1b=1").find('\x1b'), std::string::npos);
 }
 
 TEST(OverrideTest, ReportsDuplicateKeysOfItsValueWithTheirPointer) {
-  EXPECT_THAT(ErrorOf(R"(/fog={"bias_m": 1, "bias_m": 2})"),
+  EXPECT_THAT(OverrideErrorOf(R"(/fog={"bias_m": 1, "bias_m": 2})"),
               testing::HasSubstr(": error: /fog/bias_m: duplicate key"));
 }
 
 TEST(OverrideTest, LeavesAMistakeOfTheFileToTheFile) {
-  EXPECT_EQ(ErrorOf("/fog/model=beam", R"({"version": 1, "fog": 5})"),
+  EXPECT_EQ(OverrideErrorOf("/fog/model=beam", R"({"version": 1, "fog": 5})"),
             "f:1:23: error: /fog: must be an object, not the number 5");
-  EXPECT_EQ(ErrorOf("/published/0/threshold=1", R"({"version": 1, "published": 5})"),
+  EXPECT_EQ(OverrideErrorOf("/published/0/threshold=1", R"({"version": 1, "published": 5})"),
             "f:1:29: error: /published: must be a list of 0 to 100 items, not the number 5");
 }
 

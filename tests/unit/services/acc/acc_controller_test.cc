@@ -14,7 +14,6 @@ namespace {
 
 using Solver = acc::AccController::Solver;
 
-constexpr double kStep = 0.1;
 // A car at 20 m/s has a safe distance of 33 m with the default section.
 constexpr double kSpeed = 20;
 constexpr double kSafe = 33;
@@ -31,7 +30,7 @@ struct Trip {
 };
 
 Trip Drive(const AccSection& section, TwoCars cars, int steps, double preceding_mps2 = 0) {
-  acc::AccController acc(section, kStep);
+  acc::AccController acc(section, kStep_s);
   Trip trip{.cars = cars};
   double previous = std::nan("");
   for (int k = 0; k < steps; ++k) {
@@ -53,7 +52,7 @@ Trip Drive(const AccSection& section, TwoCars cars, int steps, double preceding_
 }
 
 TEST(AccControllerTest, AcceleratesWhenTheGapIsTooLarge) {
-  acc::AccController acc(AccSection{}, kStep);
+  acc::AccController acc(AccSection{}, kStep_s);
   TwoCars cars{.gap_m = kSafe + 5, .preceding_speed_mps = kSpeed, .speed_mps = kSpeed};
   const acc::AccController::Output output = acc.Step(cars.Sense());
   EXPECT_GT(output.acceleration_mps2, 0);
@@ -64,7 +63,7 @@ TEST(AccControllerTest, AcceleratesWhenTheGapIsTooLarge) {
 }
 
 TEST(AccControllerTest, DeceleratesWhenTheGapIsTooSmall) {
-  acc::AccController acc(AccSection{}, kStep);
+  acc::AccController acc(AccSection{}, kStep_s);
   const TwoCars cars{.gap_m = kSafe - 5, .preceding_speed_mps = kSpeed, .speed_mps = kSpeed};
   const acc::AccController::Output output = acc.Step(cars.Sense());
   EXPECT_LT(output.acceleration_mps2, 0);
@@ -73,7 +72,7 @@ TEST(AccControllerTest, DeceleratesWhenTheGapIsTooSmall) {
 }
 
 TEST(AccControllerTest, DoesNothingAtTheSafeDistance) {
-  acc::AccController acc(AccSection{}, kStep);
+  acc::AccController acc(AccSection{}, kStep_s);
   const TwoCars cars{.gap_m = kSafe, .preceding_speed_mps = kSpeed, .speed_mps = kSpeed};
   const acc::AccController::Output output = acc.Step(cars.Sense());
   EXPECT_EQ(output.acceleration_mps2, 0);
@@ -108,7 +107,7 @@ TEST(AccControllerTest, HardlyOvershootsTheSafeDistance) {
 
 TEST(AccControllerTest, NeverChangesItsControlFasterThanAllowed) {
   const AccSection section;
-  const double largest = section.max_jerk_mps3 * kStep / section.engine_gain;
+  const double largest = section.max_jerk_mps3 * kStep_s / section.engine_gain;
   for (const double gap_m : {5.0, 15.0, 100.0}) {
     const Trip trip = Drive(section, {gap_m, kSpeed, kSpeed}, 300);
     EXPECT_LE(trip.largest_control_change, largest + 1e-9) << gap_m;
@@ -142,7 +141,7 @@ TEST(AccControllerTest, TheMinimumGapOverrulesTheSafeDistance) {
 
 TEST(AccControllerTest, HoldsTheBrakeAtAStandstillTooCloseToTheNextCar) {
   const AccSection section;
-  acc::AccController acc(section, kStep);
+  acc::AccController acc(section, kStep_s);
   const TwoCars cars{.gap_m = 1, .preceding_speed_mps = 0, .speed_mps = 0};
   for (int k = 0; k < 20; ++k) EXPECT_LE(acc.Step(cars.Sense()).acceleration_mps2, 0);
 }
@@ -168,7 +167,7 @@ TEST(AccControllerTest, BringsACarThatIsTooFastBackToItsMaximumSpeed) {
 
 TEST(AccControllerTest, BrakesAtTheFallbackDecelerationWithoutATarget) {
   const AccSection section;
-  acc::AccController acc(section, kStep);
+  acc::AccController acc(section, kStep_s);
   TwoCars cars{.gap_m = kSafe, .preceding_speed_mps = kSpeed, .speed_mps = kSpeed};
   for (int k = 0; k < 40; ++k) {
     acc::AccController::Input input = cars.Sense();
@@ -176,15 +175,15 @@ TEST(AccControllerTest, BrakesAtTheFallbackDecelerationWithoutATarget) {
     const acc::AccController::Output output = acc.Step(input);
     EXPECT_EQ(output.solver, Solver::kFallback);
     EXPECT_EQ(output.safe_distance_m, acc::SafeDistance(section, cars.speed_mps));
-    EXPECT_GE(output.acceleration_mps2 - cars.acceleration_mps2, -section.max_jerk_mps3 * kStep);
+    EXPECT_GE(output.acceleration_mps2 - cars.acceleration_mps2, -section.max_jerk_mps3 * kStep_s);
     cars.Advance(output.acceleration_mps2);
   }
   EXPECT_NEAR(cars.acceleration_mps2, -section.fallback_deceleration_mps2, 1e-3);  // e^-7 is left
 }
 
 TEST(AccControllerTest, IgnoresDistanceAndSpeedOfAMissingTarget) {
-  acc::AccController one(AccSection{}, kStep);
-  acc::AccController other(AccSection{}, kStep);
+  acc::AccController one(AccSection{}, kStep_s);
+  acc::AccController other(AccSection{}, kStep_s);
   const acc::AccController::Input input{.distance_m = 0,
                                         .relative_speed_mps = 0,
                                         .speed_mps = kSpeed,
@@ -199,7 +198,7 @@ TEST(AccControllerTest, IgnoresDistanceAndSpeedOfAMissingTarget) {
 TEST(AccControllerTest, FallsBackAtTheIterationLimit) {
   AccSection section;
   section.max_iterations = 1;
-  acc::AccController acc(section, kStep);
+  acc::AccController acc(section, kStep_s);
   // GIVEN a situation in which the hardest braking has many active limits
   const acc::AccController::Output output = acc.Step({.distance_m = 10,
                                                       .relative_speed_mps = -10,
@@ -209,7 +208,7 @@ TEST(AccControllerTest, FallsBackAtTheIterationLimit) {
   // THEN the command is the first step of the fall-back plan
   EXPECT_EQ(output.solver, Solver::kFallback);
   EXPECT_EQ(output.iterations, 1);
-  EXPECT_EQ(output.control, section.max_jerk_mps3 * kStep / section.engine_gain);
+  EXPECT_EQ(output.control, section.max_jerk_mps3 * kStep_s / section.engine_gain);
 }
 
 // The car may have any acceleration a when the automation takes over from a driver. Within the step
@@ -218,11 +217,11 @@ TEST(AccControllerTest, FallsBackAtTheIterationLimit) {
 // limits.
 TEST(AccControllerTest, TakesOverWithoutABump) {
   const AccSection section;
-  const double share = -std::expm1(-kStep / section.engine_time_constant_s);
+  const double share = -std::expm1(-kStep_s / section.engine_time_constant_s);
   for (double a = -8; a <= 5; a += 0.25) {
     for (const double gap_m : {10.0, 33.0, 90.0}) {
       // GIVEN an ACC that had no effect on the car for a while
-      acc::AccController acc(section, kStep);
+      acc::AccController acc(section, kStep_s);
       TwoCars cars{.gap_m = gap_m, .preceding_speed_mps = kSpeed, .speed_mps = kSpeed};
       for (int k = 0; k < 10; ++k) acc.Step(cars.Sense());
       // WHEN the driver accelerates or brakes
@@ -231,7 +230,7 @@ TEST(AccControllerTest, TakesOverWithoutABump) {
       // THEN the automation continues from this acceleration
       const double outside =
           std::abs(a - std::clamp(a, section.min_acceleration_mps2, section.max_acceleration_mps2));
-      EXPECT_LE(std::abs(offered - a), share * (section.max_jerk_mps3 * kStep + outside) + 1e-9)
+      EXPECT_LE(std::abs(offered - a), share * (section.max_jerk_mps3 * kStep_s + outside) + 1e-9)
           << "a " << a << " gap " << gap_m;
     }
   }
@@ -240,20 +239,20 @@ TEST(AccControllerTest, TakesOverWithoutABump) {
 TEST(AccControllerTest, CountsItsChangeOfControlFromTheAccelerationThatADriverLeftBehind) {
   AccSection section;
   section.engine_gain = 0.732;
-  acc::AccController acc(section, kStep);
+  acc::AccController acc(section, kStep_s);
   TwoCars cars{.gap_m = 100, .preceding_speed_mps = kSpeed, .speed_mps = kSpeed};
   // GIVEN an ACC that wants to accelerate, and a driver who brakes at 1 m/s2
   for (int k = 0; k < 20; ++k) acc.Step(cars.Sense());
   cars.acceleration_mps2 = -1;
   // THEN the control begins at the value that would keep this acceleration, and changes at the
   // maximum rate
-  const double change = section.max_jerk_mps3 * kStep / section.engine_gain;
+  const double change = section.max_jerk_mps3 * kStep_s / section.engine_gain;
   EXPECT_NEAR(acc.Step(cars.Sense()).control, 1 / section.engine_gain - change, 1e-9);
 }
 
 TEST(AccControllerTest, EqualInputsGiveEqualBits) {
-  acc::AccController one(AccSection{}, kStep);
-  acc::AccController other(AccSection{}, kStep);
+  acc::AccController one(AccSection{}, kStep_s);
+  acc::AccController other(AccSection{}, kStep_s);
   TwoCars cars{.gap_m = 15, .preceding_speed_mps = 12, .speed_mps = kSpeed};
   for (int k = 0; k < 300; ++k) {
     const acc::AccController::Output a = one.Step(cars.Sense());

@@ -6,13 +6,12 @@
 
 #include "services/acc/acc_controller.h"
 #include "services/models/vehicle/longitudinal_vehicle.h"
+#include "tests/unit/services/acc/two_cars.h"
 
 namespace fogline {
 namespace {
 
-constexpr double kStep_s = 0.1;
-
-struct Drive {
+struct Course {
   double least_gap_m = 1e9;
   double last_gap_m = 0;
   double last_speed_mps = 0;
@@ -21,15 +20,15 @@ struct Drive {
 
 // A car follows a car ahead at 20 m/s for a minute. After 5 s the car ahead brakes to 12 m/s at 2
 // m/s2.
-Drive FollowABrakingCar(const AccSection& section, VehicleModel model,
-                        const models::VehicleParameters& car = models::kSedan) {
+Course FollowABrakingCar(const AccSection& section, VehicleModel model,
+                         const models::VehicleParameters& car = models::kSedan) {
   acc::AccController acc(section, kStep_s, model);
   models::LongitudinalVehicle vehicle(car, models::FrictionOf(Surface::kDry), {}, kStep_s);
   models::Motion lead{acc::SafeDistance(section, 20), 20};
   models::Motion own{0, 20};
   vehicle.Begin(own, 0);
   double applied_mps2 = 0;
-  Drive drive;
+  Course course;
   for (int k = 0; k < 600; ++k) {
     const acc::AccController::Output output =
         acc.Step({.distance_m = lead.position_m - own.position_m,
@@ -41,23 +40,23 @@ Drive FollowABrakingCar(const AccSection& section, VehicleModel model,
                                                      : vehicle.Step(output.acceleration_mps2, own);
     own = models::Advance(own, applied_mps2, kStep_s);
     lead = models::Advance(lead, k >= 50 && k < 90 ? -2.0 : 0.0, kStep_s);
-    drive.last_gap_m = lead.position_m - own.position_m;
-    drive.least_gap_m = std::min(drive.least_gap_m, drive.last_gap_m);
-    drive.largest_acceleration_mps2 =
-        std::max(drive.largest_acceleration_mps2, std::abs(applied_mps2));
+    course.last_gap_m = lead.position_m - own.position_m;
+    course.least_gap_m = std::min(course.least_gap_m, course.last_gap_m);
+    course.largest_acceleration_mps2 =
+        std::max(course.largest_acceleration_mps2, std::abs(applied_mps2));
   }
-  drive.last_speed_mps = own.speed_mps;
-  return drive;
+  course.last_speed_mps = own.speed_mps;
+  return course;
 }
 
 TEST(AccOnVehicleTest, KeepsItsDistanceAlmostAsWellAsInAPointMass) {
   for (const double headway_s : {0.8, 1.0, 1.5, 2.0}) {
     AccSection section;
     section.headway_s = headway_s;
-    const Drive ideal = FollowABrakingCar(section, VehicleModel::kPointMass);
+    const Course ideal = FollowABrakingCar(section, VehicleModel::kPointMass);
     for (const models::VehicleParameters& car :
          {models::kCompact, models::kSedan, models::kTruck}) {
-      const Drive real = FollowABrakingCar(section, VehicleModel::kLongitudinal, car);
+      const Course real = FollowABrakingCar(section, VehicleModel::kLongitudinal, car);
       // Delay and lag together are half a second. In this time a braking of 2 m/s2 changes the gap
       // by 0.25 m. The loss of gap adds up while the car brakes.
       EXPECT_GT(real.least_gap_m, ideal.least_gap_m - 2) << "headway " << headway_s;

@@ -6,13 +6,13 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/unit/services/acc/two_cars.h"
+
 namespace fogline {
 namespace {
 
 using Eigen::Index;
 using Eigen::VectorXd;
-
-constexpr double kStep = 0.1;
 
 AccSection ShortSection() {
   AccSection section;
@@ -31,7 +31,7 @@ const acc::AccSituation kSituation{
 
 // The cost by its definition in acc_program.h, from a simulation.
 double Cost(const AccSection& section, const acc::AccSituation& now, const VectorXd& z) {
-  const acc::DiscreteAccModel model = acc::Discretise(acc::MakeAccModel(section), kStep);
+  const acc::DiscreteAccModel model = acc::Discretise(acc::MakeAccModel(section), kStep_s);
   Eigen::Vector3d x = now.state;
   double previous = now.previous_control;
   double cost = section.min_gap_weight * z(0) * z(0);
@@ -54,7 +54,7 @@ VectorXd SomePlan(Index size, int number) {
 
 TEST(AccProgramTest, CostIsTheSumOverTheHorizon) {
   const AccSection section = ShortSection();
-  const acc::AccProgram program(section, kStep);
+  const acc::AccProgram program(section, kStep_s);
   const Eigen::Vector4d p(kSituation.state(0), kSituation.state(1), kSituation.state(2),
                           kSituation.previous_control);
   const VectorXd linear = program.gradient() * p;
@@ -73,7 +73,7 @@ TEST(AccProgramTest, LimitsAreThoseOfThePredictedCar) {
   AccSection section = ShortSection();
   section.max_speed_mps = 21.5;
   section.min_gap_m = 36;
-  const acc::AccProgram program(section, kStep);
+  const acc::AccProgram program(section, kStep_s);
   const VectorXd z = SomePlan(7, 3);
   VectorXd lower(30);
   VectorXd upper(30);
@@ -81,10 +81,10 @@ TEST(AccProgramTest, LimitsAreThoseOfThePredictedCar) {
   const VectorXd below = program.constraints() * z - lower;
   const VectorXd above = upper - program.constraints() * z;
 
-  const acc::DiscreteAccModel model = acc::Discretise(acc::MakeAccModel(section), kStep);
+  const acc::DiscreteAccModel model = acc::Discretise(acc::MakeAccModel(section), kStep_s);
   const double preceding_mps = kSituation.speed_mps + kSituation.state(acc::kDeltaV);
   Eigen::Vector3d x = kSituation.state;
-  const double max_control_change = section.max_jerk_mps3 * kStep / section.engine_gain;
+  const double max_control_change = section.max_jerk_mps3 * kStep_s / section.engine_gain;
   double previous = kSituation.previous_control;
   for (Index j = 0; j < 6; ++j) {
     const double u = z(1 + j);
@@ -109,7 +109,7 @@ TEST(AccProgramTest, LimitsAreThoseOfThePredictedCar) {
 
 TEST(AccProgramTest, LeavesOutLimitsThatNoPlanCanReach) {
   // GIVEN a car at a medium speed, far behind the next car
-  const acc::AccProgram program(ShortSection(), kStep);
+  const acc::AccProgram program(ShortSection(), kStep_s);
   VectorXd lower(30);
   VectorXd upper(30);
   program.Limits(kSituation, lower, upper);
@@ -123,7 +123,7 @@ TEST(AccProgramTest, FallbackPlanApproachesItsDecelerationAtTheFastestChange) {
   section.engine_gain = 0.5;
   section.fallback_deceleration_mps2 = 1.2;
   section.max_jerk_mps3 = 5;
-  const acc::AccProgram program(section, kStep);
+  const acc::AccProgram program(section, kStep_s);
   double u = -0.5;
   std::vector<double> plan;
   for (int j = 0; j < 5; ++j) plan.push_back(u = program.FallbackControl(u));
@@ -136,7 +136,7 @@ TEST(AccProgramTest, FallbackPlanStaysWithinTheStrongestBraking) {
   AccSection section;
   section.fallback_deceleration_mps2 = 9;
   section.min_acceleration_mps2 = -3;
-  const acc::AccProgram program(section, kStep);
+  const acc::AccProgram program(section, kStep_s);
   EXPECT_EQ(program.FallbackControl(3), 3);
 }
 

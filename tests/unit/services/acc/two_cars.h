@@ -8,12 +8,14 @@
 
 namespace fogline {
 
+inline constexpr double kStep_s = 0.1;
+
 struct TwoCars {
   double gap_m;
   double preceding_speed_mps;
   double speed_mps;
   double acceleration_mps2 = 0;  // applied during the last step
-  double step_s = 0.1;
+  double step_s = kStep_s;
 
   acc::AccController::Input Sense() const {
     return {.distance_m = gap_m,

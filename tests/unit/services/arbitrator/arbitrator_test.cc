@@ -8,12 +8,10 @@
 
 #include "services/decision/policies/policies.h"
 #include "tests/support/find_row.h"
+#include "tests/unit/services/arbitrator/two_commands.h"
 
 namespace fogline {
 namespace {
-
-constexpr double kAutomation_mps2 = 0.123;  // a_A
-constexpr double kHuman_mps2 = -0.456;      // a_H
 
 struct Messages {
   ego_t ego{};

@@ -4,11 +4,11 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/unit/services/arbitrator/two_commands.h"
+
 namespace fogline {
 namespace {
 
-constexpr double kAutomation_mps2 = 0.123;
-constexpr double kHuman_mps2 = -0.456;
 constexpr double kApplied_mps2 = 0.3;
 
 Scenario SomeScenario() {

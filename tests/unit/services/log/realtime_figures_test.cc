@@ -4,10 +4,12 @@
 
 #include <limits>
 
+#include "tests/unit/services/log/short_log.h"
+
 namespace fogline {
 namespace {
 
-constexpr std::int64_t kStep_us = 100'000;
+using test::kStep_us;
 
 status_t Said(const std::string& role, std::int64_t instance, std::int64_t sequence) {
   status_t status{};

@@ -7,13 +7,13 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/unit/services/metrics/example_runs.h"
+
 namespace fogline {
 namespace {
 
-constexpr double kStep_s = 0.5;
-
 // A run in clear air. The LiDAR is right, and the automation drives.
-std::vector<metrics::Sample> QuietRun(std::size_t steps) {
+std::vector<metrics::Sample> ClearRun(std::size_t steps) {
   std::vector<metrics::Sample> run(steps);
   for (std::size_t k = 0; k < steps; ++k) {
     run[k].time_s = kStep_s * static_cast<double>(k);
@@ -41,7 +41,7 @@ metrics::DetectionMetrics Collect(const std::vector<metrics::Sample>& run,
 }
 
 TEST(DetectionTest, TheHumanIsWrongWhileTheLidarIsRightAndTheAutomationWhileTheTrackIsWrong) {
-  auto run = QuietRun(8);
+  auto run = ClearRun(8);
   for (const std::size_t k : {2, 3, 4}) Deceive(run[k]);
   for (const std::size_t k : {4, 5, 7}) GiveToHuman(run[k]);
   const metrics::DetectionMetrics m = Collect(run);
@@ -50,7 +50,7 @@ TEST(DetectionTest, TheHumanIsWrongWhileTheLidarIsRightAndTheAutomationWhileTheT
 }
 
 TEST(DetectionTest, AuthorityWeighsTheTime) {
-  auto run = QuietRun(3);
+  auto run = ClearRun(3);
   Deceive(run[0]);
   for (metrics::Sample& sample : run) {
     sample.lambda_human = 0.25;
@@ -62,7 +62,7 @@ TEST(DetectionTest, AuthorityWeighsTheTime) {
 }
 
 TEST(DetectionTest, AnAutomationWithoutTheDeceivedLidarIsNotWrong) {
-  auto run = QuietRun(3);
+  auto run = ClearRun(3);
   for (metrics::Sample& sample : run) {
     Deceive(sample);
     sample.fused_distance_m = 30.05;
@@ -71,7 +71,7 @@ TEST(DetectionTest, AnAutomationWithoutTheDeceivedLidarIsNotWrong) {
 }
 
 TEST(DetectionTest, AnAutomationOnAWrongTrackIsWrongAlsoIfTheLidarIsRight) {
-  auto run = QuietRun(5);
+  auto run = ClearRun(5);
   run[1].fused_distance_m = 26.05;  // the filter still has an error from the fog
   run[2].fused_distance_m = 29.5;
   run[3].fused_distance_m = 29.95;
@@ -84,7 +84,7 @@ TEST(DetectionTest, ALidarIsRightWithinItsToleranceMountingAndWithoutAValue) {
   Scenario scenario;
   scenario.lidar.bias_m = 0.5;
   scenario.lidar.lateral_offset_m = 1;
-  auto run = QuietRun(4);
+  auto run = ClearRun(4);
   run[0].lidar_range_m = 30.5166620396 + 0.09;  // sqrt(901) + 0.5
   run[1].lidar_range_m = 30.5166620396 - 0.09;
   run[2].lidar_range_m = std::numeric_limits<double>::quiet_NaN();
@@ -99,7 +99,7 @@ TEST(DetectionTest, ALidarIsRightWithinItsToleranceMountingAndWithoutAValue) {
 }
 
 TEST(DetectionTest, DelayIsFromTheFirstDeceptionToTheAlarm) {
-  auto run = QuietRun(8);
+  auto run = ClearRun(8);
   for (const std::size_t k : {2, 3, 4, 5}) Deceive(run[k]);
   EXPECT_EQ(Collect(run).deception_to_alarm_s, std::nullopt);
   run[5].doc = 0.5;  // a DoC at the threshold is an alarm
@@ -109,7 +109,7 @@ TEST(DetectionTest, DelayIsFromTheFirstDeceptionToTheAlarm) {
 }
 
 TEST(DetectionTest, CountsAlarmsThatBeginInClearAirPerHourOfIt) {
-  auto run = QuietRun(9);
+  auto run = ClearRun(9);
   for (const std::size_t k : {6, 7}) Deceive(run[k]);
   EXPECT_EQ(Collect(run).false_alarms_ph, 0);
   // One false alarm begins in the first step. Another false alarm lasts a single step. The alarm in
@@ -119,7 +119,7 @@ TEST(DetectionTest, CountsAlarmsThatBeginInClearAirPerHourOfIt) {
 }
 
 TEST(DetectionTest, WithoutClearAirThereIsNoRateOfFalseAlarms) {
-  auto run = QuietRun(3);
+  auto run = ClearRun(3);
   for (metrics::Sample& sample : run) sample.fog_present = true;
   EXPECT_EQ(Collect(run).false_alarms_ph, std::nullopt);
 }

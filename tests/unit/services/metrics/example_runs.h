@@ -3,13 +3,16 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "services/metrics/sample.h"
 
 namespace fogline {
 
-inline constexpr double kStep_s = 0.5;  // a power of two: all times and jerks of a run are exact
+inline constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+// A power of two: all times, integrals and jerks of a run are exact.
+inline constexpr double kStep_s = 0.5;
 
 // A run of `steps` steps without events. The following car is exactly at its safe distance.
 inline std::vector<metrics::Sample> QuietRun(std::size_t steps) {

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <map>
 #include <optional>
 #include <set>
@@ -21,8 +20,6 @@
 
 namespace fogline {
 namespace {
-
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 TEST(CompromisedSafetyTest, IsTheShortfallOfTheSafeDistance) {
   metrics::Sample sample;

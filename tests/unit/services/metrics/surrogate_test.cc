@@ -6,11 +6,10 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/unit/services/metrics/example_runs.h"
+
 namespace fogline {
 namespace {
-
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-constexpr double kStep_s = 0.5;  // a power of two, so integrals are exact
 
 // A gap of 30 m to a car at 20 m/s. The car behind drives 5 m/s faster.
 constexpr metrics::CarPair kClosing{.gap_m = 30, .speed_mps = 25, .lead_speed_mps = 20};

@@ -1,12 +1,15 @@
-// Commands to the world, for tests.
+// Commands to the world, states of its inputs, and what it says, for tests.
 #pragma once
 
 #include <cstdint>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "fogline/arbitration_t.hpp"
 #include "fogline/follower_command_t.hpp"
+#include "services/world/vehicle_fallback.h"
+#include "services/world/world.h"
 
 namespace fogline {
 
@@ -26,6 +29,14 @@ inline follower_command_t FollowerCommands(std::vector<double> accelerations_mps
 
 inline follower_command_t FollowerCommand(double acceleration_mps2) {
   return FollowerCommands({acceleration_mps2});
+}
+
+inline constexpr InputState kOk = InputState::kOk;
+inline constexpr InputState kStale = InputState::kStale;
+inline constexpr InputState kLost = InputState::kLost;
+
+inline const truth_t& Truth(const world::World::Output& output) {
+  return std::get<truth_t>(output);
 }
 
 }  // namespace fogline

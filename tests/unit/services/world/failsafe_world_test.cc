@@ -9,10 +9,6 @@
 namespace fogline {
 namespace {
 
-constexpr InputState kOk = InputState::kOk;
-constexpr InputState kStale = InputState::kStale;
-constexpr InputState kLost = InputState::kLost;
-
 class FailsafeWorldTest : public testing::Test {
  protected:
   FailsafeWorldTest() { truth_ = std::get<truth_t>(world_.Start(7)); }

@@ -14,8 +14,6 @@
 namespace fogline {
 namespace {
 
-const truth_t& Truth(const world::World::Output& output) { return std::get<truth_t>(output); }
-
 Scenario WithFollowers(std::int64_t count) {
   Scenario scenario;
   scenario.followers.count = count;

@@ -11,9 +11,6 @@
 namespace fogline {
 namespace {
 
-constexpr InputState kOk = InputState::kOk;
-constexpr InputState kStale = InputState::kStale;
-constexpr InputState kLost = InputState::kLost;
 constexpr InputState kAwaited = InputState::kAwaited;
 
 Scenario SomeScenario() {

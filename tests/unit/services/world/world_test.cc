@@ -11,8 +11,6 @@
 namespace fogline {
 namespace {
 
-const truth_t& Truth(const world::World::Output& output) { return std::get<truth_t>(output); }
-
 TEST(WorldTest, StartsAsTheScenarioSays) {
   Scenario scenario;
   scenario.world.host_gap_m = 30.0;

@@ -13,6 +13,7 @@
 
 #include "services/runtime/transport/bus.h"
 #include "tests/support/children.h"
+#include "tests/support/command.h"
 #include "tests/unit/services/runtime/script.h"
 
 namespace fogline::test {
@@ -21,8 +22,6 @@ namespace {
 using processes::RelayProcess;
 using testing::MatchesRegex;
 using testing::StartsWith;
-
-constexpr auto kPatience = std::chrono::seconds(20);
 
 class RelayProcessTest : public testing::Test {
  protected:

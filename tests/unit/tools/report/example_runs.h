@@ -23,6 +23,9 @@
 
 namespace fogline {
 
+// The value of a sample that a run does not have.
+inline constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
 /// The offset of the LiDAR's mounting.
 inline constexpr double kExampleLidarBias_m = -0.93;
 

@@ -14,8 +14,6 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-
 /// A column of a run, from whichever place the page stores it in.
 json ColumnOf(const json& page, std::size_t run, const std::string& name) {
   return page["columns"][page["runs"][run]["columns"][name].get<std::size_t>()];

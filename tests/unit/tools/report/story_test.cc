@@ -1,6 +1,5 @@
 #include "tools/report/story.h"
 
-#include <limits>
 #include <string>
 #include <vector>
 
@@ -109,7 +108,6 @@ TEST(StoryTest, TellsOfClearAirAndOfNoFollowingCar) {
   report::ReportRun run = CalmRun(Policy::kNone);
   EXPECT_EQ(report::StoryOf({&run, 1}),
             "There was no fog; without traded control the following car never came too close.");
-  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   for (metrics::Sample& sample : run.samples)
     sample.follower_gap_m = sample.follower_safe_distance_m = kNone;
   EXPECT_EQ(report::StoryOf({&run, 1}),

@@ -19,8 +19,8 @@ namespace {
 using runner::DirectLog;
 using runner::ExperimentOptions;
 
-constexpr std::int64_t kSteps = 12;
-constexpr std::int64_t kCut = 7;
+constexpr std::int64_t kDirectSteps = 12;
+constexpr std::int64_t kDirectCut = 7;
 
 class DirectLogTest : public testing::Test {
  protected:
@@ -36,11 +36,12 @@ class DirectLogTest : public testing::Test {
       to.Add(step, kChannels[channel], event->utime, event->data);
     }
   }
-  /// Writes the log of a run up to step kCut - 1. @return the options that resume this log
+  /// Writes the log of a run up to step kDirectCut - 1. @return the options that resume this log
   ExperimentOptions Resumed() const {
     Copy(log_, part_,
          [](log::EventLogWriter&, const log::Event& event, std::vector<std::uint8_t>& data) {
-           return event.channel == "RUN" || runtime::ReadInt64(data, runtime::kStepOffset) < kCut;
+           return event.channel == "RUN" ||
+                  runtime::ReadInt64(data, runtime::kStepOffset) < kDirectCut;
          });
     ExperimentOptions options = Direct(part_);
     options.resume = runner::ResumedLog(part_, nullptr).resumption();
@@ -50,7 +51,7 @@ class DirectLogTest : public testing::Test {
   const ScratchFolder folder_;
   const std::string log_ = folder_.File("run.lcm");
   const std::string part_ = folder_.File("part.lcm");
-  const Scenario scenario_ = Paper(kSteps);
+  const Scenario scenario_ = Paper(kDirectSteps);
   const runner::ExperimentResult whole_ = runner::RunExperiment(scenario_, Direct(log_));
   const std::int64_t run_id_ = ReadToTheEnd(log_).run_id;
 };
@@ -58,7 +59,7 @@ class DirectLogTest : public testing::Test {
 TEST_F(DirectLogTest, HasTheScenarioAndAllMessagesAndASealAtItsEnd) {
   const std::string file = folder_.File("again.lcm");
   DirectLog log(Direct(file), run_id_, scenario_);
-  AddSteps(log_, log, 0, kSteps);
+  AddSteps(log_, log, 0, kDirectSteps);
   log.Flush();
   log.End(whole_);
   EXPECT_TRUE(Content(file) == Content(log_));
@@ -89,7 +90,7 @@ TEST_F(DirectLogTest, OfAnInterruptedRunIsSealedAsFarAsItGoes) {
 
 TEST_F(DirectLogTest, GoesOnBehindTheStepsThatItHas) {
   DirectLog log(Resumed(), run_id_, scenario_);
-  AddSteps(log_, log, 0, kSteps);
+  AddSteps(log_, log, 0, kDirectSteps);
   log.Flush();
   log.End(whole_);
   EXPECT_TRUE(Content(part_) == Content(log_));

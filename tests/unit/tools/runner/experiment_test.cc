@@ -25,12 +25,13 @@ using testing::IsEmpty;
 using testing::SizeIs;
 using testing::StartsWith;
 
-constexpr std::int64_t kSteps = 30;
+constexpr std::int64_t kExperimentSteps = 30;
 
 TEST(CheckPossibleTest, NamesTheFieldOfAScenarioThatNoPartCanHave) {
-  EXPECT_NO_THROW(runner::CheckPossible(Paper(kSteps), "paper.json"));
-  const Scenario impossible = Paper(
-      kSteps, {R"(/road/grade=[{"position_m":50,"grade":0},{"position_m":20,"grade":0.05}])"});
+  EXPECT_NO_THROW(runner::CheckPossible(Paper(kExperimentSteps), "paper.json"));
+  const Scenario impossible =
+      Paper(kExperimentSteps,
+            {R"(/road/grade=[{"position_m":50,"grade":0},{"position_m":20,"grade":0.05}])"});
   try {
     runner::CheckPossible(impossible, "mine.json");
     FAIL() << "it is possible";
@@ -53,7 +54,7 @@ class RunTest : public testing::Test {
     ExperimentOptions options;
     options.transport = transport;
     options.log = log;
-    return runner::RunExperiment(Paper(kSteps), options);
+    return runner::RunExperiment(Paper(kExperimentSteps), options);
   }
   const ScratchFolder folder_;
   const std::string log_ = folder_.File("run.lcm");
@@ -64,8 +65,8 @@ TEST_F(RunTest, HasTheSameResultOverAnyTransport) {
   const ExperimentResult memq = Run("memq", log_);
   EXPECT_EQ(direct.transport, "direct");
   EXPECT_EQ(memq.transport, "memq");
-  EXPECT_EQ(direct.steps, kSteps);
-  EXPECT_EQ(memq.steps, kSteps);
+  EXPECT_EQ(direct.steps, kExperimentSteps);
+  EXPECT_EQ(memq.steps, kExperimentSteps);
   EXPECT_EQ(direct.digest, memq.digest);
   EXPECT_EQ(direct.seed, memq.seed);
   EXPECT_EQ(direct.measures.min_host_gap_m, memq.measures.min_host_gap_m);
@@ -79,21 +80,22 @@ TEST_F(RunTest, HasTheSameResultOverAnyTransport) {
 
 TEST_F(RunTest, KeepsTheSamplesOnlyOnRequest) {
   ExperimentOptions options = Direct("");
-  EXPECT_THAT(runner::RunExperiment(Paper(kSteps), options).samples, IsEmpty());
+  EXPECT_THAT(runner::RunExperiment(Paper(kExperimentSteps), options).samples, IsEmpty());
   options.samples = true;
-  EXPECT_THAT(runner::RunExperiment(Paper(kSteps), options).samples, SizeIs(kSteps));
+  EXPECT_THAT(runner::RunExperiment(Paper(kExperimentSteps), options).samples,
+              SizeIs(kExperimentSteps));
 }
 
 TEST_F(RunTest, ComputesTheStepsAgainOnRequest) {
   ExperimentOptions options;
   options.transport = "memq";
   options.verify = true;
-  const ExperimentResult result = runner::RunExperiment(Paper(kSteps), options);
+  const ExperimentResult result = runner::RunExperiment(Paper(kExperimentSteps), options);
   ASSERT_TRUE(result.verification);
   EXPECT_TRUE(result.verification->Holds());
   EXPECT_THAT(result.verification->roles, SizeIs(8));
   options.verify.reset();
-  EXPECT_FALSE(runner::RunExperiment(Paper(kSteps), options).verification);
+  EXPECT_FALSE(runner::RunExperiment(Paper(kExperimentSteps), options).verification);
 }
 
 TEST_F(RunTest, RefusesATransportThatIsNone) {
@@ -104,13 +106,13 @@ TEST_F(RunTest, RefusesATransportThatIsNone) {
 TEST_F(RunTest, ReadFromItsLogIsTheSame) {
   const ExperimentResult made = Run("direct", log_);
   const LoggedRun read = runner::ReadLoggedRun(log_);
-  const LoggedRun measured = runner::MeasureLoggedRun(log_, Paper(kSteps));
-  EXPECT_THAT(read.result.samples, SizeIs(kSteps));
+  const LoggedRun measured = runner::MeasureLoggedRun(log_, Paper(kExperimentSteps));
+  EXPECT_THAT(read.result.samples, SizeIs(kExperimentSteps));
   EXPECT_THAT(measured.result.samples, IsEmpty());
   for (const LoggedRun& run : {read, measured}) {
     EXPECT_TRUE(run.complete) << run.note;
     EXPECT_EQ(run.result.digest, made.digest);
-    EXPECT_EQ(run.result.steps, kSteps);
+    EXPECT_EQ(run.result.steps, kExperimentSteps);
     EXPECT_EQ(run.result.seed, made.seed);
     EXPECT_EQ(run.result.log, log_);
     EXPECT_EQ(run.result.measures.min_host_gap_m, made.measures.min_host_gap_m);
@@ -148,7 +150,7 @@ TEST(BusRunTest, ReportsTheRunAndItsLog) {
   ExperimentOptions options;
   options.transport = "memq";
   const runner::LogKeeper keeper(log);
-  const runner::BusRun run = runner::RunOnBus(Paper(kSteps), options, log, keeper);
+  const runner::BusRun run = runner::RunOnBus(Paper(kExperimentSteps), options, log, keeper);
   EXPECT_EQ(ReadToTheEnd(log).run_id, run.run_id);
   EXPECT_TRUE(keeper.HasAllTold(run.written));
   EXPECT_NO_THROW(keeper.Check(run.written));

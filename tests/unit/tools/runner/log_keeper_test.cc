@@ -19,14 +19,14 @@ namespace {
 using runner::LogKeeper;
 using testing::HasSubstr;
 
-constexpr std::int64_t kSteps = 20;
+constexpr std::int64_t kKeptSteps = 20;
 
 /// A log of a run without a seal, as the run's recorder leaves it.
 class LogKeeperTest : public testing::Test {
  protected:
   LogKeeperTest() {
     const std::string sealed = folder_.File("sealed.lcm");
-    runner::RunExperiment(Paper(kSteps), Direct(sealed));
+    runner::RunExperiment(Paper(kKeptSteps), Direct(sealed));
     log::EventLogReader reader(sealed);
     log::EventLogWriter writer(log_);
     while (const auto event = reader.Next()) {
@@ -95,8 +95,8 @@ TEST_F(LogKeeperTest, SealsAWholeRun) {
   EXPECT_FALSE(sealed.altered);
   const log_seal_t& says = sealed.seal->says;
   EXPECT_EQ(says.digest, run.digest);
-  EXPECT_EQ(says.steps, kSteps);
-  EXPECT_EQ(says.header.step, kSteps - 1);
+  EXPECT_EQ(says.steps, kKeptSteps);
+  EXPECT_EQ(says.header.step, kKeptSteps - 1);
   EXPECT_TRUE(says.complete);
   EXPECT_EQ(says.build_id, std::vector<std::int64_t>(kRoles.size(), 4711));
   EXPECT_EQ(log::WhyNotSealedFile(*sealed.seal, log::EventLogReader(log_)), "");
@@ -119,14 +119,14 @@ TEST_F(LogKeeperTest, SealsARunThatEndedEarlyAsFarAsItGoes) {
   log::EventLogReader reader(log_);
   log::EventLogWriter writer(part);
   while (const auto event = reader.Next()) {
-    if (runtime::ReadInt64(event->data, runtime::kStepOffset) == kSteps - 1) break;
+    if (runtime::ReadInt64(event->data, runtime::kStepOffset) == kKeptSteps - 1) break;
     writer.Write(event->channel, event->utime, event->data);
   }
   writer.Flush();
   LogKeeper(part).SealCutOff({writer.written()}, builds_, nullptr);
   const log::RunLog sealed = ReadToTheEnd(part);
   ASSERT_TRUE(sealed.seal && sealed.seal->whole);
-  EXPECT_EQ(sealed.seal->says.steps, kSteps - 1);
+  EXPECT_EQ(sealed.seal->says.steps, kKeptSteps - 1);
   EXPECT_FALSE(sealed.seal->says.complete);
 }
 

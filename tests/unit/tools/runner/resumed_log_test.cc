@@ -21,19 +21,20 @@ using runner::ResumedLog;
 using testing::HasSubstr;
 using testing::StartsWith;
 
-constexpr std::int64_t kSteps = 20;
-constexpr std::int64_t kCut = 12;
+constexpr std::int64_t kResumedSteps = 20;
+constexpr std::int64_t kResumedCut = 12;
 
 class ResumedLogTest : public testing::Test {
  protected:
-  ResumedLogTest() { runner::RunExperiment(Paper(kSteps), Direct(log_)); }
+  ResumedLogTest() { runner::RunExperiment(Paper(kResumedSteps), Direct(log_)); }
 
-  /// A copy of the log that ends after step kCut - 1, like the log of a killed recorder.
+  /// A copy of the log that ends after step kResumedCut - 1, like the log of a killed recorder.
   std::string CutOff() const {
     std::string part = folder_.File("part.lcm");
     Copy(log_, part,
          [](log::EventLogWriter&, const log::Event& event, std::vector<std::uint8_t>& data) {
-           return event.channel == "RUN" || runtime::ReadInt64(data, runtime::kStepOffset) < kCut;
+           return event.channel == "RUN" ||
+                  runtime::ReadInt64(data, runtime::kStepOffset) < kResumedCut;
          });
     return part;
   }
@@ -49,16 +50,16 @@ class ResumedLogTest : public testing::Test {
 TEST_F(ResumedLogTest, HasAllStepsOfACompleteRun) {
   const ResumedLog log(log_, nullptr);
   EXPECT_TRUE(log.complete());
-  EXPECT_EQ(log.resumption().remains.steps, kSteps);
-  EXPECT_EQ(PrintScenario(log.scenario()), PrintScenario(Paper(kSteps)));
+  EXPECT_EQ(log.resumption().remains.steps, kResumedSteps);
+  EXPECT_EQ(PrintScenario(log.scenario()), PrintScenario(Paper(kResumedSteps)));
 }
 
 TEST_F(ResumedLogTest, HasTheStepsOfARunThatEndedEarly) {
   const ResumedLog log(CutOff(), nullptr);
   EXPECT_FALSE(log.complete());
-  EXPECT_EQ(log.resumption().remains.steps, kCut);
+  EXPECT_EQ(log.resumption().remains.steps, kResumedCut);
   EXPECT_EQ(log.resumption().front.run_id, ReadToTheEnd(log_).run_id);
-  EXPECT_EQ(PrintScenario(log.scenario()), PrintScenario(Paper(kSteps)));
+  EXPECT_EQ(PrintScenario(log.scenario()), PrintScenario(Paper(kResumedSteps)));
 }
 
 TEST_F(ResumedLogTest, IsLockedAgainstOtherRunsUntilItEnds) {
@@ -111,7 +112,7 @@ TEST_F(ResumedLogTest, IsNotResumedWithoutTheKeyThatSignedItsSeal) {
   runtime::SigningKey::Create(key_file);
   runner::ExperimentOptions options = Direct(folder_.File("signed.lcm"));
   options.traffic.key_file = key_file;
-  runner::RunExperiment(Paper(kSteps), options);
+  runner::RunExperiment(Paper(kResumedSteps), options);
   const std::string log = options.log.string();
   EXPECT_EQ(
       Refusal(log),
@@ -128,7 +129,7 @@ TEST_F(ResumedLogTest, HasNothingBehindItsStepsThatNoRunLeaves) {
   Copy(log_, odd,
        [](log::EventLogWriter& log, const log::Event& event, std::vector<std::uint8_t>& data) {
          if (event.channel == "RUN") return true;
-         if (runtime::ReadInt64(data, runtime::kStepOffset) < kCut) return true;
+         if (runtime::ReadInt64(data, runtime::kStepOffset) < kResumedCut) return true;
          log.Write("OTHER", 0, data);
          return false;
        });

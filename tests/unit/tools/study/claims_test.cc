@@ -8,12 +8,13 @@
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 
+#include "tests/unit/tools/study/examples.h"
+
 namespace fogline {
 namespace {
 
 using ::testing::HasSubstr;
 
-constexpr std::int64_t kSeeds = 20;
 constexpr double kWholeRun = 500;  // steps
 constexpr std::string_view kShortfall = "mean_compromised_safety_fog_m";
 

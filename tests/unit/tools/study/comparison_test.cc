@@ -11,10 +11,10 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/unit/tools/study/examples.h"
+
 namespace fogline {
 namespace {
-
-constexpr std::int64_t kSeeds = 20;
 
 /// A comparison of `none` and `traded` in which some runs of `traded` end in a collision.
 /// rms_jerk_mps3 differs in each pair. In a pair without a collision all other measures are equal.

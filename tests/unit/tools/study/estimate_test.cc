@@ -7,10 +7,10 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/unit/tools/study/examples.h"
+
 namespace fogline {
 namespace {
-
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 TEST(EstimateTest, IsTheMeanWithStudentsIntervalOfTheValuesThatAreThere) {
   // Mean 2, deviation 1, t of 2 degrees of freedom 4.302653: 2 +- 4.302653/sqrt(3).

@@ -5,10 +5,10 @@
 #include <initializer_list>
 #include <limits>
 
+#include "tests/unit/tools/watch/now.h"
+
 namespace fogline {
 namespace {
-
-const TimePoint kNow = TimePoint{} + std::chrono::hours(1);
 
 watch::StepSequence Seen(std::initializer_list<std::int64_t> steps) {
   watch::StepSequence sequence;

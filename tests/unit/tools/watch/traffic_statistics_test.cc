@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "services/runtime/wire/message_signer.h"
+#include "tests/unit/tools/watch/now.h"
 
 namespace fogline {
 namespace {
@@ -14,7 +15,6 @@ namespace {
 using testing::ElementsAre;
 using testing::Pair;
 
-const TimePoint kBegin = TimePoint{} + std::chrono::hours(1);
 constexpr std::int64_t kRun = 4711;
 
 template <class M>
@@ -44,13 +44,11 @@ status_t Status(const std::string& role, std::int64_t instance, std::int64_t seq
 class TrafficStatisticsTest : public testing::Test {
  protected:
   void Add(std::string_view channel, const std::vector<std::uint8_t>& bytes, int at_ms = 0) {
-    statistics_.Add(channel, bytes, kBegin + milliseconds(at_ms));
+    statistics_.Add(channel, bytes, kNow + milliseconds(at_ms));
   }
-  watch::TrafficView Observe(int at_ms) {
-    return statistics_.Observe(kBegin + milliseconds(at_ms));
-  }
+  watch::TrafficView Observe(int at_ms) { return statistics_.Observe(kNow + milliseconds(at_ms)); }
 
-  watch::TrafficStatistics statistics_{kBegin};
+  watch::TrafficStatistics statistics_{kNow};
 };
 
 TEST_F(TrafficStatisticsTest, ShowsRunsApart) {

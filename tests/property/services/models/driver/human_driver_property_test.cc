@@ -5,12 +5,12 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/property/services/models/driver/between.h"
+
 namespace fogline {
 namespace {
 
 constexpr std::int64_t kSituations = 5'000;
-
-double Between(double low, double high, double u) { return low + (high - low) * u; }
 
 models::Situation AnySituation(std::int64_t index) {
   const Random random(23, Stream::kRadar);

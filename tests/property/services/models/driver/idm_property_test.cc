@@ -7,14 +7,13 @@
 #include <gtest/gtest.h>
 
 #include "common/random.h"
+#include "tests/property/services/models/driver/between.h"
 
 namespace fogline {
 namespace {
 
 constexpr std::int64_t kDrivers = 200;
-constexpr std::uint32_t kSituations = 100;
-
-double Between(double low, double high, double u) { return low + (high - low) * u; }
+constexpr std::uint32_t kSituationsPerDriver = 100;
 
 // A driver with parameters from the model's usual range.
 DriverSection AnyDriver(const Random& random, std::int64_t number) {
@@ -47,7 +46,7 @@ void ForManySituations(Check&& check) {
   const Random random(1, Stream::kLidar);
   for (std::int64_t d = 0; d < kDrivers; ++d) {
     const DriverSection driver = AnyDriver(random, d);
-    for (std::uint32_t i = 0; i < kSituations; ++i) {
+    for (std::uint32_t i = 0; i < kSituationsPerDriver; ++i) {
       check(driver, AnySituation(random, d, i), random.Uniform2(d, 2000 + i)[0]);
     }
   }

@@ -2,8 +2,6 @@
 #include "services/decision/conflict/conflict_measures.h"
 
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <memory>
 #include <set>
@@ -13,6 +11,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/command.h"
 #include "tests/unit/services/decision/conflict/evidence.h"
 
 namespace fogline {
@@ -206,10 +205,8 @@ void ExpectWhole(std::span<const Row> rows) {
   }
 }
 
-std::string ReadFile(const std::string& path) {
-  std::ifstream file(std::string(FOGLINE_SOURCE_DIR) + path);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
+using test::Content;
+using test::SourceDirectory;
 
 TEST(MeasureTableTest, HasNoNameTwiceAndNoCellEmpty) {
   ExpectWhole(conflict::ConflictMeasures());
@@ -217,7 +214,7 @@ TEST(MeasureTableTest, HasNoNameTwiceAndNoCellEmpty) {
 }
 
 TEST(MeasureTableTest, IsTheTableOfTheReadme) {
-  const std::string readme = ReadFile("/services/decision/conflict/README.md");
+  const std::string readme = Content(SourceDirectory() / "services/decision/conflict/README.md");
   const auto expect_row = [&](std::string_view name, std::string_view source) {
     const std::size_t row = readme.find("| `" + std::string(name) + "` |");
     ASSERT_NE(row, std::string::npos) << name;

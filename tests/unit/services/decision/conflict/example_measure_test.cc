@@ -1,8 +1,7 @@
 // The example of services/decision/conflict/README.md.
 #include "tests/unit/services/decision/conflict/example_measure.h"
+#include "tests/support/command.h"
 
-#include <fstream>
-#include <iterator>
 #include <memory>
 #include <string>
 
@@ -14,6 +13,8 @@ namespace fogline {
 namespace {
 
 using conflict::Relative;
+using test::Content;
+using test::SourceDirectory;
 
 template <class Measure>
 std::unique_ptr<conflict::ConflictMeasure> Make(const conflict::ConflictParameters& parameters) {
@@ -23,11 +24,6 @@ std::unique_ptr<conflict::ConflictMeasure> Make(const conflict::ConflictParamete
 constexpr conflict::ConflictMeasureRow kRow = {"relative", "ours", "[0, 1]", "holds",
                                                Make<Relative>};
 
-std::string ReadFile(const std::string& path) {
-  std::ifstream file(std::string(FOGLINE_SOURCE_DIR) + path);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
 TEST(ExampleMeasureTest, IsAMeasureLikeAnyOther) {
   const auto measure = kRow.make({});
   EXPECT_EQ(measure->Step({.radar = {true, 40, 0.1}, .lidar = {true, 10, 0.1}, .prediction = {}}),
@@ -36,8 +32,9 @@ TEST(ExampleMeasureTest, IsAMeasureLikeAnyOther) {
 }
 
 TEST(ExampleMeasureTest, StandsInTheReadmeAsItIsBuiltHere) {
-  const std::string readme = ReadFile("/services/decision/conflict/README.md");
-  EXPECT_NE(readme.find(ReadFile("/tests/unit/services/decision/conflict/example_measure.h")),
+  const std::string readme = Content(SourceDirectory() / "services/decision/conflict/README.md");
+  EXPECT_NE(readme.find(Content(SourceDirectory() /
+                                "tests/unit/services/decision/conflict/example_measure.h")),
             std::string::npos);
   EXPECT_NE(readme.find(R"({"relative", "missing share of the radar's range"})"),
             std::string::npos);

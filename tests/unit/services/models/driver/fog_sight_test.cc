@@ -6,15 +6,15 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/unit/services/models/driver/examples.h"
+
 namespace fogline {
 namespace {
 
 constexpr double kClearAir = std::numeric_limits<double>::infinity();
 
-models::Situation Behind(double speed_mps, double gap_m, double lead_mps) {
-  return {
-      .speed_mps = speed_mps,
-      .ahead = models::CarAhead{.gap_m = gap_m, .speed_mps = lead_mps, .acceleration_mps2 = -1}};
+models::Situation BehindABrakingCar(double speed_mps, double gap_m, double lead_mps) {
+  return Behind(speed_mps, gap_m, lead_mps, -1);
 }
 
 TEST(FogSightTest, SeesABlackOutlineAsFarAsTheVisibilityAndAGreyOneLess) {
@@ -59,7 +59,7 @@ TEST(FogSightTest, SeesAnyOutlineInClearAirAndLampsByTheInverseSquare) {
   const models::FogSight sight{FogSightParameters{}};
   EXPECT_EQ(sight.OutlineRange(kClearAir), kClearAir);
   EXPECT_NEAR(sight.LampRange(kClearAir), std::sqrt(5 / 1e-4), 1e-9);
-  const models::Situation perceived = sight.Perceive(Behind(20, 60, 15), kClearAir);
+  const models::Situation perceived = sight.Perceive(BehindABrakingCar(20, 60, 15), kClearAir);
   EXPECT_EQ(perceived.ahead->gap_m, 60);
 }
 
@@ -68,8 +68,8 @@ TEST(FogSightTest, LosesOutlineThenLamps) {
   EXPECT_EQ(sight.At(38, 50), models::Seen::kOutline);
   EXPECT_EQ(sight.At(39, 50), models::Seen::kLamps);
   EXPECT_EQ(sight.At(51, 50), models::Seen::kNothing);
-  EXPECT_FALSE(sight.Perceive(Behind(20, 51, 10), 50).ahead.has_value());
-  EXPECT_EQ(sight.Perceive(Behind(20, 51, 10), 50).speed_mps, 20);
+  EXPECT_FALSE(sight.Perceive(BehindABrakingCar(20, 51, 10), 50).ahead.has_value());
+  EXPECT_EQ(sight.Perceive(BehindABrakingCar(20, 51, 10), 50).speed_mps, 20);
 }
 
 TEST(FogSightTest, MisjudgesDistanceMoreTheVaguerTheOutline) {
@@ -78,7 +78,7 @@ TEST(FogSightTest, MisjudgesDistanceMoreTheVaguerTheOutline) {
   const models::FogSight sight(p);
   const double outline_m = sight.OutlineRange(50);
   const auto factor = [&](double gap_m) {
-    return sight.Perceive(Behind(20, gap_m, 10), 50).ahead->gap_m / gap_m;
+    return sight.Perceive(BehindABrakingCar(20, gap_m, 10), 50).ahead->gap_m / gap_m;
   };
   EXPECT_EQ(factor(0.5 * outline_m), 1);
   EXPECT_NEAR(factor(0.75 * outline_m), 1.2, 1e-12);
@@ -89,14 +89,14 @@ TEST(FogSightTest, MisjudgesDistanceMoreTheVaguerTheOutline) {
 TEST(FogSightTest, OverlooksClosingInBelowTheAngularThreshold) {
   const models::FogSight sight{FogSightParameters{}};
   // 1.8 dv / 30^2 = 0.003 at dv = 1.5 m/s.
-  EXPECT_EQ(sight.Perceive(Behind(20, 30, 18.51), 1000).ahead->speed_mps, 20);
-  EXPECT_EQ(sight.Perceive(Behind(20, 30, 18.51), 1000).ahead->acceleration_mps2, 0);
-  EXPECT_EQ(sight.Perceive(Behind(20, 30, 18.49), 1000).ahead->speed_mps, 18.49);
-  EXPECT_EQ(sight.Perceive(Behind(20, 30, 18.49), 1000).ahead->acceleration_mps2, -1);
-  EXPECT_EQ(sight.Perceive(Behind(20, 30, 21.51), 1000).ahead->speed_mps, 21.51);
+  EXPECT_EQ(sight.Perceive(BehindABrakingCar(20, 30, 18.51), 1000).ahead->speed_mps, 20);
+  EXPECT_EQ(sight.Perceive(BehindABrakingCar(20, 30, 18.51), 1000).ahead->acceleration_mps2, 0);
+  EXPECT_EQ(sight.Perceive(BehindABrakingCar(20, 30, 18.49), 1000).ahead->speed_mps, 18.49);
+  EXPECT_EQ(sight.Perceive(BehindABrakingCar(20, 30, 18.49), 1000).ahead->acceleration_mps2, -1);
+  EXPECT_EQ(sight.Perceive(BehindABrakingCar(20, 30, 21.51), 1000).ahead->speed_mps, 21.51);
   // Only the lamps are visible, at 45 m: 1.3 dv / 45^2 = 0.003 at dv = 4.67 m/s.
-  EXPECT_EQ(sight.Perceive(Behind(20, 45, 15.34), 50).ahead->speed_mps, 20);
-  EXPECT_EQ(sight.Perceive(Behind(20, 45, 15.32), 50).ahead->speed_mps, 15.32);
+  EXPECT_EQ(sight.Perceive(BehindABrakingCar(20, 45, 15.34), 50).ahead->speed_mps, 20);
+  EXPECT_EQ(sight.Perceive(BehindABrakingCar(20, 45, 15.32), 50).ahead->speed_mps, 15.32);
 }
 
 TEST(FogSightTest, LeavesAFreeRoadFree) {

@@ -5,16 +5,10 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/unit/services/models/driver/examples.h"
+
 namespace fogline {
 namespace {
-
-constexpr double kNear = 1e-12;  // some roundings of values around 1
-
-models::Situation Behind(double speed_mps, double gap_m, double lead_mps, double lead_mps2 = 0) {
-  return {.speed_mps = speed_mps,
-          .ahead = models::CarAhead{
-              .gap_m = gap_m, .speed_mps = lead_mps, .acceleration_mps2 = lead_mps2}};
-}
 
 TEST(FollowingTest, IsTheDriversOwnIdm) {
   const DriverSection driver;

@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/unit/services/models/driver/examples.h"
+
 namespace fogline {
 namespace {
 
@@ -14,11 +16,11 @@ constexpr HumanParameters kPerfect{.reaction_time_s = 0, .gap_error = 0, .approa
 Random AnyErrors() { return Random(3, Stream::kHumanErrors); }
 models::Following AnyModel() { return models::Following(FollowingModel::kIidm, DriverSection{}); }
 
-models::Situation Behind(double speed_mps, double acceleration_mps2, double gap_m,
-                         double lead_mps) {
-  return {.speed_mps = speed_mps,
-          .acceleration_mps2 = acceleration_mps2,
-          .ahead = models::CarAhead{.gap_m = gap_m, .speed_mps = lead_mps}};
+models::Situation AcceleratingBehind(double speed_mps, double acceleration_mps2, double gap_m,
+                                     double lead_mps) {
+  models::Situation situation = Behind(speed_mps, gap_m, lead_mps);
+  situation.acceleration_mps2 = acceleration_mps2;
+  return situation;
 }
 
 TEST(HumanDriverTest, ActsOnWhatHeSawAReactionTimeAgo) {
@@ -26,8 +28,8 @@ TEST(HumanDriverTest, ActsOnWhatHeSawAReactionTimeAgo) {
   late.reaction_time_s = 0.3;
   late.anticipates = false;
   models::HumanDriver driver(late, AnyModel(), AnyErrors(), kStep_s);
-  const models::Situation before = Behind(20, 0, 32, 20);
-  const models::Situation after = Behind(20, 0, 20, 15);
+  const models::Situation before = AcceleratingBehind(20, 0, 32, 20);
+  const models::Situation after = AcceleratingBehind(20, 0, 20, 15);
   for (int k = 0; k < 5; ++k) EXPECT_EQ(driver.Step(k, before), AnyModel().Acceleration(before));
   for (int k = 5; k < 8; ++k) EXPECT_EQ(driver.Step(k, after), AnyModel().Acceleration(before));
   EXPECT_EQ(driver.Step(8, after), AnyModel().Acceleration(after));
@@ -38,11 +40,11 @@ TEST(HumanDriverTest, RemembersBetweenStepsInProportion) {
   late.reaction_time_s = 0.175;
   late.anticipates = false;
   models::HumanDriver driver(late, AnyModel(), AnyErrors(), kStep_s);
-  driver.Step(0, Behind(20, 0, 40, 20));
-  driver.Step(1, Behind(20, 0, 36, 18));
+  driver.Step(0, AcceleratingBehind(20, 0, 40, 20));
+  driver.Step(1, AcceleratingBehind(20, 0, 36, 18));
   // 0.175 s before 0.2 s is a quarter of the way from step 0 to step 1.
-  EXPECT_NEAR(driver.Step(2, Behind(20, 0, 30, 10)),
-              AnyModel().Acceleration(Behind(20, 0, 39, 19.5)), 1e-9);
+  EXPECT_NEAR(driver.Step(2, AcceleratingBehind(20, 0, 30, 10)),
+              AnyModel().Acceleration(AcceleratingBehind(20, 0, 39, 19.5)), 1e-9);
 }
 
 TEST(HumanDriverTest, AnticipatesWhatHasHappenedSince) {
@@ -51,8 +53,8 @@ TEST(HumanDriverTest, AnticipatesWhatHasHappenedSince) {
   human.reaction_time_s = 1;
   models::HumanDriver driver(human, AnyModel(), AnyErrors(), kStep_s);
   // THEN the driver reacts to 19 m/s, 38 m and the unchanged closing speed
-  EXPECT_NEAR(driver.Step(0, Behind(20, -1, 40, 18)),
-              AnyModel().Acceleration(Behind(19, -1, 38, 17)), 1e-12);
+  EXPECT_NEAR(driver.Step(0, AcceleratingBehind(20, -1, 40, 18)),
+              AnyModel().Acceleration(AcceleratingBehind(19, -1, 38, 17)), 1e-12);
 }
 
 TEST(HumanDriverTest, AnticipationOfConstantMotionUndoesTheReactionTime) {
@@ -62,7 +64,7 @@ TEST(HumanDriverTest, AnticipationOfConstantMotionUndoesTheReactionTime) {
   models::HumanDriver driver(human, AnyModel(), AnyErrors(), kStep_s);
   for (int k = 0; k < 30; ++k) {
     const double t = k * kStep_s;
-    const models::Situation now = Behind(20 - 0.5 * t, -0.5, 40 - 2 * t, 18 - 0.5 * t);
+    const models::Situation now = AcceleratingBehind(20 - 0.5 * t, -0.5, 40 - 2 * t, 18 - 0.5 * t);
     const double acceleration = driver.Step(k, now);
     if (k < 9) continue;
     EXPECT_NEAR(acceleration, AnyModel().Acceleration(now), 1e-9) << k;
@@ -74,7 +76,7 @@ TEST(HumanDriverTest, NoticesACarThatAppearsALittleLater) {
   late.reaction_time_s = 0.2;
   models::HumanDriver driver(late, AnyModel(), AnyErrors(), kStep_s);
   const models::Situation free{.speed_mps = 20};
-  const models::Situation close = Behind(20, 0, 10, 10);
+  const models::Situation close = AcceleratingBehind(20, 0, 10, 10);
   EXPECT_GT(driver.Step(0, free), 0);
   EXPECT_GT(driver.Step(1, close), 0);
   EXPECT_GT(driver.Step(2, close), 0);
@@ -86,7 +88,7 @@ TEST(HumanDriverTest, MakesTheSameErrorsAgain) {
   models::HumanDriver other(HumanParameters{}, AnyModel(), AnyErrors(), kStep_s);
   models::HumanDriver stranger(HumanParameters{}, AnyModel(), Random(4, Stream::kHumanErrors),
                                kStep_s);
-  const models::Situation seen = Behind(20, 0, 32, 20);
+  const models::Situation seen = AcceleratingBehind(20, 0, 32, 20);
   for (int k = 0; k < 20; ++k) {
     const double acceleration = one.Step(k, seen);
     EXPECT_EQ(acceleration, other.Step(k, seen));

@@ -5,11 +5,12 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/unit/services/models/driver/examples.h"
+
 namespace fogline {
 namespace {
 
 constexpr double kFreeRoad_m = 1e9;
-constexpr double kNear = 1e-12;  // some roundings of values around 1
 
 TEST(IdmTest, BrakesAsWorkedByHand) {
   // a = 0.73, b = 1.67, v_0 = 33.33, T = 1.5, s_0 = 2: s* = 32 + 40 / (2 sqrt(1.2191)) = 50.1137 m,

@@ -2,14 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/unit/services/runtime/realtime/run_times.h"
+
 namespace fogline {
 namespace {
 
-constexpr Duration kPeriod = milliseconds(100);
-constexpr TimePoint kBegan{std::chrono::hours(5)};
 constexpr HealthSection kSection{.stale_periods = 1.5, .lost_periods = 2.5, .recover_steps = 3};
-
-TimePoint At(std::int64_t ms) { return kBegan + milliseconds(ms); }
 
 runtime::InputHealth Fresh() { return runtime::InputHealth(kSection, kPeriod, kBegan); }
 

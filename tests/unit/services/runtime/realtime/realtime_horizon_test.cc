@@ -17,8 +17,8 @@ namespace {
 
 using test::Script;
 
-constexpr double kSpeed = 10;
-constexpr Duration kPeriod = milliseconds(10);
+constexpr double kFastSpeed = 10;
+constexpr Duration kFastPeriod = milliseconds(10);
 // This time is much longer than any wait in these tests, even on a busy machine. In this time the
 // run advances by 30 s.
 constexpr Duration kPatience = milliseconds(3000);
@@ -31,12 +31,12 @@ class RealtimeHorizonTest : public testing::Test {
     return scenario;
   }
   void Join(std::int64_t progress) {
-    script_.SayRun(run_t::GO, progress, kSpeed);
+    script_.SayRun(run_t::GO, progress, kFastSpeed);
     began_ = Clock::now();
     first_ = progress + 1;
   }
   /// The current step of the run.
-  std::int64_t Now() const { return first_ + (Clock::now() - began_) / kPeriod; }
+  std::int64_t Now() const { return first_ + (Clock::now() - began_) / kFastPeriod; }
   void Say(std::int64_t step) {
     script_.Say(Script::Of<ego_t>(step));
     script_.Say(Script::Of<radar_t>(step));
@@ -58,7 +58,7 @@ class RealtimeHorizonTest : public testing::Test {
     return false;
   }
   void Pass(int periods) {
-    const TimePoint end = Clock::now() + periods * kPeriod;
+    const TimePoint end = Clock::now() + periods * kFastPeriod;
     while (Clock::now() < end) script_.Poll(node_);
   }
   std::int64_t Refused() {
@@ -152,7 +152,7 @@ TEST_F(RealtimeHorizonTest, TheRecorderAsksForStepsOfWhichItHasHeardNothingButTh
   ForEachStepChannel([&]<class M>(std::size_t) { script_.Say(Script::Of<M>(0)); });
   Pass(20);
   // WHEN the runner reports that the run has reached step 10
-  script_.SayRun(run_t::GO, 10, kSpeed);
+  script_.SayRun(run_t::GO, 10, kFastSpeed);
   // THEN the recorder asks for all missing steps at once
   const auto asked = [&] {
     return std::ranges::any_of(requests, [](const resend_t& request) {

@@ -14,6 +14,7 @@
 #include "services/world/failsafe_world.h"
 #include "services/world/world.h"
 #include "tests/support/command.h"
+#include "tests/unit/services/runtime/realtime/run_times.h"
 #include "tests/unit/services/runtime/script.h"
 
 namespace fogline {
@@ -22,19 +23,18 @@ namespace {
 using test::Script;
 using testing::ElementsAre;
 
-constexpr double kSpeed = 0.1;  // so a period lasts a second
-constexpr Duration kPeriod = milliseconds(1000);
-
 class RealtimeRulesTest : public testing::Test {
  protected:
   explicit RealtimeRulesTest(const Scenario& scenario = {}) : script_(scenario) {}
 
   void Go() {
-    script_.SayRun(run_t::GO, -1, kSpeed);
+    script_.SayRun(run_t::GO, -1, kSlowSpeed);
     go_ = Clock::now();
   }
   /// The time `periods` periods after GO.
-  TimePoint At(double periods) const { return go_ + duration_cast<Duration>(periods * kPeriod); }
+  TimePoint At(double periods) const {
+    return go_ + duration_cast<Duration>(periods * kSlowPeriod);
+  }
   template <class... M>
   void Say(std::int64_t step) {
     (script_.Say(Script::Of<M>(step)), ...);
@@ -83,7 +83,7 @@ TEST_F(RealtimeRuleTest, LeavesOutAStepThatLacksAnInputAndAsksForNothing) {
 }
 
 TEST_F(RealtimeRuleTest, ComputesInOrderEveryStepThatIsThereWhenItWasHeldUp) {
-  script_.SayRun(run_t::GO, 3, kSpeed);  // the run has reached step 3
+  script_.SayRun(run_t::GO, 3, kSlowSpeed);  // the run has reached step 3
   for (std::int64_t step = 0; step < 4; ++step) Say<ego_t, radar_t, lidar_t>(step);
   script_.PollUpTo(node_);
   EXPECT_THAT(StepsOf(tracks_), ElementsAre(0, 1, 2, 3));
@@ -207,7 +207,7 @@ class TickRuleTest : public RealtimeRulesTest {
 };
 
 TEST_F(TickRuleTest, BeginsAStepAtEachTickOfTheClockWithoutWaiting) {
-  script_.SayRun(run_t::PREPARE, -1, kSpeed);
+  script_.SayRun(run_t::PREPARE, -1, kSlowSpeed);
   script_.PollUpTo(node_);
   EXPECT_THAT(StepsOf(truths_), ElementsAre());
   Go();

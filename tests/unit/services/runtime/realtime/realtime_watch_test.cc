@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/unit/services/runtime/node/fake_role.h"
+#include "tests/unit/services/runtime/realtime/run_times.h"
 
 namespace fogline {
 namespace {
@@ -13,12 +14,10 @@ using test::Script;
 using testing::ElementsAre;
 using Verdict = runtime::StepRing::Verdict;
 
-constexpr double kSpeed = 0.1;  // so a period lasts a second
-
 class RealtimeWatchTest : public test::FakeRoleInRun {
  protected:
   RealtimeWatchTest() {
-    Join(-1, kSpeed);
+    Join(-1, kSlowSpeed);
     watch_.emplace(parts_, Scenario());
   }
   static std::vector<std::uint8_t> Truth(std::int64_t step, double gap_m = 0) {

@@ -4,13 +4,10 @@
 
 #include <limits>
 
+#include "tests/unit/services/runtime/realtime/run_times.h"
+
 namespace fogline {
 namespace {
-
-constexpr Duration kPeriod = milliseconds(100);
-constexpr TimePoint kBegan{std::chrono::hours(5)};
-
-TimePoint At(std::int64_t ms) { return kBegan + milliseconds(ms); }
 
 class RunClockTest : public testing::Test {
  protected:

@@ -2,14 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/unit/services/runtime/realtime/run_times.h"
+
 namespace fogline {
 namespace {
 
-constexpr Duration kPeriod = milliseconds(100);
 constexpr std::int64_t kSlack = 2;
 constexpr std::int64_t kRemembered = 64;
-
-TimePoint At(std::int64_t ms) { return TimePoint(std::chrono::hours(5)) + milliseconds(ms); }
 
 class StepHorizonTest : public testing::Test {
  protected:

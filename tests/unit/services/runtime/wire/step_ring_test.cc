@@ -5,37 +5,37 @@
 namespace fogline {
 namespace {
 
-using Verdict = runtime::StepRing::Verdict;
+using runtime::StepRing;
 const std::vector<std::uint8_t> kA{1, 2, 3};
 const std::vector<std::uint8_t> kB{1, 2, 4};
 
 TEST(StepRingTest, TakesAStepOnce) {
   runtime::StepRing ring;
-  EXPECT_EQ(ring.Classify(0, kA, 0), Verdict::kNew);
+  EXPECT_EQ(ring.Classify(0, kA, 0), StepRing::Verdict::kNew);
   ring.Store(0, kA);
-  EXPECT_EQ(ring.Classify(0, kA, 0), Verdict::kDuplicate);
+  EXPECT_EQ(ring.Classify(0, kA, 0), StepRing::Verdict::kDuplicate);
   EXPECT_TRUE(std::ranges::equal(ring.Get(0), kA));
 }
 
 TEST(StepRingTest, NamesTheSameStepWithOtherBytesAConflictEvenAfterItWasUsed) {
   runtime::StepRing ring;
   ring.Store(5, kA);
-  EXPECT_EQ(ring.Classify(5, kB, 5), Verdict::kConflict);
-  EXPECT_EQ(ring.Classify(5, kB, 20), Verdict::kConflict);
+  EXPECT_EQ(ring.Classify(5, kB, 5), StepRing::Verdict::kConflict);
+  EXPECT_EQ(ring.Classify(5, kB, 20), StepRing::Verdict::kConflict);
 }
 
 TEST(StepRingTest, TakesStepsInAnyOrderWithinItsWindow) {
   runtime::StepRing ring;
   ring.Store(3, kA);
-  EXPECT_EQ(ring.Classify(2, kA, 2), Verdict::kNew);
-  EXPECT_EQ(ring.Classify(2 + runtime::kRingSteps - 1, kA, 2), Verdict::kNew);
-  EXPECT_EQ(ring.Classify(2 + runtime::kRingSteps, kA, 2), Verdict::kOutOfWindow);
+  EXPECT_EQ(ring.Classify(2, kA, 2), StepRing::Verdict::kNew);
+  EXPECT_EQ(ring.Classify(2 + runtime::kRingSteps - 1, kA, 2), StepRing::Verdict::kNew);
+  EXPECT_EQ(ring.Classify(2 + runtime::kRingSteps, kA, 2), StepRing::Verdict::kOutOfWindow);
   EXPECT_EQ(ring.newest(), 3);
 }
 
 TEST(StepRingTest, CallsWhatIsBehindTheReaderADuplicate) {
   runtime::StepRing ring;
-  EXPECT_EQ(ring.Classify(4, kA, 5), Verdict::kDuplicate);
+  EXPECT_EQ(ring.Classify(4, kA, 5), StepRing::Verdict::kDuplicate);
 }
 
 TEST(StepRingTest, ForgetsAStepOnlyWhenOneFullRingLaterArrives) {

@@ -7,10 +7,11 @@
 #include <random>
 #include <set>
 
+#include "tests/unit/tools/watch/now.h"
+
 namespace fogline::watch {
 namespace {
 
-const TimePoint kNow = TimePoint{} + std::chrono::hours(1);
 using Counts = SenderSequence::Counts;
 
 LcmPacket Short(std::uint32_t number) { return {.number = number}; }

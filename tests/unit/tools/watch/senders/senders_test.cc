@@ -6,6 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "tests/unit/tools/watch/now.h"
 #include "tools/watch/senders/senders_report.h"
 
 namespace fogline::watch {
@@ -15,7 +16,6 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-const TimePoint kNow = TimePoint{} + std::chrono::hours(1);
 constexpr SenderAddress kWorld{.host = 0x7f000001, .port = 41234};
 
 void Add(Senders& senders, const SenderAddress& from, int number, const std::string& channel,

@@ -126,7 +126,7 @@ TEST(FieldReaderTest, ReadsEveryListedFieldAsTheDecoderDoes) {
   }
 }
 
-std::string ErrorOf(std::string_view path) {
+std::string PathErrorOf(std::string_view path) {
   try {
     FieldReader reader(FoglineTypes(), Type("truth_t"), path);
   } catch (const InputError& error) {
@@ -136,14 +136,15 @@ std::string ErrorOf(std::string_view path) {
 }
 
 TEST(FieldReaderTest, SaysWhatIsWrongWithAPath) {
-  EXPECT_EQ(ErrorOf("host_gap"), "truth_t has no field \"host_gap\"; did you mean \"host_gap_m\"?");
-  EXPECT_EQ(ErrorOf("header"), "\"header\" is no number but a struct");
-  EXPECT_EQ(ErrorOf("host_gap_m.x"), "\"host_gap_m.x\": host_gap_m has no fields");
-  EXPECT_EQ(ErrorOf("host_gap_m[0]"), "host_gap_m needs 0 indices, not 1");
-  EXPECT_EQ(ErrorOf("follower_gap_m"), "follower_gap_m needs 1 index, not 0");
+  EXPECT_EQ(PathErrorOf("host_gap"),
+            "truth_t has no field \"host_gap\"; did you mean \"host_gap_m\"?");
+  EXPECT_EQ(PathErrorOf("header"), "\"header\" is no number but a struct");
+  EXPECT_EQ(PathErrorOf("host_gap_m.x"), "\"host_gap_m.x\": host_gap_m has no fields");
+  EXPECT_EQ(PathErrorOf("host_gap_m[0]"), "host_gap_m needs 0 indices, not 1");
+  EXPECT_EQ(PathErrorOf("follower_gap_m"), "follower_gap_m needs 1 index, not 0");
   for (const char* path : {"", ".", "a.", "a[", "a[]", "a[-1]", "a[1", "a]", "a[1]b", "[0]",
                            "a[99999999999999999999]", "a[0x1]"}) {
-    EXPECT_THAT(ErrorOf(path), HasSubstr("is no field: write")) << path;
+    EXPECT_THAT(PathErrorOf(path), HasSubstr("is no field: write")) << path;
   }
 }
 

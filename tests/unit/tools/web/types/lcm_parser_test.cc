@@ -17,7 +17,7 @@ LcmStruct Only(std::string_view text) {
   return structs.empty() ? LcmStruct{} : structs.front();
 }
 
-std::string ErrorOf(std::string_view text) {
+std::string ParserErrorOf(std::string_view text) {
   try {
     ParseLcm(text, "a.lcm");
   } catch (const InputError& error) {
@@ -102,36 +102,39 @@ struct a_t {
 }
 
 TEST(LcmParserTest, NamesTheLineOfAMistake) {
-  EXPECT_EQ(ErrorOf("struct a_t {\n  double x\n}"), "a.lcm:3: error: expected \";\", not \"}\"");
-  EXPECT_EQ(ErrorOf("struct a_t {\n  double x;"),
+  EXPECT_EQ(ParserErrorOf("struct a_t {\n  double x\n}"),
+            "a.lcm:3: error: expected \";\", not \"}\"");
+  EXPECT_EQ(ParserErrorOf("struct a_t {\n  double x;"),
             "a.lcm:2: error: the type of the member is missing");
-  EXPECT_THAT(ErrorOf("struct a_t {\n\n  double x; $"), StartsWith("a.lcm:3: error: \"$\""));
-  EXPECT_EQ(ErrorOf("/* no end"), "a.lcm:1: error: the comment has no end");
+  EXPECT_THAT(ParserErrorOf("struct a_t {\n\n  double x; $"), StartsWith("a.lcm:3: error: \"$\""));
+  EXPECT_EQ(ParserErrorOf("/* no end"), "a.lcm:1: error: the comment has no end");
 }
 
 TEST(LcmParserTest, RefusesWhatLcmGenRefuses) {
-  EXPECT_THAT(ErrorOf("struct a_t { double x[n]; int32_t n; }"), HasSubstr("\"n\" is no length"));
-  EXPECT_THAT(ErrorOf("struct a_t { byte n; double x[n]; }"), HasSubstr("\"n\" is no length"));
-  EXPECT_THAT(ErrorOf("struct a_t { int8_t n[2]; double x[n]; }"), HasSubstr("is no length"));
-  EXPECT_THAT(ErrorOf("struct a_t { double x[0]; }"), HasSubstr("\"0\" is no length"));
-  EXPECT_THAT(ErrorOf("struct a_t { double x[-1]; }"), HasSubstr("\"-1\" is no length"));
-  EXPECT_THAT(ErrorOf("struct a_t { const string S = a; double x; }"),
+  EXPECT_THAT(ParserErrorOf("struct a_t { double x[n]; int32_t n; }"),
+              HasSubstr("\"n\" is no length"));
+  EXPECT_THAT(ParserErrorOf("struct a_t { byte n; double x[n]; }"),
+              HasSubstr("\"n\" is no length"));
+  EXPECT_THAT(ParserErrorOf("struct a_t { int8_t n[2]; double x[n]; }"), HasSubstr("is no length"));
+  EXPECT_THAT(ParserErrorOf("struct a_t { double x[0]; }"), HasSubstr("\"0\" is no length"));
+  EXPECT_THAT(ParserErrorOf("struct a_t { double x[-1]; }"), HasSubstr("\"-1\" is no length"));
+  EXPECT_THAT(ParserErrorOf("struct a_t { const string S = a; double x; }"),
               HasSubstr("no constant has the type \"string\""));
-  EXPECT_THAT(ErrorOf("struct a_t { const int8_t S = 1.5; double x; }"),
+  EXPECT_THAT(ParserErrorOf("struct a_t { const int8_t S = 1.5; double x; }"),
               HasSubstr("\"1.5\" is no value of \"int8_t\""));
-  EXPECT_THAT(ErrorOf("struct a_t { double x; double x; }"), HasSubstr("two members \"x\""));
-  EXPECT_THAT(ErrorOf("enum a_t { A }"), HasSubstr("expected \"struct\""));
+  EXPECT_THAT(ParserErrorOf("struct a_t { double x; double x; }"), HasSubstr("two members \"x\""));
+  EXPECT_THAT(ParserErrorOf("enum a_t { A }"), HasSubstr("expected \"struct\""));
 }
 
 TEST(LcmParserTest, LimitsWhatADecoderWouldHaveToKeep) {
-  EXPECT_THAT(ErrorOf("struct a_t { }"), HasSubstr("a_t has no members"));
-  EXPECT_THAT(ErrorOf("struct a_t { double x[1][1][1][1][1]; }"), HasSubstr("dimensions"));
+  EXPECT_THAT(ParserErrorOf("struct a_t { }"), HasSubstr("a_t has no members"));
+  EXPECT_THAT(ParserErrorOf("struct a_t { double x[1][1][1][1][1]; }"), HasSubstr("dimensions"));
   std::string text = "struct a_t { ";
   for (std::size_t i = 0; i <= kMaxLengths; ++i) {
     text += "int8_t n" + std::to_string(i) + "; double x" + std::to_string(i) + "[n" +
             std::to_string(i) + "]; ";
   }
-  EXPECT_THAT(ErrorOf(text + "}"), HasSubstr("members are lengths"));
+  EXPECT_THAT(ParserErrorOf(text + "}"), HasSubstr("members are lengths"));
 }
 
 TEST(LcmParserTest, FindsTheUnitAtTheEndOfAName) {

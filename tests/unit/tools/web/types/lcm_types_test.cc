@@ -64,7 +64,7 @@ TEST(LcmTypesTest, KnowsWhichTypesHaveAFixedSize) {
   EXPECT_EQ(FoglineTypes().Named("status_t")->fixed_size, std::nullopt);
 }
 
-std::string ErrorOf(std::string_view text) {
+std::string TypesErrorOf(std::string_view text) {
   try {
     LcmTypes types(ParseLcm(text, "a.lcm"));
   } catch (const InputError& error) {
@@ -74,9 +74,9 @@ std::string ErrorOf(std::string_view text) {
 }
 
 TEST(LcmTypesTest, RefusesTypesThatHaveNoMeaning) {
-  EXPECT_EQ(ErrorOf("struct a_t { b_t b; }"), "a_t.b: there is no struct b_t");
-  EXPECT_EQ(ErrorOf("struct a_t { b_t b; } struct b_t { a_t a; }"), "a_t contains itself");
-  EXPECT_EQ(ErrorOf("struct a_t { int8_t x; } struct a_t { int8_t y; }"),
+  EXPECT_EQ(TypesErrorOf("struct a_t { b_t b; }"), "a_t.b: there is no struct b_t");
+  EXPECT_EQ(TypesErrorOf("struct a_t { b_t b; } struct b_t { a_t a; }"), "a_t contains itself");
+  EXPECT_EQ(TypesErrorOf("struct a_t { int8_t x; } struct a_t { int8_t y; }"),
             "there are two structs a_t");
 }
 

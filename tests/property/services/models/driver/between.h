@@ -1,0 +1,9 @@
+// Numbers in a range, for random drivers and situations.
+#pragma once
+
+namespace fogline {
+
+/// @param u in [0, 1]
+inline double Between(double low, double high, double u) { return low + (high - low) * u; }
+
+}  // namespace fogline
