@@ -51,9 +51,17 @@ function(fogline_add_role name)
 endfunction()
 
 # fogline_add_test_program(NAME LIBS...): builds every NAME/**/*_test.cc into the program NAME_tests.
+# With FOGLINE_UNITY, all files of a folder are compiled as one.
 function(fogline_add_test_program name)
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS "${CMAKE_CURRENT_SOURCE_DIR}/${name}/*_test.cc")
   add_executable(${name}_tests ${sources})
+  foreach(source IN LISTS sources)
+    get_filename_component(folder "${source}" DIRECTORY)
+    file(RELATIVE_PATH folder "${CMAKE_CURRENT_SOURCE_DIR}" "${folder}")
+    string(MAKE_C_IDENTIFIER "${folder}" group)
+    set_source_files_properties("${source}" PROPERTIES UNITY_GROUP ${group})
+  endforeach()
+  set_target_properties(${name}_tests PROPERTIES UNITY_BUILD ${FOGLINE_UNITY} UNITY_BUILD_MODE GROUP)
   # Strips the symbols: they are a quarter of the program's size.
   target_link_options(${name}_tests PRIVATE $<$<CONFIG:Release>:-s>)
   # All test programs share one precompiled header, because a precompiled header takes 100 MB.
