@@ -23,6 +23,7 @@
 #include "fogline/run_t.hpp"
 #include "fogline/status_t.hpp"
 #include "fogline/track_t.hpp"
+#include "fogline/trial_t.hpp"
 #include "fogline/truth_t.hpp"
 
 namespace fogline {
@@ -159,6 +160,11 @@ inline constexpr std::tuple kGraph{
                             Role::kRunner,
                             {Role::kDriver},
                             "pedals and buttons of a person who drives"},
+    Channel<trial_t>{"TRIAL",
+                     Pace::kControl,
+                     Role::kRunner,
+                     {Role::kRecorder},
+                     "facts of a trial with a person: condition, markers, answers"},
 };
 
 inline constexpr std::size_t kNumChannels = std::tuple_size_v<decltype(kGraph)>;
@@ -173,7 +179,8 @@ struct ChannelInfo {
   RoleSet on_demand;
 
   /// Whether the recorder logs the channel. The recorder logs every kStep channel, and RUN, so that
-  /// a log contains its scenario. In real time, the recorder also logs STATUS and DRIVER_INPUT.
+  /// a log contains its scenario. In real time, the recorder also logs STATUS, DRIVER_INPUT and
+  /// TRIAL.
   constexpr bool Logged() const { return pace == Pace::kStep || name == "RUN"; }
 };
 

@@ -55,6 +55,14 @@ void RecordRule::ListenToInputs() {
     }
     Hear(IndexOf<driver_input_t>(), arrival.bytes());
   });
+  parts_.bus.Subscribe(ChannelOf<trial_t>().name, [this](runtime::Arrival& arrival) {
+    const auto* fact = arrival.As<trial_t>();
+    if (fact == nullptr || fact->header.run_id != *parts_.run.id ||
+        runtime::WrongIn(*fact) != nullptr || !facts_per_s_.Take(arrival.time())) {
+      return;
+    }
+    Hear(IndexOf<trial_t>(), arrival.bytes());
+  });
 }
 
 void RecordRule::Hear(std::size_t channel, runtime::Bytes bytes) {

@@ -2,8 +2,9 @@
 // steps in order as soon as they are complete. The recorder asks for a missing message as long as
 // the producer can still have the message. A step that stays incomplete is written without the
 // missing messages. RUN tells the recorder that a step is under way, even if none of its messages
-// has come. Each STATUS and each DRIVER_INPUT is also written into the log, after the step in which
-// it came, because the states of the roles and the acts of a person are part of the record.
+// has come. Each STATUS, each DRIVER_INPUT and each TRIAL is also written into the log, after the
+// step in which it came, because the states of the roles, the acts of a person and the facts of a
+// trial are part of the record.
 #pragma once
 
 #include <array>
@@ -14,6 +15,7 @@
 #include "services/runtime/node/fire_rule.h"
 #include "services/runtime/node/rate_limiter.h"
 #include "services/runtime/realtime/realtime_watch.h"
+#include "services/runtime/wire/trial.h"
 
 namespace fogline::recorder {
 
@@ -28,7 +30,7 @@ class RecordRule final : public runtime::FireRule {
   /// this count.
   void WriteStatus(TimePoint now) override;
 
-  /// Calls `use` once for each STATUS and DRIVER_INPUT that came in this step or before.
+  /// Calls `use` once for each STATUS, DRIVER_INPUT and TRIAL that came in this step or before.
   void TakeEvents(std::int64_t step,
                   const std::function<void(std::string_view channel, runtime::Bytes)>& use);
 
@@ -77,6 +79,8 @@ class RecordRule final : public runtime::FireRule {
   std::array<Refused, kNumChannels> refused_{};  // by index in Inputs::all()
   std::deque<Heard> heard_;
   runtime::RateLimiter inputs_per_s_;
+  runtime::RateLimiter facts_per_s_{runtime::kMostTrialFactsPerSecond,
+                                    runtime::kMostTrialFactsAtOnce};
   TimePoint ask_at_{};
   bool listening_ = false;
 };

@@ -23,11 +23,13 @@ std::string NamesOf(const RoleSet& roles) {
 
 std::string Consumers(const ChannelInfo& channel) {
   if (channel.name == "RUN" || channel.name == "RESEND") return "everyone";
+  if (channel.name == "TRIAL") return "recorder";
   return NamesOf(channel.to) + (channel.name == "STATUS" ? "" : ", recorder");
 }
 
 std::string Producer(const ChannelInfo& channel) {
   if (channel.name == "DRIVER_INPUT") return "a seat";
+  if (channel.name == "TRIAL") return "an experiment";
   const bool many = channel.pace == Pace::kControl && channel.name != "RUN";
   return many ? "everyone" : std::string(NameOf(channel.from));
 }

@@ -3,7 +3,7 @@
 import {DecodeError, fieldsOf, fingerprintOf, makeDecoder} from "./lcm.js";
 
 const FOGLINE_HEADER = "header_t";
-const CONTROL = new Set(["RUN", "STATUS", "RESEND", "DRIVER_INPUT"]);  // no message for each step
+const CONTROL = new Set(["RUN", "STATUS", "RESEND", "DRIVER_INPUT", "TRIAL"]);  // not each step
 // Where header_t lies in a message that begins with it, after the fingerprint.
 const AT = {run_id: 8, step: 16, utime: 24, end: 32};
 

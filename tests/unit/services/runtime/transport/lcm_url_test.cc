@@ -102,7 +102,8 @@ TEST(TypeFingerprintTest, IsOfTheTypesOfARunWithoutItsBeacon) {
        {accel_command_t::getHash(), arbitration_t::getHash(), driver_command_t::getHash(),
         driver_input_t::getHash(), ego_t::getHash(), follower_command_t::getHash(),
         header_t::getHash(), lidar_t::getHash(), radar_t::getHash(), resend_t::getHash(),
-        run_t::getHash(), status_t::getHash(), track_t::getHash(), truth_t::getHash()}) {
+        run_t::getHash(), status_t::getHash(), track_t::getHash(), trial_t::getHash(),
+        truth_t::getHash()}) {
     fingerprint = ((fingerprint << 5) | (fingerprint >> 59)) ^ static_cast<std::uint64_t>(hash);
   }
   EXPECT_EQ(static_cast<std::uint64_t>(TypeFingerprint()), fingerprint);

@@ -1,0 +1,42 @@
+// What a TRIAL may contain. All programs that send or read TRIAL use these limits.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+#include "services/runtime/wire/refusals.h"
+
+namespace fogline::runtime {
+
+/// Longest title of an experiment, name of a condition, questionnaire or item, and unit, in bytes.
+inline constexpr std::size_t kMostTrialNameBytes = 100;
+/// Longest text of a marker or of an answer, in bytes. With it, a TRIAL fits one datagram.
+inline constexpr std::size_t kMostTrialTextBytes = 500;
+/// A recorder logs at most this many TRIAL in a second, and at once. Our choice: a person makes
+/// fewer, and a flood then fills neither the memory nor the disk.
+inline constexpr double kMostTrialFactsPerSecond = 20;
+inline constexpr double kMostTrialFactsAtOnce = 40;
+
+/// Whether every number and text of the message is in its range. @return nullptr if so
+inline RefusalCounter WrongIn(const trial_t& fact) {
+  const auto is_short = [](const std::string& text) { return text.size() <= kMostTrialNameBytes; };
+  const bool sound = fact.header.step >= -1 && fact.kind >= trial_t::BEGIN &&
+                     fact.kind <= trial_t::END && fact.sequence >= 0 && fact.participant >= 1 &&
+                     fact.trial >= 1 && fact.attempt >= 1 && is_short(fact.experiment) &&
+                     is_short(fact.experiment_hash) && is_short(fact.condition) &&
+                     is_short(fact.questionnaire) && is_short(fact.item) && is_short(fact.unit) &&
+                     fact.text.size() <= kMostTrialTextBytes;
+  return sound ? nullptr : &status_t::out_of_range;
+}
+
+/// The text without the part that is too long for a TRIAL. No character of UTF-8 is cut in two.
+inline std::string CutForTrial(std::string_view text) {
+  if (text.size() <= kMostTrialTextBytes) return std::string(text);
+  std::size_t end = kMostTrialTextBytes;
+  while (end > 0 && (static_cast<unsigned char>(text[end]) >> 6U) == 2) --end;
+  return std::string(text.substr(0, end));
+}
+
+}  // namespace fogline::runtime
