@@ -41,19 +41,37 @@ std::string WithIndicesOf(std::string_view pointer, std::string_view pattern) {
   return out;
 }
 
+// All fields of `file`, in which each list gets one item. `file` must outlive the result.
+template <class File>
+FieldList CatalogueOf(File& file) {
+  // The contents of a list can have lists of their own, so the number of fields may grow twice.
+  for (std::size_t known = 0; known < AllFields(file).size();) {
+    const FieldList fields = AllFields(file);
+    known = fields.size();
+    for (const Field& field : fields) {
+      if (const auto* list = field.As<ListField>()) {
+        if (list->items("").empty()) list->reset(1);
+      }
+      if (const auto* numbers = field.As<NumbersField>()) numbers->values->resize(1);
+      if (const auto* texts = field.As<TextsField>()) texts->values->resize(1);
+    }
+  }
+  FieldList fields = AllFields(file);
+  for (Field& field : fields) field.pointer = WithoutIndices(field.pointer);
+  return fields;
+}
+
 }  // namespace
 
 const FieldList& Catalogue() {
   static Scenario scenario;
-  static const FieldList catalogue = [] {
-    for (const Field& field : AllFields(scenario)) {
-      if (const auto* list = field.As<ListField>()) list->reset(1);
-      if (const auto* numbers = field.As<NumbersField>()) numbers->values->resize(1);
-    }
-    FieldList fields = AllFields(scenario);
-    for (Field& field : fields) field.pointer = WithoutIndices(field.pointer);
-    return fields;
-  }();
+  static const FieldList catalogue = CatalogueOf(scenario);
+  return catalogue;
+}
+
+const FieldList& ExperimentCatalogue() {
+  static ExperimentPlan plan;
+  static const FieldList catalogue = CatalogueOf(plan);
   return catalogue;
 }
 

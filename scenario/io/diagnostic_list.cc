@@ -50,7 +50,8 @@ std::string Line(const Diagnostic& mistake) {
   return line + mistake.message + "\n";
 }
 
-std::string Text(const std::vector<Diagnostic>& mistakes, std::string_view or_more) {
+std::string Text(const std::vector<Diagnostic>& mistakes, std::string_view or_more,
+                 std::string_view allowed) {
   std::string text;
   const std::size_t printed = std::min(mistakes.size(), kMaxPrinted);
   for (std::size_t i = 0; i < printed; ++i) text += Line(mistakes[i]);
@@ -58,9 +59,11 @@ std::string Text(const std::vector<Diagnostic>& mistakes, std::string_view or_mo
     text += fmt::format("... and {}{}\n", mistakes.size() - printed,
                         or_more.empty() ? " more" : or_more);
   }
-  return text + fmt::format("{}{} error{}; what is allowed: fogline check --explain {}",
-                            mistakes.size(), or_more, mistakes.size() == 1 ? "" : "s",
-                            NearestKnownPointer(mistakes[0].pointer));
+  return text + fmt::format("{}{} error{}; what is allowed: {}", mistakes.size(), or_more,
+                            mistakes.size() == 1 ? "" : "s",
+                            allowed.empty() ? "fogline check --explain " +
+                                                  NearestKnownPointer(mistakes[0].pointer)
+                                            : std::string(allowed));
 }
 
 }  // namespace
@@ -82,7 +85,7 @@ bool DiagnosticList::Has(std::string_view rule) const {
                      [rule](const Entry& entry) { return entry.mistake.rule == rule; });
 }
 
-void DiagnosticList::Throw(const std::vector<Source>& sources) {
+void DiagnosticList::Throw(const std::vector<Source>& sources, std::string_view allowed) {
   std::stable_sort(kept_.begin(), kept_.end(), [](const Entry& a, const Entry& b) {
     return std::tie(a.place.source, a.place.offset) < std::tie(b.place.source, b.place.offset);
   });
@@ -104,7 +107,7 @@ void DiagnosticList::Throw(const std::vector<Source>& sources) {
     }
     mistakes.push_back(std::move(entry.mistake));
   }
-  const std::string text = Text(mistakes, full() ? " or more" : "");
+  const std::string text = Text(mistakes, full() ? " or more" : "", allowed);
   throw ScenarioError(text, std::move(mistakes));
 }
 

@@ -35,8 +35,9 @@ class DiagnosticList {
   bool Has(std::string_view rule) const;
 
   /// @pre not empty; every place lies in `sources`
+  /// @param allowed the command that shows what is allowed; "": that of a scenario
   /// @throws ScenarioError with all mistakes, sorted by their places
-  [[noreturn]] void Throw(const std::vector<Source>& sources);
+  [[noreturn]] void Throw(const std::vector<Source>& sources, std::string_view allowed = "");
 
  private:
   struct Entry {

@@ -25,6 +25,9 @@ struct AllowedValues {
   std::string operator()(const NumbersField& numbers) const {
     return fmt::format("a list of {} numbers", Range(numbers.list));
   }
+  std::string operator()(const TextsField& texts) const {
+    return fmt::format("a list of {} texts", Range(texts.list));
+  }
   std::string operator()(const ListField& list) const {
     return fmt::format("a list of {} objects", Range(list.list));
   }
@@ -45,6 +48,7 @@ struct DefaultText {
     return Quote(choice.names[choice.get()]);
   }
   std::string operator()(const NumbersField&) const { return "[]"; }
+  std::string operator()(const TextsField&) const { return "[]"; }
   std::string operator()(const ListField&) const { return "[]"; }
   std::string operator()(const SectionField&) const { return ""; }
 };

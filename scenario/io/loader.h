@@ -59,6 +59,9 @@ std::string PrintScenario(const Scenario& scenario);
 /// accepts exactly the JSON documents without duplicate keys that ParseScenario accepts.
 std::string ScenarioSchema();
 
+/// JSON schema (draft-07) of the files of experiments with people (sections/experiment.h).
+std::string ExperimentSchema();
+
 /// Explanation of a field or section for a person: meaning, type, unit, range, default, source. "/"
 /// or "" is the whole scenario; an item of a list is /published/0 or /published/*.
 /// @throws InputError (no such field)

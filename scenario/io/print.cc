@@ -22,6 +22,14 @@ class Printer {
   void operator()(const std::string* text) { out_ += Quote(*text); }
   void operator()(const ChoiceField& choice) { out_ += Quote(choice.names[choice.get()]); }
   void operator()(const NumbersField& numbers);
+  void operator()(const TextsField& texts) {
+    out_ += '[';
+    for (const std::string& text : *texts.values) {
+      if (&text != &texts.values->front()) out_ += ", ";
+      out_ += Quote(text);
+    }
+    out_ += ']';
+  }
   void operator()(const ListField& list) { Block('[', list.items(""), ']'); }
   void operator()(const SectionField& section) { Block('{', section.fields(""), '}'); }
 

@@ -65,7 +65,11 @@ std::vector<std::string_view> KeysOf(const FieldList& fields) {
 // Reads values into fields, and notes each mistake at its pointer.
 class Reader {
  public:
-  explicit Reader(DiagnosticList& mistakes) : mistakes_(mistakes) {}
+  /// What a key that is no field is compared with, besides the fields beside it.
+  enum class Hints { kScenario, kNone };
+
+  explicit Reader(DiagnosticList& mistakes, Hints hints = Hints::kScenario)
+      : mistakes_(mistakes), hints_(hints) {}
 
   // Reads those members of an object that are fields.
   void ReadFields(const JsonObject& object, const FieldList& fields);
@@ -79,6 +83,7 @@ class Reader {
   void Read(const JsonValue& value, const std::string& pointer, std::string* text);
   void Read(const JsonValue& value, const std::string& pointer, const ChoiceField& choice);
   void Read(const JsonValue& value, const std::string& pointer, const NumbersField& numbers);
+  void Read(const JsonValue& value, const std::string& pointer, const TextsField& texts);
   void Read(const JsonValue& value, const std::string& pointer, const ListField& list);
   void Read(const JsonValue& value, const std::string& pointer, const SectionField& section);
 
@@ -95,6 +100,7 @@ class Reader {
   }
 
   DiagnosticList& mistakes_;
+  Hints hints_;
 };
 
 void Reader::Read(const JsonValue& value, const std::string& pointer, const NumberField& number) {
@@ -186,6 +192,15 @@ void Reader::Read(const JsonValue& value, const std::string& pointer, const Numb
   }
 }
 
+void Reader::Read(const JsonValue& value, const std::string& pointer, const TextsField& texts) {
+  const JsonArray* items = Items(value, pointer, texts.list);
+  if (items == nullptr) return;
+  texts.values->assign(items->size(), "");
+  for (std::size_t i = 0; i < items->size(); ++i) {
+    Read((*items)[i], fmt::format("{}/{}", pointer, i), &(*texts.values)[i]);
+  }
+}
+
 void Reader::Read(const JsonValue& value, const std::string& pointer, const ListField& list) {
   const JsonArray* items = Items(value, pointer, list.list);
   if (items == nullptr) return;
@@ -254,35 +269,51 @@ void Reader::RefuseUnknownKeys(const JsonObject& object, const std::string& poin
     if (mistakes_.full()) return;
     if (std::find(known.begin(), known.end(), member.key) != known.end()) continue;
     mistakes_.Add(member.place, JoinPointer(pointer, member.key), "unknown-key",
-                  UnknownKeyMessage(member.key, pointer, known));
+                  hints_ == Hints::kScenario
+                      ? UnknownKeyMessage(member.key, pointer, known)
+                      : fmt::format("unknown key{}; known here are {}",
+                                    DidYouMean(Nearest(member.key, known)), Names(known)));
   }
+}
+
+// Reads a whole file: its fields, $schema and version.
+// @param what such as "scenario"
+void ReadRoot(const JsonValue& root, const FieldList& fields, std::string_view what,
+              Reader::Hints hints, DiagnosticList& mistakes) {
+  const auto* object = root.As<JsonObject>();
+  if (object == nullptr) {
+    return mistakes.Add(root.place, "", "type",
+                        fmt::format("{} must be an object, not {}", what, Describe(root)));
+  }
+  Reader reader(mistakes, hints);
+  constexpr std::string_view kSchema = "$schema";
+  std::string schema;  // for editors, not part of the experiment
+  if (const JsonMember* member = FindMember(*object, kSchema)) {
+    reader.Read(member->value, JoinPointer("", kSchema), &schema);
+  }
+  reader.ReadFields(*object, fields);
+  if (FindMember(*object, "version") == nullptr) {
+    mistakes.Add(
+        root.place, "/version", "missing-key",
+        fmt::format("missing; every {} has \"version\": 1", what.substr(what.find(' ') + 1)));
+  }
+  std::vector<std::string_view> known = KeysOf(fields);
+  known.insert(known.begin(), kSchema);
+  reader.RefuseUnknownKeys(*object, "", known);
 }
 
 }  // namespace
 
 Scenario ReadScenario(const JsonValue& root, DiagnosticList& mistakes) {
   Scenario scenario;
-  const auto* object = root.As<JsonObject>();
-  if (object == nullptr) {
-    mistakes.Add(root.place, "", "type", "a scenario must be an object, not " + Describe(root));
-    return scenario;
-  }
-  Reader reader(mistakes);
-  constexpr std::string_view kSchema = "$schema";
-  std::string schema;  // for editors, not part of the experiment
-  if (const JsonMember* member = FindMember(*object, kSchema)) {
-    reader.Read(member->value, JoinPointer("", kSchema), &schema);
-  }
-  const FieldList fields = FieldsOf(scenario);
-  reader.ReadFields(*object, fields);
-  if (FindMember(*object, "version") == nullptr) {
-    mistakes.Add(root.place, "/version", "missing-key",
-                 "missing; every scenario has \"version\": 1");
-  }
-  std::vector<std::string_view> known = KeysOf(fields);
-  known.insert(known.begin(), kSchema);
-  reader.RefuseUnknownKeys(*object, "", known);
+  ReadRoot(root, FieldsOf(scenario), "a scenario", Reader::Hints::kScenario, mistakes);
   return scenario;
+}
+
+ExperimentPlan ReadExperiment(const JsonValue& root, DiagnosticList& mistakes) {
+  ExperimentPlan plan;
+  ReadRoot(root, FieldsOf(plan), "an experiment", Reader::Hints::kNone, mistakes);
+  return plan;
 }
 
 }  // namespace fogline

@@ -112,6 +112,9 @@ struct FieldSchema {
   Json operator()(const NumbersField& numbers) const {
     return ListSchema(Title(field.name, numbers.spec.unit), Description(field), numbers.list);
   }
+  Json operator()(const TextsField& texts) const {
+    return ListSchema(field.name, field.doc, texts.list);
+  }
   Json operator()(const ListField& list) const {
     return ListSchema(field.name, field.doc, list.list);
   }
@@ -144,15 +147,17 @@ void AddNeed(Json& object, std::string_view section, const NeedSpec& need) {
   object["then"] = {{"required", {section}}, {"properties", {{section, {{"anyOf", any_of}}}}}};
 }
 
-}  // namespace
-
-std::string ScenarioSchema() {
+/// The schema of a file.
+/// @param all every field, section and list of the file; see Catalogue()
+std::string SchemaOf(std::string_view title, std::string_view doc, const FieldList& all) {
   Json schema{{"$schema", "http://json-schema.org/draft-07/schema#"}};
-  schema.update(ObjectSchema("Fogline scenario", "An experiment."));
+  schema.update(ObjectSchema(title, doc));
   schema["properties"]["$schema"] =
       TextSchema("$schema", "The JSON schema of this file, for editors.");
-  for (const Field& field : Catalogue()) {
-    schema[PlaceOf(field.pointer)] = std::visit(FieldSchema{field}, field.value);
+  for (const Field& field : all) {
+    const bool is_text_of_list = field.name.empty() && field.As<std::string*>() != nullptr;
+    schema[PlaceOf(field.pointer)] = is_text_of_list ? TextSchema("item", field.doc)
+                                                     : std::visit(FieldSchema{field}, field.value);
     const auto* section = field.As<SectionField>();
     if (section == nullptr || section->need.choice.empty()) continue;
     const std::string outer = field.pointer.substr(0, field.pointer.rfind('/'));
@@ -160,6 +165,14 @@ std::string ScenarioSchema() {
   }
   schema["required"] = {"version"};
   return schema.dump(2) + "\n";
+}
+
+}  // namespace
+
+std::string ScenarioSchema() { return SchemaOf("Fogline scenario", "An experiment.", Catalogue()); }
+
+std::string ExperimentSchema() {
+  return SchemaOf("Fogline experiment", "An experiment with people.", ExperimentCatalogue());
 }
 
 }  // namespace fogline

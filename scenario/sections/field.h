@@ -15,6 +15,7 @@
 //   bool, std::string, an enum  meaning
 //   a section                   meaning; a NeedSpec if some files must have it
 //   a std::vector of double     ListSpec, NumberSpec, meaning, source
+//   a std::vector of texts      ListSpec, meaning
 //   a std::vector of sections   ListSpec, meaning
 //
 // A source is a publication, a data sheet, or "our choice, because ...". A source has no full stop

@@ -74,6 +74,10 @@ class FieldLister {
                   const NumberSpec& spec, std::string_view doc, std::string_view source) {
     Add(name, doc, source, NumbersField{.values = &values, .list = list, .spec = spec});
   }
+  void operator()(std::string_view name, std::vector<std::string>& values, const ListSpec& list,
+                  std::string_view doc) {
+    Add(name, doc, "", TextsField{.values = &values, .list = list});
+  }
   template <class Section>
   void operator()(std::string_view name, std::vector<Section>& items, const ListSpec& list,
                   std::string_view doc) {
@@ -132,6 +136,10 @@ FieldList Field::Contents() const {
   if (const auto* sections = As<ListField>()) return sections->items(pointer);
   const auto* numbers = As<NumbersField>();
   FieldList items;
+  const auto* texts = As<TextsField>();
+  for (std::size_t i = 0; texts != nullptr && i < texts->values->size(); ++i) {
+    items.push_back(Item(pointer, i, doc, "", &(*texts->values)[i]));
+  }
   while (numbers != nullptr && items.size() < numbers->values->size()) {
     items.push_back(NumberAt(*this, items.size()));
   }
@@ -139,6 +147,7 @@ FieldList Field::Contents() const {
 }
 
 FieldList FieldsOf(Scenario& scenario) { return ListFields(scenario, ""); }
+FieldList FieldsOf(ExperimentPlan& plan) { return ListFields(plan, ""); }
 
 FieldList FieldsOf(PublishedRow& row, const std::string& pointer) {
   return ListFields(row, pointer);
@@ -147,6 +156,12 @@ FieldList FieldsOf(PublishedRow& row, const std::string& pointer) {
 FieldList AllFields(Scenario& scenario) {
   FieldList all;
   AddWithContents(FieldsOf(scenario), all);
+  return all;
+}
+
+FieldList AllFields(ExperimentPlan& plan) {
+  FieldList all;
+  AddWithContents(FieldsOf(plan), all);
   return all;
 }
 

@@ -12,6 +12,7 @@
 #include <variant>
 #include <vector>
 
+#include "scenario/sections/experiment.h"
 #include "scenario/sections/field.h"
 #include "scenario/sections/scenario.h"
 
@@ -44,6 +45,12 @@ struct NumbersField {
   NumberSpec spec;  // range and unit of each number
 };
 
+/// A list of texts.
+struct TextsField {
+  std::vector<std::string>* values;
+  ListSpec list;
+};
+
 /// A list of sections.
 struct ListField {
   ListSpec list;
@@ -63,8 +70,8 @@ struct Field {
   std::string_view name;    // last segment of the pointer; "" for an item of a list
   std::string_view doc;     // meaning
   std::string_view source;  // source of the default of a number; otherwise ""
-  std::variant<NumberField, IntegerField, bool*, std::string*, ChoiceField, NumbersField, ListField,
-               SectionField>
+  std::variant<NumberField, IntegerField, bool*, std::string*, ChoiceField, NumbersField,
+               TextsField, ListField, SectionField>
       value;
 
   /// The value if it is a T, or null.
@@ -82,9 +89,13 @@ FieldList FieldsOf(Scenario& scenario);
 /// The fields of a published row, with pointers that begin with `pointer`.
 FieldList FieldsOf(PublishedRow& row, const std::string& pointer);
 
+/// The fields of an experiment, as those of a scenario.
+FieldList FieldsOf(ExperimentPlan& plan);
+
 /// All fields of the scenario and all items of its lists. The contents of a section or list follow
 /// the section or list.
 FieldList AllFields(Scenario& scenario);
+FieldList AllFields(ExperimentPlan& plan);
 
 /// The index that a segment of a pointer states: digits without a leading zero (RFC 6901, section
 /// 4). Nothing if the segment is not an index.

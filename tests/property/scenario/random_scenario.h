@@ -89,6 +89,10 @@ class RandomFiller {
       value = draw_.Number(numbers.spec.min, numbers.spec.max);
     }
   }
+  void operator()(const TextsField& texts) {
+    texts.values->resize(draw_.Below(4));
+    for (std::string& text : *texts.values) (*this)(&text);
+  }
   void operator()(const ListField& list) {
     list.reset(draw_.Below(5));
     Fill(list.items(""));
@@ -126,6 +130,7 @@ inline std::vector<std::pair<std::string, std::string>> Flatten(Scenario scenari
     std::string operator()(const std::string* text) const { return *text; }
     std::string operator()(const ChoiceField& choice) const { return std::to_string(choice.get()); }
     std::string operator()(const NumbersField&) const { return "numbers"; }
+    std::string operator()(const TextsField&) const { return "texts"; }
     std::string operator()(const ListField&) const { return "a list"; }
     std::string operator()(const SectionField&) const { return "a section"; }
   };

@@ -43,6 +43,11 @@ struct OverrideValue {
       list += (list.empty() ? "" : ",") + NumberText(value);
     return "[" + list + "]";
   }
+  std::string operator()(const TextsField& texts) const {
+    std::string list;
+    for (const std::string& text : *texts.values) list += (list.empty() ? "" : ",") + Quote(text);
+    return "[" + list + "]";
+  }
   std::string operator()(const ListField& sections) const {
     std::string list;
     for (std::size_t i = 0; i < sections.items("").size(); ++i) list += list.empty() ? "{}" : ",{}";
