@@ -1,6 +1,10 @@
 # cmake -DOUT=FILE.cc -DDIR=FOLDER -P embed.cmake: writes Assets() of assets.h with every file of the
 # folder and of its subfolders. The assembler puts the bytes of a file into the program as they are. With them the
 # program contains its page and needs no path to it at run time. Without the folder the list is empty.
+# A program with a second page gives its function another name with -DNAME=NAME.
+if(NOT NAME)
+  set(NAME Assets)
+endif()
 set(type_html "text/html; charset=utf-8")
 set(type_css "text/css; charset=utf-8")
 set(type_js "text/javascript; charset=utf-8")
@@ -28,8 +32,8 @@ foreach(file IN LISTS files)
   set(type "${type_${end}}")
   file(SHA256 "${DIR}/${file}" hash)
   string(SUBSTRING "${hash}" 0 32 hash)
-  set(begin "fogline_asset_${number}_begin")
-  set(behind "fogline_asset_${number}_end")
+  set(begin "fogline_${NAME}_${number}_begin")
+  set(behind "fogline_${NAME}_${number}_end")
   string(APPEND bytes
     "asm(\".pushsection .rodata\\n\"\n"
     "    \"${begin}: .incbin \\\"${DIR}/${file}\\\"\\n\"\n"
@@ -44,7 +48,7 @@ foreach(file IN LISTS files)
 endforeach()
 
 set(source "#include <array>\n#include <cstddef>\n\n#include \"tools/web/server/assets.h\"\n\n${bytes}")
-string(APPEND source "namespace fogline::web {\n\nstd::span<const Asset> Assets() {\n")
+string(APPEND source "namespace fogline::web {\n\nstd::span<const Asset> ${NAME}() {\n")
 if(number GREATER 0)
   string(APPEND source
     "  static const std::array assets{\n${rows}  };\n"
