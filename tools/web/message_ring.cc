@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "tools/web/little_endian.h"
+#include "tools/web/types/little_endian.h"
 
 namespace fogline::web {
 namespace {

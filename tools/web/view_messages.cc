@@ -4,9 +4,9 @@
 
 #include "services/graph.h"
 #include "services/runtime/wire/scenario_parts.h"
-#include "tools/web/little_endian.h"
 #include "tools/web/types/decode.h"
 #include "tools/web/types/description.h"
+#include "tools/web/types/little_endian.h"
 
 namespace fogline::web {
 namespace {

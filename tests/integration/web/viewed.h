@@ -19,7 +19,7 @@
 #include "services/runtime/wire/wire.h"
 #include "tests/support/command.h"
 #include "tests/support/web_client.h"
-#include "tools/web/little_endian.h"
+#include "tools/web/types/little_endian.h"
 
 namespace fogline::test {
 

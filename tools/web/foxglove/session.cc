@@ -8,9 +8,9 @@
 #include <nlohmann/json.hpp>
 
 #include "common/text.h"
-#include "tools/web/little_endian.h"
 #include "tools/web/types/decode.h"
 #include "tools/web/types/description.h"
+#include "tools/web/types/little_endian.h"
 
 namespace fogline::web::foxglove {
 namespace {
