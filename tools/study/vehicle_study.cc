@@ -107,10 +107,9 @@ constexpr std::array<std::string_view, 8> kVehicleTable{"si_pct",
 
 constexpr std::string_view kVehicleAnswer =
     "Yes, but less than for a point mass, and least for a truck. Behind a leader that brakes hard "
-    "in "
-    "the fog, handing over does harm with every car. There a jerk limit on the transfer lets "
-    "trucks "
-    "collide.";
+    "in the fog, handing over does harm with every car, but with half of the parameter sets of "
+    "study ensemble it helps point masses and cars. There a jerk limit on the transfer lets "
+    "trucks collide.";
 constexpr std::string_view kVehicleWouldChange =
     "An ACC and a driver that are tuned to the car, or automatic emergency braking.";
 

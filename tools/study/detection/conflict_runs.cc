@@ -32,17 +32,25 @@ constexpr std::int64_t kCalibrationSeeds = 1'000'000'000;
 constexpr std::int64_t kValidationSeeds = 2'000'000'000;
 constexpr std::int64_t kLongClearAirSeeds = 3'000'000'000;
 
-std::vector<std::string> Overrides(std::string_view fog, const Noise& noise) {
-  return {"/arbitrator/policy=traded",
-          "/arbitrator/missing_lidar=conflict",
-          "/arbitrator/threshold=0",  // the human drives throughout
-          fmt::format("/fog/model={}", fog),
-          fmt::format("/fog/start_s={}", kWarmUp_s),
-          fmt::format("/radar/range_std_m={}", noise.radar_m),
-          fmt::format("/lidar/range_std_m={}", noise.lidar_m),
-          fmt::format("/fusion/radar_range_std_m={}", std::max(noise.radar_m, 0.04)),
-          fmt::format("/fusion/lidar_range_std_m={}", noise.lidar_m)};
-}
+/// A fog model and a noise, and what else differs from paper.json.
+struct Situation {
+  std::string_view fog;
+  const Noise& noise;
+  std::vector<std::string> other{};
+
+  std::vector<std::string> Overrides() const {
+    std::vector<std::string> overrides = other;
+    overrides.insert(overrides.end(),
+                     {"/arbitrator/policy=traded", "/arbitrator/missing_lidar=conflict",
+                      "/arbitrator/threshold=0",  // the human drives throughout
+                      fmt::format("/fog/model={}", fog), fmt::format("/fog/start_s={}", kWarmUp_s),
+                      fmt::format("/radar/range_std_m={}", noise.radar_m),
+                      fmt::format("/lidar/range_std_m={}", noise.lidar_m),
+                      fmt::format("/fusion/radar_range_std_m={}", std::max(noise.radar_m, 0.04)),
+                      fmt::format("/fusion/lidar_range_std_m={}", noise.lidar_m)});
+    return overrides;
+  }
+};
 
 /// A scenario with these overrides that lasts for `duration_s` after the warm-up. The measures know
 /// the mounting offset of the sensors.
@@ -54,15 +62,14 @@ Scenario ConflictScenario(const StudyContext& context, const std::vector<std::st
   return scenario;
 }
 
-Scenario ClearAir(const StudyContext& context, std::string_view fog, const Noise& noise) {
-  std::vector<std::string> overrides = Overrides(fog, noise);
+Scenario ClearAir(const StudyContext& context, const Situation& situation) {
+  std::vector<std::string> overrides = situation.Overrides();
   overrides.emplace_back("/fog/duration_s=0");
   return ConflictScenario(context, overrides, kClearRun_s);
 }
 
-Scenario InFog(const StudyContext& context, std::string_view fog, const Noise& noise,
-               double visibility_m) {
-  std::vector<std::string> overrides = Overrides(fog, noise);
+Scenario InFog(const StudyContext& context, const Situation& situation, double visibility_m) {
+  std::vector<std::string> overrides = situation.Overrides();
   overrides.push_back(fmt::format("/fog/visibility_m={}", visibility_m));
   overrides.push_back(fmt::format("/fog/duration_s={}", kFog_s));
   Scenario scenario = ConflictScenario(context, overrides, kFog_s);
@@ -125,14 +132,14 @@ void AddRoc(std::span<const Gathered> gathered, ConflictOutcome& outcome) {
 }
 
 /// Makes the runs in fog of every visibility, and adds all results that need no threshold.
-void RunFogs(const StudyContext& context, std::string_view fog, const Noise& noise,
-             const ShowUnit& show, SetRuns& runs, ConflictSet& set) {
+void RunFogs(const StudyContext& context, const Situation& situation, const ShowUnit& show,
+             SetRuns& runs, ConflictSet& set) {
   const std::vector<SortedBatches> clear_scores = SortScores(runs.validation);
   // Means of the AUC over the visibilities, by detector and batch.
   std::vector<std::vector<double>> auc(clear_scores.size(),
                                        std::vector<double>(clear_scores.front().size(), 0.0));
   for (const double visibility_m : kVisibilities_m) {
-    const Traffic traffic = TrafficOf(InFog(context, fog, noise, visibility_m));
+    const Traffic traffic = TrafficOf(InFog(context, situation, visibility_m));
     std::vector<Gathered> gathered = RunInFog(context, traffic, clear_scores, show);
     ConflictOutcome& outcome = set.outcomes.emplace_back();
     outcome.condition = {.fog = set.fog, .noise = set.noise, .visibility_m = visibility_m};
@@ -273,10 +280,11 @@ ConflictSet RunSet(const StudyContext& context, std::string_view fog, const Nois
                    const ShowUnit& show) {
   ConflictSet set{
       .fog = std::string(fog), .noise = std::string(noise.name), .seeds = context.seeds.count()};
-  const Traffic clear_air = TrafficOf(ClearAir(context, fog, noise));
+  const Situation situation{fog, noise};
+  const Traffic clear_air = TrafficOf(ClearAir(context, situation));
   SetRuns runs = RunShortClearAir(context, clear_air, show);
   set.runs = 2 * set.seeds;
-  RunFogs(context, fog, noise, show, runs, set);
+  RunFogs(context, situation, show, runs, set);
   SetThresholds(runs, set);
   std::vector<AlarmTimes> alarms = CommonAlarms(runs, set);
   set.counts_as = CountsAs(set, alarms);
@@ -320,6 +328,43 @@ std::vector<ConflictSet> RunConflictSets(const StudyContext& context) {
     for (const Noise& noise : kNoises) sets.push_back(RunSet(context, fog, noise, show));
   }
   return sets;
+}
+
+std::vector<DelayOutcome> RunDelays(const StudyContext& context,
+                                    std::span<const std::size_t> detectors,
+                                    const std::vector<std::string>& overrides) {
+  const Situation situation{kFogModels[0], *std::ranges::find(kNoises, kUsualNoise, &Noise::name),
+                            overrides};
+  std::int64_t done = 0;
+  const auto show = [&] { context.Show(++done, kDelayUnits * context.seeds.count()); };
+  const Traffic air = TrafficOf(ClearAir(context, situation));
+  const ClearRuns clear =
+      RunClearAir(context, air,
+                  {.detectors = {detectors.begin(), detectors.end()},
+                   .first_seed = kLongClearAirSeeds + kDelayClearAir * context.seeds.first,
+                   .runs_per_seed = kDelayClearAir},
+                  show);
+  DetectionRule rule{
+      .arl_zero_s = kArlZero_s, .missed_s = kFog_s, .ranked = {}, .jobs = context.jobs};
+  std::vector<std::vector<std::vector<ScoreRecords>>> fog(detectors.size());
+  for (const double visibility_m : kVisibilities_m) {
+    rule.ranked.push_back(rule.ranked.size());
+    const Traffic traffic = TrafficOf(InFog(context, situation, visibility_m));
+    std::vector<std::vector<ScoreRecords>> records =
+        RecordsInFog(context, traffic, detectors, show);
+    for (std::size_t d = 0; d < fog.size(); ++d) fog[d].push_back(std::move(records[d]));
+  }
+  std::vector<DetectorRuns> runs;
+  for (std::size_t d = 0; d < fog.size(); ++d) runs.push_back({.clear = clear[d], .fog = fog[d]});
+  std::vector<DelayOutcome> outcomes;
+  for (DetectionComparison& one : CompareDetection(runs, rule)) {
+    const std::vector<ClearRun>& from = clear[outcomes.size()];
+    const double threshold = ThresholdFinder(from).Threshold(kArlZero_s);
+    const DetectorThreshold found{
+        .threshold = threshold, .calibrated = CountAlarms(from, threshold), .clear = {}};
+    outcomes.push_back({.is_compared = found.is_determined(), .detection = std::move(one)});
+  }
+  return outcomes;
 }
 
 }  // namespace fogline::study

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -106,5 +107,24 @@ struct ConflictSet {
 
 /// All sets, by fog model, then by noise. @throws InputError, StudyStopped
 std::vector<ConflictSet> RunConflictSets(const StudyContext& context);
+
+/// A detector in bias fog with the usual noise. Its delay is a mean over all of kVisibilities_m.
+struct DelayOutcome {
+  bool is_compared = false;  // whether it has a threshold at which it can be compared
+  DetectionComparison detection;
+};
+
+/// Number of runs in clear air for each seed in RunDelays(). The thresholds come from fewer false
+/// alarms than in RunConflictSets(), about four for each seed.
+inline constexpr std::int64_t kDelayClearAir = 20;
+/// Units of progress for each seed in RunDelays().
+inline constexpr std::int64_t kDelayUnits = 1 + static_cast<std::int64_t>(kVisibilities_m.size());
+
+/// Runs some detectors with other parameters than those of paper.json. @param detectors indices in
+/// Detectors() @param overrides of paper.json; the fog and the noise stay those of the condition
+/// @throws InputError, StudyStopped
+std::vector<DelayOutcome> RunDelays(const StudyContext& context,
+                                    std::span<const std::size_t> detectors,
+                                    const std::vector<std::string>& overrides);
 
 }  // namespace fogline::study

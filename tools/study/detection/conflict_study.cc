@@ -1,12 +1,12 @@
 // Study `conflict`: compares every measure of conflict as a detector of fog, at an equal rate of
 // false alarms. It also finds the part of the Degree of Conflict that causes its advantage.
 #include <algorithm>
-#include <cctype>
 
 #include <fmt/format.h>
 
 #include "tools/study/bootstrap.h"
 #include "tools/study/claims.h"
+#include "tools/study/delays/delay_claims.h"
 #include "tools/study/detection/clear_air.h"
 #include "tools/study/detection/conflict_tables.h"
 #include "tools/study/sensor_noise.h"
@@ -20,53 +20,30 @@ constexpr double kHour_s = 3600;
 constexpr std::string_view kConflictAnswer =
     "Those that look at several steps at once and know in which direction fog deceives the LiDAR. "
     "The lead of the paper's Degree of Conflict comes from its window and from its known sign; its "
-    "sigmoid adds nothing. Where fog makes a false echo, all alarm at once.";
+    "sigmoid changes no alarm by definition, because it rises with the difference of the ranges. "
+    "Where fog makes a false echo, all alarm at once.";
 constexpr std::string_view kConflictWouldChange =
     "A deception that grows slowly, or sensors whose noise is not white.";
 
-/// The sentence of a claim. For another noise than the usual one, it begins with the noise's name.
-std::string SaysOf(const ConflictSet& set, std::string_view says) {
-  if (set.noise != kUsualNoise) return fmt::format("With {} noise {}", set.noise, says);
-  std::string sentence(says);
-  sentence[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(sentence[0])));
-  return sentence;
-}
-
-/// The claim on the difference of two mean delays.
-Claim DelayClaim(const ConflictSet& set, std::string_view says, std::string_view a,
-                 std::string_view b, Sign sign, double margin = 0) {
-  const std::size_t one = DetectorNamed(a);
-  const std::size_t other = DetectorNamed(b);
-  const bool compared = set.IsCompared(one) && set.IsCompared(other);
-  return {.says = SaysOf(set, says),
-          .compared =
-              fmt::format("{}: {} against {}, delay from fog to alarm (s)", NameOfSet(set), a, b),
-          .sign = sign,
-          .difference = set.Difference(one, other),
-          .margin = margin,
-          .p = {},
-          .hindrance = !set.Ranks() ? "no condition ranks detectors"
-                       : compared   ? ""
-                                    : "no threshold for this rate of false alarms"};
-}
-
 std::vector<Claim> ConflictClaims(std::span<const ConflictSet> sets) {
-  constexpr double kStep_s = 0.1;
   std::vector<Claim> claims;
   for (const ConflictSet& set : sets) {
     if (set.fog != "bias" || (set.noise != kUsualNoise && set.noise != "realistic")) continue;
-    const auto claim = [&](std::string_view says, std::string_view a, std::string_view b, Sign sign,
-                           double margin = 0) {
-      claims.push_back(DelayClaim(set, says, a, b, sign, margin));
-    };
-    claim("a measure of a single step is slower.", "nis", "doc", Sign::kMore);
-    claim("the window explains a part of the lead.", kDocParts[1].detector, kDocParts[0].detector,
-          Sign::kLess);
-    claim("the sign explains another part of the lead.", kDocParts[2].detector,
-          kDocParts[1].detector, Sign::kLess);
-    claim("the sigmoid adds nothing.", kDocParts[3].detector, kDocParts[2].detector, Sign::kEqual,
-          kStep_s);
-    claim("a sum over all steps is faster.", "cusum", "doc", Sign::kLess);
+    for (const DelayStatement& statement : DelayStatements()) {
+      const std::size_t a = DetectorNamed(statement.a);
+      const std::size_t b = DetectorNamed(statement.b);
+      const bool compared = set.IsCompared(a) && set.IsCompared(b);
+      claims.push_back({.says = SaysOf(statement, set.noise),
+                        .compared = fmt::format("{}: {} against {}, delay from fog to alarm (s)",
+                                                NameOfSet(set), statement.a, statement.b),
+                        .sign = statement.sign,
+                        .difference = set.Difference(a, b),
+                        .margin = statement.margin,
+                        .p = {},
+                        .hindrance = !set.Ranks() ? "no condition ranks detectors"
+                                     : compared   ? ""
+                                                  : "no threshold for this rate of false alarms"});
+    }
   }
   return claims;
 }
@@ -108,7 +85,10 @@ std::string ConflictMethod(const StudyContext& context, std::span<const Conflict
       "takes part with the window of the Degree of Conflict (the mean of its scores), with a known "
       "sign (its score is negative if the LiDAR's range is too long), and with both. Distance is "
       "the absolute difference of the ranges; with window, sign and sigmoid it is the Degree of "
-      "Conflict. Of {3} detectors at least {4} differ in each ranking; detectors with the same "
+      "Conflict. The sigmoid rises with this distance, so each threshold of the one is a threshold "
+      "of the other: their alarms are equal by definition, and the runs only check that the "
+      "program computes them so. Of {3} detectors at least {4} differ in each ranking; detectors "
+      "with the same "
       "alarms in all runs count once, with all their names. Threshold: the smallest one with a "
       "mean time to the first alarm of {5:g} s ({6:g} false alarms an hour) in runs of {7:g} s in "
       "clear air with other seeds: {8} runs for each of the {0} seeds for detectors that take "

@@ -27,10 +27,11 @@ struct DocPart {
   std::string_view name;
   std::string_view detector;
 };
-inline constexpr std::array<DocPart, 4> kDocParts{{{"distance of one step", "distance"},
-                                                   {"with its window", "distance + window"},
-                                                   {"and its sign", "distance + window + sign"},
-                                                   {"and its sigmoid", "doc"}}};
+inline constexpr std::array<DocPart, 4> kDocParts{
+    {{"distance of one step", "distance"},
+     {"with its window", "distance + window"},
+     {"and its sign", "distance + window + sign"},
+     {"and its sigmoid (equal by definition)", "doc"}}};
 
 /// A table of the effect of each part of the Degree of Conflict, for the sets that rank detectors.
 report::StudyTable TableOfParts(std::span<const ConflictSet> sets);

@@ -14,6 +14,10 @@ constexpr double kFogLevel = 0.5;
 
 std::size_t BatchOf(std::int64_t unit) { return static_cast<std::size_t>(unit % kBatches); }
 
+double SinceFog_s(const truth_t& truth) {
+  return static_cast<double>(truth.header.utime) * 1e-6 - kWarmUp_s;
+}
+
 /// One detector in one run with fog.
 struct FogRun {
   ScoreRecords records;        // from the beginning of the fog
@@ -27,7 +31,7 @@ std::vector<FogRun> RunFog(SensorBench& bench, std::int64_t seed, std::size_t ba
   std::vector<FogRun> runs(clear_scores.size());
   bench.Run(seed, [&](const truth_t& truth, std::span<const double> scores) {
     if (!truth.fog_present) return;
-    const double since_s = static_cast<double>(truth.header.utime) * 1e-6 - kWarmUp_s;
+    const double since_s = SinceFog_s(truth);
     for (std::size_t d = 0; d < scores.size(); ++d) {
       AddScore(scores[d], since_s, runs[d].records);
       if (truth.fog_level >= kFogLevel) runs[d].scores.push_back(scores[d]);
@@ -82,6 +86,34 @@ std::vector<Gathered> RunInFog(const StudyContext& context, const Traffic& traff
         return true;
       });
   return gathered;
+}
+
+std::vector<std::vector<ScoreRecords>> RecordsInFog(const StudyContext& context,
+                                                    const Traffic& traffic,
+                                                    std::span<const std::size_t> detectors,
+                                                    const ShowUnit& show) {
+  std::vector<std::vector<ScoreRecords>> by_detector(detectors.size());
+  stats::ComputeInOrder(
+      0, context.seeds.count(), context.jobs, [&] { return SensorBench(traffic, detectors); },
+      [&](SensorBench& bench, std::int64_t unit) {
+        std::vector<ScoreRecords> records(detectors.size());
+        bench.Run(context.seeds.first + unit,
+                  [&](const truth_t& truth, std::span<const double> scores) {
+                    if (!truth.fog_present) return;
+                    for (std::size_t d = 0; d < scores.size(); ++d) {
+                      AddScore(scores[d], SinceFog_s(truth), records[d]);
+                    }
+                  });
+        return records;
+      },
+      [&](std::int64_t, std::vector<ScoreRecords> records) {
+        for (std::size_t d = 0; d < records.size(); ++d) {
+          by_detector[d].push_back(std::move(records[d]));
+        }
+        show();
+        return true;
+      });
+  return by_detector;
 }
 
 }  // namespace fogline::study

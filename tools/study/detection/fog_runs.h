@@ -58,4 +58,11 @@ struct Gathered {
 std::vector<Gathered> RunInFog(const StudyContext& context, const Traffic& traffic,
                                std::span<const SortedBatches> clear_scores, const ShowUnit& show);
 
+/// The records of some detectors in this traffic, by detector and seed. Calls `show` after each
+/// run. @param detectors indices in Detectors() @throws as `show`
+std::vector<std::vector<ScoreRecords>> RecordsInFog(const StudyContext& context,
+                                                    const Traffic& traffic,
+                                                    std::span<const std::size_t> detectors,
+                                                    const ShowUnit& show);
+
 }  // namespace fogline::study

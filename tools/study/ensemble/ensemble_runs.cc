@@ -13,13 +13,20 @@
 #include "tools/stats/mcnemar.h"
 #include "tools/study/claims.h"
 #include "tools/study/comparison.h"
+#include "tools/study/delays/delay_claims.h"
 #include "tools/study/design.h"
+#include "tools/study/detection/conflict_runs.h"
+#include "tools/study/engagement/fog_modes.h"
 #include "tools/study/followers/string_runs.h"
 #include "tools/study/thresholds/both_humans.h"
 #include "tools/study/thresholds/threshold_mix.h"
 
 namespace fogline::study {
 namespace {
+
+/// The studies whose claims are not those of a comparison.
+constexpr std::string_view kThresholdStudy = "threshold";
+constexpr std::string_view kConflictStudy = "conflict";
 
 /// What all runs of this study share.
 struct Ensemble {
@@ -157,26 +164,55 @@ void RunStringOf(const Ensemble& ensemble, const StudyContext& part, std::size_t
   result.runs += static_cast<std::int64_t>(strings.size()) * part.seeds.count();
 }
 
-/// Runs the mix of situations with a set, and adds the claim on a low threshold.
+/// Adds claims with a set to the quoted claims of this study that say the same.
+void AddClaims(std::string_view study, const EnsembleSet& set, std::vector<Claim> claims,
+               EnsembleRuns& result) {
+  for (Claim& claim : claims) {
+    claim.compared = NameWith(set, claim.compared);
+    for (ClaimInSets& quoted : result.claims) {
+      if (quoted.quoted.study == study && quoted.quoted.says == claim.says) {
+        quoted.sets.push_back(claim);
+      }
+    }
+  }
+}
+
+/// A mix of situations that is examined, with the beginning of its claims.
+struct ExaminedMix {
+  MixedHuman human;
+  std::string_view name;
+};
+constexpr std::array<ExaminedMix, 2> kExaminedMixes{
+    {{MixedHuman::kDrawn, ""}, {MixedHuman::kPerfect, kPerfectHuman}}};
+
+/// Runs a mix of situations with a set, and adds the claims on fixed thresholds.
 void RunMixOf(const Ensemble& ensemble, const StudyContext& part, const EnsembleSet& set,
-              std::size_t quoted, EnsembleRuns& result) {
-  constexpr std::array<std::string_view, 2> kRules{"fixed 0.3", "fixed 0.5"};
-  const MixedRuns mixed = RunMix(part, RulesNamed(kRules), MixedHuman::kDrawn, MixedRadar::kDrawn,
+              const ExaminedMix& mix, EnsembleRuns& result) {
+  const MixedRuns mixed = RunMix(part, RulesNamed(kFixedRules), mix.human, MixedRadar::kDrawn,
                                  ensemble.Overrides(set, "paper.json"));
-  Claim& claim = result.claims[quoted].sets.emplace_back(LowThresholdClaim(mixed));
-  claim.compared = NameWith(set, claim.compared);
-  result.runs += static_cast<std::int64_t>(kRules.size() + 1) * mixed.situations;
+  AddClaims(kThresholdStudy, set, ClaimsOnFixed(mixed, mix.name), result);
+  result.runs += static_cast<std::int64_t>(kFixedRules.size() + 1) * mixed.situations;
+}
+
+/// Runs the detectors with a set, and adds the claims on their delays.
+void RunDelaysOf(const Ensemble& ensemble, const StudyContext& part, const EnsembleSet& set,
+                 EnsembleRuns& result) {
+  AddClaims(kConflictStudy, set, RunDelayClaims(part, ensemble.Overrides(set, "paper.json")),
+            result);
+  const std::int64_t of_seed = kDelayClearAir + static_cast<std::int64_t>(kVisibilities_m.size());
+  result.runs += of_seed * part.seeds.count();
 }
 
 /// A part of the runs.
 struct Job {
   std::int64_t one_of = 1;
+  std::int64_t times = 1;
   std::int64_t units = 0;  // of its progress, for each seed
   std::function<void(const StudyContext& part, EnsembleRuns& result)> run;
 
-  /// The first of `one_of` equal parts of the seeds.
+  /// The first of `one_of` equal parts of the seeds, or `times` as many seeds.
   sweep::SeedRange Seeds(sweep::SeedRange all) const {
-    all.last = all.first + std::max<std::int64_t>(1, all.count() / one_of) - 1;
+    all.last = all.first + std::max<std::int64_t>(1, all.count() * times / one_of) - 1;
     return all;
   }
 };
@@ -191,7 +227,9 @@ std::vector<SharedRuns> PlanShared(const Ensemble& ensemble) {
   std::vector<SharedRuns> all;
   for (std::size_t i = 0; i < ensemble.quoted.size(); ++i) {
     const QuotedClaim& quoted = ensemble.quoted[i];
-    if (quoted.study == "threshold" || IsOnString(quoted)) continue;
+    if (quoted.study == kThresholdStudy || quoted.study == kConflictStudy || IsOnString(quoted)) {
+      continue;
+    }
     const StudyDesign design = DesignOf(ensemble, quoted.study, ensemble.sets.front());
     const PlannedClaim* claim = FindClaim(design, quoted.says);
     if (claim == nullptr) {
@@ -208,6 +246,22 @@ std::vector<SharedRuns> PlanShared(const Ensemble& ensemble) {
   return all;
 }
 
+/// For each set a job of a study whose claims share all runs.
+template <class Run>
+void AddJobs(const Ensemble& ensemble, std::string_view study, std::int64_t units, Run run,
+             std::vector<Job>& jobs) {
+  const auto quoted = std::ranges::find(ensemble.quoted, study, &QuotedClaim::study);
+  if (quoted == ensemble.quoted.end()) return;
+  for (const EnsembleSet& set : ensemble.sets) {
+    jobs.push_back({.one_of = quoted->one_of,
+                    .times = quoted->times,
+                    .units = units,
+                    .run = [run, &set](const StudyContext& part, EnsembleRuns& result) {
+                      run(part, set, result);
+                    }});
+  }
+}
+
 std::vector<Job> JobsFor(const Ensemble& ensemble) {
   const auto sets = static_cast<std::int64_t>(ensemble.sets.size());
   std::vector<Job> jobs;
@@ -222,22 +276,27 @@ std::vector<Job> JobsFor(const Ensemble& ensemble) {
   }
   for (std::size_t i = 0; i < ensemble.quoted.size(); ++i) {
     const QuotedClaim& quoted = ensemble.quoted[i];
-    if (IsOnString(quoted)) {
-      jobs.push_back({.one_of = quoted.one_of,
-                      .units = sets * static_cast<std::int64_t>(HostVariants().size()),
-                      .run = [&ensemble, i](const StudyContext& part, EnsembleRuns& result) {
-                        RunStringOf(ensemble, part, i, result);
-                      }});
-    }
-    if (quoted.study != "threshold") continue;
-    for (const EnsembleSet& set : ensemble.sets) {
-      jobs.push_back({.one_of = quoted.one_of,
-                      .units = 1,
-                      .run = [&ensemble, &set, i](const StudyContext& part, EnsembleRuns& result) {
-                        RunMixOf(ensemble, part, set, i, result);
-                      }});
-    }
+    if (!IsOnString(quoted)) continue;
+    jobs.push_back({.one_of = quoted.one_of,
+                    .units = sets * static_cast<std::int64_t>(HostVariants().size()),
+                    .run = [&ensemble, i](const StudyContext& part, EnsembleRuns& result) {
+                      RunStringOf(ensemble, part, i, result);
+                    }});
   }
+  for (const ExaminedMix& mix : kExaminedMixes) {
+    AddJobs(
+        ensemble, kThresholdStudy, 1,
+        [&](const StudyContext& part, const EnsembleSet& set, EnsembleRuns& result) {
+          RunMixOf(ensemble, part, set, mix, result);
+        },
+        jobs);
+  }
+  AddJobs(
+      ensemble, kConflictStudy, kDelayUnits,
+      [&](const StudyContext& part, const EnsembleSet& set, EnsembleRuns& result) {
+        RunDelaysOf(ensemble, part, set, result);
+      },
+      jobs);
   return jobs;
 }
 
@@ -257,6 +316,11 @@ EnsembleRuns RunEnsemble(const StudyContext& context, std::span<const EnsembleSe
     part.seeds = job.Seeds(context.seeds);
     job.run(part, result);
     done += job.units * part.seeds.count();
+  }
+  for (const ClaimInSets& claim : result.claims) {
+    if (claim.sets.size() == sets.size()) continue;
+    throw std::out_of_range(
+        fmt::format("{} does not claim: {}", claim.quoted.study, claim.quoted.says));
   }
   return result;
 }

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <optional>
-#include <set>
 
 #include <fmt/format.h>
 
@@ -28,6 +27,17 @@ Estimate Moved(Estimate estimate, double by) {
   return estimate;
 }
 
+/// Whether the lower bound of an equality decides: the bound that is nearer to the mean, or the
+/// only one.
+bool IsAtLowerBound(const Claim& claim, Bound bound) {
+  return bound == Bound::kBoth ? claim.difference.mean < 0 : bound == Bound::kBelow;
+}
+
+/// The difference from this bound.
+Estimate FromBound(const Claim& claim, bool is_lower) {
+  return Moved(claim.difference, is_lower ? claim.margin : -claim.margin);
+}
+
 OneSide SideOf(const Claim& claim, Bound bound) {
   if (!claim.hindrance.empty() || !claim.difference.has_interval()) return {false, 1};
   const double mean = claim.difference.mean;
@@ -39,43 +49,50 @@ OneSide SideOf(const Claim& claim, Bound bound) {
     case Sign::kEqual:
       break;
   }
-  // The bound that is nearer to the mean, or the only one.
-  const bool is_below = bound == Bound::kBoth ? mean < 0 : bound == Bound::kBelow;
-  const Estimate beyond = Moved(claim.difference, is_below ? claim.margin : -claim.margin);
-  const bool is_within = is_below ? beyond.mean >= 0 : beyond.mean <= 0;
+  const bool is_lower = IsAtLowerBound(claim, bound);
+  const Estimate beyond = FromBound(claim, is_lower);
+  const bool is_within = is_lower ? beyond.mean >= 0 : beyond.mean <= 0;
   if (bound == Bound::kBoth && is_within) return {true, PValueOf(claim)};
   return {is_within, PValueOfSign(beyond)};
 }
 
-/// A claim of equality that a finding uses on one side only, as a claim on the sign of the
-/// difference from this bound. Other claims stay as they are.
-Claim BoundAsSign(Claim claim, Bound bound) {
-  if (claim.sign != Sign::kEqual || bound == Bound::kBoth) return claim;
-  const bool is_below = bound == Bound::kBelow;
-  claim.sign = is_below ? Sign::kMore : Sign::kLess;
-  claim.difference = Moved(claim.difference, is_below ? claim.margin : -claim.margin);
-  claim.compared += fmt::format(", difference from {:g}", is_below ? -claim.margin : claim.margin);
+Sign Turned(Sign sign) { return sign == Sign::kLess ? Sign::kMore : Sign::kLess; }
+
+/// The claim as the runs decide it. An opposite claim is turned around. A claim of equality that is
+/// decided at one bound becomes a claim on the sign of the difference from this bound.
+Claim AsDecided(Claim claim, Bound bound, InSet outcome) {
+  const bool holds = outcome == InSet::kHolds;
+  if (claim.sign != Sign::kEqual) {
+    if (!holds) claim.sign = Turned(claim.sign);
+    return claim;
+  }
+  if (holds && bound == Bound::kBoth) return claim;
+  const bool is_lower = IsAtLowerBound(claim, bound);
+  const Sign within = is_lower ? Sign::kMore : Sign::kLess;
+  claim.sign = holds ? within : Turned(within);
+  claim.difference = FromBound(claim, is_lower);
+  claim.compared += fmt::format(", difference from {:g}", is_lower ? -claim.margin : claim.margin);
   claim.margin = 0;
   return claim;
 }
 
-InSet ExpectedOf(const ExaminedFinding& finding, std::string_view says, int set) {
-  for (const KnownException& one : finding.exceptions) {
+InSet ExpectedOf(const ExaminedPart& examined, std::string_view says, int set) {
+  for (const KnownException& one : examined.exceptions) {
     if (one.says == says && std::ranges::count(one.sets, set) > 0) return one.outcome;
   }
   return InSet::kHolds;
 }
 
 /// "set 3: "..." is opposite" for each outcome that the author does not say; "" without one.
-std::string Surprises(const ExaminedFinding& finding,
+std::string Surprises(const ExaminedPart& examined,
                       std::span<const std::vector<JudgedInSet>> judged) {
   std::string text;
   for (std::size_t c = 0; c < judged.size(); ++c) {
-    const std::string_view says = finding.central[c].says;
+    const std::string_view says = examined.claims[c].says;
     for (std::size_t s = 0; s < judged[c].size(); ++s) {
       const int number = static_cast<int>(s) + 1;
       const InSet found = judged[c][s].outcome;
-      if (found == ExpectedOf(finding, says, number)) continue;
+      if (found == ExpectedOf(examined, says, number)) continue;
       text += fmt::format("{}set {}: \"{}\" {}", text.empty() ? "" : "; ", number, says,
                           found == InSet::kHolds ? "holds" : fmt::format("is {}", Text(found)));
     }
@@ -83,7 +100,12 @@ std::string Surprises(const ExaminedFinding& finding,
   return text;
 }
 
-std::vector<int> InOrder(const std::set<int>& numbers) { return {numbers.begin(), numbers.end()}; }
+/// "eight".
+std::string CountText(std::size_t count) {
+  constexpr std::array<std::string_view, 11> kWords{
+      "no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten"};
+  return count < kWords.size() ? std::string(kWords[count]) : fmt::format("{}", count);
+}
 
 }  // namespace
 
@@ -122,25 +144,38 @@ std::vector<std::vector<JudgedInSet>> JudgeInSets(std::span<const ClaimInSets> c
   return judged;
 }
 
-std::vector<int> SetsWithout(std::span<const std::vector<JudgedInSet>> claims) {
-  std::set<int> numbers;
-  for (const std::vector<JudgedInSet>& outcomes : claims) {
-    for (std::size_t s = 0; s < outcomes.size(); ++s) {
-      if (outcomes[s].outcome != InSet::kHolds) numbers.insert(static_cast<int>(s) + 1);
+std::string_view Text(Part part) { return part == Part::kHeading ? "heading" : "side claims"; }
+
+InSet VerdictOn(std::span<const InSet> claims) {
+  if (std::ranges::count(claims, InSet::kOpposite) > 0) return InSet::kOpposite;
+  return std::ranges::count(claims, InSet::kUndecided) > 0 ? InSet::kUndecided : InSet::kHolds;
+}
+
+std::vector<InSet> VerdictsOn(std::span<const std::vector<JudgedInSet>> claims) {
+  std::vector<InSet> verdicts;
+  const std::size_t sets = claims.empty() ? 0 : claims.front().size();
+  for (std::size_t s = 0; s < sets; ++s) {
+    std::vector<InSet> in_set;
+    for (const std::vector<JudgedInSet>& claim : claims) in_set.push_back(claim[s].outcome);
+    verdicts.push_back(VerdictOn(in_set));
+  }
+  return verdicts;
+}
+
+std::vector<InSet> VerdictsOn(const ExaminedPart& examined, std::size_t sets) {
+  std::vector<InSet> verdicts;
+  for (std::size_t s = 0; s < sets; ++s) {
+    std::vector<InSet> in_set;
+    for (const QuotedClaim& claim : examined.claims) {
+      in_set.push_back(ExpectedOf(examined, claim.says, static_cast<int>(s) + 1));
     }
+    verdicts.push_back(VerdictOn(in_set));
   }
-  return InOrder(numbers);
+  return verdicts;
 }
 
-std::vector<int> SetsWithout(const ExaminedFinding& finding) {
-  std::set<int> numbers;
-  for (const KnownException& one : finding.exceptions) {
-    numbers.insert(one.sets.begin(), one.sets.end());
-  }
-  return InOrder(numbers);
-}
-
-std::string SetsText(std::span<const int> numbers) {
+std::string SetsText(std::span<const int> numbers, std::size_t sets) {
+  if (numbers.size() == sets) return fmt::format("all {} parameter sets", CountText(sets));
   std::string text = numbers.size() == 1 ? "set " : "sets ";
   for (std::size_t i = 0; i < numbers.size(); ++i) {
     const bool is_last = i + 1 == numbers.size();
@@ -149,43 +184,48 @@ std::string SetsText(std::span<const int> numbers) {
   return text;
 }
 
-std::string SentenceOf(const ExaminedFinding& finding, std::size_t sets) {
-  constexpr std::array<std::string_view, 11> kWords{
-      "no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten"};
-  const std::vector<int> without = SetsWithout(finding);
-  const std::string count =
-      sets < kWords.size() ? std::string(kWords[sets]) : fmt::format("{}", sets);
-  if (without.empty()) return fmt::format("Holds in all {} parameter sets.", count);
-  if (without.size() == sets) {
-    return fmt::format("Holds in none of the {} parameter sets: {}", count, finding.why);
+std::string SentenceOf(const ExaminedFinding& finding, Part part, std::size_t sets) {
+  const ExaminedPart& examined = finding.Of(part);
+  const std::vector<InSet> verdicts = VerdictsOn(examined, sets);
+  std::string text;
+  for (const InSet verdict : {InSet::kHolds, InSet::kOpposite, InSet::kUndecided}) {
+    std::vector<int> numbers;
+    for (std::size_t s = 0; s < sets; ++s) {
+      if (verdicts[s] == verdict) numbers.push_back(static_cast<int>(s) + 1);
+    }
+    if (numbers.empty()) continue;
+    const bool is_plural = part == Part::kSide && verdict == InSet::kHolds;
+    text += fmt::format("{}{} in {}", text.empty() ? "" : "; ", is_plural ? "hold" : Text(verdict),
+                        SetsText(numbers, sets));
   }
-  return fmt::format("Does not hold in {}: {}", SetsText(without), finding.why);
+  return fmt::format("{}.{}{}", text, examined.why.empty() ? "" : " ", examined.why);
 }
 
-Claim ClaimOnFinding(const ExaminedFinding& finding, std::span<const ClaimInSets> claims,
-                     std::span<const std::vector<JudgedInSet>> judged) {
+Claim ClaimOnPart(const ExaminedFinding& finding, Part part, std::span<const ClaimInSets> claims,
+                  std::span<const std::vector<JudgedInSet>> judged) {
   std::optional<Claim> weakest;
   double p = -1;
   for (std::size_t c = 0; c < claims.size(); ++c) {
     for (std::size_t s = 0; s < judged[c].size(); ++s) {
-      if (judged[c][s].outcome != InSet::kHolds || judged[c][s].p <= p) continue;
-      p = judged[c][s].p;
-      weakest = BoundAsSign(claims[c].sets[s], claims[c].quoted.bound);
+      const JudgedInSet& one = judged[c][s];
+      if (one.outcome == InSet::kUndecided || one.p <= p) continue;
+      p = one.p;
+      weakest = AsDecided(claims[c].sets[s], claims[c].quoted.bound, one.outcome);
     }
   }
   const std::size_t sets = judged.empty() ? 0 : judged.front().size();
-  std::string sentence = SentenceOf(finding, sets);
-  sentence[0] = static_cast<char>(sentence[0] - 'A' + 'a');
   Claim claim = weakest.value_or(Claim{});
-  claim.says = fmt::format("Finding {} {}", finding.number, sentence);
-  claim.compared = "no comparison holds in any set";
+  claim.says = fmt::format("Finding {}, {}: {}", finding.number, Text(part),
+                           SentenceOf(finding, part, sets));
+  claim.compared = "no comparison is decided in any set";
   if (weakest) {
-    claim.compared =
-        fmt::format("{} comparison{} in each of {} sets; least certain of those that hold: {}",
-                    claims.size(), claims.size() == 1 ? "" : "s", sets, weakest->compared);
+    claim.compared = fmt::format(
+        "{} comparison{} in each of {} sets; least certain of those that are decided: "
+        "{}",
+        claims.size(), claims.size() == 1 ? "" : "s", sets, weakest->compared);
   }
-  claim.hindrance = Surprises(finding, judged);
-  if (claim.hindrance.empty() && !weakest) claim.hindrance = "no comparison holds";
+  claim.hindrance = Surprises(finding.Of(part), judged);
+  if (claim.hindrance.empty() && !weakest) claim.hindrance = "no comparison is decided";
   return claim;
 }
 

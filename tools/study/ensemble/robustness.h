@@ -25,6 +25,7 @@ struct QuotedClaim {
   std::string_view says;
   std::int64_t one_of = 1;  // it needs only one of so many seeds, because its difference is large
   Bound bound = Bound::kBoth;
+  std::int64_t times = 1;  // it needs so many times the seeds, because its difference varies much
 };
 
 /// A claim with each parameter set.
@@ -60,32 +61,53 @@ struct KnownException {
   InSet outcome = InSet::kOpposite;
 };
 
-/// A finding of docs/findings.md with the comparisons that decide on it.
-struct ExaminedFinding {
-  int number = 0;
-  std::string_view name;
-  std::vector<QuotedClaim> central;
+/// The part of a finding on which claims bear.
+enum class Part {
+  kHeading,
+  kSide,  // what the text below the heading says
+};
+/// "heading" or "side claims".
+std::string_view Text(Part part);
+
+/// The claims of one part of a finding, and what is known of them.
+struct ExaminedPart {
+  std::vector<QuotedClaim> claims;
   std::vector<KnownException> exceptions;
   std::string_view why;  // what was found in these sets; ends with a full stop; "" without one
 };
 
-/// The numbers of the sets in which any of the claims does not hold, from 1.
-std::vector<int> SetsWithout(std::span<const std::vector<JudgedInSet>> claims);
-/// The same as its author found it.
-std::vector<int> SetsWithout(const ExaminedFinding& finding);
+/// A finding of docs/findings.md with the claims that decide on it.
+struct ExaminedFinding {
+  int number = 0;
+  std::string_view name;
+  ExaminedPart heading;
+  ExaminedPart side;
 
-/// "set 3", "sets 3 and 7", "sets 3, 5 and 7".
-std::string SetsText(std::span<const int> numbers);
+  const ExaminedPart& Of(Part part) const { return part == Part::kHeading ? heading : side; }
+};
 
-/// "Holds in all eight parameter sets.", "Does not hold in set 3: ...". A finding is robust only if
-/// each of its central comparisons holds in all sets.
-std::string SentenceOf(const ExaminedFinding& finding, std::size_t sets);
+/// The verdict on several claims in one set: they hold if each of them does. They are opposite if
+/// at least one is opposite, and otherwise undecided.
+InSet VerdictOn(std::span<const InSet> claims);
 
-/// The claim that the finding holds in the sets in which its author says that it does, and in no
-/// other. Its difference is the least certain one of those that hold. If the runs say anything else
-/// of any set, this hinders the claim, and the hindrance names claim, set and outcome.
-/// @param claims, judged of the finding's central comparisons, in their order
-Claim ClaimOnFinding(const ExaminedFinding& finding, std::span<const ClaimInSets> claims,
-                     std::span<const std::vector<JudgedInSet>> judged);
+/// For each set the verdict on the claims that were judged.
+std::vector<InSet> VerdictsOn(std::span<const std::vector<JudgedInSet>> claims);
+/// The same as the author found it.
+std::vector<InSet> VerdictsOn(const ExaminedPart& examined, std::size_t sets);
+
+/// "set 3", "sets 3 and 7", "sets 3, 5 and 7"; "all eight parameter sets" if these are all.
+std::string SetsText(std::span<const int> numbers, std::size_t sets);
+
+/// "holds in sets 1 and 2; opposite in set 3; undecided in set 4. ...": the verdicts as the author
+/// found them, and then why. Side claims "hold".
+std::string SentenceOf(const ExaminedFinding& finding, Part part, std::size_t sets);
+
+/// The claim that a part of a finding has the verdicts that its author says. Its difference is the
+/// least certain one of those that are decided, turned around if it is opposite. If the runs say
+/// anything else of any set, this hinders the claim, and the hindrance names claim, set and
+/// outcome.
+/// @param claims, judged of this part of the finding, in their order
+Claim ClaimOnPart(const ExaminedFinding& finding, Part part, std::span<const ClaimInSets> claims,
+                  std::span<const std::vector<JudgedInSet>> judged);
 
 }  // namespace fogline::study

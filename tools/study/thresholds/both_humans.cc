@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <stdexcept>
 #include <utility>
 
@@ -102,9 +103,15 @@ Claim RuleClaim(const MixedRuns& runs, std::string_view of, std::string says, st
           .hindrance = {}};
 }
 
-Claim LowThresholdClaim(const MixedRuns& mixed) {
-  return RuleClaim(mixed, "", "The paper's threshold is safer than a low one.", "fixed 0.5",
-                   "fixed 0.3", Sign::kMore);
+std::vector<Claim> ClaimsOnFixed(const MixedRuns& runs, std::string_view of) {
+  const auto& [low, papers, high] = kFixedRules;
+  const auto claim = [&](std::string_view says, std::string_view a, std::string_view b) {
+    std::string sentence = of.empty() ? std::string(says) : fmt::format("With a {}, {}", of, says);
+    sentence[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(sentence[0])));
+    return RuleClaim(runs, of, std::move(sentence), a, b, Sign::kMore);
+  };
+  return {claim("hardly ever handing over is safer than the paper's threshold.", high, papers),
+          claim("the paper's threshold is safer than a low one.", papers, low)};
 }
 
 std::size_t RuleNamed(const MixedRuns& runs, std::string_view name) {

@@ -2,6 +2,7 @@
 // radars.
 #pragma once
 
+#include <array>
 #include <span>
 #include <string>
 #include <string_view>
@@ -39,8 +40,12 @@ std::string HumansCsv(std::span<const HumanMix> mixes);
 /// names the mix; "" stands for the mix with drawn humans.
 Claim RuleClaim(const MixedRuns& runs, std::string_view of, std::string says, std::string_view a,
                 std::string_view b, Sign sign, double margin = 0);
-/// The claim that the paper's threshold is safer than a low one, in the mix of drawn humans.
-Claim LowThresholdClaim(const MixedRuns& mixed);
+/// The rules of ClaimsOnFixed().
+inline constexpr std::array<std::string_view, 3> kFixedRules{"fixed 0.3", "fixed 0.5",
+                                                             "fixed 0.99"};
+/// The claims that hardly ever handing over is safer than the paper's threshold, and that this is
+/// safer than a low one. `of` as for RuleClaim().
+std::vector<Claim> ClaimsOnFixed(const MixedRuns& runs, std::string_view of);
 /// Index of the rule with this name. @throws std::out_of_range
 std::size_t RuleNamed(const MixedRuns& runs, std::string_view name);
 

@@ -74,10 +74,9 @@ std::string ThresholdText(const MixedRuns& mixed, const CurvePlace& place) {
 
 constexpr std::string_view kThresholdAnswer =
     "No. In a mix of situations, whatever engages the human less in clear air is also safer, so "
-    "the "
-    "best rule hardly ever hands over, even to a human who never errs. At equal engagement an "
-    "adaptive threshold does not beat a "
-    "fixed one; dropping the deceived sensor gains a little.";
+    "the best rule hardly ever hands over, even to a human who never errs; with two parameter "
+    "sets of study ensemble the paper's threshold is safer. At equal engagement an adaptive "
+    "threshold does not beat a fixed one; dropping the deceived sensor gains a little.";
 constexpr std::string_view kThresholdWouldChange =
     "Situations in which the automation is deceived for longer.";
 
@@ -103,10 +102,8 @@ std::vector<Claim> ThresholdClaims(const MixedRuns& mixed, const Beside& beside)
                            double margin = 0) {
     return RuleClaim(mixed, "", std::move(says), a, b, sign, margin);
   };
-  return {
-      against("Hardly ever handing over is safer than the paper's threshold.", "fixed 0.99",
-              "fixed 0.5", Sign::kMore),
-      LowThresholdClaim(mixed),
+  std::vector<Claim> claims = ClaimsOnFixed(mixed, "");
+  const auto more = {
       against("It is safer than the adaptive rule.", "fixed 0.99", "adaptive 0.5", Sign::kMore),
       against("It is safer than the rule by costs.", "fixed 0.99", "bayes 1", Sign::kMore),
       against("It is as safe as dropping the sensor at the same threshold.", "fixed 0.99",
@@ -116,6 +113,8 @@ std::vector<Claim> ThresholdClaims(const MixedRuns& mixed, const Beside& beside)
       AtEqualRhe(mixed, beside, "An eager adaptive rule loses at equal engagement.",
                  "adaptive 0.35", Sign::kLess),
   };
+  claims.insert(claims.end(), more.begin(), more.end());
+  return claims;
 }
 
 /// For each human and each radar, two claims: the highest threshold against the paper's threshold,
@@ -123,14 +122,7 @@ std::vector<Claim> ThresholdClaims(const MixedRuns& mixed, const Beside& beside)
 std::vector<Claim> ClaimsOnHumans(std::span<const HumanMix> mixes) {
   std::vector<Claim> claims;
   for (const HumanMix& mix : mixes) {
-    const std::string name = mix.Name();
-    const auto claim = [&](std::string_view says, std::string_view a, std::string_view b) {
-      claims.push_back(
-          RuleClaim(mix.runs, name, fmt::format("With a {}, {}", name, says), a, b, Sign::kMore));
-    };
-    claim("hardly ever handing over is safer than the paper's threshold.", "fixed 0.99",
-          "fixed 0.5");
-    claim("the paper's threshold is safer than a low one.", "fixed 0.5", "fixed 0.3");
+    for (Claim& claim : ClaimsOnFixed(mix.runs, mix.Name())) claims.push_back(std::move(claim));
   }
   return claims;
 }

@@ -42,8 +42,8 @@ TEST(ResamplingTest, IsTheSameInWhateverOrderItIsDrawn) {
 }
 
 TEST(WeightedMeanTest, IsOfTheValuesThatAreThere) {
-  EXPECT_EQ(study::WeightedMean(std::array{1.0, kNone, 4.0}, std::array{2.0, 5.0, 1.0}), 2);
-  EXPECT_TRUE(std::isnan(study::WeightedMean(std::array{1.0, kNone}, std::array{0.0, 2.0})));
+  EXPECT_EQ(study::WeightedMean(std::array{1.0, kNoNumber, 4.0}, std::array{2.0, 5.0, 1.0}), 2);
+  EXPECT_TRUE(std::isnan(study::WeightedMean(std::array{1.0, kNoNumber}, std::array{0.0, 2.0})));
 }
 
 TEST(FromReplicatesTest, TakesThePercentiles) {
@@ -58,7 +58,7 @@ TEST(FromReplicatesTest, TakesThePercentiles) {
 
 TEST(FromReplicatesTest, HasNoIntervalOfOneRunOrWhereAReplicateHasNoValue) {
   EXPECT_FALSE(study::FromReplicates(1, 2, {1, 2, 3}).has_interval());
-  EXPECT_FALSE(study::FromReplicates(9, 2, {1, kNone, 3}).has_interval());
+  EXPECT_FALSE(study::FromReplicates(9, 2, {1, kNoNumber, 3}).has_interval());
   EXPECT_EQ(study::VerdictOf(study::FromReplicates(1, 2, {1, 2, 3})), study::Verdict::kTooFew);
 }
 

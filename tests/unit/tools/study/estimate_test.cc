@@ -14,7 +14,7 @@ namespace {
 
 TEST(EstimateTest, IsTheMeanWithStudentsIntervalOfTheValuesThatAreThere) {
   // Mean 2, deviation 1, t of 2 degrees of freedom 4.302653: 2 +- 4.302653/sqrt(3).
-  const study::Estimate estimate = study::EstimateOf(std::array{1.0, kNone, 2.0, 3.0});
+  const study::Estimate estimate = study::EstimateOf(std::array{1.0, kNoNumber, 2.0, 3.0});
   EXPECT_EQ(estimate.n, 3);
   EXPECT_EQ(estimate.mean, 2);
   EXPECT_NEAR(estimate.low, 2 - 2.484138, 1e-6);
@@ -31,7 +31,7 @@ TEST(EstimateTest, OfOneValueHasNoInterval) {
 
 TEST(EstimateTest, AnInfiniteValueIsNeitherMissingNorPartOfTheMean) {
   constexpr double kInfinite = std::numeric_limits<double>::infinity();
-  const study::Estimate estimate = study::EstimateOf(std::array{1.0, kInfinite, 3.0, kNone});
+  const study::Estimate estimate = study::EstimateOf(std::array{1.0, kInfinite, 3.0, kNoNumber});
   EXPECT_EQ(estimate.n, 2);
   EXPECT_EQ(estimate.mean, 2);
   EXPECT_EQ(estimate.infinite, 1);
@@ -63,8 +63,8 @@ TEST(PairedDifferenceTest, OfTwoInfiniteValuesIsNoneAndOfOneIsNotDecidedByTheOth
 }
 
 TEST(PairedDifferenceTest, IsKnownExactlyWhereOnlyTheNoiseOfThePairsDiffers) {
-  const study::Estimate difference = study::PairedDifference(std::array{10.5, 90.5, 50.5, 7.0},
-                                                             std::array{10.0, 90.0, 50.0, kNone});
+  const study::Estimate difference = study::PairedDifference(
+      std::array{10.5, 90.5, 50.5, 7.0}, std::array{10.0, 90.0, 50.0, kNoNumber});
   EXPECT_EQ(difference.n, 3);
   EXPECT_EQ(difference.low, 0.5);
   EXPECT_EQ(difference.high, 0.5);

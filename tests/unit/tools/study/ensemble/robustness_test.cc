@@ -15,9 +15,9 @@ namespace {
 using study::InSet;
 using study::JudgedInSet;
 using study::Sign;
+using ::testing::Each;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-using ::testing::IsEmpty;
 
 constexpr std::string_view kHelps = "It helps.";
 constexpr std::string_view kCostsNothing = "It costs nothing.";
@@ -50,19 +50,25 @@ std::vector<InSet> OutcomesOf(const study::ClaimInSets& claim) {
   return outcomes;
 }
 
+/// A finding whose heading rests on one claim.
 study::ExaminedFinding Finding(std::vector<study::KnownException> exceptions = {},
                                std::string_view why = "") {
   return {.number = 3,
           .name = "a gate",
-          .central = {{.study = "policy", .says = kHelps}},
-          .exceptions = std::move(exceptions),
-          .why = why};
+          .heading = {.claims = {{.study = "policy", .says = kHelps}},
+                      .exceptions = std::move(exceptions),
+                      .why = why},
+          .side = {}};
 }
 
-/// The claim on a finding that rests on this claim alone.
+/// The claim on the heading of a finding.
 study::Claim OnFinding(const study::ExaminedFinding& finding, const study::ClaimInSets& claim) {
   const auto all = std::span(&claim, 1);
-  return study::ClaimOnFinding(finding, all, study::JudgeInSets(all));
+  return study::ClaimOnPart(finding, study::Part::kHeading, all, study::JudgeInSets(all));
+}
+
+std::vector<InSet> VerdictsOf(const study::ClaimInSets& claim) {
+  return study::VerdictsOn(study::JudgeInSets(std::span(&claim, 1)));
 }
 
 report::ClaimState StateOf(const study::Claim& claim, bool few_runs = false) {
@@ -123,31 +129,33 @@ TEST(RobustnessTest, HolmCountsAllClaimsInAllSets) {
   }
 }
 
-TEST(RobustnessTest, AFindingIsRobustOnlyIfItHoldsInAllSets) {
+TEST(RobustnessTest, AHeadingThatHoldsInAllSetsSaysSo) {
   const study::ClaimInSets claim = InSets(8);
   const study::Claim on_all = OnFinding(Finding(), claim);
-  EXPECT_EQ(on_all.says, "Finding 3 holds in all eight parameter sets.");
+  EXPECT_EQ(on_all.says, "Finding 3, heading: holds in all eight parameter sets.");
   EXPECT_EQ(StateOf(on_all), report::ClaimState::kHolds);
-  EXPECT_THAT(study::SetsWithout(study::JudgeInSets(std::span(&claim, 1))), IsEmpty());
+  EXPECT_THAT(VerdictsOf(claim), Each(InSet::kHolds));
 }
 
-TEST(RobustnessTest, AFindingThatFailsInOneSetIsNamedWithTheSet) {
+TEST(RobustnessTest, AHeadingThatFailsInOneSetIsNamedWithTheSet) {
   study::ClaimInSets claim = InSets(8);
   claim.sets[2] = ClaimWith(1, 0.1);
-  EXPECT_THAT(study::SetsWithout(study::JudgeInSets(std::span(&claim, 1))), ElementsAre(3));
+  EXPECT_EQ(VerdictsOf(claim)[2], InSet::kOpposite);
   // Nobody expects it: the study is red, and names claim, set and outcome.
   const study::Claim surprise = OnFinding(Finding(), claim);
   EXPECT_EQ(surprise.hindrance, "set 3: \"It helps.\" is opposite");
   EXPECT_EQ(StateOf(surprise), report::ClaimState::kFails);
   EXPECT_EQ(StateOf(surprise, true), report::ClaimState::kOpen) << "with few runs";
   // The author knows it: the claim says what was found.
-  const study::Claim known = OnFinding(Finding({{kHelps, {3}}}, "it does harm there."), claim);
-  EXPECT_EQ(known.says, "Finding 3 does not hold in set 3: it does harm there.");
+  const study::Claim known = OnFinding(Finding({{kHelps, {3}}}, "It does harm there."), claim);
+  EXPECT_EQ(known.says,
+            "Finding 3, heading: holds in sets 1, 2, 4, 5, 6, 7 and 8; opposite in set 3. It does "
+            "harm there.");
   EXPECT_EQ(StateOf(known), report::ClaimState::kHolds);
 }
 
 TEST(RobustnessTest, AnExceptionThatTheRunsDoNotShowFails) {
-  const study::Claim claim = OnFinding(Finding({{kHelps, {3, 5}}}, "it does harm."), InSets(8));
+  const study::Claim claim = OnFinding(Finding({{kHelps, {3, 5}}}, "It does harm."), InSets(8));
   EXPECT_EQ(claim.hindrance, "set 3: \"It helps.\" holds; set 5: \"It helps.\" holds");
   EXPECT_EQ(StateOf(claim), report::ClaimState::kFails);
 }
@@ -155,20 +163,71 @@ TEST(RobustnessTest, AnExceptionThatTheRunsDoNotShowFails) {
 TEST(RobustnessTest, AnUndecidedSetIsNotAnOppositeOne) {
   study::ClaimInSets claim = InSets(8);
   claim.sets[2] = ClaimWith(-0.1, 0.2);
-  EXPECT_EQ(OnFinding(Finding({{kHelps, {3}}}, "it does harm."), claim).hindrance,
+  EXPECT_EQ(OnFinding(Finding({{kHelps, {3}}}, "It does harm."), claim).hindrance,
             "set 3: \"It helps.\" is undecided");
-  EXPECT_EQ(
-      OnFinding(Finding({{kHelps, {3}, InSet::kUndecided}}, "it is not certain."), claim).hindrance,
-      "");
+  const study::Claim known =
+      OnFinding(Finding({{kHelps, {3}, InSet::kUndecided}}, "It is not certain."), claim);
+  EXPECT_EQ(known.hindrance, "");
+  EXPECT_THAT(known.says, HasSubstr("7 and 8; undecided in set 3. It is not certain."));
 }
 
-TEST(RobustnessTest, ShowsTheLeastCertainComparisonOfThoseThatHold) {
+TEST(RobustnessTest, TheVerdictOnSeveralClaimsIsThatOfTheWorst) {
+  const auto verdict = [](std::vector<InSet> claims) { return study::VerdictOn(claims); };
+  EXPECT_EQ(verdict({InSet::kHolds, InSet::kHolds}), InSet::kHolds);
+  EXPECT_EQ(verdict({InSet::kHolds, InSet::kUndecided}), InSet::kUndecided);
+  EXPECT_EQ(verdict({InSet::kUndecided, InSet::kOpposite, InSet::kHolds}), InSet::kOpposite);
+}
+
+TEST(RobustnessTest, HeadingAndSideClaimsHaveVerdictsOfTheirOwn) {
+  // GIVEN a heading that holds in all sets, and two side claims that do not
+  study::ExaminedFinding finding = Finding();
+  finding.side = {
+      .claims = {{.study = "policy", .says = kHelps}, {.study = "policy", .says = kCostsNothing}},
+      .exceptions = {{kHelps, {1}}, {kCostsNothing, {1, 2}, InSet::kUndecided}},
+      .why = "It is so."};
+  EXPECT_EQ(study::SentenceOf(finding, study::Part::kHeading, 3),
+            "holds in all three parameter sets.");
+  EXPECT_EQ(study::SentenceOf(finding, study::Part::kSide, 3),
+            "hold in set 3; opposite in set 1; undecided in set 2. It is so.");
+  // THEN the claim on the side claims is checked with their runs
+  std::vector<study::ClaimInSets> claims{InSets(3), InSets(3, kCostsNothing)};
+  claims[0].sets[0] = ClaimWith(1, 0.1);
+  claims[1].sets[0] = claims[1].sets[1] = ClaimWith(-0.1, 0.2);
+  const auto on_side = [&] {
+    return study::ClaimOnPart(finding, study::Part::kSide, claims, study::JudgeInSets(claims));
+  };
+  EXPECT_EQ(StateOf(on_side()), report::ClaimState::kHolds);
+  claims[1].sets[2] = ClaimWith(1, 0.1);
+  EXPECT_EQ(on_side().hindrance, "set 3: \"It costs nothing.\" is opposite");
+}
+
+TEST(RobustnessTest, ShowsTheLeastCertainComparisonOfThoseThatAreDecided) {
   study::ClaimInSets claim = InSets(3);
   claim.sets[1] = ClaimWith(-0.5, 0.2);
   claim.sets[1].compared = "set 2: traded against none";
   const study::Claim on_finding = OnFinding(Finding(), claim);
   EXPECT_EQ(on_finding.difference.mean, -0.5);
-  EXPECT_THAT(on_finding.compared, HasSubstr("of those that hold: set 2: traded against none"));
+  EXPECT_THAT(on_finding.compared,
+              HasSubstr("of those that are decided: set 2: traded against none"));
+}
+
+TEST(RobustnessTest, AClaimThatIsOppositeInAllSetsIsShownTurnedAround) {
+  study::ClaimInSets claim = InSets(2);
+  claim.sets[0] = claim.sets[1] = ClaimWith(1, 0.1);
+  study::Claim on_finding = OnFinding(Finding({{kHelps, {1, 2}}}, "It does harm."), claim);
+  EXPECT_EQ(on_finding.says,
+            "Finding 3, heading: opposite in all two parameter sets. It does harm.");
+  EXPECT_EQ(on_finding.sign, Sign::kMore);
+  EXPECT_EQ(StateOf(on_finding), report::ClaimState::kHolds);
+  // An equality that is opposite becomes a claim on the difference from its bound.
+  claim = InSets(2, kCostsNothing);
+  claim.sets[0] = claim.sets[1] = ClaimWith(3, 0.1, Sign::kEqual, 1);
+  study::ExaminedFinding finding = Finding({{kCostsNothing, {1, 2}}}, "It costs something.");
+  finding.heading.claims.front().says = kCostsNothing;
+  on_finding = OnFinding(finding, claim);
+  EXPECT_EQ(on_finding.sign, Sign::kMore);
+  EXPECT_DOUBLE_EQ(on_finding.difference.mean, 2);
+  EXPECT_EQ(StateOf(on_finding), report::ClaimState::kHolds);
 }
 
 TEST(RobustnessTest, AClaimOnOneSideOfItsMarginIsCheckedOnThatSide) {
@@ -184,15 +243,11 @@ TEST(RobustnessTest, AClaimOnOneSideOfItsMarginIsCheckedOnThatSide) {
   EXPECT_EQ(StateOf(on_finding), report::ClaimState::kHolds);
 }
 
-TEST(RobustnessTest, SaysItsSentence) {
-  EXPECT_EQ(study::SentenceOf(Finding(), 8), "Holds in all eight parameter sets.");
-  const auto with = [](std::vector<int> sets) {
-    return study::SentenceOf(Finding({{kHelps, std::move(sets)}}, "it does harm."), 3);
-  };
-  EXPECT_EQ(with({2}), "Does not hold in set 2: it does harm.");
-  EXPECT_EQ(with({1, 3}), "Does not hold in sets 1 and 3: it does harm.");
-  EXPECT_EQ(with({1, 2, 3}), "Holds in none of the three parameter sets: it does harm.");
-  EXPECT_EQ(study::SetsText(std::array{2, 5, 7}), "sets 2, 5 and 7");
+TEST(RobustnessTest, NamesItsSets) {
+  EXPECT_EQ(study::SetsText(std::array{2}, 8), "set 2");
+  EXPECT_EQ(study::SetsText(std::array{1, 3}, 8), "sets 1 and 3");
+  EXPECT_EQ(study::SetsText(std::array{2, 5, 7}, 8), "sets 2, 5 and 7");
+  EXPECT_EQ(study::SetsText(std::array{1, 2, 3}, 3), "all three parameter sets");
 }
 
 }  // namespace

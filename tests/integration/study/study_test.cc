@@ -7,7 +7,6 @@
 #include <fstream>
 #include <iterator>
 #include <map>
-#include <set>
 #include <sstream>
 #include <string>
 #include <system_error>
@@ -20,6 +19,7 @@
 #include <nlohmann/json.hpp>
 
 #include "services/decision/conflict/conflict_measures.h"
+#include "tests/integration/study/study_runs.h"
 #include "tests/support/command.h"
 
 namespace fogline::test {
@@ -29,16 +29,11 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 using ::testing::StartsWith;
 
-Outcome Study(std::vector<std::string> arguments) {
-  arguments.insert(arguments.begin(), {Program("fogline"), "study"});
-  return RunCommand(arguments);
-}
-
 /// The files of a folder by name, with their bytes.
 std::vector<std::pair<std::string, std::string>> Files(const std::filesystem::path& folder) {
   std::vector<std::pair<std::string, std::string>> files;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-    files.emplace_back(entry.path().filename(), Content(entry.path()));
+    files.emplace_back(entry.path().filename(), ReadText(entry.path()));
   }
   std::ranges::sort(files);
   return files;
@@ -82,19 +77,19 @@ TEST(StudyVerbTest, WritesWhatItSaysAndTheSameBytesWhateverTheNumberOfJobs) {
   EXPECT_THAT(second.out, testing::EndsWith(two + "/conflict.html\n" + two + "/conflict.md\n"));
   for (const auto& [name, content] : Files(two)) EXPECT_THAT(second.out, HasSubstr(name + "\n"));
   // AND the table has every detector in two fog models, five visibilities and four noises
-  const std::map<std::string, int> detectors = CountByMeasure(Content(one + "/conflict.csv"));
+  const std::map<std::string, int> detectors = CountByMeasure(ReadText(one + "/conflict.csv"));
   for (const conflict::ConflictMeasureRow& row : conflict::ConflictMeasures()) {
     EXPECT_TRUE(detectors.contains(std::string(row.name))) << row.name;
   }
   EXPECT_TRUE(detectors.contains("nis + window + sign"));
   for (const auto& [detector, rows] : detectors) EXPECT_EQ(rows, 2 * 5 * 4) << detector;
-  EXPECT_THAT(Content(one + "/conflict.md"), HasSubstr(said["studies"][0]["answer"]));
+  EXPECT_THAT(ReadText(one + "/conflict.md"), HasSubstr(said["studies"][0]["answer"]));
 }
 
 TEST(StudyVerbTest, DelaysAreFromFogToAlarmAndNoMeasureOfARun) {
   const ScratchFolder folder;
   ASSERT_EQ(Study({"conflict", "--seeds", "1", "--out", folder.path()}).code, 0);
-  const std::string page = Content(folder.File("conflict.html"));
+  const std::string page = ReadText(folder.File("conflict.html"));
   EXPECT_THAT(page, HasSubstr("<th scope=\"col\">fog to alarm (s)</th>"));
   EXPECT_THAT(page, HasSubstr("It is not deception_to_alarm_s of a run"));
 }
@@ -103,7 +98,7 @@ TEST(StudyVerbTest, MakesEveryStudyOfOneSeedIntoOnePage) {
   const ScratchFolder folder;
   const Outcome all = Study({"all", "--seeds", "7", "--out", folder.path(), "--json"});
   ASSERT_EQ(all.code, 0) << all.err;
-  const std::string page = Content(folder.File("studies.html"));
+  const std::string page = ReadText(folder.File("studies.html"));
   EXPECT_THAT(page, StartsWith("<!DOCTYPE html>"));
   const nlohmann::json said = nlohmann::json::parse(all.out);
   EXPECT_EQ(said["studies"].size(), 9U);
@@ -132,7 +127,7 @@ TEST(StudyVerbTest, EveryCarOfTheVehicleStudyDrivesInAWayOfItsOwn) {
   const ScratchFolder folder;
   const Outcome made = Study({"vehicle", "--seeds", "1:2", "--out", folder.path()});
   ASSERT_EQ(made.code, 0) << made.err;
-  const auto variants = ByVariantAndCase(Content(folder.File("vehicle.csv")));
+  const auto variants = ByVariantAndCase(ReadText(folder.File("vehicle.csv")));
   ASSERT_EQ(variants.size(), 3U);
   for (const auto& [variant, cases] : variants) {
     EXPECT_GT(cases.size(), 10U);
@@ -171,100 +166,6 @@ TEST(StudyVerbTest, AnswersInAtMostThreeSentencesWithoutNumbers) {
     EXPECT_TRUE(std::ranges::none_of(answer, [](unsigned char c) { return std::isdigit(c); }))
         << answer;
   }
-}
-
-TEST(StudyVerbTest, EveryFindingRestsOnClaimsOfItsStudies) {
-  const ScratchFolder folder;
-  const Outcome made = Study({"all", "--seeds", "1", "--out", folder.path(), "--json"});
-  ASSERT_EQ(made.code, 0) << made.err;
-  std::set<std::string> claims;
-  const nlohmann::json said = nlohmann::json::parse(made.out);
-  for (const auto& study : said["studies"]) {
-    for (const auto& claim : study["claims"]) {
-      claims.insert(study["name"].get<std::string>() + ": \"" + claim["says"].get<std::string>() +
-                    '"');
-    }
-  }
-  std::istringstream page(Content(SourceDirectory() / "docs/findings.md"));
-  int findings = 0;
-  int of_finding = 1;
-  for (std::string line; std::getline(page, line);) {
-    if (line.starts_with("## ") && std::isdigit(static_cast<unsigned char>(line[3]))) {
-      ++findings;
-      EXPECT_GE(std::exchange(of_finding, 0), 1) << "before " << line;
-    }
-    if (!line.starts_with("- ")) continue;
-    ++of_finding;
-    EXPECT_TRUE(claims.contains(line.substr(2))) << line;
-  }
-  EXPECT_EQ(findings, 10);
-}
-
-/// The paragraph of each finding that says in which parameter sets it holds, by the finding's
-/// number.
-std::map<std::string, std::string> SentencesOnSets(const std::string& findings) {
-  std::map<std::string, std::string> sentences;
-  std::istringstream page(findings);
-  std::string number;
-  bool goes_on = false;
-  for (std::string line; std::getline(page, line);) {
-    if (line.starts_with("## ")) number = line.substr(3, line.find('.') - 3);
-    const bool begins = line.starts_with("Holds in ") || line.starts_with("Does not hold in ") ||
-                        line.starts_with("Not examined");
-    goes_on = begins || (goes_on && !line.empty());
-    if (!goes_on) continue;
-    EXPECT_TRUE(!begins || !sentences.contains(number)) << line;
-    sentences[number] += (begins ? "" : " ") + line;
-  }
-  return sentences;
-}
-
-TEST(StudyVerbTest, EveryFindingSaysInWhichParameterSetsItHolds) {
-  const ScratchFolder folder;
-  const Outcome made = Study({"ensemble", "--seeds", "1", "--out", folder.path(), "--json"});
-  ASSERT_EQ(made.code, 0) << made.err;
-  const nlohmann::json studies = nlohmann::json::parse(made.out)["studies"];
-  std::map<std::string, std::string> said;
-  for (const auto& claim : studies[0]["claims"]) {
-    const std::string says = claim["says"];
-    const std::size_t sentence = says.find(' ', std::string("Finding ").size()) + 1;
-    const std::string number = says.substr(8, sentence - 9);
-    said[number] = says.substr(sentence);
-    said[number][0] = static_cast<char>(std::toupper(static_cast<unsigned char>(said[number][0])));
-  }
-  const std::string findings = Content(SourceDirectory() / "docs/findings.md");
-  for (const auto& [number, sentence] : SentencesOnSets(findings)) {
-    if (sentence.starts_with("Not examined")) {
-      EXPECT_FALSE(said.contains(number)) << sentence;
-      said[number] = sentence;
-    }
-    EXPECT_EQ(said[number], sentence) << "finding " << number;
-  }
-  EXPECT_EQ(SentencesOnSets(findings).size(), 10U);
-  EXPECT_EQ(said.size(), 10U);
-}
-
-TEST(StudyVerbTest, TheComparisonsOnParameterSetsAreThoseOfTheirFinding) {
-  const ScratchFolder folder;
-  ASSERT_EQ(Study({"ensemble", "--seeds", "1", "--out", folder.path()}).code, 0);
-  const std::string findings = Content(SourceDirectory() / "docs/findings.md");
-  std::istringstream csv(Content(folder.File("ensemble.csv")));
-  std::string line;
-  std::getline(csv, line);
-  int rows = 0;
-  for (; std::getline(csv, line); ++rows) {
-    // A row begins: 3,policy,"With a false echo ..."
-    const std::size_t one = line.find(',');
-    const std::size_t two = line.find(',', one + 1);
-    const std::string claim = "\n- " + line.substr(one + 1, two - one - 1) + ": " +
-                              line.substr(two + 1, line.find('"', two + 2) - two) + "\n";
-    const std::size_t begin = findings.find("\n## " + line.substr(0, one) + ". ");
-    const std::size_t end = findings.find("\n## ", begin + 1);
-    const std::size_t found = findings.find(claim, begin);
-    EXPECT_TRUE(found != findings.npos && found < end) << line;
-  }
-  EXPECT_GE(rows, 8 * 9);
-  EXPECT_EQ(rows % 8, 0) << "eight sets";
 }
 
 TEST(StudyVerbTest, TriesItsFolderBeforeItComputes) {

@@ -1,0 +1,35 @@
+// The claims of study `conflict` on the delays of two detectors, and these claims with other
+// parameters.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "tools/study/claim.h"
+#include "tools/study/study.h"
+
+namespace fogline::study {
+
+/// A claim that the delay of detector `a` differs from that of detector `b`.
+struct DelayStatement {
+  std::string_view says;  // without a capital letter at its beginning
+  std::string_view a;
+  std::string_view b;
+  Sign sign = Sign::kLess;
+  double margin = 0;              // s
+  bool is_by_definition = false;  // it follows from the formulas, so the runs only check the code
+};
+std::span<const DelayStatement> DelayStatements();
+
+/// The sentence of the claim. For another noise than the usual one, it begins with the noise.
+std::string SaysOf(const DelayStatement& statement, std::string_view noise);
+
+/// The statements that are not by definition, in bias fog with the usual noise, with `overrides` of
+/// paper.json. The thresholds and the means are those of RunDelays().
+/// @throws InputError, StudyStopped
+std::vector<Claim> RunDelayClaims(const StudyContext& context,
+                                  const std::vector<std::string>& overrides);
+
+}  // namespace fogline::study
