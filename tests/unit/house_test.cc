@@ -93,6 +93,7 @@ constexpr std::array kRooms = std::to_array<Room>({
     {"tools/web/server", "web", "HTTP and WebSockets; knows no runs"},
     {"tools/web", "web", "a program: the page of a run or a log"},
     {"tools/web/seat", "web", "one person at the page drives; the only client that is heard"},
+    {"tools/trials", "trials", "experiments with people: trials, questions, tables"},
     {"tools/fogline", "", "the verbs"},
     {"tools/benchmarks", "benchmarks", "a program that measures the others"},
 });

@@ -145,7 +145,7 @@ int Drive(DriveArguments& arguments) {
                           .steps = scenario.steps,
                           .result = runner::RunExperiment(scenario, options),
                           .resumed = std::nullopt};
-  seat.reset();  // restores the terminal
+  seat.reset();            // restores the terminal
   if (page) page->Runs();  // says it if the page has failed
   return cli::PrintOutcome(outcome, arguments.json, "drive");
 }

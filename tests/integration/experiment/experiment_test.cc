@@ -1,0 +1,346 @@
+// Whole experiments with the real programs: every trial is a run in real time.
+#include <gmock/gmock-matchers.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <csignal>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <optional>
+#include <regex>
+#include <set>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
+
+#include "tests/support/children.h"
+#include "tests/support/command.h"
+#include "tests/support/web_client.h"
+
+namespace fogline::test {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::SizeIs;
+
+constexpr int kParticipants = 4;
+// Enter, six scales of workload, one of sleepiness; the answers differ for each participant and
+// run.
+std::string AnswersOf(int participant, int run) {
+  std::string lines = "\n";
+  for (int scale = 0; scale < 6; ++scale) {
+    lines += fmt::format("{}\n", 5 * (participant + run + scale));
+  }
+  return lines + fmt::format("{}\n", participant + run);
+}
+
+/// Waits until a file contains a text. @return false after 20 s
+bool ComesToHave(const std::string& text, const std::filesystem::path& file) {
+  for (const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+       std::chrono::steady_clock::now() < end; std::this_thread::sleep_for(kLookEvery)) {
+    if (Content(file).find(text) != std::string::npos) return true;
+  }
+  return false;
+}
+
+/// An experiment with four participants and three conditions. Each run has 80 steps of 0.1 s, at
+/// ten times real speed.
+class ExperimentRealtimeTest : public ::testing::Test {
+ protected:
+  ExperimentRealtimeTest() {
+    const std::string paper = (SourceDirectory() / "scenario/paper.json").string();
+    const auto condition = [&paper](const std::string& name, double threshold) {
+      return nlohmann::json{
+          {"name", name},
+          {"scenario", paper},
+          {"set", {"/steps=80", fmt::format("/arbitrator/threshold={}", threshold)}}};
+    };
+    const nlohmann::json plan{
+        {"version", 1},
+        {"title", "Test"},
+        {"participants", kParticipants},
+        {"seeds", "trial"},
+        {"speed", 10},
+        {"conditions", {condition("low", 0.2), condition("mid", 0.5), condition("high", 0.8)}},
+        {"breaks", {{{"after_trial", 1}, {"at_least_s", 0.1}}}},
+        {"questionnaires",
+         {{{"name", "tlx"}, {"kind", "nasa_tlx"}}, {{"name", "kss"}, {"kind", "kss"}}}}};
+    std::ofstream(file_) << plan.dump(2);
+  }
+
+  /// A shell command that makes the trials of a participant from run `first` on, with its answers.
+  std::vector<std::string> Session(int participant, int first = 1) const {
+    const std::string input = folder_.File(fmt::format("answers-{}-{}.txt", participant, first));
+    std::ofstream answers(input);
+    for (int run = first; run <= 3; ++run) answers << AnswersOf(participant, run);
+    return {"sh", "-c",
+            fmt::format("exec {} experiment run {} --results {} --participant {} --no-page < {}",
+                        Program("fogline"), file_, results_, participant, input)};
+  }
+
+  Outcome Experiment(const std::string& action, const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> command{Program("fogline"), "experiment", action, file_,
+                                     "--results",        results_};
+    command.insert(command.end(), more.begin(), more.end());
+    return RunCommand(command);
+  }
+
+  /// The rows of trials.csv, by the names of the columns.
+  std::vector<std::map<std::string, std::string>> ExportedTrials() const {
+    const std::string out = folder_.File("tables");
+    const Outcome outcome = Experiment("export", {"--out", out, "--force"});
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    std::istringstream lines(Content(out + "/trials.csv"));
+    std::vector<std::vector<std::string>> table;
+    for (std::string line; std::getline(lines, line);) {
+      auto& row = table.emplace_back();
+      std::istringstream cells(line + ",");
+      for (std::string cell; std::getline(cells, cell, ',');) row.push_back(cell);
+    }
+    std::vector<std::map<std::string, std::string>> rows;
+    for (std::size_t i = 1; i < table.size(); ++i) {
+      EXPECT_EQ(table[i].size(), table[0].size()) << "row " << i;
+      auto& row = rows.emplace_back();
+      for (std::size_t k = 0; k < table[i].size(); ++k) row[table[0][k]] = table[i][k];
+    }
+    return rows;
+  }
+
+  ScratchFolder folder_;
+  std::string file_ = folder_.File("experiment.json");
+  std::string results_ = folder_.File("results");
+};
+
+TEST_F(ExperimentRealtimeTest, ASessionThatIsKilledInARunLosesNothing) {
+  ASSERT_EQ(RunCommand(Session(1)).code, 0);
+  {
+    // Participant 2: the second run is killed while it is under way.
+    Background session(Session(2));
+    const std::string log = results_ + "/participant-02/trial-2-high.lcm";
+    // The recorder itself has written the begin of the trial: nobody adds it to this log later.
+    ASSERT_TRUE(ComesToHave("TRIAL", log)) << session.Err();
+    session.Signal(SIGKILL);
+    session.Wait();
+  }
+  const std::string first = Content(results_ + "/participant-02/trial-1-mid.lcm");
+  const std::string broken = Content(results_ + "/participant-02/trial-2-high.lcm");
+  const Outcome status = Experiment("status");
+  EXPECT_EQ(status.code, 1);
+  EXPECT_THAT(status.out, HasSubstr("broken"));
+  EXPECT_THAT(status.out, HasSubstr("4 of 12 trials"));
+
+  // The same command goes on at the run that broke off.
+  const Outcome resumed = RunCommand(Session(2, 2));
+  ASSERT_EQ(resumed.code, 0) << resumed.err << resumed.out;
+  EXPECT_EQ(Content(results_ + "/participant-02/trial-1-mid.lcm"), first);
+  EXPECT_EQ(Content(results_ + "/participant-02/trial-2-high.lcm"), broken);
+  EXPECT_THAT(Content(results_ + "/participant-02/trial-2-high-attempt-2.lcm"),
+              SizeIs(::testing::Gt(0U)));
+  for (int participant = 3; participant <= kParticipants; ++participant) {
+    const Outcome session = RunCommand(Session(participant));
+    ASSERT_EQ(session.code, 0) << session.err;
+  }
+  EXPECT_EQ(Experiment("status").code, 0);
+
+  const auto rows = ExportedTrials();
+  ASSERT_THAT(rows, SizeIs(12));
+  std::map<int, std::set<std::string>> by_participant;
+  std::map<int, std::set<std::string>> by_place;
+  std::set<std::string> seeds;
+  for (const auto& row : rows) {
+    const int participant = std::stoi(row.at("participant"));
+    const int trial = std::stoi(row.at("trial"));
+    by_participant[participant].insert(row.at("condition"));
+    if (participant <= 3) by_place[trial].insert(row.at("condition"));
+    seeds.insert(row.at("seed"));
+    EXPECT_EQ(row.at("state"), "done");
+    EXPECT_EQ(row.at("tlx.mental_demand"), std::to_string(5 * (participant + trial)));
+    EXPECT_EQ(row.at("tlx.frustration"), std::to_string(5 * (participant + trial + 5)));
+    EXPECT_EQ(row.at("kss.sleepiness"), std::to_string(participant + trial));
+    EXPECT_NEAR(std::stod(row.at("duration_s")), 7.9, 1e-9);
+    EXPECT_EQ(row.at("attempt"), participant == 2 && trial == 2 ? "2" : "1");
+  }
+  // Each participant drives each condition once. The first three participants are a Latin square:
+  // each condition is once at each place.
+  ASSERT_THAT(by_participant, SizeIs(4));
+  for (const auto& [participant, conditions] : by_participant) EXPECT_THAT(conditions, SizeIs(3));
+  for (const auto& [place, conditions] : by_place) EXPECT_THAT(conditions, SizeIs(3));
+  EXPECT_THAT(seeds, SizeIs(12));
+}
+
+/// A session whose pages this test opens.
+class PageSession {
+ public:
+  explicit PageSession(const std::vector<std::string>& command) : session_(command) {
+    if (!session_.WaitForOut("#token=")) throw std::runtime_error(session_.Err());
+    static const std::regex lines(
+        "participant: http://127.0.0.1:(\\d+)/\n"
+        "experimenter: http://127.0.0.1:(\\d+)/#token=([0-9a-f]{32})\n");
+    std::smatch parts;
+    const std::string out = session_.Out();
+    if (!std::regex_search(out, parts, lines)) throw std::runtime_error(out);
+    participant_port_ = static_cast<std::uint16_t>(std::stoi(parts[1]));
+    experimenter_port_ = static_cast<std::uint16_t>(std::stoi(parts[2]));
+    token_ = parts[3];
+    participant_.emplace(participant_port_, WebClient::Options{.protocol = ""});
+    experimenter_.emplace(experimenter_port_,
+                          WebClient::Options{.target = "/ws?token=" + token_, .protocol = ""});
+  }
+
+  /// Makes all trials: begins each run, sets a marker in it, and answers each question.
+  /// @param kill_in the run in which fogline-web is killed; 0: none
+  void Go(int participant, int kill_in = 0) {
+    for (std::int64_t answered = -1;;) {
+      const auto state = nlohmann::json::parse(participant_->Receive().bytes);
+      if (state["state"] == answered) continue;
+      answered = state["state"];
+      const int run = state["run"];
+      if (state["stage"] == "waiting" && state["wait_s"] == 0) participant_->Send(Begin(answered));
+      if (state["stage"] == "driving") {
+        experimenter_->Send(
+            nlohmann::json{{"op", "marker"}, {"text", fmt::format("note {}", run)}}.dump());
+        if (run == kill_in) KillView();
+      }
+      if (state["stage"] == "asking") participant_->Send(Answers(state, participant, run));
+      if (state["stage"] == "finished") return;
+    }
+  }
+
+  Background& process() { return session_; }
+  std::uint16_t participant_port() const { return participant_port_; }
+  std::uint16_t experimenter_port() const { return experimenter_port_; }
+
+ private:
+  static std::string Begin(std::int64_t state) {
+    return nlohmann::json{{"op", "begin"}, {"state", state}}.dump();
+  }
+  static std::string Answers(const nlohmann::json& state, int participant, int run) {
+    nlohmann::json values = nlohmann::json::array();
+    const bool is_tlx = state["items"].size() == 6;
+    for (std::size_t i = 0; i < state["items"].size(); ++i) {
+      const int value = participant + run + static_cast<int>(i);
+      values.push_back(std::to_string(is_tlx ? 5 * value : value));
+    }
+    return nlohmann::json{{"op", "answers"}, {"state", state["state"]}, {"values", values}}.dump();
+  }
+  /// Kills the fogline-web of this session.
+  void KillView() const {
+    for (const pid_t child : ChildrenOf(session_.pid())) {
+      const std::string name = Content("/proc/" + std::to_string(child) + "/comm");
+      if (name == "fogline-web\n") SignalOne(child, SIGKILL);
+    }
+  }
+
+  Background session_;
+  std::uint16_t participant_port_ = 0;
+  std::uint16_t experimenter_port_ = 0;
+  std::string token_;
+  std::optional<WebClient> participant_;
+  std::optional<WebClient> experimenter_;
+};
+
+TEST_F(ExperimentRealtimeTest, AKillOfFoglineWebInARunLosesNothingOfAnExperimentInPages) {
+  for (int participant = 1; participant <= kParticipants; ++participant) {
+    PageSession session({Program("fogline"), "experiment", "run", file_, "--results", results_,
+                         "--participant", std::to_string(participant)});
+    session.Go(participant, participant == 2 ? 2 : 0);
+    EXPECT_EQ(session.process().Wait(), 0) << session.process().Err();
+    const bool was_killed =
+        session.process().Err().find("fogline-web was killed") != std::string::npos ||
+        session.process().Err().find("it is started again") != std::string::npos;
+    EXPECT_EQ(was_killed, participant == 2) << session.process().Err();
+  }
+  EXPECT_EQ(Experiment("status").code, 0);
+  const auto rows = ExportedTrials();
+  ASSERT_THAT(rows, SizeIs(12));
+  for (const auto& row : rows) {
+    const int sum = std::stoi(row.at("participant")) + std::stoi(row.at("trial"));
+    EXPECT_EQ(row.at("state"), "done");
+    EXPECT_EQ(row.at("attempt"), "1");
+    EXPECT_EQ(row.at("markers"), "1");
+    EXPECT_EQ(row.at("tlx.effort"), std::to_string(5 * (sum + 4)));
+    EXPECT_EQ(row.at("kss.sleepiness"), std::to_string(sum));
+  }
+  EXPECT_THAT(Content(folder_.File("tables") + "/values.csv"),
+              HasSubstr(",marker,marker,note 2,,"));
+}
+
+TEST_F(ExperimentRealtimeTest, ThePagesShowOnlyWhatIsMeantForThem) {
+  PageSession session({Program("fogline"), "experiment", "run", file_, "--results", results_,
+                       "--participant", "1"});
+  // The experimenter's page needs the token, and neither server has the files of the other page.
+  EXPECT_THROW(WebClient(session.experimenter_port(), {.protocol = ""}), WebRefused);
+  const auto status = [](std::uint16_t port, const std::string& target) {
+    return StatusOf(Exchange(port, GetRequest(port, target)));
+  };
+  EXPECT_EQ(status(session.participant_port(), "/"), 200);
+  EXPECT_EQ(status(session.participant_port(), "/participant.js"), 200);
+  EXPECT_EQ(status(session.participant_port(), "/experimenter.js"), 404);
+  EXPECT_EQ(status(session.experimenter_port(), "/experimenter.js"), 200);
+  EXPECT_EQ(status(session.experimenter_port(), "/participant.js"), 404);
+  WebClient participant(session.participant_port(), {.protocol = ""});
+  const std::string state = participant.Receive().bytes;
+  EXPECT_THAT(state, HasSubstr("waiting"));
+  EXPECT_THAT(state, ::testing::Not(HasSubstr("low")));
+  session.process().Signal(SIGINT);
+  EXPECT_EQ(session.process().Wait(), 130);
+}
+
+TEST_F(ExperimentRealtimeTest, AnswersThatAreMissingAreAskedWithoutAnotherRun) {
+  // The answers end after the first questionnaire of run 1.
+  const std::string input = folder_.File("short.txt");
+  std::ofstream(input) << "\n10\n20\n30\n40\n50\n60\n";
+  const Outcome cut = RunCommand(
+      {"sh", "-c",
+       fmt::format("exec {} experiment run {} --results {} --participant 1 --no-page < {}",
+                   Program("fogline"), file_, results_, input)});
+  EXPECT_EQ(cut.code, 3);
+  EXPECT_THAT(cut.err, HasSubstr("the same command goes on from here"));
+  const Outcome status = Experiment("status");
+  EXPECT_THAT(status.out, HasSubstr("to_ask"));
+  // The sleepiness of run 1 comes first, and then runs 2 and 3.
+  std::ofstream(input) << "7\n" << AnswersOf(1, 2) << AnswersOf(1, 3);
+  const Outcome resumed = RunCommand(
+      {"sh", "-c",
+       fmt::format("exec {} experiment run {} --results {} --participant 1 --no-page < {}",
+                   Program("fogline"), file_, results_, input)});
+  ASSERT_EQ(resumed.code, 0) << resumed.err << resumed.out;
+  EXPECT_THAT(resumed.out, HasSubstr("2 runs now"));
+  const Outcome exported = Experiment("export", {"--out", folder_.File("tables")});
+  EXPECT_EQ(exported.code, 1);  // the others have not begun
+  const std::string values = Content(folder_.File("tables") + "/values.csv");
+  EXPECT_THAT(values, AllOf(HasSubstr("1,1,0,low,answer,tlx.mental_demand,10,,\n"),
+                            HasSubstr("1,1,0,low,answer,kss.sleepiness,7,,\n"),
+                            HasSubstr("metric,min_host_gap_m,")));
+}
+
+TEST_F(ExperimentRealtimeTest, TheLogOfATrialTellsItsStory) {
+  ASSERT_EQ(RunCommand(Session(1)).code, 0);
+  const std::string log = results_ + "/participant-01/trial-1-low.lcm";
+  const Outcome exported =
+      RunCommand({Program("fogline"), "export", log, "--out", folder_.File("csv")});
+  EXPECT_EQ(exported.code, 0) << exported.err;
+  const Outcome metrics = RunCommand({Program("fogline"), "metrics", log});
+  EXPECT_EQ(metrics.code, 0) << metrics.err;
+  EXPECT_THAT(Content(log), AllOf(HasSubstr("TRIAL"), HasSubstr("mental_demand")));
+}
+
+TEST_F(ExperimentRealtimeTest, WrongArgumentsAreRefused) {
+  const Outcome none = Experiment("run", {"--participant", "5"});
+  EXPECT_EQ(none.code, 2);
+  EXPECT_THAT(none.err, HasSubstr("the experiment has participants 1 to 4"));
+  const Outcome direct = Experiment("run", {"--participant", "1", "--transport", "direct"});
+  EXPECT_EQ(direct.code, 2);
+  EXPECT_THAT(direct.err, HasSubstr("a trial is in real time"));
+}
+
+}  // namespace
+}  // namespace fogline::test

@@ -1,0 +1,111 @@
+#include "tools/trials/desk/page_state.h"
+
+#include <gmock/gmock-matchers.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+namespace fogline::trials {
+namespace {
+
+using nlohmann::json;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using ::testing::SizeIs;
+
+Next NextRun() {
+  return {.trial = {.participant = 3, .practice = false, .number = 2, .index = 0},
+          .of = 3,
+          .not_before_s = 0,
+          .for_experimenter = "secret-condition, seed 4711"};
+}
+
+QuestionnaireSection Questions() {
+  QuestionnaireSection questionnaire;
+  questionnaire.name = "secret-name";
+  questionnaire.kind = QuestionnaireKind::kKss;
+  return WithItems(questionnaire);
+}
+
+TEST(PageStateTest, TheParticipantSeesNothingOfConditionSeedOrView) {
+  PageState state(1);
+  const auto expect_silence = [&state] {
+    for (const char* secret : {"secret", "4711", "7690", "marker"}) {
+      EXPECT_THAT(state.ForParticipant(), Not(HasSubstr(secret)));
+    }
+  };
+  state.Wait(NextRun(), 30);
+  expect_silence();
+  EXPECT_THAT(state.ForExperimenter(), HasSubstr("secret-condition, seed 4711"));
+  state.Drive("http://127.0.0.1:7690/");
+  state.Tell("marker: yawns");
+  expect_silence();
+  EXPECT_THAT(state.ForExperimenter(), HasSubstr("7690"));
+  state.Ask(Questions());
+  expect_silence();
+  EXPECT_THAT(json::parse(state.ForParticipant())["items"], SizeIs(1));
+  state.Finish();
+  expect_silence();
+}
+
+TEST(PageStateTest, AnAnswerFitsItsState) {
+  PageState state(10);
+  std::string why;
+  state.Wait(NextRun(), 0);
+  EXPECT_TRUE(state.FromParticipant(R"({"op":"begin","state":11})", why));
+  EXPECT_FALSE(state.FromParticipant(R"({"op":"begin","state":10})", why));
+  EXPECT_FALSE(state.FromParticipant(R"({"op":"answers","state":11,"values":[]})", why));
+  state.Ask(Questions());
+  EXPECT_FALSE(state.FromParticipant(R"({"op":"begin","state":12})", why));
+  const auto message = state.FromParticipant(R"({"op":"answers","state":12,"values":["7"]})", why);
+  ASSERT_TRUE(message);
+  EXPECT_EQ(message->answers[0].value, 7);
+  EXPECT_FALSE(state.FromParticipant(R"({"op":"answers","state":12,"values":["10"]})", why));
+  EXPECT_EQ(why, "sleepiness needs a number from 1 to 9 in steps of 1");
+}
+
+TEST(PageStateTest, NobodyBeginsInABreak) {
+  PageState state(1);
+  std::string why;
+  state.Wait(NextRun(), 30);
+  EXPECT_FALSE(state.FromParticipant(R"({"op":"begin","state":2})", why));
+  EXPECT_EQ(why, "the break is not over");
+  EXPECT_FALSE(state.FromExperimenter(R"({"op":"begin","state":2})", why));
+  state.Wait(NextRun(), 0);
+  EXPECT_TRUE(state.FromParticipant(R"({"op":"begin","state":3})", why));
+  EXPECT_TRUE(state.FromExperimenter(R"({"op":"begin","state":3})", why));
+}
+
+TEST(PageStateTest, FramesThatAreNoAnswersAreRefused) {
+  PageState state(10);
+  state.Ask(Questions());
+  for (const char* frame :
+       {"", "x", "[]", "null", "7", R"({"op":"answers"})", R"({"op":7,"state":11})",
+        R"({"op":"answers","state":"11","values":["7"]})",
+        R"({"op":"answers","state":11,"values":[7]})",
+        R"({"op":"answers","state":11,"values":["7","7"]})",
+        R"({"op":"answers","state":11,"values":{"a":"7"}})"}) {
+    std::string why;
+    EXPECT_FALSE(state.FromParticipant(frame, why)) << frame;
+    EXPECT_NE(why, "") << frame;
+    EXPECT_FALSE(state.FromExperimenter(frame, why)) << frame;
+  }
+}
+
+TEST(PageStateTest, MarkersAreTakenDuringARunOnly) {
+  PageState state(1);
+  std::string why;
+  constexpr const char* kMarker = R"({"op":"marker","text":"yawns"})";
+  EXPECT_FALSE(state.FromExperimenter(kMarker, why));
+  state.Drive("");
+  EXPECT_EQ(state.FromExperimenter(kMarker, why)->text, "yawns");
+  EXPECT_FALSE(state.FromParticipant(kMarker, why));
+  EXPECT_FALSE(state.FromExperimenter(R"({"op":"marker","text":""})", why));
+  EXPECT_FALSE(state.FromExperimenter(R"({"op":"marker","text":"a\nb"})", why));
+  const std::string longest(500, 'x');
+  EXPECT_TRUE(state.FromExperimenter(R"({"op":"marker","text":")" + longest + "\"}", why));
+  EXPECT_FALSE(state.FromExperimenter(R"({"op":"marker","text":")" + longest + "x\"}", why));
+}
+
+}  // namespace
+}  // namespace fogline::trials

@@ -1,0 +1,90 @@
+#include "tools/trials/plan_file.h"
+
+#include <gmock/gmock-matchers.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <iterator>
+#include <string>
+
+#include "tests/support/command.h"
+
+namespace fogline::trials {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::SizeIs;
+using ::testing::StartsWith;
+
+/// The message for a file in which this text replaces `"participants": 2`.
+std::string Refusal(const std::string& member) {
+  const std::string text =
+      R"({"version": 1, )" + member + R"(, "conditions": [{"name": "a", "scenario": "a.json"}]})";
+  try {
+    ParsePlan(text, "e.json");
+  } catch (const ScenarioError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(PlanFileTest, TheShippedExampleIsGood) {
+  const PlanFile file = LoadPlan(test::SourceDirectory() / "scenario/experiment/thresholds.json");
+  EXPECT_THAT(file.plan.conditions, SizeIs(3));
+  EXPECT_THAT(file.hash, SizeIs(64));
+  EXPECT_EQ(LoadCondition(file, file.plan.conditions[0]).arbitrator.threshold, 0.2);
+}
+
+TEST(PlanFileTest, TheShippedSchemaIsTheOneOfTheFields) {
+  EXPECT_EQ(test::Content(test::SourceDirectory() / "scenario/experiment/experiment.schema.json"),
+            ExperimentSchema());
+}
+
+TEST(PlanFileTest, AMistakeIsNamedWithFileFieldAndValue) {
+  EXPECT_THAT(Refusal(R"("participants": 0)"),
+              StartsWith("e.json:1:32: error: /participants: 0 is outside [1, 9999]"));
+  EXPECT_THAT(Refusal(R"("paticipants": 3)"),
+              HasSubstr("/paticipants: unknown key; did you mean \"participants\"?"));
+  EXPECT_THAT(Refusal(R"("order": "latin")"), HasSubstr("/order: \"latin\" is not one of"));
+  EXPECT_THAT(Refusal(R"("practice": [{"name": "A b", "scenario": "a.json"}])"),
+              HasSubstr("/practice/0/name: \"A b\" is no name"));
+  EXPECT_THAT(Refusal(R"("practice": [{"name": "p"}])"),
+              HasSubstr("/practice/0/scenario: a scenario file is needed"));
+  EXPECT_THAT(Refusal(R"("practice": [{"name": "p", "scenario": "a.json", "set": [1]}])"),
+              HasSubstr("/practice/0/set/0: must be"));
+  EXPECT_THAT(Refusal(R"("breaks": [{"after_trial": 1}])"),
+              HasSubstr("/breaks/0/after_trial: no trial comes after trial 1"));
+  EXPECT_THAT(Refusal(R"("questionnaires": [{"name": "q", "kind": "own"}])"),
+              HasSubstr("/questionnaires/0/items: kind \"own\" needs items"));
+  EXPECT_THAT(Refusal(R"("questionnaires": [{"name": "q", "items": [
+                  {"name": "i", "text": "?", "min": 0, "max": 10, "step": 3}]}])"),
+              HasSubstr("/items/0/step: 3 does not divide the scale from 0 to 10"));
+  EXPECT_THAT(Refusal(R"("questionnaires": [{"name": "q", "kind": "kss"},
+                                            {"name": "q", "kind": "kss"}])"),
+              HasSubstr("/questionnaires/1/name: \"q\" is the name of two"));
+  EXPECT_THAT(Refusal(R"("participants": "x")"), HasSubstr("fogline experiment check --schema"));
+}
+
+TEST(PlanFileTest, AFileWithoutConditionsIsRefused) {
+  EXPECT_THROW(ParsePlan(R"({"version": 1})"), ScenarioError);
+  EXPECT_THROW(ParsePlan(R"({"version": 1, "conditions": []})"), ScenarioError);
+  EXPECT_THROW(ParsePlan("[]"), ScenarioError);
+}
+
+TEST(PlanFileTest, AConditionThatCannotBeRunIsNamed) {
+  const test::ScratchFolder folder;
+  const std::string paper = (test::SourceDirectory() / "scenario/paper.json").string();
+  std::ofstream(folder.File("e.json"))
+      << R"({"version": 1, "conditions": [{"name": "wild", "scenario": ")" << paper
+      << R"(", "set": ["/arbitrator/threshold=7"]}]})";
+  try {
+    LoadPlan(folder.File("e.json"));
+    FAIL() << "accepted";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("e.json: error: condition \"wild\": "));
+    EXPECT_THAT(error.what(), HasSubstr("/arbitrator/threshold: 7 is outside [0, 1]"));
+  }
+}
+
+}  // namespace
+}  // namespace fogline::trials

@@ -1,0 +1,72 @@
+#include "tools/trials/results.h"
+
+#include <gmock/gmock-matchers.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <string>
+
+#include "common/errors.h"
+#include "tests/support/command.h"
+
+namespace fogline::trials {
+namespace {
+
+using ::testing::HasSubstr;
+
+PlanFile Plan() {
+  PlanFile file{.file = "e.json", .text = "{}\n", .hash = "", .plan = {}};
+  file.plan.conditions.resize(1);
+  file.plan.conditions[0].name = "fog";
+  return file;
+}
+
+TEST(ResultsTest, EachAttemptHasALogOfItsOwn) {
+  const test::ScratchFolder folder;
+  const PlanFile plan = Plan();
+  const Results results(plan, folder.path() / "r");
+  const Trial trial{.participant = 3, .practice = false, .number = 2, .index = 0};
+  EXPECT_EQ(results.LogOf(trial, 1), folder.path() / "r/participant-03/trial-2-fog.lcm");
+  EXPECT_EQ(results.LogOf(trial, 2), folder.path() / "r/participant-03/trial-2-fog-attempt-2.lcm");
+}
+
+TEST(ResultsTest, TheNewestAttemptCounts) {
+  const test::ScratchFolder folder;
+  const PlanFile plan = Plan();
+  const Results results(plan, folder.path() / "r");
+  const Trial trial{.participant = 1, .practice = false, .number = 1, .index = 0};
+  EXPECT_EQ(results.Read(trial).story.state, TrialState::kOpen);
+  std::filesystem::create_directories(results.FolderOf(1));
+  std::ofstream(results.LogOf(trial, 1)) << "";
+  std::ofstream(results.LogOf(trial, 2)) << "";
+  const TrialRecord record = results.Read(trial);
+  EXPECT_EQ(record.attempts, 2);
+  EXPECT_EQ(record.log, results.LogOf(trial, 2));
+  EXPECT_EQ(record.story.state, TrialState::kBroken);
+}
+
+TEST(ResultsTest, AFolderBelongsToOneVersionOfAnExperiment) {
+  const test::ScratchFolder folder;
+  PlanFile plan = Plan();
+  const Results results(plan, folder.path() / "r");
+  results.Create();
+  EXPECT_NO_THROW(Results(plan, folder.path() / "r"));
+  PlanFile other = Plan();
+  other.text = "{ }\n";
+  try {
+    Results(other, folder.path() / "r");
+    FAIL() << "accepted";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("another version of e.json"));
+  }
+}
+
+TEST(ResultsTest, AFolderWithOtherFilesIsRefused) {
+  const test::ScratchFolder folder;
+  std::ofstream(folder.File("thesis.txt")) << "text";
+  const PlanFile plan = Plan();
+  EXPECT_THROW(Results(plan, folder.path()), InputError);
+}
+
+}  // namespace
+}  // namespace fogline::trials

@@ -1,0 +1,47 @@
+// How a session talks to the people: in a terminal, or in pages of a browser.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/interrupt.h"
+#include "scenario/sections/experiment.h"
+#include "tools/trials/questionnaires.h"
+#include "tools/trials/schedule.h"
+#include "tools/trials/speaker.h"
+
+namespace fogline::trials {
+
+/// What a participant may know of a trial: no condition, no threshold.
+struct Next {
+  Trial trial;
+  std::int64_t of = 1;           // number of trials, or of practice runs
+  double not_before_s = 0;       // a break: least time until the run begins
+  std::string for_experimenter;  // the condition and its seed; never shown to the participant
+};
+
+/// @throws Interrupted after a signal that asks this process to end
+inline void ThrowIfInterrupted() {
+  if (WasInterrupted()) throw Interrupted("interrupted; the same command goes on from here");
+}
+
+class Desk {
+ public:
+  virtual ~Desk() = default;
+
+  /// Returns when the run may begin.
+  /// @throws Interrupted; std::runtime_error if nobody can answer any more
+  virtual void WaitForBegin(const Next& next) = 0;
+  /// The run has a network, and begins. The speaker takes markers until RunEnded().
+  virtual void RunBegins(const std::string& url, Speaker& speaker) = 0;
+  /// Called again and again from the first step of the log on.
+  virtual void RunGoesOn() = 0;
+  /// Also called if the run breaks off.
+  virtual void RunEnded() = 0;
+  /// The answers to all items, in their order. @throws as WaitForBegin()
+  virtual std::vector<Answer> Ask(const QuestionnaireSection& questionnaire) = 0;
+  /// The participant has made all trials.
+  virtual void Finish() = 0;
+};
+
+}  // namespace fogline::trials

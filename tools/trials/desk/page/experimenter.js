@@ -1,0 +1,39 @@
+// The experimenter's page: condition, what has happened, and markers.
+import {connect, showProblem, titleOf} from "./link.js";
+
+const byId = (id) => document.getElementById(id);
+const WORDS = {
+  starting: "The session starts.",
+  waiting: "The participant can begin.",
+  driving: "The run is under way.",
+  asking: "The participant answers questions.",
+  finished: "All runs are done.",
+};
+let last = {};
+
+const send = connect(show, () => showProblem("The connection is broken. It comes back by itself."));
+
+byId("begin").onclick = () => send({op: "begin", state: last.state});
+byId("marker").onsubmit = (event) => {
+  event.preventDefault();
+  const input = byId("marker-text");
+  if (send({op: "marker", text: input.value.trim()})) input.value = "";
+};
+
+function show(state) {
+  last = state;
+  showProblem(state.refused ?? "");
+  byId("title").textContent = `Participant ${state.participant}, ${titleOf(state)}`;
+  const words = state.wait_s > 0 ? "The participant has a break." : WORDS[state.stage];
+  byId("words").textContent = `${state.condition}. ${words}`;
+  byId("begin").hidden = state.stage !== "waiting" || state.wait_s > 0;
+  byId("marker").hidden = state.stage !== "driving";
+  const view = byId("view");
+  view.hidden = state.view === "";
+  if (state.view !== "") view.href = state.view;
+  byId("lines").replaceChildren(...state.lines.map((line) => {
+    const row = document.createElement("li");
+    row.textContent = line;
+    return row;
+  }));
+}

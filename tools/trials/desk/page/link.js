@@ -1,0 +1,69 @@
+// The connection of a page to its session. It connects again when it breaks.
+
+const RETRY_MS = 500;
+
+/** Takes the token out of the address, where it would be seen, and keeps it for this tab. */
+function takeToken() {
+  const key = "fogline.trials.token";
+  const token = new URLSearchParams(location.hash.replace(/^#/, "")).get("token");
+  if (token) {
+    sessionStorage.setItem(key, token);
+    history.replaceState(null, "", location.pathname);
+  }
+  return sessionStorage.getItem(key) ?? "";
+}
+
+/**
+ * Calls onState with each state of the session, and onBroken when the connection breaks.
+ * @returns a function that sends an object, and returns whether it could
+ */
+export function connect(onState, onBroken) {
+  const token = takeToken();
+  let socket = null;
+  let over = false;
+  const open = () => {
+    const query = token ? `?token=${encodeURIComponent(token)}` : "";
+    socket = new WebSocket(`ws://${location.host}/ws${query}`);
+    socket.onmessage = (event) => {
+      const state = JSON.parse(event.data);
+      over = state.stage === "finished";
+      onState(state);
+    };
+    socket.onclose = () => {
+      if (over) return;
+      onBroken();
+      setTimeout(open, RETRY_MS);
+    };
+  };
+  open();
+  return (message) => {
+    if (socket.readyState !== WebSocket.OPEN) return false;
+    socket.send(JSON.stringify(message));
+    return true;
+  };
+}
+
+/** Shows or hides a message about a problem. */
+export function showProblem(text) {
+  const problem = document.getElementById("problem");
+  problem.textContent = text;
+  problem.hidden = text === "";
+}
+
+/** "Run 2 of 3" */
+export function titleOf(state) {
+  return `${state.practice ? "Practice run" : "Run"} ${state.run} of ${state.of}`;
+}
+
+/** Counts a wait down, and calls onTick with the whole seconds that are left; 0 at the end. */
+export function countDown(seconds, onTick) {
+  const end = performance.now() + 1000 * seconds;
+  const tick = () => {
+    const left = Math.max(0, Math.ceil((end - performance.now()) / 1000));
+    onTick(left);
+    if (left === 0) clearInterval(timer);
+  };
+  const timer = setInterval(tick, 200);
+  tick();
+  return () => clearInterval(timer);
+}

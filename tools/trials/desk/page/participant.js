@@ -1,0 +1,77 @@
+// The participant's page: the next run, and the questions after it.
+import {connect, countDown, showProblem, titleOf} from "./link.js";
+
+const byId = (id) => document.getElementById(id);
+let shown = -1;  // number of the state that the page shows
+let stopCount = () => {};
+
+const send = connect(show, () => showProblem("The connection is broken. It comes back by itself."));
+
+/** The element with these attributes and children. */
+function make(tag, attributes, ...children) {
+  const element = document.createElement(tag);
+  for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, value);
+  element.append(...children);
+  return element;
+}
+
+function scaleOf(item, index) {
+  const steps = Math.round((item.max - item.min) / item.step);
+  const marks = [];
+  for (let i = 0; i <= steps; ++i) {
+    // Rounded to the precision of the step, so that 0.1 + 0.2 is 0.3.
+    const value = String(Number((item.min + i * item.step).toPrecision(12)));
+    marks.push(make("label", {},
+      make("input", {type: "radio", name: `item-${index}`, value, required: ""}), value));
+  }
+  return [
+    make("div", {class: "scale"}, ...marks),
+    make("div", {class: "ends"}, make("span", {}, item.low), make("span", {}, item.high)),
+  ];
+}
+
+function questionOf(item, index) {
+  const answer = item.kind === "text"
+    ? [make("textarea", {name: `item-${index}`, rows: "3", maxlength: "120", "aria-label": item.text})]
+    : scaleOf(item, index);
+  return make("fieldset", {}, make("legend", {}, item.text), ...answer);
+}
+
+function showQuestions(state) {
+  const form = byId("questions");
+  form.replaceChildren(...state.items.map(questionOf), make("button", {type: "submit"}, "Next"));
+  form.onsubmit = (event) => {
+    event.preventDefault();
+    const data = new FormData(form);
+    const values = state.items.map((_, i) =>
+      String(data.get(`item-${i}`) ?? "").replace(/\s+/g, " ").trim());
+    if (!send({op: "answers", state: state.state, values})) {
+      showProblem("The connection is broken. Your answers stay here; please try again.");
+    }
+  };
+}
+
+function showWait(state) {
+  const button = byId("begin");
+  button.onclick = () => send({op: "begin", state: state.state});
+  stopCount = countDown(state.wait_s, (left) => {
+    button.disabled = state.wait_s > 0;
+    byId("words").textContent = state.wait_s > 0 ? `You have a break. It ends in ${left} s.`
+      : "Begin when you are ready.";
+  });
+}
+
+function show(state) {
+  showProblem(state.refused ?? "");
+  if (state.state === shown) return;
+  shown = state.state;
+  stopCount();
+  byId("title").textContent = state.stage === "finished" ? "That was the last run"
+    : state.stage === "starting" ? "Please wait" : titleOf(state);
+  byId("words").textContent = state.stage === "finished" ? "Thank you."
+    : state.stage === "driving" ? "The run is under way." : "";
+  byId("begin").hidden = state.stage !== "waiting";
+  byId("questions").hidden = state.stage !== "asking";
+  if (state.stage === "waiting") showWait(state);
+  if (state.stage === "asking") showQuestions(state);
+}

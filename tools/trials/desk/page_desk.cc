@@ -1,0 +1,278 @@
+#include "tools/trials/desk/page_desk.h"
+
+#include <algorithm>
+#include <condition_variable>
+#include <deque>
+#include <functional>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <stdexcept>
+#include <thread>
+#include <utility>
+
+#include <fmt/core.h>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/post.hpp>
+#include <nlohmann/json.hpp>
+
+#include "common/clock.h"
+#include "common/process/console.h"
+#include "tools/trials/desk/page_state.h"
+#include "tools/trials/desk/run_page.h"
+#include "tools/web/server/server.h"
+
+namespace fogline::web {
+/// The files of both pages; embed.cmake writes this function.
+std::span<const Asset> TrialAssets();
+}  // namespace fogline::web
+
+namespace fogline::trials {
+namespace {
+
+namespace asio = boost::asio;
+
+// Interval at which a wait looks whether Ctrl-C has come.
+constexpr Duration kWakeEvery = milliseconds(50);
+// All connections must be closed in this time at the end.
+constexpr milliseconds kEndLimit(600);
+
+/// The files of a page. Its main file is at "/", and the other page's files are not there.
+std::vector<web::Asset> FilesOf(std::string_view main, std::string_view script) {
+  std::vector<web::Asset> files;
+  for (web::Asset asset : web::TrialAssets()) {
+    if (asset.path == main) {
+      asset.path = "/index.html";
+      files.push_back(asset);
+    } else if (asset.path == script || asset.path == "/link.js" || asset.path == "/trials.css") {
+      files.push_back(asset);
+    }
+  }
+  return files;
+}
+
+/// The clients of one of the pages.
+class PageView final : public web::View {
+ public:
+  using Read = std::function<void(web::Client&, std::string_view)>;
+  explicit PageView(Read read) : read_(std::move(read)) {}
+
+  void Show(std::string state) {
+    state_ = std::move(state);
+    for (const auto& [id, client] : clients_) client->Send(web::TextFrame(state_));
+  }
+  void Opened(web::Client& client) override {
+    clients_[client.id()] = &client;
+    if (!state_.empty()) client.Send(web::TextFrame(state_));
+  }
+  void Received(web::Client& client, std::string_view bytes, bool binary) override {
+    if (!binary) read_(client, bytes);
+  }
+  void Idle(web::Client&) override {}
+  void Closed(web::Client& client) override { clients_.erase(client.id()); }
+  /// Tells a client why its frame was refused.
+  void Refuse(web::Client& client, const std::string& why) const {
+    nlohmann::ordered_json json = nlohmann::ordered_json::parse(state_);
+    json["refused"] = why;
+    client.Send(web::TextFrame(json.dump()));
+  }
+
+ private:
+  Read read_;
+  std::string state_;
+  std::map<std::uint64_t, web::Client*> clients_;
+};
+
+/// @throws std::runtime_error if the port is not free
+std::unique_ptr<web::Server> Listen(asio::io_context& context, std::uint16_t port,
+                                    std::string token, std::span<const web::Asset> files,
+                                    web::View& view) {
+  try {
+    return std::make_unique<web::Server>(
+        context, web::ServerOptions{.port = port, .token = std::move(token), .origins = {}}, files,
+        view);
+  } catch (const boost::system::system_error& error) {
+    throw std::runtime_error(
+        fmt::format("cannot listen on port {}: {}", port, error.code().message()));
+  }
+}
+
+}  // namespace
+
+/// Both servers in a thread of their own. The session's thread waits for what they receive.
+class PageDesk::Pages {
+ public:
+  explicit Pages(const PageOptions& options)
+      : participant_view_([this](web::Client& client, std::string_view frame) {
+          Take(client, participant_view_, &PageState::FromParticipant, frame);
+        }),
+        experimenter_view_([this](web::Client& client, std::string_view frame) {
+          Take(client, experimenter_view_, &PageState::FromExperimenter, frame);
+        }),
+        participant_(
+            Listen(context_, options.participant_port, "", participant_files_, participant_view_)),
+        experimenter_(Listen(context_, options.experimenter_port, web::DrawToken(),
+                             experimenter_files_, experimenter_view_)),
+        run_page_(runtime::ToArguments({.key_file = options.traffic.key_file, .faults = ""})) {
+    Publish();
+    thread_ = std::thread([this] { context_.run(); });
+  }
+
+  ~Pages() {
+    asio::post(context_, [this] {
+      participant_->Stop();
+      experimenter_->Stop();
+    });
+    // The context has no more work when the last connection is closed.
+    const TimePoint end = Clock::now() + kEndLimit;
+    while (!context_.stopped() && Clock::now() < end) std::this_thread::sleep_for(milliseconds(5));
+    context_.stop();
+    thread_.join();
+  }
+
+  /// Changes the state, and shows it.
+  template <class Change>
+  void Set(const Change& change) {
+    {
+      const std::lock_guard lock(mutex_);
+      change(state_);
+      messages_.clear();
+    }
+    Publish();
+  }
+
+  /// The next message of this kind. @throws Interrupted
+  PageMessage WaitFor(PageMessage::Kind kind) {
+    std::unique_lock lock(mutex_);
+    for (;;) {
+      while (!messages_.empty()) {
+        PageMessage message = std::move(messages_.front());
+        messages_.pop_front();
+        if (message.kind == kind) return message;
+      }
+      ThrowIfInterrupted();
+      changed_.wait_for(lock, kWakeEvery);
+    }
+  }
+
+  /// @throws Interrupted
+  void WaitUntil(TimePoint end) {
+    while (Clock::now() < end) {
+      ThrowIfInterrupted();
+      std::this_thread::sleep_for(std::min<Duration>(kWakeEvery, end - Clock::now()));
+    }
+  }
+
+  /// Gives markers to this speaker; nullptr: refuses them.
+  void GiveMarkersTo(Speaker* speaker) {
+    const std::lock_guard lock(mutex_);
+    speaker_ = speaker;
+  }
+
+  std::string participant_address() const { return participant_->access().Url(); }
+  std::string experimenter_address() const { return experimenter_->access().Url(); }
+  RunPage& run_page() { return run_page_; }
+
+ private:
+  using Reader = std::optional<PageMessage> (PageState::*)(std::string_view, std::string&) const;
+
+  void Publish() {
+    asio::post(context_, [this] {
+      std::string participant;
+      std::string experimenter;
+      {
+        const std::lock_guard lock(mutex_);
+        participant = state_.ForParticipant();
+        experimenter = state_.ForExperimenter();
+      }
+      participant_view_.Show(std::move(participant));
+      experimenter_view_.Show(std::move(experimenter));
+    });
+  }
+
+  /// Handles a frame, in the thread of the servers.
+  void Take(web::Client& client, const PageView& view, Reader reader, std::string_view frame) {
+    std::string why;
+    {
+      const std::lock_guard lock(mutex_);
+      const auto message = (state_.*reader)(frame, why);
+      if (message && message->kind == PageMessage::Kind::kMarker) {
+        if (speaker_ != nullptr) speaker_->Mark(message->text);
+        state_.Tell("marker: " + message->text);
+      } else if (message) {
+        messages_.push_back(*message);
+      }
+    }
+    if (!why.empty()) return view.Refuse(client, why);
+    changed_.notify_all();
+    Publish();
+  }
+
+  const std::vector<web::Asset> participant_files_ = FilesOf("/index.html", "/participant.js");
+  const std::vector<web::Asset> experimenter_files_ =
+      FilesOf("/experimenter.html", "/experimenter.js");
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  PageState state_{UnixMicros()};
+  std::deque<PageMessage> messages_;  // that fit the state, and are not taken yet
+  Speaker* speaker_ = nullptr;        // while a run is under way
+  asio::io_context context_{1};
+  PageView participant_view_;
+  PageView experimenter_view_;
+  std::unique_ptr<web::Server> participant_;
+  std::unique_ptr<web::Server> experimenter_;
+  RunPage run_page_;
+  std::thread thread_;
+};
+
+PageDesk::PageDesk(const PageOptions& options) : pages_(std::make_unique<Pages>(options)) {}
+PageDesk::~PageDesk() = default;
+
+std::string PageDesk::participant_address() const { return pages_->participant_address(); }
+std::string PageDesk::experimenter_address() const { return pages_->experimenter_address(); }
+
+void PageDesk::WaitForBegin(const Next& next) {
+  const TimePoint end =
+      Clock::now() + duration_cast<Duration>(std::chrono::duration<double>(next.not_before_s));
+  if (Clock::now() < end) {
+    pages_->Set([&](PageState& state) { state.Wait(next, Seconds(end - Clock::now())); });
+    pages_->WaitUntil(end);
+  }
+  pages_->Set([&](PageState& state) { state.Wait(next, 0); });
+  pages_->WaitFor(PageMessage::Kind::kBegin);
+}
+
+void PageDesk::RunBegins(const std::string& url, Speaker& speaker) {
+  const std::string view = pages_->run_page().Show(url);
+  pages_->GiveMarkersTo(&speaker);
+  pages_->Set([&](PageState& state) {
+    state.Drive(view);
+    state.Tell("the run begins");
+  });
+}
+
+void PageDesk::RunGoesOn() {
+  if (!pages_->run_page().Look()) return;
+  pages_->Set([](PageState& state) { state.Tell("fogline-web has died and is started again"); });
+}
+
+void PageDesk::RunEnded() {
+  pages_->GiveMarkersTo(nullptr);
+  pages_->run_page().End();
+  pages_->Set([](PageState& state) { state.Tell("the run has ended"); });
+}
+
+std::vector<Answer> PageDesk::Ask(const QuestionnaireSection& questionnaire) {
+  pages_->Set([&](PageState& state) { state.Ask(questionnaire); });
+  std::vector<Answer> answers = pages_->WaitFor(PageMessage::Kind::kAnswers).answers;
+  pages_->Set(
+      [&](PageState& state) { state.Tell(fmt::format("{} is answered", questionnaire.name)); });
+  return answers;
+}
+
+void PageDesk::Finish() {
+  pages_->Set([](PageState& state) { state.Finish(); });
+}
+
+}  // namespace fogline::trials

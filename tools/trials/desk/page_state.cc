@@ -1,0 +1,177 @@
+#include "tools/trials/desk/page_state.h"
+
+#include <utility>
+
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
+
+#include "common/text.h"
+#include "services/runtime/wire/trial.h"
+
+namespace fogline::trials {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// The experimenter's page shows so many lines.
+constexpr std::size_t kMostLines = 200;
+
+std::string_view WordOf(Stage stage) {
+  switch (stage) {
+    case Stage::kStarting:
+      return "starting";
+    case Stage::kWaiting:
+      return "waiting";
+    case Stage::kDriving:
+      return "driving";
+    case Stage::kAsking:
+      return "asking";
+    case Stage::kFinished:
+      return "finished";
+  }
+  return "";
+}
+
+Json JsonOf(const ItemSection& item) {
+  return {{"name", item.name},
+          {"text", item.text},
+          {"kind", item.kind == ItemKind::kText ? "text" : "scale"},
+          {"min", item.min},
+          {"max", item.max},
+          {"step", item.step},
+          {"low", item.low},
+          {"high", item.high}};
+}
+
+/// A frame as JSON; null if it is no object.
+Json Parse(std::string_view frame) {
+  Json json = Json::parse(frame, nullptr, false);
+  return json.is_object() ? json : Json();
+}
+
+/// The text of a member; "" if there is none.
+std::string Text(const Json& json, const char* name) {
+  const auto member = json.find(name);
+  return member != json.end() && member->is_string() ? member->get<std::string>() : "";
+}
+
+}  // namespace
+
+void PageState::Enter(Stage stage) {
+  stage_ = stage;
+  ++number_;
+}
+
+void PageState::Wait(const Next& next, double wait_s) {
+  next_ = next;
+  wait_s_ = wait_s;
+  Enter(Stage::kWaiting);
+}
+
+void PageState::Drive(std::string view_address) {
+  view_ = std::move(view_address);
+  Enter(Stage::kDriving);
+}
+
+void PageState::Ask(const QuestionnaireSection& questionnaire) {
+  questionnaire_ = questionnaire;
+  Enter(Stage::kAsking);
+}
+
+void PageState::Finish() { Enter(Stage::kFinished); }
+
+void PageState::Tell(std::string line) {
+  if (lines_.size() == kMostLines) lines_.erase(lines_.begin());
+  lines_.push_back(std::move(line));
+}
+
+std::string PageState::ForParticipant() const {
+  Json json{{"state", number_},
+            {"stage", WordOf(stage_)},
+            {"practice", next_.trial.practice},
+            {"run", next_.trial.number},
+            {"of", next_.of}};
+  if (stage_ == Stage::kWaiting) json["wait_s"] = wait_s_;
+  if (stage_ == Stage::kAsking) {
+    json["items"] = Json::array();
+    for (const ItemSection& item : questionnaire_.items) json["items"].push_back(JsonOf(item));
+  }
+  return json.dump();
+}
+
+std::string PageState::ForExperimenter() const {
+  return Json{{"state", number_},
+              {"stage", WordOf(stage_)},
+              {"participant", next_.trial.participant},
+              {"practice", next_.trial.practice},
+              {"run", next_.trial.number},
+              {"of", next_.of},
+              {"wait_s", stage_ == Stage::kWaiting ? wait_s_ : 0},
+              {"condition", next_.for_experimenter},
+              {"questionnaire", stage_ == Stage::kAsking ? questionnaire_.name : ""},
+              {"view", view_},
+              {"lines", lines_}}
+      .dump();
+}
+
+std::optional<PageMessage> PageState::FromParticipant(std::string_view frame,
+                                                      std::string& why) const {
+  const Json json = Parse(frame);
+  const std::string op = Text(json, "op");
+  const auto state = json.find("state");
+  if (state == json.end() || *state != number_) {
+    why = "it answers another state";
+    return std::nullopt;
+  }
+  if (op == "begin" && stage_ == Stage::kWaiting && wait_s_ > 0) {
+    why = "the break is not over";
+    return std::nullopt;
+  }
+  if (op == "begin" && stage_ == Stage::kWaiting) {
+    return PageMessage{.kind = PageMessage::Kind::kBegin, .answers = {}, .text = ""};
+  }
+  const auto values = json.find("values");
+  if (op != "answers" || stage_ != Stage::kAsking || values == json.end() || !values->is_array() ||
+      values->size() != questionnaire_.items.size()) {
+    why = "it does not fit the state";
+    return std::nullopt;
+  }
+  PageMessage message{.kind = PageMessage::Kind::kAnswers, .answers = {}, .text = ""};
+  for (std::size_t i = 0; i < values->size(); ++i) {
+    const ItemSection& item = questionnaire_.items[i];
+    const Json& value = (*values)[i];
+    std::string allowed;
+    const auto answer =
+        value.is_string() ? ReadAnswer(item, value.get<std::string>(), allowed) : std::nullopt;
+    if (!answer) {
+      why = fmt::format("{} needs {}", item.name, allowed.empty() ? "a text" : allowed);
+      return std::nullopt;
+    }
+    message.answers.push_back(*answer);
+  }
+  return message;
+}
+
+std::optional<PageMessage> PageState::FromExperimenter(std::string_view frame,
+                                                       std::string& why) const {
+  const Json json = Parse(frame);
+  const std::string op = Text(json, "op");
+  const auto state = json.find("state");
+  const bool can_begin = stage_ == Stage::kWaiting && wait_s_ == 0;
+  if (op == "begin" && can_begin && state != json.end() && *state == number_) {
+    return PageMessage{.kind = PageMessage::Kind::kBegin, .answers = {}, .text = ""};
+  }
+  const std::string text = Text(json, "text");
+  if (op != "marker" || stage_ != Stage::kDriving) {
+    why = "it does not fit the state";
+  } else if (text.empty() || HasControlCharacter(text) ||
+             text.size() > runtime::kMostTrialTextBytes) {
+    why = fmt::format("a marker needs a text of 1 to {} bytes without control characters",
+                      runtime::kMostTrialTextBytes);
+  } else {
+    return PageMessage{.kind = PageMessage::Kind::kMarker, .answers = {}, .text = text};
+  }
+  return std::nullopt;
+}
+
+}  // namespace fogline::trials

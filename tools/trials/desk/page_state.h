@@ -1,0 +1,70 @@
+// What the two pages of a session show, and what they may answer: the rules, without sockets.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "tools/trials/desk/desk.h"
+
+namespace fogline::trials {
+
+/// Where a session is.
+enum class Stage { kStarting, kWaiting, kDriving, kAsking, kFinished };
+
+/// What a page has sent, after its check.
+struct PageMessage {
+  enum class Kind { kBegin, kAnswers, kMarker };
+  Kind kind;
+  std::vector<Answer> answers;  // kAnswers
+  std::string text;             // kMarker
+};
+
+/// The state of a session, as its pages see it. Each state has a number, so that an answer to an
+/// earlier state is not taken for one to this state.
+class PageState {
+ public:
+  /// @param number of the first state. It must be larger than those of an earlier session, whose
+  ///     pages may still be open, and at most 2^53, so that it is exact in a browser
+  explicit PageState(std::int64_t number) : number_(number) {}
+
+  /// @param wait_s of a break: how long the next run cannot begin yet, s
+  void Wait(const Next& next, double wait_s);
+  void Drive(std::string view_address);
+  void View(std::string view_address) { view_ = std::move(view_address); }
+  void Ask(const QuestionnaireSection& questionnaire);
+  void Finish();
+  /// Adds a line to what the experimenter sees, the newest last. The oldest lines are dropped.
+  void Tell(std::string line);
+
+  /// JSON for the page of the participant: nothing of condition, seed, threshold or view.
+  std::string ForParticipant() const;
+  /// JSON for the page of the experimenter.
+  std::string ForExperimenter() const;
+
+  /// Reads a frame of the participant's page: {"op": "begin", "state": n}, or {"op": "answers",
+  /// "state": n, "values": ["5", ...]} with a text for each item.
+  /// @param why is set if the frame is refused
+  std::optional<PageMessage> FromParticipant(std::string_view frame, std::string& why) const;
+  /// Reads a frame of the experimenter's page: {"op": "begin", "state": n}, or {"op": "marker",
+  /// "text": "..."}.
+  std::optional<PageMessage> FromExperimenter(std::string_view frame, std::string& why) const;
+
+  Stage stage() const { return stage_; }
+
+ private:
+  void Enter(Stage stage);
+
+  Stage stage_ = Stage::kStarting;
+  std::int64_t number_;
+  Next next_;
+  double wait_s_ = 0;
+  QuestionnaireSection questionnaire_;
+  std::string view_;
+  std::vector<std::string> lines_;
+};
+
+}  // namespace fogline::trials

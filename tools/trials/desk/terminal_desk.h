@@ -1,0 +1,28 @@
+// A session in the terminal: prompts on stdout, answers from stdin, one in a line.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tools/trials/desk/desk.h"
+
+namespace fogline::trials {
+
+class TerminalDesk final : public Desk {
+ public:
+  void WaitForBegin(const Next& next) override;
+  void RunBegins(const std::string& url, Speaker& speaker) override;
+  void RunGoesOn() override {}
+  void RunEnded() override {}
+  std::vector<Answer> Ask(const QuestionnaireSection& questionnaire) override;
+  void Finish() override;
+
+ private:
+  /// The next line of stdin, without its line feed.
+  /// @throws Interrupted; std::runtime_error at the end of stdin
+  std::string ReadLine();
+
+  std::string unread_;
+};
+
+}  // namespace fogline::trials

@@ -1,0 +1,192 @@
+#include "tools/trials/plan_file.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include <fmt/core.h>
+
+#include "common/file.h"
+#include "common/text.h"
+#include "scenario/io/diagnostic_list.h"
+#include "scenario/io/json.h"
+#include "scenario/io/reader.h"
+#include "scenario/sections/field_view.h"
+#include "services/runtime/wire/digest.h"
+#include "tools/runner/experiment.h"
+
+namespace fogline::trials {
+namespace {
+
+constexpr std::string_view kAllowed = "fogline experiment check --schema";
+// Names become parts of file names and of columns. Our choice: file systems allow 255 bytes.
+constexpr std::size_t kMostNameCharacters = 40;
+constexpr std::size_t kMostTitleCharacters = 80;
+
+// Place of the value with this pointer, or of the innermost value around it that the file has.
+Place FindPlace(const JsonValue& root, std::string_view pointer) {
+  const JsonValue* at = &root;
+  while (!pointer.empty()) {
+    const std::size_t end = std::min(pointer.find('/', 1), pointer.size());
+    const std::string_view segment = pointer.substr(1, end - 1);
+    const JsonValue* inner = nullptr;
+    if (const auto* object = at->As<JsonObject>()) {
+      const JsonMember* member = FindMember(*object, segment);
+      inner = member == nullptr ? nullptr : &member->value;
+    } else if (const auto* list = at->As<JsonArray>()) {
+      const auto index = ListIndex(segment);
+      inner = index && *index < list->size() ? &(*list)[*index] : nullptr;
+    }
+    if (inner == nullptr) break;
+    at = inner;
+    pointer.remove_prefix(end);
+  }
+  return at->place;
+}
+
+/// Checks what one field alone does not show.
+class PlanCheck {
+ public:
+  PlanCheck(const JsonValue& root, DiagnosticList& mistakes) : root_(root), mistakes_(mistakes) {}
+
+  void Check(const ExperimentPlan& plan) {
+    if (CountCharacters(plan.title) > kMostTitleCharacters) {
+      Add("/title", "text",
+          fmt::format("{} characters; at most {} are allowed", CountCharacters(plan.title),
+                      kMostTitleCharacters));
+    }
+    CheckConditions("/conditions", plan.conditions);
+    CheckConditions("/practice", plan.practice);
+    if (plan.conditions.empty()) Add("/conditions", "needed", "an experiment needs a condition");
+    const auto trials = static_cast<std::int64_t>(plan.conditions.size());
+    for (std::size_t i = 0; i < plan.breaks.size(); ++i) {
+      if (plan.breaks[i].after_trial < trials) continue;
+      Add(fmt::format("/breaks/{}/after_trial", i), "range",
+          fmt::format("no trial comes after trial {}: there are {} conditions",
+                      plan.breaks[i].after_trial, trials));
+    }
+    std::set<std::string> names;
+    for (std::size_t i = 0; i < plan.questionnaires.size(); ++i) {
+      const std::string pointer = fmt::format("/questionnaires/{}", i);
+      CheckName(pointer + "/name", plan.questionnaires[i].name, names);
+      CheckItems(pointer, plan.questionnaires[i]);
+    }
+  }
+
+ private:
+  void Add(const std::string& pointer, std::string_view rule, std::string message) {
+    mistakes_.Add(FindPlace(root_, pointer), pointer, rule, std::move(message));
+  }
+
+  void CheckName(const std::string& pointer, const std::string& name,
+                 std::set<std::string>& others) {
+    constexpr std::string_view kNameCharacters = "abcdefghijklmnopqrstuvwxyz0123456789-_";
+    if (name.empty()) {
+      Add(pointer, "needed", "a name is needed");
+    } else if (name.find_first_not_of(kNameCharacters) != std::string::npos ||
+               name.size() > kMostNameCharacters) {
+      Add(pointer, "text",
+          fmt::format("{} is no name: allowed are a to z, 0 to 9, - and _, and {} "
+                      "characters at most",
+                      QuoteShort(name), kMostNameCharacters));
+    } else if (!others.insert(name).second) {
+      Add(pointer, "duplicate", fmt::format("{} is the name of two", QuoteShort(name)));
+    }
+  }
+
+  void CheckConditions(const std::string& list, const std::vector<ConditionSection>& conditions) {
+    std::set<std::string> names;
+    for (std::size_t i = 0; i < conditions.size(); ++i) {
+      const std::string pointer = fmt::format("{}/{}", list, i);
+      CheckName(pointer + "/name", conditions[i].name, names);
+      if (conditions[i].scenario.empty()) {
+        Add(pointer + "/scenario", "needed", "a scenario file is needed");
+      }
+    }
+  }
+
+  void CheckItems(const std::string& pointer, const QuestionnaireSection& questionnaire) {
+    const bool is_own = questionnaire.kind == QuestionnaireKind::kOwn;
+    if (is_own && questionnaire.items.empty()) {
+      Add(pointer + "/items", "needed", "kind \"own\" needs items");
+    }
+    if (!is_own && !questionnaire.items.empty()) {
+      Add(pointer + "/items", "needed", "only kind \"own\" has items");
+    }
+    std::set<std::string> names;
+    for (std::size_t i = 0; i < questionnaire.items.size(); ++i) {
+      const std::string at = fmt::format("{}/items/{}", pointer, i);
+      const ItemSection& item = questionnaire.items[i];
+      CheckName(at + "/name", item.name, names);
+      if (item.text.empty()) Add(at + "/text", "needed", "a question is needed");
+      if (item.kind == ItemKind::kScale) CheckScale(at, item);
+    }
+  }
+
+  void CheckScale(const std::string& at, const ItemSection& item) {
+    if (item.min >= item.max) {
+      return Add(
+          at + "/max", "range",
+          fmt::format("{} is not above min, {}", NumberText(item.max), NumberText(item.min)));
+    }
+    const double steps = (item.max - item.min) / item.step;
+    constexpr double kMostSteps = 1000;  // our choice: more could not be told apart on a screen
+    constexpr double kRounding = 1e-9;   // of a step, because 0.1 is no binary number
+    if (steps > kMostSteps || std::abs(steps - std::round(steps)) > kRounding * kMostSteps) {
+      Add(at + "/step", "range",
+          fmt::format("{} does not divide the scale from {} to {} into 1 to {} equal steps",
+                      NumberText(item.step), NumberText(item.min), NumberText(item.max),
+                      kMostSteps));
+    }
+  }
+
+  const JsonValue& root_;
+  DiagnosticList& mistakes_;
+};
+
+}  // namespace
+
+ExperimentPlan ParsePlan(std::string_view text, std::string_view name) {
+  const std::vector<Source> sources{{.name = std::string(name), .text = text}};
+  DiagnosticList mistakes;
+  const std::optional<JsonValue> root = ParseJson(text, 0, mistakes);
+  if (!root) mistakes.Throw(sources, kAllowed);
+  ExperimentPlan plan = ReadExperiment(*root, mistakes);
+  if (mistakes.empty()) PlanCheck(*root, mistakes).Check(plan);
+  if (!mistakes.empty()) mistakes.Throw(sources, kAllowed);
+  return plan;
+}
+
+PlanFile LoadPlan(const std::filesystem::path& file) {
+  FileText read = ReadFile(file, kMaxFileBytes, ".json");
+  if (!read.error.empty()) ThrowUnreadable(file.string(), read.error);
+  PlanFile loaded{.file = file, .text = std::move(read.text), .hash = "", .plan = {}};
+  loaded.hash = runtime::HashOf(loaded.text);
+  loaded.plan = ParsePlan(loaded.text, file.string());
+  for (const auto* list : {&loaded.plan.practice, &loaded.plan.conditions}) {
+    for (const ConditionSection& condition : *list) LoadCondition(loaded, condition);
+  }
+  return loaded;
+}
+
+Scenario LoadCondition(const PlanFile& file, const ConditionSection& condition,
+                       const std::vector<std::string>& more) {
+  std::vector<std::string> overrides = condition.set;
+  overrides.insert(overrides.end(), more.begin(), more.end());
+  const std::filesystem::path path = file.file.parent_path() / condition.scenario;
+  try {
+    Scenario scenario = LoadScenario(path, overrides);
+    runner::CheckPossible(scenario, path);
+    return scenario;
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("{}: error: condition {}: {}", PathText(file.file),
+                                 Quote(condition.name), error.what()));
+  }
+}
+
+}  // namespace fogline::trials

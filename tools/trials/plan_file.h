@@ -1,0 +1,38 @@
+// Reads and checks the file of an experiment with people.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "scenario/io/loader.h"
+#include "scenario/sections/experiment.h"
+
+namespace fogline::trials {
+
+/// Reads an experiment. The scenarios of its conditions are not read.
+/// @param name of the file, for messages
+/// @throws ScenarioError with every mistake of the file
+ExperimentPlan ParsePlan(std::string_view text, std::string_view name = "experiment");
+
+/// An experiment as it was read from a file.
+struct PlanFile {
+  std::filesystem::path file;
+  std::string text;
+  std::string hash;  // BLAKE2b-256 of the text, hexadecimal
+  ExperimentPlan plan;
+};
+
+/// Reads an experiment, and checks that the scenario of each condition can be run.
+/// @throws InputError with every mistake of the file, or with the first condition that cannot be
+/// run
+PlanFile LoadPlan(const std::filesystem::path& file);
+
+/// The scenario of a condition.
+/// @param more overrides that count more than those of the condition
+/// @throws InputError that names the experiment's file and the condition
+Scenario LoadCondition(const PlanFile& file, const ConditionSection& condition,
+                       const std::vector<std::string>& more = {});
+
+}  // namespace fogline::trials

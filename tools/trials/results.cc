@@ -1,0 +1,75 @@
+#include "tools/trials/results.h"
+
+#include <utility>
+
+#include <fmt/core.h>
+
+#include "common/atomic_file.h"
+#include "common/errors.h"
+#include "common/file.h"
+#include "common/text.h"
+#include "scenario/io/json.h"
+
+namespace fogline::trials {
+
+Results::Results(const PlanFile& plan, std::filesystem::path folder)
+    : plan_(plan), folder_(std::move(folder)) {
+  std::error_code missing;
+  if (!std::filesystem::exists(Kept(), missing)) {
+    if (!std::filesystem::exists(folder_, missing) || std::filesystem::is_empty(folder_, missing)) {
+      return;
+    }
+    throw InputError(fmt::format("{}: error: --results: the folder has other files, and no {}",
+                                 PathText(folder_), PathText(Kept().filename())));
+  }
+  const FileText kept = ReadFile(Kept(), kMaxFileBytes);
+  if (kept.error.empty() && kept.text == plan.text) return;
+  throw InputError(
+      fmt::format("{}: error: --results: the experiment began with another version of {}, which is "
+                  "{}; go on with that file, or give another folder",
+                  PathText(folder_), PathText(plan.file), PathText(Kept())));
+}
+
+void Results::Create() const {
+  std::error_code missing;
+  if (std::filesystem::exists(Kept(), missing)) return;
+  RequireFolderOf(folder_, "--results");
+  std::error_code failed;
+  std::filesystem::create_directory(folder_, failed);
+  if (failed) {
+    throw InputError(fmt::format("{}: error: --results: {}", PathText(folder_), failed.message()));
+  }
+  AtomicFile file(Kept());
+  file.Write(plan_.text);
+  file.Finish();
+}
+
+std::filesystem::path Results::FolderOf(std::int64_t participant) const {
+  return folder_ / fmt::format("participant-{:02}", participant);
+}
+
+std::filesystem::path Results::LogOf(const Trial& trial, std::int64_t attempt) const {
+  const std::string again = attempt > 1 ? fmt::format("-attempt-{}", attempt) : "";
+  return FolderOf(trial.participant) /
+         fmt::format("{}-{}-{}{}.lcm", trial.practice ? "practice" : "trial", trial.number,
+                     ConditionOf(plan_.plan, trial).name, again);
+}
+
+TrialRecord Results::Read(const Trial& trial) const {
+  TrialRecord record{.trial = trial, .attempts = 0, .log = "", .story = {}};
+  record.story.state = TrialState::kOpen;
+  std::error_code missing;
+  while (std::filesystem::exists(LogOf(trial, record.attempts + 1), missing)) ++record.attempts;
+  if (record.attempts == 0) return record;
+  record.log = LogOf(trial, record.attempts);
+  record.story = ReadStory(record.log);
+  return record;
+}
+
+std::vector<TrialRecord> Results::ReadAll(std::int64_t participant) const {
+  std::vector<TrialRecord> records;
+  for (const Trial& trial : ScheduleOf(plan_.plan, participant)) records.push_back(Read(trial));
+  return records;
+}
+
+}  // namespace fogline::trials

@@ -1,0 +1,54 @@
+// The folder with the logs of an experiment. Each trial has a log of its own, which is never
+// overwritten:
+//
+//   experiment.json                              the experiment's file, as it was when it began
+//   participant-03/practice-1-clear.lcm
+//   participant-03/trial-2-fog.lcm
+//   participant-03/trial-2-fog-attempt-2.lcm     the first run of this trial broke off
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "tools/trials/plan_file.h"
+#include "tools/trials/schedule.h"
+#include "tools/trials/trial_log.h"
+
+namespace fogline::trials {
+
+/// The newest run of a trial.
+struct TrialRecord {
+  Trial trial;
+  std::int64_t attempts = 0;  // number of runs
+  std::filesystem::path log;  // of the newest run; "" without a run
+  TrialStory story;           // of the newest run; kOpen without a run
+};
+
+class Results {
+ public:
+  /// @throws InputError if the folder has the results of another experiment, or of another version
+  ///     of this one
+  Results(const PlanFile& plan, std::filesystem::path folder);
+
+  /// Creates the folder, and keeps the experiment's file in it. @throws InputError
+  void Create() const;
+
+  const std::filesystem::path& folder() const { return folder_; }
+  std::filesystem::path FolderOf(std::int64_t participant) const;
+  /// The log of a run of a trial. @param attempt from 1 on
+  std::filesystem::path LogOf(const Trial& trial, std::int64_t attempt) const;
+
+  TrialRecord Read(const Trial& trial) const;
+  /// All practice runs and trials of a participant, in their order.
+  std::vector<TrialRecord> ReadAll(std::int64_t participant) const;
+
+ private:
+  std::filesystem::path Kept() const { return folder_ / "experiment.json"; }
+
+  const PlanFile& plan_;
+  std::filesystem::path folder_;
+};
+
+}  // namespace fogline::trials

@@ -1,0 +1,186 @@
+#include "tools/trials/session.h"
+
+#include <algorithm>
+#include <optional>
+#include <stdexcept>
+#include <utility>
+
+#include <fmt/core.h>
+
+#include "common/errors.h"
+#include "common/file_lock.h"
+#include "common/process/console.h"
+#include "common/text.h"
+#include "services/log/log_of_run.h"
+#include "tools/drive/seat.h"
+
+namespace fogline::trials {
+namespace {
+
+class Session {
+ public:
+  Session(const PlanFile& plan, const Results& results, SessionOptions options, Desk& desk)
+      : plan_(plan),
+        results_(results),
+        options_(std::move(options)),
+        desk_(desk),
+        key_(runtime::KeyOf(options_.run.traffic)) {}
+
+  SessionOutcome Run() {
+    const std::vector<Trial> schedule = ScheduleOf(plan_.plan, options_.participant);
+    double pause_s = 0;
+    for (const Trial& trial : schedule) {
+      TrialRecord record = results_.Read(trial);
+      if (record.story.state == TrialState::kOpen || record.story.state == TrialState::kBroken) {
+        Drive(trial, record, pause_s);
+      } else if (record.story.state == TrialState::kToAsk) {
+        ++outcome_.asked;
+      }
+      if (record.story.state != TrialState::kDone) AskAfter(record);
+      pause_s = options_.breaks ? BreakAfter(plan_.plan, trial) : 0;
+    }
+    desk_.Finish();
+    return outcome_;
+  }
+
+ private:
+  /// Everything that all facts of a trial share.
+  trial_t BaseOf(const Trial& trial, std::int64_t attempt, std::int64_t seed) const {
+    trial_t base{};
+    base.experiment = plan_.plan.title;
+    base.experiment_hash = plan_.hash;
+    base.participant = static_cast<std::int32_t>(trial.participant);
+    base.trial = static_cast<std::int32_t>(trial.number);
+    base.practice = trial.practice ? 1 : 0;
+    base.attempt = static_cast<std::int32_t>(attempt);
+    base.condition = ConditionOf(plan_.plan, trial).name;
+    base.seed = seed;
+    return base;
+  }
+
+  /// Makes a run of the trial, and reads its log into the record.
+  void Drive(const Trial& trial, TrialRecord& record, double pause_s) {
+    const ConditionSection& condition = ConditionOf(plan_.plan, trial);
+    std::vector<std::string> overrides = options_.overrides;
+    if (trial.seed >= 0) overrides.push_back(fmt::format("/seed={}", trial.seed));
+    const Scenario scenario = LoadCondition(plan_, condition, overrides);
+    const auto& all = trial.practice ? plan_.plan.practice : plan_.plan.conditions;
+    desk_.WaitForBegin(
+        {.trial = trial,
+         .of = std::ssize(all),
+         .not_before_s = pause_s,
+         .for_experimenter = fmt::format("{}, seed {}", condition.name, scenario.seed)});
+    const std::int64_t attempt = record.attempts + 1;
+    const std::filesystem::path path = results_.LogOf(trial, attempt);
+    auto pedals = options_.pedals ? options_.pedals(scenario.person) : nullptr;
+    std::vector<trial_t> facts =
+        RunLogged(scenario, path, BaseOf(trial, attempt, scenario.seed), std::move(pedals));
+    ++outcome_.runs;
+    record = results_.Read(trial);
+    if (record.story.state == TrialState::kBroken) {
+      throw std::runtime_error(fmt::format("{}: {}", PathText(path), record.story.note));
+    }
+    // A network may lose a fact. It is not lost for the log.
+    AddFacts(path, record.story, facts, key());
+    record.story = ReadStory(path);
+  }
+
+  std::vector<trial_t> RunLogged(const Scenario& scenario, const std::filesystem::path& path,
+                                 const trial_t& base, std::unique_ptr<drive::PedalSource> pedals) {
+    log::LogOfRun log(path);
+    std::optional<Speaker> speaker;
+    std::optional<drive::Seat> seat;
+    runner::ExperimentOptions run = options_.run;
+    run.log = log.path();
+    run.realtime = true;
+    run.pace = options_.speed;
+    run.on_run = [&](std::int64_t run_id, const std::string& url) {
+      speaker.emplace(url, run_id, run.traffic, base);
+      if (pedals) seat.emplace(url, run_id, run.traffic, std::move(pedals));
+      desk_.RunBegins(url, *speaker);
+    };
+    run.on_logged_step = [&] {
+      log.RemoveOlder();
+      desk_.RunGoesOn();
+    };
+    try {
+      runner::RunExperiment(scenario, run);
+    } catch (...) {
+      desk_.RunEnded();
+      throw;
+    }
+    desk_.RunEnded();
+    return speaker ? speaker->End() : std::vector<trial_t>();
+  }
+
+  /// Asks what is not answered, and ends the trial.
+  void AskAfter(TrialRecord& record) {
+    trial_t base = BaseOf(record.trial, record.attempts, 0);
+    base.header = {.run_id = record.story.run_id,
+                   .step = record.story.steps - 1,
+                   .utime = record.story.last_utime};
+    if (!record.story.facts.empty()) base.seed = record.story.facts.front().seed;
+    for (const QuestionnaireSection& questionnaire : QuestionsAfter(plan_.plan, record.trial)) {
+      if (IsAnswered(record.story, questionnaire)) continue;
+      const std::vector<Answer> answers = desk_.Ask(questionnaire);
+      std::vector<trial_t> facts;
+      for (std::size_t i = 0; i < answers.size(); ++i) {
+        trial_t fact = base;
+        fact.kind = trial_t::ANSWER;
+        fact.questionnaire = questionnaire.name;
+        fact.item = questionnaire.items[i].name;
+        fact.unit = questionnaire.items[i].unit;
+        fact.value = answers[i].value;
+        fact.text = answers[i].text;
+        facts.push_back(std::move(fact));
+      }
+      Add(record, std::move(facts));
+    }
+    base.kind = trial_t::END;
+    Add(record, {base});
+  }
+
+  static bool IsAnswered(const TrialStory& story, const QuestionnaireSection& questionnaire) {
+    return std::ranges::any_of(story.facts, [&](const trial_t& fact) {
+      return fact.kind == trial_t::ANSWER && fact.questionnaire == questionnaire.name;
+    });
+  }
+
+  /// Adds facts after the last fact of the log. The log has all of them or none.
+  void Add(TrialRecord& record, std::vector<trial_t> facts) const {
+    const auto& known = record.story.facts;
+    std::int64_t next = known.empty() ? 0 : known.back().sequence + 1;
+    for (trial_t& fact : facts) {
+      fact.sequence = next++;
+      fact.unix_us = UnixMicros();
+    }
+    AddFacts(record.log, record.story, facts, key());
+    record.story = ReadStory(record.log);
+  }
+
+  const runtime::SigningKey* key() const { return key_ ? &*key_ : nullptr; }
+
+  const PlanFile& plan_;
+  const Results& results_;
+  SessionOptions options_;
+  Desk& desk_;
+  std::optional<runtime::SigningKey> key_;
+  SessionOutcome outcome_;
+};
+
+}  // namespace
+
+SessionOutcome RunSession(const PlanFile& plan, const Results& results, SessionOptions options,
+                          Desk& desk) {
+  results.Create();
+  const std::filesystem::path folder = results.FolderOf(options.participant);
+  std::error_code failed;
+  std::filesystem::create_directory(folder, failed);
+  if (failed) {
+    throw InputError(fmt::format("{}: error: --results: {}", PathText(folder), failed.message()));
+  }
+  const FileLock lock(folder, FileLock::Kind::kOwn, "--participant", "session");
+  return Session(plan, results, std::move(options), desk).Run();
+}
+
+}  // namespace fogline::trials

@@ -1,0 +1,41 @@
+// The trials of one participant: runs each trial that is not done, asks the questions after it, and
+// puts everything into its log. A session that was killed goes on at the next trial.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "tools/drive/pedal_source.h"
+#include "tools/runner/experiment.h"
+#include "tools/trials/desk/desk.h"
+#include "tools/trials/results.h"
+
+namespace fogline::trials {
+
+struct SessionOptions {
+  std::int64_t participant = 1;
+  double speed = 1;                    // simulated seconds per second
+  std::vector<std::string> overrides;  // of every trial, such as /person/drives=true
+  bool breaks = true;                  // false: no break is longer than the person wants
+  /// Makes the pedals of the person who drives, for each run. Empty: nobody sits at this program.
+  std::function<std::unique_ptr<drive::PedalSource>(const PersonSection&)> pedals;
+  runner::ExperimentOptions run;  // transport and traffic of each run
+};
+
+/// What a session has done.
+struct SessionOutcome {
+  std::int64_t runs = 0;   // that this session has made
+  std::int64_t asked = 0;  // trials for whose questions only the answers were missing
+};
+
+/// Makes the trials of a participant that are not done.
+/// @throws InputError for a folder that cannot be used; Interrupted; std::runtime_error if a run
+///     fails. The next session goes on from there
+SessionOutcome RunSession(const PlanFile& plan, const Results& results, SessionOptions options,
+                          Desk& desk);
+
+}  // namespace fogline::trials

@@ -1,0 +1,99 @@
+#include "tools/trials/speaker.h"
+
+#include <chrono>
+#include <exception>
+#include <utility>
+
+#include <fmt/core.h>
+
+#include "common/clock.h"
+#include "common/process/console.h"
+#include "services/runtime/transport/bus.h"
+#include "services/runtime/wire/trial.h"
+#include "services/runtime/wire/wire.h"
+
+namespace fogline::trials {
+namespace {
+
+// A marker waits at most this long before it is sent. A person does not notice this time.
+constexpr Duration kSendEvery = milliseconds(10);
+
+}  // namespace
+
+Speaker::Speaker(const std::string& url, std::int64_t run_id,
+                 const runtime::TrafficOptions& traffic, trial_t base)
+    : base_(std::move(base)) {
+  base_.header = {.run_id = run_id, .step = -1, .utime = 0};
+  thread_ = std::thread([this, url, traffic] {
+    try {
+      Work(url, traffic);
+    } catch (const std::exception& error) {
+      Complain(
+          fmt::format("fogline experiment: warning: the recorder hears no facts of the trial, "
+                      "so they are added after the run: {}",
+                      error.what()));
+    }
+  });
+}
+
+Speaker::~Speaker() { End(); }
+
+void Speaker::Work(const std::string& url, const runtime::TrafficOptions& traffic) {
+  runtime::Bus bus(url);
+  runtime::Apply(traffic, Role::kRunner, bus);
+  bus.Subscribe(ChannelOf<truth_t>().name, [this](runtime::Arrival& arrival) {
+    const auto* truth = arrival.As<truth_t>();
+    if (truth == nullptr || truth->header.run_id != base_.header.run_id) return;
+    const std::lock_guard lock(mutex_);
+    step_ = truth->header.step;
+    utime_ = truth->header.utime;
+    if (!facts_.empty()) return;
+    trial_t begin = base_;
+    begin.header.step = step_;
+    begin.header.utime = utime_;
+    begin.kind = trial_t::BEGIN;
+    begin.unix_us = UnixMicros();
+    facts_.push_back(std::move(begin));
+  });
+  std::vector<std::uint8_t> bytes;
+  while (!over_) {
+    bus.Wait(kSendEvery);
+    const std::lock_guard lock(mutex_);
+    for (; sent_ < facts_.size(); ++sent_) {
+      runtime::Encode(facts_[sent_], bytes);
+      bus.Publish(ChannelOf<trial_t>().name, bytes);
+    }
+  }
+}
+
+void Speaker::Mark(const std::string& text) {
+  const std::lock_guard lock(mutex_);
+  trial_t marker = base_;
+  if (facts_.empty()) {  // before the first TRUTH
+    marker.kind = trial_t::BEGIN;
+    marker.unix_us = UnixMicros();
+    facts_.push_back(marker);
+  }
+  marker.kind = trial_t::MARKER;
+  marker.header.step = step_;
+  marker.header.utime = utime_;
+  marker.sequence = static_cast<std::int64_t>(facts_.size());
+  marker.unix_us = UnixMicros();
+  marker.text = runtime::CutForTrial(text);
+  facts_.push_back(std::move(marker));
+}
+
+std::vector<trial_t> Speaker::End() {
+  over_ = true;
+  if (thread_.joinable()) thread_.join();
+  const std::lock_guard lock(mutex_);
+  return facts_;
+}
+
+std::int64_t UnixMicros() {
+  using std::chrono::microseconds;
+  const auto now = std::chrono::system_clock::now().time_since_epoch();
+  return std::chrono::duration_cast<microseconds>(now).count();
+}
+
+}  // namespace fogline::trials

@@ -1,0 +1,53 @@
+// Tells the recorder of a run the facts of its trial, while the run is under way. It has a thread
+// of its own, because the runner's thread is busy with the run.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "fogline/trial_t.hpp"
+#include "services/runtime/transport/traffic_options.h"
+
+namespace fogline::trials {
+
+class Speaker {
+ public:
+  /// Sends the fact BEGIN when the first TRUTH of the run comes.
+  /// @param base a fact with everything that all facts of the trial share
+  /// @throws InputError, std::runtime_error as runtime::Bus()
+  Speaker(const std::string& url, std::int64_t run_id, const runtime::TrafficOptions& traffic,
+          trial_t base);
+  /// Ends the thread.
+  ~Speaker();
+  Speaker(const Speaker&) = delete;
+  Speaker& operator=(const Speaker&) = delete;
+
+  /// Sends a marker of the experimenter, cut to the length that a TRIAL can have. May be called
+  /// from any thread.
+  void Mark(const std::string& text);
+
+  /// Ends the thread. @return every fact so far; a fact may be missing in the log, because a
+  /// network loses messages
+  std::vector<trial_t> End();
+
+ private:
+  void Work(const std::string& url, const runtime::TrafficOptions& traffic);
+
+  trial_t base_;
+  std::mutex mutex_;
+  std::vector<trial_t> facts_;  // those that are numbered
+  std::size_t sent_ = 0;
+  std::int64_t step_ = -1;
+  std::int64_t utime_ = 0;
+  std::atomic<bool> over_ = false;
+  std::thread thread_;
+};
+
+/// Microseconds since 1970 (UTC).
+std::int64_t UnixMicros();
+
+}  // namespace fogline::trials

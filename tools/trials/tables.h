@@ -1,0 +1,32 @@
+// An experiment as tables for statistics: a row for each trial, and a row for each value.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+#include "tools/trials/results.h"
+
+namespace fogline::trials {
+
+struct Tables {
+  /// A row for each trial that has a log: participant, trial, condition, order, seed, log, one
+  /// column for each item of a questionnaire, and one for each measure of the run.
+  std::string trials;
+  /// The same values and the markers: participant, trial, condition, kind, item, value, unit.
+  std::string values;
+  std::int64_t rows = 0;     // of `trials`
+  std::int64_t missing = 0;  // trials that are not done, practice runs included
+};
+
+/// Reads the newest log of each trial. Cells without a value are empty. Texts are quoted as in RFC
+/// 4180. Each line ends with a line feed.
+Tables MakeTables(const PlanFile& plan, const Results& results);
+
+/// Whether the file is one of these tables, or empty.
+bool IsTrialTable(const std::filesystem::path& file);
+
+/// "2026-11-23T15:04:05Z". @param unix_us microseconds since 1970 (UTC)
+std::string UtcText(std::int64_t unix_us);
+
+}  // namespace fogline::trials

@@ -1,0 +1,50 @@
+// The facts of a trial in its log (lcmtypes/trial_t.lcm). The recorder writes those that come
+// during the run; this file adds those from after the run, such as answers.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "fogline/trial_t.hpp"
+#include "services/log/log_seal.h"
+#include "services/runtime/wire/message_signer.h"
+
+namespace fogline::trials {
+
+/// How far a trial has come.
+enum class TrialState {
+  kOpen,    // not begun
+  kBroken,  // the run broke off; the trial is run again
+  kToAsk,   // the run is complete, but answers are missing
+  kDone,
+};
+std::string NameOf(TrialState state);
+
+/// What the log of a trial says about the trial.
+struct TrialStory {
+  TrialState state = TrialState::kBroken;
+  std::int64_t run_id = 0;
+  std::int64_t steps = 0;
+  std::int64_t last_utime = 0;       // simulated time of the last step, us
+  double speed = 1;                  // simulated seconds per second
+  std::string note;                  // what is wrong with the log; "" if nothing is
+  std::vector<trial_t> facts;        // each once, by their sequence
+  std::optional<log::LogSeal> seal;  // none if the run broke off
+  bool altered = false;              // the log differs from its seal
+};
+
+/// Reads a log. A log that cannot be read is that of a broken run, and the note says why.
+TrialStory ReadStory(const std::filesystem::path& log);
+
+/// Adds facts to the log of a complete run, and seals it again. Facts whose sequence the log has
+/// are left out. The log is replaced as a whole, so a crash leaves the old log or the new one.
+/// @param story of the log
+/// @param key signs the seal; nullptr: no signature
+/// @throws std::runtime_error if the log was altered after it was sealed, or cannot be written
+void AddFacts(const std::filesystem::path& log, const TrialStory& story,
+              const std::vector<trial_t>& facts, const runtime::SigningKey* key);
+
+}  // namespace fogline::trials
