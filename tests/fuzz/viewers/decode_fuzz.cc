@@ -34,7 +34,8 @@ const web::LcmTypes& OtherTypes() {
 /// A type, and a reader for each of its numbers.
 struct Reading {
   explicit Reading(const web::LcmTypes& all, const web::LcmStruct& of) : types(all), type(of) {
-    for (const std::string& path : test::NumericFields(types, type).paths()) {
+    const test::NumericFields numbers(types, type);
+    for (const std::string& path : numbers.paths()) {
       paths.push_back(web::ParsePath(path));
       readers.emplace_back(types, type, path);
     }
