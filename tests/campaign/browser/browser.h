@@ -100,7 +100,7 @@ class BrowserTest : public ::testing::Test {
          fmt::format("--window-size={},{}", window.width, window.height),
          fmt::format("--blink-settings=preferredColorScheme={}", static_cast<int>(scheme)),
          "--dump-dom", "file://" + file},
-        kPatience);
+        test::kPatience);
     return Found(outcome.out);
   }
 

@@ -43,6 +43,10 @@ class DriverInputsTest : public testing::Test {
         file_, kRun, [&](const driver_input_t& input) { sequences.push_back(input.sequence); });
     return sequences;
   }
+  std::vector<driver_input_t> Read() {
+    writer_.Flush();
+    return log::ReadDriverInputs(file_, kRun);
+  }
 
  private:
   test::ScratchFolder folder_;

@@ -12,7 +12,7 @@ runtime::ChannelSet Lost() {
   return set;
 }
 
-std::size_t At(Role role) { return static_cast<std::size_t>(role); }
+std::size_t PlaceOf(Role role) { return static_cast<std::size_t>(role); }
 
 TEST(CulpritTest, NamesNoRoleIfNothingIsLost) {
   EXPECT_EQ(runtime::FindCulprit({}, {}), std::nullopt);
@@ -33,23 +33,23 @@ TEST(CulpritTest, BlamesTheMostUpstreamOfSeveral) {
 
 TEST(CulpritTest, PassesTheBlameUpAsFarAsRolesReportLostInputs) {
   runtime::LostByRole reported{};
-  reported[At(Role::kAcc)] = Lost<track_t>();
-  reported[At(Role::kFusion)] = Lost<radar_t>();
+  reported[PlaceOf(Role::kAcc)] = Lost<track_t>();
+  reported[PlaceOf(Role::kFusion)] = Lost<radar_t>();
   EXPECT_EQ(runtime::FindCulprit(Lost<accel_command_t>(), reported),
             (runtime::Culprit{Role::kRadar, IndexOf<radar_t>()}));
 }
 
 TEST(CulpritTest, BlamesARoleThatReportsNothing) {
   runtime::LostByRole reported{};
-  reported[At(Role::kFusion)] = Lost<radar_t>();
+  reported[PlaceOf(Role::kFusion)] = Lost<radar_t>();
   EXPECT_EQ(runtime::FindCulprit(Lost<accel_command_t>(), reported),
             (runtime::Culprit{Role::kAcc, IndexOf<accel_command_t>()}));
 }
 
 TEST(CulpritTest, EndsWhereACircleCloses) {
   runtime::LostByRole reported{};
-  reported[At(Role::kArbitrator)] = Lost<ego_t>();
-  reported[At(Role::kWorld)] = Lost<arbitration_t>();
+  reported[PlaceOf(Role::kArbitrator)] = Lost<ego_t>();
+  reported[PlaceOf(Role::kWorld)] = Lost<arbitration_t>();
   const auto culprit = runtime::FindCulprit(Lost<arbitration_t>(), reported);
   EXPECT_EQ(culprit, (runtime::Culprit{Role::kWorld, IndexOf<ego_t>()}));
 }
