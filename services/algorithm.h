@@ -19,9 +19,9 @@
 //     static bool UsesLiveInput(const Scenario& scenario);  // whether the input is used
 //     void SetLiveInput(const driver_input_t* input);       // if so, called before each Step
 //
-// Only a run in real time has a live input. SetLiveInput gets the newest message; nullptr if nobody
-// is there (services/runtime/seat/seat_gate.h). The output of the algorithm names the message,
-// so a replay can find it in the log.
+// Only a run in real time has a live input. SetLiveInput gets the newest message, or nullptr if no
+// person is there (services/runtime/seat/seat_gate.h). The output of the algorithm names the
+// message, so a replay can find it in the log.
 #pragma once
 
 #include <concepts>

@@ -46,8 +46,8 @@ struct PersonSection {
                 "our choice, because air, tyres and the drag of the engine slow a car by about "
                 "this much at 25 m/s");
   FOGLINE_FIELD(double, deadman_s, 0.3, {0.1, 5, "s"},
-                "Without a DRIVER_INPUT for this time, nobody drives: readiness 0, pedals "
-                "released.",
+                "Without a DRIVER_INPUT for this time, the seat counts as empty: readiness 0, "
+                "pedals released.",
                 "our choice, because a seat sends at least every 50 ms, so six messages in a row "
                 "are then missing");
   FOGLINE_FIELD(TakeOverBy, take_over_by, TakeOverBy::kEither,

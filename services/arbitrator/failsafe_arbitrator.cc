@@ -85,8 +85,8 @@ void FailsafeArbitrator::Regular(const ArbitratorInputs& inputs, Offer automatio
                             UsableOrNone(inputs.automation), UsableOrNone(inputs.driver));
 }
 
-// A person may be gone although the driver's process sends its messages: nobody sits at a seat, or
-// the seat is silent. The readiness then is 0. At the start of the run the first input of the
+// A person may be gone although the driver's process sends its messages: the seat is empty or
+// silent. The readiness is then 0. At the start of the run the first input of the
 // person may not have come yet.
 Offer FailsafeArbitrator::HumanOffer(std::int64_t step, const ArbitratorInputs& inputs) const {
   const Offer offer = OfferOf(inputs.driver.state);

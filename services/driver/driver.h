@@ -34,7 +34,7 @@ class Driver {
 
   /// Whether a person drives. SetLiveInput() is then called before every Step().
   static bool UsesLiveInput(const Scenario& scenario) { return scenario.person.drives; }
-  /// Takes what the person does; nullptr: nobody is there. The next offer is a function of this
+  /// Takes what the person does; nullptr: no person is there. The next offer is a function of this
   /// input alone (services/models/driver/pedal_response.h). Without a person the pedals are
   /// released, and the readiness is 0.
   void SetLiveInput(const driver_input_t* input);

@@ -10,8 +10,8 @@
 namespace fogline::runtime {
 
 /// The seat whose newest message is present and at most `deadman` old has the driver. While a seat
-/// has the driver, the messages of other seats are refused. When it is silent or nobody sits there,
-/// the next message of a person at any seat counts.
+/// has the driver, the messages of other seats are refused. When this seat is silent or empty, the
+/// next message of a person at any seat counts.
 ///
 /// The class reads no clock. So tests can give it any times.
 class SeatGate {
@@ -32,7 +32,7 @@ class SeatGate {
     return nullptr;
   }
 
-  /// The newest input; nullptr if nobody is there. The pointer is valid until the next Take().
+  /// The newest input; nullptr if no person is there. The pointer is valid until the next Take().
   const driver_input_t* Newest(TimePoint now) const {
     const bool there = newest_ && newest_->present != 0 && now - heard_ < deadman_;
     return there ? &*newest_ : nullptr;

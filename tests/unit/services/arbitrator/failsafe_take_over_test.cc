@@ -144,7 +144,7 @@ TEST_F(FailsafeTakeOverTest, LetsALateDriverEndTheManoeuvre) {
   EXPECT_EQ(arbitrator_.minimal_risk(), 0);
 }
 
-/// A person drives. The driver's process sends its messages also when nobody is there; the
+/// A person drives. The driver's process sends its messages also when no person is there; the
 /// readiness is then 0.
 class FailsafePersonTest : public FailsafeTakeOverTest {
  protected:
@@ -181,7 +181,7 @@ TEST_F(FailsafePersonTest, KeepsNoAuthorityWhenHeHasGone) {
   EXPECT_EQ(last_.lambda_human, 0);
 }
 
-TEST_F(FailsafePersonTest, LetsTheAutomationDriveWhileNobodyIsThereAndNoneIsWanted) {
+TEST_F(FailsafePersonTest, LetsTheAutomationDriveWhileTheSeatIsEmptyAndNoPersonIsWanted) {
   Agree();
   Leave();
   for (int k = 0; k < 100; ++k) {
@@ -191,7 +191,7 @@ TEST_F(FailsafePersonTest, LetsTheAutomationDriveWhileNobodyIsThereAndNoneIsWant
   EXPECT_NE(arbitrator_.fallback(), "");
 }
 
-TEST_F(FailsafePersonTest, IsAskedAlsoWhenNobodyIsThereAndThenTheCarStops) {
+TEST_F(FailsafePersonTest, IsAskedAlsoWhenTheSeatIsEmptyAndThenTheCarStops) {
   Leave();
   EXPECT_EQ(Step().mode, arbitration_t::REQUEST);
   StepUntil(arbitration_t::MRM_COMFORT);
@@ -199,7 +199,7 @@ TEST_F(FailsafePersonTest, IsAskedAlsoWhenNobodyIsThereAndThenTheCarStops) {
   EXPECT_EQ(last_.lambda_human, 0);
 }
 
-TEST_F(FailsafePersonTest, StopsWhenTheAutomationIsLostAndNobodyIsThere) {
+TEST_F(FailsafePersonTest, StopsWhenTheAutomationIsLostAndTheSeatIsEmpty) {
   TakeOver();
   Leave();
   inputs_.automation.state = InputState::kLost;

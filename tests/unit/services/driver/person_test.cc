@@ -51,7 +51,7 @@ TEST(PersonTest, CommandsWhatThePedalsSayAndNamesTheInput) {
   EXPECT_EQ(command.input_sequence, 7);
 }
 
-TEST(PersonTest, IsNotReadyAndReleasesThePedalsWhenNobodyIsThere) {
+TEST(PersonTest, IsNotReadyAndReleasesThePedalsWhenTheSeatIsEmpty) {
   const Scenario scenario = WithPerson();
   constexpr std::int32_t kBoth = 3;
   driver_input_t absent = Input(1, 1, kBoth);

@@ -94,7 +94,7 @@ TEST(InputTimesTest, BelongToTheLastRequest) {
   EXPECT_EQ(requests[1].first_movement_time_s, 0.5);
 }
 
-TEST(InputTimesTest, DoNotCountPedalsWhileNobodyIsThere) {
+TEST(InputTimesTest, DoNotCountPedalsWhileTheSeatIsEmpty) {
   const auto requests = After({{.time_s = 1.5, .brake = 1, .present = false}});
   EXPECT_EQ(requests[0].first_movement_time_s, std::nullopt);
   EXPECT_EQ(requests[0].pedal_on_time_s, std::nullopt);

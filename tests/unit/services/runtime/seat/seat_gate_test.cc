@@ -21,7 +21,7 @@ class SeatGateTest : public testing::Test {
     input.present = present ? 1 : 0;
     return input;
   }
-  /// The sequence of the newest input; -1 if nobody is there.
+  /// The sequence of the newest input; -1 if no person is there.
   std::int64_t Newest() const {
     const driver_input_t* input = gate_.Newest(now_);
     return input == nullptr ? -1 : input->sequence;
@@ -31,7 +31,7 @@ class SeatGateTest : public testing::Test {
   TimePoint now_ = TimePoint() + std::chrono::hours(1);
 };
 
-TEST_F(SeatGateTest, HasNobodyBeforeTheFirstInput) { EXPECT_EQ(Newest(), -1); }
+TEST_F(SeatGateTest, IsEmptyBeforeTheFirstInput) { EXPECT_EQ(Newest(), -1); }
 
 TEST_F(SeatGateTest, HasTheNewestInputOfItsSeat) {
   EXPECT_EQ(gate_.Take(Input(1, 0), now_), nullptr);
@@ -41,7 +41,7 @@ TEST_F(SeatGateTest, HasTheNewestInputOfItsSeat) {
   EXPECT_EQ(Newest(), 5);
 }
 
-TEST_F(SeatGateTest, HasNobodyAfterASilenceAsLongAsTheDeadman) {
+TEST_F(SeatGateTest, IsEmptyAfterASilenceAsLongAsTheDeadman) {
   gate_.Take(Input(1, 0), now_);
   now_ += kDeadman - milliseconds(1);
   EXPECT_EQ(Newest(), 0);
@@ -61,7 +61,7 @@ TEST_F(SeatGateTest, IsNotKeptAwakeByRepetitions) {
   EXPECT_EQ(Newest(), -1);
 }
 
-TEST_F(SeatGateTest, HasNobodyWhenTheSeatSaysSo) {
+TEST_F(SeatGateTest, IsEmptyWhenTheSeatSaysSo) {
   gate_.Take(Input(1, 0), now_);
   EXPECT_EQ(gate_.Take(Input(1, 1, false), now_), nullptr);
   EXPECT_EQ(Newest(), -1);
@@ -80,7 +80,7 @@ TEST_F(SeatGateTest, RefusesASecondSeatWhileTheFirstHasTheDriver) {
 TEST_F(SeatGateTest, GivesTheDriverToAnotherSeatAtOnceWhenTheFirstIsEmpty) {
   gate_.Take(Input(1, 0), now_);
   gate_.Take(Input(1, 1, false), now_);
-  EXPECT_EQ(gate_.Take(Input(2, 0, false), now_), nullptr) << "nobody sits there either";
+  EXPECT_EQ(gate_.Take(Input(2, 0, false), now_), nullptr) << "this seat is empty, too";
   EXPECT_EQ(Newest(), -1);
   EXPECT_EQ(gate_.Take(Input(2, 1), now_), nullptr);
   EXPECT_EQ(Newest(), 1);
