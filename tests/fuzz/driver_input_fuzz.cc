@@ -27,7 +27,7 @@ void DemandWithinLimits(const driver_command_t& command, const PersonSection& pe
   if (command.input_instance != 0) return;
   Demand(command.readiness == 0 && command.input_sequence == -1 && !command.acknowledged &&
              !command.gives_back && command.acceleration_mps2 == -person.coasting_mps2,
-         "nobody does nothing");
+         "an empty seat does nothing");
 }
 
 void Play(Cutter& cutter) {

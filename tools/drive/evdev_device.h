@@ -25,8 +25,8 @@ struct DeviceNames {
 };
 
 /// A pedal counts as released until its axis has moved, because wheels report wrong values before.
-/// When the device is unplugged, nobody is present; when it is plugged in again, it is opened
-/// again.
+/// While the device is unplugged, no person is present. When the device is plugged in again, it is
+/// opened again.
 class EvdevDevice final : public PedalSource {
  public:
   /// @throws InputError if the device cannot be read, or has no pedals

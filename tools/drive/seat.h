@@ -43,7 +43,7 @@ class Seat {
  public:
   Seat(const std::string& url, std::int64_t run_id, const runtime::TrafficOptions& traffic,
        std::unique_ptr<PedalSource> source);
-  /// Says that nobody drives any more, and ends the thread.
+  /// Says that no person drives any more, and ends the thread.
   ~Seat();
   Seat(const Seat&) = delete;
   Seat& operator=(const Seat&) = delete;

@@ -41,7 +41,7 @@ PageSeat::PageSeat(const std::string& url, const runtime::TrafficOptions& traffi
   const std::vector<std::string> lines = LinesOf(output.read, 2, kSeatLimit);
   if (lines.size() < 2) {
     End();
-    throw std::runtime_error("fogline-web does not listen, so nobody can drive at a page");
+    throw std::runtime_error("fogline-web does not listen, so no person can drive at a page");
   }
   drive_address_ = lines[0];
   view_address_ = lines[1];
@@ -59,7 +59,7 @@ bool PageSeat::WaitForPerson() {
   });
   while (!present && !WasInterrupted()) {
     bus.Wait(kLook);
-    if (!Runs()) throw std::runtime_error("nobody can drive at a page that is not there");
+    if (!Runs()) throw std::runtime_error("the page is gone, so no person can drive");
   }
   return present;
 }
@@ -68,7 +68,7 @@ bool PageSeat::Runs() {
   int status = 0;
   if (pid_ >= 0 && waitpid(pid_, &status, WNOHANG) == pid_) {
     pid_ = -1;
-    Complain("fogline-web " + HowItEnded(status) + "; nobody can drive any more");
+    Complain("fogline-web " + HowItEnded(status) + "; no person can drive any more");
   }
   return pid_ >= 0;
 }

@@ -21,7 +21,7 @@ struct SessionOptions {
   double speed = 1;                    // simulated seconds per second
   std::vector<std::string> overrides;  // of every trial, such as /person/drives=true
   bool breaks = true;                  // false: no break is longer than the person wants
-  /// Makes the pedals of the person who drives, for each run. Empty: nobody sits at this program.
+  /// Makes the pedals of the person who drives, for each run. Empty: this program has no seat.
   std::function<std::unique_ptr<drive::PedalSource>(const PersonSection&)> pedals;
   runner::ExperimentOptions run;  // transport and traffic of each run
 };

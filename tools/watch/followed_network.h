@@ -1,5 +1,5 @@
-// The network that a program observes: the one of its URL, and, if nobody gave it a URL, also that
-// of the newest run that is announced on this machine. It only listens.
+// The network that a program observes: the one of its URL. Without a URL the program also observes
+// the network of the newest run that is announced on this machine. It only listens.
 #pragma once
 
 #include <array>

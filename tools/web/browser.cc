@@ -58,7 +58,7 @@ void OpenBrowser(const std::string& url) {
   const std::array<char*, 3> arguments{program.data(), address.data(), nullptr};
   const pid_t child = fork();
   if (child == 0) {
-    // The browser becomes a child of init, so nobody has to wait for its end.
+    // The browser becomes a child of init, so this program need not wait for its end.
     if (fork() == 0) Become(program.c_str(), arguments.data());
     _exit(0);
   }

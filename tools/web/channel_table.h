@@ -25,7 +25,7 @@ struct KnownChannel {
 /// when they are heard.
 class ChannelTable {
  public:
-  /// The most other channels. Anybody on the network can invent names.
+  /// The most other channels. Any program on the network can invent names.
   static constexpr std::size_t kMostOthers = 4096;
 
   /// The number of a channel. A new channel is added.

@@ -43,7 +43,8 @@ void RunTracker::HearRun(runtime::Bytes bytes, TimePoint now) {
 }
 
 void RunTracker::Show(RunFacts run) {
-  // The text may be from anybody. Our own parser bounds its depth before others recurse into it.
+  // Any program may have sent the text. Our own parser bounds its depth before others recurse into
+  // it.
   DiagnosticList mistakes;
   std::string text = ParseJson(run.scenario_text, 0, mistakes) ? RunText(run) : "";
   if (text.empty()) {

@@ -47,14 +47,14 @@ constexpr const char* kExplanation =
 newest run that is announced on this machine. With LOG it shows a recorded run, also one
 that was cut off. It prints the address of the page, and opens it in a browser if there
 is a screen. Ctrl-C ends it. Any number of people may look, up to 64 connections at a
-time. Nobody who looks can change a run: the program sends no message to it.
+time. A viewer cannot change a run: the program sends no message to it.
 
 With --seat one person can drive, at the page /drive (docs/drive.md). The program then prints
 two addresses: first the one of this page, then the one for those who look. It sends what the
 person does to the run, and nothing else.
 
 Only this machine can see the page, unless --listen names an address for others. The
-printed address then has a token. Whoever has the address can see everything; the
+printed address then has a token. A person with the address can see everything; the
 traffic is not encrypted, so listen only on a network that you trust, or use ssh -L.
 
 The WebSocket at /ws is for other programs, too: docs/view.md describes its protocol.
@@ -118,7 +118,7 @@ void CheckTogether(const ViewArguments& arguments) {
     throw InputError("error: --key: for the messages of a network; a log has no signatures");
   }
   if (!live && arguments.seat) {
-    throw InputError("error: --seat: nobody can drive in a log; leave out LOG");
+    throw InputError("error: --seat: no person can drive in a log; leave out LOG");
   }
   for (const std::string& origin : arguments.origins) {
     if (IsOrigin(origin)) continue;

@@ -43,5 +43,5 @@ test("the new address of a server that was started again works in the same tab",
   assert.ok(!page.url().includes("token"), page.url());
   await page.reload();
   await shows(page, 0);
-  page.trouble = page.trouble.filter((words) => !words.includes("WebSocket"));  // while nobody listened
+  page.trouble = page.trouble.filter((words) => !words.includes("WebSocket"));  // while no server listened
 });

@@ -1,5 +1,5 @@
-// The participant's page: what a person does there, and that nobody drives when nobody is there.
-// The tests play the person; DRIVER_INPUT is read from the network.
+// The participant's page: the inputs of a person, and the empty seat when no person is there. The
+// tests play the person, and read DRIVER_INPUT from the network.
 import assert from "node:assert/strict";
 import {test} from "node:test";
 
@@ -95,7 +95,7 @@ test("a wheel is calibrated in the page, drives, and is known again", async (t) 
   await run.next(({throttle, present}) => present && throttle === 1, "the inverted throttle");
 });
 
-test("a gamepad with the standard mapping drives at once; unplugged, nobody drives", async (t) => {
+test("a gamepad with the standard mapping drives at once; unplugged, no person drives", async (t) => {
   const {run, page} = await seated(t, {pads: true});
   const pad = {id: "Test Pad", mapping: "standard", axes: [0, 0, 0, 0]};
   await page.evaluate(() => localStorage.setItem("fogline.drive.device", "Test Pad"));
@@ -121,7 +121,7 @@ test("a gamepad with the standard mapping drives at once; unplugged, nobody driv
   assert.match(await page.locator("#away").innerText(), /unplugged/);
 });
 
-/** Somebody brakes with a key, then something happens, and then nobody drives. */
+/** A person brakes with a key, then something happens, and then no person drives. */
 async function leaves(t, happens, why) {
   const all = await seated(t);
   const {run, page} = all;
@@ -129,7 +129,7 @@ async function leaves(t, happens, why) {
   await drives(page, true);
   await page.keyboard.down("ArrowDown");
   await run.next(({brake}) => brake === 1, "the brake");
-  const away = run.next(({present}) => !present, "that nobody drives");
+  const away = run.next(({present}) => !present, "that no person drives");
   await happens(all);
   const {message} = await away;
   assert.deepEqual([message.brake, message.throttle, message.buttons], [0, 0, 0]);
@@ -150,7 +150,7 @@ test("a window without the keyboard does not drive, and comes back with released
   const {page, run} = await leaves(t, ({page: one}) => one.evaluate(() => { dispatchEvent(new Event("blur")); }),
                                    "Another window");
   await page.evaluate(() => { dispatchEvent(new Event("focus")); });
-  const back = await run.next(({present}) => present, "that somebody is back");
+  const back = await run.next(({present}) => present, "that the person is back");
   assert.equal(back.message.brake, 0);
 });
 
@@ -179,7 +179,7 @@ test("the second driver is told that the seat is taken, and may ask again", asyn
   const second = await open(t, started, drive);
   await begin(second);
   await second.waitForFunction(() => foglineDrive.state === "taken");
-  await second.waitForFunction(() => document.getElementById("away").textContent.includes("Somebody else"));
+  await second.waitForFunction(() => document.getElementById("away").textContent.includes("Another person"));
   await second.keyboard.down("ArrowDown");
   await drives(second, false);
   assert.equal(run.heard.some(({message}) => message.brake > 0), false);

@@ -151,7 +151,7 @@ for (const [device, make] of [["the keys", keys], ["a wheel", wheel]]) {
   });
 }
 
-/** The person drives; then something happens, and the run notices that nobody is there. */
+/** The person drives; then something happens, and the run notices that no person is there. */
 async function leavesTheCar(t, happens) {
   const {page, log, run} = await drive(t, {"/arbitrator/threshold": 0, "/steps": 600});
   await begin(page);

@@ -21,7 +21,7 @@ class Listener {
   void Hear(const driver_input_t& message, TimePoint now) {
     Demand(runtime::WrongIn(message) == nullptr, "the driver role would take the message");
     Demand(message.present || (message.throttle == 0 && message.brake == 0 && message.buttons == 0),
-           "nobody presses a pedal or a button");
+           "an empty seat presses no pedal and no button");
     Demand(message.sequence == next_++, "messages are numbered from 0");
     Demand(message.time_us >= 0, "an input has a time");
     Demand(static_cast<std::size_t>(message.num_axes) == message.axes.size(),
@@ -80,7 +80,7 @@ void DemandSoundSeat(runtime::Bytes input) {
       }
       case 1:
         Demand(seat.Sit(client, now) == seat.Has(client), "who may sit has the seat");
-        Demand(seat.client().has_value(), "somebody has the seat");
+        Demand(seat.client().has_value(), "a client has the seat");
         break;
       case 2: {
         const bool had = seat.Has(client);

@@ -31,7 +31,7 @@ class DeadmanInRealtimeTest : public testing::Test {
     EXPECT_GE(commands_.driver.input_sequence, 0);
   }
 
-  /// Expects that nobody drives any more, and that the host stops by itself.
+  /// Expects that no person drives any more, and that the host stops by itself.
   /// @return the time until then, in s
   double ExpectTheFallback() {
     const double after_s = commands_.WaitFor([&] { return commands_.driver.readiness == 0; });
@@ -71,7 +71,7 @@ TEST_F(DeadmanInRealtimeTest, AKilledSeatIsNoticedAfterTheDeadmansTime) {
   EXPECT_LT(after_s, kDeadman_s + kSlack_s);
 }
 
-// An unplugged device: the seat still sends messages, which say that nobody is there.
+// An unplugged device: the seat still sends messages. They say that no person is there.
 TEST_F(DeadmanInRealtimeTest, AnUnpluggedDeviceCountsAtOnce) {
   Background seat(SeatCommand(run_.url(), "0 0.4 0 1 1; 4 0.4 0 1 0"));
   WaitUntilThePersonDrives();

@@ -125,7 +125,7 @@ TEST_F(ExperimentRealtimeTest, ASessionThatIsKilledInARunLosesNothing) {
     // Participant 2: the second run is killed while it is under way.
     Background session(Session(2));
     const std::string log = results_ + "/participant-02/trial-2-high.lcm";
-    // The recorder itself has written the begin of the trial: nobody adds it to this log later.
+    // The recorder itself has written the begin of the trial: no program adds it to this log later.
     ASSERT_TRUE(ComesToHave("TRIAL", log)) << session.Err();
     session.Signal(SIGKILL);
     session.Wait();

@@ -101,7 +101,7 @@ TEST_F(PacketTapTest, HearsSeveralSendersAndTellsThemApart) {
 }
 
 TEST_F(PacketTapTest, TellsItsOwnOverflowFromLossOnTheNetwork) {
-  // GIVEN more packets than the tap's buffer holds, while nobody reads them
+  // GIVEN more packets than the tap's buffer holds, while no process reads them
   constexpr std::uint32_t kFlood = 60'000;
   const std::int64_t dropped_before = DroppedByKernel();
   const NumberedSender sender(url_);

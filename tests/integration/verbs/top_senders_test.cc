@@ -19,7 +19,7 @@ json SenderOn(const json& document, const std::string& channel) {
       if (heard == channel) return sender;
     }
   }
-  ADD_FAILURE() << "nobody has sent on " << channel << " in " << document["senders"];
+  ADD_FAILURE() << "no sender has sent on " << channel << " in " << document["senders"];
   return {};
 }
 

@@ -17,7 +17,7 @@ using nlohmann::json;
 using testing::HasSubstr;
 using testing::Not;
 
-/// Shows a network on which nobody speaks.
+/// Shows a network on which no program sends.
 class ViewAccessTest : public testing::Test {
  protected:
   void SetUp() override { ASSERT_NE(viewed_.port(), 0) << viewed_.process().Err(); }

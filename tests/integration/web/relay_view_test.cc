@@ -75,7 +75,7 @@ TEST(RelayViewTest, AnswersItsClientsWhileTheRelayDoesNotAnswer) {
   ReceiveOp(client, "hello");
   relay.process().Signal(SIGKILL);
   relay.process().Wait();
-  // In place of the relay: connections are taken, and nobody answers.
+  // In place of the relay: connections are taken, and not answered.
   asio::io_context context;
   const asio::ip::tcp::acceptor silent(context, {asio::ip::address_v4::loopback(), relay.port()});
   std::vector<double> took_s;

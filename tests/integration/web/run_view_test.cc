@@ -36,7 +36,7 @@ json LogAt(std::uint16_t port) {
     try {
       WebClient page(port);
       if (ReceiveOp(page, "hello")["mode"] == "log") return ReceiveOp(page, "log");
-    } catch (const std::exception&) {  // nobody listens between the two programs
+    } catch (const std::exception&) {  // no server between the two programs
     }
   }
   return json::object();

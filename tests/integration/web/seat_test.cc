@@ -161,7 +161,7 @@ TEST_F(SeatPageTest, ASilentPageDrivesNoMoreAndIsTold) {
   ReceiveOp(page, "seat");  // yours
   EXPECT_EQ(ReceiveOp(page, "seat")["state"], "lost");
   EXPECT_TRUE(viewed_.process().WaitForErr("its page is silent"));
-  // From then on the run hears every 50 ms that nobody drives.
+  // From then on the run hears every 50 ms that no person drives.
   const driver_input_t first = network_.Hear(IsAway);
   const driver_input_t second = network_.Hear(
       [&](const driver_input_t& input) { return input.sequence > first.sequence + 5; });

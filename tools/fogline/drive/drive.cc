@@ -44,8 +44,9 @@ trigger throttle, left trigger brake, A take over, B give back), a wheel with pe
 a keyboard. The program needs the right to read the device. There is no force feedback.
 A pedal counts as released until it has moved once.
 
-If the device is unplugged, or its messages stop for /person/deadman_s, nobody drives:
-the pedals count as released, and the fallbacks of real time do their work.
+The seat counts as empty if the device is unplugged, or its messages stop for
+/person/deadman_s. The pedals then count as released, and the fallbacks of real time do
+their work.
 
 Examples:
   fogline drive scenario/drive.json

@@ -30,7 +30,7 @@ class Desk {
   virtual ~Desk() = default;
 
   /// Returns when the run may begin.
-  /// @throws Interrupted; std::runtime_error if nobody can answer any more
+  /// @throws Interrupted; std::runtime_error if no answer can come any more
   virtual void WaitForBegin(const Next& next) = 0;
   /// The run has a network, and begins. The speaker takes markers until RunEnded().
   virtual void RunBegins(const std::string& url, Speaker& speaker) = 0;

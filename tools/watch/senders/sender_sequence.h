@@ -1,6 +1,5 @@
-// Counts which messages of a sender arrived, by LCM's own numbers. It works for any LCM program:
-// each LCM instance numbers its messages, and nobody else looks at these numbers. The caller passes
-// packets and times in.
+// Counts the messages of a sender that arrived, by LCM's own numbers. It works for any LCM program,
+// because each LCM instance numbers its messages. The caller passes packets and times in.
 #pragma once
 
 #include <bitset>
@@ -43,8 +42,8 @@ class SenderSequence {
   /// RTP (RFC 3550, appendix A.1). If the numbers went ahead, those between were lost. If they went
   /// back, the sender has begun again, and nothing was lost.
   static constexpr std::int64_t kMaxJump = 3000;
-  /// If the numbers went ahead further than this, the sender has begun again, too: nobody sends so
-  /// many messages while nothing of them arrives.
+  /// If the numbers went ahead further than this, the sender has begun again, too: no sender sends
+  /// so many messages of which none arrives.
   static constexpr std::int64_t kMaxLost = 1'000'000;
   /// After this time without a newer message, known numbers mean that the sender has begun again.
   static constexpr Duration kBeginsAgain = milliseconds(1000);

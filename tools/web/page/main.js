@@ -193,7 +193,7 @@ class Page {
     this.showConnection("open");
   }
 
-  /** Makes all charts anew: another run, other channels, or other colours. */
+  /** Makes all charts again: another run, other channels, or other colours. */
   build() {
     if (!this.store || (!this.isLive && !this.log)) return;
     this.generation = this.store.generation;

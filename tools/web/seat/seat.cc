@@ -34,13 +34,13 @@ std::optional<driver_input_t> Seat::Leave(std::uint64_t client, TimePoint now) {
   if (!Has(client)) return std::nullopt;
   client_.reset();
   silent_ = true;
-  return Nobody(now);
+  return EmptySeat(now);
 }
 
 Seat::Taken Seat::Take(std::uint64_t client, const SeatInput& input, TimePoint now) {
   if (!Has(client)) return {.message = std::nullopt, .why = "another page has the seat"};
   heard_at_ = now;
-  // That nobody drives any more is never kept back.
+  // The message that the person has left is never refused.
   const bool leaves = message_.present && !input.present;
   if (!limiter_.Take(now) && !leaves) {
     return {.message = std::nullopt,
@@ -65,7 +65,7 @@ std::optional<driver_input_t> Seat::Look(TimePoint now) {
   if (!silent_) return std::nullopt;
   // The first message after a silence does not wait.
   if (!message_.present && now - sent_at_ < runtime::kInputEvery) return std::nullopt;
-  return Nobody(now);
+  return EmptySeat(now);
 }
 
 TimePoint Seat::next_look() const {
@@ -78,7 +78,7 @@ driver_input_t Seat::Next(TimePoint now) {
   return message_;
 }
 
-driver_input_t Seat::Nobody(TimePoint now) {
+driver_input_t Seat::EmptySeat(TimePoint now) {
   message_.present = false;
   message_.throttle = 0;
   message_.brake = 0;

@@ -1,7 +1,8 @@
-// Who drives at the page, and what the run is told about it: the rules, without sockets and clocks.
+// The rules of the seat at the page: which client drives, and which messages the run gets. The
+// class has no sockets and reads no clock.
 //
-// One client has the seat. Each of its inputs becomes a DRIVER_INPUT. While nobody has the seat, or
-// while the client that has it is silent, the run is told every kInputEvery that nobody drives: so
+// One client has the seat. Each of its inputs becomes a DRIVER_INPUT. While no client has the seat,
+// or the client that has it is silent, the run is told every kInputEvery that no person drives. So
 // a run that hears nothing knows that something is wrong.
 #pragma once
 
@@ -32,7 +33,7 @@ class Seat {
 
   /// A client wants to drive. @return whether it has the seat now; otherwise another one has it
   bool Sit(std::uint64_t client, TimePoint now);
-  /// A client leaves. @return the message that nobody drives any more, if it had the seat
+  /// A client leaves. @return the message that no person drives any more, if it had the seat
   std::optional<driver_input_t> Leave(std::uint64_t client, TimePoint now);
 
   struct Taken {
@@ -41,19 +42,20 @@ class Seat {
   };
   Taken Take(std::uint64_t client, const SeatInput& input, TimePoint now);
 
-  /// The message that is due because nobody drives, if one is due.
+  /// The message that is due because no person drives, if one is due.
   std::optional<driver_input_t> Look(TimePoint now);
   /// The next time at which Look() may have a message.
   TimePoint next_look() const;
 
   bool Has(std::uint64_t client) const { return client_ == client; }
   std::optional<std::uint64_t> client() const { return client_; }
-  /// Whether somebody has the seat, but is silent.
+  /// Whether a client has the seat, but is silent.
   bool lost() const { return client_ && silent_; }
 
  private:
   driver_input_t Next(TimePoint now);
-  driver_input_t Nobody(TimePoint now);
+  /// The next message, which says that no person drives.
+  driver_input_t EmptySeat(TimePoint now);
 
   driver_input_t message_{};  // the last one
   std::int64_t sent_ = 0;     // messages

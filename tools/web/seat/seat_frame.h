@@ -14,7 +14,7 @@ namespace fogline::web {
 struct SeatInput {
   std::int64_t sequence = 0;  // the page's own number
   double age_ms = 0;          // time since the newest input of the device
-  bool present = false;       // false: nobody drives
+  bool present = false;       // false: no person drives
   double throttle = 0;        // [0, 1]
   double brake = 0;           // [0, 1]
   std::vector<double> axes;   // of the device, in [-1, 1]

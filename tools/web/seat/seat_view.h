@@ -30,7 +30,7 @@ class SeatView final : public View {
   SeatView(boost::asio::io_context& context, LiveView& live,
            std::optional<runtime::SigningKey> key);
 
-  /// The context then has no more work of this view. Tells the run that nobody drives.
+  /// The context then has no more work of this view. Tells the run that no person drives.
   void Stop();
 
   void Opened(Client& client) override;

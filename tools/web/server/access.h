@@ -39,7 +39,7 @@ class Access {
     std::uint16_t port = 0;            // the port on which it listens
     std::string token;                 // "": no token is needed
     std::vector<std::string> origins;  // further origins that may open a WebSocket
-    bool seat = false;                 // whether somebody may drive
+    bool seat = false;                 // whether a person may drive
     std::string driver_token;          // in place of `token`, for the one who drives
   };
   explicit Access(Rules rules);

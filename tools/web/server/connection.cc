@@ -44,7 +44,7 @@ std::string_view TextOf(beast::string_view text) { return {text.data(), text.siz
 
 /// The first subprotocol of the header that the server knows. The header may name several.
 /// @return kViewProtocol if the header is empty; "" if the server knows none of them
-/// @param seat whether somebody may drive
+/// @param seat whether a person may drive
 std::string_view ChooseProtocol(std::string_view header, bool seat) {
   if (header.empty()) return kViewProtocol;
   for (const auto& token : http::token_list(beast::string_view(header.data(), header.size()))) {

@@ -32,7 +32,7 @@ TEST_F(InputMakerTest, MakesSoundMessagesInOrder) {
   }
 }
 
-TEST_F(InputMakerTest, ReleasesPedalsAndButtonsWhenNobodyIsThere) {
+TEST_F(InputMakerTest, ReleasesPedalsAndButtonsWhenTheSeatIsEmpty) {
   const driver_input_t& input =
       Make({.present = false, .throttle = 1, .brake = 1, .axes = {}, .buttons = 3});
   EXPECT_FALSE(input.present);

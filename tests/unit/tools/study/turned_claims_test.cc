@@ -1,4 +1,4 @@
-// The claims of the studies with real runs: a claim that somebody turns around fails.
+// The claims of the studies with real runs: the opposite of a claim fails.
 #include <array>
 #include <set>
 #include <string>

@@ -128,7 +128,7 @@ TEST(RunTrackerTest, TellsEachEventOnceAndAllOfARunThatIsPlayedAgain) {
   run.Truth(40, true, kBegin);
   EXPECT_EQ(tracker.TakeEvents().size(), 1U);
   EXPECT_EQ(tracker.TakeEvents().size(), 0U);
-  // The run is played again, and has as many events as before, until somebody asks for them.
+  // The run is played again, and has as many events as the first time, until they are taken.
   run.Truth(0, false, kBegin);
   run.Truth(30, true, kBegin);
   const std::vector<RunEvent> again = tracker.TakeEvents();

@@ -5,7 +5,7 @@ export const SIDES = {
   automation: {words: "Automation drives", short: "automation"},
   human: {words: "The human drives", short: "human"},
   risk: {words: "Minimal risk manoeuvre", short: "minimal risk"},
-  unknown: {words: "Nobody has reported who drives", short: "unknown"},
+  unknown: {words: "It is not known who drives", short: "unknown"},
 };
 
 const MODES = [

@@ -75,7 +75,7 @@ export function calibrationOf(storage, {id, mapping}) {
     const kept = JSON.parse(storage.getItem(KEPT_UNDER + id));
     if (isComplete(kept)) return kept;
   } catch {
-    // Somebody else has written there, or the browser keeps nothing.
+    // Another program has written there, or the browser keeps nothing.
   }
   return mapping === "standard" ? structuredClone(STANDARD) : null;
 }

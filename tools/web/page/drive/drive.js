@@ -89,7 +89,7 @@ class Drive {
     this.set("begun", !this.person.begun);
   }
 
-  /** Sets what decides whether somebody drives, and tells it at once. */
+  /** Sets a condition of driving, such as "focused", and sends the new input at once. */
   set(name, value) {
     this.person.set(name, value);
     this.pump();

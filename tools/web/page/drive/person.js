@@ -1,5 +1,5 @@
 // What the person at the page does, as one input: keys, a gamepad or a wheel, buttons of the page,
-// and whether somebody is there at all. It knows no document.
+// and whether a person is there. It knows no document.
 
 import {isComplete, isDown, pedalValue} from "./calibration.js";
 import {Ramps} from "./ramps.js";
@@ -11,7 +11,7 @@ export const BUTTON_KEYS = {t: "take_over", g: "give_back"};
 // A button counts as down for at least this time, in which at least two messages go out. Otherwise
 // a short click could fall between two steps of the run.
 const LEAST_PRESS_MS = 120;
-// Raw values below this are noise of a device that nobody touches: analogue sticks rest within it.
+// Raw values below this are noise of a device that is not touched: analogue sticks rest within it.
 const NOISE = 0.01;
 
 /** "wheel" or "gamepad", by what the device calls itself. */
@@ -56,7 +56,7 @@ export class Person {
     this.calibration = calibration;
   }
 
-  /** All keys and buttons are up: nobody is there to hold them. */
+  /** Releases all keys and buttons: no person is there. */
   drop() {
     this.ramps.drop();
     this.down.clear();
@@ -71,7 +71,7 @@ export class Person {
 
   /** @param down whether the key goes down. @return whether the key does something */
   key(key, down, now_ms) {
-    if (this.whyAway() !== "") return false;  // and all keys are up when somebody comes back
+    if (this.whyAway() !== "") return false;  // and all keys are up when the person comes back
     const pedal = PEDAL_KEYS[key];
     const button = BUTTON_KEYS[key.toLowerCase()];
     if (pedal) {
@@ -109,7 +109,7 @@ export class Person {
     this.touched_ms = timestamp > 0 && timestamp <= now_ms ? timestamp : now_ms;
   }
 
-  /** Why nobody drives; "" if somebody does. */
+  /** Why the person does not drive; "" if the person drives. */
   whyAway() {
     if (!this.begun) return "not begun";
     if (!this.seated) return "no seat";

@@ -28,7 +28,7 @@ export class Ramps {
     this.held[pedal] = down;
   }
 
-  /** Releases both keys and both pedals at once: nobody is at the keyboard. */
+  /** Releases both keys and both pedals at once: no person is at the keyboard. */
   drop() {
     this.held = {throttle: false, brake: false};
     this.value = {throttle: 0, brake: 0};

@@ -50,7 +50,7 @@ export class SeatWire {
     };
   }
 
-  /** Connects anew, to ask for the seat once more. @param url perhaps with another token */
+  /** Connects again, to ask for the seat once more. @param url perhaps with another token */
   again(url = this.url) {
     this.url = url;
     const {socket} = this;

@@ -63,8 +63,8 @@ export class Sender {
 
   /**
    * Whether this input is to be sent now: each change, but not more often than every LEAST_GAP_MS,
-   * and without a change so often that no gap is longer than KEEP_ALIVE_MS. That nobody drives any
-   * more is said without delay.
+   * and without a change so often that no gap is longer than KEEP_ALIVE_MS. The first input without
+   * a person is sent without delay.
    */
   isDue(input, now_ms) {
     const passed_ms = now_ms - this.sent_ms;

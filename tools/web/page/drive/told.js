@@ -18,14 +18,14 @@ const TOLD = {
   EMERGENCY_BRAKING: "The car brakes in an emergency",
 };
 
-/** {side, words, asks, urgent} for a HOST_COMMAND; without one nobody has begun. */
+/** {side, words, asks, urgent} for a HOST_COMMAND; without one the drive has not begun. */
 export function told(command) {
   if (!command) return {side: "unknown", words: "The drive has not begun", asks: false, urgent: false};
   const {name, side, asks: waits = false, urgent = false} = modeOf(command.mode, command.lambda_human);
   const asks = waits && name !== "HANDOVER";  // then the person has answered
   const drives = side === "human" ? TOLD.HUMAN : TOLD.AUTOMATION;
   const words = name === "COLLISION_WARNING" ? `Collision warning. ${drives}`
-    : TOLD[name] ?? "Nobody has said who drives";
+    : TOLD[name] ?? "It is not known who drives";
   return {side, words, asks, urgent};
 }
 
@@ -37,7 +37,7 @@ export class Countdown {
 
   /**
    * @param asks whether HOST_COMMAND of this time asks; time_s of the run; lead_s of the scenario
-   * @return {left_s, share}, or null if nobody is asked
+   * @return {left_s, share}, or null if the person is not asked
    */
   see(asks, time_s, lead_s) {
     if (!asks) this.since_s = null;
@@ -50,11 +50,11 @@ export class Countdown {
 
 const WHY_AWAY = {
   "not begun": "Press “Begin” when you are ready.",
-  "no seat": "Somebody else drives.",
-  hidden: "This page was hidden, so nobody drives.",
-  blurred: "Another window has the keyboard, so nobody drives. Click here to go on.",
-  busy: "A dialog is open, so nobody drives.",
-  unplugged: "The device is unplugged, so nobody drives. Plug it in, or choose another one.",
+  "no seat": "Another person drives.",
+  hidden: "This page was hidden, so you do not drive.",
+  blurred: "Another window has the keyboard, so you do not drive. Click here to go on.",
+  busy: "A dialog is open, so you do not drive.",
+  unplugged: "The device is unplugged, so you do not drive. Plug it in, or choose another one.",
   "not calibrated": "Calibrate the device first (button “Device”).",
 };
 

@@ -141,7 +141,7 @@ TEST(RobustnessTest, AHeadingThatFailsInOneSetIsNamedWithTheSet) {
   study::ClaimInSets claim = InSets(8);
   claim.sets[2] = ClaimWith(1, 0.1);
   EXPECT_EQ(VerdictsOf(claim)[2], InSet::kOpposite);
-  // Nobody expects it: the study is red, and names claim, set and outcome.
+  // The author does not expect it: the study is red, and names claim, set and outcome.
   const study::Claim surprise = OnFinding(Finding(), claim);
   EXPECT_EQ(surprise.hindrance, "set 3: \"It helps.\" is opposite");
   EXPECT_EQ(StateOf(surprise), report::ClaimState::kFails);

@@ -64,7 +64,7 @@ TEST(PageStateTest, AnAnswerFitsItsState) {
   EXPECT_EQ(why, "sleepiness needs a number from 1 to 9 in steps of 1");
 }
 
-TEST(PageStateTest, NobodyBeginsInABreak) {
+TEST(PageStateTest, NoRunBeginsInABreak) {
   PageState state(1);
   std::string why;
   state.Wait(NextRun(), 30);

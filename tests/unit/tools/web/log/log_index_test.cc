@@ -83,7 +83,7 @@ TEST_F(LogIndexTest, ShowsTheStepsBehindALostMessage) {
       [](log::EventLogWriter& writer, const log::Event& event, std::vector<std::uint8_t>& data) {
         const bool lost =
             event.channel == "LIDAR" && runtime::ReadInt64(data, runtime::kStepOffset) == 10;
-        // An event of a channel that nobody knows stands in for the lost one.
+        // An event of an unknown channel stands in for the lost one.
         if (lost) writer.Write("OTHER", event.utime, data);
         if (lost) data.assign(4, 0);
         return true;

@@ -29,7 +29,7 @@ class SeatTest : public testing::Test {
             .device = "G29",
             .latency_ms = 17};
   }
-  static void ExpectNobody(const std::optional<driver_input_t>& message) {
+  static void ExpectEmptySeat(const std::optional<driver_input_t>& message) {
     ASSERT_TRUE(message);
     EXPECT_FALSE(message->present);
     EXPECT_EQ(message->throttle, 0);
@@ -66,7 +66,7 @@ TEST_F(SeatTest, AnInputBecomesAMessage) {
 
 TEST_F(SeatTest, BeforeARunItHasNoStep) {
   const auto message = seat_.Look(At(0));
-  ExpectNobody(message);
+  ExpectEmptySeat(message);
   EXPECT_EQ(message->header.step, -1);
   EXPECT_EQ(message->latency_us, -1);
 }
@@ -85,7 +85,7 @@ TEST_F(SeatTest, OnlyOneClientDrives) {
 TEST_F(SeatTest, WhoLeavesReleasesThePedalsAtOnce) {
   seat_.Sit(kAnna, At(0));
   seat_.Take(kAnna, Brakes(), At(1));
-  ExpectNobody(seat_.Leave(kAnna, At(2)));
+  ExpectEmptySeat(seat_.Leave(kAnna, At(2)));
   EXPECT_TRUE(seat_.Sit(kBert, At(3)));
   EXPECT_EQ(seat_.Take(kBert, Brakes(), At(4)).message->sequence, 2);
 }
@@ -96,21 +96,21 @@ TEST_F(SeatTest, APageThatIsSilentFor300msDrivesNoMore) {
   EXPECT_EQ(seat_.next_look(), At(400));
   EXPECT_FALSE(seat_.Look(At(399)));
   EXPECT_FALSE(seat_.lost());
-  ExpectNobody(seat_.Look(At(400)));
+  ExpectEmptySeat(seat_.Look(At(400)));
   EXPECT_TRUE(seat_.lost());
   // Then every 50 ms.
   EXPECT_EQ(seat_.next_look(), At(450));
   EXPECT_FALSE(seat_.Look(At(449)));
-  ExpectNobody(seat_.Look(At(450)));
+  ExpectEmptySeat(seat_.Look(At(450)));
   // Its next input counts.
   EXPECT_TRUE(seat_.Take(kAnna, Brakes(), At(460)).message->present);
   EXPECT_FALSE(seat_.lost());
   EXPECT_FALSE(seat_.Look(At(500)));
 }
 
-TEST_F(SeatTest, WhileNobodyHasTheSeatItSaysSoEvery50ms) {
+TEST_F(SeatTest, WhileNoClientHasTheSeatItSaysSoEvery50ms) {
   for (int i = 0; i < 5; ++i) {
-    ExpectNobody(seat_.Look(At(50 * i)));
+    ExpectEmptySeat(seat_.Look(At(50 * i)));
     EXPECT_FALSE(seat_.Look(At(50 * i + 49)));
     EXPECT_EQ(seat_.next_look(), At(50 * (i + 1)));
   }
@@ -120,16 +120,16 @@ TEST_F(SeatTest, AClientThatSitsAndSaysNothingIsSilent) {
   seat_.Look(At(0));
   seat_.Sit(kAnna, At(10));
   EXPECT_FALSE(seat_.Look(At(300)));
-  ExpectNobody(seat_.Look(At(310)));
+  ExpectEmptySeat(seat_.Look(At(310)));
   EXPECT_TRUE(seat_.lost());
 }
 
-TEST_F(SeatTest, AnInputOfNobodyHasReleasedPedals) {
+TEST_F(SeatTest, AnInputWithoutAPersonHasReleasedPedals) {
   seat_.Sit(kAnna, At(0));
   SeatInput away = Brakes();
   away.present = false;
-  ExpectNobody(seat_.Take(kAnna, away, At(1)).message);
-  // It is no silence: the page says that nobody drives.
+  ExpectEmptySeat(seat_.Take(kAnna, away, At(1)).message);
+  // It is no silence: the page says that no person drives.
   EXPECT_FALSE(seat_.lost());
 }
 
@@ -145,11 +145,11 @@ TEST_F(SeatTest, TakesAtMost250InputsASecond) {
   EXPECT_GE(taken, 2500);
   EXPECT_LE(taken, 2500 + static_cast<int>(runtime::kMostInputsAtOnce));
   EXPECT_THAT(why, HasSubstr("250 inputs a second"));
-  // That nobody drives any more is taken all the same.
+  // The message that the person has left is taken all the same.
   SeatInput away = Brakes();
   away.present = false;
   while (seat_.Take(kAnna, Brakes(), At(10'000)).message) continue;
-  ExpectNobody(seat_.Take(kAnna, away, At(10'000)).message);
+  ExpectEmptySeat(seat_.Take(kAnna, away, At(10'000)).message);
 }
 
 }  // namespace

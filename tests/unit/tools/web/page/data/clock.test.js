@@ -14,7 +14,7 @@ test("a live clock shows the newest time until the reader goes elsewhere", () =>
   assert.deepEqual([clock.time, clock.state], [5, "paused"]);
 });
 
-test("playing goes on at the chosen speed, stops at the end, and begins anew", () => {
+test("playing goes on at the chosen speed, stops at the end, and begins again", () => {
   const clock = new Clock();
   clock.play(0, 10);
   clock.speed = 5;

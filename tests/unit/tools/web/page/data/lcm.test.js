@@ -97,7 +97,7 @@ test("altered messages throw nothing but a DecodeError", () => {
   }
 });
 
-test("a type that contains itself, or one that nobody described, is refused", () => {
+test("a type that contains itself, or has no description, is refused", () => {
   const circle = {t: {members: [{name: "t", type: "t", dims: []}]}};
   assert.throws(() => makeDecoder(circle, "t"), DecodeError);
   assert.throws(() => makeDecoder(circle, "toString"), DecodeError);

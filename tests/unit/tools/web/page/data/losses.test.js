@@ -17,7 +17,7 @@ test("a network without numbers is not said to lose nothing", () => {
                "Lost packets: not known: no such option.");
 });
 
-test("whatever is not shown, and whoever is refused, has words", () => {
+test("a message that is not shown, and a client that is refused, have words", () => {
   assert.deepEqual(lacksOf({own_overflow: 0, too_large: 0, refused_scenarios: 0, cut_off: 0, refused: 0}), []);
   assert.deepEqual(
     lacksOf({own_overflow: 1, too_large: 2, too_large_channels: ["CAMERA", "MAP"], refused_scenarios: 3,

@@ -37,7 +37,7 @@ test("an older message and one of another run change nothing", () => {
   assert.equal(newest.step, 5);
 });
 
-test("another run begins anew", () => {
+test("another run begins without the old messages", () => {
   const newest = fresh();
   newest.add(messages.find(({name}) => name === "TRUTH"), 0);
   newest.setRun({run_id: "5"});

@@ -12,7 +12,7 @@ function pad({axes = [1, 1], down = [], timestamp = 0, id = ID, connected = true
           buttons: [0, 1].map((i) => ({pressed: down.includes(i), value: down.includes(i) ? 1 : 0}))};
 }
 
-/** Somebody who is ready at the keyboard. */
+/** A person who is ready at the keyboard. */
 function ready() {
   const person = new Person();
   person.set("seated", true);
@@ -20,7 +20,7 @@ function ready() {
   return person;
 }
 
-/** Somebody who is ready at a wheel. */
+/** A person who is ready at a wheel. */
 function atWheel() {
   const person = ready();
   person.choose(deviceOf({id: ID}), CALIBRATION);
@@ -28,7 +28,7 @@ function atWheel() {
   return person;
 }
 
-test("nobody drives before they have begun and have the seat", () => {
+test("a person drives only after they have begun and have the seat", () => {
   const person = new Person();
   assert.equal(person.whyAway(), "not begun");
   person.set("begun", true);

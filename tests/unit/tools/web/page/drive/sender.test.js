@@ -38,7 +38,7 @@ test("each change is due, but at most every 4 ms", () => {
   assert.equal(sender.isDue(input({throttle: 1e-6}), 4), false);
 });
 
-test("that nobody drives any more is due at once", () => {
+test("the first input without a person is due at once", () => {
   const sender = new Sender();
   sender.next(input(), 100, null, null);
   assert.ok(sender.isDue(input({present: false}), 100));

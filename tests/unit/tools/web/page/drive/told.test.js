@@ -9,10 +9,10 @@ test("each mode of HOST_COMMAND has words that say nothing of conflict or thresh
   for (const [name, mode] of Object.entries(constants)) {
     const {words, side} = told({mode, lambda_human: 0});
     assert.notEqual(side, "unknown", name);
-    assert.doesNotMatch(words, /conflict|threshold|sensor|lidar|radar|undefined|Nobody/i, name);
+    assert.doesNotMatch(words, /conflict|threshold|sensor|lidar|radar|undefined|not known/i, name);
   }
   assert.equal(told(null).words, "The drive has not begun");
-  assert.equal(told({mode: 99, lambda_human: 0}).words, "Nobody has said who drives");
+  assert.equal(told({mode: 99, lambda_human: 0}).words, "It is not known who drives");
 });
 
 test("who drives and who is asked is told by mode", () => {
@@ -27,7 +27,7 @@ test("who drives and who is asked is told by mode", () => {
   assert.match(at(COLLISION_WARNING, 0).words, /The automation drives/);
 });
 
-test("a request counts down from its first step, and a new one begins anew", () => {
+test("a request counts down from its first step, and a new one begins again", () => {
   const countdown = new Countdown();
   assert.equal(countdown.see(false, 1, 10), null);
   assert.deepEqual(countdown.see(true, 2, 10), {left_s: 10, share: 1});
@@ -38,7 +38,7 @@ test("a request counts down from its first step, and a new one begins anew", () 
   assert.equal(countdown.see(true, 1, 10).left_s, 10);  // another run
 });
 
-test("why nobody drives is said in words", () => {
+test("why a person does not drive is said in words", () => {
   for (const why of ["not begun", "no seat", "hidden", "blurred", "busy", "unplugged", "not calibrated"]) {
     assert.ok(whyAwayInWords(why).length > 10, why);
   }
