@@ -8,31 +8,10 @@
 
 #include "services/decision/policies/policies.h"
 #include "tests/support/find_row.h"
-#include "tests/unit/services/arbitrator/two_commands.h"
+#include "tests/unit/services/arbitrator/step_messages.h"
 
 namespace fogline {
 namespace {
-
-struct Messages {
-  ego_t ego{};
-  radar_t radar{};
-  lidar_t lidar{};
-  track_t track{};
-  accel_command_t automation{};
-  driver_command_t driver{};
-};
-
-// Messages in which radar and LiDAR have this difference (radar - LiDAR).
-Messages Differing(double difference_m) {
-  Messages m;
-  m.radar.valid = 1;
-  m.radar.range_m = 32 + difference_m;
-  m.lidar.valid = 1;
-  m.lidar.range_m = 32;
-  m.automation.acceleration_mps2 = kAutomation_mps2;
-  m.driver.acceleration_mps2 = kHuman_mps2;
-  return m;
-}
 
 Messages WithoutLidar() {
   Messages m = Differing(0);
@@ -44,10 +23,6 @@ Messages WithoutRadar() {
   Messages m = Differing(0);
   m.radar = {};
   return m;
-}
-
-const arbitration_t& Step(arbitrator::Arbitrator& arbitrator, const Messages& m) {
-  return arbitrator.Step(m.ego, m.radar, m.lidar, m.track, m.automation, m.driver);
 }
 
 Scenario Missing(MissingLidar missing) {
@@ -209,7 +184,7 @@ TEST(ArbitratorTest, SharesTheCommandAsThePolicyBlendSays) {
   EXPECT_EQ(out.lambda_automation, 0.5);
   EXPECT_NEAR(out.acceleration_mps2, (kAutomation_mps2 + kHuman_mps2) / 2, 1e-15);
   EXPECT_EQ(out.threshold, 0.5);
-  EXPECT_EQ(out.mode, arbitration_t::HUMAN) << "both have half: his is the mode";
+  EXPECT_EQ(out.mode, arbitration_t::HUMAN) << "both have half: the mode is the driver's";
 }
 
 TEST(ArbitratorTest, ModeNamesTheSideWithMoreAuthorityDuringATransfer) {
@@ -273,7 +248,7 @@ TEST(ArbitratorTest, GoesOnFromACommandThatWasNotItsOwn) {
   EXPECT_NEAR(Step(arbitrator, Differing(2)).acceleration_mps2, -2.8, 1e-12);
 }
 
-// ---- a policy that shares authority, and a driver whom the car must ask -------------------------
+// ---- a policy that shares authority, and a driver that the car must ask -------------------------
 
 class SharedWithTheAskedTest : public testing::Test {
  protected:
@@ -307,11 +282,11 @@ class SharedWithTheAskedTest : public testing::Test {
   std::int64_t step_ = 0;
 };
 
-TEST_F(SharedWithTheAskedTest, HeIsAskedForAnyShareAndHasThatOnceHeHasCome) {
+TEST_F(SharedWithTheAskedTest, TheDriverIsAskedForAnyShareAndHasItAfterComing) {
   EXPECT_EQ(RequestingNothing().mode, arbitration_t::AUTOMATION);
   EXPECT_EQ(Requesting(0.1).mode, arbitration_t::REQUEST);
   for (int k = 0; k < 11; ++k) {
-    EXPECT_EQ(Requesting(0.1).lambda_human, 0) << "he has not come";
+    EXPECT_EQ(Requesting(0.1).lambda_human, 0) << "the driver has not come";
     EXPECT_TRUE(arbitrator_.must_ask());
   }
   for (const double share : {0.1, 0.3, 0.7, 0.95, 0.4}) {
@@ -330,10 +305,10 @@ TEST_F(SharedWithTheAskedTest, TheAutomationHasTheWheelBackWhenNoShareIsRequeste
   for (int k = 0; k < 40; ++k) Requesting(0.2);
   EXPECT_EQ(Requesting(0.2).mode, arbitration_t::HUMAN) << "recovered, and with a share";
   EXPECT_EQ(RequestingNothing().mode, arbitration_t::AUTOMATION);
-  EXPECT_EQ(Requesting(0.2).mode, arbitration_t::REQUEST) << "and he must be asked again";
+  EXPECT_EQ(Requesting(0.2).mode, arbitration_t::REQUEST) << "and the driver must be asked again";
 }
 
-TEST_F(SharedWithTheAskedTest, HeDrivesAloneWhereTheAutomationIsOffOrGone) {
+TEST_F(SharedWithTheAskedTest, TheDriverDrivesAloneWhileTheAutomationIsGone) {
   for (int k = 0; k < 20; ++k) Requesting(0.2);
   arbitrator_.SetAutomationThere(false);
   EXPECT_EQ(Requesting(0.2).lambda_human, 1);
@@ -349,126 +324,6 @@ TEST_F(SharedWithTheAskedTest, ALateDriverDrivesAloneForTheRestOfTheRun) {
   EXPECT_EQ(Requesting(0.2).mode, arbitration_t::RECOVERING);
   for (int k = 0; k < 50; ++k) ASSERT_EQ(Requesting(0.2).lambda_human, 1);
   EXPECT_EQ(RequestingNothing().lambda_human, 1);
-}
-
-// ---- emergency braking --------------------------------------------------------------------------
-
-class GuardedTest : public testing::Test {
- protected:
-  static Scenario Guarded() {
-    Scenario scenario;
-    scenario.arbitrator.window_steps = 1;
-    scenario.aeb.enabled = true;
-    return scenario;
-  }
-  /// A step in which the track has the car ahead at this distance and closing speed.
-  const arbitration_t& StepAt(double distance_m, double closing_mps, Messages m = Differing(0)) {
-    m.ego.speed_mps = 20;
-    m.track.valid = 1;
-    m.track.state[0] = distance_m;
-    m.track.state[1] = -closing_mps;
-    m.driver.readiness = 1;
-    m.ego.header.step = m.radar.header.step = m.lidar.header.step = m.track.header.step = step_++;
-    return Step(arbitrator_, m);
-  }
-
-  arbitrator::Arbitrator arbitrator_{Guarded()};
-  std::int64_t step_ = 0;
-};
-
-TEST_F(GuardedTest, BrakesWhicheverSideDrives) {
-  for (const bool human : {false, true}) {
-    const Messages m = Differing(human ? 2 : 0);
-    const arbitration_t& out = StepAt(10, 10, m);
-    EXPECT_EQ(out.mode, arbitration_t::EMERGENCY_BRAKING);
-    EXPECT_EQ(out.acceleration_mps2, -9);
-    EXPECT_EQ(out.lambda_human, human ? 1 : 0) << "authorities are those without it";
-    StepAt(10, 0, m);
-  }
-}
-
-TEST_F(GuardedTest, WarnsAndGivesTheCommandBack) {
-  EXPECT_EQ(StepAt(30, 10).mode, arbitration_t::AUTOMATION);
-  const arbitration_t& out = StepAt(15, 10);
-  EXPECT_EQ(out.mode, arbitration_t::COLLISION_WARNING);
-  EXPECT_EQ(out.acceleration_mps2, kAutomation_mps2) << "a warning brakes nothing";
-  EXPECT_EQ(StepAt(9, 9).mode, arbitration_t::EMERGENCY_BRAKING);
-  EXPECT_EQ(StepAt(8, -0.1).mode, arbitration_t::AUTOMATION);
-  EXPECT_EQ(out.acceleration_mps2, kAutomation_mps2);
-}
-
-TEST_F(GuardedTest, DoesNotWeakenADriverWhoBrakesHarder) {
-  Messages m = Differing(2);
-  m.driver.acceleration_mps2 = -9.5;
-  EXPECT_EQ(StepAt(10, 10, m).acceleration_mps2, -9.5);
-}
-
-TEST_F(GuardedTest, TrustsNoTrackThatTheAccWouldNotUse) {
-  Messages m = Differing(0);
-  m.track.covariance[0][0] = 100.1;
-  EXPECT_EQ(StepAt(10, 10, m).mode, arbitration_t::AUTOMATION);
-  m.track.covariance[0][0] = 99.9;
-  EXPECT_EQ(StepAt(10, 10, m).mode, arbitration_t::EMERGENCY_BRAKING);
-  m.track.covariance[0][0] = 100.1;
-  EXPECT_EQ(StepAt(10, 10, m).mode, arbitration_t::AUTOMATION) << "and it ends without one";
-}
-
-TEST(ArbitratorTest, DoesNotBrakeByItselfUnlessTheScenarioSaysSo) {
-  arbitrator::Arbitrator arbitrator{Scenario()};
-  Messages m = Differing(0);
-  m.ego.speed_mps = 20;
-  m.track.valid = 1;
-  m.track.state[0] = 1;
-  m.track.state[1] = -20;
-  const arbitration_t& out = Step(arbitrator, m);
-  EXPECT_EQ(out.acceleration_mps2, kAutomation_mps2);
-  EXPECT_EQ(out.mode, arbitration_t::AUTOMATION);
-}
-
-TEST(ArbitratorTest, BrakesInAManoeuvreUnderTheManoeuvresMode) {
-  Scenario scenario;
-  scenario.aeb.enabled = true;
-  scenario.arbitrator.window_steps = 1;
-  scenario.arbitrator.take_over = {.mode = TakeOverMode::kRequested, .absent_probability = 1};
-  arbitrator::Arbitrator arbitrator(scenario);
-  Messages m = Differing(2);
-  m.ego.speed_mps = 20;
-  m.track.valid = 1;
-  m.track.state[0] = 40;
-  std::int8_t mode = arbitration_t::AUTOMATION;
-  for (; mode != arbitration_t::MRM_COMFORT && m.ego.header.step < 300; ++m.ego.header.step) {
-    mode = Step(arbitrator, m).mode;
-    ASSERT_FALSE(InEmergency(mode));
-  }
-  ASSERT_EQ(mode, arbitration_t::MRM_COMFORT);
-  m.track.state[0] = 5;
-  m.track.state[1] = -10;
-  const arbitration_t& out = Step(arbitrator, m);
-  EXPECT_EQ(out.mode, arbitration_t::MRM_EMERGENCY);
-  EXPECT_EQ(out.acceleration_mps2, -9);
-  EXPECT_EQ(out.lambda_automation + out.lambda_human, 0);
-}
-
-// While the car asks the driver, emergency braking hides the mode REQUEST only while the car
-// brakes.
-TEST(ArbitratorTest, BrakesAlsoWhileItAsksTheDriver) {
-  Scenario scenario;
-  scenario.aeb.enabled = true;
-  scenario.arbitrator.window_steps = 1;
-  scenario.arbitrator.take_over = {.mode = TakeOverMode::kRequested, .severe_ttc_s = 0.5};
-  arbitrator::Arbitrator arbitrator(scenario);
-  Messages m = Differing(2);
-  m.ego.speed_mps = 20;
-  m.track.valid = 1;
-  m.track.state[0] = 40;
-  EXPECT_EQ(Step(arbitrator, m).mode, arbitration_t::REQUEST);
-  m.track.state[0] = 15;
-  m.track.state[1] = -10;
-  EXPECT_EQ(Step(arbitrator, m).mode, arbitration_t::REQUEST) << "the warning does not hide it";
-  m.track.state[0] = 9;
-  EXPECT_EQ(Step(arbitrator, m).mode, arbitration_t::EMERGENCY_BRAKING);
-  m.track.state[1] = 1;
-  EXPECT_EQ(Step(arbitrator, m).mode, arbitration_t::REQUEST);
 }
 
 }  // namespace

@@ -19,7 +19,7 @@ struct SensorMessages {
 };
 
 // Radar 40 m and LiDAR 38 m, with standard deviations of 0.1 m; prediction 39.9 m, with 0.05 m.
-SensorMessages Differing() {
+SensorMessages DifferingSensors() {
   SensorMessages m;
   m.radar.valid = m.lidar.valid = 1;
   m.radar.range_m = 40;
@@ -41,7 +41,7 @@ Scenario With(std::string_view measure) {
 }
 
 TEST(ConflictMeterTest, GivesEachMeasureTheEvidenceOfTheMessages) {
-  const SensorMessages m = Differing();
+  const SensorMessages m = DifferingSensors();
   const conflict::Evidence evidence{
       .radar = {true, 40, 0.1}, .lidar = {true, 38, 0.1}, .prediction = {true, 39.9, 0.05}};
   for (const conflict::ConflictMeasureRow& row : conflict::ConflictMeasures()) {
@@ -60,7 +60,7 @@ TEST(ConflictMeterTest, MakesADegreeOfConflictOfAnyScore) {
   Scenario scenario = With("nis");
   scenario.arbitrator.measure_slope = 0.5;
   scenario.arbitrator.measure_centre = 10;
-  const SensorMessages m = Differing();
+  const SensorMessages m = DifferingSensors();
   arbitrator::ConflictMeter meter(scenario);
   meter.Observe(m.radar, m.lidar, m.track);
   EXPECT_NEAR(meter.conflict(), 200, 1e-9);  // 2^2/(0.1^2 + 0.1^2)
@@ -69,7 +69,7 @@ TEST(ConflictMeterTest, MakesADegreeOfConflictOfAnyScore) {
 }
 
 TEST(ConflictMeterTest, TakesNoWitnessOfAnotherStep) {
-  SensorMessages m = Differing();
+  SensorMessages m = DifferingSensors();
   arbitrator::ConflictMeter meter(With("witness_nis"));
   m.radar.header.step = m.lidar.header.step = 5;
   m.track.header.step = 4;
@@ -83,7 +83,7 @@ TEST(ConflictMeterTest, TakesNoWitnessOfAnotherStep) {
 TEST(ConflictMeterTest, TakesTheKnownOffsetOffAllMeasuresButThePapers) {
   Scenario scenario = With("nis");
   scenario.arbitrator.measure_offset_m = 2;
-  const SensorMessages m = Differing();
+  const SensorMessages m = DifferingSensors();
   arbitrator::ConflictMeter meter(scenario);
   meter.Observe(m.radar, m.lidar, m.track);
   EXPECT_EQ(meter.conflict(), 0);
@@ -96,7 +96,7 @@ TEST(ConflictMeterTest, TakesTheKnownOffsetOffAllMeasuresButThePapers) {
 TEST(ConflictMeterTest, TakesAPosteriorForTheDegreeOfConflictItself) {
   Scenario scenario = With("lidar_modes");
   scenario.arbitrator.measure_scale = MeasureScale::kProbability;
-  SensorMessages m = Differing();
+  SensorMessages m = DifferingSensors();
   arbitrator::ConflictMeter meter(scenario);
   conflict::LidarModeConflict posterior(policies::ConflictParametersOf(scenario.arbitrator));
   for (const double lidar_m : {40.0, 39.8, 4.0, 40.0}) {
