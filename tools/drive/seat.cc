@@ -1,7 +1,5 @@
 #include "tools/drive/seat.h"
 
-#include <sodium.h>
-
 #include <algorithm>
 #include <exception>
 #include <utility>
@@ -12,6 +10,7 @@
 #include "common/process/poll.h"
 #include "services/graph.h"
 #include "services/host_modes.h"
+#include "services/runtime/seat/seat_instance.h"
 #include "services/runtime/transport/bus.h"
 #include "services/runtime/wire/driver_input.h"
 
@@ -21,12 +20,6 @@ namespace {
 // How long the thread waits for its device or a message. Pedals of keys move in this time by at
 // most a fifth of their travel (key_press_ps at most 20).
 constexpr Duration kTick = milliseconds(10);
-
-std::int64_t DrawInstance() {
-  std::int64_t instance = 0;
-  while (instance == 0) randombytes_buf(&instance, sizeof(instance));
-  return instance;
-}
 
 /// What the person should know about a mode of HOST_COMMAND; "" if nothing.
 std::string_view TextOf(std::int8_t mode) {
@@ -109,7 +102,7 @@ void Seat::Run(const std::string& url, std::int64_t run_id,
   runtime::Bus bus(url);
   // The faults of --faults are those of the roles.
   runtime::Apply({.key_file = traffic.key_file, .faults = ""}, Role::kRunner, bus);
-  InputMaker maker(run_id, DrawInstance(), source_->kind(), source_->name());
+  InputMaker maker(run_id, runtime::DrawSeatInstance(), source_->kind(), source_->name());
   bus.Subscribe(ChannelOf<truth_t>().name, [&](runtime::Arrival& arrival) {
     if (const auto* truth = arrival.As<truth_t>()) maker.SawTruth(truth->header);
   });

@@ -1,7 +1,5 @@
 #include "tools/web/seat/seat_view.h"
 
-#include <sodium.h>
-
 #include <utility>
 #include <variant>
 
@@ -11,6 +9,7 @@
 #include "fogline/run_t.hpp"
 #include "fogline/truth_t.hpp"
 #include "services/graph.h"
+#include "services/runtime/seat/seat_instance.h"
 #include "services/runtime/wire/wire.h"
 
 namespace fogline::web {
@@ -19,18 +18,11 @@ namespace {
 // Delay before the network is opened again after it could not be reached.
 constexpr Duration kOpenAgain = milliseconds(1000);
 
-/// A random number that is not 0.
-std::int64_t DrawInstance() {
-  std::int64_t instance = 0;
-  while (instance == 0) randombytes_buf(&instance, sizeof(instance));
-  return instance;
-}
-
 }  // namespace
 
 SeatView::SeatView(boost::asio::io_context& context, LiveView& live,
                    std::optional<runtime::SigningKey> key)
-    : live_(live), key_(std::move(key)), seat_(DrawInstance()), look_(context) {
+    : live_(live), key_(std::move(key)), seat_(runtime::DrawSeatInstance()), look_(context) {
   live_.TellMessages([this](std::size_t channel, runtime::Bytes bytes) { Hear(channel, bytes); });
   Open();
   WaitToLook();
