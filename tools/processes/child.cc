@@ -12,6 +12,7 @@
 #include <csignal>
 #include <cstring>
 #include <stdexcept>
+#include <thread>
 #include <utility>
 
 #include <fmt/core.h>
@@ -120,6 +121,15 @@ std::vector<std::string> LinesOf(int output, std::size_t count, Duration limit) 
 std::string FirstLineOf(int output, Duration limit) {
   const std::vector<std::string> lines = LinesOf(output, 1, limit);
   return lines.empty() ? "" : lines.front();
+}
+
+void EndChild(pid_t pid, Duration limit) {
+  kill(pid, SIGTERM);
+  const TimePoint end = Clock::now() + limit;
+  while (waitpid(pid, nullptr, WNOHANG) == 0) {
+    if (Clock::now() > end) kill(pid, SIGKILL);
+    std::this_thread::sleep_for(milliseconds(5));
+  }
 }
 
 std::string HowItEnded(int status) {

@@ -44,6 +44,10 @@ std::vector<std::string> LinesOf(int output, std::size_t count, Duration limit);
 /// @param output the read end of the pipe that is the child's stdout
 std::string FirstLineOf(int output, Duration limit);
 
+/// Ends a child with SIGTERM, and returns when it has ended. A child that needs longer than `limit`
+/// is killed.
+void EndChild(pid_t pid, Duration limit);
+
 /// How a process ended, from the status of waitpid().
 std::string HowItEnded(int status);
 

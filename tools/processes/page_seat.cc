@@ -3,9 +3,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <csignal>
 #include <stdexcept>
-#include <thread>
 #include <utility>
 
 #include <fmt/core.h>
@@ -16,14 +14,13 @@
 #include "services/graph.h"
 #include "services/runtime/transport/bus.h"
 #include "tools/processes/child.h"
+#include "tools/processes/web_child.h"
 
 namespace fogline::processes {
 namespace {
 
 // fogline-web listens within this time, also on a busy machine.
 constexpr Duration kSeatLimit = milliseconds(10'000);
-// fogline-web ends within this time after SIGTERM. After that it is killed.
-constexpr Duration kSeatFarewell = milliseconds(2000);
 // How often a wait looks whether it must end.
 constexpr Duration kLook = milliseconds(50);
 
@@ -73,15 +70,6 @@ bool PageSeat::Runs() {
   return pid_ >= 0;
 }
 
-void PageSeat::End() {
-  if (pid_ < 0) return;
-  kill(pid_, SIGTERM);
-  const TimePoint end = Clock::now() + kSeatFarewell;
-  while (waitpid(pid_, nullptr, WNOHANG) == 0) {
-    if (Clock::now() > end) kill(pid_, SIGKILL);
-    std::this_thread::sleep_for(milliseconds(5));
-  }
-  pid_ = -1;
-}
+void PageSeat::End() { EndWeb(pid_); }
 
 }  // namespace fogline::processes

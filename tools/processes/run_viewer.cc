@@ -14,6 +14,7 @@
 #include "common/interrupt.h"
 #include "common/process/console.h"
 #include "common/process/poll.h"
+#include "tools/processes/web_child.h"
 
 namespace fogline::processes {
 namespace {
@@ -23,14 +24,6 @@ constexpr Duration kPageLimit = milliseconds(1000);
 // fogline-web reads a long log before it listens. The run is over then.
 constexpr Duration kLogLimit = milliseconds(10'000);
 constexpr Duration kLookEvery = milliseconds(50);  // whether to go on waiting
-// fogline-web ends within this time after SIGTERM. After that it is killed.
-constexpr Duration kFarewellLimit = milliseconds(2000);
-
-/// The port in "http://127.0.0.1:7680/".
-std::string PortOf(const std::string& address) {
-  const std::size_t begin = address.rfind(':') + 1;
-  return address.substr(begin, address.find('/', begin) - begin);
-}
 
 }  // namespace
 
@@ -119,15 +112,6 @@ bool RunViewer::Runs() {
   return pid_ >= 0;
 }
 
-void RunViewer::End() {
-  if (pid_ < 0) return;
-  kill(pid_, SIGTERM);
-  const TimePoint end = Clock::now() + kFarewellLimit;
-  while (waitpid(pid_, nullptr, WNOHANG) == 0) {
-    if (Clock::now() > end) kill(pid_, SIGKILL);
-    std::this_thread::sleep_for(milliseconds(5));
-  }
-  pid_ = -1;
-}
+void RunViewer::End() { EndWeb(pid_); }
 
 }  // namespace fogline::processes

@@ -3,30 +3,21 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <csignal>
 #include <stdexcept>
-#include <thread>
 #include <utility>
 
 #include <fmt/core.h>
 
 #include "common/process/console.h"
+#include "tools/processes/web_child.h"
+
 namespace fogline::trials {
 namespace {
 
 // fogline-web listens within this time, even on a busy machine.
 constexpr Duration kPageLimit = milliseconds(10'000);
-// fogline-web ends within this time after SIGTERM. After that it is killed.
-constexpr Duration kFarewellLimit = milliseconds(2000);
 // A fogline-web that dies at once is started so often: twice in a second.
 constexpr Duration kRestartEvery = milliseconds(500);
-
-/// The port in "http://127.0.0.1:7680/"; "0" without an address.
-std::string PortOf(const std::string& address) {
-  if (address.empty()) return "0";
-  const std::size_t begin = address.rfind(':') + 1;
-  return address.substr(begin, address.find('/', begin) - begin);
-}
 
 }  // namespace
 
@@ -44,7 +35,7 @@ void RunPage::Start(bool wait) {
   start_at_ = Clock::now() + kRestartEvery;
   try {
     std::vector<std::string> arguments{"--lcm-url", url_, "--no-browser", "--port",
-                                       PortOf(address_)};
+                                       processes::PortOf(address_)};
     arguments.insert(arguments.end(), traffic_.begin(), traffic_.end());
     output_.emplace();
     pid_ =
@@ -57,7 +48,7 @@ void RunPage::Start(bool wait) {
   } catch (const std::exception& error) {
     Complain(fmt::format("fogline experiment: warning: {}; the run goes on without its view",
                          error.what()));
-    Stop();
+    processes::EndWeb(pid_);
   }
 }
 
@@ -74,19 +65,8 @@ bool RunPage::Look() {
 }
 
 void RunPage::End() {
-  Stop();
+  processes::EndWeb(pid_);
   url_.clear();
-}
-
-void RunPage::Stop() {
-  if (pid_ < 0) return;
-  kill(pid_, SIGTERM);
-  const TimePoint end = Clock::now() + kFarewellLimit;
-  while (waitpid(pid_, nullptr, WNOHANG) == 0) {
-    if (Clock::now() > end) kill(pid_, SIGKILL);
-    std::this_thread::sleep_for(milliseconds(5));
-  }
-  pid_ = -1;
 }
 
 }  // namespace fogline::trials

@@ -31,7 +31,6 @@ class RunPage {
 
  private:
   void Start(bool wait);
-  void Stop();
 
   std::vector<std::string> traffic_;
   std::string url_;

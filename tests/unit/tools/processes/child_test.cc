@@ -95,6 +95,24 @@ TEST(ChildTest, IsOutOfReachOfTheTerminalsSignals) {
   EXPECT_EQ(waitpid(pid, nullptr, 0), pid);
 }
 
+TEST(ChildTest, EndsWhenItIsAskedTo) {
+  const processes::Pipe pipe;
+  const pid_t pid = processes::StartChild("/bin/sleep", {"60"}, pipe.write);
+  processes::EndChild(pid, std::chrono::seconds(20));
+  EXPECT_EQ(waitpid(pid, nullptr, WNOHANG), -1) << "it has ended, and its status is read";
+}
+
+TEST(ChildTest, ThatIgnoresTheRequestToEndIsKilled) {
+  processes::Pipe pipe;
+  const pid_t pid = processes::StartChild(
+      "/bin/sh", {"-c", "trap '' TERM; echo ready; while :; do sleep 1; done"}, pipe.write);
+  ASSERT_EQ(processes::FirstLineOf(pipe.read, std::chrono::seconds(20)), "ready");
+  const TimePoint begin = Clock::now();
+  processes::EndChild(pid, milliseconds(100));
+  EXPECT_GE(Clock::now() - begin, milliseconds(100));
+  EXPECT_EQ(waitpid(pid, nullptr, WNOHANG), -1) << "it has ended, and its status is read";
+}
+
 TEST(ChildTest, DiesWithItsParent) {
   // GIVEN a process that starts a child, writes the child's process id, and ends
   processes::Pipe pipe;
