@@ -3,8 +3,9 @@
 import {socketUrl} from "../data/wire.js";
 import {Catalogue} from "../data/catalogue.js";
 import {Budget} from "../draw/budget.js";
-import {byId, darkScheme, make, reducedMotion, say, setAttribute} from "../draw/dom.js";
+import {byId, darkScheme, reducedMotion, say, setAttribute} from "../draw/dom.js";
 import {decimal, kmh, withUnit} from "../draw/format.js";
+import {loadView, setScheme} from "../draw/view_file.js";
 import {Alarm} from "./alarm.js";
 import {Latency} from "./latency.js";
 import {backOf, Newest} from "./newest.js";
@@ -16,7 +17,6 @@ import {Setup} from "./setup.js";
 import {Countdown, told, whyAwayInWords} from "./told.js";
 
 const GONE_MS = 2000;  // without the server for so long after a run: it is over
-const VIEW_FILE = "./driver_view.js";  // three.js is in this file, which is loaded on its own
 
 class Drive {
   constructor() {
@@ -32,7 +32,7 @@ class Drive {
     this.state = "";         // of the seat: yours, taken, lost; "": not known
     this.back = backOf(location.hash, location.hostname);
     this.setup = new Setup(this.person, (open) => this.set("busy", open));
-    this.loadView();
+    loadView().then((view) => { this.view = view; });
     this.listen();
     this.wire = new SeatWire(socketUrl(location, takeDriverToken()), {
       text: (object) => this.receive(object),
@@ -43,21 +43,10 @@ class Drive {
     requestAnimationFrame((now) => this.loop(now));
   }
 
-  async loadView() {
-    try {
-      const {DriverView} = await import(VIEW_FILE);
-      this.view = new DriverView(byId("driver-view"));
-      this.view.setScheme(darkScheme.matches ? "dark" : "light");
-    } catch (problem) {
-      byId("picture").append(make("p", {class: "no-view"},
-        `The driver’s view needs WebGL, which this browser does not offer. (${problem.message})`));
-    }
-  }
-
   // ---- what the person does ---------------------------------------------------------------------
 
   listen() {
-    darkScheme.addEventListener("change", () => this.view?.setScheme(darkScheme.matches ? "dark" : "light"));
+    darkScheme.addEventListener("change", () => { if (this.view) setScheme(this.view); });
     addEventListener("keydown", (event) => this.key(event, true));
     addEventListener("keyup", (event) => this.key(event, false));
     addEventListener("blur", () => this.set("focused", false));

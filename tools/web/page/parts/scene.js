@@ -1,35 +1,26 @@
 // The scene: the driver's view with its instruments, and the road from above.
 
 import {timeGap} from "../data/cars.js";
-import {byId, darkScheme, make, say, setAttribute} from "../draw/dom.js";
+import {byId, say, setAttribute} from "../draw/dom.js";
 import {decimal, kmh, visibility} from "../draw/format.js";
+import {loadView, setScheme} from "../draw/view_file.js";
 import {Road, roadInWords} from "./road.js";
 
 const WORDS_EVERY_MS = 1000;
-const VIEW_FILE = "./driver_view.js";  // three.js is in this file, which is loaded on its own
 
 export class Scene {
   constructor() {
     this.road = new Road(byId("road"));
     this.view = null;
     this.wordsAt = 0;
-    this.loadView();
-  }
-
-  async loadView() {
-    try {
-      const {DriverView} = await import(VIEW_FILE);
-      this.view = new DriverView(byId("driver-view"));
-      this.view.setScheme(darkScheme.matches ? "dark" : "light");
-    } catch (problem) {
-      byId("picture").append(make("p", {class: "no-view"},
-        `The driver’s view needs WebGL, which this browser does not offer. (${problem.message})`));
-    }
-    this.drawn = "";
+    loadView().then((view) => {
+      this.view = view;
+      this.drawn = "";
+    });
   }
 
   setScheme() {
-    this.view?.setScheme(darkScheme.matches ? "dark" : "light");
+    if (this.view) setScheme(this.view);
     this.drawn = "";
   }
 

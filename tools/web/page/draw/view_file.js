@@ -1,0 +1,27 @@
+// Loads the driver's view, and shows it in the colours of the system.
+
+import {byId, darkScheme, make} from "./dom.js";
+
+const VIEW_FILE = "./driver_view.js";  // three.js is in this file, which is loaded on its own
+
+/** Gives the view the light or dark colours of the system. */
+export function setScheme(view) {
+  view.setScheme(darkScheme.matches ? "dark" : "light");
+}
+
+/**
+ * Loads the view into its canvas.
+ * @return the view; null if it cannot be shown, and the page then says why
+ */
+export async function loadView() {
+  try {
+    const {DriverView} = await import(VIEW_FILE);
+    const view = new DriverView(byId("driver-view"));
+    setScheme(view);
+    return view;
+  } catch (problem) {
+    byId("picture").append(make("p", {class: "no-view"},
+      `The driver’s view needs WebGL, which this browser does not offer. (${problem.message})`));
+    return null;
+  }
+}
