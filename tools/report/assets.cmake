@@ -13,7 +13,7 @@ set(assets
   kPageJs=page.js
   kStudyHtml=study.html
   kStudyCss=study.css
-  kStudyJs=study.js
+  kStudyJs=study_axes.js,study.js
   kUplotJs=${uplot}/dist/uPlot.iife.min.js
   kUplotCss=${uplot}/dist/uPlot.min.css
   kUplotLicense=${uplot}/LICENSE)
