@@ -65,7 +65,7 @@ std::vector<std::string_view> KeysOf(const FieldList& fields) {
 // Reads values into fields, and notes each mistake at its pointer.
 class Reader {
  public:
-  /// What a key that is no field is compared with, besides the fields beside it.
+  /// The names with which an unknown key is compared, besides the fields beside it.
   enum class Hints { kScenario, kNone };
 
   explicit Reader(DiagnosticList& mistakes, Hints hints = Hints::kScenario)

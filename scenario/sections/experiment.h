@@ -11,7 +11,7 @@
 
 namespace fogline {
 
-/// What a participant drives: a scenario, and changes of its fields.
+/// A condition of the experiment: a scenario, and changes of its fields.
 struct ConditionSection {
   FOGLINE_FIELD(std::string, name, "",
                 "Name of the condition, in files and tables: a to z, 0 to 9, - and _.");

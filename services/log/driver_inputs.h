@@ -1,4 +1,4 @@
-// What a person did in a run: the DRIVER_INPUT messages in its log.
+// The inputs of a person in a run: the DRIVER_INPUT messages in its log.
 #pragma once
 
 #include <cstdint>

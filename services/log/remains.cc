@@ -133,7 +133,7 @@ std::optional<Start> StartIn(runtime::Bytes content, std::int64_t from, const Lo
   return Start{.step = step, .head = {.bytes = static_cast<std::int64_t>(*at), .events = number}};
 }
 
-/// What the log contains, found from its last `tail` bytes; nullopt if these bytes do not show
+/// The contents of the log, found from its last `tail` bytes; nullopt if these bytes do not show
 /// where the last complete step is.
 std::optional<Remains> ReadTail(EventLogReader& reader, const LogFront& front, std::int64_t tail) {
   const std::int64_t from = std::ssize(reader.content()) - tail;

@@ -1,5 +1,5 @@
-// What the cars do in real time if their commands are missing: a car follows its last command for a
-// short time, and then stops. The world needs no other process for this fallback.
+// The fallback of the cars in real time if their commands are missing: a car follows its last
+// command for a short time, and then stops. The world needs no other process for this fallback.
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,5 @@
-// What seats send to a driver who is a person. Input: messages, each with the time that passes
-// before it (one byte, in units of 2 ms) and its datagram.
+// The messages of seats to a driver who is a person. Input: messages, each with the time that
+// passes before it (one byte, in units of 2 ms) and its datagram.
 #include <cmath>
 
 #include "services/driver/driver.h"

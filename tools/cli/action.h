@@ -1,4 +1,4 @@
-// What a verb of `fogline` does, and how it ends.
+// The action of a verb of `fogline`, and its end.
 #pragma once
 
 #include <functional>

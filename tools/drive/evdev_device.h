@@ -59,7 +59,7 @@ class EvdevDevice final : public PedalSource {
   bool throttle_moved_ = false;
   bool brake_moved_ = false;
   TimePoint at_{};
-  TimePoint open_at_{};  // when to try to open the device again
+  TimePoint open_at_{};  // the time of the next attempt to open the device
 };
 
 }  // namespace fogline::drive

@@ -41,7 +41,7 @@ inline double Scaled(int value, const AxisRange& range) {
   return std::clamp(2 * (static_cast<double>(value) - range.least) / span - 1, -1.0, 1.0);
 }
 
-/// What a device has.
+/// The axes and keys of a device.
 struct DeviceFeatures {
   bool gas_and_brake = false;  // ABS_GAS and ABS_BRAKE
   bool triggers = false;       // ABS_Z and ABS_RZ
@@ -49,7 +49,7 @@ struct DeviceFeatures {
   bool arrow_keys = false;     // KEY_UP and KEY_DOWN
 };
 
-/// How a device is used. Without pedals, its keys up and down are the pedals.
+/// The use of a device's axes and keys. Without pedals, its keys up and down are the pedals.
 struct DeviceMap {
   std::optional<PedalAxis> throttle;
   std::optional<PedalAxis> brake;

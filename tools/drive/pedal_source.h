@@ -10,14 +10,14 @@
 
 namespace fogline::drive {
 
-/// What a device says now.
+/// The state of a device.
 struct PedalState {
   bool present = true;
   double throttle = 0;  // in [0, 1]
   double brake = 0;
   std::vector<double> axes;  // raw values in [-1, 1]
   std::int32_t buttons = 0;  // as in driver_input_t
-  TimePoint at{};            // when the newest input of the device came
+  TimePoint at{};            // the time of the newest input of the device
 
   /// Whether a person does the same; `at` does not count.
   bool SameAs(const PedalState& other) const {

@@ -17,11 +17,11 @@
 namespace fogline::drive {
 namespace {
 
-// How long the thread waits for its device or a message. Pedals of keys move in this time by at
-// most a fifth of their travel (key_press_ps at most 20).
+// The thread waits at most so long for its device or a message. Pedals of keys move in this time by
+// at most a fifth of their travel (key_press_ps at most 20).
 constexpr Duration kTick = milliseconds(10);
 
-/// What the person should know about a mode of HOST_COMMAND; "" if nothing.
+/// The text for the person about a mode of HOST_COMMAND; "" if there is none.
 std::string_view TextOf(std::int8_t mode) {
   switch (mode) {
     case arbitration_t::REQUEST:

@@ -12,9 +12,9 @@
 
 namespace fogline::drive {
 
-/// Makes the messages of a seat, and says when one is due: at each change, and at least every 40
-/// ms, but at most 200 in a second. Both limits leave a fifth of the time to the ones that
-/// services/runtime/wire/driver_input.h allows.
+/// Makes the messages of a seat. A message is due at each change, and at least every 40 ms, but at
+/// most 200 messages in a second. Both limits keep a fifth away from the limits of
+/// services/runtime/wire/driver_input.h.
 class InputMaker {
  public:
   static constexpr Duration kEvery = milliseconds(40);
@@ -35,10 +35,10 @@ class InputMaker {
   TimePoint sent_at_{};
 };
 
-/// The text of at most `most` bytes with which a text begins; it ends with a whole character.
+/// The beginning of a text: at most `most` bytes, without a cut character at its end.
 std::string FirstBytes(const std::string& text, std::size_t most);
 
-/// A thread with a bus of its own. It tells the person what the car asks for.
+/// A thread with a bus of its own. It tells the person the requests of the car.
 class Seat {
  public:
   Seat(const std::string& url, std::int64_t run_id, const runtime::TrafficOptions& traffic,

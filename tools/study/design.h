@@ -1,4 +1,4 @@
-// What the studies run and claim, for a study that examines their claims with other parameters.
+// The runs and claims of the studies, for a study that examines the claims with other parameters.
 #pragma once
 
 #include <vector>

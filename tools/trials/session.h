@@ -26,7 +26,7 @@ struct SessionOptions {
   runner::ExperimentOptions run;  // transport and traffic of each run
 };
 
-/// What a session has done.
+/// The work that a session has done.
 struct SessionOutcome {
   std::int64_t runs = 0;   // that this session has made
   std::int64_t asked = 0;  // trials for whose questions only the answers were missing

@@ -14,7 +14,7 @@
 
 namespace fogline::trials {
 
-/// How far a trial has come.
+/// The progress of a trial.
 enum class TrialState {
   kOpen,    // not begun
   kBroken,  // the run broke off; the trial is run again
@@ -23,7 +23,7 @@ enum class TrialState {
 };
 std::string NameOf(TrialState state);
 
-/// What the log of a trial says about the trial.
+/// The facts about a trial in its log.
 struct TrialStory {
   TrialState state = TrialState::kBroken;
   std::int64_t run_id = 0;

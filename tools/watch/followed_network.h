@@ -54,7 +54,7 @@ class FollowedNetwork {
   /// The announced runs, the followed one first.
   const std::vector<runtime::Announcement>& runs() const { return runs_; }
 
-  /// Who sends, and what of it was lost.
+  /// The senders, and the messages of each that were lost.
   SendersView ViewSenders(TimePoint now) const { return senders_.View(now); }
   /// Whether packets have numbers, by which a loss is found. Those of a relay have none.
   bool numbered() const { return network_->tap || (followed_ && followed_->tap); }

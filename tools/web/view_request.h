@@ -1,4 +1,4 @@
-// What a page asks the server, read from a text frame.
+// A request of a page to the server, read from a text frame.
 #pragma once
 
 #include <cstdint>

@@ -48,7 +48,7 @@ class FallbackLog {
 
   /// The first changes, kMaxKept at most.
   const std::vector<Fallback>& all() const { return all_; }
-  /// How many changes came after all() was full.
+  /// The number of changes that came after all() was full.
   std::int64_t left_out() const { return left_out_; }
 
  private:

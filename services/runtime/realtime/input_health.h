@@ -69,7 +69,7 @@ class InputHealth {
   std::int64_t newest_ = -1;
   TimePoint heard_;
   std::int64_t late_ = 0;
-  // How many steps have come in time in a row, and when the first of them came.
+  // The number of steps in a row that have come in time, and the time at which the first one came.
   std::int64_t streak_ = 0;
   TimePoint streak_began_;
   // The last arrivals: a ring.

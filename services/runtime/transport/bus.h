@@ -124,7 +124,7 @@ class Bus {
   /// when all earlier messages have been handled.
   int fd() const { return fd_; }
   /// Grows whenever fd() refers to another file: with tcpq, when the relay is lost or comes back.
-  /// Who has given a copy of fd() to epoll must then copy it again.
+  /// A caller that has given a copy of fd() to epoll must then copy it again.
   std::int64_t replaced() const;
   const std::string& url() const { return url_; }
 

@@ -120,7 +120,7 @@ class Client {
   std::vector<std::string> patterns_;  // subscriptions for the relay
   std::vector<std::pair<std::string, Handler>> handlers_;
   Watcher watcher_;
-  /// What a try to connect again waits for.
+  /// The event for which a lost connection waits before it works again.
   enum class Phase { kNextTry, kConnection, kGreeting };
 
   bool lost_ = false;

@@ -6,7 +6,7 @@ import {test} from "node:test";
 import {begin, drives, freshNetwork, listener, seat, setPad, withFakePads} from "./seat.js";
 import {breaches, browser, DESKTOP, open, PHONE, until} from "./window.js";
 
-/** A page that is open and drives, and what the run hears. */
+/** A page that is open and drives, and the messages that the run gets from it. */
 async function seated(t, {pads = false, ...options} = {}) {
   const network = freshNetwork();
   const {server, drive, view} = await seat(t, network);

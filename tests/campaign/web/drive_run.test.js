@@ -55,7 +55,7 @@ async function follow(page, pedals, until_s) {
     if (seen.time_s >= until_s) return;
     const wanted = 0.25 * (seen.gap_m - 5 - 1.4 * seen.speed_mps) + 0.9 * (seen.lead_mps - seen.speed_mps);
     await pedals(wanted);
-    await page.waitForTimeout(40);  // how fast this person acts
+    await page.waitForTimeout(40);  // this person acts so fast
   }
 }
 
@@ -121,11 +121,11 @@ for (const [device, make] of [["the keys", keys], ["a wheel", wheel]]) {
     const pedals = make(page);
     await follow(page, pedals, 22);
     await pedals(0);
-    // The fog has gone. The automation gets the car when it may have it; so the person asks again.
+    // The fog has gone. The automation gets the car only after some time, so the person asks again.
     await until(async () => {
       if (isWheel) await setPad(page, {down: [1]});
       else await page.keyboard.press("g");
-      await page.waitForTimeout(100);  // how long this person waits before asking again
+      await page.waitForTimeout(100);  // this person waits so long before asking again
       if (isWheel) await setPad(page);
       return (await page.locator("#who").innerText()) === "The automation drives";
     }, "the automation to drive again");
@@ -144,9 +144,9 @@ for (const [device, make] of [["the keys", keys], ["a wheel", wheel]]) {
     t.diagnostic(`${device}: ${latencies.length} latencies, median ${percentile(latencies, 0.5).toFixed(1)} ms, ` +
                  `95th percentile ${late.toFixed(1)} ms`);
     assert.ok(latencies.length >= 10, `${latencies.length} latencies`);
-    // The goal is 50 ms. A machine that others use, too, is slower, but not by a human's measure.
+    // The goal is 50 ms. A machine with other load takes longer, but a person does not notice it.
     assert.ok(late < 200, `95th percentile of the latency: ${late} ms`);
-    // What the log has makes the same commands again.
+    // The inputs in the log give the same commands again.
     execFileSync(FOGLINE, ["replay", log, "--role", "driver"], {stdio: "pipe"});
   });
 }

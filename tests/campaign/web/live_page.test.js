@@ -69,9 +69,9 @@ function framesPerSecond(page, seconds) {
   }, 1000 * seconds);
 }
 
-// The goal is 30 frames a second. Whether a machine reaches them depends on its graphics processor
-// and its load, so the test prints the rate beside that of an empty page, and demands what holds on
-// each machine.
+// The goal is 30 frames a second. The rate of a machine depends on its graphics processor and its
+// load. So the test prints the rate beside that of an empty page, and demands a rate that each
+// machine reaches.
 test("at 100 Hz each frame shows the newest step that has come", async (t) => {
   const network = url();
   const started = await browser(t);

@@ -1,4 +1,5 @@
-// `fogline view --seat`, its participant's page in headless Chromium, and what the run hears of it.
+// `fogline view --seat`, its participant's page in headless Chromium, and the messages that the run
+// gets from it.
 
 import assert from "node:assert/strict";
 

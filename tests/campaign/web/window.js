@@ -18,7 +18,7 @@ export const PHONE = {width: 390, height: 844};
 
 const endings = new WeakMap();
 
-/** Does something at the end of the test: what began last ends first. */
+/** Does something at the end of the test. The last action that was added is done first. */
 function atEnd(t, end) {
   if (!endings.has(t)) {
     const ends = [];

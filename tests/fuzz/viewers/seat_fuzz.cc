@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kMaxEvents = 256;
 
-/// What a seat may send, whatever its pages do.
+/// The rules for the messages of a seat. They hold for any frames of its pages.
 class Listener {
  public:
   void Hear(const driver_input_t& message, TimePoint now) {

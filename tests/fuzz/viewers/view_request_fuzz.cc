@@ -1,4 +1,4 @@
-// What a page asks. Input: a text frame.
+// The requests of a page. Input: a text frame.
 #include <nlohmann/json.hpp>
 
 #include "tests/fuzz/fuzz.h"

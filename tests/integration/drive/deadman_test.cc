@@ -1,4 +1,4 @@
-// What happens when a person who drives is suddenly not there: real processes, on the wall clock.
+// The fallback when a person who drives suddenly leaves: real processes, on the wall clock.
 #include <csignal>
 #include <string>
 

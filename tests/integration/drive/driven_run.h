@@ -1,4 +1,4 @@
-// A run in real time with a person, and what happens in it.
+// A run in real time with a person, and the commands in it.
 #pragma once
 
 #include <gtest/gtest.h>

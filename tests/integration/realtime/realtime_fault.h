@@ -116,7 +116,7 @@ inline void JudgeWithoutDriver(const Log& log, const Fault& fault, const Log::Si
                    [](const auto& at) { return at.second.doc >= at.second.threshold; });
   const bool in_vain = wanted != log.command.end() && wanted->first < trusted;
   if (fault.signal == SIGSTOP) {
-    ASSERT_TRUE(in_vain) << "he was not wanted in his absence";
+    ASSERT_TRUE(in_vain) << "the driver was not wanted while absent";
   }
   if (!in_vain) return;
   ExpectMode(

@@ -1,4 +1,4 @@
-// Who may look: the limits of the server of `fogline view`, against real clients.
+// The limits of the server of `fogline view`, against real clients.
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
-// `fogline view` on a network: what its clients get is what the run has logged, and the run does
-// not notice them.
+// `fogline view` on a network: its clients get the messages that the log of the run has. The
+// clients do not disturb the run.
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 #include <lcm/lcm.h>
@@ -250,7 +250,7 @@ TEST(LiveViewTest, CutsOffAClientThatReadsNothingWhileOthersGoOn) {
       if (KindOf(frame) == 1) received += MessagesOf(frame).size();
     }
   }
-  // Within the bound, and what the kernel may hold for a client.
+  // The bound, and the bytes that the kernel may hold for a client.
   EXPECT_GT(sent * bytes.size(), 8U << 20);
   EXPECT_LT(sent * bytes.size(), 16U << 20);
   EXPECT_EQ(ReceiveOp(eager, "health")["cut_off"], 1);

@@ -1,4 +1,4 @@
-// `fogline view LOG`: what its clients get is what the log has.
+// `fogline view LOG`: its clients get the messages of the log.
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
-// `fogline view --seat`: what a page says becomes DRIVER_INPUT on the network of the run. The run
-// is played by the test: it sends TRUTH and hears DRIVER_INPUT, as the driver role does.
+// `fogline view --seat`: the frames of a page become DRIVER_INPUT on the network of the run. The
+// test takes the place of the run: it sends TRUTH and hears DRIVER_INPUT, as the driver role does.
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 

@@ -124,8 +124,8 @@ inline WebFrame ReceiveKind(WebClient& client, char kind) {
   }
 }
 
-/// The code with which the server closes a client, which reads what comes before. 0: without a
-/// closing frame.
+/// The code with which the server closes a client. The function reads the frames before it. 0 if no
+/// closing frame comes.
 inline std::uint16_t CloseCodeOf(WebClient& client) {
   try {
     while (true) client.Receive();

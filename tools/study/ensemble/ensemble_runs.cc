@@ -28,7 +28,7 @@ namespace {
 constexpr std::string_view kThresholdStudy = "threshold";
 constexpr std::string_view kConflictStudy = "conflict";
 
-/// What all runs of this study share.
+/// The common part of all runs of this study.
 struct Ensemble {
   const StudyContext& context;
   std::span<const EnsembleSet> sets;

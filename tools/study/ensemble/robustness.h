@@ -34,7 +34,7 @@ struct ClaimInSets {
   std::vector<Claim> sets;  // in the order of the sets
 };
 
-/// What the runs with one set say of a claim.
+/// The verdict on a claim after the runs with one set.
 enum class InSet {
   kHolds,
   kOpposite,   // the difference has the other sign; of a claim that two things are equal: they

@@ -47,7 +47,7 @@ std::vector<StudyCase> StringKinds();
 std::vector<StringOutcome> RunStrings(const StudyContext& context, std::span<const StudyCase> kinds,
                                       std::span<const StudyVariant> variants);
 
-/// What the claim on a kind of string says.
+/// The text of the claim on a kind of string.
 std::string StringSays(std::string_view kind);
 /// For each kind of string with HostVariants(), the claim that the last car brakes less hard behind
 /// a host with traded control.

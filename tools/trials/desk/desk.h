@@ -1,4 +1,4 @@
-// How a session talks to the people: in a terminal, or in pages of a browser.
+// A desk: a session talks to the people there, in a terminal or in pages of a browser.
 #pragma once
 
 #include <string>
@@ -12,7 +12,7 @@
 
 namespace fogline::trials {
 
-/// What a participant may know of a trial: no condition, no threshold.
+/// The next run, as the participant may know it: without condition and threshold.
 struct Next {
   Trial trial;
   std::int64_t of = 1;           // number of trials, or of practice runs

@@ -1,4 +1,5 @@
-// What the two pages of a session show, and what they may answer: the rules, without sockets.
+// The contents of the two pages of a session, and the answers that they may give. The class has no
+// sockets.
 #pragma once
 
 #include <cstdint>
@@ -12,10 +13,10 @@
 
 namespace fogline::trials {
 
-/// Where a session is.
+/// The phase of a session.
 enum class Stage { kStarting, kWaiting, kDriving, kAsking, kFinished };
 
-/// What a page has sent, after its check.
+/// A message of a page, after its check.
 struct PageMessage {
   enum class Kind { kBegin, kAnswers, kMarker };
   Kind kind;
@@ -31,7 +32,7 @@ class PageState {
   ///     pages may still be open, and at most 2^53, so that it is exact in a browser
   explicit PageState(std::int64_t number) : number_(number) {}
 
-  /// @param wait_s of a break: how long the next run cannot begin yet, s
+  /// @param wait_s the rest of a break, s: the next run cannot begin before its end
   void Wait(const Next& next, double wait_s);
   void Drive(std::string view_address);
   void View(std::string view_address) { view_ = std::move(view_address); }

@@ -14,8 +14,9 @@ namespace fogline::watch {
 /// A table; no lines if nothing has been sent. Text from the network is safe, as in TrafficLines().
 std::vector<Line> SenderLines(const SendersView& view);
 
-/// What is not taken because it is larger than a datagram, such as "3 messages are larger than a
-/// datagram (CAMERA): they are not shown"; "" if there is nothing. Text from the network is safe.
+/// The messages that are not taken because they are larger than a datagram, such as "3 messages are
+/// larger than a datagram (CAMERA): they are not shown"; "" if there is nothing. Text from the
+/// network is safe.
 std::string FragmentsText(const SendersView& view);
 
 /// Each sender as an object with `address`, `received`, `lost`, `missed_here`, `late`,

@@ -1,4 +1,4 @@
-// What the participant's page says, read from a text frame (fogline.drive.v1 in docs/view.md).
+// An input of the participant's page, read from a text frame (fogline.drive.v1 in docs/view.md).
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// Who may read what the server sends: the rules, without sockets.
+// The rules of access to a run. The class has no sockets.
 //
 // A browser shows pages of many sites. Each of them can send requests to a server on this machine.
 // Two rules keep such a page from reading a run. The Host header must name the address on which the

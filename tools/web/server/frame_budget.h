@@ -1,4 +1,4 @@
-// How many frames a client may send.
+// The number of frames that a client may send.
 #pragma once
 
 #include <algorithm>

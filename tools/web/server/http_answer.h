@@ -1,4 +1,4 @@
-// What the server answers to an HTTP request: the rules, without sockets.
+// The answer of the server to an HTTP request. The functions have no sockets.
 #pragma once
 
 #include <span>

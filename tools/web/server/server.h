@@ -66,7 +66,7 @@ class Client {
   virtual void CutOff(CloseCode code, const std::string& why) = 0;
 };
 
-/// What the clients of a server see.
+/// The contents that a server gives its clients.
 class View {
  public:
   virtual ~View() = default;

@@ -26,7 +26,7 @@ class ConsonantBeliefs {
   /// c12 = sum of m1(A) m2(B) |A and B|/|A or B|, in [0, 1]: the product under Jousselme's D.
   /// @param distance_m at least 0, between the means.  @param std1_m, std2_m above 0
   double JaccardProduct(double distance_m, double std1_m, double std2_m) const;
-  /// c11, which is the same for every reading.
+  /// c11 = c22: the same product of a reading with itself. It is equal for all readings.
   double JaccardSquare() const { return jaccard_square_; }
 
   /// Integral over x of pl1(x) pl2(x), in m. pl is the plausibility of single points (contour). pl

@@ -88,7 +88,7 @@ TEST_F(FailsafeTakeOverTest, StopsForADriverWhoseCommandIsLostWhileHeIsAsked) {
   StepUntil(arbitration_t::MRM_COMFORT);
   EXPECT_EQ(step_ - 1, 100) << "10 s after the request";
   EXPECT_EQ(last_.lambda_automation + last_.lambda_human, 0);
-  EXPECT_EQ(arbitrator_.minimal_risk(), 0) << "he may still come";
+  EXPECT_EQ(arbitrator_.minimal_risk(), 0) << "the driver may still come";
 }
 
 TEST_F(FailsafeTakeOverTest, GoesOnStoppingWhateverElseIsLost) {

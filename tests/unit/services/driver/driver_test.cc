@@ -159,7 +159,7 @@ TEST(DriverTest, MisjudgesWhatFogLeavesOfTheTruth) {
 TEST(DriverTest, RefusesAStepSoShortThatHeCannotRememberHisReactionTime) {
   Scenario scenario;
   scenario.step_s = 0.003;  // 0.8 s are 266 steps
-  EXPECT_NO_THROW(driver::Driver{scenario}) << "he has none";
+  EXPECT_NO_THROW(driver::Driver{scenario}) << "this driver has none";
   scenario.human.misjudges = true;
   const auto error = [&] { return test::ErrorOf([&] { const driver::Driver driver(scenario); }); };
   EXPECT_EQ(error(),
@@ -263,7 +263,7 @@ TEST_F(AwarenessOfTheDriverTest, ReturnsWhileTheCarStopsBecauseHeIsLate) {
   arbitration_t standing = Stopping();
   standing.mode = arbitration_t::MRM_DONE;
   const double before = ReadinessAfter(Host(arbitration_t::AUTOMATION));
-  EXPECT_LT(ReadinessAfter(standing), before) << "nothing waits for him any more";
+  EXPECT_LT(ReadinessAfter(standing), before) << "no task waits for the driver any more";
 }
 
 TEST_F(AwarenessOfTheDriverTest, BeginsWithTheReadinessOfTheScenario) {

@@ -223,7 +223,7 @@ TEST_F(FogSightOfPeopleTest, IsThatOfTheHostsDriver) {
                           Random(scenario.seed, FollowerErrors(0)), scenario.step_s);
   // WHEN the first of the two cars follows the host through fog of 40 m
   const std::vector<double> driven = Drive(scenario, 40);
-  // THEN the driver of this car reacts to the situation as he sees it
+  // THEN the driver of this car reacts to the situation that this driver sees
   for (std::int64_t k = 0; k < 30; ++k) {
     const models::Situation truth{
         .speed_mps = 20,

@@ -145,7 +145,7 @@ TEST_F(VehicleFallbackTest, RemembersTheManoeuvreOfADriverWhoDidNotCome) {
   arbitration_t command = MinimalRiskCommand(-1.25);
   command.mode = arbitration_t::MRM_COMFORT;
   EXPECT_EQ(Host(kOk, &command), -1.25);
-  EXPECT_FALSE(fallback_.host_in_minimal_risk()) << "he may still come";
+  EXPECT_FALSE(fallback_.host_in_minimal_risk()) << "the driver may still come";
   Host(kOk, &host_);
   EXPECT_TRUE(fallback_.host_stops_by_itself());
 }

@@ -21,7 +21,7 @@ using testing::SizeIs;
 
 constexpr std::int64_t kSeat = 42;
 
-/// What a seat sends after a step.
+/// The message that a seat sends after a step.
 using SeatAct = std::function<driver_input_t(std::int64_t step)>;
 
 /// The log of a run whose driver is asked to take over, and takes over 2 s later. The tests add the

@@ -1,4 +1,4 @@
-// The experimenter's page: condition, what has happened, and markers.
+// The experimenter's page: the condition, the events, and the markers.
 import {connect, showProblem, titleOf} from "./link.js";
 
 const byId = (id) => document.getElementById(id);

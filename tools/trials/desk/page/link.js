@@ -2,7 +2,7 @@
 
 const RETRY_MS = 500;
 
-/** Takes the token out of the address, where it would be seen, and keeps it for this tab. */
+/** Moves the token from the address, where other people could read it, into this tab's storage. */
 function takeToken() {
   const key = "fogline.trials.token";
   const token = new URLSearchParams(location.hash.replace(/^#/, "")).get("token");

@@ -14,7 +14,7 @@ export function fragmentOf(step, token) {
   return `#${token ? `token=${encodeURIComponent(token)}&` : ""}step=${step}`;
 }
 
-/** Takes the token out of the address, where it would be seen, and keeps it for this tab. */
+/** Moves the token from the address, where other people could read it, into this tab's storage. */
 export function takeToken(hash = location.hash) {
   const {step, token} = readFragment(hash);
   if (token) {

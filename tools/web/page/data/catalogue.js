@@ -1,4 +1,5 @@
-// What the server said about channels and types: finds channels, decodes messages, lists fields.
+// The channels and types that the server has described. It finds channels, decodes messages, and
+// lists fields.
 
 import {DecodeError, fieldsOf, fingerprintOf, makeDecoder} from "./lcm.js";
 

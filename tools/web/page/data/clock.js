@@ -15,7 +15,7 @@ export class Clock {
     return Math.floor(this.time / step_s + EARLY);
   }
 
-  /** Lets `seconds` pass in the reader's world. `first` and `last` are the times that there are. */
+  /** Advances the reader's time by `seconds`. It stays between `first` and `last`. */
   advance(seconds, first, last) {
     if (this.state === "live") this.time = last;
     if (this.state === "playing") {

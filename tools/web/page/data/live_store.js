@@ -7,8 +7,8 @@ import {Series} from "./series.js";
 
 const KEEP_S = 600;              // of simulated time
 const KEEP_BYTES = 96 * 2 ** 20;
-const AWAY_MS = 2000;            // no new step for so long: the run has stopped
-const TIDY_AFTER = 4096;         // messages between two looks at what is too old
+const AWAY_MS = 2000;            // if no step has come for so long, the run has stopped
+const TIDY_AFTER = 4096;         // messages between two removals of old messages
 
 /** Messages of one channel in the order of their steps. */
 class Track {
@@ -16,7 +16,7 @@ class Track {
     this.channel = channel;
     this.steps = [];
     this.times = [];
-    this.messages = [];  // bytes, or what they were decoded to
+    this.messages = [];  // bytes, or decoded messages
     this.bytes = 0;
   }
 

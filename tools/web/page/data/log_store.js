@@ -65,7 +65,7 @@ export class LogStore {
     return frame;
   }
 
-  /** Fetches a chunk, one at a time. Of the chunks that wait only the newest is fetched. */
+  /** Fetches a chunk, one at a time. Only the newest of the waiting chunks is fetched next. */
   want(number) {
     if (this.fetching === number) return;
     if (this.fetching !== null) {
@@ -119,8 +119,8 @@ export class LogStore {
   }
 
   /**
-   * The values of a field between two times, as fine as a screen can show. What is fetched begins
-   * and ends at multiples of its length, so that a moving window seldom needs another part.
+   * The values of a field between two times, as fine as a screen can show. A fetched part begins and
+   * ends at multiples of its length, so a moving window seldom needs another part.
    */
   detail(channel, path, from_s, to_s) {
     const whole = this.series(channel, path);

@@ -1,4 +1,4 @@
-// What a `health` frame says of lost messages, in words.
+// Texts about the lost messages of a `health` frame.
 
 /** {count, words}: the packets that were lost, 0 if that is not known. */
 export function lossesOf({senders, senders_note: note, traffic}, number = String) {
@@ -14,7 +14,7 @@ export function lossesOf({senders, senders_note: note, traffic}, number = String
   return {count, words};
 }
 
-/** What the viewer itself does not show, and whom it has refused: a list of texts. */
+/** Texts about messages that the viewer does not show, and about clients that it has refused. */
 export function lacksOf(health, number = String) {
   const {own_overflow: missed, too_large: large, too_large_channels: channels = [],
          refused_scenarios: scenarios, cut_off: cutOff, refused} = health;

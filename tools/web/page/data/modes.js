@@ -1,4 +1,4 @@
-// Who drives the host, by HOST_COMMAND.mode (lcmtypes/arbitration_t.lcm).
+// The side that drives the host, by HOST_COMMAND.mode (lcmtypes/arbitration_t.lcm).
 
 /** The sides that can drive. The page shows each by a colour, a shape and a pattern. */
 export const SIDES = {

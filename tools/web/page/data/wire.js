@@ -52,7 +52,7 @@ export function readFrame(buffer) {
   return {kind: "unknown"};
 }
 
-/** Where the server listens for this page. */
+/** The address of the server's WebSocket for this page. */
 export function socketUrl(location, token) {
   const query = token ? `?token=${encodeURIComponent(token)}` : "";
   return `${location.protocol === "https:" ? "wss" : "ws"}://${location.host}/ws${query}`;

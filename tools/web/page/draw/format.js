@@ -43,7 +43,7 @@ export function share(part, whole) {
 const KMH_PER_MPS = 3.6;
 export const kmh = (speed_mps) => decimal(speed_mps * KMH_PER_MPS, 0);
 
-/** What the reader is told about visibility in m. */
+/** The text for a visibility in m. */
 export function visibility(value) {
   if (value == null || !Number.isFinite(value)) return DASH;
   return value >= 1000 ? `${decimal(value / 1000, 1)}${SPACE}km` : `${decimal(value, 0)}${SPACE}m`;

@@ -1,5 +1,5 @@
-// Which axis or button of a device is which pedal, and how far it moves. It knows no document: the
-// browser's localStorage comes as an argument.
+// The axes and buttons of a device that are its pedals, and how far they move. It knows no document:
+// the browser's localStorage comes as an argument.
 //
 // A calibration: {throttle: PEDAL, brake: PEDAL, take_over: BUTTON, give_back: BUTTON}. A PEDAL is
 // {axis or button, released, pressed, dead}: the raw values of the released and of the fully
@@ -31,7 +31,7 @@ export function rawOf(pad, {axis, button}) {
   return Number.isFinite(value) ? value : null;
 }
 
-/** Where a pedal is, in [0, 1]; null if the device has no such axis. */
+/** Position of a pedal in [0, 1]; null if the device has no such axis. */
 export function pedalValue(pad, pedal) {
   const raw = rawOf(pad, pedal);
   if (raw === null) return null;
@@ -67,8 +67,8 @@ export function isComplete(calibration) {
 }
 
 /**
- * The kept calibration of a device, else that of its mapping, else null: then the person has to
- * calibrate it first. What was kept is believed only if it is complete.
+ * The kept calibration of a device, if it is complete; otherwise that of its mapping. null if it has
+ * neither: the person must then calibrate it first.
  */
 export function calibrationOf(storage, {id, mapping}) {
   try {
@@ -90,7 +90,7 @@ export function keepCalibration(storage, {id}, calibration) {
   }
 }
 
-/** Forgets what was kept of a device. */
+/** Forgets the kept calibration of a device. */
 export function forgetCalibration(storage, {id}) {
   try {
     storage.removeItem(KEPT_UNDER + id);

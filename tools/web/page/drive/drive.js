@@ -1,4 +1,4 @@
-// The participant's page: shows the road, says who drives, and sends what the person does.
+// The participant's page: shows the road and the driving side, and sends the inputs of the person.
 
 import {socketUrl} from "../data/wire.js";
 import {Catalogue} from "../data/catalogue.js";
@@ -16,7 +16,7 @@ import {LEAST_GAP_MS, LOOK_EVERY_MS, Sender} from "./sender.js";
 import {Setup} from "./setup.js";
 import {Countdown, told, whyAwayInWords} from "./told.js";
 
-const GONE_MS = 2000;  // without the server for so long after a run: it is over
+const GONE_MS = 2000;  // if the server is away for so long after a step, the run is over
 
 class Drive {
   constructor() {
@@ -43,7 +43,7 @@ class Drive {
     requestAnimationFrame((now) => this.loop(now));
   }
 
-  // ---- what the person does ---------------------------------------------------------------------
+  // ---- inputs of the person ---------------------------------------------------------------------
 
   listen() {
     darkScheme.addEventListener("change", () => { if (this.view) setScheme(this.view); });
@@ -123,7 +123,7 @@ class Drive {
     this.soon = setTimeout(() => this.pump(), LEAST_GAP_MS);
   }
 
-  // ---- what the server says -----------------------------------------------------------------------
+  // ---- messages of the server ---------------------------------------------------------------------
 
   showConnection(state) {
     const words = {open: "Connected", lost: "No connection, trying again", refused: "No connection"}[state];
@@ -158,11 +158,11 @@ class Drive {
 
   sit(state) {
     this.state = state;
-    // A lost seat is still this page's: its next frame takes it again.
+    // A lost seat still belongs to this page: the next frame takes it again.
     this.set("seated", state === "yours" || state === "lost");
   }
 
-  /** The run is over: to the page from which the person came, if there is one. */
+  /** After the run: opens the page from which the person came, if there is one. */
   goBack() {
     if (this.back !== "") location.replace(this.back);
     this.back = "";

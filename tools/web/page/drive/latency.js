@@ -1,4 +1,4 @@
-// How long it takes from an input to the frame that shows it. It knows no document.
+// The latency: the time from an input to the frame that shows it. It knows no document.
 //
 // A measurement begins at the time of an input: that of the event of a key (Event.timeStamp), or
 // the time at which the browser got the state of a gamepad (Gamepad.timestamp). The input goes to
@@ -33,7 +33,7 @@ export class Latency {
     return sorted[Math.max(0, Math.ceil(share * sorted.length) - 1)];
   }
 
-  /** A frame with this number was sent because of an input at this time. One input is followed. */
+  /** A frame with this number was sent because of an input at this time. Only one input is followed. */
   sent(sequence, began_ms, now_ms) {
     if (this.probe && now_ms - this.probe.began_ms < FORGET_AFTER_MS) return;
     this.probe = {sequence, began_ms, input: null, applied: false};
@@ -60,6 +60,6 @@ export class Latency {
     return value;
   }
 
-  /** The connection was lost: the input that is followed may have got lost, too. */
+  /** The connection was lost. The input that is followed may be lost, too. */
   forget() { this.probe = null; }
 }

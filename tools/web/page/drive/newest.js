@@ -6,8 +6,9 @@ const NEEDED = new Set(["TRUTH", "HOST_COMMAND", "DRIVER_COMMAND"]);
 const STOP = 2;  // run_t.phase
 
 /**
- * Where to go after the run: the part "back=URL" behind "#", if the URL is a page of this machine or
- * of the machine of this page. Any other URL is ignored, because an address can be forged. "": stay.
+ * The page to open after the run: the part "back=URL" behind "#", if the URL is a page of this
+ * machine or of the machine of this page. Any other URL is ignored, because an address can be
+ * forged. "": the page stays open.
  */
 export function backOf(fragment, hostname) {
   const back = new URLSearchParams(fragment.replace(/^#/, "")).get("back") ?? "";

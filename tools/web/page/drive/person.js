@@ -1,5 +1,5 @@
-// What the person at the page does, as one input: keys, a gamepad or a wheel, buttons of the page,
-// and whether a person is there. It knows no document.
+// The input of the person at the page: keys, a gamepad or a wheel, buttons of the page, and whether
+// a person is there. It knows no document.
 
 import {isComplete, isDown, pedalValue} from "./calibration.js";
 import {Ramps} from "./ramps.js";
@@ -41,7 +41,7 @@ export class Person {
     this.seated = false;      // the server has given the seat to this page
     this.down = new Set();    // buttons that are held by a key
     this.until_ms = {take_over: -Infinity, give_back: -Infinity};
-    this.touched_ms = null;   // when the newest input of the device came
+    this.touched_ms = null;   // time of the newest input of the device
     this.raw = [];
   }
 
@@ -63,7 +63,7 @@ export class Person {
     this.until_ms = {take_over: -Infinity, give_back: -Infinity};
   }
 
-  /** Sets visible, focused, busy or begun. Who leaves the page leaves the pedals. */
+  /** Sets visible, focused, busy or begun. A person who leaves the page also leaves the pedals. */
   set(name, value) {
     this[name] = value;
     if (this.whyAway() !== "") this.drop();

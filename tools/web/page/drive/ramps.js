@@ -4,8 +4,8 @@
 // Until the page knows the scenario: the defaults of /person/key_press_ps and key_release_ps.
 const RATES = {press_ps: 1.5, release_ps: 4};
 
-// A longer time between two looks is a pause of the page, and no time in which a key was held. It is
-// twice the time after which the page looks at the latest (sender.js), and more.
+// If the time between two looks is longer, the page has paused, and no key counts as held. The limit
+// is more than twice the usual time between two looks (sender.js).
 const MOST_PASSED_S = 0.1;
 
 /** The rates of a scenario: shares of a pedal's way per second, while its key is down and up. */

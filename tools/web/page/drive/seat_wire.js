@@ -8,8 +8,8 @@ const TOKEN = "fogline.drive.token";
 const RETRY_MS = 1000;  // after the connection was lost
 
 /**
- * Takes the driver's token out of the address, where it would be seen, and keeps it for this tab. It
- * is another one than that of the view.
+ * Takes the driver's token out of the address, where other people could read it, and keeps it for
+ * this tab. The view has a different token.
  */
 export function takeDriverToken() {
   const {token} = readFragment(location.hash);

@@ -1,17 +1,17 @@
-// The frames that the page sends to the seat (fogline.drive.v1 in docs/view.md), and when. It knows
-// no document and no socket.
+// The frames that the page sends to the seat (fogline.drive.v1 in docs/view.md), and the times at
+// which they are due. It knows no document and no socket.
 
 export const KEEP_ALIVE_MS = 50;  // a seat that hears nothing for longer knows that something is wrong
 export const LEAST_GAP_MS = 4;    // at most 250 frames a second
 export const LOOK_EVERY_MS = 20;  // how often the page looks whether a frame is due
 const MOST_NAME_BYTES = 64;
 const MOST_AXES = 16;
-const MOST_MS = 3_600_000;        // an older input, or a longer latency, is said as this
-const SAME = 1e-4;                // a smaller change of a pedal or an axis is none
+const MOST_MS = 3_600_000;        // a longer time is sent as this one
+const SAME = 1e-4;                // a smaller change of a pedal or an axis does not count
 
 const utf8 = new TextEncoder();
 
-/** The text, cut so that it has at most this many bytes as UTF-8. */
+/** The beginning of a text that has at most this many bytes as UTF-8. */
 export function cutText(text, mostBytes = MOST_NAME_BYTES) {
   let cut = "";
   let bytes = 0;
@@ -40,7 +40,7 @@ export function inputFrame(input, sequence, age_ms, latency_ms) {
 
 const differs = (a, b) => Math.abs(a - b) > SAME;
 
-/** Whether a frame must tell the difference. */
+/** Whether the difference of two inputs needs a frame. */
 export function isChange(before, after) {
   return before === null || before.present !== after.present ||
     before.device.id !== after.device.id || differs(before.throttle, after.throttle) ||
@@ -55,7 +55,7 @@ export class Sender {
     this.begin();
   }
 
-  /** Another connection: whatever was sent before is not known there. */
+  /** Begins with another connection. It has no earlier frame. */
   begin() {
     this.before = null;
     this.sent_ms = -Infinity;
@@ -73,7 +73,7 @@ export class Sender {
     return passed_ms + LOOK_EVERY_MS > KEEP_ALIVE_MS;
   }
 
-  /** Whether a change waits only because another frame has gone a moment ago. */
+  /** Whether a change waits only because the last frame was sent a moment ago. */
   isHeldBack(input) { return isChange(this.before, input); }
 
   /** The frame of this input. @return {sequence, ...} */

@@ -1,4 +1,4 @@
-// The dialog for the device: which one drives, and its calibration.
+// The dialog for the device with which the person drives, and for its calibration.
 
 import {byId, make, say, setAttribute} from "../draw/dom.js";
 import {
@@ -16,7 +16,7 @@ const placeOf = (pedal) => pedal === null ? "not learned"
   : pedal.axis === undefined ? `button ${pedal.button}` : `axis ${pedal.axis}`;
 
 export class Setup {
-  /** @param onBusy is called with whether the dialog is open */
+  /** @param onBusy is called with true when the dialog opens, and with false when it closes */
   constructor(person, onBusy) {
     this.person = person;
     this.dialog = byId("setup");
@@ -75,7 +75,7 @@ export class Setup {
     this.show();
   }
 
-  /** What the person has chosen before: an id, "" for the keyboard, or null for nothing. */
+  /** The last choice of the person: an id, "" for the keyboard, or null for no choice. */
   remembered() {
     try {
       return localStorage.getItem(CHOSEN);

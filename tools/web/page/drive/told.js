@@ -1,5 +1,5 @@
-// What the person is told about the run: who drives, and the request to take over. Nothing of
-// sensors, thresholds or conflict. It knows no document.
+// The texts about the run for the person: the driving side and the request to take over. They say
+// nothing of sensors, thresholds or conflict. It knows no document.
 
 import {modeOf} from "../data/modes.js";
 
@@ -58,5 +58,5 @@ const WHY_AWAY = {
   "not calibrated": "Calibrate the device first (button “Device”).",
 };
 
-/** Why the person does not drive, in words; "" if they do. */
+/** The text for a reason of Person.whyAway(); "" if the person drives. */
 export const whyAwayInWords = (why) => WHY_AWAY[why] ?? "";

@@ -12,7 +12,7 @@ function refusals(refused) {
   return texts.join(", ") || "0";
 }
 
-/** What a role does instead of its work, and because of which channel. */
+/** The fallback of a role, and the channel that caused it. */
 function fallbackOf(status) {
   if (!status) return "";
   const bad = (status.input ?? []).filter((_, i) => status.input_state[i] >= 2)
@@ -21,7 +21,7 @@ function fallbackOf(status) {
   return [status.fallback ? status.fallback + cause : "", ...bad].filter(Boolean).join("; ");
 }
 
-/** How well a role is: "good", "note" or "bad". */
+/** The health of a role: "good", "note" or "bad". */
 function grade(role, status) {
   if (role.silent || role.state === "FAILED" || role.error) return "bad";
   return status?.fallback || Object.keys(role.refused ?? {}).length ? "note" : "good";

@@ -1,16 +1,17 @@
-// The strip on top: who drives, since when and why; the request to take over with its countdown.
+// The strip on top: the driving side, its begin and its reason; the request to take over with its
+// countdown.
 
 import {byId, say, setAttribute} from "../draw/dom.js";
 import {decimal, seconds, withUnit} from "../draw/format.js";
 import {modeOf, requestAt, SIDES, upTo} from "../data/modes.js";
 
-const ANNOUNCE_AFTER_MS = 400;  // a reader who scrubs is not told of everything on the way
+const ANNOUNCE_AFTER_MS = 400;  // a reader who moves quickly through time does not hear each change
 
 const LASTS = {
   automation: "The automation has driven for", human: "The human has driven for",
   risk: "The manoeuvre has lasted", unknown: "This has lasted"};
 
-/** Time at which the side that drives at the end of `times` has begun to drive. */
+/** The time at which the side that drives at the end of `times` began to drive. */
 function drivingSince(times, modes, lambdas) {
   let place = times.length - 1;
   if (place < 0) return null;

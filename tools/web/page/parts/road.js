@@ -107,7 +107,7 @@ function carColour(theme, kind, side) {
   return side === "unknown" ? theme.ink : theme[side];
 }
 
-/** Where a car stands in the picture: {left, length, width}. */
+/** Position of a car in the picture: {left, length, width}. */
 function carBox({x, scale, length_m, top, bottom}, {front_m}) {
   const length = Math.max(6, length_m * scale);
   const laneHeight = (bottom - top) / 2;
@@ -133,7 +133,7 @@ function drawCar(view, car, side) {
   drawScreens(pen, box, lane);
 }
 
-/** What fog does not cover in this picture, so that each car can be found: outline, brake lamps. */
+/** Outline and brake lamps of a car. Fog does not cover them here, so a reader finds each car. */
 function drawOutline(view, car) {
   const {pen, lane, theme} = view;
   const box = carBox(view, car);
@@ -167,7 +167,7 @@ function drawBrakeLamps(pen, {left, width}, lane, theme) {
   }
 }
 
-/** Covers the road by as much as the fog takes of a contrast between here and the host's driver. */
+/** Covers the road: it takes as much contrast as the fog between the road and the host's driver. */
 function drawHaze({pen, width, top, bottom, theme, x, scale}, truth) {
   const sigma = extinction(truth.fog_visibility_m);
   const eye = x(-2);
@@ -263,7 +263,7 @@ function drawScaleBar({pen, width, scale, theme}, height) {
   pen.fillText(`${length_m} m`, left - 6, y - 3);
 }
 
-/** What the picture shows, in words. */
+/** The picture in words. */
 export function roadInWords(frame, length_m) {
   if (!frame.TRUTH) return "The road from above. There is no message about the cars yet.";
   const cars = carsOf(frame.TRUTH);

@@ -260,7 +260,7 @@ TEST(PoliciesTest, AvailabilityCallsOnlyADriverWhoCanBeThereInTime) {
   EXPECT_EQ(Decide("availability", unready).lambda_human, 0);
   Situation driving = followed(1);
   driving.lambda_human = 1;
-  EXPECT_EQ(Decide("availability", driving).lambda_human, 1) << "he is there";
+  EXPECT_EQ(Decide("availability", driving).lambda_human, 1) << "the driver is there";
   Situation calm = followed(20);
   calm.doc = 0.4;
   EXPECT_EQ(Decide("availability", calm).lambda_human, 0) << "DoC below the threshold";

@@ -1,4 +1,4 @@
-// What a driver sees behind another car, and the precision of its accelerations, for tests.
+// The view of a driver behind another car, and the precision of accelerations, for tests.
 #pragma once
 
 #include "services/models/driver/following.h"

@@ -79,7 +79,7 @@ test("a hidden page, a blurred one, a dialog and a lost seat leave the pedals at
     assert.equal(person.whyAway(), why);
     const {present, throttle, brake, buttons} = person.input(510);
     assert.deepEqual({present, throttle, brake, buttons}, {present: false, throttle: 0, brake: 0, buttons: []});
-    // Who comes back finds the pedals released, although no key has told so.
+    // When the person comes back, the pedals are still released, although no key has gone up.
     assert.equal(person.key("ArrowUp", true, 520), false);
     person.set(name, !away);
     assert.deepEqual(person.input(600).throttle, 0);
