@@ -57,7 +57,7 @@ const arbitration_t& Arbitrator::Choose(const ego_t& ego, const track_t& track,
   out_.threshold = request.threshold;
   const double wanted = debouncer_.Step(request, out_.doc, !recovery_ || recovery_->recovered());
   Transfer::Offers offers{automation.acceleration_mps2, driver.acceleration_mps2};
-  // The paper's driver is always ready, so he gets the wanted authority at once.
+  // The paper's driver is always ready, and so gets the wanted authority at once.
   granted_ = wanted;
   if (take_over_ && !Ask(wanted, ego, track, driver, offers)) return out_;
   const Transfer::State state = transfer_.Step(granted_, offers, ego.acceleration_mps2);

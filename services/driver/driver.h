@@ -17,15 +17,15 @@
 namespace fogline::driver {
 
 /// By default, the driver is that of Sourav & Cheng 2024: the Intelligent Driver Model on the
-/// ground truth. He perceives the truth perfectly and without delay, also in fog. The scenario sets
-/// his readiness. Each switch of scenario section `human` replaces a part of this driver by a more
-/// realistic model (services/models/driver).
+/// ground truth. The driver perceives the truth perfectly and without delay, also in fog. The
+/// scenario sets the readiness. Each switch of scenario section `human` replaces a part of this
+/// driver by a more realistic model (services/models/driver).
 class Driver {
  public:
   /// @throws InputError if a step is so short that the reaction time is more than 254 steps
   explicit Driver(const Scenario& scenario);
 
-  /// Whether the driver needs HOST_COMMAND, because his awareness depends on who drives.
+  /// Whether the driver needs HOST_COMMAND, because the awareness depends on who drives.
   static bool UsesOnDemandInput(const Scenario& scenario) {
     return scenario.human.loses_awareness && !scenario.person.drives;
   }
@@ -34,13 +34,13 @@ class Driver {
 
   /// Whether a person drives. SetLiveInput() is then called before every Step().
   static bool UsesLiveInput(const Scenario& scenario) { return scenario.person.drives; }
-  /// Takes what the person does; nullptr: no person is there. The next offer is a function of this
-  /// input alone (services/models/driver/pedal_response.h). Without a person the pedals are
+  /// Takes the input of the person; nullptr: no person is there. The next offer is a function of
+  /// this input alone (services/models/driver/pedal_response.h). Without a person the pedals are
   /// released, and the readiness is 0.
   void SetLiveInput(const driver_input_t* input);
 
   /// The acceleration that the driver offers. Call it in the order of steps. The driver has a
-  /// memory only if he misjudges or loses awareness. The result is valid until the next call.
+  /// memory only with switch misjudges or loses_awareness. The result is valid until the next call.
   const driver_command_t& Step(const truth_t& truth);
 
  private:

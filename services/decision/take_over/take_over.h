@@ -26,8 +26,8 @@ struct TakeOverInputs {
   double applied_mps2 = 0;         // last sent command; at first the applied acceleration
   const track_t* track = nullptr;  // nullptr if no preceding car is known
   // Of a person who drives; false for the model of a driver.
-  bool acknowledged = false;  // he answers now
-  bool gives_back = false;    // he wants the automation to drive
+  bool acknowledged = false;  // the driver answers now
+  bool gives_back = false;    // the driver wants the automation to drive
 };
 
 /// Result of a step.
