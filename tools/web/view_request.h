@@ -45,7 +45,7 @@ struct BadRequest {
 
 using ViewRequest = std::variant<StepsRequest, SeriesRequest, HistoryRequest, BadRequest>;
 
-/// Never throws: whatever is wrong with the text becomes a BadRequest.
+/// Never throws: a wrong text becomes a BadRequest.
 ViewRequest ParseViewRequest(std::string_view text);
 
 }  // namespace fogline::web

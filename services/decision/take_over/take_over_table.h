@@ -192,6 +192,6 @@ static_assert(
       }
       return true;
     }(),
-    "a state has one authority whatever led there, and a change of state tells what is logged");
+    "a state has one authority for all changes to it, and a change of state has one log entry");
 
 }  // namespace fogline::take_over

@@ -34,7 +34,7 @@ using SeatFrame = std::variant<SeatInput, BadSeatFrame>;
 /// The longest time in ms that a page may name: an hour. A page says longer times as this one.
 inline constexpr double kMostSeatTime_ms = 3'600'000;
 
-/// Never throws: whatever is wrong with the text becomes a BadSeatFrame.
+/// Never throws: a wrong text becomes a BadSeatFrame.
 SeatFrame ParseSeatFrame(std::string_view text);
 
 }  // namespace fogline::web

@@ -227,7 +227,7 @@ TEST(WhyNotWrittenTest, SaysWhenTheBytesAreNotWhatWasTold) {
   };
   EXPECT_EQ(why({}), "");
   EXPECT_EQ(why({first, last}), "");
-  EXPECT_EQ(why({last, first}), "") << "in whatever order";
+  EXPECT_EQ(why({last, first}), "") << "in any order";
   // A change in the bytes that the report `first` covers.
   content[50] ^= 1;
   EXPECT_THAT(why({first}),

@@ -28,7 +28,7 @@ TEST_F(StepHorizonTest, GoesOnWithTheWallClock) {
   EXPECT_TRUE(horizon_.known());
   EXPECT_EQ(horizon_.Newest(At(799)), 7 + kSlack);
   EXPECT_EQ(horizon_.Newest(At(800)), 8 + kSlack);
-  EXPECT_EQ(horizon_.Newest(At(3700)), 37 + kSlack) << "whatever is not heard meanwhile";
+  EXPECT_EQ(horizon_.Newest(At(3700)), 37 + kSlack) << "although no message has come meanwhile";
 }
 
 TEST_F(StepHorizonTest, IsNotHeldBackByWhatComesLate) {

@@ -19,7 +19,7 @@ function storage() {
 const WHEEL = {throttle: {axis: 2, released: 1, pressed: -1, dead: 0.1},
                brake: {axis: 5, released: -0.9, pressed: 0.8, dead: 0}, take_over: 4, give_back: null};
 
-test("a pedal is 0 when released and 1 when pressed, whichever way its axis runs", () => {
+test("a pedal is 0 when released and 1 when pressed, for both directions of its axis", () => {
   for (const {throttle} of [WHEEL, {throttle: inverted(WHEEL.throttle)}]) {
     const {released, pressed} = throttle;
     assert.equal(pedalValue(pad([0, 0, released]), throttle), 0);
