@@ -1,8 +1,8 @@
 // The sounds of the page, by WebAudio: no file is loaded. A browser lets a page sound only after the
 // person has pressed something on it.
 
-// Tones in Hz and times in s. Our choice: a person hears two tones in turn also in noise, and if one
-// ear hears one of them badly. The urgent request is faster and higher.
+// Tones in Hz and times in s. Our choice: a person hears two tones in turn also in noise, and also
+// with ears that hear one of them badly. The urgent request is faster and higher.
 const REQUEST = {tones: [660, 880], tone_s: 0.14, every_s: 0.9, gain: 0.25};
 const URGENT = {tones: [880, 1175], tone_s: 0.1, every_s: 0.35, gain: 0.35};
 const CHANGE = {tones: [523], tone_s: 0.15, gain: 0.15};
