@@ -153,7 +153,7 @@ TEST(LiveViewTest, TellsTheScenarioToAViewerThatStartsLate) {
   const TimePoint end = Clock::now() + kPatience;
   while (!under_way && Clock::now() < end) bus.Wait(milliseconds(100));
   ASSERT_TRUE(under_way) << run.Err();
-  // WHEN a viewer comes that has missed the beginning, and that asks for nothing
+  // WHEN a viewer connects after the beginning, and sends no request
   Viewed viewed({"--lcm-url", url});
   ASSERT_NE(viewed.port(), 0) << viewed.process().Err();
   WebClient client(viewed.port());

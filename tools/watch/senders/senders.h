@@ -46,7 +46,7 @@ class Senders {
  public:
   /// @param head the packet, or its first kPacketHead bytes
   void Add(const SenderAddress& from, runtime::Bytes head, TimePoint now);
-  /// Says that this process has dropped packets before the next one. It is unknown whose they were.
+  /// Says that this process has dropped packets before the next one. Their sender is unknown.
   void AddDropped(std::int64_t packets) { own_overflow_ += packets; }
 
   /// The senders that have sent anything besides LCM's own self-test and the beacons of runs.
