@@ -22,7 +22,7 @@ constexpr Study kStudies[] = {
      RunPolicyStudy},
     {"takeover",
      "A driver who needs time",
-     "What does traded control gain if the driver must be asked, and needs time or never comes?",
+     "What does traded control gain if the driver must be asked, and needs time?",
      {1, 300},
      RunTakeOverStudy},
     {"transfer",

@@ -195,8 +195,8 @@ constexpr std::string_view kTakeOverAnswer =
     "In the paper's fog a perfect driver who needs a few seconds gains nothing, and a slower one "
     "does harm; with realistic radar noise a part of the gain is left. With a false echo the wait "
     "does harm if the automation goes on as it is, and costs nothing if it leaves out the deceived "
-    "sensor meanwhile. If there is no echo at all, no driver is needed, but this is reversed with "
-    "every parameter set of study ensemble.";
+    "sensor meanwhile. If there is no echo at all, the automation alone is safer with the "
+    "parameters of this study, and less safe with every parameter set of study ensemble.";
 constexpr std::string_view kTakeOverWouldChange =
     "A warning before the fog begins, or fog that lasts much longer than a request.";
 
