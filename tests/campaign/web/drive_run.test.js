@@ -155,6 +155,7 @@ for (const [device, make] of [["the keys", keys], ["a wheel", wheel]]) {
 async function leavesTheCar(t, happens) {
   const {page, log, run} = await drive(t, {"/arbitrator/threshold": 0, "/steps": 600});
   await begin(page);
+  await drives(page, true);  // before that, the page hears no key
   await says(page, "Take over");
   await page.keyboard.press("t");
   await says(page, "You drive");
