@@ -162,11 +162,16 @@ class Attacker {
   /// The next datagram. Valid until the next call.
   const Buffer& Next() {
     const Kind& kind = kinds_[next_++ % kinds_.size()];
-    channel_ = kChannels[Below(kChannels.size())].name;
     datagram_.clear();
     payload_.clear();
-    const auto known = genuine_.find(channel_);
-    if (known != genuine_.end()) payload_ = known->second;
+    if (kind.needs_genuine && !genuine_.empty()) {
+      const auto index = static_cast<std::ptrdiff_t>(Below(genuine_.size()));
+      const auto& [channel, payload] = *std::next(genuine_.begin(), index);
+      channel_ = channel;
+      payload_ = payload;
+    } else {
+      channel_ = kChannels[Below(kChannels.size())].name;
+    }
     if (kind.needs_genuine && payload_.empty()) {
       Noise();
     } else {
