@@ -36,14 +36,15 @@ class Background {
   pid_t pid() const { return pid_; }
   void Signal(int signal) const;
   /// Waits for the end. @return the exit code, or 128 + signal. After the time limit the program is
-  /// killed, and the result is -1
-  int Wait(std::chrono::seconds limit = std::chrono::seconds(60));
+  /// killed, and the result is -1. The limits of this class only end a test that hangs, so they are
+  /// many times the time that a busy machine needs.
+  int Wait(std::chrono::seconds limit = std::chrono::seconds(100));
   std::string Out() const;
   std::string Err() const;
   /// Waits until stderr (or stdout) contains `text`. @return false after the time limit, or if the
   /// program ends without this text
-  bool WaitForErr(const std::string& text, std::chrono::seconds limit = std::chrono::seconds(20));
-  bool WaitForOut(const std::string& text, std::chrono::seconds limit = std::chrono::seconds(20));
+  bool WaitForErr(const std::string& text, std::chrono::seconds limit = std::chrono::seconds(100));
+  bool WaitForOut(const std::string& text, std::chrono::seconds limit = std::chrono::seconds(100));
 
  private:
   bool WaitFor(const std::filesystem::path& file, const std::string& text,

@@ -79,7 +79,7 @@ TEST_F(DisturbedLogTest, ThatIsEmptiedEndsTheRun) {
 
 TEST_F(DisturbedLogTest, ThatIsRemovedEndsARunInOneProcessToo) {
   Background run({Program("fogline"), "run", "scenario/paper.json", "--transport", "direct",
-                  "--set", "/steps=2000000", "--log", log_});
+                  "--set", "/steps=500000", "--log", log_});
   ASSERT_TRUE(GrowsTo(1'000'000, log_)) << run.Err();
   std::filesystem::remove(log_);
   EXPECT_EQ(run.Wait(), 3) << run.Err();
