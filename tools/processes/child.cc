@@ -124,6 +124,7 @@ std::string FirstLineOf(int output, Duration limit) {
 }
 
 void EndChild(pid_t pid, Duration limit) {
+  if (pid <= 0) return;  // kill() would end other processes
   kill(pid, SIGTERM);
   const TimePoint end = Clock::now() + limit;
   while (waitpid(pid, nullptr, WNOHANG) == 0) {

@@ -155,8 +155,11 @@ class Attacker {
     if (!text.starts_with(kWholeMagic) || end == std::string_view::npos) return;
     const runtime::Bytes payload = datagram.subspan(end + 1);
     if (payload.size() < runtime::kHeaderEnd) return;
-    genuine_[std::string(text.substr(kWholeHeader, end - kWholeHeader))] = {payload.begin(),
-                                                                            payload.end()};
+    const std::string_view channel = text.substr(kWholeHeader, end - kWholeHeader);
+    const auto is_channel = [channel](const auto& one) { return one.name == channel; };
+    // A false announcement of a run would be a valid message.
+    if (std::ranges::none_of(kChannels, is_channel)) return;
+    genuine_[std::string(channel)] = {payload.begin(), payload.end()};
   }
 
   /// The next datagram. Valid until the next call.
