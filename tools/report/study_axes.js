@@ -1,4 +1,3 @@
-"use strict";
 // The axes of a figure of studies: positions of values, ranges, ticks, and the rows of categories.
 // study.js follows in the same script. It has the theme.
 

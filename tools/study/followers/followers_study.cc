@@ -78,8 +78,8 @@ constexpr std::string_view kFollowersAnswer =
     "It helps an ACC that follows the host. In the paper's fog traded control does nothing for a "
     "human "
     "follower, "
-    "whose own fluctuations are larger than the effect; with a false echo an aggressive one comes "
-    "closer still, unless the radar has realistic noise. The last car of a string brakes less "
+    "whose own fluctuations are larger than the effect; with a false echo an aggressive one is "
+    "less safe, unless the radar has realistic noise. The last car of a string brakes less "
     "hard, whatever kind of driver the string "
     "has.";
 constexpr std::string_view kFollowersWouldChange =

@@ -1,5 +1,6 @@
-// Counts the messages of a sender that arrived, by LCM's own numbers. It works for any LCM program,
-// because each LCM instance numbers its messages. The caller passes packets and times in.
+// Counts the messages of a sender that arrived and those that were lost, by LCM's own numbers. It
+// works for any LCM program, because each LCM instance numbers its messages. The caller passes
+// packets and times in.
 #pragma once
 
 #include <bitset>

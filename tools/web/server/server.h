@@ -3,7 +3,7 @@
 //
 // Every limit protects the other clients and the memory of this process. A client that exceeds a
 // limit is closed, counted, and named on stderr. A connection that has not opened a WebSocket (a
-// caller) has limits of its own. So callers without a token cannot take the places of viewers.
+// caller) has limits of its own. So a caller that is refused cannot take the place of a viewer.
 #pragma once
 
 #include <chrono>

@@ -4,8 +4,8 @@
 // Until the page knows the scenario: the defaults of /person/key_press_ps and key_release_ps.
 const RATES = {press_ps: 1.5, release_ps: 4};
 
-// If the time between two looks is longer, the page has paused, and no key counts as held. The limit
-// is more than twice the usual time between two looks (sender.js).
+// If the time between two looks is longer, the page has paused, and a held key moves its pedal only
+// for this time. It is five times LOOK_EVERY_MS (sender.js).
 const MOST_PASSED_S = 0.1;
 
 /** The rates of a scenario: shares of a pedal's way per second, while its key is down and up. */
