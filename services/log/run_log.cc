@@ -218,6 +218,8 @@ class RunLogReader::Assembler {
   void ExpectRealtime(const run_t& run) {
     const Scenario scenario = ParseScenario(parts_.Text(), file_.string());
     steps_ = scenario.steps;
+    // A message that came before the scenario can claim any step.
+    pending_.erase(pending_.lower_bound(steps_), pending_.end());
     realtime_.emplace(run.pace, std::llround(scenario.step_s * 1e6), scenario.steps);
   }
 

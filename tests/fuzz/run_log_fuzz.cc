@@ -10,6 +10,11 @@
 namespace fogline::fuzz {
 namespace {
 
+// A log in real time has all steps of its scenario, although most of them may have no message. This
+// target reads at most this many steps, so that their contents fit into memory.
+constexpr std::size_t kMostSteps = 100'000;
+struct TooManySteps {};
+
 /// The contents of a log.
 struct Reading {
   std::vector<std::array<Input, kNumChannels>> steps;
@@ -17,11 +22,13 @@ struct Reading {
   log::RunLog run;
 };
 
+/// @throws TooManySteps
 Reading Read(const std::filesystem::path& file) {
   Reading reading;
   log::RunLogReader reader(file);
   try {
     while (const log::StepMessages* messages = reader.Next()) {
+      if (reading.steps.size() == kMostSteps) throw TooManySteps();
       auto& step = reading.steps.emplace_back();
       for (std::size_t i = 0; i < kNumChannels; ++i) {
         step[i].assign((*messages)[i].begin(), (*messages)[i].end());
@@ -88,6 +95,8 @@ void DemandRunOrRefusal(runtime::Bytes bytes) {
     if (!reading.steps.empty()) Took();
   } catch (const InputError&) {
     return;  // not an event log
+  } catch (const TooManySteps&) {
+    return;
   }
 }
 

@@ -69,6 +69,14 @@ TEST_F(RunLogTest, InRealTimeIsIncompleteWithoutItsLastStep) {
   EXPECT_THAT(run.note, HasSubstr("ends after step 1 of 3"));
 }
 
+TEST_F(RunLogTest, InRealTimeHasNoStepBeyondTheScenarioThatAMessageBeforeItClaims) {
+  test::ShortLog contents{.realtime = true};
+  contents.early = std::int64_t{1} << 20;
+  const log::RunLog run = Read(contents);
+  EXPECT_EQ(run.steps, kSteps);
+  EXPECT_TRUE(run.complete) << run.note;
+}
+
 TEST_F(RunLogTest, InLockstepIsIncompleteWithoutTheLastStateOfTheWorld) {
   const log::RunLog run = Read({.has = [](std::string_view channel, std::int64_t step) {
     return !(channel == ChannelOf<truth_t>().name && step == kSteps - 1);

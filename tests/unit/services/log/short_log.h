@@ -30,6 +30,8 @@ struct ShortLog {
       [](std::string_view, std::int64_t) { return true; };
   /// If set, the log has a STATUS of the world that says DONE after this step.
   std::optional<std::int64_t> done;
+  /// If set, the scenario has two parts, and a TRUTH of this step comes between them.
+  std::optional<std::int64_t> early;
 };
 
 /// @return the position after the last event
@@ -37,8 +39,18 @@ inline log::LogHead WriteShortLog(const std::filesystem::path& file,
                                   const ShortLog& contents = {}) {
   log::EventLogWriter writer(file);
   std::vector<std::uint8_t> bytes;
-  const std::vector<std::string> parts = runtime::SplitScenario(std::string(kScenario));
+  std::vector<std::string> parts = runtime::SplitScenario(std::string(kScenario));
+  if (contents.early) {
+    constexpr std::size_t kHalf = kScenario.size() / 2;
+    parts = {std::string(kScenario.substr(0, kHalf)), std::string(kScenario.substr(kHalf))};
+  }
   for (std::size_t i = 0; i < parts.size(); ++i) {
+    if (i == 1 && contents.early) {
+      truth_t truth{};
+      truth.header = {.run_id = kRunId, .step = *contents.early, .utime = 0};
+      runtime::Encode(truth, bytes);
+      writer.Write(ChannelOf<truth_t>().name, 0, bytes);
+    }
     run_t run =
         runtime::MakeRunPart(kRunId, run_t::PREPARE, 0, runtime::HashOf(kScenario), parts, i);
     if (contents.realtime) {
