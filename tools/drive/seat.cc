@@ -21,7 +21,7 @@ namespace {
 // at most a fifth of their travel (key_press_ps at most 20).
 constexpr Duration kTick = milliseconds(10);
 
-/// The text for the person about a mode of HOST_COMMAND; "" if there is none.
+/// The text that the person sees for a mode of HOST_COMMAND. A mode without a text has "".
 std::string_view TextOf(std::int8_t mode) {
   switch (mode) {
     case arbitration_t::REQUEST:

@@ -49,7 +49,7 @@ Json Parse(std::string_view frame) {
   return json.is_object() ? json : Json();
 }
 
-/// The text of a member; "" if there is none.
+/// The text in a member of an object. A member that is missing or no text counts as "".
 std::string Text(const Json& json, const char* name) {
   const auto member = json.find(name);
   return member != json.end() && member->is_string() ? member->get<std::string>() : "";
