@@ -1,7 +1,8 @@
 // Pairs of radar and LiDAR values of the same step. In real time, one of the two values may come
 // late or not at all. A difference between values of two different steps would count relative
 // motion as conflict. At a closing speed of 10 m/s the range changes by 1 m in a step of 0.1 s.
-// This 1 m is the centre of the DoC.
+// With the default of `doc_centre_m` the DoC is 1/2 at a difference of 1 m. So such a false
+// difference alone could cause a transfer.
 #pragma once
 
 #include <array>
