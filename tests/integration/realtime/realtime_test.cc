@@ -61,7 +61,8 @@ TEST(RealtimeTest, UndisturbedItIsTheRunInLockstep) {
          << " steps had to do without an input";
 }
 
-// A column of ACCs and people follows the driver. Every step must have commands for all these cars.
+// Five cars follow the host. An ACC or a modelled human drives each of them. Every step must have
+// commands for all these cars.
 TEST(RealtimeTest, ADriverWhoIsLateEndsTheManoeuvreAndTheLogTellsHisTimes) {
   constexpr int kSteps = 140;
   constexpr int kColumn = 5;

@@ -269,8 +269,8 @@ TEST(SwapTest, TheBareDriverAnswersRepairsAndLeavesAsARoleMust) {
   const driver_command_t again = commands.WaitForNext();
   EXPECT_EQ(again.header.step, 0);
   EXPECT_EQ(again.acceleration_mps2, first.acceleration_mps2);
-  // WHEN a process asks for an answer of a step and the driver lacks its TRUTH, THEN the driver
-  // asks for this TRUTH
+  // WHEN a process asks for the driver's answer to a step, and the driver has no TRUTH of this
+  // step, THEN the driver asks for this TRUTH
   ask_for_command(2);
   const resend_t request = requests.WaitForNext();
   EXPECT_EQ(request.channel, "TRUTH");

@@ -19,7 +19,8 @@ namespace fogline::test {
 
 using Words = std::vector<std::string>;
 
-// Runs of 5 s. They have every measure of clear air, and need little time.
+// Runs of 5 s, which end before the fog begins. They have all measures that need no fog, and they
+// take little time.
 inline const Words kShort{"--set", "/steps=50"};
 inline const Words kThresholds{"--grid", "/arbitrator/threshold=0.2,0.5,0.8"};
 

@@ -23,8 +23,8 @@ class FakeRole final : public runtime::Work {
  public:
   static constexpr const char* kWaitingFor = "the test";
 
-  /// A rule that accepts the messages that fit into the rings, unless the test sets another
-  /// verdict.
+  /// A rule that accepts each message of a step that the ring does not have. It classifies any
+  /// other message as the ring does. A test can set another verdict.
   class Rule final : public runtime::FireRule {
    public:
     explicit Rule(runtime::Parts& parts) : parts_(parts) {}
