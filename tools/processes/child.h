@@ -45,7 +45,7 @@ std::vector<std::string> LinesOf(int output, std::size_t count, Duration limit);
 std::string FirstLineOf(int output, Duration limit);
 
 /// Ends a child with SIGTERM, and returns when it has ended. A child that needs longer than `limit`
-/// is killed. Nothing happens if `pid` is not that of a process (-1).
+/// is killed. Does nothing if `pid` is 0 or less, which means that there is no process.
 void EndChild(pid_t pid, Duration limit);
 
 /// How a process ended, from the status of waitpid().

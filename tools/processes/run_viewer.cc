@@ -82,7 +82,7 @@ bool RunViewer::TakeAddress(Duration limit) {
   return false;
 }
 
-/// The thread of the run does not wait, so another thread does.
+/// Another thread waits for the address, because the thread of the run must not wait for it.
 void RunViewer::TakeAddressLater() {
   sigset_t all;
   sigset_t before;

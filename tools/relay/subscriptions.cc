@@ -24,9 +24,9 @@ constexpr std::size_t kSpareBytes = 256;
 // expressions.
 constexpr double kBudgetS = 0.1;
 constexpr double kRefillPerS = kBudgetS / 10;
-// Time for each name that is not charged to the budget. Tens of simple expressions take no longer.
-// So a flood of names does not disconnect a client with simple expressions. The relay needs about
-// the same time to receive a name.
+// For each name, this much processor time is not charged to the budget. Tens of simple expressions
+// take no longer. So a flood of names does not disconnect a client with simple expressions. The
+// relay needs about the same time to receive a name.
 constexpr double kFreeS = 50e-6;
 
 double ProcessorTimeS() {

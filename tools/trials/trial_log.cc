@@ -23,7 +23,7 @@ std::string_view TextOf(runtime::Bytes bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-/// The facts of a run, each once, by their sequence.
+/// The facts of a run, without duplicates, in the order of their sequence numbers.
 std::vector<trial_t> FactsOf(const std::filesystem::path& log, std::int64_t run_id) {
   std::map<std::int64_t, trial_t> facts;
   log::EventLogReader reader(log);

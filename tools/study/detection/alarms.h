@@ -46,7 +46,7 @@ struct AlarmCount {
 };
 AlarmCount CountAlarms(std::span<const ClearRun> runs, double threshold);
 
-/// Finds thresholds from runs in clear air, repeatedly with different weights.
+/// Finds thresholds from runs in clear air. Each call may give the runs other weights.
 class ThresholdFinder {
  public:
   explicit ThresholdFinder(std::span<const ClearRun> runs);

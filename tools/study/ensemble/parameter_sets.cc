@@ -44,7 +44,8 @@ std::vector<EnsembleSet> ReadEnsembleSets(const std::filesystem::path& scenarios
     sets.push_back({.name = fmt::format("set {}", i - kFirstSet + 1), .fields = {}});
   }
   while (std::getline(stream, line)) {
-    // Other rows are those of the table that a set gives.
+    // The other rows have the results of each set (SI, RHE and the distance from the target), and
+    // no field.
     if (!line.starts_with('/')) continue;
     const std::vector<std::string> cells = CellsOf(line);
     if (cells.size() != columns.size()) RefuseSets(file, "a set has no value of " + cells[0]);

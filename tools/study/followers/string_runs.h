@@ -39,7 +39,8 @@ struct StringOutcome {
 /// The host without and with traded control.
 const std::vector<StudyVariant>& HostVariants();
 /// Strings: rows of cars behind the host. All drivers of a string are of one kind, or each driver
-/// is drawn at random. Two of them also have realistic noise.
+/// is drawn at random. Two kinds exist a second time, with realistic noise: `acc` and `normal
+/// humans`.
 std::vector<StudyCase> StringKinds();
 
 /// Runs all kinds with all variants. The result is ordered by kind. In the scenarios of `kinds` the

@@ -43,8 +43,9 @@ Claim RuleClaim(const MixedRuns& runs, std::string_view of, std::string says, st
 /// The rules of ClaimsOnFixed().
 inline constexpr std::array<std::string_view, 3> kFixedRules{"fixed 0.3", "fixed 0.5",
                                                              "fixed 0.99"};
-/// The claims that hardly ever handing over is safer than the paper's threshold, and that this is
-/// safer than a low one. `of` as for RuleClaim().
+/// Two claims. A rule that hardly ever hands over (fixed 0.99) is safer than the paper's threshold
+/// (fixed 0.5). The paper's threshold is safer than a low threshold (fixed 0.3). `of` has the same
+/// meaning as in RuleClaim().
 std::vector<Claim> ClaimsOnFixed(const MixedRuns& runs, std::string_view of);
 /// Index of the rule with this name. @throws std::out_of_range
 std::size_t RuleNamed(const MixedRuns& runs, std::string_view name);

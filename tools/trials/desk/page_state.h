@@ -41,7 +41,8 @@ class PageState {
   /// Adds a line to what the experimenter sees, the newest last. The oldest lines are dropped.
   void Tell(std::string line);
 
-  /// JSON for the page of the participant: nothing of condition, seed, threshold or view.
+  /// JSON for the page of the participant. It does not contain the condition, the seed, the
+  /// threshold or the address of the view.
   std::string ForParticipant() const;
   /// JSON for the page of the experimenter.
   std::string ForExperimenter() const;

@@ -16,7 +16,7 @@ namespace fogline::trials {
 
 class RunPage {
  public:
-  /// @param traffic the options --key for fogline-web
+  /// @param traffic the option --key and its file, for fogline-web; empty if there is no key
   explicit RunPage(std::vector<std::string> traffic) : traffic_(std::move(traffic)) {}
   ~RunPage();
   RunPage(const RunPage&) = delete;

@@ -283,7 +283,10 @@ class Page {
     ++this.frames;
   }
 
-  /** Time since the shown step, for which the cars have moved on. */
+  /**
+   * Simulated time since the shown step, in s. The page moves the cars on by this time, at their
+   * last speeds.
+   */
   aheadOf(step) {
     if (reducedMotion.matches || this.clock.state === "paused") return 0;
     const {step_s, pace} = this.run;
@@ -329,7 +332,7 @@ class Page {
     }
   }
 
-  /** Keeps a log's moment in the address, so that the page can be loaded again. */
+  /** Keeps the shown step of a log in the address, so that a reload shows the same step. */
   keepAddress(step) {
     if (this.isLive || this.clock.state !== "paused" || step === this.keptStep) return;
     const now = performance.now();

@@ -40,7 +40,7 @@ std::optional<driver_input_t> Seat::Leave(std::uint64_t client, TimePoint now) {
 Seat::Taken Seat::Take(std::uint64_t client, const SeatInput& input, TimePoint now) {
   if (!Has(client)) return {.message = std::nullopt, .why = "another page has the seat"};
   heard_at_ = now;
-  // The message that the person has left is never refused.
+  // The rate limit never refuses an input that says that the person is no longer present.
   const bool leaves = message_.present && !input.present;
   if (!limiter_.Take(now) && !leaves) {
     return {.message = std::nullopt,
@@ -63,7 +63,8 @@ Seat::Taken Seat::Take(std::uint64_t client, const SeatInput& input, TimePoint n
 std::optional<driver_input_t> Seat::Look(TimePoint now) {
   if (client_ && now - heard_at_ >= kSilent) silent_ = true;
   if (!silent_) return std::nullopt;
-  // The first message after a silence does not wait.
+  // When a client becomes silent while a person is present, the first message of the empty seat is
+  // sent at once.
   if (!message_.present && now - sent_at_ < runtime::kInputEvery) return std::nullopt;
   return EmptySeat(now);
 }

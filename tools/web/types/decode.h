@@ -14,8 +14,8 @@ namespace fogline::web {
 ///
 /// Integers beyond 2^53, such as a run's id, are decimal strings, because JavaScript would round
 /// them. Numbers that are infinite or NaN are null. A boolean is true if its byte is not 0. Arrays
-/// are lists of lists; an array without elements is []. In a string that is no UTF-8, the wrong
-/// bytes are replaced by U+FFFD, so the result can always be printed.
+/// are lists of lists; an array without elements is []. In a string that is not valid UTF-8, the
+/// wrong bytes are replaced by U+FFFD, so the result can always be printed.
 ///
 /// @param message with its fingerprint and without a signature (message_signer.h)
 /// @return nullopt if the bytes are not exactly one message of this type

@@ -27,7 +27,10 @@ const MODES = [
   {name: "EMERGENCY_BRAKING", side: "risk", words: "Emergency braking"},
 ];
 
-/** {name, side, words, asks, urgent} of a mode. A collision warning leaves the driving side. */
+/**
+ * {name, side, words, asks, urgent} of a mode. A collision warning does not change the side that
+ * drives.
+ */
 export function modeOf(mode, lambda_human = 0) {
   const known = MODES[mode];
   if (!known) return {name: "UNKNOWN", side: "unknown", words: SIDES.unknown.words};

@@ -22,7 +22,10 @@ export function setAttribute(element, name, value) {
   if (element.getAttribute(name) !== value) element.setAttribute(name, value);
 }
 
-/** Gives a canvas as many pixels as it covers. @return its 2D context, in pixels of the page */
+/**
+ * Gives a canvas as many pixels as it covers, and clears it.
+ * @return {context, width, height}: its 2D context, and its width and height, in CSS pixels
+ */
 export function fitCanvas(canvas) {
   const ratio = devicePixelRatio;
   const {clientWidth: width, clientHeight: height} = canvas;

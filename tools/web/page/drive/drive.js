@@ -1,4 +1,5 @@
-// The participant's page: shows the road and the driving side, and sends the inputs of the person.
+// The participant's page. It shows the road and whether the automation or the human drives. It
+// sends the inputs of the person.
 
 import {socketUrl} from "../data/wire.js";
 import {Catalogue} from "../data/catalogue.js";

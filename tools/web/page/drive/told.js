@@ -1,5 +1,5 @@
-// The texts about the run for the person: the driving side and the request to take over. They say
-// nothing of sensors, thresholds or conflict. It knows no document.
+// The texts about the run for the person: the side that drives, and the request to take over. They
+// do not mention sensors, thresholds or conflict. It knows no document.
 
 import {modeOf} from "../data/modes.js";
 

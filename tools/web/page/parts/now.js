@@ -1,4 +1,4 @@
-// The strip on top: the driving side, its begin and its reason; the request to take over with its
+// The strip on top: the side that drives, since when, and why; the request to take over with its
 // countdown.
 
 import {byId, say, setAttribute} from "../draw/dom.js";

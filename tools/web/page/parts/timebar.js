@@ -54,7 +54,7 @@ export class Timebar {
     this.drawTrack(store, modes, lambdas, events, theme);
   }
 
-  /** Fog, driving side, and events over the whole time. */
+  /** Fog, the side that drives, and events over the whole time. */
   drawTrack(store, modes, lambdas, events, theme) {
     const fog = store.series("TRUTH", "fog_present");
     const state = [modes.version, lambdas.version, fog.version, store.lastStep, events.length,

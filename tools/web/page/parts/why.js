@@ -1,5 +1,5 @@
-// The reasons for the driving side, over the last 20 s: conflict against threshold, authorities, and
-// the error of each sensor.
+// Why this side drives, over the last 20 s: conflict against threshold, authorities, and the error
+// of each sensor.
 
 import {drawNow, extremes, fillSpan, joined, makeChart, stepped, TOP, widened}
   from "../draw/chart.js";
@@ -10,7 +10,7 @@ import {Series} from "../data/series.js";
 import {withAlpha} from "../draw/theme.js";
 
 export const WINDOW_S = 20;
-const BAND = {height: 12, gap: 5};  // above the conflict, for the driving side, in pixels
+const BAND = {height: 12, gap: 5};  // above the conflict, for the side that drives, in pixels
 const LEAST_ERROR_SPAN_M = 0.5;
 
 /** Distance of each source to the truth: [key, channel, path, validity path]. */
@@ -23,7 +23,7 @@ const SOURCES = [
 export const sideNumber = {automation: 0, human: 1, risk: 2, unknown: 3};
 export const sideNames = Object.keys(sideNumber);
 
-/** Draws the driving side as a band: a colour and a pattern for each side. */
+/** Draws the side that drives as a band: a colour and a pattern for each side. */
 export function drawBand(chart, spans, theme, top, height) {
   const {ctx} = chart;
   for (const {from, to, value} of spans) {
