@@ -196,7 +196,7 @@ class TreeBuilder final : public nlohmann::json_sax<nlohmann::json> {
     open_.push_back(node);
     if (open_.size() <= kMaxDepth) return true;
     return Fail(node->place.offset, "too-large",
-                fmt::format("nested deeper than {} levels; no scenario is", kMaxDepth));
+                fmt::format("nested deeper than {} levels; no scenario needs more", kMaxDepth));
   }
   bool Close() {
     end_ = consumed_;

@@ -25,12 +25,13 @@ struct AebSection {
   FOGLINE_FIELD(double, ttc_s, 1.0, {0.1, 10, "s"},
                 "Time to collision at which the car brakes: gap over closing speed.",
                 "our choice, because UN R152 prescribes none; with the default braking it keeps "
-                "the impact speeds that 5.2.1.4 allows, with 0.9 s a sedan keeps them just so");
+                "the impact speeds that 5.2.1.4 allows, with 0.9 s a sedan only just keeps them");
   FOGLINE_FIELD(double, required_mps2, 5.0, {0.1, 12, "m/s2"},
-                "Least braking, closing speed squared over twice the gap, at which the car brakes.",
+                "Required deceleration (closing speed squared over twice the gap) from which on "
+                "the car brakes.",
                 "UN R152, 5.2.1.2: 5.0, the least demand of an emergency braking");
   FOGLINE_FIELD(double, deceleration_mps2, 9.0, {5, 12, "m/s2"},
-                "Deceleration demand. A driving side that brakes harder is not weakened.",
+                "Deceleration demand. If the driving side brakes harder, its braking counts.",
                 "our choice, because tyres have a friction of 0.9 to 1.0 on a dry road; UN R152, "
                 "5.2.1.2: at least 5.0");
   FOGLINE_FIELD(double, warning_s, 0.8, {0.8, 10, "s"},
@@ -38,7 +39,8 @@ struct AebSection {
                 "the warning begins at once.",
                 "UN R152, 5.2.1.1: at the latest 0.8 s before the braking");
   FOGLINE_FIELD(double, min_speed_mps, 2.77, {0, 70, "m/s"},
-                "Least own speed at which warning and braking begin. Braking then goes on below.",
+                "Least own speed at which warning and braking begin. Braking that has begun "
+                "continues below this speed.",
                 "UN R152, 5.2.1.3: active at least from 10 km/h on, 2.78 m/s");
   FOGLINE_FIELD(
       double, max_speed_mps, 70.0, {0, 70, "m/s"},
@@ -47,7 +49,7 @@ struct AebSection {
       "m/s is the fastest car of a scenario");
   FOGLINE_FIELD(double, release_closing_mps, 0.0, {0, 20, "m/s"},
                 "The braking ends when the closing speed is at most this.",
-                "our choice, because there is no collision with a car that is not slower");
+                "our choice, because a car can only run into a slower car");
 
   bool operator==(const AebSection&) const = default;
 };

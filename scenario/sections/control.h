@@ -160,7 +160,7 @@ struct ArbitratorSection {
                 "our choice, because calibrated sensors have none");
   FOGLINE_FIELD(BlameChoice, blame, BlameChoice::kNis,
                 "Measure that tells which sensor is wrong, for policies that drop a sensor: "
-                "isolate, availability.");
+                "isolate, availability, traded_isolating.");
   FOGLINE_FIELD(double, blame_threshold, 0.999, {0, 1},
                 "Smallest blame at which the sensor with more blame is dropped.",
                 "our choice, because with nis one step in 1000 then drops a sensor without fault");

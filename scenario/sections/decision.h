@@ -20,7 +20,7 @@ constexpr auto ChoicesOf(Policy) {
       {"blend", "both drive, the human in proportion to the conflict"},
       {"adaptive", "as traded, with a threshold that moves with the situation"},
       {"bayes", "as traded, with the threshold of least expected cost"},
-      {"availability", "as isolate, and as traded if the driver can be there in time"},
+      {"availability", "as isolate, and as traded if the driver can take over in time"},
       {"traded_isolating", "as traded; the automation drives without the sensor that is to blame"},
   });
 }
@@ -29,7 +29,7 @@ static_assert(ChoiceNames<Policy>::kNames[static_cast<std::size_t>(Policy::kTrad
 
 constexpr auto ChoicesOf(MeasureChoice) {
   return std::to_array<Choice>({
-      {"doc", "1/(1 + exp(-10 (z - 1 m))), z the windowed |radar - LiDAR|"},
+      {"doc", "1/(1 + exp(-doc_slope_per_m (z - doc_centre_m))), z the windowed |radar - LiDAR|"},
       {"nis", "d^2/S of the step"},
       {"nis_window", "mean of d^2/S over the window"},
       {"nis_signed", "sum of d/sqrt(S) over the window, over sqrt(n): LiDAR short > 0"},
@@ -48,7 +48,7 @@ constexpr auto ChoicesOf(MeasureChoice) {
       {"cusum", "one-sided cumulative sum of d/sqrt(S) - kappa"},
       {"glr", "log likelihood ratio of the likeliest jump in the window"},
       {"sprt", "log likelihood ratio of a LiDAR short by delta"},
-      {"lidar_modes", "P(LiDAR ranges fog or nothing)"},
+      {"lidar_modes", "P(the LiDAR measures the fog, or has no echo)"},
       {"witness_nis", "larger squared residual of a sensor against the prediction"},
       {"witness_deng", "larger loss of credibility among three bodies of evidence"},
       {"witness_murphy", "larger loss of support by the average of the others"},
@@ -64,7 +64,7 @@ constexpr auto ChoicesOf(BlameChoice) {
       {"deng", "loss of credibility among three bodies of evidence"},
       {"murphy", "loss of support by the average of the others"},
       {"mutual", "loss of mutual support, by the law of cosines"},
-      {"lidar_modes", "P(LiDAR ranges fog or nothing); never the radar"},
+      {"lidar_modes", "P(the LiDAR measures the fog, or has no echo); never the radar"},
   });
 }
 static_assert(ChoiceNames<BlameChoice>::kNames[static_cast<std::size_t>(BlameChoice::kNis)] ==

@@ -35,7 +35,7 @@ constexpr auto ChoicesOf(HandBack) {
   return std::to_array<Choice>(
       {{"conflict", "the paper's: as soon as the policy does not request the human"},
        {"fusion",
-        "only if, in addition, the track has agreed with each sensor that is there, within "
+        "only if, in addition, the track has agreed with each sensor that has a value, within "
         "hand_back_error_m, for hand_back_s"}});
 }
 
@@ -58,8 +58,9 @@ struct TransferSection {
                 "ISO 15622: an ACC never brakes harder above 20 m/s");
   FOGLINE_FIELD(Hysteresis, hysteresis, Hysteresis::kNone, "Hysteresis of transfers.");
   FOGLINE_FIELD(double, band, 0.2, {0, 1},
-                "For hysteresis band. At most half of the threshold in force counts; otherwise the "
-                "automation would never get authority back.",
+                "For hysteresis band: distance of the return threshold below the threshold in "
+                "force. More than half of this threshold counts as half; otherwise the automation "
+                "would never get authority back.",
                 "our choice, because at threshold 0.5 it is 8 cm of z, more than the effect of a "
                 "noise of 1 to 2 cm");
   FOGLINE_FIELD(double, sprt_alpha, 0.01, {1e-6, 0.49},
@@ -102,13 +103,15 @@ struct TransferSection {
 struct AdaptiveSection {
   FOGLINE_FIELD(double, readiness_gain, 0.4, {0, 10},
                 "Increase of the threshold for a driver without readiness.",
-                "our choice, because without readiness the threshold then goes from 0.5 to most");
+                "our choice, because without readiness the threshold then goes from 0.5 to 0.9, "
+                "the largest threshold (field most)");
   FOGLINE_FIELD(double, visibility_gain_m, 5.0, {0, 1000, "m"},
                 "Decrease of the threshold in fog, per 1/m of the inverse visibility.",
-                "our choice, because it is 0.1 at 50 m");
-  FOGLINE_FIELD(double, closing_gain_s, 0.5, {0, 100, "s"},
-                "Decrease of the threshold, per 1/s of the follower's inverse time to collision.",
-                "our choice, because it is 0.1 at a time to collision of 5 s");
+                "our choice, because the threshold is then lower by 0.1 at a visibility of 50 m");
+  FOGLINE_FIELD(
+      double, closing_gain_s, 0.5, {0, 100, "s"},
+      "Decrease of the threshold, per 1/s of the follower's inverse time to collision.",
+      "our choice, because the threshold is then lower by 0.1 at a time to collision of 5 s");
   FOGLINE_FIELD(double, braking_gain_s2pm, 0.1, {0, 10, "s2/m"},
                 "Decrease of the threshold, per m/s2 of the host's braking.",
                 "our choice, because it is 0.1 for each 1 m/s2");
@@ -149,11 +152,11 @@ struct BayesSection {
                 "our choice, because 4 s is a common limit of severe conflicts");
 };
 
-/// Policy availability: like traded, but the driver gets authority only if he can take over in
-/// time. His take-over time must end before the follower has to brake harder than comfort_mps2. The
-/// policy uses the 95th percentile of the take-over time, and adds time if his readiness is below
-/// 1. Otherwise the automation keeps authority. In both cases the automation uses only the sensor
-/// that is not to blame, as with policy isolate.
+/// Policy availability: like traded, but the driver gets authority only if a take-over is possible
+/// in time. The take-over time must end before the follower has to brake harder than comfort_mps2.
+/// The policy uses the 95th percentile of the take-over time, and adds time if the driver's
+/// readiness is below 1. Otherwise the automation keeps authority. In both cases the automation
+/// uses only the sensor that is not to blame, as with policy isolate.
 struct AvailabilitySection {
   FOGLINE_FIELD(double, comfort_mps2, 3.0, {0.5, 10, "m/s2"},
                 "Braking that a follower must not exceed (DRAC).",
@@ -173,8 +176,8 @@ struct BlendSection {
   FOGLINE_FIELD(double, from, 0.2, {0, 1}, "DoC up to which the automation drives alone.",
                 "Sourav & Cheng 2024: 0.2 is the lowest threshold");
   FOGLINE_FIELD(double, width, 0.6, {0.001, 1},
-                "Width of the DoC range that begins at from. In it both drive; above it the human "
-                "drives alone.",
+                "Width of the DoC range that begins at the value of `from`. In this range both "
+                "drive; above it the human drives alone.",
                 "Sourav & Cheng 2024: 0.8 is the highest threshold");
 };
 

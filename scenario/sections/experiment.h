@@ -42,7 +42,7 @@ struct ItemSection {
   FOGLINE_FIELD(std::string, name, "",
                 "Name of the item, in logs and tables: a to z, 0 to 9, - and _.");
   FOGLINE_FIELD(std::string, text, "", "The question, as the participant sees it.");
-  FOGLINE_FIELD(ItemKind, kind, ItemKind::kScale, "What an answer is.");
+  FOGLINE_FIELD(ItemKind, kind, ItemKind::kScale, "Kind of the answer.");
   FOGLINE_FIELD(double, min, 1, {-1e6, 1e6}, "Least answer of a scale.",
                 "our choice, because usual rating scales go from 1 to 7");
   FOGLINE_FIELD(double, max, 7, {-1e6, 1e6}, "Greatest answer of a scale.",
@@ -73,7 +73,7 @@ constexpr auto ChoicesOf(AskedAfter) {
 struct QuestionnaireSection {
   FOGLINE_FIELD(std::string, name, "",
                 "Name of the questionnaire, in logs and tables: a to z, 0 to 9, - and _.");
-  FOGLINE_FIELD(QuestionnaireKind, kind, QuestionnaireKind::kOwn, "What is asked.");
+  FOGLINE_FIELD(QuestionnaireKind, kind, QuestionnaireKind::kOwn, "Kind of questionnaire.");
   FOGLINE_FIELD(AskedAfter, after, AskedAfter::kEachTrial, "When it is asked.");
   FOGLINE_FIELD(bool, practice, false, "Whether it is also asked after each practice run.");
   FOGLINE_FIELD(std::vector<ItemSection>, items, {}, {0, 50}, "For own: the questions.");
@@ -99,7 +99,7 @@ constexpr auto ChoicesOf(TrialSeeds) {
 struct ExperimentPlan {
   FOGLINE_FIELD(std::int64_t, version, 1, {1, 1}, "Version of the file format.",
                 "the only version so far");
-  FOGLINE_FIELD(std::string, title, "", "What is tested, in a few words.");
+  FOGLINE_FIELD(std::string, title, "", "Title: the subject of the experiment in a few words.");
   FOGLINE_FIELD(std::string, description, "", "Question, method and source.");
   FOGLINE_FIELD(std::int64_t, participants, 1, {1, 9999},
                 "Number of participants. They have numbers from 1 on, and no names.",
@@ -111,7 +111,8 @@ struct ExperimentPlan {
                 "our choice, because counting begins with 1");
   FOGLINE_FIELD(double, speed, 1, {0.01, 100},
                 "Simulated seconds per second of each run. A person drives at speed 1.",
-                "our choice, because a person lives at speed 1");
+                "our choice, because at speed 1 simulated and real time pass equally fast, as a "
+                "person needs");
   FOGLINE_FIELD(std::vector<ConditionSection>, conditions, {}, {1, 20}, "The conditions.");
   FOGLINE_FIELD(std::vector<ConditionSection>, practice, {}, {0, 20},
                 "Practice runs before the first trial, in this order.");

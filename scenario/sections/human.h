@@ -1,6 +1,6 @@
 // The section of a scenario for a human driver of the host, with more details than in the paper.
-// The section says how the driver follows, what he sees, how well he judges distances and speeds,
-// and how much of the road he is aware of.
+// The section describes how the driver follows and what the driver sees. It also describes how well
+// the driver judges distances and speeds, and how aware of the road the driver is.
 #pragma once
 
 #include <array>
@@ -66,11 +66,12 @@ struct HumanParameters {
                 "Treiber, Kesting & Helbing 2006: 0.01");
   FOGLINE_FIELD(double, error_time_s, 20.0, {0.01, 1000, "s"}, "Correlation time of both errors.",
                 "Treiber, Kesting & Helbing 2006: 20");
-  FOGLINE_FIELD(bool, anticipates, true,
-                "The driver anticipates the traffic, and so makes up for its reaction time.");
+  FOGLINE_FIELD(
+      bool, anticipates, true,
+      "The driver anticipates the traffic. This compensates for the driver's reaction time.");
 };
 
-/// How much of the road a driver is aware of, and how his awareness fades and returns.
+/// How much of the road a driver is aware of, and how this awareness fades and returns.
 struct AwarenessParameters {
   FOGLINE_FIELD(double, monitoring, 0.5, {0, 1},
                 "A_mon, which awareness approaches while the driver only monitors.",
@@ -96,7 +97,7 @@ struct HumanSection {
   FOGLINE_FIELD(double, coolness, 0.99, {0, 1},
                 "For acc_idm: the coolness factor; 0 gives the IIDM.",
                 "Kesting, Treiber & Helbing 2010: 0.99");
-  FOGLINE_FIELD(Sight, sight, Sight::kPerfect, "What the driver sees.");
+  FOGLINE_FIELD(Sight, sight, Sight::kPerfect, "Kind of sight of the driver.");
   FOGLINE_FIELD(
       bool, misjudges, false,
       "The driver errs, reacts late and anticipates: the Human Driver Model of section errors.");

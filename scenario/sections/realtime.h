@@ -11,8 +11,8 @@ namespace fogline {
 struct HealthSection {
   FOGLINE_FIELD(double, stale_periods, 1.5, {1.1, 100, "periods"},
                 "An input without a new step for this time is STALE: its last value holds.",
-                "our choice, because one step and half a period of jitter are normal; so the first "
-                "missing step shows");
+                "our choice, because one step and half a period of jitter are normal; so one "
+                "missing step already makes the input STALE");
   FOGLINE_FIELD(
       double, lost_periods, 2.5, {1.1, 100, "periods"},
       "An input without a new step for this time is LOST, and the fallback begins. LOST never "
@@ -21,7 +21,7 @@ struct HealthSection {
       "no failure; with half a period for scheduling, LOST comes within 3 periods");
   FOGLINE_FIELD(
       std::int64_t, recover_steps, 5, {1, 1000, "steps"},
-      "Number of consecutive steps in time after which an input is OK again.",
+      "Number of consecutive steps that must come on time before an input is OK again.",
       "our choice, because an input should recover more slowly than it fails: twice lost_periods");
   FOGLINE_FIELD(double, deadline_share, 0.5, {0.05, 0.95, "periods"},
                 "Time for which the arbitrator waits after HOST_EGO for the step's other inputs. "

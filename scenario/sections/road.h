@@ -50,9 +50,9 @@ struct SpeedBreakpoint {
   FOGLINE_FIELD(
       double, duration_s, 1.0, {1e-3, 1e5, "s"}, "Time to reach speed_mps.",
       "our choice, because each breakpoint is the experiment's own; 1 s is a round number");
-  FOGLINE_FIELD(
-      double, speed_mps, 20.0, {0, 70, "m/s"}, "Speed at the end of duration_s.",
-      "our choice, because with lead.speed_mps a breakpoint that names no speed changes none");
+  FOGLINE_FIELD(double, speed_mps, 20.0, {0, 70, "m/s"}, "Speed at the end of duration_s.",
+                "our choice, because it is the default of lead.speed_mps, so the first breakpoint "
+                "changes nothing if both fields have their defaults");
 };
 
 struct SinusoidSection {
@@ -177,8 +177,8 @@ struct FogSection {
                 "Length of the fog window, which excludes its end.",
                 "Sourav & Cheng 2024: steps 190 to 300");
   FOGLINE_FIELD(double, bias_m, 0.34, {0, 100, "m"},
-                "How much too short the LiDAR's range is: model bias, at level 1; model modes, in "
-                "a biased step.",
+                "Error by which the LiDAR's range is too short: in model bias at level 1, in model "
+                "modes in each biased step.",
                 "our choice, because the paper prints none, and 0.2 to 0.4 m meet its table; "
                 "paper.json has a calibrated value");
   FOGLINE_FIELD(

@@ -32,12 +32,11 @@ struct PublishedRow {
 
 /// Thresholds and parameters of the measures (services/metrics), with their sources.
 struct MeasuresSection {
-  FOGLINE_FIELD(
-      double, safety_floor_m, 0.001, {0, 10, "m"},
-      "SI counts only fog steps whose compromised safety without traded control is above this. A "
-      "free parameter of SI: from 20 to 0 mm, SI of paper.json at threshold 0.5 falls from 84.5 to "
-      "68.5 % (fogline table prints such values).",
-      "our choice, because it keeps the ratio away from 0/0");
+  FOGLINE_FIELD(double, safety_floor_m, 0.001, {0, 10, "m"},
+                "SI counts only fog steps whose compromised safety without traded control is above "
+                "this. SI depends on it: at threshold 0.5, SI of paper.json is 84.5 % with 20 mm "
+                "and 68.5 % with 0 mm (fogline table prints such values).",
+                "our choice, because it keeps the ratio away from 0/0");
   FOGLINE_FIELD(double, critical_ttc_s, 2.0, {0.1, 60, "s"},
                 "TTC*: TET and TIT count only steps whose time to collision is at most this.",
                 "CommonRoad-CriMe: 2 s; 1.5 to 4 s are in use");
@@ -46,8 +45,9 @@ struct MeasuresSection {
   FOGLINE_FIELD(double, picud_reaction_s, 1.0, {0, 5, "s"},
                 "Reaction time of the car behind in PICUD.", "1 s in the literature on PICUD");
   FOGLINE_FIELD(double, rss_response_s, 0.5, {0, 5, "s"}, "RSS: response time of the car behind.",
-                "our choice, because ad-rss-lib's set demands 66 m at 20 m/s, this one 22 m; the "
-                "measures that end in rss_margin_ad_rss_m have ad-rss-lib's set");
+                "our choice, because at 20 m/s the safe distance is 22 m with this set of values, "
+                "and 66 m with that of ad-rss-lib; the measures that end in rss_margin_ad_rss_m "
+                "have ad-rss-lib's set");
   FOGLINE_FIELD(double, rss_acceleration_mps2, 2.0, {0, 10, "m/s2"},
                 "RSS: acceleration of the car behind until it responds.",
                 "our choice, because it belongs to the set of values that rss_response_s explains");
@@ -102,18 +102,20 @@ struct Scenario {
   FOGLINE_FIELD(FogSection, fog, {}, "Fog and rain over time.");
   FOGLINE_FIELD(RadarSection, radar, {}, "The host's radar.");
   FOGLINE_FIELD(LidarSection, lidar, {}, "The host's LiDAR.");
-  FOGLINE_FIELD(FusionSection, fusion, {}, "Extended Kalman filter over both.");
+  FOGLINE_FIELD(FusionSection, fusion, {}, "Extended Kalman filter over radar and LiDAR.");
   FOGLINE_FIELD(AccSection, acc, {}, "The host's automation agent.");
   FOGLINE_FIELD(DriverSection, driver, {}, "The human driver of the host.");
   FOGLINE_FIELD(HumanSection, human, {},
                 "Human weaknesses of the driver, which the paper's driver lacks.");
   FOGLINE_FIELD(PersonSection, person, {},
                 "Real time: a person who drives in place of the model of a driver.");
-  FOGLINE_FIELD(ArbitratorSection, arbitrator, {}, "Who drives the host.");
+  FOGLINE_FIELD(
+      ArbitratorSection, arbitrator, {},
+      "Rule that gives the authority over the host to automation or human, and its parameters.");
   FOGLINE_FIELD(AebSection, aeb, {},
                 "Emergency braking of the host, on the fused track, whichever side drives.");
   FOGLINE_FIELD(AccSection, follower, {}, "ACC of the following car.");
-  FOGLINE_FIELD(FollowersSection, followers, {}, "The cars behind the host, and who drives them.");
+  FOGLINE_FIELD(FollowersSection, followers, {}, "The cars behind the host, and their drivers.");
   FOGLINE_FIELD(HealthSection, health, {}, "Real time: when an input counts as stale or lost.");
   FOGLINE_FIELD(MinimalRiskSection, minimal_risk, {},
                 "Real time: how a car stops when neither automation nor human drives it.");

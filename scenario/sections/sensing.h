@@ -54,9 +54,10 @@ struct LidarBeamSection {
                 "R2: range of full overlap; below R1 it counts as R1.",
                 "our choice, because it belongs to the value that overlap_start_m explains; Hahner "
                 "et al. 2021: 1.0 m");
-  FOGLINE_FIELD(double, target_reflectivity, 0.5, {1e-3, 100},
-                "Gamma of the preceding car's rear: 0.07 black, 0.2 usual, over 4 retro.",
-                "our choice, because a rear is paint (0.2) with some reflectors (over 4)");
+  FOGLINE_FIELD(
+      double, target_reflectivity, 0.5, {1e-3, 100},
+      "Gamma of the preceding car's rear: 0.07 for black, usually 0.2, over 4 for reflectors.",
+      "our choice, because a rear is paint (0.2) with some reflectors (over 4)");
   FOGLINE_FIELD(double, clear_range_m, 120.0, {1, 1000, "m"},
                 "Range at which clear_reflectivity is detected in clear air with probability 1/2.",
                 "Ouster OS1: 120 m, but for a reflectivity of 0.8");
@@ -106,9 +107,10 @@ constexpr auto ChoicesOf(NoiseAdaptation) {
 
 /// Extended Kalman filter.
 struct FusionSection {
-  FOGLINE_FIELD(double, jerk_density_m2ps5, 1.0, {1e-6, 1e3, "m2/s5"},
-                "Power spectral density q of the preceding car's jerk (white-noise jerk).",
-                "Bar-Shalom et al. 2001, 6.2.3: sqrt(q T) about the change per step");
+  FOGLINE_FIELD(
+      double, jerk_density_m2ps5, 1.0, {1e-6, 1e3, "m2/s5"},
+      "Power spectral density q of the preceding car's jerk (white-noise jerk).",
+      "Bar-Shalom et al. 2001, 6.2.3: sqrt(q T) is about the change of the acceleration in a step");
   FOGLINE_FIELD(
       double, radar_range_std_m, 0.05, {1e-4, 10, "m"},
       "Radar range noise that the filter assumes.",

@@ -14,8 +14,8 @@ constexpr auto ChoicesOf(TakeOverMode) {
   return std::to_array<Choice>(
       {{"instant", "the paper's: the driver is always ready to drive"},
        {"requested",
-        "the driver must be asked, and takes over after the take-over time or never; then the car "
-        "stops (services/decision/take_over/take_over_table.h)"}});
+        "the driver must be asked, and takes over after the take-over time; if the driver never "
+        "takes over, the car stops (services/decision/take_over/take_over_table.h)"}});
 }
 
 enum class TakeOverModel { kLogNormal, kLogNormalByLead, kSumo };
@@ -37,7 +37,7 @@ struct TakeOverParameters {
                 "Zhang et al. 2019, standard deviation of the studies' means: 1.45");
   FOGLINE_FIELD(
       double, late_probability, 0.05, {1e-6, 0.1},
-      "For the other two models: probability that the take-over time exceeds the lead time.",
+      "For log_normal_by_lead and sumo: probability that the take-over time exceeds the lead time.",
       "SUMO's ToC device: 0.05");
 };
 
@@ -56,7 +56,7 @@ struct TakeOverSection {
   FOGLINE_FIELD(TakeOverParameters, time, {}, "The driver's take-over time.");
   FOGLINE_FIELD(double, absent_probability, 0.0, {0, 1},
                 "Probability that the driver never takes over.",
-                "our choice, because the paper's driver always comes");
+                "our choice, because the paper's driver always takes over");
   FOGLINE_FIELD(
       double, required_readiness, 0.3, {0, 1},
       "Readiness below which an acknowledgement does not give the driver authority.",
@@ -78,7 +78,8 @@ struct TakeOverSection {
   FOGLINE_FIELD(double, comfort_deceleration_mps2, 1.5, {0.5, 4, "m/s2"},
                 "Deceleration of the comfortable manoeuvre.", "SUMO's ToC device: 1.5");
   FOGLINE_FIELD(double, emergency_deceleration_mps2, 4.0, {0.5, 4, "m/s2"},
-                "Deceleration of the emergency manoeuvre.", "UN R157: demand at most 4.0");
+                "Deceleration of the emergency manoeuvre.",
+                "UN R157: a deceleration demand of at most 4.0");
   FOGLINE_FIELD(double, jerk_mps3, 2.5, {0.1, 20, "m/s3"},
                 "How fast the manoeuvre's deceleration grows.",
                 "ISO 15622: 2.5 above 20 m/s, averaged over 1 s");

@@ -50,7 +50,8 @@ struct FollowerCar {
 /// The cars behind the host. Each car starts with the speed and the gap of world.follower_*.
 struct FollowersSection {
   FOGLINE_FIELD(std::int64_t, count, 1, {1, kMaxFollowers}, "How many cars follow the host.",
-                "Sourav & Cheng 2024: 1; the upper limit is what a datagram of TRUTH holds");
+                "Sourav & Cheng 2024: 1; with more cars than the upper limit, TRUTH would not fit "
+                "one datagram");
   FOGLINE_FIELD(FollowerDriver, driver, FollowerDriver::kAcc, "Drivers of the following cars.");
   FOGLINE_FIELD(double, acc_share, 0.5, {0, 1},
                 "For driver drawn: probability that a car has the ACC.",
@@ -67,7 +68,7 @@ struct FollowersSection {
                 "our choice, because all three should be equally common");
   FOGLINE_FIELD(
       Sight, sight, Sight::kPerfect,
-      "For human drivers: what they see. Sight fog has the parameters of human.fog_sight.");
+      "For human drivers: kind of sight. Sight fog has the parameters of human.fog_sight.");
   FOGLINE_FIELD(SafetyModelChoice, safety_model, SafetyModelChoice::kNone,
                 "For human drivers: how they react to danger, in addition to following.");
   FOGLINE_FIELD(AebSection, aeb, {},
