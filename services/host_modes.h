@@ -29,8 +29,8 @@ constexpr bool IsLocked(std::int8_t mode) {
 /// authority, the human counts as the driver.
 inline constexpr double kMainAuthority = 0.5;
 
-/// Whether the human drives, that is whether he has half of the authority or more. A transfer is a
-/// change of this result. The human is engaged if he has any authority.
+/// Whether the human drives, that is whether the human has half of the authority or more. A
+/// transfer is a change of this result. A human with any authority is engaged.
 constexpr bool HumanDrives(double lambda_human) { return lambda_human >= kMainAuthority; }
 constexpr bool HumanIsEngaged(double lambda_human) { return lambda_human > 0; }
 /// Whether the mode says that the human drives; false if InEmergency(). If the result is true in a

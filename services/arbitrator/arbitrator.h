@@ -64,8 +64,8 @@ class Arbitrator {
   void Guard(const ego_t& ego, const track_t& track, arbitration_t& command);
 
   /// Whether the last decision wants the human to drive, also while the transfer is still in
-  /// progress. For a driver who must be asked: whether he has taken over and has at least half of
-  /// the authority.
+  /// progress. For a driver who must be asked: whether the driver has taken over and has at least
+  /// half of the authority.
   bool wants_human() const { return granted_ >= kMainAuthority; }
   /// Whether the driver must be asked and has not taken over.
   bool must_ask() const {

@@ -15,7 +15,7 @@ namespace fogline::metrics {
 /// lasts while the Degree of Conflict is at least the threshold of the step, under any policy.
 struct DetectionMetrics {
   /// Time in which the human is the wrong driver, s: the human's time while the LiDAR is right,
-  /// weighted by his authority.
+  /// weighted by the human's authority.
   double wrong_human_s = 0;
   /// Time of the automation, s, weighted by its authority, while the track is wrong (TrackJudge).
   /// So this time is 0 for a policy that does not use the deceived LiDAR. This time is above 0 for

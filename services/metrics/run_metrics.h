@@ -185,9 +185,9 @@ void VisitMetrics(const RunMetrics& m, Visitor&& visit) {
   number("mean_compromised_safety_fog_m", m.mean_compromised_safety_fog_m, "m",
          "mean shortfall of the following car's safe distance in fog");
   number("max_compromised_safety_until_recovery_m", m.max_compromised_safety_until_recovery_m, "m",
-         "largest shortfall from the fog's begin until the track is right again");
+         "largest shortfall from the beginning of the fog until the track has recovered");
   number("mean_compromised_safety_until_recovery_m", m.mean_compromised_safety_until_recovery_m,
-         "m", "mean shortfall from the fog's begin until the track is right again");
+         "m", "mean shortfall from the beginning of the fog until the track has recovered");
   number("max_slow_down_fog_mps", m.max_slow_down_fog_mps, "m/s",
          "largest drop of the host's speed in fog below its speed when the fog began");
   const auto pair = [&](const std::string& car, const std::array<std::string_view, 9>& names,

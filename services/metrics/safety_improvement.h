@@ -128,7 +128,7 @@ void VisitPairedMetrics(const PairedMetrics& m, Visitor&& visit) {
                           std::string_view description) { visit(name, value, unit, description); };
   number("si_pct", m.si_pct, "%", "safety improvement over the paired run without traded control");
   number("si_until_recovery_pct", m.si_until_recovery_pct, "%",
-         "the same, counted until the tracks of both runs are right again");
+         "the same, counted until the tracks of both runs have recovered");
 }
 
 /// Collects the measures of a pair, step by step.

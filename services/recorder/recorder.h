@@ -19,7 +19,7 @@ class RecordRule;
 
 class Recorder final : public runtime::Work {
  public:
-  /// What to do with an existing file.
+  /// Whether the recorder replaces an existing file, or continues it.
   enum class Existing { kReplace, kResume };
 
   /// With kReplace and a run id, an existing file is replaced at once. With kReplace and no run id,

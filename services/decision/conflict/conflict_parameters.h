@@ -23,8 +23,8 @@ struct ConflictParameters {
   /// Such a step repeats the last difference, is skipped, or counts as a difference of
   /// `missing_conflict_m`.
   MissingLidar missing = MissingLidar::kHold;
-  /// Difference of a missing value that counts as conflict, m, above 0. The default is that of the
-  /// scenario's section `arbitrator`.
+  /// For rule conflict: the difference that a missing value counts as, m, above 0. The default is
+  /// that of the scenario's section `arbitrator`.
   double missing_conflict_m = 10;
   /// Standard deviations, m, above 0, for a missing value that counts as conflict before the sensor
   /// has stated a standard deviation. Sources: Continental ARS408 far range; Velodyne VLP-16.

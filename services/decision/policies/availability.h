@@ -15,12 +15,12 @@ namespace fogline::policies {
 double TimeUntilHardBraking(double gap_m, double closing_mps, double host_braking_mps2,
                             double limit_mps2);
 
-/// The paper's rule, if the driver is available. The driver is available if he already drives, or
-/// if his take-over time is less than the time until the follower has to brake harder than
-/// comfort_mps2. The take-over time here is the 95th percentile of its distribution plus unready_s
-/// (1 - A). If the driver is not available, the automation keeps authority, and the sensor to blame
-/// is not used. Marberger et al. 2018 define availability as the time budget minus the required
-/// time.
+/// The paper's rule, if the driver is available. A driver who already drives is available. Any
+/// other driver is available if the take-over time is less than the time until the follower has to
+/// brake harder than comfort_mps2. The take-over time here is the 95th percentile of its
+/// distribution plus unready_s (1 - A). If the driver is not available, the automation keeps
+/// authority, and the sensor to blame is not used. Marberger et al. 2018 define availability as the
+/// time budget minus the required time.
 ///
 /// The fusion never uses the sensor that is to blame, as with Isolate. The fusion does not know
 /// whether the driver is available. While the driver drives, the track is not used. When the

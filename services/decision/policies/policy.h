@@ -97,8 +97,8 @@ class EngagementPolicy {
   /// inputs redefines these constants.
   static constexpr bool kNeedsTrueGap = false;
   static constexpr bool kNeedsSurroundings = false;
-  /// Whether the policy shares authority, that is whether its requests can lie between 0 and 1. If
-  /// the driver must be asked, he is asked for any share above 0. After he has taken over, he has
+  /// Whether the policy shares authority, that is whether its requests can lie between 0 and 1. A
+  /// driver who must be asked is asked for any share above 0. After the take-over the driver has
   /// this share.
   static constexpr bool kShares = false;
   /// Whether the policy's decisions depend on the scenario's threshold. A policy with its own rule

@@ -41,7 +41,7 @@ std::string_view TextOf(const TakeOverEntry& entry, bool person);
 /// driver gets a share. Second, lambda_H passes kMainAuthority: this is the transfer. If both
 /// events happen in one step, one entry covers both. The driver's input is effective if it changes
 /// the command by at least kEffectiveInput_mps2. This change is lambda_H (a_H - a), where a is the
-/// command before the driver got his share. The automation's part of the command does not count.
+/// command before the driver got this share. The automation's part of the command does not count.
 ///
 /// The modes of emergency braking hide the state. Until these modes end, the last state before the
 /// emergency braking counts. In a run without requests, the state of the side with more authority
@@ -71,8 +71,8 @@ class TakeOverLog {
 
   std::optional<arbitration_t> last_;                  // its mode ignores emergency braking
   std::int8_t last_sent_ = arbitration_t::AUTOMATION;  // mode of the last command
-  // If the driver has a share of the authority: the command before he got the share (empty after
-  // his first effective input), and whether he was asked.
+  // If the driver has a share of the authority: the command before the driver got the share (empty
+  // after the driver's first effective input), and whether the driver was asked.
   std::optional<double> before_share_mps2_;
   bool asked_ = false;
   std::vector<TakeOverEntry> entries_;

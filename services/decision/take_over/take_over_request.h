@@ -14,8 +14,9 @@ namespace fogline::take_over {
 /// brake or engine has a finer setting.
 inline constexpr double kEffectiveInput_mps2 = 0.01;
 
-/// Whether the driver's offer changes the command noticeably. The change is his share times the
-/// difference between his offer and the command before he had a share.
+/// Whether the driver's offer changes the command noticeably. The change is the driver's share
+/// times the difference between the driver's offer and the last command before the driver had a
+/// share.
 inline bool IsEffective(double lambda_human, double human_mps2, double before_mps2) {
   return std::abs(lambda_human * (human_mps2 - before_mps2)) >= kEffectiveInput_mps2;
 }

@@ -1,4 +1,4 @@
-// How much of the road a driver is aware of, and how his awareness fades and returns.
+// How much of the road a driver is aware of, and how this awareness fades and returns.
 #pragma once
 
 #include <algorithm>

@@ -32,7 +32,7 @@ class FogSight {
   double LampRange(double visibility_m) const;
   Seen At(double gap_m, double visibility_m) const;
 
-  /// The situation that the driver perceives. The driver knows his own speed.
+  /// The situation that the driver perceives. The driver knows the speed of the own car.
   Situation Perceive(const Situation& truth, double visibility_m) const;
 
  private:

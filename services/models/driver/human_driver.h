@@ -27,8 +27,8 @@ struct Attention {
 ///     v_l,est = v_l - s r_c w_l
 ///
 /// The driver acts on the situation at the time t - T_r, interpolated linearly between two steps.
-/// If he anticipates, he assumes that his own acceleration and the closing speed have been constant
-/// since then:
+/// A driver who anticipates assumes that the own acceleration and the closing speed have been
+/// constant since then:
 ///
 ///     v'   = v + T_r a             s' = s_est - T_r (v - v_l,est)
 ///     v_l' = v' - (v - v_l,est)                    with all values of t - T_r

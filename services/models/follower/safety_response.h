@@ -1,5 +1,5 @@
 // Response of a careful driver to the car ahead, by one of three definitions. This response is a
-// reference for followers. A follower may also apply it in addition to his car-following model.
+// reference for followers. A follower may also apply it in addition to its car-following model.
 #pragma once
 
 #include "services/models/driver/situation.h"
@@ -14,13 +14,13 @@ enum class SafetyModel { kReferenceHuman, kRss, kFuzzy };
 /// was not available).
 struct ResponseParameters {
   double perception_s = 0.4;        // time until the driver perceives the danger, at least 0
-  double delay_s = 0.75;            // time from the perception until he brakes, at least 0
+  double delay_s = 0.75;            // time from the perception to the braking, at least 0
   double lift_off_mps2 = 0.4;       // deceleration during the delay, at least 0
   double jerk_mps3 = 12.65;         // jerk of the brake, above 0: 0.774 g in 0.6 s
   double full_braking_mps2 = 7.59;  // 0.774 g, above 0
-  double critical_ttc_s = 2.0;      // he sees danger below this time to collision, at least 0
-  double critical_headway_s = 2.0;  // he sees danger below this time gap if the car ahead brakes
-                                    // hard
+  double critical_ttc_s = 2.0;      // there is danger below this time to collision, at least 0
+  double critical_headway_s = 2.0;  // there is danger below this time gap if the car ahead
+                                    // brakes hard
   double lead_braking_mps2 = 5.0;   // the car ahead brakes hard above this deceleration
 };
 

@@ -10,7 +10,8 @@
 
 namespace fogline::runtime {
 
-/// Longest title of an experiment, name of a condition, questionnaire or item, and unit, in bytes.
+/// Largest length in bytes of the title of an experiment, of a unit, and of the name of a
+/// condition, a questionnaire or an item.
 inline constexpr std::size_t kMostTrialNameBytes = 100;
 /// Longest text of a marker or of an answer, in bytes. With it, a TRIAL fits one datagram.
 inline constexpr std::size_t kMostTrialTextBytes = 500;
