@@ -127,7 +127,7 @@ std::vector<PlannedClaim> DriverClaims() {
   return claims;
 }
 
-/// The claims with realistic noise on which the answer depends.
+/// The claims that support the answer, with realistic noise.
 std::vector<PlannedClaim> NoisyDriverClaims() {
   const auto noisy = [](std::string_view name) {
     return fmt::format("{}{}", name, kWithRealisticNoise);

@@ -70,7 +70,7 @@ void RequireScenarios(const std::filesystem::path& folder,
     if (std::filesystem::exists(file)) continue;
     throw InputError(
         fmt::format("{}: error: --scenarios: there is no such file; the option names the folder "
-                    "with {}, in Fogline's sources scenario/",
+                    "with {}. In Fogline's sources it is scenario/",
                     PathText(file), with));
   }
 }

@@ -108,8 +108,8 @@ constexpr std::array<std::string_view, 8> kVehicleTable{"si_pct",
 constexpr std::string_view kVehicleAnswer =
     "Yes, but less than for a point mass, and least for a truck. Behind a leader that brakes hard "
     "in the fog, handing over does harm with every car, but with half of the parameter sets of "
-    "study ensemble it helps point masses and cars. There a jerk limit on the transfer lets "
-    "trucks collide.";
+    "study ensemble it helps point masses and cars. Behind such a leader, with the parameters of "
+    "this study, a jerk limit on the transfer lets trucks collide.";
 constexpr std::string_view kVehicleWouldChange =
     "An ACC and a driver that are tuned to the car, or automatic emergency braking.";
 
@@ -186,14 +186,13 @@ std::string VehicleMethod(const Comparison& comparison) {
   return fmt::format(
       "{} seeds of paper.json, of dense_fog.json, and of dense_fog.json with a leader that brakes "
       "with 6 m/s2 (on ice with 1.4, because it holds no more) from 20 to 7 m/s in the middle of "
-      "the "
-      "fog. Host and follower are cars of that "
-      "kind, without traded control, with the paper's step, and with a jerk-limited transfer. ACC "
-      "and driver are tuned for the point mass. In each case the limit takes effect after which "
-      "the case is named: delay and lag in every car, the little power that a truck has left on a "
-      "slope, the tyres on ice under hard braking. The compact has the delays and lags of the "
-      "sedan, so it appears only under hard braking. No case has a wet road: it holds {:.1f} m/s2, "
-      "and the hardest acceleration or braking of a host in any of these runs is {:.1f} m/s2{}. {}",
+      "the fog. Host and follower are cars of the kind that the case names, without traded "
+      "control, with the paper's step, and with a jerk-limited transfer. ACC and driver are tuned "
+      "for the point mass. In each case, the limit to which its name refers takes effect: delay "
+      "and lag in every car, the little power that a truck has left on a slope, the tyres on ice "
+      "under hard braking. The compact has the delays and lags of the sedan, so it appears only "
+      "under hard braking. No case has a wet road: it holds {:.1f} m/s2, and the hardest "
+      "acceleration or braking of a host in any of these runs is {:.1f} m/s2{}. {}",
       comparison.seeds(), wet, hardest,
       hardest < wet ? ", so a wet road would give the results of the dry road" : "",
       RealisticNoiseText());
@@ -225,7 +224,7 @@ StudyResult RunVehicleStudy(const StudyContext& context) {
   section.figures = {comparison.FigureOf("mean_compromised_safety_fog_m", "vehicle-cs",
                                          "Compromised safety by vehicle", true),
                      comparison.FigureOf("max_handover_jerk_mps3", "vehicle-jerk",
-                                         "Jerk at hand-overs: what a car lets through", true),
+                                         "Jerk at hand-overs by vehicle", true),
                      comparison.FigureOf("max_follower_drac_mps2", "vehicle-drac",
                                          "How hard the follower has to brake", true),
                      comparison.FigureOf("collided", "vehicle-collisions", "Collisions", true)};

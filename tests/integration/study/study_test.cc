@@ -191,7 +191,7 @@ TEST(StudyVerbTest, RefusesWhatItCannotFollow) {
   EXPECT_EQ(folder.code, 2);
   EXPECT_EQ(folder.err,
             "/nowhere/paper.json: error: --scenarios: there is no such file; the option names the "
-            "folder with paper.json and dense_fog.json, in Fogline's sources scenario/\n");
+            "folder with paper.json and dense_fog.json. In Fogline's sources it is scenario/\n");
   const ScratchFolder without_sets;
   for (const char* file : {"paper.json", "dense_fog.json"}) {
     std::filesystem::copy(SourceDirectory() / "scenario" / file, without_sets.path());

@@ -18,10 +18,10 @@ namespace {
 constexpr double kHour_s = 3600;
 
 constexpr std::string_view kConflictAnswer =
-    "Those that look at several steps at once and know in which direction fog deceives the LiDAR. "
+    "The measures that use several steps and the known direction in which fog deceives the LiDAR. "
     "The lead of the paper's Degree of Conflict comes from its window and from its known sign; its "
     "sigmoid changes no alarm by definition, because it rises with the difference of the ranges. "
-    "Where fog makes a false echo, all alarm at once.";
+    "Where fog makes a false echo, all measures raise their alarm at once.";
 constexpr std::string_view kConflictWouldChange =
     "A deception that grows slowly, or sensors whose noise is not white.";
 
@@ -73,11 +73,10 @@ std::string ConflictMethod(const StudyContext& context, std::span<const Conflict
       "scenario/paper.json, in which the human always drives (threshold 0), so that no measure "
       "affects the inputs of the others; {0} seeds of fog for each condition. This human sees the "
       "truth, so the traffic does not depend on the sensors: it is computed once, and only "
-      "sensors, "
-      "filter and measures run for each seed. Fog model bias has the bias of the scenario at {1:g} "
-      "m of visibility. At other visibilities the bias is proportional to the extinction (our "
-      "choice, because the model has no visibility). Fog model beam is the physics of the LiDAR's "
-      "beam. Noise of the radar's range: 0.01 m as in the scenario (calibrated), and 0.1 m "
+      "sensors, filter and measures run for each seed. Fog model bias has the bias of the scenario "
+      "at {1:g} m of visibility. At other visibilities the bias is proportional to the extinction "
+      "(our choice, because the model has no visibility). Fog model beam is the physics of the "
+      "LiDAR's beam. Noise of the radar's range: 0.01 m as in the scenario (calibrated), and 0.1 m "
       "(near-range), {2} m (realistic) and 0.4 m (far-range) of a data sheet. Every measure knows "
       "the true mounting offset and counts a missing value as a conflict. Bins are as wide as the "
       "larger standard deviation of the two sensors. SPRT and CUSUM look for a shift of one "
@@ -88,14 +87,14 @@ std::string ConflictMethod(const StudyContext& context, std::span<const Conflict
       "Conflict. The sigmoid rises with this distance, so each threshold of the one is a threshold "
       "of the other: their alarms are equal by definition, and the runs only check that the "
       "program computes them so. Of {3} detectors at least {4} differ in each ranking; detectors "
-      "with the same "
-      "alarms in all runs count once, with all their names. Threshold: the smallest one with a "
-      "mean time to the first alarm of {5:g} s ({6:g} false alarms an hour) in runs of {7:g} s in "
-      "clear air with other seeds: {8} runs for each of the {0} seeds for detectors that take "
-      "little time, and {10} for those that add up bins or intervals or compare three ranges. The "
-      "number of alarms behind each threshold and their ARL0 with its exact interval stand beside "
-      "it. ARL0 is counted again in {0} other runs. A detector is not ranked if at its threshold "
-      "it has no alarm, or a mean time more than {9:g} times as long. ",
+      "with the same alarms in all runs count once, with all their names. Threshold: the smallest "
+      "one with a mean time to the first alarm of {5:g} s ({6:g} false alarms an hour) in runs of "
+      "{7:g} s in clear air with other seeds: {8} runs for each of the {0} seeds for detectors "
+      "that take little time, and {10} for those that add up bins or intervals or compare three "
+      "ranges. The number of alarms behind each threshold and their ARL0 with its exact interval "
+      "stand beside it. ARL0 is counted again in {0} other runs. A detector is not ranked if at "
+      "its threshold it has no alarm, or if its mean time to the first alarm is more than {9:g} "
+      "times the required {5:g} s. ",
       context.seeds.count(), kReferenceVisibility_m, kRealisticNoise_m, Detectors().size(), fewest,
       kArlZero_s, kHour_s / kArlZero_s, kClearRun_s, kQuickClearAir, kLoosest, kSlowClearAir);
 }
@@ -106,18 +105,19 @@ std::string DelayMethod(const StudyContext& context, std::span<const ConflictSet
       "without an alarm counts with its whole length of {0:g} s, so that no measure gains by "
       "missing a fog. It is not deception_to_alarm_s of a run. That time begins at the first step "
       "with a LiDAR error above its tolerance, is taken at the scenario's own threshold, and is 0 "
-      "if there is already an alarm. A condition ranks nothing if all alarm at once: the mean "
-      "delays of nine of ten detectors lie within the window of the Degree of Conflict; or if "
-      "hardly any alarm: no detector finds one fog of ten. Such conditions are in no mean and in "
-      "no claim, and have no long clear air. All alarm at once: {4}. Hardly any alarm: {5}. "
-      "Intervals of this delay and of detection: {1} "
-      "resamples of the runs in clear air, each with its own threshold, and of the seeds of the "
-      "fog. The resamples are the same for all visibilities, and for all detectors with equally "
-      "many runs. So the intervals contain the uncertainty of the threshold, and differences are "
-      "paired. Detection is given by visibility, with the interval of Clopper and Pearson if that "
-      "is wider. AUC (Mann and Whitney): steps in fog of level at least 1/2 against every {2}th "
-      "step in clear air. AUC and ROC are means over {3} batches of runs in fog, each against its "
-      "own runs in clear air. Each interval holds by itself, not for all comparisons together.",
+      "if there is already an alarm. A condition does not rank detectors in two cases. All raise "
+      "the alarm at once: the mean delays of nine of ten detectors lie within one window of the "
+      "Degree of Conflict. Or there is hardly any alarm: no detector finds one fog in ten. Such "
+      "conditions are in no mean and in no claim, and no long runs in clear air are made for them. "
+      "All raise the alarm at once: {4}. Hardly any alarm: {5}. Intervals of this delay and of "
+      "detection: {1} resamples of the runs in clear air, each with its own threshold, and of the "
+      "seeds of the fog. The resamples are the same for all visibilities, and for all detectors "
+      "with equally many runs. So the intervals contain the uncertainty of the threshold, and "
+      "differences are paired. Detection is given by visibility, with the interval of Clopper and "
+      "Pearson if that is wider. AUC (Mann and Whitney): steps in fog of level at least 1/2 "
+      "against every {2}th step in clear air. AUC and ROC are means over {3} batches of runs in "
+      "fog, each against its own runs in clear air. Each interval holds by itself, not for all "
+      "comparisons together.",
       kFog_s, kReplicates, kClearStride, std::min(kBatches, context.seeds.count()),
       ConditionsText(sets, Telling::kAllAtOnce), ConditionsText(sets, Telling::kHardlyAny));
 }

@@ -41,7 +41,7 @@ std::string_view Text(Telling telling) {
     case Telling::kRanks:
       return "ranked";
     case Telling::kAllAtOnce:
-      return "all alarm at once";
+      return "all raise the alarm at once";
     case Telling::kHardlyAny:
       return "hardly any alarm";
   }

@@ -26,7 +26,7 @@ enum class Telling {
   kAllAtOnce,  // nine of ten detectors alarm at about the same time as the first detector
   kHardlyAny,  // every detector finds less than a tenth of the fogs
 };
-/// "ranked", "all alarm at once" or "hardly any alarm".
+/// "ranked", "all raise the alarm at once" or "hardly any alarm".
 std::string_view Text(Telling telling);
 
 /// Mean delay of a detector in a condition, and the share of the fogs that the detector finds.

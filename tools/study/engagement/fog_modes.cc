@@ -45,8 +45,8 @@ const std::vector<HumanCase>& BothHumans() {
 }
 
 std::string_view HumansText() {
-  return "The perfect human is the paper's. The fallible human sees only as far as the fog lets "
-         "him, misjudges distances and loses awareness while the automation drives.";
+  return "The perfect human is the paper's. The fallible human sees only as far as the fog allows, "
+         "misjudges distances and loses awareness while the automation drives.";
 }
 
 }  // namespace fogline::study

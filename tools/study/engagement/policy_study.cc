@@ -113,10 +113,10 @@ report::StudyTable PolicyMainTable(const Comparison& comparison) {
 constexpr std::string_view kPolicyAnswer =
     "It depends on how the LiDAR fails. If fog biases its range a little, handing over to a "
     "perfect human is safer than each automation of this study; if fog makes a false echo, a "
-    "filter whose gate stays shut is safer than each rule that hands over; and if there is no "
-    "echo at all, the automation alone is safer. With other parameters (study ensemble) traded "
-    "control stays safer than the automation alone in bias fog, and less safe than the gate with "
-    "a false echo, but some other rules turn out the other way, and without an echo handing over "
+    "filter whose gate stays shut is safer than each rule that hands over; and if there is no echo "
+    "at all, the automation alone is safer. With other parameters (study ensemble), traded control "
+    "stays safer than the automation alone in bias fog; with a false echo it stays less safe than "
+    "the gate, but some other rules become safer than the gate; and without an echo, handing over "
     "is safer.";
 constexpr std::string_view kPolicyWouldChange =
     "A driver who needs time (study takeover), a filter that knows the fog, or a LiDAR that fails "
@@ -144,10 +144,14 @@ std::vector<PlannedClaim> PolicyClaims() {
            bias_fallible, "none", "traded"));
   const std::string calibrated =
       FogModes()[0].Case(fmt::format("{} with {}", kPerfectHuman, kCalibratedRadar)).name;
-  claims.push_back(less("With a calibrated radar the right sensor is safer than shared control.",
-                        calibrated, "oracle", "blend"));
-  claims.push_back(less("With a calibrated radar the right sensor is safer than traded control.",
-                        calibrated, "oracle", "traded"));
+  claims.push_back(
+      less("With a calibrated radar an automation on the right sensor (oracle) is safer than "
+           "shared control.",
+           calibrated, "oracle", "blend"));
+  claims.push_back(
+      less("With a calibrated radar an automation on the right sensor (oracle) is safer than "
+           "traded control.",
+           calibrated, "oracle", "traded"));
   claims.push_back(
       less("With a false echo traded control is safer than none.", near, "traded", "none"));
   for (const std::string_view rule :

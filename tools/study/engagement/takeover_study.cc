@@ -227,14 +227,15 @@ std::vector<PlannedClaim> TakeOverClaims() {
                      Sign::kMore),
       ShortfallClaim("It costs nothing if the deceived sensor is left out meanwhile.", near,
                      IsolateFor(5), IsolateFor(0), Sign::kEqual, kNoShortfall_m),
-      ShortfallClaim("That is safer than a driver without any wait.", near, IsolateFor(5),
-                     StayFor(0), Sign::kLess),
+      ShortfallClaim("With a false echo, leaving out the deceived sensor during a wait is safer "
+                     "than a driver without a wait.",
+                     near, IsolateFor(5), StayFor(0), Sign::kLess),
       ShortfallClaim("Without an echo the automation alone is safer than traded control.", missing,
                      none, StayFor(0), Sign::kLess),
   };
 }
 
-/// The claims with realistic noise on which the answer depends.
+/// The claims that support the answer, with realistic noise.
 std::vector<PlannedClaim> NoisyClaims() {
   const std::string_view none = kNoTradedControl;
   const auto name = [](std::size_t fog) {
@@ -299,11 +300,11 @@ StudyResult RunTakeOverStudy(const StudyContext& context) {
       "{} seeds of {}. The time to take over is log-normal with the mean that is shown and a "
       "standard deviation of {:g} s; at 0 s the driver need not be asked, as in the paper. Until "
       "the driver is there, the automation stays as it is, leaves out the sensor that is to blame, "
-      "refuses values outside the gate of its filter, or slows down by 0.5 m/s2. A driver who does "
-      "not come within 10 s loses the car to a minimal risk manoeuvre. {} A driver who must be "
-      "aware gets the wheel at an awareness of 0.8. {} The main comparison is repeated with it "
-      "(takeover-noise.csv). All differences from no traded control: {} "
-      "comparisons, in the CSV with p-values adjusted by Holm.",
+      "refuses values outside the gate of its filter, or slows down by 0.5 m/s2. If the driver "
+      "does not take over within 10 s, a minimal risk manoeuvre begins. {} A driver who must be "
+      "aware gets authority from an awareness of 0.8 on. {} The main comparison is repeated with "
+      "it (takeover-noise.csv). All differences from no traded control: {} comparisons, in the CSV "
+      "with p-values adjusted by Holm.",
       comparison.seeds(), FogModesText(), kDeviation_s, HumansText(), RealisticNoiseText(),
       comparison.Comparisons(0));
   result.files = {{"takeover.csv", comparison.Csv(comparison.VariantNamed(kNoTradedControl))},

@@ -172,7 +172,8 @@ const std::vector<ExaminedFinding>& ExaminedFindings() {
                    .why = "In set 3 leaving out the deceived sensor costs safety, and the harm of "
                           "the wait is not certain."},
        .side = {.claims = {{.study = "takeover",
-                            .says = "That is safer than a driver without any wait.",
+                            .says = "With a false echo, leaving out the deceived sensor during a "
+                                    "wait is safer than a driver without a wait.",
                             .one_of = kLarge}},
                 .exceptions = {},
                 .why = ""}},
@@ -182,42 +183,40 @@ const std::vector<ExaminedFinding>& ExaminedFindings() {
                                .says = "In bias fog traded control is safer than: none."}},
                    .exceptions = {},
                    .why = ""},
-       .side =
-           {.claims =
-                {{.study = "policy",
-                  .says =
-                      "In bias fog traded control is safer than: none + gate."},
-                 {.study = "policy",
-                  .says =
-                      "In bias fog traded control is safer than: none + reopening gate."},
-                 {.study = "policy", .says = "In bias fog traded control is safer than: isolate."},
-                 {.study = "policy",
-                  .says =
-                      "In bias fog traded control is safer than: none + adaptive noise."},
-                 {.study = "policy", .says = "In bias fog shared control is safer still."},
-                 {.study = "policy",
-                  .says =
-                      "With a calibrated radar the right sensor is safer than traded control."},
-                 {.study = "policy",
-                  .says =
-                      "With a calibrated radar the right sensor is safer than shared control."}},
-            .exceptions =
-                {{"In bias fog traded control is safer than: none + gate.",
-                  {1, 4, 7, 8},
-                  InSet::kOpposite},
-                 {"In bias fog traded control is safer than: none + adaptive noise.",
-                  {8},
-                  InSet::kOpposite},
-                 {"With a calibrated radar the right sensor is safer than traded control.",
-                  {1},
-                  InSet::kUndecided},
-                 {"With a calibrated radar the right sensor is safer than shared control.",
-                  {1, 4, 5, 8},
-                  InSet::kOpposite}},
-            .why = "A filter with a gate is safer than traded control in sets 1, 4, 7 and 8, and "
-                   "adaptive noise in set 8. With a calibrated radar, shared control is safer than "
-                   "the right sensor in sets 1, 4, 5 and 8. Each of these differences is less than "
-                   "2 mm."}},
+       .side = {.claims =
+                    {{.study = "policy",
+                      .says = "In bias fog traded control is safer than: none + gate."},
+                     {.study = "policy",
+                      .says = "In bias fog traded control is safer than: none + reopening gate."},
+                     {.study = "policy",
+                      .says = "In bias fog traded control is safer than: isolate."},
+                     {.study = "policy",
+                      .says = "In bias fog traded control is safer than: none + adaptive noise."},
+                     {.study = "policy", .says = "In bias fog shared control is safer still."},
+                     {.study = "policy",
+                      .says = "With a calibrated radar an automation on the right sensor (oracle) "
+                              "is safer than traded control."},
+                     {.study = "policy",
+                      .says = "With a calibrated radar an automation on the right sensor (oracle) "
+                              "is safer than shared control."}},
+                .exceptions = {{"In bias fog traded control is safer than: none + gate.",
+                                {1, 4, 7, 8},
+                                InSet::kOpposite},
+                               {"In bias fog traded control is safer than: none + adaptive noise.",
+                                {8},
+                                InSet::kOpposite},
+                               {"With a calibrated radar an automation on the right sensor "
+                                "(oracle) is safer than traded control.",
+                                {1},
+                                InSet::kUndecided},
+                               {"With a calibrated radar an automation on the right sensor "
+                                "(oracle) is safer than shared control.",
+                                {1, 4, 5, 8},
+                                InSet::kOpposite}},
+                .why = "A filter with a gate is safer than traded control in sets 1, 4, 7 and 8, "
+                       "and adaptive noise in set 8. With a calibrated radar, shared control is "
+                       "safer than an automation on the right sensor in sets 1, 4, 5 and 8. Each "
+                       "of these differences is less than 2 mm."}},
       {.number = 7,
        .name = "the window and the sign of the Degree of Conflict",
        .heading = {.claims = {{.study = "conflict",
@@ -262,7 +261,7 @@ const std::vector<ExaminedFinding>& ExaminedFindings() {
                  {"With realistic noise in beam fog traded control helps an aggressive human.",
                   {2, 3, 4, 6, 7, 8},
                   InSet::kUndecided}},
-            .why = "Both claims on an aggressive follower are certain in no set."}},
+            .why = "In each set, one of the two claims on an aggressive follower is not certain."}},
       {.number = 9,
        .name = "a leader that brakes hard",
        .heading = {.claims =

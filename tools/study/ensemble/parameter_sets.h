@@ -27,7 +27,7 @@ inline constexpr const char* kSetsFile = "ensemble/sets.csv";
 std::vector<EnsembleSet> ReadEnsembleSets(const std::filesystem::path& scenarios);
 
 /// The overrides with which a scenario has the parameters of the set. In paper.json it has all of
-/// them. Another file keeps what it states itself, such as its fog and its sensors, because it
+/// them. Another file keeps the fields that it sets, such as its fog and its sensors, because it
 /// describes another experiment; only the gaps follow from the set, so that a run begins in
 /// equilibrium. @pre the sensors of another file have no offset
 /// @throws InputError

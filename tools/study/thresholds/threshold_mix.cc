@@ -164,8 +164,8 @@ std::string MixText() {
       "drawn alike for every rule: paper.json with a leader whose speed swings by up to {:g} m/s, "
       "{:g} % in clear air, else fog of either model (visibility {:g} to {:g} m, bias {:g} to {:g} "
       "m), mounting offset {:g} to {:g} m, radar noise {:g} to {:g} m, LiDAR noise {:g} to {:g} m; "
-      "a human who sees the fog and in {:g} % misjudges and loses awareness (down to {:g} to {:g}),"
-      " and a follower of drawn kind and style",
+      "a human who sees the fog, and who in {:g} % of the situations also misjudges and loses "
+      "awareness (down to {:g} to {:g}), and a follower of drawn kind and style",
       kLeadAmplitude_mps.most, 100 * kClearShare, kVisibility_m.least, kVisibility_m.most,
       kBias_m.least, kBias_m.most, kMounting_m.least, kMounting_m.most, kRadarStd_m.least,
       kRadarStd_m.most, kLidarStd_m.least, kLidarStd_m.most, 100 * kErringShare, kMonitoring.least,

@@ -73,10 +73,10 @@ std::string ThresholdText(const MixedRuns& mixed, const CurvePlace& place) {
 }
 
 constexpr std::string_view kThresholdAnswer =
-    "No. In a mix of situations, whatever engages the human less in clear air is also safer, so "
-    "the best rule hardly ever hands over, even to a human who never errs; with two parameter "
-    "sets of study ensemble the paper's threshold is safer. At equal engagement an adaptive "
-    "threshold does not beat a fixed one; dropping the deceived sensor gains a little.";
+    "No. In a mix of situations, rules that engage the human less in clear air are also safer, so "
+    "the best rule hardly ever hands over, even to a human who never errs; with two parameter sets "
+    "of study ensemble the paper's threshold is safer. At equal engagement an adaptive threshold "
+    "does not beat a fixed one; dropping the deceived sensor gains a little.";
 constexpr std::string_view kThresholdWouldChange =
     "Situations in which the automation is deceived for longer.";
 
@@ -104,13 +104,16 @@ std::vector<Claim> ThresholdClaims(const MixedRuns& mixed, const Beside& beside)
   };
   std::vector<Claim> claims = ClaimsOnFixed(mixed, "");
   const auto more = {
-      against("It is safer than the adaptive rule.", "fixed 0.99", "adaptive 0.5", Sign::kMore),
-      against("It is safer than the rule by costs.", "fixed 0.99", "bayes 1", Sign::kMore),
-      against("It is as safe as dropping the sensor at the same threshold.", "fixed 0.99",
-              "availability 0.98", Sign::kEqual, kNothing),
+      against("A threshold of 0.99 is safer than the adaptive rule.", "fixed 0.99", "adaptive 0.5",
+              Sign::kMore),
+      against("A threshold of 0.99 is safer than the rule by costs.", "fixed 0.99", "bayes 1",
+              Sign::kMore),
+      against("A threshold of 0.99 is as safe as dropping the sensor at threshold 0.98.",
+              "fixed 0.99", "availability 0.98", Sign::kEqual, kNothing),
       AtEqualRhe(mixed, beside, "At equal engagement, dropping the deceived sensor gains a little.",
                  "availability 0.5", Sign::kMore),
-      AtEqualRhe(mixed, beside, "An eager adaptive rule loses at equal engagement.",
+      AtEqualRhe(mixed, beside,
+                 "An adaptive rule with a low threshold (0.35) is less safe at equal engagement.",
                  "adaptive 0.35", Sign::kLess),
   };
   claims.insert(claims.end(), more.begin(), more.end());
@@ -247,16 +250,15 @@ std::string ThresholdMethod(const MixedRuns& mixed, const Beside& beside) {
       "curve of mean SI over mean RHE. The curve is straight between neighbours, which are at most "
       "{:.1f} points of RHE apart. A rule is compared with the point of the curve that has its "
       "RHE. If several thresholds have this RHE, the best of them counts (those above all conflict "
-      "in clear air have an RHE of 0). The possible error of the curve at that point is the "
-      "distance "
-      "of the thresholds on either side from the curve of the others, weighted less the nearer the "
-      "point is to one of them. A claim whose interval is not farther from 0 than this error does "
-      "not hold. Intervals: {} resamples of the "
-      "situations, each with its own curve. So they contain the noise of equal situations, the RHE "
-      "of both sides and the choice of the best. SI is a mean of ratios of small numbers, so "
-      "compromised safety in metres is beside it. Both humans: the same situations and some rules, "
-      "with each human in all of them. {} With the drawn radars, and with a realistic one in all "
-      "situations. {}",
+      "in clear air have an RHE of 0). The possible error of the curve at that point comes from "
+      "the two thresholds beside it: it is the larger of their distances from the straight line "
+      "between their neighbours. The nearer the point is to one of the two thresholds, the smaller "
+      "is this error. A claim whose interval is not farther from 0 than this error does not hold. "
+      "Intervals: {} resamples of the situations, each with its own curve. So they contain the "
+      "noise of equal situations, the RHE of both sides and the choice of the best. SI is a mean "
+      "of ratios of small numbers, so compromised safety in metres is beside it. Both humans: the "
+      "same situations and some rules, with each human in all of them. {} These situations run "
+      "with the drawn radars, and again with a realistic radar in all of them. {}",
       mixed.situations, MixText(), beside.fixed, widest, kReplicates, HumansText(),
       RealisticNoiseText());
 }
