@@ -100,7 +100,8 @@ std::optional<Calibration> Calibrate(const Objective& objective, int max_evaluat
 namespace {
 
 /// A value below and a value above `value`. They differ from `value` by half a percent of the
-/// range, or by one for an integer.
+/// range, or by one for an integer. The limits of the field bound both values, so at a limit one of
+/// them equals `value`.
 std::pair<double, double> Around(const FreeField& field, double value) {
   if (field.is_integer()) {
     return {std::max(field.lowest(), value - 1), std::min(field.highest(), value + 1)};

@@ -97,7 +97,8 @@ std::string WithValue(std::string_view text, std::string_view pointer, std::stri
       continue;
     }
     const auto* object = at->As<JsonObject>();
-    if (object == nullptr) throw std::invalid_argument("WithValue: no object on the way");
+    if (object == nullptr)
+      throw std::invalid_argument("WithValue: a parent of the field is not an object");
     const JsonMember* member = FindMember(*object, segment);
     if (member == nullptr) return Appended(text, *at, segment, Wrapped(pointer, json));
     at = &member->value;

@@ -195,8 +195,8 @@ std::string FilteredFirst() {
 void ExamineFilter(const std::string& url, Findings& findings) {
   if (!url.starts_with("udpm://")) {
     findings.push_back({"socket_filter", Level::kWarning,
-                        "mpudpm has no filter, so fragments reach LCM's parser, whose bounds are "
-                        "wrong for them; --key is refused",
+                        "mpudpm has no filter, so fragments reach LCM's parser, which checks their "
+                        "bounds wrongly; --key is refused",
                         "use udpm:// instead of mpudpm://"});
   } else if (FilteredFirst() == "LC02") {
     findings.push_back({"socket_filter", Level::kOk,
@@ -204,7 +204,7 @@ void ExamineFilter(const std::string& url, Findings& findings) {
   } else {
     findings.push_back({"socket_filter", Level::kWarning,
                         "the kernel accepts no socket filter, so fragments reach LCM's parser, "
-                        "whose bounds are wrong for them; --key is refused",
+                        "which checks their bounds wrongly; --key is refused",
                         "allow setsockopt(SO_ATTACH_FILTER) in the sandbox or container, or use "
                         "--transport tcpq"});
   }
@@ -285,7 +285,7 @@ void ExamineTraffic(const std::string& url, Findings& findings) {
   }
   for (const watch::ChannelView& other : view.others) {
     findings.push_back({"other_runs", Level::kWarning,
-                        fmt::format("on {}: {} messages of no run on channel {}", url,
+                        fmt::format("on {}: {} messages on channel {} belong to no run", url,
                                     other.arrivals.messages, Printable(other.channel)),
                         "fogline top shows more; use another port for runs of your own"});
   }

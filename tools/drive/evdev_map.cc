@@ -39,8 +39,8 @@ PedalAxis ParsePedal(std::string_view text, std::string_view option) {
   const int code = libevdev_event_code_from_name(EV_ABS, name.c_str());
   if (code < 0) {
     throw InputError(
-        fmt::format("error: {} {}: no axis; axes are named ABS_RZ, or -ABS_RZ if "
-                    "released at the greatest value; evtest DEVICE lists them",
+        fmt::format("error: {} {}: no axis; axes are named ABS_RZ, or -ABS_RZ if the axis has its "
+                    "greatest value when the pedal is released; evtest DEVICE lists them",
                     option, Shown(text)));
   }
   return {.code = code, .inverted = inverted};

@@ -22,7 +22,7 @@ inline constexpr double kDeadZone = 0.03;
 /// A pedal: an axis, and its direction.
 struct PedalAxis {
   int code = -1;          // ABS_...
-  bool inverted = false;  // released at the greatest value
+  bool inverted = false;  // greatest value when the pedal is released
 
   /// Travel in [0, 1] at this value.
   double Travel(int value, const AxisRange& range) const {
@@ -70,7 +70,8 @@ struct DeviceMap {
 /// @return nullopt if the device has neither pedals nor keys
 std::optional<DeviceMap> UsualMap(const DeviceFeatures& features);
 
-/// A pedal as the user names it: "ABS_RZ", or "-ABS_RZ" if it is released at the greatest value.
+/// A pedal as the user names it: "ABS_RZ", or "-ABS_RZ" if the axis has its greatest value when the
+/// pedal is released.
 /// @throws InputError that names `option` if the kernel has no such axis
 PedalAxis ParsePedal(std::string_view text, std::string_view option);
 /// A button as the user names it: "BTN_SOUTH" or "KEY_SPACE". @throws InputError as ParsePedal()

@@ -26,7 +26,8 @@ class KeyPedals {
   /// Characters of a key that is down come every 33 to 40 ms (Linux console, X11: 25 to 30 in a
   /// second). Three times as long, so that a terminal over a network does not interrupt a pedal.
   static constexpr Duration kPress = milliseconds(120);
-  /// The longest usual delay of the second character: X11's 660 ms (Linux console: 250 ms).
+  /// A little longer than the longest usual delay of the second character: X11's 660 ms (Linux
+  /// console: 250 ms).
   static constexpr Duration kFirstDelay = milliseconds(700);
 
   explicit KeyPedals(const PersonSection& person)

@@ -114,8 +114,8 @@ void AddMetrics(CLI::App& app, cli::Action& action) {
   const auto arguments = std::make_shared<MetricsArguments>();
   verb->add_option("LOG", arguments->logs, "Event logs")->required();
   verb->add_option("--take-overs", arguments->take_overs,
-                   "CSV file to write: a line for each request to take over; of existing files, "
-                   "only such a table is replaced");
+                   "CSV file to write: a line for each request to take over; an existing file is "
+                   "replaced only if it is such a table");
   verb->add_flag("--json", arguments->json, "Print as JSON");
   cli::ShowExitCodes(*verb, {.check_failed = "a log is not complete"});
   verb->footer(

@@ -45,7 +45,8 @@ void RefuseOthers(const std::filesystem::path& log, const std::vector<replay::Ro
   if (all) return;
   Refuse(log,
          "a run in real time: its log does not show which inputs had come by a role's deadline; "
-         "replay takes runs in lockstep, and of a run that a person drove the role driver");
+         "replay computes all roles of a run in lockstep, but only the role driver of a run that a "
+         "person drove");
 }
 
 /// @throws InputError for a name that is no role, or a role that computes nothing
@@ -135,7 +136,7 @@ void AddReplay(CLI::App& app, cli::Action& action) {
       "Each step takes its inputs from the log, so a difference in one role does not affect\n"
       "another role. Scenario and seed are those of the log, too. Outputs are compared bit by\n"
       "bit: a log from before a change shows which steps of which role the change alters.\n"
-      "Of a run in real time only the role driver can be computed again, and only if a person\n"
+      "In a run in real time, only the role driver can be computed again, and only if a person\n"
       "drove: each command names the input of the person from which it was made.\n\n"
       "Examples:\n"
       "  fogline run scenario/paper.json --log before.lcm\n"

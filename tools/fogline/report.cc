@@ -317,9 +317,9 @@ void AddReport(CLI::App& app, cli::Action& action) {
                    "Override a field of the curves' scenario (repeatable)")
       ->needs(curves)
       ->allow_extra_args(false);
-  verb->add_option(
-          "-o,--output", arguments->output,
-          "HTML file to write, or /dev/stdout; of existing files, only an HTML page is replaced")
+  verb->add_option("-o,--output", arguments->output,
+                   "HTML file to write, or /dev/stdout; an existing file is replaced only if it is "
+                   "an HTML page")
       ->capture_default_str();
   for (const FigureOption& option : kFigureOptions) {
     verb->add_option(option.name, *arguments.*option.folder, option.help);

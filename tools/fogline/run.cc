@@ -75,9 +75,10 @@ struct RunArguments {
                     "Limit of the lockstep's speed, in simulated seconds per second (0: no limit)")
         ->check(cli::NumberIn(0, runtime::kMaxSpeed))
         ->capture_default_str();
-    CLI::Option* realtime = verb.add_flag("--realtime", options.realtime,
-                                          "Run on the wall clock, without waiting: if inputs fail, "
-                                          "another driver takes over or the car stops");
+    CLI::Option* realtime =
+        verb.add_flag("--realtime", options.realtime,
+                      "Run on the wall clock; no role waits for late inputs. If inputs fail, the "
+                      "other side (automation or human) drives, or the car stops");
     verb.add_option("--speed", speed, "With --realtime: simulated seconds per second")
         ->check(cli::NumberIn(runtime::kMinSpeed, runtime::kMaxSpeed))
         ->needs(realtime)

@@ -201,12 +201,13 @@ std::string EffectCells(const sweep::ThresholdRow& row, int width) {
 /// Says that SI depends on choices that the paper leaves open, and prints SI for other choices.
 void PrintOtherChoices(const Scenario& scenario, const std::vector<sweep::ThresholdRow>& rows) {
   fmt::print(
-      "\nCS: mean compromised safety in fog, with traded control and with none. slower: how\n"
-      "far the host slows down in fog with none. SI recov.: SI until the tracks are right.\n"
+      "\nCS: mean compromised safety in fog, with traded control and with none. slower: largest\n"
+      "drop of the host's speed in fog, without traded control. SI recov.: SI from the beginning\n"
+      "of the fog until the tracks have recovered.\n"
       "\nSI counts steps in fog with a compromised safety CS above a floor. The floor is a\n"
-      "free parameter (/measures/safety_floor_m, {:g} m), and so is the reading of CS.\n"
-      "SI (%) with other floors, and with CS as what the gap of the following car or its\n"
-      "safe distance d_r,f has lost since the fog began:\n\n  {:>6}",
+      "free parameter (/measures/safety_floor_m, {:g} m). The definition of CS is a free choice,\n"
+      "too. SI (%) with other floors, and with two other definitions of CS: the decrease of the\n"
+      "follower's gap, or of its safe distance d_r,f, since the fog began:\n\n  {:>6}",
       scenario.measures.safety_floor_m, "DoC_th");
   for (const metrics::SafetyChoice& choice : metrics::kSafetyChoices) {
     fmt::print("  {:>10}", choice.text);

@@ -54,8 +54,8 @@ constexpr std::array kFigures{
            "A host that slows down while the preceding car does not is misled by its sensors.",
            "Speed", "m/s", 3, 0.1, kSpeeds},
     Figure{"host-gap", "Gap from the host to the preceding car",
-           "What it is, what radar and LiDAR say, what the fusion makes of both, and the safe "
-           "distance that the host’s ACC aims at.",
+           "The true gap, the ranges of radar and LiDAR, the fused distance, and the safe distance "
+           "at which the host’s ACC aims.",
            "Distance", "m", 3, 0.2, kHostGap,
            Shade{"lidar_range_m", "host_gap_m", "LiDAR reads short"}},
     Figure{"conflict", "Degree of Conflict, and who drives",
@@ -66,8 +66,8 @@ constexpr std::array kFigures{
            "Distance", "m", 3, 0.2, kFollowerGap,
            Shade{"follower_gap_m", "follower_safe_distance_m", "safety compromised"}},
     Figure{"accelerations", "Accelerations",
-           "What host and following car did, and what the automation and the human would have the "
-           "host do.",
+           "The accelerations of host and following car, and the accelerations that automation and "
+           "human request for the host.",
            "Acceleration", "m/s²", 3, 0.1, kAccelerations, Shade{}, true},
     Figure{"jerk", "Jerk of the host",
            "The change of its acceleration from step to step: abrupt transfers of control show as "

@@ -95,7 +95,7 @@ class PlanCheck {
                       "characters at most",
                       QuoteShort(name), kMostNameCharacters));
     } else if (!others.insert(name).second) {
-      Add(pointer, "duplicate", fmt::format("{} is the name of two", QuoteShort(name)));
+      Add(pointer, "duplicate", fmt::format("two entries have the name {}", QuoteShort(name)));
     }
   }
 

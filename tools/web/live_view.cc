@@ -164,7 +164,8 @@ void LiveView::Received(Client& client, std::string_view bytes, bool binary) {
   }
   const auto id =
       std::visit([](const auto& any) { return std::optional<RequestId>(any.id); }, request);
-  client.Send(TextFrame(ErrorText(id, "a live network is shown; steps and series are of logs")));
+  client.Send(TextFrame(
+      ErrorText(id, "this server shows a live network; only a log has steps and series")));
 }
 
 void LiveView::BeginHistory(Viewer& viewer, RequestId id) {

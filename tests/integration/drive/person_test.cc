@@ -114,7 +114,7 @@ TEST_F(DrivenRunInRealtimeTest, LogsWhatThePersonDoesAndReplaysItBitByBit) {
                                }),
                                1);
   EXPECT_EQ(absent["first"]["channel"], "DRIVER_COMMAND");
-  // Of a run in real time no other role can be computed again.
+  // No other role of a run in real time can be computed again.
   const Outcome other = RunCommand({Program("fogline"), "replay", run_.log(), "--role", "acc"});
   EXPECT_EQ(other.code, 2);
   EXPECT_THAT(other.err, HasSubstr("a run in real time"));

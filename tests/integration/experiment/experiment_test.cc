@@ -306,7 +306,7 @@ TEST_F(ExperimentRealtimeTest, AnswersThatAreMissingAreAskedWithoutAnotherRun) {
        fmt::format("exec {} experiment run {} --results {} --participant 1 --no-page < {}",
                    Program("fogline"), file_, results_, input)});
   EXPECT_EQ(cut.code, 3);
-  EXPECT_THAT(cut.err, HasSubstr("the same command goes on from here"));
+  EXPECT_THAT(cut.err, HasSubstr("the same command continues from here"));
   const Outcome status = Experiment("status");
   EXPECT_THAT(status.out, HasSubstr("to_ask"));
   // The sleepiness of run 1 comes first, and then runs 2 and 3.

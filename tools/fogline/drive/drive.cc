@@ -65,10 +65,11 @@ struct DriveArguments {
       verb.add_option(option, value, what)->needs(by_device);
     };
     name("--throttle", names.throttle,
-         "Axis of the throttle, such as ABS_RZ; -ABS_RZ if released at the greatest value");
+         "Axis of the throttle, such as ABS_RZ; -ABS_RZ if the axis has its greatest value when "
+         "the pedal is released");
     name("--brake", names.brake, "Axis of the brake");
     name("--take-over", names.take_over, "Button to take over, such as BTN_SOUTH");
-    name("--give-back", names.give_back, "Button to give back");
+    name("--give-back", names.give_back, "Button to give control back to the automation");
     for (CLI::Option* of_page :
          {verb.add_option("--listen", listen, "ADDRESS[:PORT] at which others may open the page"),
           verb.add_flag("--no-browser", no_browser, "Only print the addresses of the page")}) {

@@ -280,7 +280,7 @@ struct TablesArguments {
         "log, the answers as QUESTIONNAIRE.ITEM, and the measures of the run (fogline metrics).\n"
         "values.csv has a row for each answer, measure and marker: item, value, unit. Practice "
         "runs\n"
-        "have practice 1. If a trial is not done, the tables have what there is.\n\n"
+        "have practice 1. A trial without a log has no rows.\n\n"
         "Examples:\n"
         "  fogline experiment export scenario/experiment/thresholds.json --out tables\n"
         "  fogline experiment export scenario/experiment/thresholds.json --out tables --force");

@@ -22,7 +22,7 @@ struct Next {
 
 /// @throws Interrupted after a signal that asks this process to end
 inline void ThrowIfInterrupted() {
-  if (WasInterrupted()) throw Interrupted("interrupted; the same command goes on from here");
+  if (WasInterrupted()) throw Interrupted("interrupted; the same command continues from here");
 }
 
 class Desk {

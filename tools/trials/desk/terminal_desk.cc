@@ -54,8 +54,8 @@ std::string TerminalDesk::ReadLine() {
     if (size < 0 && (errno == EINTR || errno == EAGAIN)) continue;
     if (size <= 0) {
       throw std::runtime_error(
-          "standard input has ended before the last answer; what is done is in the logs, and the "
-          "same command goes on from here");
+          "standard input has ended before the last answer; the logs keep the finished trials; the "
+          "same command continues from here");
     }
     unread_.append(bytes.data(), static_cast<std::size_t>(size));
   }

@@ -45,7 +45,8 @@ std::vector<Line> SenderLines(const SendersView& view) {
                      Line::Style::kBad});
   }
   if (view.not_lcm > 0) {
-    lines.push_back({fmt::format("{} packets were none of LCM", view.not_lcm), Line::Style::kBad});
+    lines.push_back(
+        {fmt::format("{} packets were not LCM packets", view.not_lcm), Line::Style::kBad});
   }
   if (view.in_fragments > 0) lines.push_back({FragmentsText(view), Line::Style::kBad});
   if (view.forgotten > 0) {

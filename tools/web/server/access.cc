@@ -59,7 +59,7 @@ bool Access::IsOurs(std::string_view host) const {
   if (name == rules_.address) return true;
   const bool everywhere = rules_.address == kEveryAddress;
   if (name == "localhost") return everywhere || rules_.address.starts_with("127.");
-  // DNS cannot point an address in numbers at another machine.
+  // A numeric address needs no DNS, so DNS rebinding cannot use it.
   return everywhere && IsAddressInNumbers(name);
 }
 

@@ -61,7 +61,7 @@ TEST(PlanFileTest, AMistakeIsNamedWithFileFieldAndValue) {
               HasSubstr("/items/0/step: 3 does not divide the scale from 0 to 10"));
   EXPECT_THAT(Refusal(R"("questionnaires": [{"name": "q", "kind": "kss"},
                                             {"name": "q", "kind": "kss"}])"),
-              HasSubstr("/questionnaires/1/name: \"q\" is the name of two"));
+              HasSubstr("/questionnaires/1/name: two entries have the name \"q\""));
   EXPECT_THAT(Refusal(R"("participants": "x")"), HasSubstr("fogline experiment check --schema"));
 }
 
