@@ -13,9 +13,9 @@ namespace fogline::test {
 
 /// The interval at which a test checks a condition outside of its process.
 inline constexpr std::chrono::milliseconds kLookEvery(5);
-/// A time limit. Programs start and messages arrive earlier even when every processor is busy, and
-/// so do a Java virtual machine and a browser.
-inline constexpr std::chrono::seconds kPatience(60);
+/// A time limit that only ends a test that hangs. It is many times the time that a busy machine
+/// needs to start a program, a Java virtual machine or a browser, or to deliver a message.
+inline constexpr std::chrono::seconds kPatience(100);
 
 /// The folder of the built programs, and the folder of the sources.
 std::filesystem::path ProgramDirectory();
@@ -36,15 +36,14 @@ class Background {
   pid_t pid() const { return pid_; }
   void Signal(int signal) const;
   /// Waits for the end. @return the exit code, or 128 + signal. After the time limit the program is
-  /// killed, and the result is -1. The limits of this class only end a test that hangs, so they are
-  /// many times the time that a busy machine needs.
-  int Wait(std::chrono::seconds limit = std::chrono::seconds(100));
+  /// killed, and the result is -1.
+  int Wait(std::chrono::seconds limit = kPatience);
   std::string Out() const;
   std::string Err() const;
   /// Waits until stderr (or stdout) contains `text`. @return false after the time limit, or if the
   /// program ends without this text
-  bool WaitForErr(const std::string& text, std::chrono::seconds limit = std::chrono::seconds(100));
-  bool WaitForOut(const std::string& text, std::chrono::seconds limit = std::chrono::seconds(100));
+  bool WaitForErr(const std::string& text, std::chrono::seconds limit = kPatience);
+  bool WaitForOut(const std::string& text, std::chrono::seconds limit = kPatience);
 
  private:
   bool WaitFor(const std::filesystem::path& file, const std::string& text,
@@ -64,7 +63,7 @@ struct Outcome {
 
 /// Waits until a file has `bytes` bytes. @return false after the time limit
 bool GrowsTo(std::uintmax_t bytes, const std::filesystem::path& file,
-             std::chrono::seconds limit = std::chrono::seconds(20));
+             std::chrono::seconds limit = kPatience);
 
 /// The bytes of a file; "" if there is no such file.
 std::string Content(const std::filesystem::path& file);

@@ -35,7 +35,7 @@ struct WebClient::Parts {
 
   /// Runs one operation. `start` gets the handler. @return its error
   template <class Start>
-  error_code Run(const Start& start, std::chrono::seconds limit = std::chrono::seconds(60)) {
+  error_code Run(const Start& start, std::chrono::seconds limit = kPatience) {
     std::optional<error_code> result;
     start([&result](error_code error, auto...) { result = error; });
     context.restart();

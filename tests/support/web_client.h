@@ -8,6 +8,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "tests/support/command.h"
+
 namespace fogline::test {
 
 /// The server has closed the WebSocket, or the connection.
@@ -58,7 +60,7 @@ class WebClient {
   /// @throws WebClosed
   void Send(const std::string& bytes, bool binary = false);
   /// The next frame. @throws WebClosed, std::runtime_error after the time limit
-  WebFrame Receive(std::chrono::seconds limit = std::chrono::seconds(60));
+  WebFrame Receive(std::chrono::seconds limit = kPatience);
 
  private:
   struct Parts;
@@ -68,7 +70,7 @@ class WebClient {
 /// Sends bytes to a port of this machine, and reads until the other side closes.
 /// @return what it has sent; "" if it closes the connection at once
 std::string Exchange(std::uint16_t port, const std::string& bytes,
-                     std::chrono::seconds limit = std::chrono::seconds(30));
+                     std::chrono::seconds limit = kPatience);
 
 /// A GET request. @param more further header lines, each with "\r\n"
 std::string GetRequest(std::uint16_t port, const std::string& target, const std::string& more = "");

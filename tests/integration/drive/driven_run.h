@@ -31,7 +31,7 @@ class Commands {
   }
 
   /// Waits for a condition. @return the time until it holds; a negative time after the limit
-  double WaitFor(const std::function<bool()>& holds, Duration limit = std::chrono::seconds(20)) {
+  double WaitFor(const std::function<bool()>& holds, Duration limit = kPatience) {
     const TimePoint begin = Clock::now();
     while (!holds()) {
       if (Clock::now() - begin > limit) return -1;

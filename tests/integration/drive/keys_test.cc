@@ -68,19 +68,19 @@ class InTerminal {
            now.c_oflag == before_.c_oflag &&
            std::equal(std::begin(now.c_cc), std::end(now.c_cc), std::begin(before_.c_cc));
   }
-  /// Reads what the program prints until a condition holds. @return false after 30 s
+  /// Reads what the program prints until a condition holds. @return false after the time limit
   template <class Condition>
   bool WaitUntil(const Condition& holds) {
-    const TimePoint end = Clock::now() + std::chrono::seconds(30);
+    const TimePoint end = Clock::now() + kPatience;
     while (!holds()) {
       if (Clock::now() > end) return false;
       Read(milliseconds(20));
     }
     return true;
   }
-  /// @return the exit code; -1 after 60 s
+  /// @return the exit code; -1 after the time limit
   int Wait() {
-    const TimePoint end = Clock::now() + std::chrono::seconds(60);
+    const TimePoint end = Clock::now() + kPatience;
     int status = 0;
     while (waitpid(pid_, &status, WNOHANG) == 0) {
       if (Clock::now() > end) return -1;

@@ -18,8 +18,6 @@ namespace {
 using nlohmann::json;
 using testing::HasSubstr;
 
-constexpr std::chrono::seconds kPatience(60);
-
 std::uint16_t PortIn(const std::string& err) {
   constexpr std::string_view kBefore = "drive: http://127.0.0.1:";
   const std::size_t at = err.find(kBefore);

@@ -42,9 +42,9 @@ std::string AnswersOf(int participant, int run) {
   return lines + fmt::format("{}\n", participant + run);
 }
 
-/// Waits until a file contains a text. @return false after 20 s
+/// Waits until a file contains a text. @return false after the time limit
 bool ComesToHave(const std::string& text, const std::filesystem::path& file) {
-  for (const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+  for (const auto end = std::chrono::steady_clock::now() + kPatience;
        std::chrono::steady_clock::now() < end; std::this_thread::sleep_for(kLookEvery)) {
     if (Content(file).find(text) != std::string::npos) return true;
   }

@@ -27,7 +27,7 @@ class PacedRun {
               "--log", folder_.File("run.lcm")}) {
     EXPECT_TRUE(run_.WaitForErr("processes: "));
     // The run is under way when kUnderWay steps are on disk. No event shows this moment.
-    const auto end = SteadyClock::now() + std::chrono::seconds(20);
+    const auto end = SteadyClock::now() + kPatience;
     while (StepsOnDisk() < kUnderWay && SteadyClock::now() < end) {
       std::this_thread::sleep_for(kLookEvery);
     }

@@ -17,8 +17,6 @@
 
 namespace fogline::test {
 
-// A time limit, far longer than any wait in these tests on a busy machine.
-inline constexpr Duration kRunPatience = std::chrono::seconds(30);
 // Steps of a watched run, and its pace, at which each step takes a millisecond.
 inline constexpr int kSteps = 300;
 inline constexpr int kPace = 100;
@@ -68,7 +66,7 @@ class WatchedRun {
   /// Handles messages until the condition holds. @throws std::runtime_error after the time limit
   template <class Condition>
   void WaitUntil(const Condition& condition, const std::string& what) {
-    const TimePoint end = Clock::now() + kRunPatience;
+    const TimePoint end = Clock::now() + kPatience;
     while (!condition()) {
       bus_.Wait(milliseconds(20));
       if (Clock::now() > end || !IsAlive(run_.pid())) {

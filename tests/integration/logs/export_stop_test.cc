@@ -43,7 +43,7 @@ class HaltedExport {
 
   Background& process() { return *process_; }
   bool WaitUntilItWaits() const {
-    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+    const auto end = std::chrono::steady_clock::now() + kPatience;
     // No event shows how full a pipe is, and reading would empty the pipe.
     for (int bytes = 0; bytes < 4096; std::this_thread::sleep_for(kLookEvery)) {
       if (ioctl(pipe_, FIONREAD, &bytes) != 0 || std::chrono::steady_clock::now() > end) {

@@ -251,7 +251,7 @@ TEST_F(OutageTest, AGroupIsLeftOnTheInterfaceToWhichTheRouteLedBefore) {
   ASSERT_TRUE(driver.WaitForErr("waiting for a run")) << driver.Err();
   EXPECT_TRUE(has_group("eth0"));
   machine.Do("ip route replace 239.0.0.0/8 dev eth1");
-  const TimePoint end = Clock::now() + std::chrono::seconds(20);
+  const TimePoint end = Clock::now() + kPatience;
   while (!has_group("eth1") && Clock::now() < end) LastFor(milliseconds(50));
   EXPECT_TRUE(has_group("eth1"));
   EXPECT_FALSE(has_group("eth0"));
@@ -292,7 +292,7 @@ TEST_F(OutageTest, LeavesStockProgramsThatHearARunAndAreHeard) {
   EXPECT_EQ(ResultOf(run)["digest"], Undisturbed());
   // lcm-logger writes messages later than they are sent. When it ends, it drops messages that it
   // has not written.
-  const TimePoint end = Clock::now() + std::chrono::seconds(20);
+  const TimePoint end = Clock::now() + kPatience;
   while (LastStepIn(stock) < 400 && Clock::now() < end) {
     LastFor(milliseconds(50));
   }

@@ -109,7 +109,7 @@ class BurstListener {
     for (TimePoint now = Clock::now(); now < end; now = Clock::now()) bus_->Wait(end - now);
   }
   bool WaitForStep(std::int64_t step, const Background& run) {
-    const TimePoint end = Clock::now() + std::chrono::seconds(60);
+    const TimePoint end = Clock::now() + kPatience;
     while (newest_ < step && Clock::now() < end && IsAlive(run.pid())) {
       bus_->Wait(milliseconds(20));
     }

@@ -39,7 +39,7 @@ class RealtimeRun {
   }
 
   void WaitForStep(std::int64_t step) {
-    const TimePoint end = Clock::now() + std::chrono::seconds(30);
+    const TimePoint end = Clock::now() + kPatience;
     while (step_ < step) {
       bus_.Wait(milliseconds(20));
       if (Clock::now() > end || !IsAlive(run_.pid())) {

@@ -204,7 +204,7 @@ TEST(StudyVerbTest, RefusesWhatItCannotFollow) {
 
 /// Waits until a program has begun to compute on several threads.
 bool WaitForThreads(pid_t pid) {
-  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+  const auto end = std::chrono::steady_clock::now() + kPatience;
   const std::filesystem::path tasks = "/proc/" + std::to_string(pid) + "/task";
   while (std::chrono::steady_clock::now() < end) {
     std::error_code gone;

@@ -65,7 +65,7 @@ class SweepFixture : public testing::Test {
   /// Waits until a sweep in the background has written `lines` lines. The test looks at the file,
   /// because the sweep reports to no other process. @return false after a minute
   bool WaitForLines(const std::string& name, std::int64_t lines) const {
-    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+    const auto end = std::chrono::steady_clock::now() + kPatience;
     while (CountLines(Content(File(name))) < lines) {
       if (std::chrono::steady_clock::now() > end) return false;
       std::this_thread::sleep_for(std::chrono::milliseconds(2));

@@ -29,7 +29,7 @@ class Viewed {
   explicit Viewed(const std::vector<std::string>& more,
                   const std::vector<std::string>& where = {"--port", "0"})
       : process_(Command(more, where)) {
-    if (!process_.WaitForOut("\n", std::chrono::seconds(60))) return;
+    if (!process_.WaitForOut("\n")) return;
     address_ = process_.Out().substr(0, process_.Out().find('\n'));
     const std::size_t begin = address_.rfind(':') + 1;
     port_ = static_cast<std::uint16_t>(std::stoi(address_.substr(begin)));

@@ -108,7 +108,7 @@ TEST(ChildTest, ThatIgnoresTheRequestToEndIsKilled) {
   processes::Pipe pipe;
   const pid_t pid = processes::StartChild(
       "/bin/sh", {"-c", "trap '' TERM; echo ready; while :; do sleep 1; done"}, pipe.write);
-  ASSERT_EQ(processes::FirstLineOf(pipe.read, std::chrono::seconds(20)), "ready");
+  ASSERT_EQ(processes::FirstLineOf(pipe.read, kPatience), "ready");
   const TimePoint begin = Clock::now();
   processes::EndChild(pid, milliseconds(100));
   EXPECT_GE(Clock::now() - begin, milliseconds(100));
@@ -131,7 +131,7 @@ TEST(ChildTest, DiesWithItsParent) {
   pid_t child = 0;
   ASSERT_EQ(read(pipe.read, &child, sizeof(child)), static_cast<ssize_t>(sizeof(child)));
   // THEN the child also ends
-  const TimePoint end = Clock::now() + std::chrono::seconds(20);
+  const TimePoint end = Clock::now() + kPatience;
   while (IsAlive(child) && Clock::now() < end) std::this_thread::sleep_for(kLookEvery);
   EXPECT_FALSE(IsAlive(child));
   kill(child, SIGKILL);

@@ -23,7 +23,7 @@ using testing::IsEmpty;
 /// Waits until `count` processes of a group have ended. @return these processes
 std::vector<ProcessGroup::Exit> CollectUntil(ProcessGroup& group, std::size_t count) {
   std::vector<ProcessGroup::Exit> exits;
-  const TimePoint end = Clock::now() + std::chrono::seconds(20);
+  const TimePoint end = Clock::now() + kPatience;
   while (exits.size() < count && Clock::now() < end) {
     for (ProcessGroup::Exit& exit : group.Collect()) exits.push_back(std::move(exit));
     std::this_thread::sleep_for(kLookEvery);
@@ -78,7 +78,7 @@ TEST(ProcessGroupTest, EndsWithItsProcesses) {
     ProcessGroup group;
     // If a shell ignores a signal, the program that replaces the shell ignores the signal, too.
     pid = StartScript(group, Role::kWorld, "trap '' TERM INT HUP; exec sleep 60");
-    const TimePoint end = Clock::now() + std::chrono::seconds(20);
+    const TimePoint end = Clock::now() + kPatience;
     while (Content("/proc/" + std::to_string(pid) + "/comm") != "sleep\n" && Clock::now() < end) {
       std::this_thread::sleep_for(milliseconds(5));  // exec has no event
     }
