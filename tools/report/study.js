@@ -211,7 +211,7 @@ function makeChart(figure) {
   const chart = new uPlot({
     width,
     height: chartHeight(figure, width),
-    padding: [8, points ? 24 : 12, 0, 0],  // room for half of the last value
+    padding: [8, 24, 0, 0],  // room for half of the last value
     legend: {show: false},
     series: [{}, ...figure.series.map((series, i) => ({
       show: series.shown,

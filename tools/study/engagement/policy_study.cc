@@ -85,7 +85,29 @@ constexpr std::array<std::string_view, 10> kMain{"none",
                                                  "adaptive",
                                                  "oracle"};
 
-/// Mean compromised safety of the main rules in each fog with each human.
+/// The cases of the first table: each fog with each human.
+std::vector<std::string> MainCases() {
+  std::vector<std::string> names;
+  for (const FogMode& fog : FogModes()) {
+    for (const std::string_view human : {kPerfectHuman, kFallibleHuman}) {
+      names.push_back(fog.Case(human).name);
+    }
+  }
+  return names;
+}
+
+/// A quantity by rule, with a series for each case. At first the page shows only the main cases.
+report::StudyFigure ByRule(const Comparison& comparison, std::string_view measure, std::string id,
+                           std::string title) {
+  report::StudyFigure figure = comparison.FigureOf(measure, std::move(id), std::move(title));
+  const std::vector<std::string> main = MainCases();
+  for (report::StudySeries& series : figure.series) {
+    series.shown = std::ranges::find(main, series.name) != main.end();
+  }
+  return figure;
+}
+
+/// Mean compromised safety of the main rules in the main cases.
 report::StudyTable PolicyMainTable(const Comparison& comparison) {
   report::StudyTable table{
       .caption = fmt::format("Mean compromised safety in fog (m), means over {} seeds [95 % "
@@ -93,12 +115,9 @@ report::StudyTable PolicyMainTable(const Comparison& comparison) {
                              comparison.seeds()),
       .columns = {"rule"}};
   std::vector<std::size_t> cases;
-  for (const FogMode& fog : FogModes()) {
-    for (const std::string_view human : {kPerfectHuman, kFallibleHuman}) {
-      const std::string name = fog.Case(human).name;
-      table.columns.push_back(name);
-      cases.push_back(comparison.CaseNamed(name));
-    }
+  for (const std::string& name : MainCases()) {
+    table.columns.push_back(name);
+    cases.push_back(comparison.CaseNamed(name));
   }
   for (const std::string_view rule : kMain) {
     std::vector<std::string>& row = table.rows.emplace_back();
@@ -202,13 +221,13 @@ StudyResult RunPolicyStudy(const StudyContext& context) {
     section.tables.push_back(comparison.TableOfCase(c, kPolicyTable));
   }
   section.figures = {
-      comparison.FigureOf(kShortfall, "policy-cs", "Compromised safety by policy"),
-      comparison.FigureOf("si_pct", "policy-si", "Safety improvement by policy"),
-      comparison.FigureOf("collided", "policy-collisions", "Collisions by policy"),
-      comparison.FigureOf("rhe_pct", "policy-rhe", "Redundant human engagement by policy"),
-      comparison.FigureOf("max_abs_jerk_mps3", "policy-jerk", "Comfort by policy: largest jerk"),
-      comparison.FigureOf("wrong_automation_s", "policy-wrong",
-                          "Driving time of the automation on a wrong track, by policy")};
+      ByRule(comparison, kShortfall, "policy-cs", "Compromised safety by policy"),
+      ByRule(comparison, "si_pct", "policy-si", "Safety improvement by policy"),
+      ByRule(comparison, "collided", "policy-collisions", "Collisions by policy"),
+      ByRule(comparison, "rhe_pct", "policy-rhe", "Redundant human engagement by policy"),
+      ByRule(comparison, "max_abs_jerk_mps3", "policy-jerk", "Comfort by policy: largest jerk"),
+      ByRule(comparison, "wrong_automation_s", "policy-wrong",
+             "Driving time of the automation on a wrong track, by policy")};
   section.method = fmt::format(
       "{} seeds of {}, each with every policy at its defaults and with rivals: a filter that "
       "refuses outliers, with and without a gate that reopens after five refusals; a filter that "
