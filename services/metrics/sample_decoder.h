@@ -32,6 +32,7 @@ class SampleDecoder {
 
   /// Messages of the step decoded last.
   const truth_t& truth() const { return truth_; }
+  const track_t& track() const { return track_; }
   const driver_command_t& driver() const { return driver_; }
   const arbitration_t& host() const { return host_; }
   const follower_command_t& follower() const { return follower_; }

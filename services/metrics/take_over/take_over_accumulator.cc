@@ -11,6 +11,10 @@ namespace {
 
 double Seconds(std::int64_t us) { return static_cast<double>(us) / kMicrosPerSecond; }
 
+bool ExcludesASensor(const track_t& track) {
+  return std::ranges::find(track.usage, track_t::DISTRUSTED) != std::end(track.usage);
+}
+
 /// Whether the judged interval ends in a step with this mode.
 bool IsOver(std::int8_t mode, double speed_mps) {
   if (mode == arbitration_t::MINIMAL_RISK) return speed_mps < take_over::kStandstill_mps;
@@ -40,7 +44,7 @@ std::string_view NameOf(TakeOverEnd end) {
 
 // The acceleration of a step was applied before the step, so it belongs to the commands before.
 void TakeOverAccumulator::Add(const truth_t& truth, const arbitration_t* command,
-                              std::optional<double> human_mps2) {
+                              const track_t& track, std::optional<double> human_mps2) {
   if (truth.fog_present == 0) {
     fog_speed_mps_.reset();
   } else if (!fog_speed_mps_) {
@@ -51,8 +55,26 @@ void TakeOverAccumulator::Add(const truth_t& truth, const arbitration_t* command
   if (truth.header.step > 0) {
     jerk_mps3 = jerk_.Add(Seconds(truth.header.utime), truth.host_acceleration_mps2);
   }
-  if (judged_) AddMotion(truth, jerk_mps3);
+  if (judged_) {
+    AddDriving(truth.header.utime);
+    AddMotion(truth, jerk_mps3);
+  }
   if (command != nullptr) AddCommand(truth, *command, human_mps2);
+  if (judged_) judged_->excludes = ExcludesASensor(track);
+}
+
+void TakeOverAccumulator::AddDriving(std::int64_t utime) {
+  const std::int64_t time_us = utime - judged_->last_us;
+  judged_->last_us = utime;
+  const std::int8_t mode = log_.mode();
+  if (InMinimalRisk(mode)) {
+    judged_->manoeuvre_us += time_us;
+  } else if (HumanDrives(mode)) {
+    judged_->driver_us += time_us;
+  } else {
+    judged_->automation_us += time_us;
+    if (judged_->excludes) judged_->excluded_us += time_us;
+  }
 }
 
 void TakeOverAccumulator::AddMotion(const truth_t& truth, std::optional<double> jerk_mps3) {
@@ -81,7 +103,7 @@ void TakeOverAccumulator::Begin(const truth_t& truth) {
   requested_us_ = truth.header.utime;
   requests_.push_back(
       {.requested_s = Seconds(requested_us_), .speed_at_request_mps = truth.host_speed_mps});
-  judged_.emplace();
+  judged_.emplace().last_us = requested_us_;
   Look(truth);
 }
 
@@ -128,6 +150,10 @@ void TakeOverAccumulator::Finish(const Judged& judged, TakeOverMeasures& measure
   measures.min_ttc_s = pair.min_ttc_s;
   measures.min_time_gap_s = pair.min_time_gap_s;
   measures.mean_deceleration_mps2 = judged.deceleration_mps2.Value();
+  measures.automation_drove_s = Seconds(judged.automation_us);
+  measures.sensor_excluded_s = Seconds(judged.excluded_us);
+  measures.driver_drove_s = Seconds(judged.driver_us);
+  measures.manoeuvre_drove_s = Seconds(judged.manoeuvre_us);
 }
 
 std::vector<TakeOverMeasures> TakeOverAccumulator::Result() const {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "fogline/arbitration_t.hpp"
+#include "fogline/track_t.hpp"
 #include "fogline/truth_t.hpp"
 #include "services/decision/take_over/take_over_log.h"
 #include "services/metrics/averaged_jerk.h"
@@ -23,8 +24,10 @@ class TakeOverAccumulator {
   /// Adds a step.
   /// @param command HOST_COMMAND of the step; nullptr if the message is missing. The state of a
   ///     request then does not change in this step.
+  /// @param track TRACK of the step; all fields are 0 if the message is missing
   /// @param human_mps2 a_H, the driver's offer; nullopt if it is not known
-  void Add(const truth_t& truth, const arbitration_t* command, std::optional<double> human_mps2);
+  void Add(const truth_t& truth, const arbitration_t* command, const track_t& track,
+           std::optional<double> human_mps2);
 
   /// The measures of each request so far, in order of time.
   std::vector<TakeOverMeasures> Result() const;
@@ -35,12 +38,21 @@ class TakeOverAccumulator {
     Mean deceleration_mps2;
     // Only TTC and time gap are used. They do not depend on the section.
     PairAccumulator pair{MeasuresSection{}};
+    // Parts of the interval by what drove, and the time of the last step.
+    std::int64_t automation_us = 0;
+    std::int64_t excluded_us = 0;
+    std::int64_t driver_us = 0;
+    std::int64_t manoeuvre_us = 0;
+    std::int64_t last_us = 0;
+    bool excludes = false;  // the policy excluded a sensor in the last step
   };
 
   void AddMotion(const truth_t& truth, std::optional<double> jerk_mps3);
   void AddCommand(const truth_t& truth, const arbitration_t& command,
                   std::optional<double> human_mps2);
   void Begin(const truth_t& truth);
+  /// Adds the time since the last step to what has driven since then.
+  void AddDriving(std::int64_t utime);
   /// Adds what a step tells of the situation, also the step of the request.
   void Look(const truth_t& truth);
   void NoteTimes(std::int64_t utime);

@@ -67,6 +67,14 @@ struct TakeOverMeasures {
   std::optional<double> min_ttc_s;
   std::optional<double> min_time_gap_s;
 
+  /// Parts of the judged interval by what drove the host, s. While authority is shared, the mode in
+  /// HOST_COMMAND names the side. A step without HOST_COMMAND counts like the step before it.
+  double automation_drove_s = 0;
+  double driver_drove_s = 0;
+  double manoeuvre_drove_s = 0;
+  /// Part of automation_drove_s in which the policy excluded a sensor from the fusion, s.
+  double sensor_excluded_s = 0;
+
   friend bool operator==(const TakeOverMeasures&, const TakeOverMeasures&) = default;
 };
 
@@ -92,6 +100,10 @@ void VisitTakeOver(const TakeOverMeasures& m, Visitor&& visit) {
   number("max_abs_jerk_1s_mps3", m.max_abs_jerk_1s_mps3, "m/s3", "largest jerk averaged over 1 s");
   number("min_ttc_s", m.min_ttc_s, "s", "smallest TTC");
   number("min_time_gap_s", m.min_time_gap_s, "s", "smallest time gap");
+  number("automation_drove_s", m.automation_drove_s, "s", "driving time of the automation");
+  number("sensor_excluded_s", m.sensor_excluded_s, "s", "of this with a sensor excluded");
+  number("driver_drove_s", m.driver_drove_s, "s", "driving time of the driver");
+  number("manoeuvre_drove_s", m.manoeuvre_drove_s, "s", "driving time of the manoeuvre");
 }
 
 }  // namespace fogline::metrics

@@ -22,12 +22,13 @@ class TakeOverRunTest : public testing::Test {
  protected:
   /// A run with dense fog from 1 s to 5 s. The driver takes over 2 s after the request, or never.
   /// The car begins to stop 10 s after its request.
-  nlohmann::json Run(const std::string& transport, bool absent) const {
+  nlohmann::json Run(const std::string& transport, bool absent,
+                     const std::string& policy = "traded") const {
     return RunOn(transport, "scenario/dense_fog.json", Log(transport),
                  {"/steps=130", "/fog/start_s=1", "/fog/duration_s=4",
-                  "/arbitrator/take_over/mode=requested", "/arbitrator/take_over/escalation_s=1",
-                  "/arbitrator/take_over/time/mean_s=2", "/arbitrator/take_over/time/std_s=0.01",
-                  "/human/loses_awareness=true",
+                  "/arbitrator/policy=" + policy, "/arbitrator/take_over/mode=requested",
+                  "/arbitrator/take_over/escalation_s=1", "/arbitrator/take_over/time/mean_s=2",
+                  "/arbitrator/take_over/time/std_s=0.01", "/human/loses_awareness=true",
                   "/arbitrator/take_over/absent_probability=" + std::string(absent ? "1" : "0")});
   }
   std::string Log(const std::string& transport) const { return folder_.File(transport + ".lcm"); }
@@ -130,6 +131,27 @@ TEST_F(TakeOverRunTest, IsMeasuredByEveryVerb) {
   const std::string page = folder_.File("page.html");
   RunCommand({Program("fogline"), "report", Log("direct"), "--output", page});
   EXPECT_THAT(Content(page), HasSubstr("<h2 id=\"take-overs-title\">Take-overs</h2>"));
+}
+
+TEST_F(TakeOverRunTest, ShowsWhatDroveUntilTheTakeOver) {
+  // GIVEN a policy that asks the driver, and excludes the LiDAR until the driver drives
+  Run("direct", false, "traded_isolating");
+  const auto measures = Events()["requests"].at(0)["measures"];
+  const auto value = [&measures](const char* name) { return measures[name].get<double>(); };
+  // THEN the automation drives until the take-over, for a time without the LiDAR
+  EXPECT_NEAR(value("automation_drove_s"), value("take_over_time_s"), 1e-9);
+  EXPECT_GT(value("sensor_excluded_s"), 1);
+  EXPECT_LE(value("sensor_excluded_s"), value("automation_drove_s"));
+  EXPECT_NEAR(value("automation_drove_s") + value("driver_drove_s"), value("judged_s"), 1e-9);
+  EXPECT_EQ(measures["manoeuvre_drove_s"], 0);
+  // THEN list and page of the run show it
+  const Outcome listed = RunCommand({Program("fogline"), "events", Log("direct")});
+  EXPECT_THAT(listed.out, HasSubstr("; of this with a sensor excluded 1."));
+  const std::string page = folder_.File("page.html");
+  RunCommand({Program("fogline"), "report", Log("direct"), "--output", page});
+  EXPECT_THAT(Content(page), HasSubstr("<small>sensor_excluded_s</small>"));
+  // THEN a run under traded control excludes no sensor
+  EXPECT_EQ(Run("direct", false)["take_overs"].at(0)["sensor_excluded_s"], 0);
 }
 
 TEST_F(TakeOverRunTest, IsMeasuredDuringTheRunAsFromItsLog) {

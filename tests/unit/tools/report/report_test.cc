@@ -248,7 +248,7 @@ TEST(MakeReportTest, HasAColumnForEachRequestToTakeOverAndARowForEachMeasure) {
   EXPECT_THAT(section, HasSubstr("<td>taken over</td><td>minimal risk manoeuvre</td></tr>"));
   EXPECT_THAT(section, HasSubstr("<small>reaction_time_s</small></th>"
                                  "<td><data value=\"1.25\">1.25</data></td><td>–</td></tr>"));
-  EXPECT_EQ(Count(section, "<tr>"), 1U + 5U) << "a measure that no request has has no row";
+  EXPECT_EQ(Count(section, "<tr>"), 1U + 9U) << "a measure that no request has has no row";
 }
 
 TEST(MakeReportTest, NamesACollisionInTheRunSelector) {

@@ -31,6 +31,7 @@ struct HostStep {
   bool fog = false;
   double offer_mps2 = 0;  // of the driver
   bool without_command = false;
+  bool excludes = false;  // the policy excludes the LiDAR
 };
 
 /// The measures of a run of these steps.
@@ -50,7 +51,9 @@ std::vector<TakeOverMeasures> Measured(const std::vector<HostStep>& steps) {
     command.header = truth.header;
     command.mode = step.mode;
     command.lambda_human = HumanDrives(step.mode) ? 1 : 0;
-    accumulator.Add(truth, step.without_command ? nullptr : &command, step.offer_mps2);
+    track_t track{};
+    if (step.excludes) track.usage[2] = track_t::DISTRUSTED;
+    accumulator.Add(truth, step.without_command ? nullptr : &command, track, step.offer_mps2);
   }
   return accumulator.Result();
 }
@@ -116,6 +119,26 @@ TEST(TakeOverAccumulatorTest, JudgesTheMotionFromTheRequestToTheRecovery) {
   EXPECT_EQ(request.max_abs_jerk_1s_mps3, 4) << "from -1 at 2.5 s to -5 at 3.5 s";
   EXPECT_EQ(request.min_ttc_s, 3) << "9 m at a closing speed of 3 m/s";
   EXPECT_EQ(request.min_time_gap_s, 0.5) << "9 m at 18 m/s";
+}
+
+TEST(TakeOverAccumulatorTest, KnowsHowLongEachSideDrove) {
+  // GIVEN a request during which a sensor is excluded for 1 s. It is also excluded before the
+  // request and while the driver drives, which does not count.
+  const auto requests = Measured({{.excludes = true},
+                                  {.mode = arbitration_t::REQUEST},
+                                  {.mode = arbitration_t::REQUEST, .excludes = true},
+                                  {.mode = arbitration_t::EMERGENCY_BRAKING, .excludes = true},
+                                  {.mode = arbitration_t::MRM_COMFORT},
+                                  {.without_command = true},
+                                  {.mode = arbitration_t::RECOVERING, .excludes = true},
+                                  {.mode = arbitration_t::HUMAN},
+                                  {.mode = arbitration_t::HUMAN}});
+  ASSERT_THAT(requests, SizeIs(1));
+  EXPECT_EQ(requests[0].automation_drove_s, 1.5);
+  EXPECT_EQ(requests[0].sensor_excluded_s, 1.0);
+  EXPECT_EQ(requests[0].manoeuvre_drove_s, 1.0);
+  EXPECT_EQ(requests[0].driver_drove_s, 0.5);
+  EXPECT_EQ(requests[0].judged_s, 3.0);
 }
 
 TEST(TakeOverAccumulatorTest, CountsASecondThatBeginsBeforeTheRequestForTheJerk) {
@@ -255,7 +278,7 @@ TEST(TakeOverMeasuresTest, AreNamedWithTheirUnits) {
     EXPECT_TRUE(name.ends_with(end)) << name << " in " << unit;
     names.emplace(name);
   });
-  EXPECT_THAT(names, SizeIs(15));
+  EXPECT_THAT(names, SizeIs(19));
 }
 
 TEST(TakeOverMeasuresTest, HaveADistinctNameForEachOutcome) {

@@ -14,7 +14,10 @@ metrics::TakeOverMeasures Taken() {
           .judged_s = 7.25,
           .reaction_time_s = 2.5,
           .speed_at_request_mps = 20,
-          .min_ttc_s = 3};
+          .min_ttc_s = 3,
+          .automation_drove_s = 2.25,
+          .driver_drove_s = 5,
+          .sensor_excluded_s = 1};
 }
 
 runner::ExperimentResult WithARequest() {
@@ -40,7 +43,8 @@ TEST(TakeOverTextTest, HasEveryMeasureInItsJson) {
             R"("effective_input_time_s":null,"manoeuvre_time_s":null,"judged_s":7.25,)"
             R"("speed_at_request_mps":20.0,"speed_at_fog_mps":null,"max_deceleration_mps2":null,)"
             R"("mean_deceleration_mps2":null,"max_abs_jerk_1s_mps3":null,"min_ttc_s":3.0,)"
-            R"("min_time_gap_s":null})");
+            R"("min_time_gap_s":null,"automation_drove_s":2.25,"sensor_excluded_s":1.0,)"
+            R"("driver_drove_s":5.0,"manoeuvre_drove_s":0.0})");
   EXPECT_EQ(json["take_overs"][1]["outcome"], "withdrawn");
   EXPECT_FALSE(json.contains("input_latency"));
 }
@@ -66,13 +70,23 @@ TEST(TakeOverTextTest, ListsTheMeasuresThatHaveAValue) {
             "    judged_s                              7.25 s\n"
             "    speed_at_request_mps                 20.00 m/s\n"
             "    min_ttc_s                             3.00 s\n"
+            "    automation_drove_s                    2.25 s\n"
+            "    sensor_excluded_s                     1.00 s\n"
+            "    driver_drove_s                        5.00 s\n"
+            "    manoeuvre_drove_s                        0 s\n"
             "  take-over 2: withdrawn\n"
             "    requested_s                          40.00 s\n"
             "    judged_s                                 0 s\n"
-            "    speed_at_request_mps                     0 m/s\n");
+            "    speed_at_request_mps                     0 m/s\n"
+            "    automation_drove_s                       0 s\n"
+            "    sensor_excluded_s                        0 s\n"
+            "    driver_drove_s                           0 s\n"
+            "    manoeuvre_drove_s                        0 s\n");
   EXPECT_EQ(TakeOverLine(Taken()),
             "taken over; reaction time 2.50 s; judged interval 7.25 s; "
-            "speed at the request 20.00 m/s; smallest TTC 3.00 s");
+            "speed at the request 20.00 m/s; smallest TTC 3.00 s; "
+            "driving time of the automation 2.25 s; of this with a sensor excluded 1.00 s; "
+            "driving time of the driver 5.00 s; driving time of the manoeuvre 0 s");
 }
 
 }  // namespace
