@@ -31,7 +31,7 @@ struct AebSection {
                 "the car brakes.",
                 "UN R152, 5.2.1.2: 5.0, the least demand of an emergency braking");
   FOGLINE_FIELD(double, deceleration_mps2, 9.0, {5, 12, "m/s2"},
-                "Deceleration demand. If the driving side brakes harder, its braking counts.",
+                "Deceleration demand. If the side that drives brakes harder, its braking counts.",
                 "our choice, because tyres have a friction of 0.9 to 1.0 on a dry road; UN R152, "
                 "5.2.1.2: at least 5.0");
   FOGLINE_FIELD(double, warning_s, 0.8, {0.8, 10, "s"},

@@ -52,10 +52,11 @@ struct TransferSection {
       "For jerk_limited: fastest change of the command after a transfer.",
       "our choice, because it is below 2.5, the limit of ISO 15622 above 20 m/s, averaged "
       "over 1 s");
-  FOGLINE_FIELD(double, yield_mps2, 3.5, {0, 20, "m/s2"},
-                "For jerk_limited and gate: if a command of the driving side brakes harder than "
-                "this, it takes effect at once, even if the change is not smooth.",
-                "ISO 15622: an ACC never brakes harder above 20 m/s");
+  FOGLINE_FIELD(
+      double, yield_mps2, 3.5, {0, 20, "m/s2"},
+      "For jerk_limited and gate: if a command of the side that drives brakes harder than "
+      "this, it takes effect at once, even if the change is not smooth.",
+      "ISO 15622: an ACC never brakes harder above 20 m/s");
   FOGLINE_FIELD(Hysteresis, hysteresis, Hysteresis::kNone, "Hysteresis of transfers.");
   FOGLINE_FIELD(double, band, 0.2, {0, 1},
                 "For hysteresis band: distance of the return threshold below the threshold in "

@@ -77,7 +77,7 @@ std::string BalanceRemark(const ExperimentPlan& plan) {
   if (plan.order != TrialOrder::kWilliams) return "";
   const auto block = static_cast<std::int64_t>(WilliamsDesign(plan.conditions.size()).size());
   if (plan.participants % block == 0) return "";
-  return fmt::format("{} participants are no multiple of {}, so the orders are not balanced",
+  return fmt::format("{} participants are not a multiple of {}, so the orders are not balanced",
                      plan.participants, block);
 }
 

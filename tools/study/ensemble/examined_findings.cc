@@ -111,8 +111,8 @@ const std::vector<ExaminedFinding>& ExaminedFindings() {
                   {1, 2, 3, 4, 5, 6, 7, 8},
                   InSet::kOpposite}},
             .why = "In all sets traded_isolating, availability and the hand-back by fusion are "
-                   "safer than the gate, and handing over is safer without an echo, each by less "
-                   "than 2 mm."}},
+                   "safer than the gate. With a missing echo, handing over is safer than the "
+                   "automation alone. Each of these differences is less than 2 mm."}},
       {.number = 4,
        .name = "the paper's threshold",
        .heading = {.claims = {{.study = "threshold",

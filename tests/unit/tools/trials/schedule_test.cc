@@ -104,7 +104,7 @@ TEST(ScheduleTest, RemarksThatFourParticipantsCannotBalanceThreeConditions) {
   EXPECT_THAT(BalanceRemark(plan), IsEmpty());
   plan.participants = 4;
   EXPECT_EQ(BalanceRemark(plan),
-            "4 participants are no multiple of 6, so the orders are not balanced");
+            "4 participants are not a multiple of 6, so the orders are not balanced");
 }
 
 }  // namespace
