@@ -91,7 +91,7 @@ class BeastConnection final : public Connection,
   using Socket = websocket::stream<beast::tcp_stream>;
 
   std::size_t MostFrameBytes() const {
-    return protocol_ == kDriveProtocol ? Server::kMostSeatFrameBytes : Server::kMostFrameBytes;
+    return drives() ? Server::kMostSeatFrameBytes : Server::kMostFrameBytes;
   }
   void Handle(error_code error);
   void HandleError(error_code error);
@@ -182,7 +182,8 @@ void BeastConnection::HandleRequest() {
     if (TakePlace()) return Upgrade();
   }
   // Without a WebSocket the page would show nothing.
-  if (IsFull() && access().OfPage(from) == Verdict::kAllowed) {
+  const bool may_drive = access().rules().seat && !opens && MayBeOfDrivePage(PathOf(from.target));
+  if (IsFull() && !may_drive && access().OfPage(from) == Verdict::kAllowed) {
     return Refuse(kUnavailable, fmt::format("{} viewers are connected already", limits().viewers),
                   "Too many viewers are connected. Try again later.\n");
   }
@@ -274,8 +275,7 @@ void BeastConnection::Upgrade() {
 void BeastConnection::Open() {
   parser_.reset();
   buffer_.clear();
-  budget_.emplace(Clock::now(),
-                  protocol_ == kDriveProtocol ? FrameBudget::kSeatFrames : FrameBudget::kFrames);
+  budget_.emplace(Clock::now(), drives() ? FrameBudget::kSeatFrames : FrameBudget::kFrames);
   opened_ = true;
   view().Opened(*this);
   Read();

@@ -38,13 +38,14 @@ class Connection : public Client {
   View& view() const { return server_.view_; }
   const ServerLimits& limits() const { return server_.limits_; }
   bool IsFull() const { return server_.IsFull(); }
-  /// Makes this client a viewer. @return false if there are too many
-  [[nodiscard]] bool TakePlace() { return has_place_ = server_.TakePlace(id_); }
+  bool drives() const { return protocol() == kDriveProtocol; }
+  /// Makes this client a viewer, or the one who drives. @return false if there are too many
+  [[nodiscard]] bool TakePlace() { return has_place_ = server_.TakePlace(id_, drives()); }
   void CountCutOff(const std::string& why) const { server_.CountCutOff(address(), why); }
   void CountRefused(std::string_view why) const { server_.CountRefused(address(), why); }
   /// The server forgets this connection. @param opened whether the view knows it
   void LeaveServer(bool opened) {
-    if (has_place_) --server_.counts_.viewers;
+    if (has_place_) server_.LeavePlace(drives());
     if (opened) server_.view_.Closed(*this);
     server_.Leave(id_);
   }

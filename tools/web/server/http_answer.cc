@@ -34,6 +34,10 @@ HttpAnswer Refusal(unsigned status, std::string text) {
 
 std::string_view PathOf(std::string_view target) { return target.substr(0, target.find('?')); }
 
+bool MayBeOfDrivePage(std::string_view path) {
+  return path != "/" && path != "/index.html" && path != kSocketPath;
+}
+
 HttpAnswer Answer(const HttpRequest& request, const Access& access, std::span<const Asset> assets) {
   const std::string_view path = PathOf(request.from.target);
   const bool socket = path == kSocketPath;

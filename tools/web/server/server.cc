@@ -58,14 +58,22 @@ void Server::CloseOldestOf(const address& host) {
 }
 
 bool Server::IsFull() const {
-  return counts_.viewers >= static_cast<std::int64_t>(limits_.viewers);
+  const std::int64_t in_own_place = counts_.drivers > 0 ? 1 : 0;
+  return counts_.viewers - in_own_place >= static_cast<std::int64_t>(limits_.viewers);
 }
 
-bool Server::TakePlace(std::uint64_t id) {
-  if (IsFull()) return false;
+bool Server::TakePlace(std::uint64_t id, bool drives) {
+  const bool has_own_place = drives && counts_.drivers == 0;
+  if (!has_own_place && IsFull()) return false;
   callers_.erase(id);
   ++counts_.viewers;
+  if (drives) ++counts_.drivers;
   return true;
+}
+
+void Server::LeavePlace(bool drives) {
+  --counts_.viewers;
+  if (drives) --counts_.drivers;
 }
 
 void Server::Leave(std::uint64_t id) {

@@ -81,7 +81,7 @@ class View {
 
 /// Bounds of a server that tests make smaller.
 struct ServerLimits {
-  std::size_t viewers = 64;  // WebSockets
+  std::size_t viewers = 64;  // WebSockets, without the place that is kept for the one who drives
   // A browser opens at most 6 connections for a page at a time.
   std::size_t callers = 64;
   std::size_t callers_of_one = 32;  // from one address
@@ -104,7 +104,8 @@ struct ServerOptions {
 
 /// Numbers since the start of the server.
 struct ServerCounts {
-  std::int64_t viewers = 0;  // WebSockets that are open now
+  std::int64_t viewers = 0;  // WebSockets that are open now, those that drive included
+  std::int64_t drivers = 0;  // those of them that drive, or ask for the seat
   std::int64_t cut_off = 0;  // viewers that exceeded a limit
   // Callers that exceeded a limit, or had a wrong Host, Origin or token.
   std::int64_t refused = 0;
@@ -147,7 +148,10 @@ class Server {
   void MakeRoomFor(const boost::asio::ip::address& host);
   void CloseOldestOf(const boost::asio::ip::address& host);
   /// Makes a caller a viewer. @return false if there are too many viewers
-  bool TakePlace(std::uint64_t id);
+  bool TakePlace(std::uint64_t id, bool drives);
+  void LeavePlace(bool drives);
+  /// Whether the places of the viewers are taken. Those who drive have one more place, so that
+  /// viewers cannot keep a person from driving.
   bool IsFull() const;
   void Leave(std::uint64_t id);
   /// Counts a viewer that exceeds a limit, and names it on stderr.

@@ -45,10 +45,12 @@ class EchoView final : public View {
 /// A server in a thread of its own. stderr is captured.
 class ServerLimitsTest : public ::testing::Test {
  protected:
-  void Serve(const ServerLimits& limits, const std::string& address = "127.0.0.1") {
+  void Serve(const ServerLimits& limits, const std::string& address = "127.0.0.1",
+             bool seat = false) {
     ::testing::internal::CaptureStderr();
-    server_.emplace(context_, ServerOptions{.address = address, .origins = {}, .limits = limits},
-                    kAssets, view_);
+    server_.emplace(
+        context_, ServerOptions{.address = address, .origins = {}, .limits = limits, .seat = seat},
+        kAssets, view_);
     thread_ = std::thread([this] { context_.run(); });
   }
   void TearDown() override { End(); }
@@ -103,7 +105,9 @@ class ServerLimitsTest : public ::testing::Test {
   }
 
   static inline const std::string kLarge = std::string(16 << 20, 'x');
-  static inline const std::array<Asset, 2> kAssets{
+  static inline const std::array<Asset, 4> kAssets{
+      Asset{"/drive.html", "text/html; charset=utf-8", "\"e3\"", "<p>"},
+      Asset{"/drive.js", "text/javascript", "\"e4\"", ";"},
       Asset{"/index.html", "text/html; charset=utf-8", "\"e1\"", "<p>"},
       Asset{"/large", "text/plain", "\"e2\"", kLarge}};
 
@@ -131,6 +135,41 @@ TEST_F(ServerLimitsTest, Viewers) {
   ASSERT_TRUE(Waits(&ServerCounts::viewers, 1));
   ExpectServes();
   EXPECT_THAT(End(), HasSubstr("refused: 2 viewers are connected already"));
+}
+
+TEST_F(ServerLimitsTest, ViewersLeaveAPlaceForTheOneWhoDrives) {
+  Serve({.viewers = 2}, "127.0.0.1", true);
+  const auto connect = [this](const char* protocol) {
+    return WebClient(port(), {.protocol = protocol});
+  };
+  std::optional<WebClient> first(connect("fogline.view.v1"));
+  WebClient second = connect("fogline.view.v1");
+  ASSERT_TRUE(Waits(&ServerCounts::viewers, 2));
+  // The page and its files come, too; those of the viewers do not.
+  EXPECT_EQ(StatusOf(Exchange(port(), GetRequest(port(), "/drive"))), 200);
+  EXPECT_EQ(StatusOf(Exchange(port(), GetRequest(port(), "/drive.js"))), 200);
+  EXPECT_EQ(StatusOf(Exchange(port(), GetRequest(port(), "/"))), 503);
+  {
+    WebClient driver = connect("fogline.drive.v1");
+    driver.Send("drives");
+    EXPECT_EQ(driver.Receive().bytes, "drives");
+    // There is one such place, and it is no place for a viewer.
+    EXPECT_THROW(connect("fogline.drive.v1"), test::WebRefused);
+    EXPECT_THROW(connect("fogline.view.v1"), test::WebRefused);
+    // The page can be loaded again, before its old connection is closed.
+    EXPECT_EQ(StatusOf(Exchange(port(), GetRequest(port(), "/drive"))), 200);
+    first.reset();
+    ASSERT_TRUE(Waits(&ServerCounts::viewers, 2));
+    WebClient another = connect("fogline.view.v1");
+    EXPECT_THROW(connect("fogline.view.v1"), test::WebRefused);
+  }
+  ASSERT_TRUE(Waits(&ServerCounts::drivers, 0));
+  ASSERT_TRUE(Waits(&ServerCounts::viewers, 1));
+  // The first of two who ask for the seat takes the kept place, the second one that of a viewer.
+  WebClient driver = connect("fogline.drive.v1");
+  WebClient told = connect("fogline.drive.v1");
+  EXPECT_THROW(connect("fogline.view.v1"), test::WebRefused);
+  EXPECT_EQ(Counts().drivers, 2);
 }
 
 TEST_F(ServerLimitsTest, CallersOfOneAddress) {
