@@ -26,11 +26,11 @@ namespace {
 /// async-signal-safe calls. If the program cannot be started, the function writes errno to
 /// `failure`.
 [[noreturn]] void Become(const char* program, char* const* arguments, int output, int error_output,
-                         int failure, pid_t parent) {
+                         int input, int failure, pid_t parent) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent) _exit(127);
   setpgid(0, 0);
-  dup2(open("/dev/null", O_RDONLY), STDIN_FILENO);
+  dup2(input >= 0 ? input : open("/dev/null", O_RDONLY), STDIN_FILENO);
   dup2(output, STDOUT_FILENO);
   if (error_output >= 0) dup2(error_output, STDERR_FILENO);
   // LCM's sockets and pipes lack the close-on-exec flag. A kernel before 5.11 leaves these files
@@ -71,7 +71,7 @@ Pipe::~Pipe() {
 }
 
 pid_t StartChild(const std::filesystem::path& program, const std::vector<std::string>& arguments,
-                 int output, int error_output) {
+                 int output, int error_output, int input) {
   // If SIGCHLD is inherited as ignored, waitpid() cannot report how processes end.
   std::signal(SIGCHLD, SIG_DFL);
   const auto fail = [&program](int error) {
@@ -86,7 +86,7 @@ pid_t StartChild(const std::filesystem::path& program, const std::vector<std::st
   const pid_t parent = getpid();
   const pid_t pid = fork();
   if (pid == 0) {
-    Become(path.c_str(), argv.data(), output, error_output, failure.write, parent);
+    Become(path.c_str(), argv.data(), output, error_output, input, failure.write, parent);
   }
   if (pid < 0) fail(errno);
   close(std::exchange(failure.write, -1));

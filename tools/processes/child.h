@@ -16,14 +16,14 @@ namespace fogline::processes {
 
 /// Starts a program of Fogline as a child. The kernel kills the child when the runner dies. The
 /// terminal's Ctrl-C does not reach the child; the runner turns Ctrl-C into an orderly end. The
-/// child's stdin is /dev/null, and its stdout is `output`. Of the runner's open files, the child
-/// inherits only stderr.
+/// child's stdout is `output`. Of the runner's open files, the child inherits only stderr.
 /// @param error_output the child's stderr; -1: the runner's stderr
+/// @param input the child's stdin; -1: /dev/null
 /// @return the child's process id @throws std::runtime_error if the system cannot start the child.
 ///     The reason may be temporary: the system is short of processes, or the program is being
 ///     replaced
 pid_t StartChild(const std::filesystem::path& program, const std::vector<std::string>& arguments,
-                 int output, int error_output = -1);
+                 int output, int error_output = -1, int input = -1);
 
 /// A pipe whose ends no child inherits. The destructor closes the ends that are not -1.
 struct Pipe {

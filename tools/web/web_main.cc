@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cstdint>
 #include <cstdio>
+#include <iostream>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -80,6 +81,11 @@ struct ViewArguments {
                                 "one of 7680 to 7699)")
                     ->check(CLI::Range(0, 65535))
                     ->excludes(listen_said);
+    verb.add_flag("--tokens-on-stdin", tokens_on_stdin,
+                  "For --listen: read the tokens from stdin, so that the addresses stay the same "
+                  "after a restart; in the first line that of the viewers, with --seat in the "
+                  "second line that of the person who drives")
+        ->needs(listen_said);
     verb.add_option("--allow-origin", origins,
                     "Pages of this origin may connect, too, such as http://localhost:8080 "
                     "(repeatable)")
@@ -99,6 +105,7 @@ struct ViewArguments {
   CLI::Option* listen_said = nullptr;
   std::uint16_t port = kDefaultPort;
   CLI::Option* port_said = nullptr;
+  bool tokens_on_stdin = false;
   std::vector<std::string> origins;
   bool no_browser = false;
   bool seat = false;
@@ -128,7 +135,16 @@ void CheckTogether(const ViewArguments& arguments) {
   }
 }
 
-/// @throws InputError if --listen names no address
+/// The token in the next line of stdin. @throws InputError
+std::string ReadToken() {
+  std::string token;
+  std::getline(std::cin, token);
+  if (IsToken(token)) return token;
+  throw InputError(
+      "error: --tokens-on-stdin: a line is no token: 16 to 128 letters, digits, - and _");
+}
+
+/// @throws InputError if --listen names no address, or stdin has no tokens
 ServerOptions OptionsOf(const ViewArguments& arguments) {
   ServerOptions options{
       .port = arguments.port, .origins = arguments.origins, .seat = arguments.seat};
@@ -137,8 +153,9 @@ ServerOptions OptionsOf(const ViewArguments& arguments) {
   options.address = endpoint.address;
   const bool has_port = arguments.listen.find(':') != std::string::npos;
   options.port = has_port ? endpoint.port : kDefaultPort;
-  options.token = DrawToken();
-  if (arguments.seat) options.driver_token = DrawToken();
+  const auto next_token = arguments.tokens_on_stdin ? ReadToken : DrawToken;
+  options.token = next_token();
+  if (arguments.seat) options.driver_token = next_token();
   return options;
 }
 

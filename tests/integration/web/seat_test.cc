@@ -3,6 +3,7 @@
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 
+#include <fstream>
 #include <optional>
 
 #include "services/runtime/transport/bus.h"
@@ -274,6 +275,24 @@ TEST(SeatAccessTest, TheDriverHasATokenOfItsOwn) {
   EXPECT_EQ(status("fogline.view.v1", driver), 403);
   // The tokens are secrets: only stdout has them.
   EXPECT_THAT(viewed.process().Err(), Not(HasSubstr(driver)));
+}
+
+TEST(SeatAccessTest, TheTokensCanComeFromStdin) {
+  const ScratchFolder folder;
+  const std::string command =
+      "exec " + Program("fogline") +
+      " view --seat --no-browser --listen 127.0.0.1:0 --tokens-on-stdin --lcm-url '" +
+      runtime::FreshMulticastUrl() + "' < " + folder.File("tokens");
+  std::ofstream(folder.File("tokens")) << "viewers-viewers-\ndriver-driver-driver\n";
+  Background good({"sh", "-c", command});
+  ASSERT_TRUE(good.WaitForOut("/#token=viewers-viewers-\n", kPatience)) << good.Err();
+  EXPECT_THAT(good.Out(), HasSubstr("/drive#token=driver-driver-driver\n"));
+  good.Signal(SIGINT);
+  EXPECT_EQ(good.Wait(), 0);
+  std::ofstream(folder.File("tokens")) << "viewers-viewers-\n";
+  Background bad({"sh", "-c", command});
+  EXPECT_EQ(bad.Wait(), 2);
+  EXPECT_THAT(bad.Err(), HasSubstr("--tokens-on-stdin: a line is no token"));
 }
 
 TEST(SeatAccessTest, WithoutTheOptionThereIsNoSeat) {

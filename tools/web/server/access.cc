@@ -108,6 +108,14 @@ std::string DrawToken() {
   return token;
 }
 
+bool IsToken(std::string_view text) {
+  constexpr std::size_t kLeast = 16;  // our choice: 64 bits, if they are hexadecimal digits
+  constexpr std::size_t kMost = 128;
+  return text.size() >= kLeast && text.size() <= kMost && std::ranges::all_of(text, [](char c) {
+           return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '-' || c == '_';
+         });
+}
+
 bool EqualInConstantTime(std::string_view a, std::string_view b) {
   return a.size() == b.size() && sodium_memcmp(a.data(), b.data(), a.size()) == 0;
 }

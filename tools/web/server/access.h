@@ -68,6 +68,10 @@ class Access {
 /// 128 random bits as 32 hexadecimal digits.
 std::string DrawToken();
 
+/// Whether a text that a person or a program has chosen can be a token: 16 to 128 letters, digits,
+/// '-' and '_', so that it stands in an address as it is.
+bool IsToken(std::string_view text);
+
 /// Whether two texts are equal, in a time that does not depend on where they differ.
 bool EqualInConstantTime(std::string_view a, std::string_view b);
 

@@ -75,6 +75,17 @@ TEST(ChildTest, HasAnEmptyInputAndNoFileOfItsParent) {
   EXPECT_EQ(ended.out, "/dev/null\nclosed\n");
 }
 
+TEST(ChildTest, ReadsItsInputWhereItIsTold) {
+  processes::Pipe in;
+  processes::Pipe out;
+  const pid_t pid = processes::StartChild("/bin/cat", {}, out.write, STDERR_FILENO, in.read);
+  close(std::exchange(out.write, -1));
+  ASSERT_EQ(write(in.write, "in\n", 3), 3);
+  close(std::exchange(in.write, -1));
+  EXPECT_EQ(ReadAll(out.read), "in\n");
+  EXPECT_EQ(waitpid(pid, nullptr, 0), pid);
+}
+
 TEST(ChildTest, WritesItsErrorsWhereItIsTold) {
   processes::Pipe out;
   processes::Pipe err;

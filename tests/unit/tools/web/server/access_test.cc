@@ -124,6 +124,18 @@ TEST(AccessTest, DrawsTokensOf128Bits) {
   EXPECT_EQ(tokens.size(), 100U);
 }
 
+TEST(AccessTest, KnowsATokenFromOtherTexts) {
+  EXPECT_TRUE(IsToken(DrawToken()));
+  EXPECT_TRUE(IsToken("Token_of-16-char"));
+  EXPECT_TRUE(IsToken(std::string(128, 'a')));
+  for (const std::string& text :
+       {std::string(), std::string(15, 'a'), std::string(129, 'a'),
+        std::string("a token of 16 characters"), std::string("token=aaaaaaaaaaaa"),
+        std::string("aaaaaaaaaaaaaaa\n"), std::string("aaaaaaaaaaaaaaa&"), std::string(32, '\0')}) {
+    EXPECT_FALSE(IsToken(text)) << text;
+  }
+}
+
 TEST(AccessTest, ReadsAValueOfAQuery) {
   EXPECT_EQ(QueryValue("/ws?a=1&token=x&b=2", "token"), "x");
   EXPECT_EQ(QueryValue("/ws?token=x", "token"), "x");
