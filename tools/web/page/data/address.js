@@ -14,6 +14,14 @@ export function fragmentOf(step, token) {
   return `#${token ? `token=${encodeURIComponent(token)}&` : ""}step=${step}`;
 }
 
+/** The other parts of a fragment, with their "#"; "" without other parts. */
+export function fragmentWithoutToken(fragment) {
+  const parts = new URLSearchParams(fragment.replace(/^#/, ""));
+  parts.delete("token");
+  const rest = parts.toString();
+  return rest === "" ? "" : `#${rest}`;
+}
+
 /** Moves the token from the address, where other people could read it, into this tab's storage. */
 export function takeToken(hash = location.hash) {
   const {step, token} = readFragment(hash);

@@ -17,7 +17,7 @@ import {LEAST_GAP_MS, LOOK_EVERY_MS, Sender} from "./sender.js";
 import {Setup} from "./setup.js";
 import {Countdown, told, whyAwayInWords} from "./told.js";
 
-const GONE_MS = 2000;  // if the server is away for so long after a step, the run is over
+const GONE_MS = 5000;  // if the server is away for so long, it does not come back to this page
 
 class Drive {
   constructor() {
@@ -62,7 +62,9 @@ class Drive {
     });
     byId("again").addEventListener("click", () => this.wire.again());
     addEventListener("hashchange", () => {  // the address of another program in the same tab
-      if (location.hash) this.wire.again(socketUrl(location, takeDriverToken()));
+      if (!location.hash) return;
+      this.back = backOf(location.hash, location.hostname);
+      this.wire.again(socketUrl(location, takeDriverToken()));
     });
     for (const [id, button] of [["take-over", "take_over"], ["give-back", "give_back"]]) {
       byId(id).addEventListener("click", ({timeStamp}) => {
@@ -127,7 +129,8 @@ class Drive {
   // ---- messages of the server ---------------------------------------------------------------------
 
   showConnection(state) {
-    const words = {open: "Connected", lost: "No connection, trying again", refused: "No connection"}[state];
+    const words = {open: "Connected", ended: "The program has ended", lost: "No connection, trying again",
+                   refused: "No connection"}[state];
     setAttribute(byId("origin"), "data-state", state === "open" ? "live" : "lost");
     say(byId("origin-words"), words);
     byId("problem").hidden = state !== "refused";
@@ -136,8 +139,13 @@ class Drive {
     this.sender.begin();
     this.latency.forget();
     if (state !== "open") this.sit("");
-    clearTimeout(this.goneTimer);
-    if (state === "lost" && this.newest?.step >= 0) this.goneTimer = setTimeout(() => this.goBack(), GONE_MS);
+    if (state === "open") {
+      clearTimeout(this.goneTimer);
+      this.goneTimer = undefined;
+    } else {
+      this.goneTimer ??= setTimeout(() => this.goBack(), GONE_MS);
+    }
+    if (state === "ended") this.goBack();
   }
 
   receive(object) {
@@ -163,7 +171,7 @@ class Drive {
     this.set("seated", state === "yours" || state === "lost");
   }
 
-  /** After the run: opens the page from which the person came, if there is one. */
+  /** The server has ended or is gone: opens the page from which the person came, if there is one. */
   goBack() {
     if (this.back !== "") location.replace(this.back);
     this.back = "";
@@ -177,7 +185,6 @@ class Drive {
       const {input_instance, input_sequence} = taken.message;
       if (String(input_instance) === this.instance) this.latency.commanded(Number(input_sequence));
     }
-    if (this.newest?.isOver) this.goBack();
   }
 
   // ---- drawing --------------------------------------------------------------------------------------

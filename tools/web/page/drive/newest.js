@@ -3,11 +3,10 @@
 import {headerOf} from "../data/catalogue.js";
 
 const NEEDED = new Set(["TRUTH", "HOST_COMMAND", "DRIVER_COMMAND"]);
-const STOP = 2;  // run_t.phase
 
 /**
- * The page to open after the run: the part "back=URL" behind "#", if the URL is a page of this
- * machine or of the machine of this page. Any other URL is ignored, because an address can be
+ * The page to open when the server has ended: the part "back=URL" behind "#", if the URL is a page of
+ * this machine or of the machine of this page. Any other URL is ignored, because an address can be
  * forged. "": the page stays open.
  */
 export function backOf(fragment, hostname) {
@@ -30,7 +29,6 @@ export class Newest {
     this.frame = {};        // {NAME: message}
     this.steps = {};
     this.taken_ms = 0;      // clock of the page at the newest TRUTH
-    this.isOver = false;    // the run has ended
   }
 
   get step() { return this.steps.TRUTH ?? -1; }
@@ -44,7 +42,6 @@ export class Newest {
   /** Takes a message of the network. @return its decoded form if it is new and needed, else null */
   add({channel: id, bytes}, now_ms) {
     const channel = this.catalogue.channels.get(id);
-    if (channel?.name === "RUN") this.seeRun(channel, bytes);
     if (!NEEDED.has(channel?.name)) return null;
     const header = headerOf(bytes);
     if (!header) return null;
@@ -56,10 +53,5 @@ export class Newest {
     this.steps[channel.name] = header.step;
     if (channel.name === "TRUTH") this.taken_ms = now_ms;
     return {name: channel.name, message};
-  }
-
-  seeRun(channel, bytes) {
-    const run = this.catalogue.decode(channel, bytes);
-    if (run && run.phase === STOP && this.step >= 0 && BigInt(run.header.run_id) === this.runId) this.isOver = true;
   }
 }

@@ -1,26 +1,31 @@
 // The connection to the seat: the protocol fogline.drive.v1 (docs/view.md).
 
-import {readFragment} from "../data/address.js";
+import {fragmentWithoutToken, readFragment} from "../data/address.js";
 import {readFrame} from "../data/wire.js";
 
 const PROTOCOL = "fogline.drive.v1";
 const TOKEN = "fogline.drive.token";
 const RETRY_MS = 1000;  // after the connection was lost
+const GOING_AWAY = 1001;  // the code with which the server closes when its program ends
 
 /**
  * Takes the driver's token out of the address, where other people could read it, and keeps it for
- * this tab. The view has a different token.
+ * this tab. The view has a different token. The other parts of the address stay, for a reload.
  */
 export function takeDriverToken() {
   const {token} = readFragment(location.hash);
-  if (token) sessionStorage.setItem(TOKEN, token);
-  if (location.hash) history.replaceState(null, "", location.pathname);
+  if (token) {
+    sessionStorage.setItem(TOKEN, token);
+    const rest = fragmentWithoutToken(location.hash);
+    history.replaceState(null, "", location.pathname + rest);
+  }
   return sessionStorage.getItem(TOKEN) ?? "";
 }
 
 /**
  * Keeps a connection. It calls `on.text(object)`, `on.messages(messages)` and
- * `on.state("open", "lost" or "refused")`: "refused" if there never was a connection.
+ * `on.state("open", "ended", "lost" or "refused")`: "ended" if the server says that its program ends,
+ * "refused" if there never was a connection.
  */
 export class SeatWire {
   constructor(url, on) {
@@ -44,8 +49,8 @@ export class SeatWire {
       if (typeof data === "string") this.on.text(JSON.parse(data));
       else this.on.messages(readFrame(data).messages ?? []);
     };
-    this.socket.onclose = () => {
-      this.on.state(this.wasOpen ? "lost" : "refused");
+    this.socket.onclose = ({code}) => {
+      this.on.state(code === GOING_AWAY ? "ended" : this.wasOpen ? "lost" : "refused");
       this.retry = setTimeout(() => this.connect(), RETRY_MS);
     };
   }

@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import {test} from "node:test";
 
-import {fragmentOf, readFragment} from "../../../../../../tools/web/page/data/address.js";
+import {fragmentOf, fragmentWithoutToken, readFragment} from "../../../../../../tools/web/page/data/address.js";
 import {Clock, SPEEDS} from "../../../../../../tools/web/page/data/clock.js";
 
 test("a live clock shows the newest time until the reader goes elsewhere", () => {
@@ -51,4 +51,11 @@ test("a link reopens its step, with the key if there is one", () => {
   for (const fragment of ["", "#", "#step=", "#step=-1", "#step=1.5", "#step=x", "#other=3"]) {
     assert.equal(readFragment(fragment).step, null);
   }
+});
+
+test("without its token a fragment keeps its other parts", () => {
+  const back = "back=http%3A%2F%2F127.0.0.1%3A7700%2F";
+  assert.equal(fragmentWithoutToken(`#token=abc&${back}`), `#${back}`);
+  assert.equal(fragmentWithoutToken("#token=abc"), "");
+  assert.equal(fragmentWithoutToken(""), "");
 });

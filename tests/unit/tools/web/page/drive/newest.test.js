@@ -45,7 +45,7 @@ test("another run begins without the old messages", () => {
   assert.deepEqual(newest.frame, {});
 });
 
-test("after the run the page goes back only to a page of this machine", () => {
+test("the page goes back only to a page of this machine", () => {
   const back = (url) => backOf(`#token=1&back=${encodeURIComponent(url)}`, "192.168.1.5");
   assert.equal(back("http://127.0.0.1:7700/questions"), "http://127.0.0.1:7700/questions");
   assert.equal(back("http://localhost:1/"), "http://localhost:1/");
