@@ -1,0 +1,33 @@
+// The actions of fogline experiment that have files of their own, and what all actions share.
+#pragma once
+
+#include <filesystem>
+
+#include "tools/cli/arguments.h"
+#include "tools/cli/help.h"
+#include "tools/trials/plan_file.h"
+
+namespace fogline {
+
+/// The arguments FILE and --results.
+class PlanArguments {
+ public:
+  explicit PlanArguments(CLI::App& verb) {
+    verb.add_option("FILE", file_, "File of the experiment")->required();
+    verb.add_option("--results", results_, "Folder with the logs (default: logs/NAME-OF-FILE)");
+  }
+
+  trials::PlanFile Load() const { return trials::LoadPlan(file_); }
+  std::filesystem::path results() const {
+    return results_.empty() ? std::filesystem::path(kDefaultFolder) / file_.stem() : results_;
+  }
+
+ private:
+  std::filesystem::path file_;
+  std::filesystem::path results_;
+};
+
+/// Adds `fogline experiment run`.
+void AddRunTrials(CLI::App& experiment, cli::Action& action);
+
+}  // namespace fogline

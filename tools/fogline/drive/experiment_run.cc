@@ -1,0 +1,149 @@
+// fogline experiment run: the trials of one participant.
+#include <cstdint>
+#include <cstdio>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include <fmt/core.h>
+
+#include "common/errors.h"
+#include "common/interrupt.h"
+#include "common/text.h"
+#include "services/runtime/wire/step_ring.h"
+#include "tools/cli/transport_arguments.h"
+#include "tools/drive/evdev_device.h"
+#include "tools/drive/terminal_keys.h"
+#include "tools/fogline/drive/experiment_actions.h"
+#include "tools/trials/desk/page_desk.h"
+#include "tools/trials/desk/terminal_desk.h"
+#include "tools/trials/session.h"
+
+namespace fogline {
+namespace {
+
+constexpr const char* kRunExamples =
+    R"(Makes the trials of a participant that are not done, in the participant's order. No log
+is ever overwritten. After a crash or Ctrl-C the same command goes on: a run that broke
+off is made again in a new log (trial-2-fog-attempt-2.lcm), and if only answers are
+missing, only the questions are asked.
+
+It prints two addresses: the page of the participant, which begins the runs and asks the
+questions and shows neither condition nor threshold, and the page of the experimenter,
+which shows the condition and takes markers: texts that go into the log of the run. Both
+are for browsers on this machine. With --no-page the questions are asked in the terminal.
+Each line of stdin is then an answer, so a script can answer.
+
+With --keys or --evdev a person at this machine drives the host (fogline drive --help);
+without them the model of a driver does.
+
+Examples:
+  fogline experiment run scenario/experiment/thresholds.json --participant 3
+  fogline experiment run scenario/experiment/thresholds.json --participant 3 --keys
+  fogline experiment run scenario/experiment/thresholds.json --participant 3 --no-page --speed 10
+  fogline experiment run scenario/experiment/thresholds.json --participant 3 --no-page < answers.txt)";
+
+struct RunTrialsArguments {
+  explicit RunTrialsArguments(CLI::App& verb) : plan(verb), transport(verb, "udpm") {
+    verb.add_option("--participant", participant, "Number of the participant, from 1 on")
+        ->required();
+    verb.add_option("--speed", speed, "Simulated seconds per second, instead of the file's")
+        ->check(cli::NumberIn(runtime::kMinSpeed, runtime::kMaxSpeed));
+    CLI::Option* terminal =
+        verb.add_flag("--no-page", no_page, "Ask in the terminal instead of a page");
+    const auto add_port = [&](const char* name, std::uint16_t& port, const char* what) {
+      verb.add_option(name, port, what)->check(CLI::Range(0, 65535))->excludes(terminal);
+    };
+    add_port("--participant-port", participant_port,
+             "Port of the participant's page (default 0: any free port)");
+    add_port("--experimenter-port", experimenter_port, "Port of the experimenter's page");
+    CLI::Option* by_keys =
+        verb.add_flag("--keys", keys, "A person drives with the terminal's keys");
+    verb.add_option("--evdev", device, "A person drives with this input device")->excludes(by_keys);
+    verb.add_flag("--no-breaks", no_breaks, "Leave out the breaks, to try the experiment");
+    cli::ShowExitCodes(verb, {.done = "all trials are done", .interruptible = true});
+    verb.footer(kRunExamples);
+  }
+
+  PlanArguments plan;
+  cli::TransportArguments transport;
+  std::int64_t participant = 0;
+  std::optional<double> speed;
+  std::uint16_t participant_port = 0;
+  std::uint16_t experimenter_port = 0;
+  std::string device;
+  bool keys = false;
+  bool no_page = false;
+  bool no_breaks = false;
+};
+
+/// @throws InputError
+trials::SessionOptions SessionOf(const RunTrialsArguments& arguments, const ExperimentPlan& plan) {
+  if (arguments.participant < 1 || arguments.participant > plan.participants) {
+    throw InputError(fmt::format("error: --participant {}: the experiment has participants 1 to {}",
+                                 arguments.participant, plan.participants));
+  }
+  trials::SessionOptions options{.participant = arguments.participant,
+                                 .speed = arguments.speed.value_or(plan.speed),
+                                 .overrides = {},
+                                 .breaks = !arguments.no_breaks,
+                                 .pedals = {},
+                                 .run = {}};
+  if (arguments.keys) {
+    options.pedals = [](const PersonSection& person) {
+      return std::make_unique<drive::TerminalKeys>(person);
+    };
+  } else if (!arguments.device.empty()) {
+    options.pedals = [device = arguments.device](const PersonSection& person) {
+      return std::make_unique<drive::EvdevDevice>(device, drive::DeviceNames(), person);
+    };
+  }
+  if (options.pedals) options.overrides.push_back("/person/drives=true");
+  arguments.transport.Apply(options.run);
+  const std::string& transport = options.run.transport;
+  if (transport == "direct" || transport.starts_with("memq")) {
+    throw InputError(fmt::format(
+        "error: --transport {}: is one process; a trial is in real time, with a process for each "
+        "role",
+        transport));
+  }
+  return options;
+}
+
+/// @throws std::runtime_error if a page cannot be served
+std::unique_ptr<trials::Desk> MakeDesk(const RunTrialsArguments& arguments,
+                                       const runtime::TrafficOptions& traffic) {
+  if (arguments.no_page) return std::make_unique<trials::TerminalDesk>();
+  auto desk = std::make_unique<trials::PageDesk>(
+      trials::PageOptions{.participant_port = arguments.participant_port,
+                          .experimenter_port = arguments.experimenter_port,
+                          .traffic = traffic});
+  fmt::print("participant: {}\nexperimenter: {}\n", desk->participant_address(),
+             desk->experimenter_address());
+  std::fflush(stdout);
+  return desk;
+}
+
+int RunTrials(const RunTrialsArguments& arguments) {
+  const trials::PlanFile plan = arguments.plan.Load();
+  trials::SessionOptions options = SessionOf(arguments, plan.plan);
+  const trials::Results results(plan, arguments.plan.results());
+  WatchInterrupts();
+  const auto desk = MakeDesk(arguments, options.run.traffic);
+  const trials::SessionOutcome outcome =
+      trials::RunSession(plan, results, std::move(options), *desk);
+  fmt::print("participant {}: all trials are done; {} runs now, in {}\n", arguments.participant,
+             outcome.runs, PathText(results.FolderOf(arguments.participant)));
+  return kDone;
+}
+
+}  // namespace
+
+void AddRunTrials(CLI::App& experiment, cli::Action& action) {
+  CLI::App* verb = experiment.add_subcommand("run", "Make the trials of a participant");
+  const auto arguments = std::make_shared<RunTrialsArguments>(*verb);
+  verb->callback([&action, arguments] { action = [arguments] { return RunTrials(*arguments); }; });
+}
+
+}  // namespace fogline
