@@ -24,11 +24,32 @@ constexpr Duration kSeatLimit = milliseconds(10'000);
 // How often a wait looks whether it must end.
 constexpr Duration kLook = milliseconds(50);
 
+/// The options of those who only hear or send DRIVER_INPUT: --key, and no faults.
+runtime::TrafficOptions OnlyKey(const runtime::TrafficOptions& traffic) {
+  return {.key_file = traffic.key_file, .faults = {}};
+}
+
 }  // namespace
+
+bool WaitForPerson(const std::string& url, const runtime::TrafficOptions& traffic,
+                   const std::function<void()>& look) {
+  runtime::Bus bus(url);
+  runtime::Apply(OnlyKey(traffic), Role::kDriver, bus);
+  bool present = false;
+  bus.Subscribe(ChannelOf<driver_input_t>().name, [&present](runtime::Arrival& arrival) {
+    const auto* input = arrival.As<driver_input_t>();
+    present = present || (input != nullptr && input->present);
+  });
+  while (!present && !WasInterrupted()) {
+    bus.Wait(kLook);
+    look();
+  }
+  return present;
+}
 
 PageSeat::PageSeat(const std::string& url, const runtime::TrafficOptions& traffic,
                    const std::vector<std::string>& more)
-    : url_(url), traffic_({.key_file = traffic.key_file, .faults = {}}) {
+    : url_(url), traffic_(OnlyKey(traffic)) {
   std::vector<std::string> arguments{"--seat", "--lcm-url", url};
   for (const std::string& argument : runtime::ToArguments(traffic_)) arguments.push_back(argument);
   arguments.insert(arguments.end(), more.begin(), more.end());
@@ -47,18 +68,9 @@ PageSeat::PageSeat(const std::string& url, const runtime::TrafficOptions& traffi
 PageSeat::~PageSeat() { End(); }
 
 bool PageSeat::WaitForPerson() {
-  runtime::Bus bus(url_);
-  runtime::Apply(traffic_, Role::kDriver, bus);
-  bool present = false;
-  bus.Subscribe(ChannelOf<driver_input_t>().name, [&present](runtime::Arrival& arrival) {
-    const auto* input = arrival.As<driver_input_t>();
-    present = present || (input != nullptr && input->present);
-  });
-  while (!present && !WasInterrupted()) {
-    bus.Wait(kLook);
+  return processes::WaitForPerson(url_, traffic_, [this] {
     if (!Runs()) throw std::runtime_error("the page is gone, so no person can drive");
-  }
-  return present;
+  });
 }
 
 bool PageSeat::Runs() {

@@ -4,12 +4,20 @@
 
 #include <sys/types.h>
 
+#include <functional>
 #include <string>
 #include <vector>
 
 #include "services/runtime/transport/traffic_options.h"
 
 namespace fogline::processes {
+
+/// Waits until a person at a seat of this network is ready to drive.
+/// @param look is called again and again while it waits
+/// @return false if the user has interrupted this program
+/// @throws what `look` throws
+bool WaitForPerson(const std::string& url, const runtime::TrafficOptions& traffic,
+                   const std::function<void()>& look);
 
 class PageSeat {
  public:

@@ -69,6 +69,7 @@ class Session {
         {.trial = trial,
          .of = std::ssize(all),
          .not_before_s = pause_s,
+         .seat = scenario.person.drives && !options_.pedals,
          .for_experimenter = fmt::format("{}, seed {}", condition.name, scenario.seed)});
     const std::int64_t attempt = record.attempts + 1;
     const std::filesystem::path path = results_.LogOf(trial, attempt);
@@ -94,10 +95,11 @@ class Session {
     run.log = log.path();
     run.realtime = true;
     run.pace = options_.speed;
+    run.on_network = [&](const std::string& url) { desk_.RunOpens(url); };
     run.on_run = [&](std::int64_t run_id, const std::string& url) {
       speaker.emplace(url, run_id, run.traffic, base);
       if (pedals) seat.emplace(url, run_id, run.traffic, std::move(pedals));
-      desk_.RunBegins(url, *speaker);
+      desk_.RunBegins(*speaker);
     };
     run.on_logged_step = [&] {
       log.RemoveOlder();

@@ -3,19 +3,15 @@
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 
-#include <atomic>
-#include <optional>
-#include <thread>
-
 #include "services/log/run_log.h"
 #include "services/runtime/transport/bus.h"
 #include "tests/integration/drive/driven_run.h"
+#include "tests/integration/drive/page_person.h"
 #include "tests/integration/web/viewed.h"
 
 namespace fogline::test {
 namespace {
 
-using nlohmann::json;
 using testing::HasSubstr;
 
 std::uint16_t PortIn(const std::string& err) {
@@ -24,49 +20,6 @@ std::uint16_t PortIn(const std::string& err) {
   if (at == std::string::npos) return 0;
   return static_cast<std::uint16_t>(std::stoi(err.substr(at + kBefore.size())));
 }
-
-/// A page with a person who brakes a little, until the destructor.
-class Person {
- public:
-  explicit Person(std::uint16_t port)
-      : client_(port, {.protocol = "fogline.drive.v1"}), thread_([this] { Drive(); }) {}
-  ~Person() {
-    ends_ = true;
-    thread_.join();
-  }
-  Person(const Person&) = delete;
-  Person& operator=(const Person&) = delete;
-
- private:
-  void Drive() {
-    constexpr milliseconds kEvery(30);  // the rule of a page: a frame at least every 50 ms
-    try {
-      for (std::int64_t sequence = 0; !ends_; ++sequence) {
-        client_.Send(json{
-            {"op", "input"},
-            {"sequence", sequence},
-            {"age_ms", 0},
-            {"present", true},
-            {"throttle", 0},
-            {"brake", 0.25},
-            {"axes", json::array()},
-            {"buttons", json::array({"take_over"})},
-            {"device", {{"kind", "keyboard"}, {"name", "Keyboard"}}},
-            {"latency_ms",
-             12}}.dump());
-        // The page reads nothing: a wait for a message of the run could last longer than the
-        // silence after which a person counts as absent. The server keeps 8 MiB for the page.
-        std::this_thread::sleep_for(kEvery);
-      }
-    } catch (const std::exception&) {
-      // The run has ended.
-    }
-  }
-
-  WebClient client_;
-  std::atomic<bool> ends_ = false;
-  std::thread thread_;
-};
 
 std::vector<std::string> DriveAtPage(const std::string& log, std::vector<std::string> more = {}) {
   more.insert(more.begin(),
@@ -85,7 +38,7 @@ TEST(DriveAtPageInRealtimeTest, TheRunBeginsWithThePersonAndIsDrivenByTheirInput
   Background run(DriveAtPage(log, {"--set", "/steps=200"}));
   ASSERT_TRUE(run.WaitForErr("view: http://127.0.0.1:", kPatience)) << run.Err();
   EXPECT_THAT(run.Err(), HasSubstr("/drive\n"));
-  const Person person(PortIn(run.Err()));
+  const PagePerson person(PortIn(run.Err()));
   EXPECT_EQ(run.Wait(), 0) << run.Err();
   // The driver has used the inputs, and the person has got authority.
   log::RunLogReader reader(log);

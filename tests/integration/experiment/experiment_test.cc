@@ -8,11 +8,8 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
-#include <optional>
-#include <regex>
 #include <set>
 #include <sstream>
-#include <stdexcept>
 #include <string>
 #include <thread>
 #include <vector>
@@ -20,7 +17,7 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
-#include "tests/support/children.h"
+#include "tests/integration/experiment/page_session.h"
 #include "tests/support/command.h"
 #include "tests/support/web_client.h"
 
@@ -176,82 +173,30 @@ TEST_F(ExperimentRealtimeTest, ASessionThatIsKilledInARunLosesNothing) {
   EXPECT_THAT(seeds, SizeIs(12));
 }
 
-/// A session whose pages this test opens.
-class PageSession {
- public:
-  explicit PageSession(const std::vector<std::string>& command) : session_(command) {
-    if (!session_.WaitForOut("#token=")) throw std::runtime_error(session_.Err());
-    static const std::regex lines(
-        "participant: http://127.0.0.1:(\\d+)/\n"
-        "experimenter: http://127.0.0.1:(\\d+)/#token=([0-9a-f]{32})\n");
-    std::smatch parts;
-    const std::string out = session_.Out();
-    if (!std::regex_search(out, parts, lines)) throw std::runtime_error(out);
-    participant_port_ = static_cast<std::uint16_t>(std::stoi(parts[1]));
-    experimenter_port_ = static_cast<std::uint16_t>(std::stoi(parts[2]));
-    token_ = parts[3];
-    participant_.emplace(participant_port_, WebClient::Options{.protocol = ""});
-    experimenter_.emplace(experimenter_port_,
-                          WebClient::Options{.target = "/ws?token=" + token_, .protocol = ""});
-  }
-
-  /// Makes all trials: begins each run, sets a marker in it, and answers each question.
-  /// @param kill_in the run in which fogline-web is killed; 0: none
-  void Go(int participant, int kill_in = 0) {
-    for (std::int64_t answered = -1;;) {
-      const auto state = nlohmann::json::parse(participant_->Receive().bytes);
-      if (state["state"] == answered) continue;
-      answered = state["state"];
-      const int run = state["run"];
-      if (state["stage"] == "waiting" && state["wait_s"] == 0) participant_->Send(Begin(answered));
-      if (state["stage"] == "driving") {
-        experimenter_->Send(
-            nlohmann::json{{"op", "marker"}, {"text", fmt::format("note {}", run)}}.dump());
-        if (run == kill_in) KillView();
-      }
-      if (state["stage"] == "asking") participant_->Send(Answers(state, participant, run));
-      if (state["stage"] == "finished") return;
+/// Makes all trials: begins each run, sets a marker in it, and answers each question.
+/// @param kill_in the run in which fogline-web is killed; 0: none
+void MakeTrials(PageSession& session, int participant, int kill_in) {
+  std::int64_t answered = -1;
+  for (;;) {
+    const auto state = session.NextState(answered);
+    answered = state["state"];
+    const int run = state["run"];
+    if (state["stage"] == "waiting" && state["wait_s"] == 0) session.Begin(state);
+    if (state["stage"] == "driving") {
+      session.experimenter().Send(
+          nlohmann::json{{"op", "marker"}, {"text", fmt::format("note {}", run)}}.dump());
+      if (run == kill_in) session.KillView();
     }
+    if (state["stage"] == "asking") session.Answer(state, participant + run);
+    if (state["stage"] == "finished") return;
   }
-
-  Background& process() { return session_; }
-  std::uint16_t participant_port() const { return participant_port_; }
-  std::uint16_t experimenter_port() const { return experimenter_port_; }
-
- private:
-  static std::string Begin(std::int64_t state) {
-    return nlohmann::json{{"op", "begin"}, {"state", state}}.dump();
-  }
-  static std::string Answers(const nlohmann::json& state, int participant, int run) {
-    nlohmann::json values = nlohmann::json::array();
-    const bool is_tlx = state["items"].size() == 6;
-    for (std::size_t i = 0; i < state["items"].size(); ++i) {
-      const int value = participant + run + static_cast<int>(i);
-      values.push_back(std::to_string(is_tlx ? 5 * value : value));
-    }
-    return nlohmann::json{{"op", "answers"}, {"state", state["state"]}, {"values", values}}.dump();
-  }
-  /// Kills the fogline-web of this session.
-  void KillView() const {
-    for (const pid_t child : ChildrenOf(session_.pid())) {
-      const std::string name = Content("/proc/" + std::to_string(child) + "/comm");
-      if (name == "fogline-web\n") SignalOne(child, SIGKILL);
-    }
-  }
-
-  Background session_;
-  std::uint16_t participant_port_ = 0;
-  std::uint16_t experimenter_port_ = 0;
-  std::string token_;
-  std::optional<WebClient> participant_;
-  std::optional<WebClient> experimenter_;
-};
+}
 
 TEST_F(ExperimentRealtimeTest, AKillOfFoglineWebInARunLosesNothingOfAnExperimentInPages) {
   for (int participant = 1; participant <= kParticipants; ++participant) {
     PageSession session({Program("fogline"), "experiment", "run", file_, "--results", results_,
                          "--participant", std::to_string(participant)});
-    session.Go(participant, participant == 2 ? 2 : 0);
+    MakeTrials(session, participant, participant == 2 ? 2 : 0);
     EXPECT_EQ(session.process().Wait(), 0) << session.process().Err();
     const bool was_killed =
         session.process().Err().find("fogline-web was killed") != std::string::npos ||

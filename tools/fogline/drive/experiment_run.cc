@@ -11,6 +11,7 @@
 #include "common/errors.h"
 #include "common/interrupt.h"
 #include "common/text.h"
+#include "services/runtime/transport/tcpq_url.h"
 #include "services/runtime/wire/step_ring.h"
 #include "tools/cli/transport_arguments.h"
 #include "tools/drive/evdev_device.h"
@@ -31,14 +32,20 @@ missing, only the questions are asked.
 
 It prints two addresses: the page of the participant, which begins the runs and asks the
 questions and shows neither condition nor threshold, and the page of the experimenter,
-which shows the condition and takes markers: texts that go into the log of the run. Both
-are for browsers on this machine. With --no-page the questions are asked in the terminal.
-Each line of stdin is then an answer, so a script can answer.
+which shows the condition and takes markers: texts that go into the log of the run. Only
+this machine can open them, unless --listen names an address for others. Each of the
+printed addresses then has a token of its own. With --no-page the questions are asked in
+the terminal. Each line of stdin is then an answer, so a script can answer.
 
-With --keys or --evdev a person at this machine drives the host (fogline drive --help);
-without them the model of a driver does.
+If a condition has /person/drives=true, the participant drives in it: the page of the
+participant opens the seat (fogline drive --help), the run begins when the participant is
+ready there, and after the run the page comes back with the questions. In every other
+condition the model of a driver drives. With --keys or --evdev a person at this machine
+drives in all conditions.
 
 Examples:
+  fogline experiment run scenario/experiment/lead_times.json --participant 1
+  fogline experiment run scenario/experiment/lead_times.json --participant 1 --listen 192.168.1.5
   fogline experiment run scenario/experiment/thresholds.json --participant 3
   fogline experiment run scenario/experiment/thresholds.json --participant 3 --keys
   fogline experiment run scenario/experiment/thresholds.json --participant 3 --no-page --speed 10
@@ -52,12 +59,18 @@ struct RunTrialsArguments {
         ->check(cli::NumberIn(runtime::kMinSpeed, runtime::kMaxSpeed));
     CLI::Option* terminal =
         verb.add_flag("--no-page", no_page, "Ask in the terminal instead of a page");
+    verb.add_option("--listen", listen,
+                    "ADDRESS of this machine at which others may open the pages, too")
+        ->excludes(terminal);
     const auto add_port = [&](const char* name, std::uint16_t& port, const char* what) {
       verb.add_option(name, port, what)->check(CLI::Range(0, 65535))->excludes(terminal);
     };
     add_port("--participant-port", participant_port,
              "Port of the participant's page (default 0: any free port)");
     add_port("--experimenter-port", experimenter_port, "Port of the experimenter's page");
+    add_port("--seat-port", seat_port,
+             "Port of the seat and of the view; a browser keeps the calibration of a device for "
+             "this port");
     CLI::Option* by_keys =
         verb.add_flag("--keys", keys, "A person drives with the terminal's keys");
     verb.add_option("--evdev", device, "A person drives with this input device")->excludes(by_keys);
@@ -72,6 +85,8 @@ struct RunTrialsArguments {
   std::optional<double> speed;
   std::uint16_t participant_port = 0;
   std::uint16_t experimenter_port = 0;
+  std::uint16_t seat_port = 0;
+  std::string listen;
   std::string device;
   bool keys = false;
   bool no_page = false;
@@ -111,13 +126,41 @@ trials::SessionOptions SessionOf(const RunTrialsArguments& arguments, const Expe
   return options;
 }
 
-/// @throws std::runtime_error if a page cannot be served
+/// @throws InputError if the participant drives in a condition, and has nothing to drive with
+void CheckSeat(const RunTrialsArguments& arguments, const trials::PlanFile& plan) {
+  if (!arguments.no_page || arguments.keys || !arguments.device.empty()) return;
+  for (const auto* list : {&plan.plan.practice, &plan.plan.conditions}) {
+    for (const ConditionSection& condition : *list) {
+      if (!trials::LoadCondition(plan, condition).person.drives) continue;
+      throw InputError(
+          fmt::format("error: --no-page: in condition {} the participant drives; leave out "
+                      "--no-page, or give --keys or --evdev",
+                      Quote(condition.name)));
+    }
+  }
+}
+
+/// The address of --listen in numbers; "" without it. @throws InputError
+std::string ListenAddress(const RunTrialsArguments& arguments) {
+  if (arguments.listen.empty()) return "";
+  if (arguments.listen.find(':') != std::string::npos) {
+    throw InputError(fmt::format(
+        "error: --listen {}: an address without a port; --participant-port, --experimenter-port "
+        "and --seat-port name the ports",
+        EscapeControls(arguments.listen)));
+  }
+  return runtime::tcpq::Resolve(arguments.listen, "--listen").address;
+}
+
+/// @throws InputError; std::runtime_error if a page cannot be served
 std::unique_ptr<trials::Desk> MakeDesk(const RunTrialsArguments& arguments,
                                        const runtime::TrafficOptions& traffic) {
   if (arguments.no_page) return std::make_unique<trials::TerminalDesk>();
   auto desk = std::make_unique<trials::PageDesk>(
-      trials::PageOptions{.participant_port = arguments.participant_port,
+      trials::PageOptions{.listen = ListenAddress(arguments),
+                          .participant_port = arguments.participant_port,
                           .experimenter_port = arguments.experimenter_port,
+                          .seat_port = arguments.seat_port,
                           .traffic = traffic});
   fmt::print("participant: {}\nexperimenter: {}\n", desk->participant_address(),
              desk->experimenter_address());
@@ -128,6 +171,7 @@ std::unique_ptr<trials::Desk> MakeDesk(const RunTrialsArguments& arguments,
 int RunTrials(const RunTrialsArguments& arguments) {
   const trials::PlanFile plan = arguments.plan.Load();
   trials::SessionOptions options = SessionOf(arguments, plan.plan);
+  CheckSeat(arguments, plan);
   const trials::Results results(plan, arguments.plan.results());
   WatchInterrupts();
   const auto desk = MakeDesk(arguments, options.run.traffic);

@@ -17,6 +17,7 @@ struct Next {
   Trial trial;
   std::int64_t of = 1;           // number of trials, or of practice runs
   double not_before_s = 0;       // a break: least time until the run begins
+  bool seat = false;             // the participant drives, at the seat of the page
   std::string for_experimenter;  // the condition and its seed; never shown to the participant
 };
 
@@ -32,8 +33,12 @@ class Desk {
   /// Returns when the run may begin.
   /// @throws Interrupted; std::runtime_error if no answer can come any more
   virtual void WaitForBegin(const Next& next) = 0;
-  /// The run has a network, and begins. The speaker takes markers until RunEnded().
-  virtual void RunBegins(const std::string& url, Speaker& speaker) = 0;
+  /// The run has a network, and no role yet. Returns when the roles may begin: if the participant
+  /// drives at the seat of the page, when they are ready there.
+  /// @throws as WaitForBegin()
+  virtual void RunOpens(const std::string& url) = 0;
+  /// The run begins. The speaker takes markers until RunEnded().
+  virtual void RunBegins(Speaker& speaker) = 0;
   /// Called again and again from the first step of the log on.
   virtual void RunGoesOn() = 0;
   /// Also called if the run breaks off.

@@ -19,6 +19,7 @@
 
 #include "common/clock.h"
 #include "common/process/console.h"
+#include "tools/processes/page_seat.h"
 #include "tools/trials/desk/page_state.h"
 #include "tools/trials/desk/run_page.h"
 #include "tools/web/server/server.h"
@@ -84,18 +85,29 @@ class PageView final : public web::View {
   std::map<std::uint64_t, web::Client*> clients_;
 };
 
-/// @throws std::runtime_error if the port is not free
-std::unique_ptr<web::Server> Listen(asio::io_context& context, std::uint16_t port,
-                                    std::string token, std::span<const web::Asset> files,
-                                    web::View& view) {
+constexpr const char* kThisMachine = "127.0.0.1";
+
+/// @throws std::runtime_error if the address is not of this machine, or the port is not free
+std::unique_ptr<web::Server> Listen(asio::io_context& context, const std::string& listen,
+                                    std::uint16_t port, std::string token,
+                                    std::span<const web::Asset> files, web::View& view) {
+  const std::string address = listen.empty() ? kThisMachine : listen;
   try {
     return std::make_unique<web::Server>(
-        context, web::ServerOptions{.port = port, .token = std::move(token), .origins = {}}, files,
-        view);
+        context,
+        web::ServerOptions{
+            .address = address, .port = port, .token = std::move(token), .origins = {}},
+        files, view);
   } catch (const boost::system::system_error& error) {
     throw std::runtime_error(
-        fmt::format("cannot listen on port {}: {}", port, error.code().message()));
+        fmt::format("cannot listen on {}:{}: {}", address, port, error.code().message()));
   }
+}
+
+RunPageOptions ForRuns(const PageOptions& options) {
+  return {.address = options.listen.empty() ? kThisMachine : options.listen,
+          .port = options.seat_port,
+          .traffic = runtime::ToArguments({.key_file = options.traffic.key_file, .faults = ""})};
 }
 
 }  // namespace
@@ -110,11 +122,13 @@ class PageDesk::Pages {
         experimenter_view_([this](web::Client& client, std::string_view frame) {
           Take(client, experimenter_view_, &PageState::FromExperimenter, frame);
         }),
-        participant_(
-            Listen(context_, options.participant_port, "", participant_files_, participant_view_)),
-        experimenter_(Listen(context_, options.experimenter_port, web::DrawToken(),
+        participant_(Listen(context_, options.listen, options.participant_port,
+                            options.listen.empty() ? "" : web::DrawToken(), participant_files_,
+                            participant_view_)),
+        experimenter_(Listen(context_, options.listen, options.experimenter_port, web::DrawToken(),
                              experimenter_files_, experimenter_view_)),
-        run_page_(runtime::ToArguments({.key_file = options.traffic.key_file, .faults = ""})) {
+        traffic_(options.traffic),
+        run_page_(ForRuns(options)) {
     Publish();
     thread_ = std::thread([this] { context_.run(); });
   }
@@ -172,7 +186,37 @@ class PageDesk::Pages {
 
   std::string participant_address() const { return participant_->access().Url(); }
   std::string experimenter_address() const { return experimenter_->access().Url(); }
-  RunPage& run_page() { return run_page_; }
+
+  /// @throws as RunPage::Show()
+  void ShowRun(const std::string& url, RunPage::Seat seat) {
+    run_page_.Show(url, seat);
+    Set([&](PageState& state) {
+      state.OpenRun(run_page_.view_address(), run_page_.seat_address());
+      if (seat == RunPage::Seat::kOpen) state.Tell("the seat is open");
+    });
+  }
+
+  /// Waits until the participant is ready at the seat. @throws Interrupted
+  void WaitForPerson(const std::string& url) {
+    const bool ready = processes::WaitForPerson(url, traffic_, [this] { LookAtRunPage(); });
+    if (!ready) ThrowIfInterrupted();
+  }
+
+  void LookAtRunPage() {
+    const RunPage::Change change = run_page_.Look();
+    if (change == RunPage::Change::kNone) return;
+    const bool is_back = change == RunPage::Change::kIsBack;
+    Set([&](PageState& state) {
+      state.MoveRun(run_page_.view_address(), is_back ? run_page_.seat_address() : "");
+      state.Tell(is_back ? "fogline-web runs again" : "fogline-web has died and is started again");
+    });
+  }
+
+  void EndRun() {
+    // The participant's page must know it when the seat sends the participant back.
+    Set([&](PageState& state) { state.MoveRun(run_page_.view_address(), ""); });
+    run_page_.End();
+  }
 
  private:
   using Reader = std::optional<PageMessage> (PageState::*)(std::string_view, std::string&) const;
@@ -222,6 +266,7 @@ class PageDesk::Pages {
   PageView experimenter_view_;
   std::unique_ptr<web::Server> participant_;
   std::unique_ptr<web::Server> experimenter_;
+  const runtime::TrafficOptions traffic_;
   RunPage run_page_;
   std::thread thread_;
 };
@@ -233,6 +278,7 @@ std::string PageDesk::participant_address() const { return pages_->participant_a
 std::string PageDesk::experimenter_address() const { return pages_->experimenter_address(); }
 
 void PageDesk::WaitForBegin(const Next& next) {
+  seat_ = next.seat;
   const TimePoint end =
       Clock::now() + duration_cast<Duration>(std::chrono::duration<double>(next.not_before_s));
   if (Clock::now() < end) {
@@ -243,23 +289,24 @@ void PageDesk::WaitForBegin(const Next& next) {
   pages_->WaitFor(PageMessage::Kind::kBegin);
 }
 
-void PageDesk::RunBegins(const std::string& url, Speaker& speaker) {
-  const std::string view = pages_->run_page().Show(url);
+void PageDesk::RunOpens(const std::string& url) {
+  pages_->ShowRun(url, seat_ ? RunPage::Seat::kOpen : RunPage::Seat::kNone);
+  if (seat_) pages_->WaitForPerson(url);
+}
+
+void PageDesk::RunBegins(Speaker& speaker) {
   pages_->GiveMarkersTo(&speaker);
-  pages_->Set([&](PageState& state) {
-    state.Drive(view);
+  pages_->Set([](PageState& state) {
+    state.Drive();
     state.Tell("the run begins");
   });
 }
 
-void PageDesk::RunGoesOn() {
-  if (!pages_->run_page().Look()) return;
-  pages_->Set([](PageState& state) { state.Tell("fogline-web has died and is started again"); });
-}
+void PageDesk::RunGoesOn() { pages_->LookAtRunPage(); }
 
 void PageDesk::RunEnded() {
   pages_->GiveMarkersTo(nullptr);
-  pages_->run_page().End();
+  pages_->EndRun();
   pages_->Set([](PageState& state) { state.Tell("the run has ended"); });
 }
 

@@ -1,10 +1,12 @@
 // A session in the browser: one page for the participant and one for the experimenter, at different
 // addresses. The participant's page shows the title of the run, the questions, and nothing else: no
-// condition, no threshold, no truth. The experimenter's page shows the condition and what has
-// happened, and takes markers. Its address has a token, so the participant cannot guess it.
+// condition, no threshold, no truth. If the participant drives, the page opens the seat of
+// fogline-web for the run, and the seat opens the page again. The experimenter's page shows the
+// condition and what has happened, and takes markers. Its address has a token, so the participant
+// cannot guess it.
 //
 // This process serves both pages itself, and writes the answers itself. So no answer depends on
-// fogline-web, which only shows the run.
+// fogline-web, which only shows the run and has the seat.
 #pragma once
 
 #include <cstdint>
@@ -18,24 +20,28 @@
 namespace fogline::trials {
 
 struct PageOptions {
+  /// IPv4 address in numbers at which others may open the pages. The participant's page then has a
+  /// token, too. "": this machine only.
+  std::string listen;
   std::uint16_t participant_port = 0;   // 0: any free port
   std::uint16_t experimenter_port = 0;  // 0: any free port
+  std::uint16_t seat_port = 0;          // of fogline-web; 0: any free port
   runtime::TrafficOptions traffic;      // of the runs
 };
 
 class PageDesk final : public Desk {
  public:
-  /// Listens on this machine only.
-  /// @throws std::runtime_error if a port is not free
+  /// @throws std::runtime_error if it cannot listen
   explicit PageDesk(const PageOptions& options);
   ~PageDesk() override;
 
-  /// "http://127.0.0.1:40001/", and the same with a token.
+  /// Such as "http://127.0.0.1:40001/". The experimenter's has a token behind '#'.
   std::string participant_address() const;
   std::string experimenter_address() const;
 
   void WaitForBegin(const Next& next) override;
-  void RunBegins(const std::string& url, Speaker& speaker) override;
+  void RunOpens(const std::string& url) override;
+  void RunBegins(Speaker& speaker) override;
   void RunGoesOn() override;
   void RunEnded() override;
   std::vector<Answer> Ask(const QuestionnaireSection& questionnaire) override;
@@ -44,6 +50,7 @@ class PageDesk final : public Desk {
  private:
   class Pages;
   std::unique_ptr<Pages> pages_;
+  bool seat_ = false;  // the participant drives in the next run, or in this one
 };
 
 }  // namespace fogline::trials

@@ -22,6 +22,8 @@ std::string_view WordOf(Stage stage) {
       return "starting";
     case Stage::kWaiting:
       return "waiting";
+    case Stage::kSeating:
+      return "seating";
     case Stage::kDriving:
       return "driving";
     case Stage::kAsking:
@@ -68,9 +70,16 @@ void PageState::Wait(const Next& next, double wait_s) {
   Enter(Stage::kWaiting);
 }
 
-void PageState::Drive(std::string view_address) {
-  view_ = std::move(view_address);
-  Enter(Stage::kDriving);
+void PageState::OpenRun(std::string view, std::string seat) {
+  view_ = std::move(view);
+  seat_ = std::move(seat);
+  if (next_.seat) Enter(Stage::kSeating);
+}
+
+void PageState::MoveRun(std::string view, std::string seat) {
+  view_ = std::move(view);
+  seat_ = std::move(seat);
+  if (next_.seat) ++number_;
 }
 
 void PageState::Ask(const QuestionnaireSection& questionnaire) {
@@ -86,11 +95,10 @@ void PageState::Tell(std::string line) {
 }
 
 std::string PageState::ForParticipant() const {
-  Json json{{"state", number_},
-            {"stage", WordOf(stage_)},
-            {"practice", next_.trial.practice},
-            {"run", next_.trial.number},
-            {"of", next_.of}};
+  Json json{
+      {"state", number_},          {"stage", WordOf(stage_)}, {"practice", next_.trial.practice},
+      {"run", next_.trial.number}, {"of", next_.of},          {"drives", next_.seat}};
+  if (stage_ == Stage::kSeating || stage_ == Stage::kDriving) json["seat"] = seat_;
   if (stage_ == Stage::kWaiting) json["wait_s"] = wait_s_;
   if (stage_ == Stage::kAsking) {
     json["items"] = Json::array();

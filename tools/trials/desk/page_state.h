@@ -13,8 +13,8 @@
 
 namespace fogline::trials {
 
-/// The phase of a session.
-enum class Stage { kStarting, kWaiting, kDriving, kAsking, kFinished };
+/// The phase of a session. At kSeating the participant goes to the seat, and the run waits.
+enum class Stage { kStarting, kWaiting, kSeating, kDriving, kAsking, kFinished };
 
 /// A message of a page, after its check.
 struct PageMessage {
@@ -34,8 +34,12 @@ class PageState {
 
   /// @param wait_s the rest of a break, s: the next run cannot begin before its end
   void Wait(const Next& next, double wait_s);
-  void Drive(std::string view_address);
-  void View(std::string view_address) { view_ = std::move(view_address); }
+  /// The pages of fogline-web for the run can be opened at these addresses.
+  /// @param seat "" if the participant does not drive
+  void OpenRun(std::string view, std::string seat);
+  void Drive() { Enter(Stage::kDriving); }
+  /// The pages for the run are at these addresses now. @param seat "" if it cannot be opened now
+  void MoveRun(std::string view, std::string seat);
   void Ask(const QuestionnaireSection& questionnaire);
   void Finish();
   /// Adds a line to what the experimenter sees, the newest last. The oldest lines are dropped.
@@ -66,6 +70,7 @@ class PageState {
   double wait_s_ = 0;
   QuestionnaireSection questionnaire_;
   std::string view_;
+  std::string seat_;
   std::vector<std::string> lines_;
 };
 

@@ -1,12 +1,13 @@
-// The view of a run for the experimenter: fogline-web as a child, on the same port for all runs of
-// a session. If it dies, it is started again; the run and the session go on without it.
+// The pages of fogline-web for a run: the view for the experimenter and, if the participant drives,
+// the seat. fogline-web is a child, at the same addresses for all runs of a session. If it dies, it
+// is started again; the run and the session go on without it.
 #pragma once
 
 #include <sys/types.h>
 
+#include <cstdint>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "common/clock.h"
@@ -14,29 +15,50 @@
 
 namespace fogline::trials {
 
+struct RunPageOptions {
+  std::string address = "127.0.0.1";  // IPv4 in numbers, at which fogline-web listens
+  std::uint16_t port = 0;             // 0: any free port
+  std::vector<std::string> traffic;   // the options --key for fogline-web
+};
+
 class RunPage {
  public:
-  /// @param traffic the option --key and its file, for fogline-web; empty if there is no key
-  explicit RunPage(std::vector<std::string> traffic) : traffic_(std::move(traffic)) {}
+  enum class Seat { kNone, kOpen };
+  enum class Change { kNone, kDied, kIsBack };
+
+  explicit RunPage(RunPageOptions options);
   ~RunPage();
   RunPage(const RunPage&) = delete;
   RunPage& operator=(const RunPage&) = delete;
 
-  /// Shows the run on this network. @return the address; "" if there is no page
-  const std::string& Show(const std::string& url);
+  /// Shows the run on this network, and returns when the pages can be opened.
+  /// @throws std::runtime_error if there is no seat. A run can do without its view, but not without
+  ///     the person who drives
+  void Show(const std::string& url, Seat seat);
   /// Starts fogline-web again if it has died. Call it now and then while the run goes on.
-  /// @return whether it had died
-  bool Look();
+  Change Look();
   void End();
 
- private:
-  void Start(bool wait);
+  /// The addresses with their tokens; "" if there is no such page.
+  const std::string& view_address() const { return view_address_; }
+  const std::string& seat_address() const { return seat_address_; }
 
-  std::vector<std::string> traffic_;
-  std::string url_;
-  std::string address_;
+ private:
+  void Start();
+  /// Reads the addresses that fogline-web prints. @return whether it listens
+  bool ReadAddresses(Duration limit);
+
+  RunPageOptions options_;
+  // They stay the same, so a page that was open connects again after fogline-web has died.
+  const std::string view_token_;
+  const std::string seat_token_;
+  std::string url_;  // of the network; "": no run
+  Seat seat_ = Seat::kNone;
+  std::string view_address_;
+  std::string seat_address_;
   std::optional<processes::Pipe> output_;  // of fogline-web
   pid_t pid_ = -1;
+  bool listens_ = false;
   TimePoint start_at_{};  // not before
 };
 

@@ -79,8 +79,6 @@ void TerminalDesk::WaitForBegin(const Next& next) {
   std::fflush(stdout);
 }
 
-void TerminalDesk::RunBegins(const std::string&, Speaker&) {}
-
 std::vector<Answer> TerminalDesk::Ask(const QuestionnaireSection& questionnaire) {
   std::vector<Answer> answers;
   const std::size_t count = questionnaire.items.size();

@@ -11,7 +11,8 @@ namespace fogline::trials {
 class TerminalDesk final : public Desk {
  public:
   void WaitForBegin(const Next& next) override;
-  void RunBegins(const std::string& url, Speaker& speaker) override;
+  void RunOpens(const std::string&) override {}
+  void RunBegins(Speaker&) override {}
   void RunGoesOn() override {}
   void RunEnded() override {}
   std::vector<Answer> Ask(const QuestionnaireSection& questionnaire) override;

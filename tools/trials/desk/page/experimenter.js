@@ -5,6 +5,7 @@ const byId = (id) => document.getElementById(id);
 const WORDS = {
   starting: "The session starts.",
   waiting: "The participant can begin.",
+  seating: "The participant goes to the seat.",
   driving: "The run is under way.",
   asking: "The participant answers questions.",
   finished: "All runs are done.",
@@ -30,7 +31,10 @@ function show(state) {
   byId("marker").hidden = state.stage !== "driving";
   const view = byId("view");
   view.hidden = state.view === "";
-  if (state.view !== "") view.href = state.view;
+  if (state.view !== "") {
+    view.href = state.view;
+    view.hostname = location.hostname;  // the name by which this browser knows the machine
+  }
   byId("lines").replaceChildren(...state.lines.map((line) => {
     const row = document.createElement("li");
     row.textContent = line;

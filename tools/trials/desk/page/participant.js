@@ -57,8 +57,24 @@ function showWait(state) {
   stopCount = countDown(state.wait_s, (left) => {
     button.disabled = state.wait_s > 0;
     byId("words").textContent = state.wait_s > 0 ? `You have a break. It ends in ${left} s.`
+      : state.drives ? "You drive in this run. “Begin” opens the seat, and the run begins when you are ready there."
       : "Begin when you are ready.";
   });
+}
+
+/** Opens the seat in this tab. After the run the seat opens this page again. */
+function goToSeat(address) {
+  const seat = new URL(address);
+  seat.hostname = location.hostname;  // the name by which this browser knows the machine
+  seat.hash += `&back=${encodeURIComponent(location.origin + location.pathname)}`;
+  location.replace(seat);
+}
+
+/** What a page without buttons and questions says. */
+function wordsOf({stage, drives}) {
+  if (stage === "finished") return "Thank you.";
+  if (stage === "seating" || (stage === "driving" && drives)) return "Please wait.";
+  return stage === "driving" ? "The run is under way." : "";
 }
 
 function show(state) {
@@ -68,10 +84,10 @@ function show(state) {
   stopCount();
   byId("title").textContent = state.stage === "finished" ? "That was the last run"
     : state.stage === "starting" ? "Please wait" : titleOf(state);
-  byId("words").textContent = state.stage === "finished" ? "Thank you."
-    : state.stage === "driving" ? "The run is under way." : "";
+  byId("words").textContent = wordsOf(state);
   byId("begin").hidden = state.stage !== "waiting";
   byId("questions").hidden = state.stage !== "asking";
   if (state.stage === "waiting") showWait(state);
   if (state.stage === "asking") showQuestions(state);
+  if (state.seat) goToSeat(state.seat);
 }

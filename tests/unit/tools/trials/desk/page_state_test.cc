@@ -37,7 +37,8 @@ TEST(PageStateTest, TheParticipantSeesNothingOfConditionSeedOrView) {
   state.Wait(NextRun(), 30);
   expect_silence();
   EXPECT_THAT(state.ForExperimenter(), HasSubstr("secret-condition, seed 4711"));
-  state.Drive("http://127.0.0.1:7690/");
+  state.OpenRun("http://127.0.0.1:7690/", "");
+  state.Drive();
   state.Tell("marker: yawns");
   expect_silence();
   EXPECT_THAT(state.ForExperimenter(), HasSubstr("7690"));
@@ -46,6 +47,42 @@ TEST(PageStateTest, TheParticipantSeesNothingOfConditionSeedOrView) {
   EXPECT_THAT(json::parse(state.ForParticipant())["items"], SizeIs(1));
   state.Finish();
   expect_silence();
+}
+
+TEST(PageStateTest, TheParticipantWhoDrivesSeesTheSeatWhileItIsOpen) {
+  PageState state(1);
+  Next next = NextRun();
+  next.seat = true;
+  const auto seen = [&state] { return json::parse(state.ForParticipant()); };
+  state.Wait(next, 0);
+  EXPECT_EQ(seen()["drives"], true);
+  EXPECT_FALSE(seen().contains("seat"));
+  state.OpenRun("http://127.0.0.1:7690/#token=secret", "http://127.0.0.1:7690/drive#token=a");
+  EXPECT_EQ(seen()["stage"], "seating");
+  EXPECT_EQ(seen()["seat"], "http://127.0.0.1:7690/drive#token=a");
+  EXPECT_THAT(state.ForExperimenter(), HasSubstr("7690/#token=secret"));
+  state.Drive();
+  EXPECT_EQ(seen()["stage"], "driving");
+  EXPECT_EQ(seen()["seat"], "http://127.0.0.1:7690/drive#token=a");
+  EXPECT_THAT(state.ForParticipant(), Not(HasSubstr("secret")));
+  // Each change has a number of its own, so the page sees it.
+  const std::int64_t before = seen()["state"];
+  state.MoveRun("http://127.0.0.1:7690/#token=secret", "");
+  EXPECT_EQ(seen()["seat"], "");
+  EXPECT_EQ(seen()["state"], before + 1);
+  state.Ask(Questions());
+  EXPECT_FALSE(seen().contains("seat"));
+}
+
+TEST(PageStateTest, ARunThatTheModelDrivesHasNoSeat) {
+  PageState state(1);
+  state.Wait(NextRun(), 0);
+  state.OpenRun("http://127.0.0.1:7690/", "");
+  const json seen = json::parse(state.ForParticipant());
+  EXPECT_EQ(seen["stage"], "waiting");
+  EXPECT_EQ(seen["drives"], false);
+  state.Drive();
+  EXPECT_EQ(json::parse(state.ForParticipant())["seat"], "");
 }
 
 TEST(PageStateTest, AnAnswerFitsItsState) {
@@ -97,7 +134,7 @@ TEST(PageStateTest, MarkersAreTakenDuringARunOnly) {
   std::string why;
   constexpr const char* kMarker = R"({"op":"marker","text":"yawns"})";
   EXPECT_FALSE(state.FromExperimenter(kMarker, why));
-  state.Drive("");
+  state.Drive();
   EXPECT_EQ(state.FromExperimenter(kMarker, why)->text, "yawns");
   EXPECT_FALSE(state.FromParticipant(kMarker, why));
   EXPECT_FALSE(state.FromExperimenter(R"({"op":"marker","text":""})", why));

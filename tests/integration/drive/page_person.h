@@ -1,0 +1,74 @@
+// A person at the page /drive: a client of the WebSocket that sends what the page would send.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <string>
+#include <thread>
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+#include "common/clock.h"
+#include "tests/support/command.h"
+#include "tests/support/web_client.h"
+
+namespace fogline::test {
+
+/// Takes over and brakes a little, until the destructor. Connects again if the program of the page
+/// dies.
+class PagePerson {
+ public:
+  /// @param target of the WebSocket, with the driver's token if there is one
+  explicit PagePerson(std::uint16_t port, std::string target = "/ws")
+      : port_(port), target_(std::move(target)), thread_([this] { Drive(); }) {}
+  ~PagePerson() {
+    ends_ = true;
+    thread_.join();
+  }
+  PagePerson(const PagePerson&) = delete;
+  PagePerson& operator=(const PagePerson&) = delete;
+
+ private:
+  void Drive() {
+    while (!ends_) {
+      try {
+        WebClient client(port_, {.target = target_, .protocol = "fogline.drive.v1"});
+        DriveWith(client);
+      } catch (const std::exception&) {
+        // The program has ended, or is started again.
+        std::this_thread::sleep_for(kLookEvery);
+      }
+    }
+  }
+
+  void DriveWith(WebClient& client) {
+    using nlohmann::json;
+    constexpr milliseconds kEvery(30);  // the rule of a page: a frame at least every 50 ms
+    while (!ends_) {
+      client.Send(json{
+          {"op", "input"},
+          {"sequence", sequence_++},
+          {"age_ms", 0},
+          {"present", true},
+          {"throttle", 0},
+          {"brake", 0.25},
+          {"axes", json::array()},
+          {"buttons", json::array({"take_over"})},
+          {"device", {{"kind", "keyboard"}, {"name", "Keyboard"}}},
+          {"latency_ms",
+           12}}.dump());
+      // The page reads nothing: a wait for a message of the run could last longer than the silence
+      // after which a person counts as absent. The server keeps 8 MiB for the page.
+      std::this_thread::sleep_for(kEvery);
+    }
+  }
+
+  const std::uint16_t port_;
+  const std::string target_;
+  std::int64_t sequence_ = 0;
+  std::atomic<bool> ends_ = false;
+  std::thread thread_;
+};
+
+}  // namespace fogline::test

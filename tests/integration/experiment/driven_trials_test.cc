@@ -1,0 +1,212 @@
+// Trials in which the participant drives at the seat, with the real programs. The test is both
+// pages of the participant: the page of the session, and the page /drive.
+#include <gmock/gmock-matchers.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <optional>
+#include <regex>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "services/log/driver_inputs.h"
+#include "services/log/run_log.h"
+#include "tests/integration/drive/driven_run.h"
+#include "tests/integration/drive/page_person.h"
+#include "tests/integration/experiment/page_session.h"
+#include "tests/integration/web/viewed.h"
+
+namespace fogline::test {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+/// The seat of a run, as the participant's page knows it.
+struct SeatPlace {
+  std::uint16_t port = 0;
+  std::string token;
+};
+
+/// @throws std::runtime_error if this is no address of a seat with a token
+SeatPlace SeatIn(const nlohmann::json& state) {
+  static const std::regex address("http://127.0.0.1:(\\d+)/drive#token=([0-9a-f]{32})");
+  std::smatch parts;
+  const std::string seat = state["seat"];
+  if (!std::regex_match(seat, parts, address)) throw std::runtime_error(state.dump());
+  return {.port = static_cast<std::uint16_t>(std::stoi(parts[1])), .token = parts[2]};
+}
+
+std::vector<driver_input_t> InputsIn(const std::filesystem::path& log) {
+  log::RunLogReader reader(log);
+  while (reader.Next() != nullptr) {
+  }
+  return log::ReadDriverInputs(log, reader.run().run_id);
+}
+
+/// One participant; each run has 250 steps of 0.02 s.
+class DrivenTrialsInRealtimeTest : public ::testing::Test {
+ protected:
+  DrivenTrialsInRealtimeTest() {
+    const std::string drive = (SourceDirectory() / kDriveScenario).string();
+    std::vector<std::string> by_person = AlwaysAsked();
+    by_person.emplace_back("/steps=250");
+    const nlohmann::json plan{
+        {"version", 1},
+        {"title", "Test"},
+        {"participants", 1},
+        {"order", "as_listed"},
+        {"conditions",
+         {{{"name", "secret-a"}, {"scenario", drive}, {"set", by_person}},
+          {{"name", "secret-model"}, {"scenario", drive}, {"set", {"/steps=250"}}},
+          {{"name", "secret-b"}, {"scenario", drive}, {"set", by_person}}}},
+        {"questionnaires", {{{"name", "kss"}, {"kind", "kss"}}}}};
+    std::ofstream(file_) << plan.dump(2);
+  }
+
+  std::vector<std::string> Run(std::vector<std::string> more = {}) const {
+    more.insert(more.begin(), {Program("fogline"), "experiment", "run", file_, "--results",
+                               results_, "--participant", "1"});
+    return more;
+  }
+  std::filesystem::path LogOf(const std::string& trial) const {
+    return std::filesystem::path(results_) / "participant-01" / (trial + ".lcm");
+  }
+  /// The state of the participant's page in which the seat is open.
+  static nlohmann::json WaitForSeat(PageSession& session) {
+    for (nlohmann::json state = session.NextState(-1);; state = session.NextState(state["state"])) {
+      if (state["stage"] == "waiting") session.Begin(state);
+      if (state["stage"] == "seating") return state;
+    }
+  }
+  static void ExpectReplaysBitByBit(const std::filesystem::path& log) {
+    const Outcome replay =
+        RunCommand({Program("fogline"), "replay", log.string(), "--role", "driver", "--json"});
+    EXPECT_EQ(replay.code, 0) << replay.err;
+    EXPECT_THAT(replay.out, HasSubstr("\"same\": true"));
+  }
+
+  ScratchFolder folder_;
+  std::string file_ = folder_.File("experiment.json");
+  std::string results_ = folder_.File("results");
+};
+
+TEST_F(DrivenTrialsInRealtimeTest, ThePageOpensTheSeatOnlyInTrialsInWhichTheParticipantDrives) {
+  PageSession session(Run());
+  std::optional<PagePerson> person;
+  std::vector<std::string> stages;
+  for (std::int64_t known = -1;;) {
+    const nlohmann::json state = session.NextState(known);
+    known = state["state"];
+    EXPECT_THAT(state.dump(), Not(HasSubstr("secret")));
+    const std::string stage = state["stage"];
+    if (stages.empty() || stages.back() != stage) stages.push_back(stage);
+    if (stage == "waiting") session.Begin(state);
+    if (stage == "seating" && !person) {
+      const SeatPlace seat = SeatIn(state);
+      person.emplace(seat.port, PageSession::SocketTarget(seat.token));
+    }
+    if (stage == "asking") {
+      person.reset();
+      session.Answer(state, 3);
+    }
+    if (stage == "finished") break;
+  }
+  EXPECT_EQ(session.process().Wait(), 0) << session.process().Err();
+  EXPECT_THAT(stages, ::testing::IsSupersetOf({"seating", "driving", "asking", "finished"}));
+  EXPECT_EQ(std::ranges::count(stages, "seating"), 2);
+  EXPECT_EQ(std::ranges::count(stages, "driving"), 3);
+  for (const char* trial : {"trial-1-secret-a", "trial-3-secret-b"}) {
+    EXPECT_GT(InputsIn(LogOf(trial)).size(), 40U) << trial;
+    ExpectReplaysBitByBit(LogOf(trial));
+  }
+  EXPECT_TRUE(InputsIn(LogOf("trial-2-secret-model")).empty());
+}
+
+TEST_F(DrivenTrialsInRealtimeTest, AfterAKillOfFoglineWebTheParticipantDrivesOnAtTheSameAddress) {
+  PageSession session(Run());
+  std::optional<PagePerson> person;
+  std::set<std::string> seats;
+  bool killed = false;
+  for (std::int64_t known = -1;;) {
+    const nlohmann::json state = session.NextState(known);
+    known = state["state"];
+    if (state["stage"] == "waiting" && state["run"] == 1) session.Begin(state);
+    if (state["stage"] == "asking") break;
+    if (state.value("seat", "").empty()) continue;
+    const SeatPlace seat = SeatIn(state);
+    seats.insert(state["seat"]);
+    if (!person) person.emplace(seat.port, PageSession::SocketTarget(seat.token));
+    if (state["stage"] == "driving" && !std::exchange(killed, true)) session.KillView();
+  }
+  person.reset();
+  EXPECT_EQ(seats.size(), 1U);
+  EXPECT_THAT(session.process().Err(), HasSubstr("fogline-web was killed by signal 9"));
+  const std::vector<driver_input_t> inputs = InputsIn(LogOf("trial-1-secret-a"));
+  std::set<std::int64_t> instances;
+  for (const driver_input_t& input : inputs) {
+    if (input.present) instances.insert(input.instance);
+  }
+  EXPECT_EQ(instances.size(), 2U) << "the person has driven before and after";
+  ExpectReplaysBitByBit(LogOf("trial-1-secret-a"));
+  session.process().Signal(SIGINT);
+  EXPECT_EQ(session.process().Wait(), 130);
+}
+
+TEST_F(DrivenTrialsInRealtimeTest, OneParticipantHasTheSeatAndTheirTokenOpensNoView) {
+  PageSession session(Run());
+  const SeatPlace seat = SeatIn(WaitForSeat(session));
+  const auto connect = [&](const std::string& token, const std::string& protocol) {
+    return WebClient(seat.port, {.target = PageSession::SocketTarget(token), .protocol = protocol});
+  };
+  for (const std::string& token : {std::string(), seat.token}) {
+    EXPECT_THROW(connect(token, "fogline.view.v1"), WebRefused);
+  }
+  EXPECT_THROW(connect("", "fogline.drive.v1"), WebRefused);
+  WebClient first = connect(seat.token, "fogline.drive.v1");
+  EXPECT_EQ(ReceiveOp(first, "seat")["state"], "yours");
+  WebClient second = connect(seat.token, "fogline.drive.v1");
+  EXPECT_EQ(ReceiveOp(second, "seat")["state"], "taken");
+  // No run has begun: no person has said that they are ready.
+  EXPECT_FALSE(std::filesystem::exists(LogOf("trial-1-secret-a")));
+  session.process().Signal(SIGINT);
+  EXPECT_EQ(session.process().Wait(), 130);
+}
+
+TEST_F(DrivenTrialsInRealtimeTest, ForOthersEachAddressHasATokenOfItsOwn) {
+  PageSession session(Run({"--listen", "127.0.0.1"}));
+  ASSERT_THAT(session.participant_token(), ::testing::SizeIs(32));
+  EXPECT_THROW(WebClient(session.participant_port(), {.protocol = ""}), WebRefused);
+  const SeatPlace seat = SeatIn(WaitForSeat(session));
+  EXPECT_NE(seat.token, session.participant_token());
+  EXPECT_THAT(session.process().Out(), Not(HasSubstr(seat.token)));
+  // The experimenter's page has a link to the view, with the viewers' token.
+  std::string view;
+  while (view.empty()) {
+    view = nlohmann::json::parse(session.experimenter().Receive().bytes)["view"];
+  }
+  EXPECT_THAT(view, HasSubstr("/#token="));
+  EXPECT_THAT(view, Not(HasSubstr(seat.token)));
+  session.process().Signal(SIGINT);
+  EXPECT_EQ(session.process().Wait(), 130);
+}
+
+TEST_F(DrivenTrialsInRealtimeTest, WithoutAPageThePersonNeedsADevice) {
+  const Outcome outcome = RunCommand(Run({"--no-page"}));
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_THAT(outcome.err,
+              HasSubstr("--no-page: in condition \"secret-a\" the participant drives"));
+}
+
+TEST_F(DrivenTrialsInRealtimeTest, RefusesAPortBehindTheAddress) {
+  const Outcome outcome = RunCommand(Run({"--listen", "127.0.0.1:80"}));
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("--listen 127.0.0.1:80: an address without a port"));
+}
+
+}  // namespace
+}  // namespace fogline::test
