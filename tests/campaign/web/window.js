@@ -114,22 +114,25 @@ export async function browser(t) {
 /**
  * Opens an address. `page.trouble` has the page's errors, its violations of the content security
  * policy, and its requests to other hosts; it must be empty at the end of the test. `prepare` gets
- * the page's context before the page is loaded.
+ * the page's context before the page is loaded. With `allPorts` other ports of the same machine are no
+ * other hosts.
  */
-export async function open(t, started, address, {size = DESKTOP, prepare = null, ...options} = {}) {
+export async function open(t, started, address,
+                           {size = DESKTOP, prepare = null, allPorts = false, ...options} = {}) {
   const context = await started.newContext({viewport: size, ...options});
   if (prepare) await prepare(context);
   const page = await context.newPage();
   page.setDefaultTimeout(PATIENCE_MS);
   page.trouble = [];
-  const {host} = new URL(address);
+  const {host, hostname} = new URL(address);
+  const isOwn = (url) => (allPorts ? url.hostname === hostname : url.host === host);
   page.on("console", (message) => {
     if (message.type() === "error") page.trouble.push(message.text());
   });
   page.on("pageerror", (problem) => page.trouble.push(problem.stack));
   page.on("request", (request) => {
     const url = new URL(request.url());
-    if (url.host !== host && url.protocol !== "data:") page.trouble.push(`request to ${url.host}`);
+    if (!isOwn(url) && url.protocol !== "data:") page.trouble.push(`request to ${url.host}`);
   });
   await page.addInitScript(() => {
     addEventListener("securitypolicyviolation", ({violatedDirective, blockedURI}) => {
