@@ -22,7 +22,7 @@ function writePlan(folder) {
   const file = path.join(folder, "experiment.json");
   const conditions = Object.entries(CONDITIONS).map(([name, lead_s]) => ({
     name, scenario: path.join(root, "scenario/drive.json"),
-    set: ["/person/drives=true", "/arbitrator/threshold=0", "/steps=300", `/arbitrator/take_over/lead_s=${lead_s}`]}));
+    set: ["/person/drives=true", "/arbitrator/threshold=0", "/steps=500", `/arbitrator/take_over/lead_s=${lead_s}`]}));
   writeFileSync(file, JSON.stringify({
     version: 1, title: "Test", participants: PARTICIPANTS, seeds: "trial", conditions,
     questionnaires: [{name: "kss", kind: "kss"}]}));

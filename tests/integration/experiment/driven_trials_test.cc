@@ -3,12 +3,16 @@
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <optional>
 #include <regex>
 #include <set>
+#include <stdexcept>
 #include <string>
+#include <thread>
+#include <utility>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -46,6 +50,15 @@ std::vector<driver_input_t> InputsIn(const std::filesystem::path& log) {
   while (reader.Next() != nullptr) {
   }
   return log::ReadDriverInputs(log, reader.run().run_id);
+}
+
+/// Waits until the recorder has written inputs of the person. @return false after the time limit
+bool HasInputs(const std::filesystem::path& log) {
+  for (const TimePoint end = Clock::now() + kPatience; Clock::now() < end;
+       std::this_thread::sleep_for(kLookEvery)) {
+    if (Content(log).find(ChannelOf<driver_input_t>().name) != std::string::npos) return true;
+  }
+  return false;
 }
 
 /// One participant; each run has 250 steps of 0.02 s.
@@ -141,7 +154,10 @@ TEST_F(DrivenTrialsInRealtimeTest, AfterAKillOfFoglineWebTheParticipantDrivesOnA
     const SeatPlace seat = SeatIn(state);
     seats.insert(state["seat"]);
     if (!person) person.emplace(seat.port, PageSession::SocketTarget(seat.token));
-    if (state["stage"] == "driving" && !std::exchange(killed, true)) session.KillView();
+    if (state["stage"] == "driving" && !std::exchange(killed, true)) {
+      ASSERT_TRUE(HasInputs(LogOf("trial-1-secret-a")));
+      session.KillView();
+    }
   }
   person.reset();
   EXPECT_EQ(seats.size(), 1U);
@@ -171,10 +187,11 @@ TEST_F(DrivenTrialsInRealtimeTest, OneParticipantHasTheSeatAndTheirTokenOpensNoV
   EXPECT_EQ(ReceiveOp(first, "seat")["state"], "yours");
   WebClient second = connect(seat.token, "fogline.drive.v1");
   EXPECT_EQ(ReceiveOp(second, "seat")["state"], "taken");
-  // No run has begun: no person has said that they are ready.
-  EXPECT_FALSE(std::filesystem::exists(LogOf("trial-1-secret-a")));
+  // No run has begun, because no person has said that they are ready. Ctrl-C leaves no log.
+  EXPECT_EQ(Content(LogOf("trial-1-secret-a")), "");
   session.process().Signal(SIGINT);
   EXPECT_EQ(session.process().Wait(), 130);
+  EXPECT_FALSE(std::filesystem::exists(LogOf("trial-1-secret-a")));
 }
 
 TEST_F(DrivenTrialsInRealtimeTest, ForOthersEachAddressHasATokenOfItsOwn) {
