@@ -18,13 +18,18 @@ export const PHONE = {width: 390, height: 844};
 
 const endings = new WeakMap();
 
-/** Does something at the end of the test. The last action that was added is done first. */
+/**
+ * Does something at the end of the test. The last action that was added is done first. If an action
+ * fails, the others are done nevertheless, so no process is left.
+ */
 function atEnd(t, end) {
   if (!endings.has(t)) {
     const ends = [];
     endings.set(t, ends);
     t.after(async () => {
-      while (ends.length) await ends.pop()();
+      const failures = [];
+      for (; ends.length; ends.pop()) await Promise.resolve().then(ends.at(-1)).catch((why) => failures.push(why));
+      if (failures.length) throw failures[0];
     });
   }
   endings.get(t).push(end);
