@@ -15,7 +15,7 @@ endif()
 # option is OFF, a change of one file compiles only that file.
 option(FOGLINE_UNITY "Compile several source files at once" ON)
 set(CMAKE_UNITY_BUILD ${FOGLINE_UNITY})
-set(CMAKE_UNITY_BUILD_BATCH_SIZE 10)
+set(CMAKE_UNITY_BUILD_BATCH_SIZE 16)
 
 find_program(CCACHE_PROGRAM ccache)
 if(CCACHE_PROGRAM AND NOT CMAKE_CXX_COMPILER_LAUNCHER)

@@ -104,10 +104,9 @@ Span Widened(Span span, double least) {
 /// "".
 std::string AxisNote(Span values, Span axis) {
   constexpr double kNarrow = 0.01;
-  constexpr double kPercent = 100;
   const double largest = std::max(std::abs(values.low), std::abs(values.high));
   const double share = (axis.high - axis.low) / largest;
-  return share < kNarrow ? fmt::format("axis spans {:.2g} % of the value", kPercent * share) : "";
+  return share < kNarrow ? fmt::format("axis spans {:.2g} % of the value", 100 * share) : "";
 }
 
 Span TimeSpanOf(std::span<const ReportRun> runs) {
