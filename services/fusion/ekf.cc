@@ -29,15 +29,28 @@ void Ekf::Predict(double host_acceleration_mps2) {
 }
 
 double Ekf::InnovationVariance(const Jacobian& jacobian, double noise_variance) const {
-  return jacobian.dot(jacobian * covariance_) + noise_variance;
+  return jacobian.dot(jacobian * covariance_.topLeftCorner<2, 2>()) + noise_variance;
 }
 
+// The third column of I - K H is that of I, because no sensor measures a_p. So both products leave
+// out its zeros. Each sum has the order a + (b + c), as a product of whole matrices has: another
+// order would change the last bit of results.
 void Ekf::Correct(const Jacobian& jacobian, double innovation, double noise_variance) {
-  const Eigen::Vector3d gain =
-      covariance_ * jacobian.transpose() / InnovationVariance(jacobian, noise_variance);
-  const Eigen::Matrix3d keep = Eigen::Matrix3d::Identity() - gain * jacobian;
+  const Eigen::Vector3d gain = covariance_.leftCols<2>() * jacobian.transpose() /
+                               InnovationVariance(jacobian, noise_variance);
+  Eigen::Matrix<double, 3, 2> keep = -gain.lazyProduct(jacobian);  // I - K H without column 3
+  keep(0, 0) += 1;
+  keep(1, 1) += 1;
   state_ += gain * innovation;
-  SetCovariance(keep * covariance_ * keep.transpose() + gain * noise_variance * gain.transpose());
+
+  Covariance once = keep.col(1).lazyProduct(covariance_.row(1));  // (I - K H) P
+  once.row(2) += covariance_.row(2);
+  once += keep.col(0).lazyProduct(covariance_.row(0));
+  Covariance twice = once.col(1).lazyProduct(keep.col(1).transpose());  // ... (I - K H)'
+  twice.col(2) += once.col(2);
+  twice += once.col(0).lazyProduct(keep.col(0).transpose());
+  const Eigen::Vector3d noise = gain * noise_variance;
+  SetCovariance(twice + noise.lazyProduct(gain.transpose()));
 }
 
 // Rounding differs between an element and its mirror image. Both elements get their mean, so that

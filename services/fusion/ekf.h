@@ -22,8 +22,9 @@ namespace fogline::fusion {
 class Ekf {
  public:
   using State = Eigen::Vector3d;
-  using Covariance = Eigen::Matrix3d;   // order of State; units: products of those of State
-  using Jacobian = Eigen::RowVector3d;  // derivative of one measured value with respect to State
+  using Covariance = Eigen::Matrix3d;  // order of State; units: products of those of State
+  /// Derivative of one measured value with respect to [d, dv]. No sensor measures a_p.
+  using Jacobian = Eigen::RowVector2d;
 
   /// @param step_s T.  @param jerk_density_m2ps5 q.
   Ekf(double step_s, double jerk_density_m2ps5);
@@ -34,7 +35,8 @@ class Ekf {
   /// Predicts one step ahead; `host_acceleration_mps2` is the host's acceleration during this step.
   void Predict(double host_acceleration_mps2);
 
-  /// Variance H P H' + R of the innovation of a value with Jacobian H and noise variance R.
+  /// Variance H P H' + R of the innovation of a value with Jacobian H (with a 0 for a_p) and noise
+  /// variance R.
   double InnovationVariance(const Jacobian& jacobian, double noise_variance) const;
 
   /// Corrects the estimate by one measured value. `innovation` is measured minus predicted. The

@@ -89,7 +89,7 @@ bool Fusion::StartFromRadar(const radar_t& radar) {
   const LineOfSight sight(*distance, radar_offset_m_);
   const double relative_speed = radar.range_rate_mps / sight.cosine();
   Eigen::Matrix2d jacobian;
-  jacobian << sight.RangeJacobian().head<2>(), sight.RangeRateJacobian(relative_speed).head<2>();
+  jacobian << sight.RangeJacobian(), sight.RangeRateJacobian(relative_speed);
   const Eigen::Matrix2d inverse = jacobian.inverse();
   const Eigen::Vector2d noise(noises_[kRadarRange].variance(), noises_[kRadarRangeRate].variance());
   Ekf::Covariance covariance = Ekf::Covariance::Zero();

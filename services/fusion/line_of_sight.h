@@ -32,9 +32,9 @@ class LineOfSight {
   /// d / r, the derivative of the range with respect to the distance.
   double cosine() const { return cosine_; }
 
-  Ekf::Jacobian RangeJacobian() const { return {cosine_, 0, 0}; }
+  Ekf::Jacobian RangeJacobian() const { return {cosine_, 0}; }
   Ekf::Jacobian RangeRateJacobian(double relative_speed_mps) const {
-    return {relative_speed_mps * cosine_slope_per_m_, cosine_, 0};
+    return {relative_speed_mps * cosine_slope_per_m_, cosine_};
   }
 
  private:

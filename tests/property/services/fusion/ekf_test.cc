@@ -158,8 +158,8 @@ TEST(LineOfSightPropertyTest, IsLinearWithoutAnOffset) {
     const fusion::LineOfSight sight(d, 0);
     EXPECT_EQ(sight.range_m(), d);
     EXPECT_EQ(sight.RangeRate(dv), dv);
-    EXPECT_EQ(sight.RangeJacobian(), fusion::Ekf::Jacobian(1, 0, 0));
-    EXPECT_EQ(sight.RangeRateJacobian(dv), fusion::Ekf::Jacobian(0, 1, 0));
+    EXPECT_EQ(sight.RangeJacobian(), fusion::Ekf::Jacobian(1, 0));
+    EXPECT_EQ(sight.RangeRateJacobian(dv), fusion::Ekf::Jacobian(0, 1));
   }
 }
 
