@@ -35,7 +35,7 @@ AccController::AccController(const AccSection& section, double step_s, VehicleMo
       program_(section, step_s),
       solver_(MakeSolver(program_, section)) {
   const Eigen::Index n = program_.horizon();
-  gain_ = -solver_.SolveHessian(program_.gradient()).bottomRows(n).transpose();
+  gain_ = -solver_.SolveHessian(program_.gradient()).bottomRows(n);
   linear_.setZero(n + 1);
   lower_.setZero(program_.constraints().rows());
   upper_.setZero(program_.constraints().rows());
@@ -114,7 +114,9 @@ double AccController::PreviousControl(double acceleration_mps2) const {
 bool AccController::Solve(const AccSituation& now, Output& output) {
   const Eigen::Vector4d parameters(now.state(kDeltaD), now.state(kDeltaV),
                                    now.state(kOwnAcceleration), now.previous_control);
-  for (Eigen::Index j = 0; j < plan_.size(); ++j) plan_(j) = gain_.col(j).dot(parameters);
+  // Column by column: so the compiler vectorises the sums.
+  plan_ = (gain_.col(0) * parameters(0) + gain_.col(1) * parameters(1)) +
+          (gain_.col(2) * parameters(2) + gain_.col(3) * parameters(3));
   if (program_.IsWithinLimits(now, plan())) {
     output.solver = Solver::kUnconstrained;
     return true;

@@ -76,7 +76,7 @@ class AccController {
   VehicleModel vehicle_;
   AccProgram program_;
   QpSolver solver_;
-  Eigen::Matrix4Xd gain_;  // 4 x N, unconstrained u_j = column j' [x; u_{-1}]
+  Eigen::MatrixX4d gain_;  // N x 4, unconstrained u_j = row j [x; u_{-1}]
   Eigen::VectorXd linear_;
   Eigen::VectorXd lower_;
   Eigen::VectorXd upper_;

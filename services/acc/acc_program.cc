@@ -1,7 +1,9 @@
 #include "services/acc/acc_program.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 namespace fogline::acc {
@@ -156,14 +158,20 @@ void AccProgram::Limits(const AccSituation& now, Eigen::VectorXd& lower,
 }
 
 bool AccProgram::IsWithinLimits(const AccSituation& now, std::span<const double> controls) const {
-  double previous = now.previous_control;
-  bool met = true;
-  for (const double u : controls) {
-    met &= u >= min_control_ - kTolerance && u <= max_control_ + kTolerance;
-    met &= std::abs(u - previous) <= max_control_change_ + kTolerance;
-    previous = u;
+  // The sign bit of a difference shows on which side of a limit a value is. The compiler vectorises
+  // these loops; it would not vectorise comparisons, because they can raise floating-point flags.
+  const auto bits = [](double difference) { return std::bit_cast<std::int64_t>(difference); };
+  const double lowest = min_control_ - kTolerance;
+  const double highest = max_control_ + kTolerance;
+  const double largest_change = max_control_change_ + kTolerance;
+  const double first_change = controls.front() - now.previous_control;
+  std::int64_t violated = bits(largest_change - std::abs(first_change));
+  for (const double u : controls) violated |= bits(u - lowest) | bits(highest - u);
+  for (std::size_t j = 1; j < controls.size(); ++j) {
+    violated |= bits(largest_change - std::abs(controls[j] - controls[j - 1]));
   }
-  if (!met) return false;
+  // A situation that is not a number makes each control not a number.
+  if (violated < 0 || std::isnan(first_change)) return false;
   const Reach reach = ReachOf(now);
   return (!reach.speed || SpeedsAreWithinLimits(now, controls)) &&
          (!reach.gap || GapsAreWithinLimits(now, controls));
