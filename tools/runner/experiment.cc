@@ -88,7 +88,7 @@ ExperimentResult Compute(const Scenario& scenario, const ExperimentOptions& opti
     const metrics::Sample sample = step.ToSample();
     measures.Add(sample);
     followers.Add(step.truth, step.follower);
-    take_overs.Add(step.truth, &step.host, step.track, step.driver.acceleration_mps2);
+    take_overs.Add(step.truth, &step.host, &step.track, step.driver.acceleration_mps2);
     if (options.samples) result.samples.push_back(sample);
     ++result.steps;
     if (log && result.steps == 1) {
@@ -137,9 +137,11 @@ class MessageMeasures {
   void Add(const log::StepMessages& messages, const metrics::SampleDecoder& decoder) {
     followers_.Add(decoder.truth(), decoder.follower());
     const bool commanded = !messages[IndexOf<arbitration_t>()].empty();
+    const bool fused = !messages[IndexOf<track_t>()].empty();
     const bool offered = !messages[IndexOf<driver_command_t>()].empty();
     const driver_command_t& driver = decoder.driver();
-    take_overs_.Add(decoder.truth(), commanded ? &decoder.host() : nullptr, decoder.track(),
+    take_overs_.Add(decoder.truth(), commanded ? &decoder.host() : nullptr,
+                    fused ? &decoder.track() : nullptr,
                     offered ? std::optional(driver.acceleration_mps2) : std::nullopt);
     if (offered && driver.input_instance != 0) seats_.insert(driver.input_instance);
   }

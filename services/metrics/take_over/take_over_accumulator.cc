@@ -44,7 +44,7 @@ std::string_view NameOf(TakeOverEnd end) {
 
 // The acceleration of a step was applied before the step, so it belongs to the commands before.
 void TakeOverAccumulator::Add(const truth_t& truth, const arbitration_t* command,
-                              const track_t& track, std::optional<double> human_mps2) {
+                              const track_t* track, std::optional<double> human_mps2) {
   if (truth.fog_present == 0) {
     fog_speed_mps_.reset();
   } else if (!fog_speed_mps_) {
@@ -60,7 +60,7 @@ void TakeOverAccumulator::Add(const truth_t& truth, const arbitration_t* command
     AddMotion(truth, jerk_mps3);
   }
   if (command != nullptr) AddCommand(truth, *command, human_mps2);
-  if (judged_) judged_->excludes = ExcludesASensor(track);
+  if (track != nullptr) excludes_ = ExcludesASensor(*track);
 }
 
 void TakeOverAccumulator::AddDriving(std::int64_t utime) {
@@ -73,7 +73,7 @@ void TakeOverAccumulator::AddDriving(std::int64_t utime) {
     judged_->driver_us += time_us;
   } else {
     judged_->automation_us += time_us;
-    if (judged_->excludes) judged_->excluded_us += time_us;
+    if (excludes_) judged_->excluded_us += time_us;
   }
 }
 

@@ -24,9 +24,10 @@ class TakeOverAccumulator {
   /// Adds a step.
   /// @param command HOST_COMMAND of the step; nullptr if the message is missing. The state of a
   ///     request then does not change in this step.
-  /// @param track TRACK of the step; all fields are 0 if the message is missing
+  /// @param track TRACK of the step; nullptr if the message is missing. The policy then counts as
+  ///     excluding what it excluded in the step before.
   /// @param human_mps2 a_H, the driver's offer; nullopt if it is not known
-  void Add(const truth_t& truth, const arbitration_t* command, const track_t& track,
+  void Add(const truth_t& truth, const arbitration_t* command, const track_t* track,
            std::optional<double> human_mps2);
 
   /// The measures of each request so far, in order of time.
@@ -44,7 +45,6 @@ class TakeOverAccumulator {
     std::int64_t driver_us = 0;
     std::int64_t manoeuvre_us = 0;
     std::int64_t last_us = 0;
-    bool excludes = false;  // the policy excluded a sensor in the last step
   };
 
   void AddMotion(const truth_t& truth, std::optional<double> jerk_mps3);
@@ -67,6 +67,7 @@ class TakeOverAccumulator {
   std::vector<TakeOverMeasures> requests_;
   std::int64_t requested_us_ = 0;  // time of the last request
   std::optional<Judged> judged_;   // of the last request
+  bool excludes_ = false;          // the policy excluded a value of a sensor in the last TRACK
 };
 
 }  // namespace fogline::metrics

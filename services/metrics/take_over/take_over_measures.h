@@ -72,7 +72,8 @@ struct TakeOverMeasures {
   double automation_drove_s = 0;
   double driver_drove_s = 0;
   double manoeuvre_drove_s = 0;
-  /// Part of automation_drove_s in which the policy excluded a sensor from the fusion, s.
+  /// Part of automation_drove_s in which the policy excluded a value of a sensor from the fusion,
+  /// s. A step in which this sensor measures nothing does not count.
   double sensor_excluded_s = 0;
 
   friend bool operator==(const TakeOverMeasures&, const TakeOverMeasures&) = default;

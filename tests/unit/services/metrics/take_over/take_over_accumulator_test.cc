@@ -32,6 +32,7 @@ struct HostStep {
   double offer_mps2 = 0;  // of the driver
   bool without_command = false;
   bool excludes = false;  // the policy excludes the LiDAR
+  bool without_track = false;
 };
 
 /// The measures of a run of these steps.
@@ -53,7 +54,8 @@ std::vector<TakeOverMeasures> Measured(const std::vector<HostStep>& steps) {
     command.lambda_human = HumanDrives(step.mode) ? 1 : 0;
     track_t track{};
     if (step.excludes) track.usage[2] = track_t::DISTRUSTED;
-    accumulator.Add(truth, step.without_command ? nullptr : &command, track, step.offer_mps2);
+    accumulator.Add(truth, step.without_command ? nullptr : &command,
+                    step.without_track ? nullptr : &track, step.offer_mps2);
   }
   return accumulator.Result();
 }
@@ -139,6 +141,17 @@ TEST(TakeOverAccumulatorTest, KnowsHowLongEachSideDrove) {
   EXPECT_EQ(requests[0].manoeuvre_drove_s, 1.0);
   EXPECT_EQ(requests[0].driver_drove_s, 0.5);
   EXPECT_EQ(requests[0].judged_s, 3.0);
+}
+
+TEST(TakeOverAccumulatorTest, KeepsTheExcludedSensorIfATrackIsMissing) {
+  const auto requests = Measured({{},
+                                  {.mode = arbitration_t::REQUEST, .excludes = true},
+                                  {.mode = arbitration_t::REQUEST, .without_track = true},
+                                  {.mode = arbitration_t::REQUEST},
+                                  {.mode = arbitration_t::HUMAN}});
+  ASSERT_THAT(requests, SizeIs(1));
+  EXPECT_EQ(requests[0].sensor_excluded_s, 1.0);
+  EXPECT_EQ(requests[0].automation_drove_s, 1.5);
 }
 
 TEST(TakeOverAccumulatorTest, CountsASecondThatBeginsBeforeTheRequestForTheJerk) {
