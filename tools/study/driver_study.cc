@@ -101,8 +101,9 @@ report::StudyFigure OverDensity(const Comparison& comparison, std::string_view m
 
 constexpr std::string_view kDriverAnswer =
     "In dense fog traded control helps with every driver of this study, but an imperfect human "
-    "leaves more danger than the paper's driver. In thin fog it makes no difference. In the "
-    "paper's fog, whose effect is small, a human who misjudges distances does harm.";
+    "leaves more danger than the paper's driver. In thin fog traded control makes no "
+    "difference. In the paper's fog, whose effect is small, a human who misjudges distances does "
+    "harm.";
 constexpr std::string_view kDriverWouldChange =
     "A driver who needs time to take over (study takeover), or larger errors of the human.";
 
@@ -117,8 +118,9 @@ std::vector<PlannedClaim> DriverClaims() {
   }
   claims.push_back(PairClaim("An imperfect human leaves more danger.", {kWholeName, "traded"},
                              {kPaperName, "traded"}, kShortfall, Sign::kMore));
-  claims.push_back(PairClaim("In thin fog it makes no difference.", {"human at 200 m", "traded"},
-                             {"human at 200 m", "none"}, kShortfall, Sign::kEqual, kNothing_m));
+  claims.push_back(PairClaim("In thin fog traded control makes no difference.",
+                             {"human at 200 m", "traded"}, {"human at 200 m", "none"}, kShortfall,
+                             Sign::kEqual, kNothing_m));
   claims.push_back(PairClaim("In the paper's fog the paper's driver helps.", {kBiasName, "traded"},
                              {kBiasName, "none"}, kShortfall, Sign::kLess));
   claims.push_back(PairClaim("In the paper's fog a human who misjudges does harm.",

@@ -188,7 +188,7 @@ std::string VehicleMethod(const Comparison& comparison) {
       "with 6 m/s2 (on ice with 1.4, because it holds no more) from 20 to 7 m/s in the middle of "
       "the fog. Host and follower are cars of the kind that the case names, without traded "
       "control, with the paper's step, and with a jerk-limited transfer. ACC and driver are tuned "
-      "for the point mass. In each case, the limit to which its name refers takes effect: delay "
+      "for the point mass. Each case reaches another limit of the car: delay "
       "and lag in every car, the little power that a truck has left on a slope, the tyres on ice "
       "under hard braking. The compact has the delays and lags of the sedan, so it appears only "
       "under hard braking. No case has a wet road: it holds {:.1f} m/s2, and the hardest "

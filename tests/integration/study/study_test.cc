@@ -91,7 +91,7 @@ TEST(StudyVerbTest, DelaysAreFromFogToAlarmAndNoMeasureOfARun) {
   ASSERT_EQ(Study({"conflict", "--seeds", "1", "--out", folder.path()}).code, 0);
   const std::string page = ReadText(folder.File("conflict.html"));
   EXPECT_THAT(page, HasSubstr("<th scope=\"col\">fog to alarm (s)</th>"));
-  EXPECT_THAT(page, HasSubstr("It is not deception_to_alarm_s of a run"));
+  EXPECT_THAT(page, HasSubstr("This delay is not deception_to_alarm_s of a run"));
 }
 
 TEST(StudyVerbTest, MakesEveryStudyOfOneSeedIntoOnePage) {

@@ -18,7 +18,8 @@ namespace {
 constexpr double kHour_s = 3600;
 
 constexpr std::string_view kConflictAnswer =
-    "The measures that use several steps and the known direction in which fog deceives the LiDAR. "
+    "The measures that use several steps, and the known direction in which fog deceives the "
+    "LiDAR, are the first to notice fog. "
     "The lead of the paper's Degree of Conflict comes from its window and from its known sign; its "
     "sigmoid changes no alarm by definition, because it rises with the difference of the ranges. "
     "Where fog makes a false echo, all measures raise their alarm at once.";
@@ -78,8 +79,9 @@ std::string ConflictMethod(const StudyContext& context, std::span<const Conflict
       "(our choice, because the model has no visibility). Fog model beam is the physics of the "
       "LiDAR's beam. Noise of the radar's range: 0.01 m as in the scenario (calibrated), and 0.1 m "
       "(near-range), {2} m (realistic) and 0.4 m (far-range) of a data sheet. Every measure knows "
-      "the true mounting offset and counts a missing value as a conflict. Bins are as wide as the "
-      "larger standard deviation of the two sensors. SPRT and CUSUM look for a shift of one "
+      "the true mounting offset and counts a missing value as a conflict. The measures "
+      "with bins of distance have bins as wide as the larger standard deviation of the two "
+      "sensors. SPRT and CUSUM look for a shift of one "
       "standard deviation of the sensors' difference. Options: each measure of a single step also "
       "takes part with the window of the Degree of Conflict (the mean of its scores), with a known "
       "sign (its score is negative if the LiDAR's range is too long), and with both. Distance is "
@@ -89,9 +91,10 @@ std::string ConflictMethod(const StudyContext& context, std::span<const Conflict
       "program computes them so. Of {3} detectors at least {4} differ in each ranking; detectors "
       "with the same alarms in all runs count once, with all their names. Threshold: the smallest "
       "one with a mean time to the first alarm of {5:g} s ({6:g} false alarms an hour) in runs of "
-      "{7:g} s in clear air with other seeds: {8} runs for each of the {0} seeds for detectors "
-      "that take little time, and {10} for those that add up bins or intervals or compare three "
-      "ranges. The number of alarms behind each threshold and their ARL0 with its exact interval "
+      "{7:g} s in clear air with other seeds. Detectors that are quick to compute have {8} such "
+      "runs for each of the {0} seeds. The others, which add up bins or intervals or compare three "
+      "ranges, have {10}. The number of alarms behind each threshold and their ARL0 with its exact "
+      "interval "
       "stand beside it. ARL0 is counted again in {0} other runs. A detector is not ranked if at "
       "its threshold it has no alarm, or if its mean time to the first alarm is more than {9:g} "
       "times the required {5:g} s. ",
@@ -103,7 +106,8 @@ std::string DelayMethod(const StudyContext& context, std::span<const ConflictSet
   return fmt::format(
       "Delay from fog to alarm: time from the beginning of the fog to the first alarm in it. A fog "
       "without an alarm counts with its whole length of {0:g} s, so that no measure gains by "
-      "missing a fog. It is not deception_to_alarm_s of a run. That time begins at the first step "
+      "missing a fog. This delay is not deception_to_alarm_s of a run. That time begins at the "
+      "first step "
       "with a LiDAR error above its tolerance, is taken at the scenario's own threshold, and is 0 "
       "if there is already an alarm. A condition does not rank detectors in two cases. All raise "
       "the alarm at once: the mean delays of nine of ten detectors lie within one window of the "

@@ -130,17 +130,18 @@ report::StudyTable PolicyMainTable(const Comparison& comparison) {
 }
 
 constexpr std::string_view kPolicyAnswer =
-    "It depends on how the LiDAR fails. If fog biases its range a little, handing over to a "
-    "perfect human is safer than each automation of this study; if fog makes a false echo, a "
-    "filter whose gate stays shut is safer than each rule that hands over; and if there is no echo "
-    "at all, the automation alone is safer. With other parameters (study ensemble), traded control "
-    "stays safer than the automation alone in bias fog; with a false echo it stays less safe than "
-    "the gate, but some other rules become safer than the gate; and without an echo, handing over "
-    "is safer.";
+    "It depends on how the LiDAR fails. If fog biases its range a little, handing over at "
+    "once to a perfect human is safer than each automation of this study, unless the radar is "
+    "calibrated and the automation uses the right sensor; if fog makes a false echo, a filter "
+    "whose gate stays shut is safer than each rule "
+    "that hands over; and if there is no echo at all, the automation alone is safer. With other "
+    "parameters (study ensemble), traded control stays safer than the automation alone in bias "
+    "fog, and less safe than the gate with a false echo; but with a false echo some other rules "
+    "become safer than the gate, and without an echo handing over becomes safer than the "
+    "automation alone.";
 constexpr std::string_view kPolicyWouldChange =
-    "A driver who needs time (study takeover), a filter that knows the fog, or a LiDAR that fails "
-    "in "
-    "another way.";
+    "A driver who needs time (study takeover), a calibrated radar, a filter that knows the fog, or "
+    "a LiDAR that fails in another way.";
 
 std::vector<PlannedClaim> PolicyClaims() {
   const std::string bias = FogModes()[0].Case(kPerfectHuman).name;

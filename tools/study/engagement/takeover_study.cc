@@ -192,13 +192,15 @@ report::StudyTable TakeOverMainTable(const Comparison& comparison, std::string_v
 }
 
 constexpr std::string_view kTakeOverAnswer =
-    "In the paper's fog a perfect driver who needs a few seconds gains nothing, and a slower one "
-    "does harm; with realistic radar noise a part of the gain is left. With a false echo the wait "
-    "does harm if the automation goes on as it is, and costs nothing if it leaves out the deceived "
-    "sensor meanwhile. If there is no echo at all, the automation alone is safer with the "
+    "In the paper's fog the gain shrinks while a perfect driver takes over, until nothing is left, "
+    "and a long wait does harm; with realistic radar noise a part of the gain is left. With a "
+    "false echo a long wait does harm if the automation goes on as it is, and costs nothing if the "
+    "automation leaves out the deceived sensor meanwhile. If there is no echo at all, the "
+    "automation alone is safer with the "
     "parameters of this study, and less safe with every parameter set of study ensemble.";
 constexpr std::string_view kTakeOverWouldChange =
-    "A warning before the fog begins, or fog that lasts much longer than a request.";
+    "A warning before the fog begins, fog that lasts much longer than a request, a noisier radar, "
+    "or a driver who errs.";
 
 std::string StayFor(int latency_s) { return LatencyName("stay", latency_s, false); }
 std::string IsolateFor(int latency_s) { return LatencyName("isolate", latency_s, false); }
@@ -221,11 +223,11 @@ std::vector<PlannedClaim> TakeOverClaims() {
       ShortfallClaim("A wait of three seconds leaves nothing of the gain.", bias, StayFor(3), none,
                      Sign::kEqual, kNoShortfall_m),
       ShortfallClaim("A wait of five seconds does harm.", bias, StayFor(5), none, Sign::kMore),
-      ShortfallClaim("A fallible human does harm there without any wait.", fallible, StayFor(0),
-                     none, Sign::kMore),
+      ShortfallClaim("In bias fog a fallible human does harm without any wait.", fallible,
+                     StayFor(0), none, Sign::kMore),
       ShortfallClaim("With a false echo a wait of five seconds does harm.", near, StayFor(5), none,
                      Sign::kMore),
-      ShortfallClaim("It costs nothing if the deceived sensor is left out meanwhile.", near,
+      ShortfallClaim("The wait costs nothing if the deceived sensor is left out meanwhile.", near,
                      IsolateFor(5), IsolateFor(0), Sign::kEqual, kNoShortfall_m),
       ShortfallClaim("With a false echo, leaving out the deceived sensor during a wait is safer "
                      "than a driver without a wait.",
@@ -248,9 +250,10 @@ std::vector<PlannedClaim> NoisyClaims() {
                      name(0), StayFor(5), none, Sign::kLess),
       ShortfallClaim("With realistic noise and a false echo a wait of five seconds does harm.",
                      name(1), StayFor(5), none, Sign::kMore),
-      ShortfallClaim("With realistic noise it costs nothing if the deceived sensor is left out "
-                     "meanwhile.",
-                     name(1), IsolateFor(5), IsolateFor(0), Sign::kEqual, kNoShortfall_m),
+      ShortfallClaim(
+          "With realistic noise the wait costs nothing if the deceived sensor is left out "
+          "meanwhile.",
+          name(1), IsolateFor(5), IsolateFor(0), Sign::kEqual, kNoShortfall_m),
       ShortfallClaim("With realistic noise and without an echo the automation alone is safer than "
                      "traded control.",
                      name(2), none, StayFor(0), Sign::kLess),

@@ -156,21 +156,23 @@ const std::vector<ExaminedFinding>& ExaminedFindings() {
                        "the paper's, and safer with the paper's than with a high one."}},
       {.number = 5,
        .name = "leaving out the deceived sensor",
-       .heading = {.claims = {{.study = "takeover",
-                               .says = "With a false echo a wait of five seconds does harm.",
-                               .one_of = kLarge},
-                              {.study = "takeover",
-                               .says =
-                                   "It costs nothing if the deceived sensor is left out meanwhile.",
-                               .bound = Bound::kAbove}},
-                   .exceptions = {{"With a false echo a wait of five seconds does harm.",
-                                   {3},
-                                   InSet::kUndecided},
-                                  {"It costs nothing if the deceived sensor is left out meanwhile.",
-                                   {3},
-                                   InSet::kOpposite}},
-                   .why = "In set 3 leaving out the deceived sensor costs safety, and the harm of "
-                          "the wait is not certain."},
+       .heading =
+           {.claims =
+                {{.study = "takeover",
+                  .says = "With a false echo a wait of five seconds does harm.",
+                  .one_of =
+                      kLarge},
+                 {.study = "takeover",
+                  .says = "The wait costs nothing if the deceived sensor is left out meanwhile.",
+                  .bound =
+                      Bound::kAbove}},
+            .exceptions =
+                {{"With a false echo a wait of five seconds does harm.", {3}, InSet::kUndecided},
+                 {"The wait costs nothing if the deceived sensor is left out meanwhile.",
+                  {3},
+                  InSet::kOpposite}},
+            .why = "In set 3 leaving out the deceived sensor costs safety, and the harm of "
+                   "the wait is not certain."},
        .side = {.claims = {{.study = "takeover",
                             .says = "With a false echo, leaving out the deceived sensor during a "
                                     "wait is safer than a driver without a wait.",

@@ -276,8 +276,9 @@ StudyResult RunFollowersStudy(const StudyContext& context) {
       "behind the host; collisions are those of any car. A human driver is the IDM of its style, "
       "with the errors and the reaction time of the Human Driver Model. Strings: {} cars of a kind "
       "behind the host of dense_fog.json whose fog begins at 60 s, so that every gap has settled. "
-      "Their measures begin a second before the fog. Braking of less than 0.01 m/s2 gives no "
-      "ratio. {}",
+      "Their measures begin a second before the fog. The column amplification is a "
+      "car's largest deceleration divided by that of the car ahead; it is empty if the car ahead "
+      "brakes with less than 0.01 m/s2. {}",
       comparison.seeds(), kStringCars, RealisticNoiseText());
   result.files = {{"followers.csv", comparison.Csv(0)}};
   AddStrings(context, strings, result);
