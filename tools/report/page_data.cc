@@ -21,8 +21,8 @@ std::string Dump(const json& value) {
   return value.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
-/// Rounds to six decimals (a micrometre), so that the text has a third of the bytes. A value beyond
-/// 1e9 is not rounded, because such a double has no more than six decimals.
+/// Rounds to six decimals (a micrometre), so that the text has a third of the bytes. A value of
+/// 1e9 or more is not rounded: its text is hardly longer than with six decimals.
 double Rounded(double value) {
   constexpr double kGrid = 1e6;
   constexpr double kLargest = 1e9;

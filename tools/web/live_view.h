@@ -43,7 +43,8 @@ class LiveView final : public View {
   /// @throws InputError, std::runtime_error as runtime::Bus()
   LiveView(boost::asio::io_context& context, LiveOptions options);
 
-  /// The server whose numbers the clients get. It must live as long as the view is not stopped.
+  /// The server whose counts (viewers, cut off, refused) the clients get in `health`. It must live
+  /// as long as the view is not stopped.
   void Show(const Server& server) { server_ = &server; }
   /// Each message of a channel of the graph also goes to `teller`, with the channel's place in
   /// kChannels. An empty function ends this.

@@ -1,5 +1,6 @@
 // The difference of the two sensors, and its substitute if a sensor has no value. All measures of
-// two sensors use this class, so that all treat missing values in the same way.
+// two sensors except lidar_modes use DisagreementSource, so that they treat missing values in the
+// same way.
 #pragma once
 
 #include <optional>

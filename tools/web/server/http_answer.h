@@ -44,8 +44,8 @@ HttpAnswer Refusal(unsigned status, std::string text);
 /// The path of a target, without its query.
 std::string_view PathOf(std::string_view target);
 
-/// Whether a path may be that of the participant's page or of one of its files: both pages share
-/// files, so only the path of the other page and that of WebSockets are none.
+/// Whether a path may be that of the participant's page or of one of its files. False only for the
+/// paths of the other page and of the WebSocket. The two pages share all other files.
 bool MayBeOfDrivePage(std::string_view path);
 
 }  // namespace fogline::web

@@ -61,7 +61,6 @@ LcmTypes::LcmTypes(std::vector<LcmStruct> structs) : structs_(std::move(structs)
   for (std::size_t place = 0; place < structs_.size(); ++place) Complete(place, states);
 }
 
-/// Computes fingerprint and size of a struct, after those of the structs in it.
 std::optional<std::size_t> LcmTypes::FixedSize(const LcmMember& member) const {
   std::optional<std::size_t> size;
   if (!member.primitive) {
@@ -79,6 +78,7 @@ std::optional<std::size_t> LcmTypes::FixedSize(const LcmMember& member) const {
   return size;
 }
 
+/// Computes fingerprint and size of a struct, after those of the structs in it.
 void LcmTypes::Complete(std::size_t place, std::vector<int>& states) {
   if (states[place] == kComplete) return;
   LcmStruct& type = structs_[place];
