@@ -25,7 +25,7 @@ struct ReplayArguments {
   bool json = false;
 };
 
-[[noreturn]] void Refuse(const std::filesystem::path& log, std::string_view why) {
+[[noreturn]] void RefuseLog(const std::filesystem::path& log, std::string_view why) {
   throw InputError(fmt::format("{}: error: {}", PathText(log), why));
 }
 
@@ -43,10 +43,11 @@ void RefuseOthers(const std::filesystem::path& log, const std::vector<replay::Ro
   const bool all = std::ranges::all_of(
       roles, [&](const replay::RoleCheck& one) { return replay::CanReplay(one.role, run); });
   if (all) return;
-  Refuse(log,
-         "a run in real time: its log does not show which inputs had come by a role's deadline; "
-         "replay computes all roles of a run in lockstep, but only the role driver of a run that a "
-         "person drove");
+  RefuseLog(
+      log,
+      "a run in real time: its log does not show which inputs had come by a role's deadline; "
+      "replay computes all roles of a run in lockstep, but only the role driver of a run that a "
+      "person drove");
 }
 
 /// @throws InputError for a name that is no role, or a role that computes nothing
@@ -101,7 +102,7 @@ int RunReplay(const ReplayArguments& arguments) {
   try {
     replay::CheckRoles(reader, roles);
   } catch (const InputError& error) {
-    Refuse(arguments.log, error.what());
+    RefuseLog(arguments.log, error.what());
   }
   const bool same = std::ranges::all_of(
       roles, [](const replay::RoleCheck& one) { return !one.first.has_value(); });
