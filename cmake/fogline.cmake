@@ -65,7 +65,8 @@ function(fogline_add_test_program name)
   # Strips the symbols: they are a quarter of the program's size.
   target_link_options(${name}_tests PRIVATE $<$<CONFIG:Release>:-s>)
   # All test programs share one precompiled header, because it takes 86 MB. It has no matchers of
-  # GoogleMock, because they would take 18 MB more and only some of the files use them.
+  # GoogleMock, because they would take 18 MB more and only some of the files use them. A shared
+  # header needs equal definitions, so all of them link boost_asio, which has some.
   get_property(precompiled GLOBAL PROPERTY FOGLINE_PRECOMPILED_TESTS)
   if(precompiled)
     target_precompile_headers(${name}_tests REUSE_FROM ${precompiled})
@@ -76,7 +77,8 @@ function(fogline_add_test_program name)
   target_include_directories(${name}_tests PRIVATE "${PROJECT_SOURCE_DIR}")
   target_compile_definitions(${name}_tests PRIVATE
     FOGLINE_SOURCE_DIR="${PROJECT_SOURCE_DIR}" FOGLINE_BINARY_DIR="${CMAKE_BINARY_DIR}")
-  target_link_libraries(${name}_tests PRIVATE ${ARGN} GTest::gtest GTest::gmock GTest::gtest_main)
+  target_link_libraries(${name}_tests PRIVATE ${ARGN} boost_asio
+    GTest::gtest GTest::gmock GTest::gtest_main)
 endfunction()
 
 # fogline_add_tests(NAME LIBS...): builds the program of fogline_add_test_program(); each TEST is
