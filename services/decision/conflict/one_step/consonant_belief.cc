@@ -1,6 +1,7 @@
 #include "services/decision/conflict/one_step/consonant_belief.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <numbers>
@@ -28,6 +29,40 @@ double Excess(double low, double high, double d, double s1, double s2) {
   return NormalBelow(high / s1) - NormalBelow(low / s1) -
          (NormalBelow((high - d) / s2) - NormalBelow((low - d) / s2));
 }
+
+// Several measures that look at the same step ask for the same products. Each thread keeps the last
+// ones, as many as the measures need in a step.
+struct ProductKey {
+  int levels = 0;
+  double distance_m = 0;
+  double std1_m = 0;
+  double std2_m = 0;
+  friend bool operator==(const ProductKey&, const ProductKey&) = default;
+};
+
+class RecentProducts {
+ public:
+  /// nullptr if the product of this key is not among the last ones.
+  const double* Find(const ProductKey& key) const {
+    const auto found = std::ranges::find(keys_, key);
+    return found == keys_.end() ? nullptr
+                                : &values_[static_cast<std::size_t>(found - keys_.begin())];
+  }
+  double Add(const ProductKey& key, double value) {
+    keys_[oldest_] = key;
+    values_[oldest_] = value;
+    oldest_ = (oldest_ + 1) % kKept;
+    return value;
+  }
+
+ private:
+  static constexpr std::size_t kKept = 8;
+  std::array<ProductKey, kKept> keys_{};
+  std::array<double, kKept> values_{};
+  std::size_t oldest_ = 0;
+};
+
+thread_local RecentProducts recent_products;
 
 }  // namespace
 
@@ -78,6 +113,8 @@ ConsonantBeliefs::ConsonantBeliefs(int levels) : levels_(std::clamp(levels, 1, k
 }
 
 double ConsonantBeliefs::JaccardProduct(double distance_m, double std1_m, double std2_m) const {
+  const ProductKey key{levels_, distance_m, std1_m, std2_m};
+  if (const double* known = recent_products.Find(key)) return *known;
   const auto levels = static_cast<std::size_t>(levels_);
   double sum = 0;
   for (std::size_t i = 0; i < levels; ++i) {
@@ -88,7 +125,7 @@ double ConsonantBeliefs::JaccardProduct(double distance_m, double std1_m, double
       sum += common / (2 * (a + b) - common);
     }
   }
-  return sum / (levels_ * levels_);
+  return recent_products.Add(key, sum / (levels_ * levels_));
 }
 
 double ConsonantBeliefs::ContourProduct(double distance_m, double std1_m, double std2_m) const {
