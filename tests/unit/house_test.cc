@@ -73,6 +73,7 @@ constexpr std::array kRooms = std::to_array<Room>({
     {"services/runtime/process", "runtime", "makes a process of a role"},
     {"services/log", "log", "the file that a run leaves"},
     {"services/recorder", "recorder", "the role that writes it"},
+    {"tools/asio", "", "Boost.Asio, compiled once; has no header of its own"},
     {"tools/stats", "stats", "numbers about many runs"},
     {"tools/sweep", "sweep", "many runs"},
     {"tools/report", "report", "pages about them"},
