@@ -2,11 +2,11 @@
 
 #include <fcntl.h>
 #include <linux/close_range.h>
-#include <poll.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <csignal>
@@ -18,6 +18,7 @@
 #include <fmt/core.h>
 
 #include "common/file.h"
+#include "common/process/poll.h"
 
 namespace fogline::processes {
 namespace {
@@ -97,25 +98,35 @@ pid_t StartChild(const std::filesystem::path& program, const std::vector<std::st
   return pid;
 }
 
-std::vector<std::string> LinesOf(int output, std::size_t count, Duration limit) {
-  std::vector<std::string> lines;
-  std::string text;
+bool LineReader::Has(std::size_t count, Duration limit) {
   const TimePoint end = Clock::now() + limit;
   std::array<char, 256> buffer{};
-  while (true) {
-    for (std::size_t at = 0; lines.size() < count; text.erase(0, at + 1)) {
-      at = text.find('\n');
-      if (at == std::string::npos) break;
-      lines.push_back(text.substr(0, at));
+  while (lines_.size() < count && !ended_) {
+    const bool is_over = Clock::now() >= end;
+    if (PollFor(output_, POLLIN, end - Clock::now()) > 0) {
+      const ssize_t size = read(output_, buffer.data(), buffer.size());
+      ended_ = size <= 0;
+      if (!ended_) Take({buffer.data(), static_cast<std::size_t>(size)});
+    } else if (is_over) {  // what was in the pipe before has been read
+      break;
     }
-    pollfd waited{.fd = output, .events = POLLIN, .revents = 0};
-    const auto left = Milliseconds(end - Clock::now());
-    if (lines.size() == count || left <= 0) return lines;
-    if (poll(&waited, 1, static_cast<int>(left)) <= 0) continue;
-    const ssize_t size = read(output, buffer.data(), buffer.size());
-    if (size <= 0) return lines;
-    text.append(buffer.data(), static_cast<std::size_t>(size));
   }
+  return lines_.size() >= count;
+}
+
+void LineReader::Take(std::string_view bytes) {
+  begun_ += bytes;
+  for (std::size_t at = 0; (at = begun_.find('\n')) != std::string::npos; begun_.erase(0, at + 1)) {
+    lines_.push_back(begun_.substr(0, at));
+  }
+}
+
+std::vector<std::string> LinesOf(int output, std::size_t count, Duration limit) {
+  LineReader reader(output);
+  reader.Has(count, limit);
+  std::vector<std::string> lines = reader.lines();
+  lines.resize(std::min(lines.size(), count));
+  return lines;
 }
 
 std::string FirstLineOf(int output, Duration limit) {

@@ -36,6 +36,29 @@ struct Pipe {
   int write = -1;
 };
 
+/// Reads the lines that a child prints, without their line feeds. What has come stays, so a call
+/// that was in vain loses nothing.
+class LineReader {
+ public:
+  /// @param output the read end of the pipe that is the child's stdout
+  explicit LineReader(int output) : output_(output) {}
+
+  /// Waits until so many lines are there. Reads what the pipe has also if `limit` is 0.
+  /// @return false after the limit, or if the child has closed its stdout before
+  bool Has(std::size_t count, Duration limit);
+  const std::vector<std::string>& lines() const { return lines_; }
+  /// Whether the child has closed its stdout, as it does when it ends.
+  bool ended() const { return ended_; }
+
+ private:
+  void Take(std::string_view bytes);
+
+  int output_;
+  std::vector<std::string> lines_;
+  std::string begun_;  // a line without its end
+  bool ended_ = false;
+};
+
 /// The first lines that a child prints, without their line feeds; fewer if it ends or is too slow.
 /// @param output the read end of the pipe that is the child's stdout
 std::vector<std::string> LinesOf(int output, std::size_t count, Duration limit);

@@ -1,6 +1,7 @@
 #include "tools/processes/child.h"
 
 #include <fcntl.h>
+#include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -19,6 +20,8 @@
 
 namespace fogline::test {
 namespace {
+
+using testing::ElementsAre;
 
 /// All bytes that come out of a pipe until its other end is closed.
 std::string ReadAll(int file) {
@@ -124,6 +127,45 @@ TEST(ChildTest, ThatIgnoresTheRequestToEndIsKilled) {
   processes::EndChild(pid, milliseconds(100));
   EXPECT_GE(Clock::now() - begin, milliseconds(100));
   EXPECT_EQ(waitpid(pid, nullptr, WNOHANG), -1) << "it has ended, and its status is read";
+}
+
+/// The read end of a pipe with a text in it. Its other end is open, as that of a child that runs
+/// on.
+struct FullPipe : processes::Pipe {
+  explicit FullPipe(const std::string& text) { Add(text); }
+  void Add(const std::string& text) const {
+    EXPECT_EQ(::write(write, text.data(), text.size()), static_cast<ssize_t>(text.size()));
+  }
+};
+
+TEST(LinesOfTest, AreThereAlsoIfTheLimitIsShorterThanAMillisecond) {
+  for (const Duration limit : {Duration(milliseconds(1)), Duration(1), Duration::zero()}) {
+    const FullPipe pipe("one\ntwo\nthree\n");
+    EXPECT_THAT(processes::LinesOf(pipe.read, 2, limit), ElementsAre("one", "two"));
+  }
+}
+
+TEST(LinesOfTest, AreFewerIfTheChildIsTooSlowOrEnds) {
+  FullPipe pipe("one\ntw");
+  const TimePoint begin = Clock::now();
+  EXPECT_THAT(processes::LinesOf(pipe.read, 2, milliseconds(50)), ElementsAre("one"));
+  EXPECT_GE(Clock::now() - begin, milliseconds(50));
+  pipe.Add("one\n");
+  close(std::exchange(pipe.write, -1));
+  EXPECT_THAT(processes::LinesOf(pipe.read, 2, kPatience), ElementsAre("one"));
+}
+
+TEST(LineReaderTest, ACallInVainLosesNothing) {
+  FullPipe pipe("one\ntw");
+  processes::LineReader reader(pipe.read);
+  EXPECT_FALSE(reader.Has(2, milliseconds(1)));
+  EXPECT_FALSE(reader.ended());
+  pipe.Add("o\n");
+  EXPECT_TRUE(reader.Has(2, milliseconds(1)));
+  EXPECT_THAT(reader.lines(), ElementsAre("one", "two"));
+  close(std::exchange(pipe.write, -1));
+  EXPECT_FALSE(reader.Has(3, kPatience));
+  EXPECT_TRUE(reader.ended());
 }
 
 TEST(ChildTest, DiesWithItsParent) {
