@@ -1,8 +1,5 @@
 #include "tools/processes/page_seat.h"
 
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <stdexcept>
 #include <utility>
 
@@ -13,8 +10,6 @@
 #include "common/process/console.h"
 #include "services/graph.h"
 #include "services/runtime/transport/bus.h"
-#include "tools/processes/child.h"
-#include "tools/processes/web_child.h"
 
 namespace fogline::processes {
 namespace {
@@ -53,19 +48,14 @@ PageSeat::PageSeat(const std::string& url, const runtime::TrafficOptions& traffi
   std::vector<std::string> arguments{"--seat", "--lcm-url", url};
   for (const std::string& argument : runtime::ToArguments(traffic_)) arguments.push_back(argument);
   arguments.insert(arguments.end(), more.begin(), more.end());
-  Pipe output;
-  pid_ = StartChild(ProgramBeside("fogline-web"), arguments, output.write);
-  close(std::exchange(output.write, -1));
-  const std::vector<std::string> lines = LinesOf(output.read, 2, kSeatLimit);
-  if (lines.size() < 2) {
-    End();
+  web_.Start(arguments);
+  if (!web_.Listens(2, kSeatLimit)) {
+    if (WasInterrupted()) throw Interrupted("interrupted before the page could be opened");
     throw std::runtime_error("fogline-web does not listen, so no person can drive at a page");
   }
-  drive_address_ = lines[0];
-  view_address_ = lines[1];
+  drive_address_ = web_.addresses()[0];
+  view_address_ = web_.addresses()[1];
 }
-
-PageSeat::~PageSeat() { End(); }
 
 bool PageSeat::WaitForPerson() {
   return processes::WaitForPerson(url_, traffic_, [this] {
@@ -74,14 +64,11 @@ bool PageSeat::WaitForPerson() {
 }
 
 bool PageSeat::Runs() {
-  int status = 0;
-  if (pid_ >= 0 && waitpid(pid_, &status, WNOHANG) == pid_) {
-    pid_ = -1;
-    Complain("fogline-web " + HowItEnded(status) + "; no person can drive any more");
+  const bool runs = web_.Runs();
+  if (!runs && !std::exchange(told_, true)) {
+    Complain("fogline-web " + web_.how_it_ended() + "; no person can drive any more");
   }
-  return pid_ >= 0;
+  return runs;
 }
-
-void PageSeat::End() { EndWeb(pid_); }
 
 }  // namespace fogline::processes

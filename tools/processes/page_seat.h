@@ -2,13 +2,12 @@
 // ends it.
 #pragma once
 
-#include <sys/types.h>
-
 #include <functional>
 #include <string>
 #include <vector>
 
 #include "services/runtime/transport/traffic_options.h"
+#include "tools/processes/web_child.h"
 
 namespace fogline::processes {
 
@@ -23,12 +22,9 @@ class PageSeat {
  public:
   /// Starts the page on this network. Returns when it can be opened.
   /// @param more arguments of fogline-web, such as --listen ADDRESS
-  /// @throws std::runtime_error if there is no page
+  /// @throws std::runtime_error if there is no page; Interrupted
   PageSeat(const std::string& url, const runtime::TrafficOptions& traffic,
            const std::vector<std::string>& more);
-  ~PageSeat();
-  PageSeat(const PageSeat&) = delete;
-  PageSeat& operator=(const PageSeat&) = delete;
 
   /// The address of the participant's page, and that of the page for those who look.
   const std::string& drive_address() const { return drive_address_; }
@@ -42,11 +38,10 @@ class PageSeat {
   bool Runs();
 
  private:
-  void End();
-
   std::string url_;
   runtime::TrafficOptions traffic_;
-  pid_t pid_ = -1;
+  WebChild web_;
+  bool told_ = false;  // that fogline-web has ended
   std::string drive_address_;
   std::string view_address_;
 };

@@ -1,9 +1,5 @@
 #include "tools/processes/run_viewer.h"
 
-#include <sys/wait.h>
-#include <unistd.h>
-
-#include <algorithm>
 #include <csignal>
 #include <exception>
 #include <thread>
@@ -13,8 +9,6 @@
 
 #include "common/interrupt.h"
 #include "common/process/console.h"
-#include "common/process/poll.h"
-#include "tools/processes/web_child.h"
 
 namespace fogline::processes {
 namespace {
@@ -28,8 +22,7 @@ constexpr Duration kLookEvery = milliseconds(50);  // whether to go on waiting
 }  // namespace
 
 RunViewer::~RunViewer() {
-  late_ = {};
-  End();
+  late_ = {};  // before fogline-web ends, whose addresses it reads
 }
 
 void RunViewer::ShowNetwork(const std::string& url) {
@@ -51,19 +44,17 @@ void RunViewer::ShowLog(const std::filesystem::path& log) {
   }
   if (!Runs()) return;
   const bool shown = !address_.empty();
-  End();
+  web_.End();
   if (!shown) return Say("fogline-web does not listen");
   if (!Start({log.string(), "--no-browser", "--port", PortOf(address_)})) return;
   if (TakeAddress(kLogLimit) || WasInterrupted() || !Runs()) return;
   Say("fogline-web does not listen");
-  End();
+  web_.End();
 }
 
 bool RunViewer::Start(const std::vector<std::string>& more) {
   try {
-    output_.emplace();
-    pid_ = StartChild(ProgramBeside("fogline-web"), more, output_->write);
-    close(std::exchange(output_->write, -1));
+    web_.Start(more);
     return true;
   } catch (const std::exception& error) {
     Say(error.what());
@@ -72,14 +63,10 @@ bool RunViewer::Start(const std::vector<std::string>& more) {
 }
 
 bool RunViewer::TakeAddress(Duration limit) {
-  const TimePoint end = Clock::now() + limit;
-  while (Clock::now() < end && !WasInterrupted()) {
-    if (PollFor(output_->read, POLLIN, std::min(kLookEvery, end - Clock::now())) <= 0) continue;
-    const std::string line = FirstLineOf(output_->read, end - Clock::now());
-    if (!line.empty() && line != std::exchange(address_, line)) Notice("view: " + line);
-    return !line.empty();
-  }
-  return false;
+  if (!web_.Listens(1, limit)) return false;
+  const std::string line = web_.addresses().front();
+  if (line != std::exchange(address_, line)) Notice("view: " + line);
+  return true;
 }
 
 /// Another thread waits for the address, because the thread of the run must not wait for it.
@@ -89,10 +76,8 @@ void RunViewer::TakeAddressLater() {
   sigfillset(&all);
   pthread_sigmask(SIG_SETMASK, &all, &before);  // signals are for the thread of the run
   late_ = std::jthread([this](const std::stop_token& stop) {
-    while (!stop.stop_requested()) {
-      if (PollFor(output_->read, POLLIN, kLookEvery) <= 0) continue;
-      TakeAddress(kPageLimit);
-      return;
+    while (!stop.stop_requested() && !WasInterrupted() && web_.prints()) {
+      if (TakeAddress(kLookEvery)) return;
     }
   });
   pthread_sigmask(SIG_SETMASK, &before, nullptr);
@@ -104,14 +89,9 @@ void RunViewer::Say(const std::string& trouble) {
 }
 
 bool RunViewer::Runs() {
-  int status = 0;
-  if (pid_ >= 0 && waitpid(pid_, &status, WNOHANG) == pid_) {
-    pid_ = -1;
-    Say("fogline-web " + HowItEnded(status));
-  }
-  return pid_ >= 0;
+  const bool runs = web_.Runs();
+  if (!runs && !web_.how_it_ended().empty()) Say("fogline-web " + web_.how_it_ended());
+  return runs;
 }
-
-void RunViewer::End() { EndWeb(pid_); }
 
 }  // namespace fogline::processes

@@ -2,17 +2,14 @@
 // goes on without it, and the reason is printed once. The destructor ends it.
 #pragma once
 
-#include <sys/types.h>
-
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <thread>
 #include <utility>
 #include <vector>
 
 #include "common/clock.h"
-#include "tools/processes/child.h"
+#include "tools/processes/web_child.h"
 
 namespace fogline::processes {
 
@@ -41,15 +38,13 @@ class RunViewer {
   /// Waits for the address, and prints it. @return false if there is none in time
   bool TakeAddress(Duration limit);
   void TakeAddressLater();
-  void End();
   void Say(const std::string& trouble);
 
   std::vector<std::string> traffic_;
-  pid_t pid_ = -1;
-  std::optional<Pipe> output_;  // its stdout
-  std::string address_;         // "http://127.0.0.1:7680/"; "": nothing was shown
-  bool said_ = false;           // the user knows that there is no page
-  std::jthread late_;           // takes an address that did not come in time
+  WebChild web_;
+  std::string address_;  // "http://127.0.0.1:7680/"; "": nothing was shown
+  bool said_ = false;    // the user knows that there is no page
+  std::jthread late_;    // takes an address that did not come in time
 };
 
 }  // namespace fogline::processes

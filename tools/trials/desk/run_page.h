@@ -3,15 +3,12 @@
 // is started again; the run and the session go on without it.
 #pragma once
 
-#include <sys/types.h>
-
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "common/clock.h"
-#include "tools/processes/child.h"
+#include "tools/processes/web_child.h"
 
 namespace fogline::trials {
 
@@ -27,13 +24,11 @@ class RunPage {
   enum class Change { kNone, kDied, kIsBack };
 
   explicit RunPage(RunPageOptions options);
-  ~RunPage();
-  RunPage(const RunPage&) = delete;
-  RunPage& operator=(const RunPage&) = delete;
 
   /// Shows the run on this network, and returns when the pages can be opened.
-  /// @throws std::runtime_error if there is no seat. A run can do without its view, but not without
-  ///     the person who drives
+  /// @throws Interrupted; std::runtime_error if there is no seat. A run can do without its view,
+  /// but
+  ///     not without the person who drives
   void Show(const std::string& url, Seat seat);
   /// Starts fogline-web again if it has died. Call it now and then while the run goes on.
   Change Look();
@@ -45,8 +40,8 @@ class RunPage {
 
  private:
   void Start();
-  /// Reads the addresses that fogline-web prints. @return whether it listens
-  bool ReadAddresses(Duration limit);
+  /// Takes the addresses that fogline-web prints. @return whether it listens
+  bool TakeAddresses(Duration limit);
 
   RunPageOptions options_;
   // They stay the same, so a page that was open connects again after fogline-web has died.
@@ -56,8 +51,7 @@ class RunPage {
   Seat seat_ = Seat::kNone;
   std::string view_address_;
   std::string seat_address_;
-  std::optional<processes::Pipe> output_;  // of fogline-web
-  pid_t pid_ = -1;
+  processes::WebChild web_;
   bool listens_ = false;
   TimePoint start_at_{};  // not before
 };
