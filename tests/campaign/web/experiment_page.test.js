@@ -7,9 +7,11 @@ import {readdirSync, readFileSync, writeFileSync} from "node:fs";
 import path from "node:path";
 import {test} from "node:test";
 
+import WebSocket from "ws";
+
 import {makeDecoder} from "../../../tools/web/page/data/lcm.js";
 import {describedTypes, readEvents} from "../../unit/tools/web/page/real_log.js";
-import {begin, drives} from "./seat.js";
+import {begin, drives, socketOf} from "./seat.js";
 import {background, browser, DESKTOP, open, root, scratch, until} from "./window.js";
 
 const {FOGLINE} = process.env;
@@ -71,11 +73,32 @@ async function driveTrial(page, address, during) {
   await comesBack(page, address);
 }
 
-/** Kills fogline-web while the person drives; they drive on when it is back. */
-async function killDuring(page, session) {
+/** The states that the session tells the participant's page from now on, the newest last. */
+function statesOf(t, address) {
+  const states = [];
+  const socket = new WebSocket(socketOf(address));
+  socket.on("message", (data) => states.push(JSON.parse(data)));
+  t.after(() => socket.close());
+  return states;
+}
+
+/**
+ * Kills fogline-web while the person drives; they drive on when it is back, and both pages of the
+ * session know it.
+ */
+async function killDuring(t, started, page, {session, participant, experimenter}) {
+  const states = statesOf(t, participant);
+  await until(() => states.at(-1)?.seat, "the seat in the participant's state");
+  const {seat} = states.at(-1);
   killWeb(session);
   await page.waitForFunction(() => !foglineDrive.wire.isOpen);
+  await until(() => states.at(-1).seat === "", "the participant's state without a seat");
+  await until(() => states.at(-1).seat, "the seat to be back in the participant's state");
+  assert.equal(states.at(-1).seat, seat);
   await page.waitForFunction(() => foglineDrive.wire.isOpen && foglineDrive.state === "yours");
+  const desk = await open(t, started, experimenter, {size: DESKTOP});
+  await desk.waitForFunction(() => document.getElementById("lines").textContent.includes("fogline-web runs again"));
+  await desk.close();
   await drives(page, true);
   // The refused connections of that time are no trouble of the page.
   page.trouble = page.trouble.filter((words) => !/WebSocket|ERR_CONNECTION/.test(words));
@@ -87,7 +110,8 @@ async function answer(page, value) {
 }
 
 /** Makes all trials of a participant. */
-async function takePart(t, started, {session, participant: address}, participant, onFirst) {
+async function takePart(t, started, pages, participant, onFirst) {
+  const {session, participant: address} = pages;
   const page = await open(t, started, address, {size: DESKTOP, allPorts: true});
   for (let trial = 1; trial <= Object.keys(CONDITIONS).length; ++trial) {
     await page.waitForFunction((words) => document.getElementById("title").textContent === words,
@@ -96,7 +120,7 @@ async function takePart(t, started, {session, participant: address}, participant
     await page.click("#begin");
     await driveTrial(page, address, async () => {
       assert.doesNotMatch(await page.content(), /secret|threshold|conflict/i);
-      if (participant === KILLED.participant && trial === KILLED.trial) await killDuring(page, session);
+      if (participant === KILLED.participant && trial === KILLED.trial) await killDuring(t, started, page, pages);
       if (trial === 1) await onFirst?.();
     });
     await page.waitForSelector("#questions input");

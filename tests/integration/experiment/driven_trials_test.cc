@@ -27,6 +27,7 @@
 namespace fogline::test {
 namespace {
 
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
@@ -64,20 +65,22 @@ bool HasInputs(const std::filesystem::path& log) {
 /// One participant; each run has 250 steps of 0.02 s.
 class DrivenTrialsInRealtimeTest : public ::testing::Test {
  protected:
-  DrivenTrialsInRealtimeTest() {
+  DrivenTrialsInRealtimeTest() { WritePlan(250); }
+
+  void WritePlan(int steps) const {
+    const std::string length = "/steps=" + std::to_string(steps);
     const std::string drive = (SourceDirectory() / kDriveScenario).string();
     std::vector<std::string> by_person = AlwaysAsked();
-    by_person.emplace_back("/steps=250");
-    const nlohmann::json plan{
-        {"version", 1},
-        {"title", "Test"},
-        {"participants", 1},
-        {"order", "as_listed"},
-        {"conditions",
-         {{{"name", "secret-a"}, {"scenario", drive}, {"set", by_person}},
-          {{"name", "secret-model"}, {"scenario", drive}, {"set", {"/steps=250"}}},
-          {{"name", "secret-b"}, {"scenario", drive}, {"set", by_person}}}},
-        {"questionnaires", {{{"name", "kss"}, {"kind", "kss"}}}}};
+    by_person.push_back(length);
+    const nlohmann::json plan{{"version", 1},
+                              {"title", "Test"},
+                              {"participants", 1},
+                              {"order", "as_listed"},
+                              {"conditions",
+                               {{{"name", "secret-a"}, {"scenario", drive}, {"set", by_person}},
+                                {{"name", "secret-model"}, {"scenario", drive}, {"set", {length}}},
+                                {{"name", "secret-b"}, {"scenario", drive}, {"set", by_person}}}},
+                              {"questionnaires", {{{"name", "kss"}, {"kind", "kss"}}}}};
     std::ofstream(file_) << plan.dump(2);
   }
 
@@ -141,18 +144,24 @@ TEST_F(DrivenTrialsInRealtimeTest, ThePageOpensTheSeatOnlyInTrialsInWhichThePart
 }
 
 TEST_F(DrivenTrialsInRealtimeTest, AfterAKillOfFoglineWebTheParticipantDrivesOnAtTheSameAddress) {
+  WritePlan(600);  // time enough for a start of fogline-web on a busy machine
   PageSession session(Run());
   std::optional<PagePerson> person;
   std::set<std::string> seats;
+  std::vector<bool> open;  // whether the participant's page has the seat, in turn
   bool killed = false;
   for (std::int64_t known = -1;;) {
     const nlohmann::json state = session.NextState(known);
     known = state["state"];
     if (state["stage"] == "waiting" && state["run"] == 1) session.Begin(state);
     if (state["stage"] == "asking") break;
-    if (state.value("seat", "").empty()) continue;
+    const std::string address = state.value("seat", "");
+    if (state["stage"] == "driving" && (open.empty() || open.back() == address.empty())) {
+      open.push_back(!address.empty());
+    }
+    if (address.empty()) continue;
+    seats.insert(address);
     const SeatPlace seat = SeatIn(state);
-    seats.insert(state["seat"]);
     if (!person) person.emplace(seat.port, PageSession::SocketTarget(seat.token));
     if (state["stage"] == "driving" && !std::exchange(killed, true)) {
       ASSERT_TRUE(HasInputs(LogOf("trial-1-secret-a")));
@@ -161,6 +170,9 @@ TEST_F(DrivenTrialsInRealtimeTest, AfterAKillOfFoglineWebTheParticipantDrivesOnA
   }
   person.reset();
   EXPECT_EQ(seats.size(), 1U);
+  ASSERT_GE(open.size(), 3U);
+  EXPECT_THAT(std::vector<bool>(open.begin(), open.begin() + 3), ElementsAre(true, false, true));
+  session.WaitForLine("fogline-web runs again");
   EXPECT_THAT(session.process().Err(), HasSubstr("fogline-web was killed by signal 9"));
   const std::vector<driver_input_t> inputs = InputsIn(LogOf("trial-1-secret-a"));
   std::set<std::int64_t> instances;

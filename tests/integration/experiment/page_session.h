@@ -1,6 +1,7 @@
 // A session of `fogline experiment` whose pages the test opens.
 #pragma once
 
+#include <chrono>
 #include <csignal>
 #include <cstdint>
 #include <optional>
@@ -74,6 +75,19 @@ class PageSession {
       const std::string name = Content("/proc/" + std::to_string(child) + "/comm");
       if (name == "fogline-web\n") SignalOne(child, SIGKILL);
     }
+  }
+
+  /// Waits until the experimenter's page shows this line. @throws std::runtime_error after the
+  /// limit
+  void WaitForLine(const std::string& line) {
+    for (const auto end = std::chrono::steady_clock::now() + kPatience;
+         std::chrono::steady_clock::now() < end;) {
+      const auto state = nlohmann::json::parse(experimenter_->Receive().bytes);
+      for (const std::string shown : state["lines"]) {
+        if (shown == line) return;
+      }
+    }
+    throw std::runtime_error("no line \"" + line + "\" comes");
   }
 
   Background& process() { return session_; }
