@@ -2,6 +2,9 @@
 // pages of the participant: the page of the session, and the page /drive.
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -60,6 +63,52 @@ bool HasInputs(const std::filesystem::path& log) {
     if (Content(log).find(ChannelOf<driver_input_t>().name) != std::string::npos) return true;
   }
   return false;
+}
+
+/// A port that this test takes away from others.
+class TakenPort {
+ public:
+  explicit TakenPort(std::uint16_t port) : address_{} {
+    address_.sin_family = AF_INET;
+    address_.sin_port = htons(port);
+    address_.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    const int yes = 1;  // connections of the program before may still be closing
+    setsockopt(socket_, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof(yes));
+  }
+  ~TakenPort() { close(socket_); }
+  TakenPort(const TakenPort&) = delete;
+  TakenPort& operator=(const TakenPort&) = delete;
+
+  /// @return false while another program has the port
+  bool Take() {
+    bound_ = bound_ || bind(socket_, reinterpret_cast<sockaddr*>(&address_), sizeof(address_)) == 0;
+    return bound_ && listen(socket_, 1) == 0;
+  }
+  /// The port; if it was 0, the one that the system has chosen.
+  std::uint16_t port() {
+    socklen_t size = sizeof(address_);
+    getsockname(socket_, reinterpret_cast<sockaddr*>(&address_), &size);
+    return ntohs(address_.sin_port);
+  }
+
+ private:
+  int socket_ = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  sockaddr_in address_;
+  bool bound_ = false;
+};
+
+/// A port that no program has now.
+std::uint16_t FreePort() {
+  TakenPort port(0);
+  EXPECT_TRUE(port.Take());
+  return port.port();
+}
+
+/// How often a text is in another one.
+std::size_t CountOf(const std::string& text, const std::string& all) {
+  std::size_t count = 0;
+  for (std::size_t at = 0; (at = all.find(text, at)) != std::string::npos; ++at) ++count;
+  return count;
 }
 
 /// One participant; each run has 250 steps of 0.02 s.
@@ -183,6 +232,25 @@ TEST_F(DrivenTrialsInRealtimeTest, AfterAKillOfFoglineWebTheParticipantDrivesOnA
   ExpectReplaysBitByBit(LogOf("trial-1-secret-a"));
   session.process().Signal(SIGINT);
   EXPECT_EQ(session.process().Wait(), 130);
+}
+
+TEST_F(DrivenTrialsInRealtimeTest, ASeatThatDoesNotComeBackEndsTheSessionBeforeTheRun) {
+  const std::uint16_t port = FreePort();
+  PageSession session(Run({"--seat-port", std::to_string(port)}));
+  EXPECT_EQ(SeatIn(WaitForSeat(session)).port, port);
+  TakenPort taken(port);
+  const TimePoint end = Clock::now() + kPatience;
+  while (!taken.Take()) {  // fogline-web may have been started again before
+    ASSERT_LT(Clock::now(), end);
+    session.KillView();
+    std::this_thread::sleep_for(kLookEvery);
+  }
+  EXPECT_EQ(session.process().Wait(), 3);
+  const std::string err = session.process().Err();
+  EXPECT_THAT(err, HasSubstr("fogline-web was started 5 times in vain"));
+  // The end of the one that had the seat, and the first start in vain.
+  EXPECT_EQ(CountOf("; it is started again", err), 2U) << err;
+  EXPECT_FALSE(std::filesystem::exists(LogOf("trial-1-secret-a")));
 }
 
 TEST_F(DrivenTrialsInRealtimeTest, OneParticipantHasTheSeatAndTheirTokenOpensNoView) {

@@ -196,9 +196,15 @@ class PageDesk::Pages {
     });
   }
 
-  /// Waits until the participant is ready at the seat. @throws Interrupted
+  /// Waits until the participant is ready at the seat.
+  /// @throws Interrupted; std::runtime_error if there is no seat any more
   void WaitForPerson(const std::string& url) {
-    const bool ready = processes::WaitForPerson(url, traffic_, [this] { LookAtRunPage(); });
+    const bool ready = processes::WaitForPerson(url, traffic_, [this] {
+      LookAtRunPage();
+      if (const std::string why = run_page_.WhyHopeless(); !why.empty()) {
+        throw std::runtime_error(why);
+      }
+    });
     if (!ready) ThrowIfInterrupted();
   }
 

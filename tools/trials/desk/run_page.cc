@@ -1,5 +1,6 @@
 #include "tools/trials/desk/run_page.h"
 
+#include <algorithm>
 #include <stdexcept>
 #include <utility>
 
@@ -14,8 +15,11 @@ namespace {
 
 // fogline-web listens within this time, even on a busy machine.
 constexpr Duration kPageLimit = milliseconds(10'000);
-// A fogline-web that dies at once is started so often: twice in a second.
-constexpr Duration kRestartEvery = milliseconds(500);
+// The pause before fogline-web is started again. It doubles with each start that was in vain.
+constexpr Duration kFirstPause = milliseconds(500);
+constexpr Duration kLongestPause = milliseconds(8000);
+// After so many starts in vain, in 7.5 s or more, the cause is not a passing one.
+constexpr int kMostFailures = 5;
 
 }  // namespace
 
@@ -26,20 +30,18 @@ void RunPage::Show(const std::string& url, Seat seat) {
   End();
   url_ = url;
   seat_ = seat;
+  failed_ = 0;
   Start();
-  listens_ = TakeAddresses(kPageLimit);
-  if (listens_) return;
+  if (state_ == State::kStarting && TakeAddresses(kPageLimit)) return;
   ThrowIfInterrupted();
-  web_.End();
+  if (state_ == State::kStarting) Fail("fogline-web does not listen");
   if (seat_ == Seat::kOpen) {
+    End();
     throw std::runtime_error("fogline-web does not listen, so no person can drive at a page");
   }
-  Complain(
-      "fogline experiment: warning: fogline-web does not listen; the run goes on without its view");
 }
 
 void RunPage::Start() {
-  start_at_ = Clock::now() + kRestartEvery;
   std::vector<std::string> arguments{
       "--lcm-url",         url_,       "--no-browser",
       "--tokens-on-stdin", "--listen", fmt::format("{}:{}", options_.address, options_.port)};
@@ -47,10 +49,19 @@ void RunPage::Start() {
   arguments.insert(arguments.end(), options_.traffic.begin(), options_.traffic.end());
   try {
     web_.Start(arguments, view_token_ + '\n' + seat_token_ + '\n');
+    state_ = State::kStarting;
+    listen_by_ = Clock::now() + kPageLimit;
   } catch (const std::exception& error) {
-    Complain(fmt::format("fogline experiment: warning: {}; the run goes on without its page",
-                         error.what()));
+    Fail(error.what());
   }
+}
+
+void RunPage::Fail(const std::string& how) {
+  web_.Kill();  // the thread of the run does not wait for its end
+  state_ = State::kPausing;
+  start_at_ = Clock::now() + std::min(kLongestPause, kFirstPause * (1 << std::min(failed_, 10)));
+  if (failed_++ > 0) return;
+  Complain(fmt::format("fogline experiment: warning: {}; it is started again", how));
 }
 
 bool RunPage::TakeAddresses(Duration limit) {
@@ -58,29 +69,46 @@ bool RunPage::TakeAddresses(Duration limit) {
   seat_address_ = seat_ == Seat::kOpen ? web_.addresses().front() : "";
   view_address_ = web_.addresses().back();
   options_.port = static_cast<std::uint16_t>(std::stoi(processes::PortOf(view_address_)));
+  state_ = State::kListening;
+  failed_ = 0;
   return true;
 }
 
 RunPage::Change RunPage::Look() {
-  if (url_.empty()) return Change::kNone;
-  if (web_.Runs()) {
-    if (listens_ || !TakeAddresses(Duration::zero())) return Change::kNone;
-    listens_ = true;
-    return Change::kIsBack;
+  switch (state_) {
+    case State::kNoRun:
+      break;
+    case State::kStarting:
+      if (TakeAddresses(Duration::zero())) return Change::kIsBack;
+      if (!web_.Runs()) {
+        Fail("fogline-web " + web_.how_it_ended());
+      } else if (Clock::now() > listen_by_) {
+        Fail("fogline-web does not listen");
+      }
+      break;
+    case State::kListening:
+      if (web_.Runs()) break;
+      state_ = State::kPausing;
+      start_at_ = Clock::now() + kFirstPause;
+      Complain(fmt::format("fogline experiment: fogline-web {}; it is started again",
+                           web_.how_it_ended()));
+      return Change::kDied;
+    case State::kPausing:
+      if (Clock::now() >= start_at_) Start();
+      break;
   }
-  if (std::exchange(listens_, false)) {
-    Complain(fmt::format("fogline experiment: fogline-web {}; it is started again",
-                         web_.how_it_ended()));
-    return Change::kDied;
-  }
-  if (Clock::now() >= start_at_) Start();
   return Change::kNone;
+}
+
+std::string RunPage::WhyHopeless() const {
+  if (failed_ < kMostFailures) return "";
+  return fmt::format("fogline-web was started {} times in vain, so no person can drive at a page",
+                     failed_);
 }
 
 void RunPage::End() {
   web_.End();
-  url_.clear();
-  listens_ = false;
+  state_ = State::kNoRun;
 }
 
 }  // namespace fogline::trials

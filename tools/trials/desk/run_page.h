@@ -1,6 +1,6 @@
 // The pages of fogline-web for a run: the view for the experimenter and, if the participant drives,
 // the seat. fogline-web is a child, at the same addresses for all runs of a session. If it dies, it
-// is started again; the run and the session go on without it.
+// is started again, after a pause that grows; the run and the session go on without it.
 #pragma once
 
 #include <cstdint>
@@ -32,6 +32,8 @@ class RunPage {
   void Show(const std::string& url, Seat seat);
   /// Starts fogline-web again if it has died. Call it now and then while the run goes on.
   Change Look();
+  /// Why no fogline-web can be expected any more; "" if there is one, or the next start may help.
+  std::string WhyHopeless() const;
   void End();
 
   /// The addresses with their tokens; "" if there is no such page.
@@ -39,7 +41,11 @@ class RunPage {
   const std::string& seat_address() const { return seat_address_; }
 
  private:
+  enum class State { kNoRun, kStarting, kListening, kPausing };
+
   void Start();
+  /// The start was in vain. Says so at the first time.
+  void Fail(const std::string& how);
   /// Takes the addresses that fogline-web prints. @return whether it listens
   bool TakeAddresses(Duration limit);
 
@@ -47,13 +53,15 @@ class RunPage {
   // They stay the same, so a page that was open connects again after fogline-web has died.
   const std::string view_token_;
   const std::string seat_token_;
-  std::string url_;  // of the network; "": no run
+  std::string url_;  // of the network
   Seat seat_ = Seat::kNone;
   std::string view_address_;
   std::string seat_address_;
   processes::WebChild web_;
-  bool listens_ = false;
-  TimePoint start_at_{};  // not before
+  State state_ = State::kNoRun;
+  int failed_ = 0;         // starts in a row that were in vain
+  TimePoint listen_by_{};  // kStarting
+  TimePoint start_at_{};   // kPausing
 };
 
 }  // namespace fogline::trials
