@@ -220,7 +220,7 @@ class PageDesk::Pages {
 
   void EndRun() {
     // The participant's page must know it when the seat sends the participant back.
-    Set([&](PageState& state) { state.MoveRun(run_page_.view_address(), ""); });
+    Set([](PageState& state) { state.MoveRun("", ""); });
     run_page_.End();
   }
 

@@ -98,7 +98,8 @@ std::string PageState::ForParticipant() const {
   Json json{
       {"state", number_},          {"stage", WordOf(stage_)}, {"practice", next_.trial.practice},
       {"run", next_.trial.number}, {"of", next_.of},          {"drives", next_.seat}};
-  if (stage_ == Stage::kSeating || stage_ == Stage::kDriving) json["seat"] = seat_;
+  const bool is_run = stage_ == Stage::kSeating || stage_ == Stage::kDriving;
+  if (next_.seat && is_run) json["seat"] = seat_;
   if (stage_ == Stage::kWaiting) json["wait_s"] = wait_s_;
   if (stage_ == Stage::kAsking) {
     json["items"] = Json::array();

@@ -109,6 +109,8 @@ std::string RunPage::WhyHopeless() const {
 void RunPage::End() {
   web_.End();
   state_ = State::kNoRun;
+  view_address_.clear();
+  seat_address_.clear();
 }
 
 }  // namespace fogline::trials
