@@ -178,10 +178,13 @@ class PageDesk::Pages {
     }
   }
 
-  /// Gives markers to this speaker; nullptr: refuses them.
-  void GiveMarkersTo(Speaker* speaker) {
-    const std::lock_guard lock(mutex_);
-    speaker_ = speaker;
+  /// The run begins, and this speaker takes markers until EndRun().
+  void BeginRun(Speaker& speaker) {
+    Set([&](PageState& state) {
+      speaker_ = &speaker;
+      state.Drive();
+      state.Tell("the run begins");
+    });
   }
 
   std::string participant_address() const { return participant_->access().Url(); }
@@ -220,7 +223,11 @@ class PageDesk::Pages {
 
   void EndRun() {
     // The participant's page must know it when the seat sends the participant back.
-    Set([](PageState& state) { state.MoveRun("", ""); });
+    Set([this](PageState& state) {
+      speaker_ = nullptr;
+      state.EndRun();
+      state.Tell("the run has ended");
+    });
     run_page_.End();
   }
 
@@ -248,7 +255,7 @@ class PageDesk::Pages {
       const std::lock_guard lock(mutex_);
       const auto message = (state_.*reader)(frame, why);
       if (message && message->kind == PageMessage::Kind::kMarker) {
-        if (speaker_ != nullptr) speaker_->Mark(message->text);
+        speaker_->Mark(message->text);
         state_.Tell("marker: " + message->text);
       } else if (message) {
         messages_.push_back(*message);
@@ -266,7 +273,7 @@ class PageDesk::Pages {
   std::condition_variable changed_;
   PageState state_{UnixMicros()};
   std::deque<PageMessage> messages_;  // that fit the state, and are not taken yet
-  Speaker* speaker_ = nullptr;        // while a run is under way
+  Speaker* speaker_ = nullptr;        // set in the state that takes markers
   asio::io_context context_{1};
   PageView participant_view_;
   PageView experimenter_view_;
@@ -300,21 +307,11 @@ void PageDesk::RunOpens(const std::string& url) {
   if (seat_) pages_->WaitForPerson(url);
 }
 
-void PageDesk::RunBegins(Speaker& speaker) {
-  pages_->GiveMarkersTo(&speaker);
-  pages_->Set([](PageState& state) {
-    state.Drive();
-    state.Tell("the run begins");
-  });
-}
+void PageDesk::RunBegins(Speaker& speaker) { pages_->BeginRun(speaker); }
 
 void PageDesk::RunGoesOn() { pages_->LookAtRunPage(); }
 
-void PageDesk::RunEnded() {
-  pages_->GiveMarkersTo(nullptr);
-  pages_->EndRun();
-  pages_->Set([](PageState& state) { state.Tell("the run has ended"); });
-}
+void PageDesk::RunEnded() { pages_->EndRun(); }
 
 std::vector<Answer> PageDesk::Ask(const QuestionnaireSection& questionnaire) {
   pages_->Set([&](PageState& state) { state.Ask(questionnaire); });

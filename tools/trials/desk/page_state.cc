@@ -13,6 +13,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+constexpr const char* kNoRun = "no run is under way";
 // The experimenter's page shows so many lines.
 constexpr std::size_t kMostLines = 200;
 
@@ -26,6 +27,8 @@ std::string_view WordOf(Stage stage) {
       return "seating";
     case Stage::kDriving:
       return "driving";
+    case Stage::kEnded:
+      return "ended";
     case Stage::kAsking:
       return "asking";
     case Stage::kFinished:
@@ -80,6 +83,12 @@ void PageState::MoveRun(std::string view, std::string seat) {
   view_ = std::move(view);
   seat_ = std::move(seat);
   if (next_.seat) ++number_;
+}
+
+void PageState::EndRun() {
+  view_.clear();
+  seat_.clear();
+  Enter(Stage::kEnded);
 }
 
 void PageState::Ask(const QuestionnaireSection& questionnaire) {
@@ -171,8 +180,10 @@ std::optional<PageMessage> PageState::FromExperimenter(std::string_view frame,
     return PageMessage{.kind = PageMessage::Kind::kBegin, .answers = {}, .text = ""};
   }
   const std::string text = Text(json, "text");
-  if (op != "marker" || stage_ != Stage::kDriving) {
+  if (op != "marker") {
     why = "it does not fit the state";
+  } else if (stage_ != Stage::kDriving) {
+    why = kNoRun;
   } else if (text.empty() || HasControlCharacter(text) ||
              text.size() > runtime::kMostTrialTextBytes) {
     why = fmt::format("a marker needs a text of 1 to {} bytes without control characters",

@@ -13,8 +13,9 @@
 
 namespace fogline::trials {
 
-/// The phase of a session. At kSeating the participant goes to the seat, and the run waits.
-enum class Stage { kStarting, kWaiting, kSeating, kDriving, kAsking, kFinished };
+/// The phase of a session. At kSeating the participant goes to the seat, and the run waits. kEnded
+/// is the moment between a run and its questions.
+enum class Stage { kStarting, kWaiting, kSeating, kDriving, kEnded, kAsking, kFinished };
 
 /// A message of a page, after its check.
 struct PageMessage {
@@ -40,6 +41,8 @@ class PageState {
   void Drive() { Enter(Stage::kDriving); }
   /// The pages for the run are at these addresses now. @param seat "" if it cannot be opened now
   void MoveRun(std::string view, std::string seat);
+  /// The run is over or broke off. Its pages are gone, and no marker is taken any more.
+  void EndRun();
   void Ask(const QuestionnaireSection& questionnaire);
   void Finish();
   /// Adds a line to what the experimenter sees, the newest last. The oldest lines are dropped.

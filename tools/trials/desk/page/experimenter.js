@@ -7,6 +7,7 @@ const WORDS = {
   waiting: "The participant can begin.",
   seating: "The participant goes to the seat.",
   driving: "The run is under way.",
+  ended: "The run has ended.",
   asking: "The participant answers questions.",
   finished: "All runs are done.",
 };

@@ -73,7 +73,7 @@ function goToSeat(address) {
 /** What a page without buttons and questions says. */
 function wordsOf({stage, drives}) {
   if (stage === "finished") return "Thank you.";
-  if (stage === "seating" || (stage === "driving" && drives)) return "Please wait.";
+  if (stage === "seating" || stage === "ended" || (stage === "driving" && drives)) return "Please wait.";
   return stage === "driving" ? "The run is under way." : "";
 }
 

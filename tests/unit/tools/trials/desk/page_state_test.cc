@@ -144,6 +144,22 @@ TEST(PageStateTest, MarkersAreTakenDuringARunOnly) {
   const std::string longest(500, 'x');
   EXPECT_TRUE(state.FromExperimenter(R"({"op":"marker","text":")" + longest + "\"}", why));
   EXPECT_FALSE(state.FromExperimenter(R"({"op":"marker","text":")" + longest + "x\"}", why));
+  state.EndRun();
+  EXPECT_FALSE(state.FromExperimenter(kMarker, why));
+  EXPECT_EQ(why, "no run is under way");
+}
+
+TEST(PageStateTest, AfterARunItsPagesAreGone) {
+  PageState state(1);
+  Next next = NextRun();
+  next.seat = true;
+  state.Wait(next, 0);
+  state.OpenRun("http://127.0.0.1:7690/#token=v", "http://127.0.0.1:7690/drive#token=a");
+  state.Drive();
+  state.EndRun();
+  EXPECT_EQ(json::parse(state.ForParticipant())["stage"], "ended");
+  EXPECT_THAT(state.ForParticipant(), Not(HasSubstr("7690")));
+  EXPECT_EQ(json::parse(state.ForExperimenter())["view"], "");
 }
 
 }  // namespace
