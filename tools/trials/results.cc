@@ -9,8 +9,23 @@
 #include "common/file.h"
 #include "common/text.h"
 #include "scenario/io/json.h"
+#include "services/log/log_of_run.h"
 
 namespace fogline::trials {
+
+namespace {
+
+/// Whether a run has begun to write this log. A file that cannot be read counts, too: it may be of
+/// worth.
+bool HasBegun(const std::filesystem::path& log) {
+  try {
+    return log::HasSteps(log);
+  } catch (const InputError&) {
+    return true;
+  }
+}
+
+}  // namespace
 
 Results::Results(const PlanFile& plan, std::filesystem::path folder)
     : plan_(plan), folder_(std::move(folder)) {
@@ -60,6 +75,8 @@ TrialRecord Results::Read(const Trial& trial) const {
   record.story.state = TrialState::kOpen;
   std::error_code missing;
   while (std::filesystem::exists(LogOf(trial, record.attempts + 1), missing)) ++record.attempts;
+  // A crash before the first step leaves such a log.
+  while (record.attempts > 0 && !HasBegun(LogOf(trial, record.attempts))) --record.attempts;
   if (record.attempts == 0) return record;
   record.log = LogOf(trial, record.attempts);
   record.story = ReadStory(record.log);

@@ -253,6 +253,27 @@ TEST_F(DrivenTrialsInRealtimeTest, ASeatThatDoesNotComeBackEndsTheSessionBeforeT
   EXPECT_FALSE(std::filesystem::exists(LogOf("trial-1-secret-a")));
 }
 
+TEST_F(DrivenTrialsInRealtimeTest, ACrashWhileTheParticipantSitsDownIsNoAttempt) {
+  const std::string log = LogOf("trial-1-secret-a");
+  {
+    PageSession session(Run());
+    WaitForSeat(session);
+    session.process().Signal(SIGKILL);
+    session.process().Wait();
+  }
+  ASSERT_TRUE(std::filesystem::exists(log)) << "the crash has left the log without a step";
+  const Outcome status =
+      RunCommand({Program("fogline"), "experiment", "status", file_, "--results", results_});
+  EXPECT_THAT(status.out, Not(HasSubstr("broken")));
+  PageSession session(Run());
+  const SeatPlace seat = SeatIn(WaitForSeat(session));
+  const PagePerson person(seat.port, PageSession::SocketTarget(seat.token));
+  ASSERT_TRUE(HasInputs(log));
+  EXPECT_FALSE(std::filesystem::exists(LogOf("trial-1-secret-a-attempt-2")));
+  session.process().Signal(SIGINT);
+  EXPECT_EQ(session.process().Wait(), 130);
+}
+
 TEST_F(DrivenTrialsInRealtimeTest, OneParticipantHasTheSeatAndTheirTokenOpensNoView) {
   PageSession session(Run());
   const SeatPlace seat = SeatIn(WaitForSeat(session));

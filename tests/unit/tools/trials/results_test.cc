@@ -37,12 +37,28 @@ TEST(ResultsTest, TheNewestAttemptCounts) {
   const Trial trial{.participant = 1, .practice = false, .number = 1, .index = 0};
   EXPECT_EQ(results.Read(trial).story.state, TrialState::kOpen);
   std::filesystem::create_directories(results.FolderOf(1));
-  std::ofstream(results.LogOf(trial, 1)) << "";
-  std::ofstream(results.LogOf(trial, 2)) << "";
+  std::ofstream(results.LogOf(trial, 1)) << "no log";
+  std::ofstream(results.LogOf(trial, 2)) << "no log";
   const TrialRecord record = results.Read(trial);
   EXPECT_EQ(record.attempts, 2);
   EXPECT_EQ(record.log, results.LogOf(trial, 2));
   EXPECT_EQ(record.story.state, TrialState::kBroken);
+}
+
+TEST(ResultsTest, ALogWithoutAStepIsNoAttempt) {
+  const test::ScratchFolder folder;
+  const PlanFile plan = Plan();
+  const Results results(plan, folder.path() / "r");
+  const Trial trial{.participant = 1, .practice = false, .number = 1, .index = 0};
+  std::filesystem::create_directories(results.FolderOf(1));
+  std::ofstream(results.LogOf(trial, 1)) << "";
+  EXPECT_EQ(results.Read(trial).attempts, 0);
+  EXPECT_EQ(results.Read(trial).story.state, TrialState::kOpen);
+  std::ofstream(results.LogOf(trial, 1)) << "no log";
+  std::ofstream(results.LogOf(trial, 2)) << "";
+  const TrialRecord record = results.Read(trial);
+  EXPECT_EQ(record.attempts, 1);
+  EXPECT_EQ(record.log, results.LogOf(trial, 1));
 }
 
 TEST(ResultsTest, AFolderBelongsToOneVersionOfAnExperiment) {
