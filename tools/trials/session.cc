@@ -58,19 +58,25 @@ class Session {
     return base;
   }
 
+  /// What the desk says about a trial.
+  Next NextOf(const Trial& trial, std::int64_t seed) const {
+    const auto& all = trial.practice ? plan_.plan.practice : plan_.plan.conditions;
+    return {
+        .trial = trial,
+        .of = std::ssize(all),
+        .for_experimenter = fmt::format("{}, seed {}", ConditionOf(plan_.plan, trial).name, seed)};
+  }
+
   /// Makes a run of the trial, and reads its log into the record.
   void Drive(const Trial& trial, TrialRecord& record, double pause_s) {
     const ConditionSection& condition = ConditionOf(plan_.plan, trial);
     std::vector<std::string> overrides = options_.overrides;
     if (trial.seed >= 0) overrides.push_back(fmt::format("/seed={}", trial.seed));
     const Scenario scenario = LoadCondition(plan_, condition, overrides);
-    const auto& all = trial.practice ? plan_.plan.practice : plan_.plan.conditions;
-    desk_.WaitForBegin(
-        {.trial = trial,
-         .of = std::ssize(all),
-         .not_before_s = pause_s,
-         .seat = scenario.person.drives && !options_.pedals,
-         .for_experimenter = fmt::format("{}, seed {}", condition.name, scenario.seed)});
+    Next next = NextOf(trial, scenario.seed);
+    next.not_before_s = pause_s;
+    next.seat = scenario.person.drives && !options_.pedals;
+    desk_.WaitForBegin(next);
     const std::int64_t attempt = record.attempts + 1;
     const std::filesystem::path path = results_.LogOf(trial, attempt);
     auto pedals = options_.pedals ? options_.pedals(scenario.person) : nullptr;
@@ -124,7 +130,7 @@ class Session {
     if (!record.story.facts.empty()) base.seed = record.story.facts.front().seed;
     for (const QuestionnaireSection& questionnaire : QuestionsAfter(plan_.plan, record.trial)) {
       if (IsAnswered(record.story, questionnaire)) continue;
-      const std::vector<Answer> answers = desk_.Ask(questionnaire);
+      const std::vector<Answer> answers = desk_.Ask(NextOf(record.trial, base.seed), questionnaire);
       std::vector<trial_t> facts;
       for (std::size_t i = 0; i < answers.size(); ++i) {
         trial_t fact = base;

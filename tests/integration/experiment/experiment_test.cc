@@ -270,6 +270,28 @@ TEST_F(ExperimentRealtimeTest, AnswersThatAreMissingAreAskedWithoutAnotherRun) {
                             HasSubstr("metric,min_host_gap_m,")));
 }
 
+TEST_F(ExperimentRealtimeTest, QuestionsOfASessionThatGoesOnAreThoseOfTheirRun) {
+  // The answers end after run 1 and the first questionnaire of run 2.
+  const std::string input = folder_.File("short.txt");
+  std::ofstream(input) << AnswersOf(3, 1) << "\n10\n20\n30\n40\n50\n60\n";
+  const Outcome cut = RunCommand(
+      {"sh", "-c",
+       fmt::format("exec {} experiment run {} --results {} --participant 3 --no-page < {}",
+                   Program("fogline"), file_, results_, input)});
+  EXPECT_EQ(cut.code, 3) << cut.err;
+  PageSession session({Program("fogline"), "experiment", "run", file_, "--results", results_,
+                       "--participant", "3"});
+  nlohmann::json state;
+  while (state["stage"] != "asking")
+    state = nlohmann::json::parse(session.experimenter().Receive().bytes);
+  EXPECT_EQ(state["participant"], 3);
+  EXPECT_EQ(state["run"], 2);
+  EXPECT_EQ(state["of"], 3);
+  EXPECT_THAT(state["condition"].get<std::string>(), HasSubstr(", seed "));
+  session.process().Signal(SIGINT);
+  EXPECT_EQ(session.process().Wait(), 130);
+}
+
 TEST_F(ExperimentRealtimeTest, TheLogOfATrialTellsItsStory) {
   ASSERT_EQ(RunCommand(Session(1)).code, 0);
   const std::string log = results_ + "/participant-01/trial-1-low.lcm";

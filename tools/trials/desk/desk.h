@@ -12,7 +12,7 @@
 
 namespace fogline::trials {
 
-/// The next run, as the participant may know it: without condition and threshold.
+/// A run, as the participant may know it: without condition and threshold.
 struct Next {
   Trial trial;
   std::int64_t of = 1;           // number of trials, or of practice runs
@@ -43,8 +43,9 @@ class Desk {
   virtual void RunGoesOn() = 0;
   /// Also called if the run breaks off.
   virtual void RunEnded() = 0;
-  /// The answers to all items, in their order. @throws as WaitForBegin()
-  virtual std::vector<Answer> Ask(const QuestionnaireSection& questionnaire) = 0;
+  /// The answers to all items, in their order. @param after the run that they are about
+  /// @throws as WaitForBegin()
+  virtual std::vector<Answer> Ask(const Next& after, const QuestionnaireSection& questionnaire) = 0;
   /// The participant has made all trials.
   virtual void Finish() = 0;
 };

@@ -313,8 +313,8 @@ void PageDesk::RunGoesOn() { pages_->LookAtRunPage(); }
 
 void PageDesk::RunEnded() { pages_->EndRun(); }
 
-std::vector<Answer> PageDesk::Ask(const QuestionnaireSection& questionnaire) {
-  pages_->Set([&](PageState& state) { state.Ask(questionnaire); });
+std::vector<Answer> PageDesk::Ask(const Next& after, const QuestionnaireSection& questionnaire) {
+  pages_->Set([&](PageState& state) { state.Ask(after, questionnaire); });
   std::vector<Answer> answers = pages_->WaitFor(PageMessage::Kind::kAnswers).answers;
   pages_->Set(
       [&](PageState& state) { state.Tell(fmt::format("{} is answered", questionnaire.name)); });

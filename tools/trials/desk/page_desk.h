@@ -44,7 +44,7 @@ class PageDesk final : public Desk {
   void RunBegins(Speaker& speaker) override;
   void RunGoesOn() override;
   void RunEnded() override;
-  std::vector<Answer> Ask(const QuestionnaireSection& questionnaire) override;
+  std::vector<Answer> Ask(const Next& after, const QuestionnaireSection& questionnaire) override;
   void Finish() override;
 
  private:

@@ -91,7 +91,8 @@ void PageState::EndRun() {
   Enter(Stage::kEnded);
 }
 
-void PageState::Ask(const QuestionnaireSection& questionnaire) {
+void PageState::Ask(const Next& after, const QuestionnaireSection& questionnaire) {
+  next_ = after;
   questionnaire_ = questionnaire;
   Enter(Stage::kAsking);
 }

@@ -43,7 +43,8 @@ class PageState {
   void MoveRun(std::string view, std::string seat);
   /// The run is over or broke off. Its pages are gone, and no marker is taken any more.
   void EndRun();
-  void Ask(const QuestionnaireSection& questionnaire);
+  /// @param after the run that the questions are about
+  void Ask(const Next& after, const QuestionnaireSection& questionnaire);
   void Finish();
   /// Adds a line to what the experimenter sees, the newest last. The oldest lines are dropped.
   void Tell(std::string line);

@@ -79,7 +79,9 @@ void TerminalDesk::WaitForBegin(const Next& next) {
   std::fflush(stdout);
 }
 
-std::vector<Answer> TerminalDesk::Ask(const QuestionnaireSection& questionnaire) {
+std::vector<Answer> TerminalDesk::Ask(const Next& after,
+                                      const QuestionnaireSection& questionnaire) {
+  fmt::print("{}: questions\n", Title(after));
   std::vector<Answer> answers;
   const std::size_t count = questionnaire.items.size();
   for (std::size_t i = 0; i < count; ++i) {

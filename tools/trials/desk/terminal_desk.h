@@ -15,7 +15,7 @@ class TerminalDesk final : public Desk {
   void RunBegins(Speaker&) override {}
   void RunGoesOn() override {}
   void RunEnded() override {}
-  std::vector<Answer> Ask(const QuestionnaireSection& questionnaire) override;
+  std::vector<Answer> Ask(const Next& after, const QuestionnaireSection& questionnaire) override;
   void Finish() override;
 
  private:

@@ -42,7 +42,7 @@ TEST(PageStateTest, TheParticipantSeesNothingOfConditionSeedOrView) {
   state.Tell("marker: yawns");
   expect_silence();
   EXPECT_THAT(state.ForExperimenter(), HasSubstr("7690"));
-  state.Ask(Questions());
+  state.Ask(NextRun(), Questions());
   expect_silence();
   EXPECT_THAT(json::parse(state.ForParticipant())["items"], SizeIs(1));
   state.Finish();
@@ -70,7 +70,7 @@ TEST(PageStateTest, TheParticipantWhoDrivesSeesTheSeatWhileItIsOpen) {
   state.MoveRun("http://127.0.0.1:7690/#token=secret", "");
   EXPECT_EQ(seen()["seat"], "");
   EXPECT_EQ(seen()["state"], before + 1);
-  state.Ask(Questions());
+  state.Ask(NextRun(), Questions());
   EXPECT_FALSE(seen().contains("seat"));
 }
 
@@ -87,6 +87,17 @@ TEST(PageStateTest, ARunThatTheModelDrivesHasNoSeat) {
   EXPECT_FALSE(json::parse(state.ForParticipant()).contains("seat"));
 }
 
+TEST(PageStateTest, QuestionsAreAboutTheirRunAlsoInASessionThatGoesOn) {
+  PageState state(1);
+  state.Ask(NextRun(), Questions());
+  for (const std::string& page : {state.ForParticipant(), state.ForExperimenter()}) {
+    EXPECT_EQ(json::parse(page)["run"], 2);
+    EXPECT_EQ(json::parse(page)["of"], 3);
+  }
+  EXPECT_EQ(json::parse(state.ForExperimenter())["participant"], 3);
+  EXPECT_THAT(state.ForExperimenter(), HasSubstr("secret-condition, seed 4711"));
+}
+
 TEST(PageStateTest, AnAnswerFitsItsState) {
   PageState state(10);
   std::string why;
@@ -94,7 +105,7 @@ TEST(PageStateTest, AnAnswerFitsItsState) {
   EXPECT_TRUE(state.FromParticipant(R"({"op":"begin","state":11})", why));
   EXPECT_FALSE(state.FromParticipant(R"({"op":"begin","state":10})", why));
   EXPECT_FALSE(state.FromParticipant(R"({"op":"answers","state":11,"values":[]})", why));
-  state.Ask(Questions());
+  state.Ask(NextRun(), Questions());
   EXPECT_FALSE(state.FromParticipant(R"({"op":"begin","state":12})", why));
   const auto message = state.FromParticipant(R"({"op":"answers","state":12,"values":["7"]})", why);
   ASSERT_TRUE(message);
@@ -117,7 +128,7 @@ TEST(PageStateTest, NoRunBeginsInABreak) {
 
 TEST(PageStateTest, FramesThatAreNoAnswersAreRefused) {
   PageState state(10);
-  state.Ask(Questions());
+  state.Ask(NextRun(), Questions());
   for (const char* frame :
        {"", "x", "[]", "null", "7", R"({"op":"answers"})", R"({"op":7,"state":11})",
         R"({"op":"answers","state":"11","values":["7"]})",
