@@ -156,6 +156,11 @@ ServerOptions OptionsOf(const ViewArguments& arguments) {
   const auto next_token = arguments.tokens_on_stdin ? ReadToken : DrawToken;
   options.token = next_token();
   if (arguments.seat) options.driver_token = next_token();
+  if (options.token == options.driver_token) {
+    throw InputError(
+        "error: --tokens-on-stdin: both lines are the same token; the driver's opens no view, and "
+        "the viewers' no seat");
+  }
   return options;
 }
 

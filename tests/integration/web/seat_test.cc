@@ -289,10 +289,14 @@ TEST(SeatAccessTest, TheTokensCanComeFromStdin) {
   EXPECT_THAT(good.Out(), HasSubstr("/drive#token=driver-driver-driver\n"));
   good.Signal(SIGINT);
   EXPECT_EQ(good.Wait(), 0);
-  std::ofstream(folder.File("tokens")) << "viewers-viewers-\n";
-  Background bad({"sh", "-c", command});
-  EXPECT_EQ(bad.Wait(), 2);
-  EXPECT_THAT(bad.Err(), HasSubstr("--tokens-on-stdin: a line is no token"));
+  const auto expect_refused = [&](const std::string& tokens, const std::string& why) {
+    std::ofstream(folder.File("tokens")) << tokens;
+    Background bad({"sh", "-c", command});
+    EXPECT_EQ(bad.Wait(), 2);
+    EXPECT_THAT(bad.Err(), HasSubstr("--tokens-on-stdin: " + why));
+  };
+  expect_refused("viewers-viewers-\n", "a line is no token");
+  expect_refused("same-same-same-same\nsame-same-same-same\n", "both lines are the same token");
 }
 
 TEST(SeatAccessTest, WithoutTheOptionThereIsNoSeat) {
