@@ -280,7 +280,7 @@ TEST_F(DrivenTrialsInRealtimeTest, OneParticipantHasTheSeatAndTheirTokenOpensNoV
   const auto connect = [&](const std::string& token, const std::string& protocol) {
     return WebClient(seat.port, {.target = PageSession::SocketTarget(token), .protocol = protocol});
   };
-  for (const std::string& token : {std::string(), seat.token}) {
+  for (const std::string& token : {std::string(), seat.token, session.participant_token()}) {
     EXPECT_THROW(connect(token, "fogline.view.v1"), WebRefused);
   }
   EXPECT_THROW(connect("", "fogline.drive.v1"), WebRefused);
@@ -297,8 +297,6 @@ TEST_F(DrivenTrialsInRealtimeTest, OneParticipantHasTheSeatAndTheirTokenOpensNoV
 
 TEST_F(DrivenTrialsInRealtimeTest, ForOthersEachAddressHasATokenOfItsOwn) {
   PageSession session(Run({"--listen", "127.0.0.1"}));
-  ASSERT_THAT(session.participant_token(), ::testing::SizeIs(32));
-  EXPECT_THROW(WebClient(session.participant_port(), {.protocol = ""}), WebRefused);
   const SeatPlace seat = SeatIn(WaitForSeat(session));
   EXPECT_NE(seat.token, session.participant_token());
   EXPECT_THAT(session.process().Out(), Not(HasSubstr(seat.token)));

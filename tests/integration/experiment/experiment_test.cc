@@ -221,8 +221,16 @@ TEST_F(ExperimentRealtimeTest, AKillOfFoglineWebInARunLosesNothingOfAnExperiment
 TEST_F(ExperimentRealtimeTest, ThePagesShowOnlyWhatIsMeantForThem) {
   PageSession session({Program("fogline"), "experiment", "run", file_, "--results", results_,
                        "--participant", "1"});
-  // The experimenter's page needs the token, and neither server has the files of the other page.
-  EXPECT_THROW(WebClient(session.experimenter_port(), {.protocol = ""}), WebRefused);
+  // Each page needs its own token, and neither server has the files of the other page.
+  EXPECT_NE(session.participant_token(), session.experimenter_token());
+  const auto open = [](std::uint16_t port, const std::string& token) {
+    return WebClient(port, {.target = PageSession::SocketTarget(token), .protocol = ""});
+  };
+  for (const std::uint16_t port : {session.participant_port(), session.experimenter_port()}) {
+    EXPECT_THROW(open(port, ""), WebRefused);
+  }
+  EXPECT_THROW(open(session.experimenter_port(), session.participant_token()), WebRefused);
+  EXPECT_THROW(open(session.participant_port(), session.experimenter_token()), WebRefused);
   const auto status = [](std::uint16_t port, const std::string& target) {
     return StatusOf(Exchange(port, GetRequest(port, target)));
   };
@@ -231,7 +239,7 @@ TEST_F(ExperimentRealtimeTest, ThePagesShowOnlyWhatIsMeantForThem) {
   EXPECT_EQ(status(session.participant_port(), "/experimenter.js"), 404);
   EXPECT_EQ(status(session.experimenter_port(), "/experimenter.js"), 200);
   EXPECT_EQ(status(session.experimenter_port(), "/participant.js"), 404);
-  WebClient participant(session.participant_port(), {.protocol = ""});
+  WebClient participant = open(session.participant_port(), session.participant_token());
   // The first state can come before the session is ready for the run.
   std::string state;
   while (state.find("waiting") == std::string::npos) {

@@ -26,7 +26,7 @@ class PageSession {
       throw std::runtime_error(session_.Err());
     }
     static const std::regex lines(
-        "participant: http://127.0.0.1:(\\d+)/(?:#token=([0-9a-f]{32}))?\n"
+        "participant: http://127.0.0.1:(\\d+)/#token=([0-9a-f]{32})\n"
         "experimenter: http://127.0.0.1:(\\d+)/#token=([0-9a-f]{32})\n");
     std::smatch parts;
     const std::string out = session_.Out();
@@ -34,17 +34,17 @@ class PageSession {
     participant_port_ = static_cast<std::uint16_t>(std::stoi(parts[1]));
     participant_token_ = parts[2];
     experimenter_port_ = static_cast<std::uint16_t>(std::stoi(parts[3]));
+    experimenter_token_ = parts[4];
     participant_.emplace(
         participant_port_,
         WebClient::Options{.target = SocketTarget(participant_token_), .protocol = ""});
-    experimenter_.emplace(experimenter_port_,
-                          WebClient::Options{.target = SocketTarget(parts[4]), .protocol = ""});
+    experimenter_.emplace(
+        experimenter_port_,
+        WebClient::Options{.target = SocketTarget(experimenter_token_), .protocol = ""});
   }
 
-  /// The target of a WebSocket with a token. @param token "" without one
-  static std::string SocketTarget(const std::string& token) {
-    return token.empty() ? "/ws" : "/ws?token=" + token;
-  }
+  /// The target of a WebSocket with a token.
+  static std::string SocketTarget(const std::string& token) { return "/ws?token=" + token; }
 
   /// The next state of the participant's page that is not this one.
   nlohmann::json NextState(std::int64_t known) {
@@ -95,6 +95,7 @@ class PageSession {
   WebClient& experimenter() { return *experimenter_; }
   std::uint16_t participant_port() const { return participant_port_; }
   const std::string& participant_token() const { return participant_token_; }
+  const std::string& experimenter_token() const { return experimenter_token_; }
   std::uint16_t experimenter_port() const { return experimenter_port_; }
 
  private:
@@ -102,6 +103,7 @@ class PageSession {
   std::uint16_t participant_port_ = 0;
   std::uint16_t experimenter_port_ = 0;
   std::string participant_token_;
+  std::string experimenter_token_;
   std::optional<WebClient> participant_;
   std::optional<WebClient> experimenter_;
 };

@@ -32,10 +32,10 @@ missing, only the questions are asked.
 
 It prints two addresses: the page of the participant, which begins the runs and asks the
 questions and shows neither condition nor threshold, and the page of the experimenter,
-which shows the condition and takes markers: texts that go into the log of the run. Only
-this machine can open them, unless --listen names an address for others. Each of the
-printed addresses then has a token of its own. With --no-page the questions are asked in
-the terminal. Each line of stdin is then an answer, so a script can answer.
+which shows the condition and takes markers: texts that go into the log of the run. Each
+address has a token of its own. Only this machine can open the pages, unless --listen
+names an address for others. With --no-page the questions are asked in the terminal. Each
+line of stdin is then an answer, so a script can answer.
 
 If a condition has /person/drives=true, the participant drives in it: the page of the
 participant opens the seat (fogline drive --help), the run begins when the participant is

@@ -122,9 +122,8 @@ class PageDesk::Pages {
         experimenter_view_([this](web::Client& client, std::string_view frame) {
           Take(client, experimenter_view_, &PageState::FromExperimenter, frame);
         }),
-        participant_(Listen(context_, options.listen, options.participant_port,
-                            options.listen.empty() ? "" : web::DrawToken(), participant_files_,
-                            participant_view_)),
+        participant_(Listen(context_, options.listen, options.participant_port, web::DrawToken(),
+                            participant_files_, participant_view_)),
         experimenter_(Listen(context_, options.listen, options.experimenter_port, web::DrawToken(),
                              experimenter_files_, experimenter_view_)),
         traffic_(options.traffic),

@@ -2,8 +2,8 @@
 // addresses. The participant's page shows the title of the run, the questions, and nothing else: no
 // condition, no threshold, no truth. If the participant drives, the page opens the seat of
 // fogline-web for the run, and the seat opens the page again. The experimenter's page shows the
-// condition and what has happened, and takes markers. Its address has a token, so the participant
-// cannot guess it.
+// condition and what has happened, and takes markers. Each address has a token of its own: the
+// participant cannot guess that of the experimenter, and other users of the machine can guess none.
 //
 // This process serves both pages itself, and writes the answers itself. So no answer depends on
 // fogline-web, which only shows the run and has the seat.
@@ -20,8 +20,7 @@
 namespace fogline::trials {
 
 struct PageOptions {
-  /// IPv4 address in numbers at which others may open the pages. The participant's page then has a
-  /// token, too. "": this machine only.
+  /// IPv4 address in numbers at which others may open the pages. "": this machine only.
   std::string listen;
   std::uint16_t participant_port = 0;   // 0: any free port
   std::uint16_t experimenter_port = 0;  // 0: any free port
@@ -35,7 +34,7 @@ class PageDesk final : public Desk {
   explicit PageDesk(const PageOptions& options);
   ~PageDesk() override;
 
-  /// Such as "http://127.0.0.1:40001/". The experimenter's has a token behind '#'.
+  /// Such as "http://127.0.0.1:40001/#token=...".
   std::string participant_address() const;
   std::string experimenter_address() const;
 
