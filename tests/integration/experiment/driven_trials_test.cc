@@ -318,6 +318,25 @@ TEST_F(DrivenTrialsInRealtimeTest, WithoutAPageThePersonNeedsADevice) {
               HasSubstr("--no-page: in condition \"secret-a\" the participant drives"));
 }
 
+TEST_F(DrivenTrialsInRealtimeTest, RefusesAPortThatIsTakenBeforeAnyoneBegins) {
+  TakenPort taken(0);
+  ASSERT_TRUE(taken.Take());
+  const std::string port = std::to_string(taken.port());
+  for (const std::string option : {"--seat-port", "--participant-port", "--experimenter-port"}) {
+    const Outcome outcome = RunCommand(Run({option, port}));
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_THAT(outcome.err, HasSubstr("error: " + option + " " + port + ": cannot listen on"));
+    EXPECT_EQ(outcome.out, "");
+  }
+}
+
+TEST_F(DrivenTrialsInRealtimeTest, RefusesTwoPagesAtOnePort) {
+  const std::string port = std::to_string(FreePort());
+  const Outcome outcome = RunCommand(Run({"--participant-port", port, "--seat-port", port}));
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("--seat-port " + port + ": --participant-port has the same"));
+}
+
 TEST_F(DrivenTrialsInRealtimeTest, RefusesAPortBehindTheAddress) {
   const Outcome outcome = RunCommand(Run({"--listen", "127.0.0.1:80"}));
   EXPECT_EQ(outcome.code, 2);

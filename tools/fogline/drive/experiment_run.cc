@@ -1,4 +1,6 @@
 // fogline experiment run: the trials of one participant.
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <cstdio>
 #include <memory>
@@ -140,6 +142,21 @@ void CheckSeat(const RunTrialsArguments& arguments, const trials::PlanFile& plan
   }
 }
 
+/// @throws InputError if two pages have the same port
+void CheckPorts(const RunTrialsArguments& arguments) {
+  const std::array<std::pair<const char*, std::uint16_t>, 3> ports{
+      {{"--participant-port", arguments.participant_port},
+       {"--experimenter-port", arguments.experimenter_port},
+       {"--seat-port", arguments.seat_port}}};
+  for (std::size_t i = 0; i < ports.size(); ++i) {
+    for (std::size_t k = i + 1; k < ports.size(); ++k) {
+      if (ports[i].second == 0 || ports[i].second != ports[k].second) continue;
+      throw InputError(fmt::format("error: {} {}: {} has the same port", ports[k].first,
+                                   ports[k].second, ports[i].first));
+    }
+  }
+}
+
 /// The address of --listen in numbers; "" without it. @throws InputError
 std::string ListenAddress(const RunTrialsArguments& arguments) {
   if (arguments.listen.empty()) return "";
@@ -172,6 +189,7 @@ int RunTrials(const RunTrialsArguments& arguments) {
   const trials::PlanFile plan = arguments.plan.Load();
   trials::SessionOptions options = SessionOf(arguments, plan.plan);
   CheckSeat(arguments, plan);
+  CheckPorts(arguments);
   const trials::Results results(plan, arguments.plan.results());
   WatchInterrupts();
   const auto desk = MakeDesk(arguments, options.run.traffic);

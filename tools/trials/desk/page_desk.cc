@@ -14,10 +14,12 @@
 
 #include <fmt/core.h>
 #include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/post.hpp>
 #include <nlohmann/json.hpp>
 
 #include "common/clock.h"
+#include "common/errors.h"
 #include "common/process/console.h"
 #include "tools/processes/page_seat.h"
 #include "tools/trials/desk/page_state.h"
@@ -85,27 +87,52 @@ class PageView final : public web::View {
   std::map<std::uint64_t, web::Client*> clients_;
 };
 
-constexpr const char* kThisMachine = "127.0.0.1";
+std::string AddressOf(const PageOptions& options) {
+  return options.listen.empty() ? "127.0.0.1" : options.listen;
+}
 
-/// @throws std::runtime_error if the address is not of this machine, or the port is not free
-std::unique_ptr<web::Server> Listen(asio::io_context& context, const std::string& listen,
-                                    std::uint16_t port, std::string token,
+/// A port of this address, and the option that names it.
+struct Place {
+  std::string address;
+  std::uint16_t port;  // 0: any free port
+  const char* option;
+};
+
+/// @throws InputError if the user has chosen the port; otherwise std::runtime_error
+[[noreturn]] void CannotListen(const Place& place, const boost::system::system_error& error) {
+  const std::string why =
+      fmt::format("cannot listen on {}:{}: {}", place.address, place.port, error.code().message());
+  if (place.port == 0) throw std::runtime_error(why);
+  throw InputError(fmt::format("error: {} {}: {}", place.option, place.port, why));
+}
+
+/// @throws as CannotListen() if the address is not of this machine, or the port is not free
+std::unique_ptr<web::Server> Listen(asio::io_context& context, const Place& place,
                                     std::span<const web::Asset> files, web::View& view) {
-  const std::string address = listen.empty() ? kThisMachine : listen;
   try {
     return std::make_unique<web::Server>(
         context,
         web::ServerOptions{
-            .address = address, .port = port, .token = std::move(token), .origins = {}},
+            .address = place.address, .port = place.port, .token = web::DrawToken(), .origins = {}},
         files, view);
   } catch (const boost::system::system_error& error) {
-    throw std::runtime_error(
-        fmt::format("cannot listen on {}:{}: {}", address, port, error.code().message()));
+    CannotListen(place, error);
+  }
+}
+
+/// Whether fogline-web can listen there is known before the participant begins.
+/// @throws as CannotListen()
+void RequireFree(asio::io_context& context, const Place& place) {
+  using asio::ip::tcp;
+  try {
+    const tcp::acceptor tried(context, {asio::ip::make_address(place.address), place.port});
+  } catch (const boost::system::system_error& error) {
+    CannotListen(place, error);
   }
 }
 
 RunPageOptions ForRuns(const PageOptions& options) {
-  return {.address = options.listen.empty() ? kThisMachine : options.listen,
+  return {.address = AddressOf(options),
           .port = options.seat_port,
           .traffic = runtime::ToArguments({.key_file = options.traffic.key_file, .faults = ""})};
 }
@@ -122,12 +149,15 @@ class PageDesk::Pages {
         experimenter_view_([this](web::Client& client, std::string_view frame) {
           Take(client, experimenter_view_, &PageState::FromExperimenter, frame);
         }),
-        participant_(Listen(context_, options.listen, options.participant_port, web::DrawToken(),
+        participant_(Listen(context_,
+                            {AddressOf(options), options.participant_port, "--participant-port"},
                             participant_files_, participant_view_)),
-        experimenter_(Listen(context_, options.listen, options.experimenter_port, web::DrawToken(),
+        experimenter_(Listen(context_,
+                             {AddressOf(options), options.experimenter_port, "--experimenter-port"},
                              experimenter_files_, experimenter_view_)),
         traffic_(options.traffic),
         run_page_(ForRuns(options)) {
+    RequireFree(context_, {AddressOf(options), options.seat_port, "--seat-port"});
     Publish();
     thread_ = std::thread([this] { context_.run(); });
   }

@@ -30,7 +30,7 @@ struct PageOptions {
 
 class PageDesk final : public Desk {
  public:
-  /// @throws std::runtime_error if it cannot listen
+  /// @throws InputError if a chosen port cannot be had; std::runtime_error if it cannot listen
   explicit PageDesk(const PageOptions& options);
   ~PageDesk() override;
 

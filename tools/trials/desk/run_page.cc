@@ -24,27 +24,36 @@ constexpr int kMostFailures = 5;
 }  // namespace
 
 RunPage::RunPage(RunPageOptions options)
-    : options_(std::move(options)), view_token_(web::DrawToken()), seat_token_(web::DrawToken()) {}
+    : options_(std::move(options)),
+      port_(options_.port),
+      view_token_(web::DrawToken()),
+      seat_token_(web::DrawToken()) {}
 
 void RunPage::Show(const std::string& url, Seat seat) {
   End();
   url_ = url;
   seat_ = seat;
   failed_ = 0;
-  Start();
-  if (state_ == State::kStarting && TakeAddresses(kPageLimit)) return;
-  ThrowIfInterrupted();
-  if (state_ == State::kStarting) Fail("fogline-web does not listen");
+  const bool may_move = port_ != options_.port;
+  if (Comes() || (may_move && Comes())) return;
   if (seat_ == Seat::kOpen) {
     End();
     throw std::runtime_error("fogline-web does not listen, so no person can drive at a page");
   }
 }
 
+bool RunPage::Comes() {
+  Start();
+  if (state_ == State::kStarting && TakeAddresses(kPageLimit)) return true;
+  ThrowIfInterrupted();
+  if (state_ == State::kStarting) Fail("fogline-web does not listen");
+  return false;
+}
+
 void RunPage::Start() {
-  std::vector<std::string> arguments{
-      "--lcm-url",         url_,       "--no-browser",
-      "--tokens-on-stdin", "--listen", fmt::format("{}:{}", options_.address, options_.port)};
+  std::vector<std::string> arguments{"--lcm-url",    url_,
+                                     "--no-browser", "--tokens-on-stdin",
+                                     "--listen",     fmt::format("{}:{}", options_.address, port_)};
   if (seat_ == Seat::kOpen) arguments.emplace_back("--seat");
   arguments.insert(arguments.end(), options_.traffic.begin(), options_.traffic.end());
   try {
@@ -59,6 +68,7 @@ void RunPage::Start() {
 void RunPage::Fail(const std::string& how) {
   web_.Kill();  // the thread of the run does not wait for its end
   state_ = State::kPausing;
+  port_ = options_.port;  // another program may have taken the port that the system had chosen
   start_at_ = Clock::now() + std::min(kLongestPause, kFirstPause * (1 << std::min(failed_, 10)));
   if (failed_++ > 0) return;
   Complain(fmt::format("fogline experiment: warning: {}; it is started again", how));
@@ -68,7 +78,7 @@ bool RunPage::TakeAddresses(Duration limit) {
   if (!web_.Listens(seat_ == Seat::kOpen ? 2 : 1, limit)) return false;
   seat_address_ = seat_ == Seat::kOpen ? web_.addresses().front() : "";
   view_address_ = web_.addresses().back();
-  options_.port = static_cast<std::uint16_t>(std::stoi(processes::PortOf(view_address_)));
+  port_ = static_cast<std::uint16_t>(std::stoi(processes::PortOf(view_address_)));
   state_ = State::kListening;
   failed_ = 0;
   return true;

@@ -1,6 +1,7 @@
 // The pages of fogline-web for a run: the view for the experimenter and, if the participant drives,
-// the seat. fogline-web is a child, at the same addresses for all runs of a session. If it dies, it
-// is started again, after a pause that grows; the run and the session go on without it.
+// the seat. fogline-web is a child, at the same addresses for all runs of a session, unless another
+// program takes a port that nobody has chosen. If it dies, it is started again, after a pause that
+// grows; the run and the session go on without it.
 #pragma once
 
 #include <cstdint>
@@ -14,8 +15,8 @@ namespace fogline::trials {
 
 struct RunPageOptions {
   std::string address = "127.0.0.1";  // IPv4 in numbers, at which fogline-web listens
-  std::uint16_t port = 0;             // 0: any free port
-  std::vector<std::string> traffic;   // the options --key for fogline-web
+  std::uint16_t port = 0;            // 0: any free port, the same one for all runs if it stays free
+  std::vector<std::string> traffic;  // the options --key for fogline-web
 };
 
 class RunPage {
@@ -44,12 +45,15 @@ class RunPage {
   enum class State { kNoRun, kStarting, kListening, kPausing };
 
   void Start();
+  /// Starts it, and waits until it listens. @return false if that was in vain @throws Interrupted
+  bool Comes();
   /// The start was in vain. Says so at the first time.
   void Fail(const std::string& how);
   /// Takes the addresses that fogline-web prints. @return whether it listens
   bool TakeAddresses(Duration limit);
 
-  RunPageOptions options_;
+  const RunPageOptions options_;
+  std::uint16_t port_;  // of the next start
   // They stay the same, so a page that was open connects again after fogline-web has died.
   const std::string view_token_;
   const std::string seat_token_;
