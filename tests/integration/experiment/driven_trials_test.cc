@@ -2,9 +2,6 @@
 // pages of the participant: the page of the session, and the page /drive.
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
-#include <netinet/in.h>
-#include <sys/socket.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -26,6 +23,7 @@
 #include "tests/integration/drive/page_person.h"
 #include "tests/integration/experiment/page_session.h"
 #include "tests/integration/web/viewed.h"
+#include "tests/unit/tools/trials/desk/taken_port.h"
 
 namespace fogline::test {
 namespace {
@@ -63,45 +61,6 @@ bool HasInputs(const std::filesystem::path& log) {
     if (Content(log).find(ChannelOf<driver_input_t>().name) != std::string::npos) return true;
   }
   return false;
-}
-
-/// A port that this test takes away from others.
-class TakenPort {
- public:
-  explicit TakenPort(std::uint16_t port) : address_{} {
-    address_.sin_family = AF_INET;
-    address_.sin_port = htons(port);
-    address_.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    const int yes = 1;  // connections of the program before may still be closing
-    setsockopt(socket_, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof(yes));
-  }
-  ~TakenPort() { close(socket_); }
-  TakenPort(const TakenPort&) = delete;
-  TakenPort& operator=(const TakenPort&) = delete;
-
-  /// @return false while another program has the port
-  bool Take() {
-    bound_ = bound_ || bind(socket_, reinterpret_cast<sockaddr*>(&address_), sizeof(address_)) == 0;
-    return bound_ && listen(socket_, 1) == 0;
-  }
-  /// The port; if it was 0, the one that the system has chosen.
-  std::uint16_t port() {
-    socklen_t size = sizeof(address_);
-    getsockname(socket_, reinterpret_cast<sockaddr*>(&address_), &size);
-    return ntohs(address_.sin_port);
-  }
-
- private:
-  int socket_ = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
-  sockaddr_in address_;
-  bool bound_ = false;
-};
-
-/// A port that no program has now.
-std::uint16_t FreePort() {
-  TakenPort port(0);
-  EXPECT_TRUE(port.Take());
-  return port.port();
 }
 
 /// How often a text is in another one.
