@@ -30,6 +30,7 @@
 #include "tools/web/live_view.h"
 #include "tools/web/log/log_view.h"
 #include "tools/web/seat/seat_view.h"
+#include "tools/web/server/page.h"
 #include "tools/web/server/server.h"
 
 namespace fogline::web {
@@ -222,10 +223,8 @@ void Serve(asio::io_context& context, const ViewArguments& arguments, Server& se
 
 /// @throws std::runtime_error if there is no page for a browser
 void RequirePage(const ViewArguments& arguments) {
-  if (!Assets().empty()) return;
-  const std::string why =
-      "this build has no page, because packages of npm were missing when it was configured; "
-      "install and build: tools/setup run && tools/build fogline_demo";
+  const std::string why(WhyNoPage());
+  if (why.empty()) return;
   if (!arguments.no_browser) throw std::runtime_error(why);
   Notice("fogline view: warning: " + why);
 }

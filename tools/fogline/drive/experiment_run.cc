@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <utility>
 
@@ -22,6 +23,7 @@
 #include "tools/trials/desk/page_desk.h"
 #include "tools/trials/desk/terminal_desk.h"
 #include "tools/trials/session.h"
+#include "tools/web/server/page.h"
 
 namespace fogline {
 namespace {
@@ -128,18 +130,32 @@ trials::SessionOptions SessionOf(const RunTrialsArguments& arguments, const Expe
   return options;
 }
 
-/// @throws InputError if the participant drives in a condition, and has nothing to drive with
-void CheckSeat(const RunTrialsArguments& arguments, const trials::PlanFile& plan) {
-  if (!arguments.no_page || arguments.keys || !arguments.device.empty()) return;
+/// The first condition in which the participant drives; nullptr if there is none.
+const ConditionSection* DrivenCondition(const trials::PlanFile& plan) {
   for (const auto* list : {&plan.plan.practice, &plan.plan.conditions}) {
     for (const ConditionSection& condition : *list) {
-      if (!trials::LoadCondition(plan, condition).person.drives) continue;
-      throw InputError(
-          fmt::format("error: --no-page: in condition {} the participant drives; leave out "
-                      "--no-page, or give --keys or --evdev",
-                      Quote(condition.name)));
+      if (trials::LoadCondition(plan, condition).person.drives) return &condition;
     }
   }
+  return nullptr;
+}
+
+/// @throws InputError if the participant drives in a condition, and has nothing to drive with;
+///     std::runtime_error if this build has no seat
+void CheckSeat(const RunTrialsArguments& arguments, const trials::PlanFile& plan) {
+  const std::string no_page(web::WhyNoPage());
+  const bool has_seat = !arguments.no_page && no_page.empty();
+  if (has_seat || arguments.keys || !arguments.device.empty()) return;
+  const ConditionSection* driven = DrivenCondition(plan);
+  if (driven == nullptr) return;
+  if (!arguments.no_page) {
+    throw std::runtime_error(fmt::format("in condition {} the participant drives at a page, but {}",
+                                         Quote(driven->name), no_page));
+  }
+  throw InputError(fmt::format(
+      "error: --no-page: in condition {} the participant drives; leave out --no-page, or give "
+      "--keys or --evdev",
+      Quote(driven->name)));
 }
 
 /// @throws InputError if two pages have the same port
