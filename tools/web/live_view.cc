@@ -88,9 +88,10 @@ void LiveView::Hear(std::string_view channel, runtime::Bytes bytes) {
   if (!signer_ && runtime::LooksSigned(bytes)) bytes = runtime::WithoutSignature(bytes);
   const auto id = channels_.IdOf(channel, bytes);
   if (!id) return;
-  ring_.Add({.channel = *id, .wall_ms = WallClock_ms(), .bytes = bytes});
+  const RingMessage message{.channel = *id, .wall_ms = WallClock_ms(), .bytes = bytes};
+  ring_.Add(message);
   tracker_.Hear(*id, bytes, now);
-  if (teller_ && *id < kNumChannels) teller_(*id, bytes);
+  if (teller_ && *id < kNumChannels) teller_(message);
 }
 
 void LiveView::Handle() {

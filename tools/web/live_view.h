@@ -46,9 +46,9 @@ class LiveView final : public View {
   /// The server whose counts (viewers, cut off, refused) the clients get in `health`. It must live
   /// as long as the view is not stopped.
   void Show(const Server& server) { server_ = &server; }
-  /// Each message of a channel of the graph also goes to `teller`, with the channel's place in
-  /// kChannels. An empty function ends this.
-  using Teller = std::function<void(std::size_t channel, runtime::Bytes bytes)>;
+  /// Each message of a channel of the graph also goes to `teller`, after tracker() has heard it. An
+  /// empty function ends this.
+  using Teller = std::function<void(const RingMessage& message)>;
   void TellMessages(Teller teller) { teller_ = std::move(teller); }
   /// The context then has no more work of this view.
   void Stop();
@@ -59,6 +59,7 @@ class LiveView final : public View {
   void Closed(Client& client) override { viewers_.erase(client.id()); }
 
   const std::string& url() const { return network_.url(); }
+  const RunTracker& tracker() const { return tracker_; }
 
  private:
   /// A client, and the part of the ring that it has got.

@@ -20,10 +20,7 @@ void MessageRing::Add(const RingMessage& message) {
     chunks_.back().bytes.reserve(std::max(size, kChunkBytes));
   }
   Chunk& chunk = chunks_.back();
-  PutLittleEndian(message.channel, chunk.bytes);
-  PutLittleEndian(message.wall_ms, chunk.bytes);
-  PutLittleEndian(static_cast<std::uint32_t>(message.bytes.size()), chunk.bytes);
-  chunk.bytes.append(reinterpret_cast<const char*>(message.bytes.data()), message.bytes.size());
+  AddRingMessage(message, chunk.bytes);
   chunk.newest_ms = message.wall_ms;
   end_ += size;
 }
@@ -40,6 +37,13 @@ std::string_view MessageRing::From(std::uint64_t place) const {
   const auto behind = std::ranges::upper_bound(chunks_, place, {}, &Chunk::begin);
   const Chunk& chunk = *std::prev(behind);
   return std::string_view(chunk.bytes).substr(static_cast<std::size_t>(place - chunk.begin));
+}
+
+void AddRingMessage(const RingMessage& message, std::string& messages) {
+  PutLittleEndian(message.channel, messages);
+  PutLittleEndian(message.wall_ms, messages);
+  PutLittleEndian(static_cast<std::uint32_t>(message.bytes.size()), messages);
+  messages.append(reinterpret_cast<const char*>(message.bytes.data()), message.bytes.size());
 }
 
 RingMessage TakeRingMessage(std::string_view& messages) {

@@ -53,6 +53,9 @@ class MessageRing {
   std::uint64_t end_ = 0;
 };
 
+/// Adds a message to a text of messages, as From() gives it.
+void AddRingMessage(const RingMessage& message, std::string& messages);
+
 /// Takes the first message off the text of From(). @pre the text is not empty
 RingMessage TakeRingMessage(std::string_view& messages);
 

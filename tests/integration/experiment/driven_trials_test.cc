@@ -4,8 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <bit>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <optional>
 #include <regex>
 #include <set>
@@ -75,10 +78,10 @@ class DrivenTrialsInRealtimeTest : public ::testing::Test {
  protected:
   DrivenTrialsInRealtimeTest() { WritePlan(250); }
 
-  void WritePlan(int steps) const {
+  /// @param by_person the changes of the scenario in the conditions in which the person drives
+  void WritePlan(int steps, std::vector<std::string> by_person = AlwaysAsked()) const {
     const std::string length = "/steps=" + std::to_string(steps);
     const std::string drive = (SourceDirectory() / kDriveScenario).string();
-    std::vector<std::string> by_person = AlwaysAsked();
     by_person.push_back(length);
     const nlohmann::json plan{{"version", 1},
                               {"title", "Test"},
@@ -149,6 +152,45 @@ TEST_F(DrivenTrialsInRealtimeTest, ThePageOpensTheSeatOnlyInTrialsInWhichThePart
     ExpectReplaysBitByBit(LogOf(trial));
   }
   EXPECT_TRUE(InputsIn(LogOf("trial-2-secret-model")).empty());
+}
+
+TEST_F(DrivenTrialsInRealtimeTest, TheSeatTellsNothingOfTheCondition) {
+  constexpr double kThreshold = 0.43219876;
+  WritePlan(400, {"/person/drives=true", "/arbitrator/threshold=0.43219876", "/seed=918273645",
+                  "/title=secret-title"});
+  PageSession session(Run());
+  const SeatPlace seat = SeatIn(WaitForSeat(session));
+  const PagePerson person(seat.port, PageSession::SocketTarget(seat.token));
+  while (session.NextState(-1)["stage"] != "driving") continue;
+  // Each client of the seat gets the same of the run, also one that does not drive.
+  WebClient reader(
+      seat.port, {.target = PageSession::SocketTarget(seat.token), .protocol = "fogline.drive.v1"});
+  std::string all;
+  std::map<std::uint16_t, int> messages;
+  try {
+    while (true) {
+      const WebFrame frame = reader.Receive();
+      all += frame.bytes;
+      for (const WebMessage& message : MessagesOf(frame)) ++messages[message.channel];
+    }
+  } catch (const WebClosed&) {
+    // The run has ended.
+  }
+  EXPECT_THAT(all, HasSubstr("\"op\":\"run\""));
+  EXPECT_GT(messages[IndexOf<truth_t>()], 100);
+  EXPECT_GT(messages[IndexOf<arbitration_t>()], 100);
+  EXPECT_GT(messages[IndexOf<driver_command_t>()], 100);
+  EXPECT_THAT(messages, ::testing::SizeIs(3));
+  std::string encoded(sizeof(kThreshold), '\0');  // as in a message
+  const auto bits = std::bit_cast<std::uint64_t>(kThreshold);
+  for (int i = 0; i < 8; ++i) encoded[i] = static_cast<char>(bits >> (56 - 8 * i));
+  for (const std::string& hidden :
+       {encoded, std::string("secret"), std::string("0.43219876"), std::string("918273645"),
+        std::string("traded"), std::string("policy")}) {
+    EXPECT_THAT(all, Not(HasSubstr(hidden)));
+  }
+  session.process().Signal(SIGINT);
+  EXPECT_EQ(session.process().Wait(), 130);
 }
 
 TEST_F(DrivenTrialsInRealtimeTest, AfterAKillOfFoglineWebTheParticipantDrivesOnAtTheSameAddress) {

@@ -5,6 +5,7 @@
 
 #include <fstream>
 #include <optional>
+#include <set>
 
 #include "services/runtime/transport/bus.h"
 #include "services/runtime/wire/driver_input.h"
@@ -59,8 +60,12 @@ class Network {
   void SendTruth(std::int64_t step) {
     truth_t truth{};
     truth.header = {.run_id = kRunId, .step = step, .utime = step * 20'000};
-    runtime::Encode(truth, bytes_);
-    bus_.Publish(ChannelOf<truth_t>().name, bytes_);
+    Send(truth);
+  }
+  template <class Message>
+  void Send(const Message& message) {
+    runtime::Encode(message, bytes_);
+    bus_.Publish(ChannelOf<Message>().name, bytes_);
   }
   /// The first message from now on that fits. @throws std::runtime_error after kPatience
   template <class Fits>
@@ -130,11 +135,21 @@ TEST_F(SeatPageTest, AnInputIsPublishedWithTheNewestStep) {
   EXPECT_LT(static_cast<double>(input.time_us), now_us);
 }
 
-TEST_F(SeatPageTest, APageSeesTheRun) {
+TEST_F(SeatPageTest, APageSeesTheRunAndNothingElse) {
   WebClient page = Page(port());
+  const json hello = ReceiveOp(page, "hello");
+  std::set<std::string> channels;
+  for (const json& channel : hello["channels"]) channels.insert(channel["name"]);
+  EXPECT_EQ(channels, (std::set<std::string>{"TRUTH", "DRIVER_COMMAND", "HOST_COMMAND"}));
+  EXPECT_FALSE(hello.contains("url"));
+  // TRIAL comes first, and the page gets the message after it.
+  trial_t trial{};
+  trial.condition = "secret";
+  network_.Send(trial);
   network_.SendTruth(3);
   const auto messages = MessagesOf(ReceiveKind(page, 1));
-  ASSERT_FALSE(messages.empty());
+  ASSERT_EQ(messages.size(), 1U);
+  EXPECT_EQ(messages[0].channel, IndexOf<truth_t>());
 }
 
 TEST_F(SeatPageTest, AClosedSocketReleasesThePedalsAtOnce) {

@@ -11,6 +11,7 @@
 #include "services/graph.h"
 #include "services/runtime/seat/seat_instance.h"
 #include "services/runtime/wire/wire.h"
+#include "tools/web/seat/seat_told.h"
 
 namespace fogline::web {
 namespace {
@@ -23,7 +24,7 @@ constexpr Duration kOpenAgain = milliseconds(1000);
 SeatView::SeatView(boost::asio::io_context& context, LiveView& live,
                    std::optional<runtime::SigningKey> key)
     : live_(live), key_(std::move(key)), seat_(runtime::DrawSeatInstance()), look_(context) {
-  live_.TellMessages([this](std::size_t channel, runtime::Bytes bytes) { Hear(channel, bytes); });
+  live_.TellMessages([this](const RingMessage& message) { Hear(message); });
   Open();
   WaitToLook();
 }
@@ -62,12 +63,14 @@ void SeatView::Publish(const driver_input_t& message) {
   if (failed.since) lines_.Print(fmt::format("DRIVER_INPUT cannot be sent: {}", failed.error));
 }
 
-void SeatView::Hear(std::size_t channel, runtime::Bytes bytes) {
-  if (channel == IndexOf<truth_t>()) {
-    if (truth_t truth; runtime::Decode(bytes, truth)) seat_.Hear(truth.header);
-  } else if (channel == IndexOf<run_t>()) {
+void SeatView::Hear(const RingMessage& message) {
+  TellRun();
+  TellMessage(message);
+  if (message.channel == IndexOf<truth_t>()) {
+    if (truth_t truth; runtime::Decode(message.bytes, truth)) seat_.Hear(truth.header);
+  } else if (message.channel == IndexOf<run_t>()) {
     run_t run;
-    if (!runtime::Decode(bytes, run) || run.header.run_id == seat_.header().run_id) return;
+    if (!runtime::Decode(message.bytes, run) || run.header.run_id == seat_.header().run_id) return;
     seat_.Hear({.run_id = run.header.run_id, .step = -1, .utime = 0});
   }
 }
@@ -85,7 +88,7 @@ void SeatView::Look() {
   if (bus_) bus_->Drain();  // a relay's connection needs it
   if (const auto message = seat_.Look(Clock::now())) Publish(*message);
   if (!seat_.lost() || std::exchange(told_lost_, true)) return;
-  Client& client = *drivers_.at(*seat_.client());
+  Client& client = *drivers_.at(*seat_.client()).client;
   lines_.Print(fmt::format("{} drives no more: its page is silent", client.address()));
   Say(client, "lost");
 }
@@ -96,10 +99,44 @@ void SeatView::Say(Client& client, std::string_view state) {
   client.Send(TextFrame(nlohmann::json{{"op", "seat"}, {"state", state}}.dump()));
 }
 
+void SeatView::TellRun() {
+  if (told_run_ == live_.tracker().runs()) return;
+  told_run_ = live_.tracker().runs();
+  const OutgoingFrame frame = TextFrame(SeatRunText(*live_.tracker().run()));
+  for (const auto& [id, driver] : drivers_) driver.client->Send(frame);
+}
+
+void SeatView::TellMessage(const RingMessage& message) {
+  if (drivers_.empty()) return;
+  const auto bytes = ForSeat(message.channel, message.bytes);
+  if (!bytes) return;
+  std::string told;
+  AddRingMessage({.channel = message.channel, .wall_ms = message.wall_ms, .bytes = *bytes}, told);
+  for (auto& [id, driver] : drivers_) {
+    driver.newest[message.channel] = told;
+    Pump(driver);
+  }
+}
+
+void SeatView::Pump(Driver& driver) {
+  if (driver.newest.empty() || driver.client->waiting() > 0) return;
+  std::string messages;
+  for (const auto& [channel, message] : driver.newest) messages += message;
+  driver.newest.clear();
+  driver.client->Send(BinaryFrame(MessagesFrame(messages)));
+}
+
+void SeatView::Idle(Client& client) {
+  const auto driver = drivers_.find(client.id());
+  if (driver == drivers_.end()) return live_.Idle(client);
+  Pump(driver->second);
+}
+
 void SeatView::Opened(Client& client) {
-  live_.Opened(client);
-  if (client.protocol() != kDriveProtocol) return;
-  drivers_[client.id()] = &client;
+  if (client.protocol() != kDriveProtocol) return live_.Opened(client);
+  drivers_[client.id()].client = &client;
+  client.Send(TextFrame(SeatHelloText()));
+  if (const auto& run = live_.tracker().run()) client.Send(TextFrame(SeatRunText(*run)));
   const bool sits = seat_.Sit(client.id(), Clock::now());
   told_lost_ = told_lost_ && !sits;
   if (!sits) {
@@ -109,10 +146,8 @@ void SeatView::Opened(Client& client) {
 }
 
 void SeatView::Closed(Client& client) {
-  if (drivers_.erase(client.id()) > 0) {
-    if (const auto message = seat_.Leave(client.id(), Clock::now())) Publish(*message);
-  }
-  live_.Closed(client);
+  if (drivers_.erase(client.id()) == 0) return live_.Closed(client);
+  if (const auto message = seat_.Leave(client.id(), Clock::now())) Publish(*message);
 }
 
 void SeatView::Received(Client& client, std::string_view bytes, bool binary) {

@@ -1,5 +1,6 @@
-// A live view with a seat: what its clients see, and one client that drives. It publishes the
-// inputs of this client as DRIVER_INPUT on the network of the run, and nothing else.
+// A live view with a seat: what its viewers see, and one client that drives. It publishes the
+// inputs of this client as DRIVER_INPUT on the network of the run, and nothing else. The clients of
+// the seat are no viewers: they get what the page /drive shows (seat_told.h).
 #pragma once
 
 #include <cstddef>
@@ -35,11 +36,21 @@ class SeatView final : public View {
 
   void Opened(Client& client) override;
   void Received(Client& client, std::string_view bytes, bool binary) override;
-  void Idle(Client& client) override { live_.Idle(client); }
+  void Idle(Client& client) override;
   void Closed(Client& client) override;
 
  private:
-  void Hear(std::size_t channel, runtime::Bytes bytes);
+  /// A client of fogline.drive.v1.
+  struct Driver {
+    Client* client = nullptr;
+    std::map<std::size_t, std::string> newest;  // of each channel, that it has not got
+  };
+
+  void Hear(const RingMessage& message);
+  void TellRun();
+  void TellMessage(const RingMessage& message);
+  /// Sends the newest messages, if the client has taken everything before.
+  static void Pump(Driver& driver);
   void Take(Client& client, const SeatInput& input);
   void Refuse(Client& client, const std::string& why);
   void Say(Client& client, std::string_view state);
@@ -51,11 +62,12 @@ class SeatView final : public View {
   LiveView& live_;
   std::optional<runtime::SigningKey> key_;
   Seat seat_;
-  std::map<std::uint64_t, Client*> drivers_;  // clients of fogline.drive.v1
-  std::int64_t refused_ = 0;                  // frames of them
-  bool told_lost_ = false;                    // the client that has the seat knows that it is lost
-  std::string url_;                           // of the bus
-  std::optional<runtime::Bus> bus_;           // nullopt: the network is away
+  std::map<std::uint64_t, Driver> drivers_;
+  std::int64_t told_run_ = 0;        // RunTracker::runs() that the drivers know
+  std::int64_t refused_ = 0;         // frames of them
+  bool told_lost_ = false;           // the client that has the seat knows that it is lost
+  std::string url_;                  // of the bus
+  std::optional<runtime::Bus> bus_;  // nullopt: the network is away
   TimePoint open_at_{};
   std::vector<std::uint8_t> bytes_;
   boost::asio::steady_timer look_;

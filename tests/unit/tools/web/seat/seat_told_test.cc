@@ -1,0 +1,110 @@
+#include "tools/web/seat/seat_told.h"
+
+#include <gmock/gmock-matchers.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "services/graph.h"
+
+namespace fogline::web {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+using testing::Not;
+using testing::SizeIs;
+
+template <class Message>
+std::optional<Message> Told(const Message& message) {
+  std::vector<std::uint8_t> bytes;
+  runtime::Encode(message, bytes);
+  const auto told = ForSeat(IndexOf<Message>(), bytes);
+  Message decoded{};
+  if (!told || !runtime::Decode(*told, decoded)) return std::nullopt;
+  return decoded;
+}
+
+TEST(SeatToldTest, ACommandOfTheHostHasNoThresholdAndNoConflict) {
+  arbitration_t command{};
+  command.header = {.run_id = 7, .step = 12, .utime = 240'000};
+  command.acceleration_mps2 = -1;
+  command.lambda_automation = 0.25;
+  command.lambda_human = 0.75;
+  command.doc = 0.5;
+  command.conflict_m = 3;
+  command.threshold = 0.625;
+  command.mode = arbitration_t::REQUEST;
+  const auto told = Told(command);
+  ASSERT_TRUE(told);
+  EXPECT_EQ(told->header.run_id, 7);
+  EXPECT_EQ(told->header.step, 12);
+  EXPECT_EQ(told->header.utime, 240'000);
+  EXPECT_EQ(told->lambda_human, 0.75);
+  EXPECT_EQ(told->mode, arbitration_t::REQUEST);
+  for (const double hidden : {told->acceleration_mps2, told->lambda_automation, told->doc,
+                              told->conflict_m, told->threshold}) {
+    EXPECT_EQ(hidden, 0);
+  }
+}
+
+TEST(SeatToldTest, ACommandOfTheDriverNamesItsInput) {
+  driver_command_t command{};
+  command.header.step = 12;
+  command.readiness = 0.5;
+  command.input_instance = 99;
+  command.input_sequence = 913;
+  const auto told = Told(command);
+  ASSERT_TRUE(told);
+  EXPECT_EQ(told->header.step, 12);
+  EXPECT_EQ(told->readiness, 0);
+  EXPECT_EQ(told->input_instance, 99);
+  EXPECT_EQ(told->input_sequence, 913);
+}
+
+TEST(SeatToldTest, TheRoadIsToldAndNothingElse) {
+  truth_t truth{};
+  truth.host_speed_mps = 20;
+  EXPECT_EQ(Told(truth)->host_speed_mps, 20);
+  const std::vector<std::uint8_t> bytes{1, 2, 3};
+  for (std::size_t channel = 0; channel < kNumChannels; ++channel) {
+    EXPECT_EQ(ForSeat(channel, bytes).has_value(), channel == IndexOf<truth_t>()) << channel;
+  }
+  EXPECT_FALSE(Told(trial_t{}));
+  EXPECT_FALSE(Told(run_t{}));
+}
+
+TEST(SeatToldTest, TheFirstFrameDescribesTheChannelsOfTheSeat) {
+  const json hello = json::parse(SeatHelloText());
+  EXPECT_THAT(hello["channels"], SizeIs(3));
+  for (const json& channel : hello["channels"]) {
+    EXPECT_TRUE(hello["types"].contains(channel["type"].get<std::string>())) << channel;
+    EXPECT_TRUE(hello["fingerprints"].contains(channel["type"].get<std::string>())) << channel;
+  }
+  EXPECT_THAT(hello["types"], SizeIs(4));  // and that of their header
+}
+
+TEST(SeatToldTest, ARunHasOnlyWhatThePageNeeds) {
+  const json scenario{{"title", "secret"},
+                      {"seed", 4711},
+                      {"step_s", 0.02},
+                      {"world", {{"vehicle_length_m", 5}, {"host_gap_m", 33}}},
+                      {"person", {{"key_press_ps", 2}, {"key_release_ps", 3}, {"deadman_s", 1}}},
+                      {"arbitrator", {{"threshold", 0.4711}, {"take_over", {{"lead_s", 12}}}}}};
+  const std::string told = SeatRunText(
+      {.run_id = 1LL << 60, .scenario_text = scenario.dump(), .realtime = true, .pace = 1});
+  for (const char* hidden : {"secret", "4711", "threshold", "host_gap_m", "deadman_s"}) {
+    EXPECT_THAT(told, Not(HasSubstr(hidden)));
+  }
+  const json run = json::parse(told);
+  EXPECT_EQ(run["op"], "run");
+  EXPECT_EQ(run["run_id"], std::to_string(1LL << 60));
+  EXPECT_EQ(run["step_s"], 0.02);
+  EXPECT_EQ(run["pace"], 1);
+  EXPECT_EQ(run["scenario"], json({{"world", {{"vehicle_length_m", 5}}},
+                                   {"person", {{"key_press_ps", 2}, {"key_release_ps", 3}}},
+                                   {"arbitrator", {{"take_over", {{"lead_s", 12}}}}}}));
+}
+
+}  // namespace
+}  // namespace fogline::web
