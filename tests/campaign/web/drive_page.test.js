@@ -177,8 +177,8 @@ test("the second driver is told that the seat is taken, and may ask again", asyn
   await begin(page);
   await drives(page, true);
   const second = await open(t, started, drive);
-  await begin(second);
   await second.waitForFunction(() => foglineDrive.state === "taken");
+  await begin(second);
   await second.waitForFunction(() => document.getElementById("away").textContent.includes("Another person"));
   await second.keyboard.down("ArrowDown");
   await drives(second, false);
@@ -187,9 +187,25 @@ test("the second driver is told that the seat is taken, and may ask again", asyn
   await page.close();
   // The seat is free when the server has seen the end of the first page.
   await until(() => second.evaluate(() => {
-    if (foglineDrive.state === "taken" && foglineDrive.wire.isOpen) document.getElementById("again").click();
+    if (!foglineDrive.person.begun) document.getElementById("begin").click();
     return document.body.dataset.present === "true";
   }), "the seat");
+});
+
+test("a page that is only open gives the seat to the person at another one", async (t) => {
+  const {page, drive, started, run} = await seated(t);
+  await page.waitForFunction(() => foglineDrive.state === "yours");
+  const second = await open(t, started, drive);
+  await begin(second);
+  await drives(second, true);
+  await second.keyboard.down("ArrowDown");
+  await run.next(({brake, present}) => present && brake > 0.5, "the brake of the second page");
+  await second.keyboard.up("ArrowDown");
+  await page.waitForFunction(() => foglineDrive.state === "taken");
+  await begin(page);
+  await page.waitForFunction(() => document.getElementById("away").textContent.includes("Another person"));
+  await drives(page, false);
+  await drives(second, true);
 });
 
 test("with --listen only the driver's token gives the seat", async (t) => {

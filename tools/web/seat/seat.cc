@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <utility>
 
 #include <fmt/core.h>
 
@@ -38,13 +39,22 @@ std::optional<driver_input_t> Seat::Leave(std::uint64_t client, TimePoint now) {
 }
 
 Seat::Taken Seat::Take(std::uint64_t client, const SeatInput& input, TimePoint now) {
-  if (!Has(client)) return {.message = std::nullopt, .why = "another page has the seat"};
+  Taken taken;
+  if (!Has(client)) {
+    if (!input.present) return taken;
+    if (client_ && message_.present) {
+      taken.why = "another person has the seat";
+      return taken;
+    }
+    taken.sits = true;
+    taken.before = std::exchange(client_, client);
+  }
   heard_at_ = now;
   // The rate limit never refuses an input that says that the person is no longer present.
   const bool leaves = message_.present && !input.present;
   if (!limiter_.Take(now) && !leaves) {
-    return {.message = std::nullopt,
-            .why = fmt::format("more than {} inputs a second", runtime::kMostInputsPerSecond)};
+    taken.why = fmt::format("more than {} inputs a second", runtime::kMostInputsPerSecond);
+    return taken;
   }
   silent_ = false;
   message_.time_us = std::max<std::int64_t>(0, MicrosecondsOf(now) - ToMicroseconds(input.age_ms));
@@ -57,7 +67,8 @@ Seat::Taken Seat::Take(std::uint64_t client, const SeatInput& input, TimePoint n
   message_.num_axes = static_cast<std::int32_t>(input.axes.size());
   message_.axes = input.axes;
   message_.buttons = input.present ? input.buttons : 0;
-  return {.message = Next(now), .why = {}};
+  taken.message = Next(now);
+  return taken;
 }
 
 std::optional<driver_input_t> Seat::Look(TimePoint now) {

@@ -4,6 +4,9 @@
 // One client has the seat. Each of its inputs becomes a DRIVER_INPUT. While no client has the seat,
 // or the client that has it is silent, the run is told every kInputEvery that no person drives. So
 // a run that hears nothing knows that something is wrong.
+//
+// A page that is only open does not keep the seat: while no person is present at the client that
+// has it, the first other client with a person gets it.
 #pragma once
 
 #include <cstdint>
@@ -38,8 +41,11 @@ class Seat {
 
   struct Taken {
     std::optional<driver_input_t> message;  // to be sent now
-    std::string why;                        // why the input is refused, if there is no message
+    std::string why;                        // why the input is refused; "" if it is not
+    bool sits = false;                      // the client has got the seat by this input
+    std::optional<std::uint64_t> before;    // the client that had the seat before, if it `sits`
   };
+  /// An input without a person, from a client that does not have the seat, has no effect.
   Taken Take(std::uint64_t client, const SeatInput& input, TimePoint now);
 
   /// The message that is due because no person drives, if one is due.

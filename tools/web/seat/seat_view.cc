@@ -160,9 +160,13 @@ void SeatView::Received(Client& client, std::string_view bytes, bool binary) {
 
 void SeatView::Take(Client& client, const SeatInput& input) {
   const Seat::Taken taken = seat_.Take(client.id(), input, Clock::now());
-  if (!taken.message) return Refuse(client, taken.why);
+  if (taken.before) Say(*drivers_.at(*taken.before).client, "taken");
+  if (!taken.why.empty()) Refuse(client, taken.why);
+  if (!taken.why.empty() && !seat_.Has(client.id())) Say(client, "taken");
+  if (!taken.message) return;
   Publish(*taken.message);
-  if (std::exchange(told_lost_, false)) Say(client, "yours");
+  const bool was_lost = std::exchange(told_lost_, false);
+  if (was_lost || taken.sits) Say(client, "yours");
   client.Send(TextFrame(nlohmann::json{{"op", "published"},
                                        {"sequence", input.sequence},
                                        {"instance", std::to_string(taken.message->instance)},

@@ -31,6 +31,7 @@ class Drive {
     this.view = null;
     this.instance = "";
     this.state = "";         // of the seat: yours, taken, lost; "": not known
+    this.refused = false;    // this page has asked for the seat in vain
     this.back = backOf(location.hash, location.hostname);
     this.setup = new Setup(this.person, (open) => this.set("busy", open));
     loadView().then((view) => { this.view = view; });
@@ -60,7 +61,6 @@ class Drive {
       this.alarm.allow();
       this.alarm.context?.resume().then(() => this.alarm.change());
     });
-    byId("again").addEventListener("click", () => this.wire.again());
     addEventListener("hashchange", () => {  // the address of another program in the same tab
       if (!location.hash) return;
       this.back = backOf(location.hash, location.hostname);
@@ -106,6 +106,8 @@ class Drive {
     this.person.look(pads, now);
     this.setup.look(pads);
     const input = this.person.input(now);
+    // An input with a person asks for the seat of another page.
+    if (this.state === "taken") input.present = this.person.whyNotReady() === "";
     this.input = input;
     if (!this.wire?.isOpen) return;
     if (!this.sender.isDue(input, now)) {
@@ -166,6 +168,8 @@ class Drive {
   }
 
   sit(state) {
+    this.refused = state === "taken" && this.state === "taken";
+    if (this.refused) this.person.set("begun", false);
     this.state = state;
     // A lost seat still belongs to this page: the next frame takes it again.
     this.set("seated", state === "yours" || state === "lost");
@@ -227,10 +231,10 @@ class Drive {
 
   drawPerson({side}) {
     const why = this.person.whyAway();
-    const words = this.state === "" ? "" : whyAwayInWords(why);
+    const seat = this.refused ? "refused" : "no seat";
+    const words = this.state === "" ? "" : whyAwayInWords(this.state === "taken" ? seat : why);
     say(byId("away"), words);
     byId("away").hidden = words === "";
-    byId("again").hidden = this.state !== "taken";
     say(byId("begin"), this.person.begun ? "Pause" : "Begin");
     setAttribute(document.body, "data-present", String(why === ""));
     byId("take-over").disabled = why !== "" || side === "human";

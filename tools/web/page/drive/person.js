@@ -112,7 +112,12 @@ export class Person {
   /** Why the person does not drive; "" if the person drives. */
   whyAway() {
     if (!this.begun) return "not begun";
-    if (!this.seated) return "no seat";
+    return this.seated ? this.whyNotReady() : "no seat";
+  }
+
+  /** Why the person would not drive with a seat either; "" if they are ready for one. */
+  whyNotReady() {
+    if (!this.begun) return "not begun";
     if (!this.visible) return "hidden";
     if (!this.focused) return "blurred";
     if (this.busy) return "busy";

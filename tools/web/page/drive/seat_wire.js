@@ -55,8 +55,8 @@ export class SeatWire {
     };
   }
 
-  /** Connects again, to ask for the seat once more. @param url perhaps with another token */
-  again(url = this.url) {
+  /** Connects to another address, perhaps only with another token. */
+  again(url) {
     this.url = url;
     const {socket} = this;
     socket.onopen = socket.onmessage = socket.onclose = null;

@@ -50,7 +50,8 @@ export class Countdown {
 
 const WHY_AWAY = {
   "not begun": "Press “Begin” when you are ready.",
-  "no seat": "Another person drives.",
+  "no seat": "Another page has the seat. Press “Begin” to ask for it.",
+  refused: "Another person drives. Press “Begin” to ask again.",
   hidden: "This page was hidden, so you do not drive.",
   blurred: "Another window has the keyboard, so you do not drive. Click here to go on.",
   busy: "A dialog is open, so you do not drive.",

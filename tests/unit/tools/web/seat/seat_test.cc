@@ -75,11 +75,52 @@ TEST_F(SeatTest, OnlyOneClientDrives) {
   EXPECT_TRUE(seat_.Sit(kAnna, At(0)));
   EXPECT_FALSE(seat_.Sit(kBert, At(0)));
   EXPECT_TRUE(seat_.Sit(kAnna, At(0)));
+  EXPECT_FALSE(seat_.Take(kAnna, Brakes(), At(0)).sits);
   const Seat::Taken refused = seat_.Take(kBert, Brakes(), At(1));
   EXPECT_FALSE(refused.message);
-  EXPECT_THAT(refused.why, HasSubstr("another page"));
+  EXPECT_FALSE(refused.sits);
+  EXPECT_THAT(refused.why, HasSubstr("another person"));
   EXPECT_FALSE(seat_.Leave(kBert, At(2)));
   EXPECT_TRUE(seat_.Take(kAnna, Brakes(), At(3)).message);
+}
+
+TEST_F(SeatTest, APageThatIsOnlyOpenDoesNotKeepTheSeat) {
+  SeatInput away = Brakes();
+  away.present = false;
+  seat_.Sit(kAnna, At(0));
+  seat_.Take(kAnna, away, At(1));
+  // A second page that is only open gets nothing.
+  const Seat::Taken nothing = seat_.Take(kBert, away, At(2));
+  EXPECT_FALSE(nothing.message);
+  EXPECT_EQ(nothing.why, "");
+  EXPECT_TRUE(seat_.Has(kAnna));
+  const Seat::Taken taken = seat_.Take(kBert, Brakes(), At(3));
+  ASSERT_TRUE(taken.message);
+  EXPECT_TRUE(taken.message->present);
+  EXPECT_TRUE(taken.sits);
+  EXPECT_EQ(taken.before, kAnna);
+  // From now on it is Bert's, as long as he is there.
+  EXPECT_THAT(seat_.Take(kAnna, Brakes(), At(4)).why, HasSubstr("another person"));
+  seat_.Take(kBert, away, At(5));
+  EXPECT_TRUE(seat_.Take(kAnna, Brakes(), At(6)).sits);
+}
+
+TEST_F(SeatTest, ASilentPersonLosesTheSeatToOneWhoIsThere) {
+  seat_.Sit(kAnna, At(0));
+  seat_.Take(kAnna, Brakes(), At(1));
+  EXPECT_FALSE(seat_.Take(kBert, Brakes(), At(300)).message);
+  ExpectEmptySeat(seat_.Look(At(301)));
+  EXPECT_TRUE(seat_.Take(kBert, Brakes(), At(302)).sits);
+}
+
+TEST_F(SeatTest, AFreeSeatNeedsNoNewConnection) {
+  seat_.Sit(kAnna, At(0));
+  seat_.Sit(kBert, At(0));
+  seat_.Take(kAnna, Brakes(), At(1));
+  seat_.Leave(kAnna, At(2));
+  const Seat::Taken taken = seat_.Take(kBert, Brakes(), At(3));
+  EXPECT_TRUE(taken.sits);
+  EXPECT_FALSE(taken.before);
 }
 
 TEST_F(SeatTest, WhoLeavesReleasesThePedalsAtOnce) {

@@ -38,6 +38,16 @@ test("a person drives only after they have begun and have the seat", () => {
   assert.ok(person.input(0).present);
 });
 
+test("a person who has begun is ready for a seat that another page has", () => {
+  const person = new Person();
+  assert.equal(person.whyNotReady(), "not begun");
+  person.set("begun", true);
+  assert.equal(person.whyNotReady(), "");
+  assert.equal(person.input(0).present, false);
+  person.set("focused", false);
+  assert.equal(person.whyNotReady(), "blurred");
+});
+
 test("the arrows move the pedals, T and G press the buttons, other keys do nothing", () => {
   const person = ready();
   person.input(0);

@@ -39,7 +39,7 @@ test("a request counts down from its first step, and a new one begins again", ()
 });
 
 test("why a person does not drive is said in words", () => {
-  for (const why of ["not begun", "no seat", "hidden", "blurred", "busy", "unplugged", "not calibrated"]) {
+  for (const why of ["not begun", "no seat", "refused", "hidden", "blurred", "busy", "unplugged", "not calibrated"]) {
     assert.ok(whyAwayInWords(why).length > 10, why);
   }
   assert.equal(whyAwayInWords(""), "");
