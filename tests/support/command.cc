@@ -125,6 +125,16 @@ bool GrowsTo(std::uintmax_t bytes, const std::filesystem::path& file, std::chron
   return false;
 }
 
+bool ComesToHave(const std::string& text, const std::filesystem::path& file,
+                 std::chrono::seconds limit) {
+  const auto end = std::chrono::steady_clock::now() + limit;
+  while (std::chrono::steady_clock::now() < end) {
+    if (Content(file).find(text) != std::string::npos) return true;
+    std::this_thread::sleep_for(kLookEvery);
+  }
+  return false;
+}
+
 std::string Content(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
   return {std::istreambuf_iterator<char>(in), {}};

@@ -65,6 +65,10 @@ struct Outcome {
 bool GrowsTo(std::uintmax_t bytes, const std::filesystem::path& file,
              std::chrono::seconds limit = kPatience);
 
+/// Waits until a file contains a text. @return false after the time limit
+bool ComesToHave(const std::string& text, const std::filesystem::path& file,
+                 std::chrono::seconds limit = kPatience);
+
 /// The bytes of a file; "" if there is no such file.
 std::string Content(const std::filesystem::path& file);
 

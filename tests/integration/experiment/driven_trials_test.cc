@@ -35,6 +35,9 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
+/// Where this name is in a log, the recorder has written an input of the seat.
+const std::string kInputs(ChannelOf<driver_input_t>().name);
+
 /// The seat of a run, as the participant's page knows it.
 struct SeatPlace {
   std::uint16_t port = 0;
@@ -88,15 +91,6 @@ void ExpectIsDrivenByThePerson(const std::filesystem::path& log) {
   }
   EXPECT_GT(by_seat, 100) << log;
   EXPECT_GT(by_human, 50) << log;
-}
-
-/// Waits until the recorder has written inputs of the person. @return false after the time limit
-bool HasInputs(const std::filesystem::path& log) {
-  for (const TimePoint end = Clock::now() + kPatience; Clock::now() < end;
-       std::this_thread::sleep_for(kLookEvery)) {
-    if (Content(log).find(ChannelOf<driver_input_t>().name) != std::string::npos) return true;
-  }
-  return false;
 }
 
 /// How often a text is in another one.
@@ -247,7 +241,7 @@ TEST_F(DrivenTrialsInRealtimeTest, AfterAKillOfFoglineWebTheParticipantDrivesOnA
     const SeatPlace seat = SeatIn(state);
     if (!person) person.emplace(seat.port, PageSession::SocketTarget(seat.token));
     if (state["stage"] == "driving" && !std::exchange(killed, true)) {
-      ASSERT_TRUE(HasInputs(LogOf("trial-1-secret-a")));
+      ASSERT_TRUE(ComesToHave(kInputs, LogOf("trial-1-secret-a")));
       session.KillView();
     }
   }
@@ -298,7 +292,7 @@ TEST_F(DrivenTrialsInRealtimeTest, ACrashWhileTheParticipantSitsDownIsNoAttempt)
   PageSession session(Run());
   const SeatPlace seat = SeatIn(WaitForSeat(session));
   const PagePerson person(seat.port, PageSession::SocketTarget(seat.token));
-  ASSERT_TRUE(HasInputs(log));
+  ASSERT_TRUE(ComesToHave(kInputs, log));
   EXPECT_FALSE(std::filesystem::exists(LogOf("trial-1-secret-a-attempt-2")));
   session.process().Signal(SIGINT);
   EXPECT_EQ(session.process().Wait(), 130);

@@ -2,16 +2,13 @@
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 
-#include <chrono>
 #include <csignal>
 #include <cstdint>
-#include <filesystem>
 #include <fstream>
 #include <map>
 #include <set>
 #include <sstream>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include <fmt/core.h>
@@ -37,15 +34,6 @@ std::string AnswersOf(int participant, int run) {
     lines += fmt::format("{}\n", 5 * (participant + run + scale));
   }
   return lines + fmt::format("{}\n", participant + run);
-}
-
-/// Waits until a file contains a text. @return false after the time limit
-bool ComesToHave(const std::string& text, const std::filesystem::path& file) {
-  for (const auto end = std::chrono::steady_clock::now() + kPatience;
-       std::chrono::steady_clock::now() < end; std::this_thread::sleep_for(kLookEvery)) {
-    if (Content(file).find(text) != std::string::npos) return true;
-  }
-  return false;
 }
 
 /// An experiment with four participants and three conditions. Each run has 80 steps of 0.1 s, at
