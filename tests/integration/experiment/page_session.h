@@ -91,7 +91,6 @@ class PageSession {
   }
 
   Background& process() { return session_; }
-  WebClient& participant() { return *participant_; }
   WebClient& experimenter() { return *experimenter_; }
   std::uint16_t participant_port() const { return participant_port_; }
   const std::string& participant_token() const { return participant_token_; }

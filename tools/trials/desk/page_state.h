@@ -63,8 +63,6 @@ class PageState {
   /// "text": "..."}.
   std::optional<PageMessage> FromExperimenter(std::string_view frame, std::string& why) const;
 
-  Stage stage() const { return stage_; }
-
  private:
   void Enter(Stage stage);
 
