@@ -24,19 +24,21 @@ byId("marker").onsubmit = (event) => {
 
 function show(state) {
   last = state;
-  showProblem(state.refused ?? "");
-  byId("title").textContent = `Participant ${state.participant}, ${titleOf(state)}`;
+  showProblem(state.refused ? `Not accepted: ${state.refused}.` : "");
+  byId("title").textContent = `Participant ${state.participant}, ${titleOf(state).toLowerCase()}`;
   const words = state.wait_s > 0 ? "The participant has a break." : WORDS[state.stage];
-  byId("words").textContent = `${state.condition}. ${words}`;
+  const isOver = state.stage === "finished";
+  byId("words").textContent = state.condition && !isOver ? `Condition: ${state.condition}. ${words}` : words;
   byId("begin").hidden = state.stage !== "waiting" || state.wait_s > 0;
   byId("marker").hidden = state.stage !== "driving";
   const view = byId("view");
-  view.hidden = state.view === "";
+  // Before and after a run nobody answers at the address of its view.
+  byId("view-line").hidden = state.view === "" || !["seating", "driving"].includes(state.stage);
   if (state.view !== "") {
     view.href = state.view;
     view.hostname = location.hostname;  // the name by which this browser knows the machine
   }
-  byId("lines").replaceChildren(...state.lines.map((line) => {
+  byId("lines").replaceChildren(...state.lines.toReversed().map((line) => {
     const row = document.createElement("li");
     row.textContent = line;
     return row;
