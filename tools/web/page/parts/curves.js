@@ -2,6 +2,7 @@
 
 import {Combobox} from "./combobox.js";
 import {drawNow, extremes, fillSpan, joined, makeChart, widened} from "../draw/chart.js";
+import {DASHES, placesOf} from "../draw/curve_styles.js";
 import {byId, make, say, setAttribute} from "../draw/dom.js";
 import {searchFields} from "../data/catalogue.js";
 import {digits, seconds, withUnit} from "../draw/format.js";
@@ -12,7 +13,6 @@ const FIRST_FIELDS = ["TRUTH.host_gap_m", "RADAR.range_m", "LIDAR.range_m", "TRU
 const MOST_FIELDS = 8;         // as many as there are colours
 const MOST_SUGGESTIONS = 40;
 const MINUTE_S = 60;
-const DASHES = [[], [8, 4], [2, 3], [8, 3, 2, 3], [14, 4], [4, 4], [1, 4], [12, 3, 3, 3, 3, 3]];
 const REST = {most_ms: 1000, factor: 5};  // between two drawings; factor: of the time for one
 const LEAST_SPAN = 1e-3;  // of a value axis, as a share of the values
 const KEEP = "fogline.fields";
@@ -109,12 +109,14 @@ export class Curves {
   }
 
   styleOf(index) {
-    return {stroke: this.theme.palette[index], dash: DASHES[index]};
+    const place = this.places[index];
+    return {stroke: this.theme.palette[place], dash: DASHES[place]};
   }
 
   rebuild() {
     for (const {chart} of this.charts) chart.destroy();
     this.place.replaceChildren();
+    this.places = placesOf(this.fields);
     const units = [...new Set(this.fields.map(({unit}) => unit))];
     const n = units.length;
     this.charts = units.map((unit, i) => this.makePanel(unit, i === n - 1, n));
