@@ -170,6 +170,7 @@ class Page {
     const isNew = run.run_id !== this.store.run?.run_id;
     this.store.setRun(run);
     say(byId("title"), run.title || "A run without a title");
+    setAttribute(byId("title"), "title", run.title);  // a narrow window cuts the text off
     document.title = `${run.title || "Run"} – Fogline`;
     this.length_m = run.scenario?.world?.vehicle_length_m ?? 4.5;
     if (!isNew) return;

@@ -18,12 +18,13 @@ export function lossesOf({senders, senders_note: note, traffic}, number = String
 export function lacksOf(health, number = String) {
   const {own_overflow: missed, too_large: large, too_large_channels: channels = [],
          refused_scenarios: scenarios, cut_off: cutOff, refused} = health;
+  const are = (n, thing, rest) => n && `${number(n)} ${thing}${n === 1 ? " is" : "s are"} ${rest}`;
+  const were = (n, thing, rest) => n && `${number(n)} ${thing}${n === 1 ? " was" : "s were"} ${rest}`;
   return [
-    missed && `this viewer itself missed ${number(missed)} packets`,
-    large && `${number(large)} messages are larger than a datagram and not shown ` +
-      `(${channels.join(", ")})`,
-    scenarios && `${number(scenarios)} runs without a valid scenario are not shown`,
-    cutOff && `${number(cutOff)} viewers were cut off`,
-    refused && `${number(refused)} connections were refused`,
+    missed && `this viewer itself missed ${number(missed)} packet${missed === 1 ? "" : "s"}`,
+    are(large, "message", `larger than a datagram and not shown (${channels.join(", ")})`),
+    are(scenarios, "run", "not shown, because the scenario is not valid"),
+    were(cutOff, "viewer", "cut off"),
+    were(refused, "connection", "refused"),
   ].filter(Boolean);
 }

@@ -115,7 +115,8 @@ export class Health {
     setAttribute(this.summary, "data-grade", overall);
     say(this.summary, `${first} ${losses.words}`);
     const viewers = health.viewers ?? 1;
-    const facts = [health.traffic?.lcm_url, viewers === 1 ? "1 viewer" : `${count(viewers)} viewers`,
+    const url = health.traffic?.lcm_url;
+    const facts = [url && `Network ${url}`, viewers === 1 ? "1 viewer" : `${count(viewers)} viewers`,
                    ...lacksOf(health, count)];
     say(this.network, facts.filter(Boolean).join(" · "));
   }

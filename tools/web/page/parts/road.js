@@ -13,7 +13,7 @@ const LEAST_SPAN_M = 60;
 const SLACK = 1.25;      // the scale stays while the cars fill between 1/SLACK and all of the width
 const SCALE_BARS_M = [1, 2, 5, 10, 20, 50, 100, 200, 500];
 const SIGHTS_HEIGHT = 52;  // for the marks of the sensors, in pixels
-const GAPS_HEIGHT = 44;
+const GAPS_HEIGHT = 58;   // for the gaps, and the scale bar below them
 
 /** Marks of the sensors: colour and shape say the same. */
 const SIGHTS = [

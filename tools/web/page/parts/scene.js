@@ -2,7 +2,7 @@
 
 import {timeGap} from "../data/cars.js";
 import {byId, say, setAttribute} from "../draw/dom.js";
-import {decimal, kmh, visibility} from "../draw/format.js";
+import {decimal, kmh, visibility, withUnit} from "../draw/format.js";
 import {loadView, setScheme} from "../draw/view_file.js";
 import {Road, roadInWords} from "./road.js";
 
@@ -50,7 +50,7 @@ export class Scene {
     say(byId("speed-now"), decimal(truth.host_speed_mps, 1));
     say(byId("speed-kmh"), `${kmh(truth.host_speed_mps)} km/h`);
     say(byId("gap-now"), decimal(truth.host_gap_m, 1));
-    say(byId("gap-time"), gap_s === null ? "" : `${decimal(gap_s, 2)} s`);
+    say(byId("gap-time"), gap_s === null ? "" : `time gap ${withUnit(decimal(gap_s, 2), "s")}`);
     say(byId("sight-now"), visibility(truth.fog_visibility_m));
     setAttribute(byId("gap-now"), "data-value", String(truth.host_gap_m));
     setAttribute(byId("speed-now"), "data-value", String(truth.host_speed_mps));
