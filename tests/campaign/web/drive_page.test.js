@@ -233,6 +233,12 @@ for (const [name, options] of [["desktop", {size: DESKTOP}], ["phone", {size: PH
       document.getElementById("request").hidden = false;
       foglineDrive.drawState = () => {};
     });
+    // The camera looks down by 0.07 rad, so its horizon, with the car ahead, lies at a third of the picture.
+    const covered = await page.evaluate(() => {
+      const [sign, picture] = ["request", "driver-view"].map((id) => document.getElementById(id).getBoundingClientRect());
+      return (sign.bottom - picture.top) / picture.height;
+    });
+    assert.ok(covered < 0.335, `the request covers the car ahead: ${covered} of the picture`);
     assert.deepEqual(await breaches(page), []);
     await page.click("#setup-open");
     await setPad(page);

@@ -222,6 +222,7 @@ class Drive {
     say(byId("announcement"), words);
     const request = byId("request");
     request.hidden = !asks;
+    byId("meanwhile").hidden = !asks;
     setAttribute(request, "data-urgent", String(urgent));
     if (!left) return;
     say(byId("request-words"), words);
@@ -236,6 +237,7 @@ class Drive {
     say(byId("away"), words);
     byId("away").hidden = words === "";
     say(byId("begin"), this.person.begun ? "Pause" : "Begin");
+    setAttribute(byId("begin"), "data-begun", String(this.person.begun));
     setAttribute(document.body, "data-present", String(why === ""));
     byId("take-over").disabled = why !== "" || side === "human";
     byId("give-back").disabled = why !== "" || side !== "human";
@@ -247,6 +249,7 @@ class Drive {
   }
 
   drawRoad(truth) {
+    byId("no-road").hidden = Boolean(truth);
     if (!truth) return;
     say(byId("speed"), kmh(truth.host_speed_mps));
     const {run, taken_ms} = this.newest;
@@ -260,7 +263,7 @@ class Drive {
 
   drawLatency() {
     const {newest, isHigh} = this.latency;
-    say(byId("latency"), newest === null ? "–" : withUnit(decimal(newest, 0), "ms"));
+    say(byId("latency"), newest === null ? "not measured yet" : withUnit(decimal(newest, 0), "ms"));
     byId("latency-warning").hidden = !isHigh;
   }
 }
