@@ -72,8 +72,17 @@ void DemandSoundSeat(runtime::Bytes input) {
           break;
         }
         Took();
-        const web::Seat::Taken taken = seat.Take(client, std::get<web::SeatInput>(frame), now);
+        const auto& sent = std::get<web::SeatInput>(frame);
+        const bool idle = !sent.present && !seat.Has(client);  // an idle page without the seat
+        const bool taken_before = listener.present();
+        const web::Seat::Taken taken = seat.Take(client, sent, now);
+        if (idle) {
+          Demand(!taken.message && taken.why.empty() && !taken.sits, "an idle page does nothing");
+          break;
+        }
         Demand(taken.message.has_value() == taken.why.empty(), "an input is taken or refused");
+        Demand(!taken.sits || !taken_before,
+               "the seat of a person who drives stays with this person");
         Demand(!taken.message || seat.Has(client), "only the page that has the seat drives");
         hear(taken.message);
         break;
