@@ -3,7 +3,8 @@
 # find_package(fogline) gives these projects the target fogline::runtime.
 include(CMakePackageConfigHelpers)
 
-set(programs fogline fogline-calibrate fogline-study fogline-recorder fogline-relay fogline-web)
+set(programs fogline fogline-calibrate fogline-experiment fogline-study fogline-recorder fogline-relay
+    fogline-web)
 foreach(service IN LISTS FOGLINE_SERVICES)
   list(APPEND programs fogline-${service})
 endforeach()

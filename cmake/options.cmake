@@ -11,6 +11,10 @@ if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
   set(CMAKE_BUILD_TYPE Release CACHE STRING "Debug, Release, RelWithDebInfo" FORCE)
 endif()
 
+# The option for code whose speed does not matter, such as that of command lines and JSON: it takes
+# long to compile.
+set(FOGLINE_COLD_CODE $<$<CONFIG:Release>:-O1>)
+
 # Compiles several source files as one, because the headers take most of the compiler's time. If the
 # option is OFF, a change of one file compiles only that file.
 option(FOGLINE_UNITY "Compile several source files at once" ON)

@@ -20,8 +20,10 @@ inline constexpr OwnProgram kCalibrate{"calibrate", "fogline-calibrate",
                                        "Find values of fields that meet a table"};
 inline constexpr OwnProgram kStudy{"study", "fogline-study",
                                    "Answer an open question with runs and intervals"};
+inline constexpr OwnProgram kExperiment{"experiment", "fogline-experiment",
+                                        "Make trials with people: orders, questions, tables"};
 inline constexpr OwnProgram kView{"view", "fogline-web", "Show a run or a log in a browser"};
-inline constexpr std::array kOwnPrograms{kCalibrate, kStudy, kView};
+inline constexpr std::array kOwnPrograms{kCalibrate, kStudy, kExperiment, kView};
 
 /// Adds these verbs to the list of verbs, for help and spelling hints. These verbs get no action.
 void AddOwnPrograms(CLI::App& app, Action& action);

@@ -21,7 +21,6 @@ void AddEvents(CLI::App& app, cli::Action& action);
 void AddDiff(CLI::App& app, cli::Action& action);
 void AddReplay(CLI::App& app, cli::Action& action);
 void AddExport(CLI::App& app, cli::Action& action);
-void AddExperiment(CLI::App& app, cli::Action& action);
 void AddGraph(CLI::App& app, cli::Action& action);
 void AddCheck(CLI::App& app, cli::Action& action);
 void AddTop(CLI::App& app, cli::Action& action);

@@ -74,7 +74,7 @@ TEST(BuildOptionsTest, BuildForTheDemoNeitherStudiesNorCalibrationNorBenchmarks)
   const std::string demo = build.InputsOf("fogline_demo");
   EXPECT_THAT(demo, HasSubstr("fogline-world.dir"));
   EXPECT_THAT(demo, HasSubstr("fogline_report"));
-  for (const char* part : {"fogline_study", "fogline_calibrate", "benchmarks"}) {
+  for (const char* part : {"fogline_study", "fogline_calibrate", "fogline_trials", "benchmarks"}) {
     EXPECT_THAT(demo, Not(HasSubstr(part)));
     if (std::string_view(part) == "benchmarks") continue;
     EXPECT_THAT(build.InputsOf("fogline_programs"), HasSubstr(part));

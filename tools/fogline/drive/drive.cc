@@ -23,7 +23,7 @@
 namespace fogline {
 namespace {
 
-constexpr const char* kExamples =
+constexpr const char* kDriveExamples =
     R"(The run is in real time, with /person/drives=true. What you do is logged (channel
 DRIVER_INPUT), and fogline replay LOG --role driver computes the same commands again.
 
@@ -80,7 +80,7 @@ struct DriveArguments {
     verb.add_flag("--json", json, "Print the result as JSON");
     verb.add_flag("--quiet", quiet, "Print only errors on stderr");
     cli::ShowExitCodes(verb, {.interruptible = true});
-    verb.footer(kExamples);
+    verb.footer(kDriveExamples);
   }
 
   cli::ScenarioArguments scenario;

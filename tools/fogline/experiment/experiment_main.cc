@@ -1,4 +1,4 @@
-// fogline experiment: trials with people, each with a log of its own.
+// fogline experiment, a program of its own: trials with people, each with a log of its own.
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
@@ -18,8 +18,9 @@
 #include "scenario/io/loader.h"
 #include "tools/cli/arguments.h"
 #include "tools/cli/help.h"
-#include "tools/fogline/drive/experiment_actions.h"
-#include "tools/fogline/verbs.h"
+#include "tools/cli/own_program.h"
+#include "tools/cli/verb_program.h"
+#include "tools/fogline/experiment/experiment_actions.h"
 #include "tools/trials/tables.h"
 
 namespace fogline {
@@ -221,11 +222,8 @@ void AddCheckPlans(CLI::App& experiment, cli::Action& action) {
   verb->callback([&action, arguments] { action = [arguments] { return CheckPlans(*arguments); }; });
 }
 
-}  // namespace
-
 void AddExperiment(CLI::App& app, cli::Action& action) {
-  CLI::App* experiment =
-      app.add_subcommand("experiment", "Make trials with people: orders, questions, tables");
+  CLI::App* experiment = app.add_subcommand(cli::kExperiment.verb, cli::kExperiment.purpose);
   experiment->require_subcommand(1);
   AddCheckPlans(*experiment, action);
   AddRunTrials(*experiment, action);
@@ -235,4 +233,9 @@ void AddExperiment(CLI::App& app, cli::Action& action) {
   experiment->footer(kExperimentExamples);
 }
 
+}  // namespace
 }  // namespace fogline
+
+int main(int argc, char** argv) {
+  return fogline::cli::RunOneVerb(argc, argv, fogline::AddExperiment);
+}

@@ -19,7 +19,7 @@
 #include "tools/cli/transport_arguments.h"
 #include "tools/drive/evdev_device.h"
 #include "tools/drive/terminal_keys.h"
-#include "tools/fogline/drive/experiment_actions.h"
+#include "tools/fogline/experiment/experiment_actions.h"
 #include "tools/trials/desk/page_desk.h"
 #include "tools/trials/desk/terminal_desk.h"
 #include "tools/trials/session.h"
