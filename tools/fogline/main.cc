@@ -6,9 +6,10 @@
 int main(int argc, char** argv) {
   using namespace fogline;
   cli::BecomeOwnProgram(argc, argv);
-  return cli::RunVerbs(
-      argc, argv,
-      {AddRun,        AddDrive,  AddTable, AddSweep,  cli::AddOwnPrograms, AddMetrics, AddCompare,
-       AddReport,     AddDigest, AddDiff,  AddEvents, AddReplay,           AddExport,  AddGraph,
-       AddExperiment, AddCheck,  AddTop,   AddSpy,    AddDoctor,           AddKeygen,  AddHelp});
+  return cli::RunVerbs(argc, argv,
+                       {AddRun,     AddDrive,   AddTable,  AddSweep,  cli::AddOwnPrograms,
+                        AddMetrics, AddCompare, AddReport, AddDigest, AddDiff,
+                        AddEvents,  AddReplay,  AddExport, AddGraph,  AddExperiment,
+                        AddCheck,   AddTop,     AddRecord, AddSpy,    AddDoctor,
+                        AddKeygen,  AddHelp});
 }
