@@ -1,6 +1,9 @@
 #include "services/log/remains.h"
 
+#include <algorithm>
+#include <array>
 #include <optional>
+#include <utility>
 
 #include <fmt/core.h>
 
@@ -33,8 +36,7 @@ class Follower {
   /// @return false at the first event that does not continue the steps of the recorder
   bool Take(const Event& event, const LogHead& head) {
     if (event.number != head.events - 1) return false;
-    // The STATUS of a role that has computed no step has step -1.
-    if (front_.realtime && IsStatus(event)) return true;
+    if (front_.realtime && IsBeside(event)) return true;
     const std::int64_t step = StepOf(event, front_.run_id);
     if (step < 0) return false;
     return front_.realtime ? TakeRealtime(event, step, head) : TakeNext(event, step, head);
@@ -43,16 +45,22 @@ class Follower {
   const Remains& remains() const { return remains_; }
 
  private:
-  bool IsStatus(const Event& event) const {
-    return event.channel == ChannelOf<status_t>().name && IsOfRun(event, front_.run_id);
+  /// Whether the event stands beside the steps of a run in real time. (The STATUS of a role that
+  /// has computed no step has step -1.)
+  bool IsBeside(const Event& event) const {
+    constexpr std::array kBeside{ChannelOf<status_t>().name, ChannelOf<driver_input_t>().name,
+                                 ChannelOf<trial_t>().name, kWallClockChannel};
+    return std::ranges::find(kBeside, event.channel) != kBeside.end() &&
+           IsOfRun(event, front_.run_id);
   }
 
   bool TakeNext(const Event& event, std::int64_t step, const LogHead& head) {
-    if (event.channel != kStepNames[next_] || step != remains_.steps) return false;
+    const std::string_view expected = next_ < kStepChannels ? kStepNames[next_] : kWallClockChannel;
+    if (event.channel != expected || step != remains_.steps) return false;
     if (event.channel == ChannelOf<truth_t>().name && runtime::Decode(event.data, truth_)) {
       last_ = truth_.last;
     }
-    if (++next_ == kStepChannels) {
+    if (std::cmp_equal(++next_, front_.StepEvents())) {
       remains_.final = last_;
       EndSteps(step + 1, head);
     }
@@ -122,7 +130,7 @@ std::optional<Start> StartIn(runtime::Bytes content, std::int64_t from, const Lo
   const auto accept = [&](const Event& event) {
     // Each event takes some bytes, so no event number exceeds the size of the file.
     if (event.number < 0 || event.number > std::ssize(content)) return false;
-    const auto begun = StepBegunBy(event, front.head.events, front.run_id);
+    const auto begun = StepBegunBy(event, front.head.events, front.StepEvents(), front.run_id);
     const bool is_any = front.realtime && IsStepChannel(event.channel);
     step = is_any ? StepOf(event, front.run_id) : begun.value_or(-1);
     number = event.number;
@@ -148,6 +156,10 @@ std::optional<Remains> ReadTail(EventLogReader& reader, const LogFront& front, s
 
 }  // namespace
 
+std::int64_t LogFront::StepEvents() const {
+  return static_cast<std::int64_t>(kStepChannels) + (wall_clock ? 1 : 0);
+}
+
 LogFront ReadFront(const std::filesystem::path& file) {
   LogFront front;
   EventLogReader reader(file);
@@ -165,6 +177,10 @@ LogFront ReadFront(const std::filesystem::path& file) {
     front.head.bytes = static_cast<std::int64_t>(reader.good_bytes());
     ++front.head.events;
   }
+  if (front.realtime || !front.parts.Complete()) return front;
+  auto event = reader.Next();
+  for (std::size_t i = 0; i < kStepChannels && event; ++i) event = reader.Next();
+  front.wall_clock = event && event->channel == kWallClockChannel;
   return front;
 }
 
@@ -189,8 +205,8 @@ std::string OddEnd(const std::filesystem::path& file, const LogFront& front,
   while (const auto event = reader.Next()) {
     if (IsLogSeal(*event)) continue;
     const std::int64_t step = StepOf(*event, front.run_id);
-    const bool is_usual = IsStepChannel(event->channel) && step >= remains.steps &&
-                          step < remains.steps + runtime::kRingSteps;
+    const bool is_usual = (IsStepChannel(event->channel) || event->channel == kWallClockChannel) &&
+                          step >= remains.steps && step < remains.steps + runtime::kRingSteps;
     if (is_usual) continue;
     return fmt::format("an event on channel {} (byte {}) does not continue {}",
                        EscapeControls(event->channel), reader.good_bytes() - SizeInFile(*event),

@@ -19,6 +19,11 @@ struct LogFront {
   bool realtime = false;
   std::int64_t type_fingerprint = 0;
   LogHead head;  // the part with the scenario; step 0 follows
+  // In lockstep: whether each step has its wall clock. Known if the log has step 0.
+  bool wall_clock = false;
+
+  /// Number of events of each step in lockstep.
+  std::int64_t StepEvents() const;
 };
 
 /// Reads the scenario of a log, or the part of the scenario that the log contains.

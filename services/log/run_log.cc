@@ -15,11 +15,26 @@
 #include "services/runtime/wire/scenario_parts.h"
 
 namespace fogline::log {
+namespace {
+
+/// The channels of which a step lacks its message.
+runtime::ChannelSet LackingIn(const StepMessages& messages) {
+  runtime::ChannelSet lacks;
+  for (std::size_t i = 0; i < kNumChannels; ++i) {
+    lacks[i] = kChannels[i].pace == Pace::kStep && messages[i].empty();
+  }
+  return lacks;
+}
+
+}  // namespace
+
 /// Combines the events of a log into steps.
 class RunLogReader::Assembler {
  public:
-  Assembler(const std::filesystem::path& file, Compared compared)
-      : file_(file), reader_(file), compared_(compared) {}
+  Assembler(const std::filesystem::path& file, const ReadOptions& options)
+      : file_(file), reader_(file), options_(options), has_run_(options.run_id.has_value()) {
+    run_.run_id = options.run_id.value_or(0);
+  }
 
   const StepMessages* Next() {
     if (over_) return nullptr;
@@ -30,11 +45,21 @@ class RunLogReader::Assembler {
   }
 
   const RunLog& run() const { return run_; }
+  std::int64_t step() const { return next_ - 1; }
+  bool InTail() const { return tail_ && step() >= *tail_; }
+  /// Whether gaps are read; a run in real time has its own rule for them.
+  bool ReadsGaps() const { return options_.gaps && !realtime_; }
 
  private:
   // In real time, a message may come in the log after messages of later steps. The later steps are
   // at most this many steps ahead.
   static constexpr std::int64_t kLongestOverdue = 64;
+  // If gaps are read, at most this many steps wait for their missing messages. A logger may get a
+  // message late, after it was sent again, and far later steps by then.
+  static constexpr std::size_t kMostOpen = 4096;
+  // A step that is further ahead than this was not sent by the run. A run of a scenario does not
+  // lose so many steps.
+  static constexpr std::int64_t kLongestGap = 1'000'000;
 
   struct Pending {
     StepMessages messages{};
@@ -44,9 +69,9 @@ class RunLogReader::Assembler {
   /// The next step; nullptr at the end of the log.
   const StepMessages* ReadStep() {
     while (!Ready()) {
-      const auto event = reader_.Next();
+      const auto event = ended_ ? std::nullopt : reader_.Next();
       if (!event) {
-        ended_ = true;
+        if (!std::exchange(ended_, true)) FindTail();
         if (Ready()) break;
         Finish();
         return nullptr;
@@ -54,37 +79,68 @@ class RunLogReader::Assembler {
       Take(*event);
     }
     current_ = TakeStep();
-    for (const runtime::Bytes message : current_) {
-      if (!message.empty()) digest_.Add(message);
-    }
+    Count(current_);
     if (runtime::Decode(current_[IndexOf<truth_t>()], truth_)) last_ = truth_.last != 0;
-    ++run_.steps;
     return &current_;
   }
 
-  /// Whether the next step is complete, or (in real time) no further message of this step is
-  /// expected.
-  bool Ready() const {
+  /// Whether the next step is complete, or no further message of this step is expected.
+  bool Ready() {
     if (pending_.empty()) return false;
     const auto& [step, next] = *pending_.begin();
-    if (step == run_.steps && next.count == kStepChannels) return true;
-    return realtime_ && (ended_ || pending_.rbegin()->first > run_.steps + kLongestOverdue);
+    if (step == next_ && next.count == kStepChannels) return true;
+    if (realtime_) return ended_ || pending_.rbegin()->first > next_ + kLongestOverdue;
+    if (!options_.gaps || !(ended_ || pending_.size() > kMostOpen)) return false;
+    if (begun_ && step > next_ + kLongestGap) {
+      astray_ += std::ssize(pending_);
+      pending_.clear();
+      return false;
+    }
+    if (!begun_) next_ = run_.gaps.first = step;
+    return true;
   }
 
-  /// The messages of the next step. In real time, the step may have no messages.
+  /// The messages of the next step, which may have no messages.
   StepMessages TakeStep() {
+    begun_ = true;
     const auto next = pending_.begin();
     StepMessages messages{};
-    if (next->first == run_.steps) {
+    if (next->first == next_) {
       messages = next->second.messages;
       pending_.erase(next);
     }
-    if (realtime_) {
-      runtime::ChannelSet there;
-      for (std::size_t i = 0; i < kNumChannels; ++i) there[i] = !messages[i].empty();
-      realtime_->AddStep(there);
-    }
+    ++next_;
     return messages;
+  }
+
+  /// Counts a step and its gaps, and adds the step to the digest.
+  void Count(const StepMessages& messages) {
+    const runtime::ChannelSet lacks = LackingIn(messages);
+    if (realtime_) realtime_->AddStep(~lacks);
+    if (ReadsGaps() && lacks.any()) {
+      if (!InTail()) run_.gaps.Add(step(), lacks);
+      if (step() == tail_) tail_lacks_ = NamesOfChannels(lacks);
+      return;
+    }
+    ++run_.steps;
+    if (run_.gaps.Any()) return;
+    ++first_steps_;
+    for (const runtime::Bytes message : messages) {
+      if (!message.empty()) digest_.Add(message);
+    }
+  }
+
+  /// Finds the incomplete steps that a run leaves when it ends early. The world is at most
+  /// kMaxAhead steps ahead of the log.
+  void FindTail() {
+    if (!ReadsGaps() || pending_.empty()) return;
+    const Pending& newest = pending_.rbegin()->second;
+    // The run has ended with this step, so messages that are missing there are gaps.
+    if (runtime::Decode(newest.messages[IndexOf<truth_t>()], truth_) && truth_.last) return;
+    auto step = pending_.rbegin();
+    while (step != pending_.rend() && step->second.count < kStepChannels) ++step;
+    const std::int64_t last = step == pending_.rend() ? next_ - 1 : step->first;
+    if (pending_.rbegin()->first <= last + runtime::kMaxAhead) tail_ = last + 1;
   }
 
   void Take(const Event& event) {
@@ -94,14 +150,16 @@ class RunLogReader::Assembler {
     if (channel == IndexOf<run_t>()) return TakeRun(event.data);
     if (channel == IndexOf<status_t>()) return TakeStatus(event.data);
     if (kChannels[channel].pace != Pace::kStep) return;
+    const std::int64_t run_id = runtime::ReadInt64(event.data, runtime::kRunIdOffset);
+    if (options_.gaps && parts_.empty()) ChooseRun(event.data, channel, run_id);
     const runtime::Bytes data = Payload(event.data);
-    if (parts_.empty() || data.empty() ||
-        runtime::ReadInt64(data, runtime::kRunIdOffset) != run_.run_id) {
+    if ((parts_.empty() && !options_.gaps) || data.empty() || run_id != run_.run_id) {
       ++foreign_;
+      if (run_id != run_.run_id) others_.Add(run_id);
       return;
     }
     const std::int64_t step = runtime::ReadInt64(data, runtime::kStepOffset);
-    if (step < run_.steps) return;  // a repeated message
+    if (step < next_) return;  // a repeated message
     if (realtime_ && step >= steps_) return;
     Pending& pending = pending_[step];
     if (!pending.messages[channel].empty()) {
@@ -120,42 +178,77 @@ class RunLogReader::Assembler {
       throw InputError(fmt::format("{}: error: the log is empty: no run has begun to write it",
                                    PathText(file_)));
     }
-    if (!parts_.Complete()) {
-      throw InputError(
-          fmt::format("{}: error: the log has no complete scenario of a run", PathText(file_)));
-    }
-    if (!parts_.HashHolds()) {
-      throw InputError(fmt::format("{}: error: the scenario in the log does not match its hash",
-                                   PathText(file_)));
-    }
-    run_.scenario_text = parts_.Text();
-    run_.scenario_hash = parts_.hash();
-    run_.scenario = ParseScenario(run_.scenario_text, file_.string());
-    run_.digest = digest_.Hex();
+    FinishScenario();
+    run_.digest = run_.gaps.Any() ? "" : digest_.Hex();
+    run_.other_runs = others_.all();
     run_.events = reader_.head();
     const std::string alteration = Alteration();
     run_.altered = !alteration.empty();
     // In real time, the TRUTH message that has `last` may be missing.
     if (realtime_ && (run_.steps == steps_ || run_.steps == end_)) last_ = true;
-    run_.ended =
-        last_ && pending_.empty() && conflict_.empty() && reader_.torn().empty() && !run_.altered;
+    const bool whole = pending_.empty() && !run_.gaps.Any() && !tail_;
+    run_.ended = last_ && whole && run_.has_scenario && conflict_.empty() &&
+                 reader_.torn().empty() && !run_.altered;
     const std::int64_t unlogged = run_.realtime ? run_.realtime->unlogged_messages : 0;
     run_.complete = run_.ended && unlogged == 0;
     run_.note = reader_.torn();
+    AddNotes(alteration, unlogged);
+  }
+
+  void AddNotes(const std::string& alteration, std::int64_t unlogged) {
     const auto note = [this](const std::string& text) {
-      run_.note += run_.note.empty() ? text : "; " + text;
+      run_.note += run_.note.empty() || text.empty() ? text : "; " + text;
     };
+    if (!run_.has_scenario) note("the log has no scenario");
     if (run_.altered) note("altered: " + alteration);
+    if (run_.gaps.first > 0) note(fmt::format("begins at step {}{}", run_.gaps.first, OfSteps()));
     if (!last_) note(Shortage());
+    note(run_.gaps.Text());
     if (run_.realtime && run_.realtime->missed_messages > 0) {
       note(fmt::format("real time, {} messages missing", run_.realtime->missed_messages));
       if (unlogged > 0) note(fmt::format("published, but not in the log: {}", unlogged));
     }
+    if (tail_) note(fmt::format("step {} lacks {}", *tail_, tail_lacks_));
     if (!pending_.empty()) {
-      note(fmt::format("step {} lacks {}", run_.steps, Lacking(pending_.begin()->second.messages)));
+      const runtime::ChannelSet lacks = LackingIn(pending_.begin()->second.messages);
+      note(fmt::format("step {} lacks {}", run_.steps, NamesOfChannels(lacks)));
     }
+    if (astray_ > 0) note(fmt::format("{} impossible steps ignored", astray_));
     if (!conflict_.empty()) note(conflict_);
     if (foreign_ > 0) note(fmt::format("{} messages of other runs ignored", foreign_));
+  }
+
+  /// Sets the scenario of the run. @throws InputError
+  void FinishScenario() {
+    if (has_run_ && options_.run_id && parts_.empty() && !begun_) RefuseRun();
+    const std::string& given = options_.scenario_text;
+    if (!parts_.Complete() && given.empty()) {
+      run_.has_scenario = false;
+      if (!options_.needs_scenario && begun_) return;
+      throw InputError(fmt::format("{}: error: the log has no complete scenario of a run{}",
+                                   PathText(file_),
+                                   options_.gaps && begun_ ? "; --scenario FILE gives it" : ""));
+    }
+    if (parts_.Complete() && !parts_.HashHolds()) {
+      throw InputError(fmt::format("{}: error: the scenario in the log does not match its hash",
+                                   PathText(file_)));
+    }
+    const std::string known = parts_.empty() ? status_hash_ : parts_.hash();
+    if (!given.empty() && !known.empty() && known != runtime::HashOf(given)) {
+      throw InputError(fmt::format(
+          "{}: error: --scenario: the log is of another scenario: its hash is {}, that of the file "
+          "is {}; `fogline check --print` with the seed and the --set of the run prints it",
+          PathText(file_), EscapeControls(known), runtime::HashOf(given)));
+    }
+    run_.scenario_text = parts_.Complete() ? parts_.Text() : given;
+    run_.scenario_hash = parts_.Complete() ? parts_.hash() : runtime::HashOf(given);
+    run_.scenario = ParseScenario(run_.scenario_text, file_.string());
+  }
+
+  [[noreturn]] void RefuseRun() const {
+    const std::string ids = IdsOf(others_.all());
+    throw InputError(fmt::format("{}: error: --run {}: the log has no such run{}", PathText(file_),
+                                 run_.run_id, ids.empty() ? "" : "; it has " + ids));
   }
 
   /// How the log differs from its seal; "" if it does not differ or has no seal.
@@ -163,19 +256,26 @@ class RunLogReader::Assembler {
     if (!run_.seal) return "";
     const LogSeal& seal = *run_.seal;
     if (!seal.whole) return "its seal was changed";
-    if (seal.says.digest != run_.digest || seal.says.steps != run_.steps) {
+    if (seal.says.digest != digest_.Hex() || seal.says.steps != first_steps_) {
       return fmt::format("the seal names digest {} of {} steps; the log has {} of {}",
-                         EscapeControls(seal.says.digest), seal.says.steps, run_.digest,
-                         run_.steps);
+                         EscapeControls(seal.says.digest), seal.says.steps, digest_.Hex(),
+                         first_steps_);
     }
     if (seal.says.scenario_hash != run_.scenario_hash) return "it was sealed with another scenario";
-    if (compared_ == Compared::kRun && !run_.realtime) return "";
+    if (options_.compared == Compared::kRun && !run_.realtime) return "";
     return WhyNotSealedFile(seal, reader_);
   }
 
   std::string Shortage() const {
-    if (run_.steps == 0) return fmt::format("no step of {} is complete", run_.scenario.steps);
-    return fmt::format("ends after step {} of {}", run_.steps - 1, run_.scenario.steps);
+    if (run_.steps == 0 && !run_.gaps.Any()) {
+      return fmt::format("no step{} is complete", OfSteps());
+    }
+    return fmt::format("ends after step {}{}", tail_.value_or(next_) - 1, OfSteps());
+  }
+
+  /// " of 500": the number of steps of the scenario; "" if it is not known.
+  std::string OfSteps() const {
+    return run_.has_scenario ? fmt::format(" of {}", run_.scenario.steps) : "";
   }
 
   std::size_t Find(std::string_view name) {
@@ -195,14 +295,22 @@ class RunLogReader::Assembler {
     const bool is_signed =
         runtime::LooksSigned(data) && runtime::Decode(runtime::WithoutSignature(data), run);
     if (!is_signed && !runtime::Decode(data, run)) return;
-    if (parts_.empty()) {
-      run_.run_id = run.header.run_id;
-      is_signed_ = is_signed;
-    }
-    if (run.header.run_id != run_.run_id) return;
+    const bool was_chosen = std::exchange(has_run_, true) && (options_.gaps || options_.run_id);
+    if (!was_chosen && parts_.empty()) run_.run_id = run.header.run_id;
+    if (run.header.run_id != run_.run_id) return others_.Add(run.header.run_id);
+    if (parts_.empty()) is_signed_ = is_signed;
     const bool known = parts_.Complete();
     if (!parts_.Add(run)) ++foreign_;
     if (!known && parts_.Complete() && run.realtime != 0) ExpectRealtime(run);
+  }
+
+  /// Chooses the run of the first message, if no run is chosen. @param data of a message of a step
+  void ChooseRun(runtime::Bytes data, std::size_t channel, std::int64_t run_id) {
+    if (runtime::ReadInt64(data, 0) != runtime::FingerprintOf(channel)) return;
+    if (!std::exchange(has_run_, true)) run_.run_id = run_id;
+    if (run_id == run_.run_id && !begun_ && pending_.empty()) {
+      is_signed_ = runtime::LooksSigned(data);
+    }
   }
 
   void TakeSeal(const Event& event) {
@@ -226,7 +334,10 @@ class RunLogReader::Assembler {
   void TakeStatus(runtime::Bytes event) {
     const runtime::Bytes data = Payload(event);
     status_t status{};
-    if (!realtime_ || !runtime::Decode(data, status) || status.header.run_id != run_.run_id) return;
+    const bool wanted = realtime_ || (options_.gaps && status_hash_.empty());
+    if (!wanted || !runtime::Decode(data, status) || status.header.run_id != run_.run_id) return;
+    if (status_hash_.empty()) status_hash_ = status.scenario_hash;
+    if (!realtime_) return;
     realtime_->Add(status);
     const bool is_done = status.role == NameOf(Role::kWorld) && status.state == status_t::DONE;
     if (is_done) end_ = status.header.step + 1;
@@ -243,27 +354,28 @@ class RunLogReader::Assembler {
                : runtime::Bytes();
   }
 
-  static std::string Lacking(const StepMessages& messages) {
-    std::string names;
-    for (std::size_t i = 0; i < kNumChannels; ++i) {
-      if (kChannels[i].pace != Pace::kStep || !messages[i].empty()) continue;
-      names += fmt::format("{}{}", names.empty() ? "" : ", ", kChannels[i].name);
-    }
-    return names;
-  }
-
   std::filesystem::path file_;
   EventLogReader reader_;
-  Compared compared_;
+  const ReadOptions options_;
   runtime::Digest digest_;
   RunLog run_;
   runtime::ScenarioParts parts_;
   std::map<std::int64_t, Pending> pending_;
   StepMessages current_{};
+  std::int64_t next_ = 0;  // the step after current_
+  bool begun_ = false;     // whether a step was given
+  std::int64_t first_steps_ =
+      0;  // the complete steps before the first gap, which the digest covers
+  std::optional<std::int64_t> tail_;  // the first step of the tail, if there is one
+  std::string tail_lacks_;            // the channels that it lacks
   std::size_t guess_ = 0;
   std::int64_t foreign_ = 0;
-  bool is_signed_ = false;  // whether the run's messages are signed
-  std::string conflict_;    // names the first step with two different messages of one channel
+  std::int64_t astray_ = 0;  // steps that are too far from the others
+  OtherRuns others_;
+  bool has_run_;             // whether run_.run_id is known
+  std::string status_hash_;  // the scenario's hash as a role has told it; "" if not known
+  bool is_signed_ = false;   // whether the run's messages are signed
+  std::string conflict_;     // names the first step with two different messages of one channel
   truth_t truth_{};
   bool last_ = false;
   bool over_ = false;   // no further step comes: the log has ended, or an error was thrown
@@ -273,10 +385,13 @@ class RunLogReader::Assembler {
   std::int64_t end_ = -1;   // number of steps of a world that is done, in real time; -1: unknown
 };
 
-RunLogReader::RunLogReader(const std::filesystem::path& file, Compared compared)
-    : assembler_(std::make_unique<Assembler>(file, compared)) {}
+RunLogReader::RunLogReader(const std::filesystem::path& file, const ReadOptions& options)
+    : assembler_(std::make_unique<Assembler>(file, options)) {}
 RunLogReader::~RunLogReader() = default;
 const StepMessages* RunLogReader::Next() { return assembler_->Next(); }
+std::int64_t RunLogReader::step() const { return assembler_->step(); }
+bool RunLogReader::InTail() const { return assembler_->InTail(); }
+bool RunLogReader::MayHaveGap() const { return assembler_->ReadsGaps() && !InTail(); }
 const RunLog& RunLogReader::run() const { return assembler_->run(); }
 
 }  // namespace fogline::log

@@ -7,9 +7,13 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "scenario/sections/scenario.h"
 #include "services/log/event_log.h"
+#include "services/log/gaps/log_gaps.h"
+#include "services/log/gaps/other_runs.h"
+#include "services/log/gaps/read_options.h"
 #include "services/log/log_seal.h"
 #include "services/log/realtime_figures.h"
 
@@ -25,7 +29,8 @@ struct RunLog {
   std::string scenario_text;
   std::string scenario_hash;
   std::int64_t steps = 0;  // number of complete steps
-  std::string digest;      // digest of these steps
+  // Digest of these steps; "" if the log has gaps and they were read (ReadOptions::gaps).
+  std::string digest;
   // Whether four conditions are met: the log ends with the last step of the run, the log was not
   // changed after it was sealed, no event is torn, and no two messages of one step and channel
   // differ. In lockstep, all messages must be in the log, too.
@@ -38,28 +43,39 @@ struct RunLog {
   std::optional<LogSeal> seal;              // none in a log of lcm-logger or of an interrupted run
   bool altered = false;                     // the log differs from its seal
   std::optional<RealtimeFigures> realtime;  // set for a run in real time
+  LogGaps gaps;                             // in lockstep, if they were read (ReadOptions::gaps)
+  std::vector<RunInLog> other_runs;         // the first other runs of which the log has messages
+  // Whether the scenario is known. It is always known if ReadOptions::needs_scenario.
+  bool has_scenario = true;
 };
 
 /// Reads a run step by step from a log that the recorder or lcm-logger wrote. The events may be in
 /// any order. If the events are in order, the memory use is bounded.
 class RunLogReader {
  public:
-  /// The part of a log that is compared with its seal.
-  enum class Compared {
-    kRun,   // scenario and steps; in real time all bytes, because STATUS gives results, too
-    kFile,  // all bytes of the file, which are read once more at the end
-  };
+  using Compared = ReadOptions::Compared;
 
   /// @throws InputError when the file cannot be read or is no event log
-  explicit RunLogReader(const std::filesystem::path& file, Compared compared = Compared::kRun);
+  explicit RunLogReader(const std::filesystem::path& file, Compared compared = Compared::kRun)
+      : RunLogReader(file, ReadOptions{.compared = compared}) {}
+  RunLogReader(const std::filesystem::path& file, const ReadOptions& options);
   ~RunLogReader();
 
   /// The next complete step, from 0 on; nullptr at the end. In real time the step may be
-  /// incomplete. The bytes of the step are valid for the lifetime of the reader.
-  /// After an exception it returns nullptr.
-  /// @throws InputError at the end, when the log has no scenario of a run; in real time also at the
-  /// first message of a run whose scenario is invalid
+  /// incomplete. With ReadOptions::gaps the steps begin with the first step of which the log has a
+  /// message, and may be incomplete or empty. The bytes of the step are valid for the lifetime of
+  /// the reader. After an exception it returns nullptr.
+  /// @throws InputError at the end, when the log has no scenario of a run, lacks the chosen run, or
+  /// is of another scenario than the given one; in real time also at the first message of a run
+  /// whose scenario is invalid
   const StepMessages* Next();
+  /// The number of the step that Next() has returned.
+  std::int64_t step() const;
+  /// Whether this step is one of the incomplete steps at the end of the log that a run leaves when
+  /// it ends early. They are no gaps.
+  bool InTail() const;
+  /// Whether a message that this step lacks is a gap in the log of a run in lockstep.
+  bool MayHaveGap() const;
 
   /// The contents of the whole log. Known once Next() has returned nullptr.
   const RunLog& run() const;

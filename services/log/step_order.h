@@ -1,6 +1,7 @@
 // The order of the steps in a log of the recorder. In lockstep, all messages of a step are next to
-// each other, in the order of the graph table. So the number of an event determines its step and
-// channel. In real time, messages may be missing, and STATUS messages come between the steps.
+// each other, in the order of the graph table; if the log has the wall clock, it follows them. So
+// the number of an event determines its step and channel. In real time, messages may be missing,
+// and STATUS messages come between the steps.
 #pragma once
 
 #include <algorithm>
@@ -10,6 +11,7 @@
 #include <string_view>
 
 #include "services/log/event_log.h"
+#include "services/log/wall_clock.h"
 
 namespace fogline::log {
 
@@ -29,9 +31,9 @@ inline constexpr std::array<std::string_view, kStepChannels> kStepNames = [] {
   return names;
 }();
 
-/// Largest size of a step in a log, in bytes.
+/// Largest size of a step in a log, in bytes, with its wall clock.
 inline constexpr std::int64_t kMostStepBytes =
-    kStepChannels * (kMostEventOverhead + runtime::kMaxMessageBytes);
+    (kStepChannels + 1) * (kMostEventOverhead + runtime::kMaxMessageBytes);
 
 inline bool IsStepChannel(std::string_view channel) {
   return std::ranges::find(kStepNames, channel) != kStepNames.end();
@@ -49,15 +51,15 @@ inline std::int64_t StepOf(const Event& event, std::int64_t run_id) {
 
 /// The step of a run in lockstep that begins with this event; nullopt if no step begins here.
 /// @param front_events number of events before step 0
+/// @param step_events number of events of each step
 inline std::optional<std::int64_t> StepBegunBy(const Event& event, std::int64_t front_events,
-                                               std::int64_t run_id) {
+                                               std::int64_t step_events, std::int64_t run_id) {
   const std::int64_t step = StepOf(event, run_id);
-  constexpr auto kEvents = static_cast<std::int64_t>(kStepChannels);
   if (step < 0 || event.channel != kStepNames.front() || event.number < front_events) {
     return std::nullopt;
   }
   const std::int64_t before = event.number - front_events;
-  if (before % kEvents != 0 || before / kEvents != step) return std::nullopt;
+  if (before % step_events != 0 || before / step_events != step) return std::nullopt;
   return step;
 }
 

@@ -28,6 +28,7 @@ History::History(std::filesystem::path file, const log::LogFront& front,
     : file_(std::move(file)),
       run_id_(front.run_id),
       realtime_(front.realtime),
+      step_events_(front.StepEvents()),
       front_(front.head),
       steps_(remains.steps),
       last_(remains.last),
@@ -72,6 +73,11 @@ void History::ForEachMessage(
                                          file_.string(), step, begin));
   }
   found_[runtime::RingSlot(step)] = {.step = step, .begin = begin};
+  if (std::cmp_greater(step_events_, log::kStepChannels)) {
+    const auto clock = log::ParseEvent(rest, why);
+    if (!clock) return;
+    rest = rest.subspan(log::SizeInFile(*clock));
+  }
   const auto size = static_cast<std::int64_t>(read.size() - rest.size());
   found_[runtime::RingSlot(step + 1)] = {.step = step + 1, .begin = begin + size};
 }
@@ -111,12 +117,12 @@ std::optional<History::Place> History::Look(std::int64_t from, std::int64_t limi
   std::optional<Place> found;
   std::size_t offset = 0;
   const auto begins_step = [this](const log::Event& event) {
-    return log::StepBegunBy(event, front_.events, run_id_).has_value();
+    return log::StepBegunBy(event, front_.events, step_events_, run_id_).has_value();
   };
   while (const auto at = log::FindEvent(chunk, offset, begins_step)) {
     std::string_view why;
     const auto event = log::ParseEvent(chunk.subspan(*at), why);
-    const Place place{.step = *log::StepBegunBy(*event, front_.events, run_id_),
+    const Place place{.step = *log::StepBegunBy(*event, front_.events, step_events_, run_id_),
                       .begin = from + static_cast<std::int64_t>(*at)};
     if (place.begin >= limit) break;
     if (place.step > step) return found ? found : place;

@@ -59,6 +59,7 @@ class History {
   int fd_ = -1;  // opened when first needed
   std::int64_t run_id_;
   bool realtime_;
+  std::int64_t step_events_;  // number of events of each step in lockstep
   log::LogHead front_;
   std::int64_t steps_;
   std::int64_t last_;  // byte at which the last step begins

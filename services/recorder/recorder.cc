@@ -34,19 +34,26 @@ constexpr Duration kLimiterRetry = milliseconds(1);
 }  // namespace
 
 Recorder::Recorder(runtime::Bus& bus, std::optional<std::int64_t> run_id,
-                   const std::filesystem::path& file, Existing existing)
-    : node_(bus, Role::kRecorder, run_id, *this), file_(file), existing_(existing) {
+                   const std::filesystem::path& file, Existing existing, WallClock wall_clock)
+    : node_(bus, Role::kRecorder, run_id, *this),
+      file_(file),
+      existing_(existing),
+      wall_clock_(wall_clock == WallClock::kYes) {
   // On a bus in memory, no other process can send a flood of requests.
   const double at_most = bus.url().starts_with("memq:") ? kNoLimit : 1;
   node_.outputs().limiter() =
       runtime::RateLimiter(at_most * kAnswersPerSecond, at_most * kAnswersAtOnce);
   parts_.inputs.Of(IndexOf<truth_t>()).keep = [this](std::int64_t step, runtime::Arrival& arrival) {
-    if (arrival.As<truth_t>()->last) final_ = step;
+    const truth_t& truth = *arrival.As<truth_t>();
+    if (truth.last) final_ = step;
+    if (wall_clock_) NoteWallClock(truth);
   };
   if (existing_ == Existing::kReplace && run_id) log_.emplace(file);
 }
 
 std::unique_ptr<runtime::FireRule> Recorder::Join(const Scenario& scenario) {
+  wall_clock_ = wall_clock_ || parts_.run.realtime;
+  newest_clock_ = parts_.run.progress + 1;  // the TRUTH of an earlier step comes again
   if (existing_ == Existing::kReplace || !Resume()) WriteScenario();
   step_us_ = std::llround(scenario.step_s * 1e6);
   if (!parts_.run.realtime) return std::make_unique<runtime::LockstepRule>(parts_);
@@ -69,8 +76,12 @@ bool Recorder::Resume() {
   }
   const log::Remains remains = ReadOwnRemains(front);
   if (!front.parts.Complete()) return false;
+  // All steps of a log in lockstep have the same events.
+  if (!parts_.run.realtime && remains.steps > 0) wall_clock_ = front.wall_clock;
   log_.emplace(file_, remains.head);
-  history_.emplace(file_, front, remains);
+  log::LogFront continued = front;
+  continued.wall_clock = wall_clock_;
+  history_.emplace(file_, continued, remains);
   if (remains.final) final_ = remains.steps - 1;
   parts_.steps.StartAt(remains.steps);
   if (!parts_.run.realtime) RememberLastSteps();
@@ -121,10 +132,13 @@ void Recorder::WriteScenario() {
   }
   log_->Flush();
   const log::LogHead head{.bytes = log_->size(), .events = std::ssize(texts)};
-  history_.emplace(
-      file_,
-      log::LogFront{.run_id = *news.id, .parts = {}, .realtime = news.realtime, .head = head},
-      log::Remains{.head = head, .last = head.bytes});
+  history_.emplace(file_,
+                   log::LogFront{.run_id = *news.id,
+                                 .parts = {},
+                                 .realtime = news.realtime,
+                                 .head = head,
+                                 .wall_clock = wall_clock_},
+                   log::Remains{.head = head, .last = head.bytes});
 }
 
 void Recorder::Write(std::int64_t step) {
@@ -134,6 +148,24 @@ void Recorder::Write(std::int64_t step) {
     constexpr std::size_t kTimeOffset = runtime::kStepOffset + 8;
     log_->Write(kChannels[input.channel].name, runtime::ReadInt64(bytes, kTimeOffset), bytes);
   }
+  if (wall_clock_) WriteWallClock(step);
+}
+
+void Recorder::NoteWallClock(const truth_t& truth) {
+  wall_clock_t clock = log::ReadWallClock();
+  clock.header = truth.header;
+  clock.late = truth.header.step < newest_clock_;
+  newest_clock_ = std::max(newest_clock_, truth.header.step);
+  clocks_[runtime::RingSlot(truth.header.step)] = clock;
+}
+
+void Recorder::WriteWallClock(std::int64_t step) {
+  const wall_clock_t& clock = clocks_[runtime::RingSlot(step)];
+  const bool is_known = clock.header.run_id == *parts_.run.id && clock.header.step == step;
+  if (!is_known) return;
+  std::vector<std::uint8_t> bytes;
+  runtime::Encode(clock, bytes);
+  log_->Write(log::kWallClockChannel, clock.header.utime, bytes);
 }
 
 void Recorder::WriteEvents(std::int64_t step) {

@@ -9,6 +9,7 @@
 #include <filesystem>
 
 #include "services/log/event_log.h"
+#include "services/log/wall_clock.h"
 #include "services/recorder/asked_steps.h"
 #include "services/recorder/history.h"
 #include "services/runtime/node/node.h"
@@ -21,12 +22,14 @@ class Recorder final : public runtime::Work {
  public:
   /// Whether the recorder replaces an existing file, or continues it.
   enum class Existing { kReplace, kResume };
+  /// Whether the log has the wall clock of each step. In real time it always has.
+  enum class WallClock { kNo, kYes };
 
   /// With kReplace and a run id, an existing file is replaced at once. With kReplace and no run id,
   /// the file is replaced as soon as a run has been found.
   /// @throws InputError if the file cannot be written
   Recorder(runtime::Bus& bus, std::optional<std::int64_t> run_id, const std::filesystem::path& file,
-           Existing existing = Existing::kReplace);
+           Existing existing = Existing::kReplace, WallClock wall_clock = WallClock::kNo);
 
   runtime::Node& node() override { return node_; }
 
@@ -49,6 +52,9 @@ class Recorder final : public runtime::Work {
   void RememberLastSteps();
   void WriteScenario();
   void Write(std::int64_t step);
+  /// Notes the wall clock at which the TRUTH of a step has come.
+  void NoteWallClock(const truth_t& truth);
+  void WriteWallClock(std::int64_t step);
   /// Writes what came apart from the steps, in this step or before (RecordRule::TakeEvents).
   void WriteEvents(std::int64_t step);
   /// Writes into STATUS how much of the log the operating system has, and the checksum of this
@@ -69,6 +75,9 @@ class Recorder final : public runtime::Work {
   std::optional<History> history_;
   std::int64_t final_ = -1;  // last step of the run; -1 until it is known
   std::int64_t step_us_ = 0;
+  bool wall_clock_;
+  std::array<wall_clock_t, runtime::kRingSteps> clocks_{};  // by slot
+  std::int64_t newest_clock_ = -1;                          // the newest step that has one
   AskedSteps asked_;
   RecordRule* recording_ = nullptr;  // the rule in real time, otherwise nullptr
   struct Answered {

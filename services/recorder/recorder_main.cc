@@ -1,5 +1,5 @@
 // The recorder as a process: it writes the event log of one run. It is no general logger of LCM
-// traffic (use lcm-logger for this), and it computes nothing.
+// traffic (use `fogline record` for this), and it computes nothing.
 #include "services/recorder/recorder.h"
 
 #include <memory>
@@ -15,8 +15,8 @@ namespace {
 
 constexpr const char* kHelpFooter =
     "Exit codes: 0 stopped by the runner, 2 bad usage, 3 failed, 130 interrupted.\n\n"
-    "Example: `fogline run` starts it like this. A run has one recorder; use lcm-logger for\n"
-    "a second log.\n"
+    "Example: `fogline run` starts it like this. A run has one recorder; use `fogline record`\n"
+    "for a second log.\n"
     "  fogline-recorder --log logs/run.lcm --lcm-url 'udpm://239.255.76.67:7700?ttl=0'";
 
 }  // namespace
@@ -28,6 +28,7 @@ int main(int argc, char** argv) {
   std::string file;
   bool resume = false;
   bool shared = false;
+  bool wall_clock = false;
   // One of these two objects locks the log while the recorder writes it.
   std::optional<FileLock> lock;
   std::unique_ptr<LogOfRun> log;
@@ -41,7 +42,8 @@ int main(int argc, char** argv) {
           log = std::make_unique<LogOfRun>(file);
         }
         return std::make_unique<Recorder>(
-            bus, run_id, file, resume ? Recorder::Existing::kResume : Recorder::Existing::kReplace);
+            bus, run_id, file, resume ? Recorder::Existing::kResume : Recorder::Existing::kReplace,
+            wall_clock ? Recorder::WallClock::kYes : Recorder::WallClock::kNo);
       },
       [&](CLI::App& app) {
         app.add_option("--log", file, "Event log to write; an existing file is replaced")
@@ -50,6 +52,8 @@ int main(int argc, char** argv) {
                      "Go on with the log of a recorder that was killed in the same run");
         app.add_flag("--shared-log", shared,
                      "The log is locked by the runner, which has started this recorder");
+        app.add_flag("--wall-clock", wall_clock,
+                     "Also write the wall clock of each step (always on in real time)");
         app.footer(kHelpFooter);  // replaces the footer of the other roles
       });
 }

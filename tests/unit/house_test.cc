@@ -79,6 +79,7 @@ constexpr std::array kRooms = std::to_array<Room>({
     {"tools/report", "report", "pages about them"},
     {"tools/export", "exports", "logs for other programs"},
     {"tools/watch", "watch", "what is on a network"},
+    {"tools/record", "record", "writes what is on a network into a log"},
     {"tools/web/types", "web", "what the bytes of a message mean, for the page"},
     {"tools/web/foxglove", "web", "the same messages for viewers of other projects"},
     {"tools/relay", "relay", "carries messages over TCP"},

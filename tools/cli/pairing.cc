@@ -26,9 +26,13 @@ std::vector<Pairing> MeasurePairs(std::span<const runner::LoggedRun> runs) {
     if (runs[i].scenario.arbitrator.policy == Policy::kNone) continue;
     for (std::size_t j = 0; j < runs.size(); ++j) {
       if (runs[j].scenario.arbitrator.policy != Policy::kNone || common[i] != common[j]) continue;
+      if (runs[i].gaps.Any() || runs[j].gaps.Any()) {
+        pairs[i].unknown = true;
+        continue;
+      }
       pairs[i] = {
           metrics::MeasurePair(runs[j].result.samples, runs[i].result.samples, runs[i].scenario),
-          metrics::FogEffectOf(runs[j].result.measures)};
+          metrics::FogEffectOf(runs[j].result.measures), false};
       break;
     }
   }

@@ -12,6 +12,7 @@
 #include "common/atomic_file.h"
 #include "common/interrupt.h"
 #include "services/graph.h"
+#include "services/log/wall_clock.h"
 
 namespace fogline::exports {
 namespace {
@@ -36,6 +37,7 @@ std::string HeaderLine(const ChannelTable& table) {
 }
 
 void AppendRow(const ChannelTable& table, std::size_t row, std::string& text) {
+  const bool is_gap = table.IsGap(row);
   bool first = true;
   for (const FieldTable& field : table.fields) {
     std::visit(
@@ -43,6 +45,7 @@ void AppendRow(const ChannelTable& table, std::size_t row, std::string& text) {
           for (std::size_t i = row * field.width; i < (row + 1) * field.width; ++i) {
             if (!first) text += ',';
             first = false;
+            if (is_gap && !IsOfHeader(field)) continue;  // an empty cell
             fmt::format_to(std::back_inserter(text), "{}", values[i]);
           }
         },
@@ -98,13 +101,32 @@ bool IsCsvExport(const std::filesystem::path& file) {
   return std::all_of(files.begin(), files.end() - 1, IsChannel);
 }
 
-void WriteCsv(const RunTables& tables, const std::filesystem::path& folder) {
+std::vector<std::filesystem::path> CsvFilesOfSomeLogs(const std::filesystem::path& folder) {
+  return {FileOf(log::kWallClockChannel, folder)};
+}
+
+std::vector<std::filesystem::path> WriteCsv(const RunTables& tables,
+                                            const std::filesystem::path& folder) {
   AtomicFiles files;
+  std::vector<std::filesystem::path> written;
+  const auto add = [&](const std::filesystem::path& file) -> AtomicFile& {
+    written.push_back(file);
+    return files.Add(file);
+  };
   for (const ChannelTable& table : tables.channels) {
-    WriteChannel(table, files.Add(FileOf(table.name, folder)));
+    WriteChannel(table, add(FileOf(table.name, folder)));
   }
-  files.Add(folder / kScenarioFile).Write(tables.scenario + '\n');
+  const bool has_scenario = !tables.scenario.empty();
+  if (has_scenario) add(folder / kScenarioFile).Write(tables.scenario + '\n');
   files.Finish();
+  // A file of an older export that this log does not have belongs to another log.
+  std::vector<std::filesystem::path> others = CsvFilesOfSomeLogs(folder);
+  others.push_back(folder / kScenarioFile);
+  for (const std::filesystem::path& file : others) {
+    std::error_code ignored;
+    if (std::ranges::find(written, file) == written.end()) std::filesystem::remove(file, ignored);
+  }
+  return written;
 }
 
 }  // namespace fogline::exports

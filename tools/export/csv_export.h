@@ -11,6 +11,8 @@ namespace fogline::exports {
 
 /// Files that WriteCsv() writes into a folder: CHANNEL.csv for each channel, and scenario.json.
 std::vector<std::filesystem::path> CsvFiles(const std::filesystem::path& folder);
+/// Further files, which it writes only if the log has their contents: the wall clock of the steps.
+std::vector<std::filesystem::path> CsvFilesOfSomeLogs(const std::filesystem::path& folder);
 
 /// Whether WriteCsv() could have written the file, judged by its beginning.
 bool IsCsvExport(const std::filesystem::path& file);
@@ -19,9 +21,12 @@ bool IsCsvExport(const std::filesystem::path& file);
 /// of two logs, even if the process is killed. A folder with scenario.json has all files of one
 /// log. If the disk is full, the old files do not change. Columns have the names of fields. The
 /// columns of a list are "state.0", "state.1" and so on. Numbers have enough digits to restore
-/// every bit.
+/// every bit. A row of a message that the log lacks has only the cells of the header. Without a
+/// scenario there is no scenario.json.
+/// @return the files
 /// @throws InputError if a file cannot be created in the folder; std::runtime_error when the disk
 /// is full; Interrupted
-void WriteCsv(const RunTables& tables, const std::filesystem::path& folder);
+std::vector<std::filesystem::path> WriteCsv(const RunTables& tables,
+                                            const std::filesystem::path& folder);
 
 }  // namespace fogline::exports

@@ -12,6 +12,7 @@
 #include <stdexcept>
 #include <string>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include <fmt/core.h>
@@ -30,6 +31,8 @@ constexpr const char* kHeader = "MATLAB 5.0 MAT-file, Fogline";
 // MAT-files have sizes of 32 bits, and readers interpret these sizes as signed numbers.
 constexpr std::size_t kMaxBytes = std::numeric_limits<std::int32_t>::max();
 constexpr std::string_view kHeaderStruct = "header";
+// Only in the struct of a channel that lacks messages: 1 for a message, 0 for a gap.
+constexpr const char* kHeard = "heard";
 
 struct Free {
   void operator()(matvar_t* variable) const { Mat_VarFree(variable); }
@@ -72,6 +75,13 @@ Variable StructOf(const char* name, const std::vector<std::string>& names) {
   return Variable(Mat_VarCreateStruct2(name, size.size(), size.data(), pointers.data()));
 }
 
+/// 1 for each message of a channel, 0 for each gap.
+FieldTable HeardOf(const ChannelTable& table) {
+  std::vector<std::int8_t> heard(table.messages, 1);
+  for (const std::size_t row : table.gaps) heard[row] = 0;
+  return {.name = kHeard, .values = std::move(heard)};
+}
+
 /// The struct of a channel. The names of the header's fields lose the prefix "header.".
 Variable StructOf(const ChannelTable& table) {
   const std::string prefix = std::string(kHeaderStruct) + '.';
@@ -81,6 +91,7 @@ Variable StructOf(const ChannelTable& table) {
     const bool in_header = field.name.starts_with(prefix);
     (in_header ? of_header : names).push_back(field.name.substr(in_header ? prefix.size() : 0));
   }
+  if (!table.gaps.empty()) names.emplace_back(kHeard);
   Variable all = StructOf(std::string(table.name).c_str(), names);
   Variable header = StructOf(nullptr, of_header);
   if (all == nullptr || header == nullptr) throw std::bad_alloc();
@@ -91,6 +102,11 @@ Variable StructOf(const ChannelTable& table) {
     if (matrix == nullptr) throw std::bad_alloc();
     Mat_VarSetStructFieldByName((in_header ? header : all).get(), name.c_str(), 0,
                                 matrix.release());
+  }
+  if (!table.gaps.empty()) {
+    Variable heard = MatrixOf(HeardOf(table), table.messages);
+    if (heard == nullptr) throw std::bad_alloc();
+    Mat_VarSetStructFieldByName(all.get(), kHeard, 0, heard.release());
   }
   Mat_VarSetStructFieldByName(all.get(), kHeaderStruct.data(), 0, header.release());
   return all;
@@ -176,8 +192,10 @@ void WriteMat(const RunTables& tables, const std::filesystem::path& path) {
     if (WasInterrupted()) throw Interrupted("interrupted; no file was written");
     write(StructOf(table));
   }
-  write(TextVariable("scenario", tables.scenario));
-  if (Mat_Close(mat.release()) != 0 || !IsWhole(file.part(), tables.channels.size() + 1)) {
+  const bool has_scenario = !tables.scenario.empty();
+  if (has_scenario) write(TextVariable("scenario", tables.scenario));
+  const std::size_t variables = tables.channels.size() + (has_scenario ? 1 : 0);
+  if (Mat_Close(mat.release()) != 0 || !IsWhole(file.part(), variables)) {
     Fail(tables, path, file);
   }
   file.Finish();

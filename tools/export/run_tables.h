@@ -1,8 +1,10 @@
-// A log as tables. There is one table for each channel with a message in every step. A table has
-// one row for each message and one column for each field. The tables are for files that other
-// programs read. Fogline's own programs read the log.
+// A log as tables. There is one table for each channel with a message in every step, and one for
+// the wall clock of the steps, if the log has it. A table has one row for each message and one
+// column for each field. The tables are for files that other programs read. Fogline's own programs
+// read the log.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -10,6 +12,8 @@
 #include <string_view>
 #include <variant>
 #include <vector>
+
+#include "services/log/run_log.h"
 
 namespace fogline::exports {
 
@@ -27,20 +31,28 @@ struct FieldTable {
 struct ChannelTable {
   std::string_view name;
   std::vector<FieldTable> fields;
-  std::size_t messages = 0;  // number of messages; a run in real time may lack some messages
+  std::size_t messages = 0;  // number of rows; a run in real time may lack some messages
+  /// The rows of messages that the log of a run in lockstep lacks. Such a row has the values of the
+  /// header. Its other values are NaN or 0, and must not be shown.
+  std::vector<std::size_t> gaps;
+
+  bool IsGap(std::size_t row) const { return std::ranges::binary_search(gaps, row); }
 };
+
+/// Whether a field belongs to the header of a message.
+inline bool IsOfHeader(const FieldTable& field) { return field.name.starts_with("header."); }
 
 struct RunTables {
-  std::vector<ChannelTable> channels;  // in the order of the graph table
-  std::string scenario;                // JSON, ASCII only
-  std::int64_t steps = 0;
-  bool complete = false;
-  std::string note;  // why the log is not complete, or which bytes the reader ignored; otherwise ""
+  std::vector<ChannelTable> channels;  // in the order of the graph table, then the wall clock
+  std::string scenario;                // JSON, ASCII only; "" if the log has none
+  log::RunLog run;
 };
 
-/// Reads a whole log into memory: 0.8 kB for each step with one following car.
+/// Reads a whole log into memory: 0.8 kB for each step with one following car. If the options say
+/// that gaps are read, a missing message has a row, too, unless it is before the first step of the
+/// log or in the incomplete steps at its end.
 /// @throws InputError if the file is no log, or has messages that do not fit their channel;
 /// Interrupted
-RunTables ReadRunTables(const std::filesystem::path& log);
+RunTables ReadRunTables(const std::filesystem::path& log, const log::ReadOptions& options = {});
 
 }  // namespace fogline::exports

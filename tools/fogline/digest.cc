@@ -16,6 +16,7 @@
 #include "services/runtime/wire/message_signer.h"
 #include "tools/cli/arguments.h"
 #include "tools/cli/help.h"
+#include "tools/cli/logs/log_reading.h"
 #include "tools/fogline/verbs.h"
 
 namespace fogline {
@@ -24,6 +25,7 @@ namespace {
 struct DigestArguments {
   std::vector<std::filesystem::path> logs;
   std::string key;
+  std::optional<std::int64_t> run_id;
   bool json = false;
 };
 
@@ -83,14 +85,15 @@ int RunDigest(const DigestArguments& arguments) {
   std::optional<runtime::SigningKey> key;
   if (!arguments.key.empty()) key = runtime::SigningKey::Load(arguments.key);
   const bool readable = cli::ForEachReadable(arguments.logs, [&](const std::filesystem::path& log) {
-    log::RunLogReader reader(log, log::RunLogReader::Compared::kFile);
+    log::RunLogReader reader(
+        log, {.compared = log::ReadOptions::Compared::kFile, .run_id = arguments.run_id});
     while (reader.Next() != nullptr) {
     }
     const log::RunLog& run = reader.run();
     const Signature signature = SignatureOf(run, key ? &*key : nullptr);
     sound = sound && run.complete;
     if (key) sound = sound && signature.state == "holds" && !IsUnprovenCopy(run);
-    if (!run.note.empty()) Complain(fmt::format("{}: {}", PathText(log), run.note));
+    cli::SayAboutLog(log, run);
     if (!signature.trouble.empty()) {
       Complain(fmt::format("{}: {}", PathText(log), signature.trouble));
     }
@@ -120,6 +123,7 @@ void AddDigest(CLI::App& app, cli::Action& action) {
   verb->add_option("LOG", arguments->logs, "Event logs")->required();
   verb->add_option("--key", arguments->key,
                    "Require that each log is signed with the key in this file");
+  cli::AddRunOption(*verb, arguments->run_id);
   verb->add_flag("--json", arguments->json, "Print as JSON");
   cli::ShowExitCodes(*verb, {.check_failed = "a log is not whole or not signed"});
   verb->footer(
@@ -127,7 +131,8 @@ void AddDigest(CLI::App& app, cli::Action& action) {
       "and the build of each role. With --key the run signs the seal. This verb reports a later\n"
       "change of the log. The log of a killed run has no seal. If lcm-logplayer has played a\n"
       "log and lcm-logger has recorded it, the seal covers only scenario and steps\n"
-      "(\"seal\": \"copy\").\n\n"
+      "(\"seal\": \"copy\"). The digest of a log that lacks messages is that of the complete\n"
+      "steps before the first gap.\n\n"
       "Examples:\n"
       "  fogline digest logs/*.lcm\n"
       "  fogline run scenario/paper.json --key lab.key --log logs/signed.lcm\n"

@@ -16,6 +16,7 @@
 #include "services/log/run_log.h"
 #include "tools/cli/arguments.h"
 #include "tools/cli/help.h"
+#include "tools/cli/logs/log_reading.h"
 #include "tools/cli/measures/take_over_text.h"
 #include "tools/fogline/verbs.h"
 
@@ -23,6 +24,9 @@ namespace fogline {
 namespace {
 
 struct EventsArguments {
+  explicit EventsArguments(CLI::App& verb) : reading(verb) {}
+
+  cli::LogReading reading;
   std::vector<std::filesystem::path> logs;
   bool json = false;
 };
@@ -33,12 +37,13 @@ struct RunEvents {
   std::vector<metrics::TakeOverMeasures> measures;  // of log.requests()
 };
 
-RunEvents ReadEvents(const std::filesystem::path& file) {
-  log::RunLogReader reader(file);
+RunEvents ReadEvents(const std::filesystem::path& file, const log::ReadOptions& options) {
+  log::RunLogReader reader(file, options);
   RunEvents events;
   arbitration_t command{};
   driver_command_t driver{};
   while (const log::StepMessages* messages = reader.Next()) {
+    if (reader.InTail()) continue;
     const runtime::Bytes bytes = (*messages)[IndexOf<arbitration_t>()];
     if (bytes.empty() || !runtime::Decode(bytes, command)) continue;
     const runtime::Bytes offer = (*messages)[IndexOf<driver_command_t>()];
@@ -47,7 +52,8 @@ RunEvents ReadEvents(const std::filesystem::path& file) {
   }
   events.run = reader.run();
   if (!events.log.requests().empty()) {
-    events.measures = runner::MeasureLoggedRun(file, events.run.scenario).result.take_overs;
+    events.measures =
+        runner::MeasureLoggedRun(file, events.run.scenario, options).result.take_overs;
   }
   return events;
 }
@@ -104,16 +110,57 @@ nlohmann::ordered_json RequestsJson(const RunEvents& events) {
   return rows;
 }
 
+std::string ModesText(const take_over::TakeOverEntry& entry) {
+  const std::string_view from = take_over::NameOfMode(entry.from);
+  if (entry.from == entry.to) return std::string(from);
+  return fmt::format("{} -> {}", from, take_over::NameOfMode(entry.to));
+}
+
+/// A line of the list, and its step.
+using EventLine = std::pair<std::int64_t, std::string>;
+
+/// The fallbacks of a run in real time, as RealtimeText() shows them.
+void AddFallbacks(const log::RunLog& run, std::vector<EventLine>& lines) {
+  if (!run.realtime) return;
+  for (const runtime::Fallback& fallback : run.realtime->fallbacks) {
+    std::string text = fmt::format("fallback: {}: {}", fallback.role, fallback.what);
+    if (!fallback.culprit.empty()) {
+      text +=
+          fmt::format(" (culprit: {}, last heard {:.2f} s ago)", fallback.culprit, fallback.age_s);
+    }
+    lines.emplace_back(fallback.step, std::move(text));
+  }
+}
+
+/// The gaps in the commands of the host: in a gap nobody knows which side drove.
+void AddGaps(const log::LogGaps& gaps, std::vector<EventLine>& lines) {
+  for (const log::Gap& gap : gaps.gaps) {
+    if (!gap.channels[IndexOf<arbitration_t>()]) continue;
+    lines.emplace_back(gap.first, fmt::format("unknown: {}", gap.Text()));
+  }
+}
+
+/// The events of the commands, the gaps and the fallbacks, in the order of their steps.
+std::vector<EventLine> LinesOf(const RunEvents& events) {
+  std::vector<EventLine> lines;
+  AddGaps(events.run.gaps, lines);
+  for (const take_over::TakeOverEntry& entry : events.log.entries()) {
+    lines.emplace_back(
+        entry.step,
+        fmt::format("{:<42}{}", take_over::TextOf(entry, events.run.scenario.person.drives),
+                    ModesText(entry)));
+  }
+  AddFallbacks(events.run, lines);
+  std::ranges::stable_sort(lines, {}, &EventLine::first);
+  return lines;
+}
+
 void PrintText(const std::filesystem::path& file, const RunEvents& events) {
   fmt::print("{}: {}, seed {}\n", PathText(file), EscapeControls(events.run.scenario.title),
              events.run.scenario.seed);
-  for (const take_over::TakeOverEntry& entry : events.log.entries()) {
-    fmt::print("{:>8}{:>10.2f} s  {:<42}{}", entry.step, static_cast<double>(entry.utime) / 1e6,
-               take_over::TextOf(entry, events.run.scenario.person.drives),
-               take_over::NameOfMode(entry.from));
-    fmt::print("{}\n", entry.from == entry.to
-                           ? ""
-                           : fmt::format(" -> {}", take_over::NameOfMode(entry.to)));
+  for (const auto& [step, text] : LinesOf(events)) {
+    const double time_s = static_cast<double>(step) * events.run.scenario.step_s;
+    fmt::print("{:>8}{:>10.2f} s  {}\n", step, time_s, text);
   }
   int number = 0;
   for (const take_over::TakeOverRequest& request : events.log.requests()) {
@@ -129,22 +176,42 @@ void PrintText(const std::filesystem::path& file, const RunEvents& events) {
   }
 }
 
+/// Says on stderr what a log lacks, and what is unknown for this reason.
+void SayAbout(const std::filesystem::path& file, const RunEvents& events) {
+  cli::SayAboutLog(file, events.run);
+  const bool unknown = events.run.gaps.Any() && events.measures.empty();
+  if (unknown && !events.log.requests().empty()) {
+    Complain(fmt::format("{}: unknown, because messages are missing: the measures of take-overs",
+                         PathText(file)));
+  }
+}
+
+nlohmann::ordered_json ToJson(const std::filesystem::path& file, const RunEvents& events) {
+  nlohmann::ordered_json json{{"log", file.string()},
+                              {"title", events.run.scenario.title},
+                              {"seed", events.run.scenario.seed},
+                              {"complete", events.run.complete},
+                              {"events", EventsJson(events)},
+                              {"requests", RequestsJson(events)}};
+  if (events.run.gaps.Any()) json["gaps"] = cli::GapsJson(events.run.gaps);
+  if (events.run.realtime) {
+    const nlohmann::ordered_json figures = cli::RealtimeJson(*events.run.realtime);
+    for (const char* key : {"fallbacks", "fallbacks_left_out"}) json[key] = figures[key];
+  }
+  return json;
+}
+
 int RunEventsVerb(const EventsArguments& arguments) {
+  const log::ReadOptions options = arguments.reading.Options();
   auto rows = nlohmann::ordered_json::array();
   bool complete = true;
   const bool readable =
       cli::ForEachReadable(arguments.logs, [&](const std::filesystem::path& file) {
-        const RunEvents events = ReadEvents(file);
+        const RunEvents events = ReadEvents(file, options);
         complete = complete && events.run.complete;
-        if (!events.run.note.empty())
-          Complain(fmt::format("{}: {}", PathText(file), events.run.note));
+        SayAbout(file, events);
         if (arguments.json) {
-          rows.push_back({{"log", file.string()},
-                          {"title", events.run.scenario.title},
-                          {"seed", events.run.scenario.seed},
-                          {"complete", events.run.complete},
-                          {"events", EventsJson(events)},
-                          {"requests", RequestsJson(events)}});
+          rows.push_back(ToJson(file, events));
         } else {
           PrintText(file, events);
         }
@@ -159,14 +226,15 @@ int RunEventsVerb(const EventsArguments& arguments) {
 void AddEvents(CLI::App& app, cli::Action& action) {
   CLI::App* verb =
       app.add_subcommand("events", "List which side drove when, and every request to take over");
-  const auto arguments = std::make_shared<EventsArguments>();
+  const auto arguments = std::make_shared<EventsArguments>(*verb);
   verb->add_option("LOG", arguments->logs, "Event logs")->required();
   verb->add_flag("--json", arguments->json, "Print as JSON");
   cli::ShowExitCodes(*verb, {.check_failed = "a log is not complete"});
   verb->footer(
       "Lists the events that a data recorder stores: changes of state, requests to take over\n"
       "and their escalation, acknowledgements, transfers, first effective inputs, manoeuvres,\n"
-      "collision warnings and emergency braking.\n"
+      "collision warnings and emergency braking. In a run in real time it also lists the\n"
+      "fallbacks of the roles. Where the log lacks commands of the host, the list says so.\n"
       "Then lists the times of each request, from the start of the run, and its outcome and\n"
       "measures (services/metrics/README.md defines them). With the mode instant\n"
       "of take_over the driver is not asked, so there are no requests and acknowledgements.\n\n"

@@ -1,7 +1,7 @@
 // fogline export: writes a log as CSV or as a MAT-file, for programs that do not know LCM.
 #include <memory>
-#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/core.h>
@@ -13,6 +13,7 @@
 #include "common/text.h"
 #include "tools/cli/arguments.h"
 #include "tools/cli/help.h"
+#include "tools/cli/logs/log_reading.h"
 #include "tools/export/csv_export.h"
 #include "tools/export/mat_export.h"
 #include "tools/fogline/verbs.h"
@@ -21,6 +22,9 @@ namespace fogline {
 namespace {
 
 struct ExportArguments {
+  explicit ExportArguments(CLI::App& verb) : reading(verb) {}
+
+  cli::LogReading reading;
   std::filesystem::path log;
   std::filesystem::path out;
   bool force = false;
@@ -29,47 +33,62 @@ struct ExportArguments {
 
 bool IsMat(const std::filesystem::path& out) { return out.extension() == ".mat"; }
 
-/// The files to be written. Without --force none of these files may exist. With --force an existing
-/// file must be an export. @throws InputError
-std::vector<std::filesystem::path> FilesOf(const ExportArguments& arguments) {
+/// Checks that the files may be written. Without --force none of these files may exist. With
+/// --force an existing file must be an export. @throws InputError
+void CheckFiles(const ExportArguments& arguments) {
   const bool is_mat = IsMat(arguments.out);
-  const std::vector<std::filesystem::path> files =
-      is_mat ? std::vector{arguments.out} : exports::CsvFiles(arguments.out);
+  std::vector<std::filesystem::path> files{arguments.out};
+  if (!is_mat) {
+    files = exports::CsvFiles(arguments.out);
+    for (auto& file : exports::CsvFilesOfSomeLogs(arguments.out)) files.push_back(std::move(file));
+  }
   for (const std::filesystem::path& file : files) {
     RefuseToReplace(file, "--out", arguments.force, "export",
                     is_mat ? exports::IsMatExport : exports::IsCsvExport);
   }
-  return files;
+}
+
+/// @return the files that were written
+std::vector<std::filesystem::path> Write(const exports::RunTables& tables,
+                                         const std::filesystem::path& out) {
+  if (!IsMat(out)) {
+    const OutputFolder folder(out, "--out");
+    return exports::WriteCsv(tables, out);
+  }
+  RequireWritable(out, "--out");
+  exports::WriteMat(tables, out);
+  return {out};
 }
 
 int RunExport(const ExportArguments& arguments) {
-  const std::vector<std::filesystem::path> files = FilesOf(arguments);
+  CheckFiles(arguments);
   WatchInterrupts();
   // The log is read first, so that no folder is made if the file is no log.
-  const exports::RunTables tables = exports::ReadRunTables(arguments.log);
-  const bool is_mat = IsMat(arguments.out);
-  std::optional<OutputFolder> folder;
-  is_mat ? RequireWritable(arguments.out, "--out") : void(folder.emplace(arguments.out, "--out"));
-  is_mat ? exports::WriteMat(tables, arguments.out) : exports::WriteCsv(tables, arguments.out);
+  log::ReadOptions options = arguments.reading.Options();
+  options.needs_scenario = false;
+  const exports::RunTables tables = exports::ReadRunTables(arguments.log, options);
+  const std::vector<std::filesystem::path> files = Write(tables, arguments.out);
+  const log::RunLog& run = tables.run;
   if (arguments.json) {
     nlohmann::ordered_json json{{"log", arguments.log.string()},
-                                {"steps", tables.steps},
-                                {"complete", tables.complete},
+                                {"steps", run.steps},
+                                {"complete", run.complete},
                                 {"files", nlohmann::ordered_json::array()}};
+    if (run.gaps.Any()) json["gaps"] = cli::GapsJson(run.gaps);
     for (const std::filesystem::path& file : files) json["files"].push_back(file.string());
     cli::PrintJson(json);
   } else {
     for (const std::filesystem::path& file : files) fmt::print("{}\n", PathText(file));
   }
-  if (!tables.note.empty()) Complain(fmt::format("{}: {}", PathText(arguments.log), tables.note));
-  return tables.complete ? kDone : kCheckFailed;
+  cli::SayAboutLog(arguments.log, run);
+  return run.complete ? kDone : kCheckFailed;
 }
 
 }  // namespace
 
 void AddExport(CLI::App& app, cli::Action& action) {
   CLI::App* verb = app.add_subcommand("export", "Write a log as CSV files or as a MAT-file");
-  const auto arguments = std::make_shared<ExportArguments>();
+  const auto arguments = std::make_shared<ExportArguments>(*verb);
   verb->add_option("LOG", arguments->log, "Event log")->required();
   verb->add_option(
           "--out", arguments->out,
@@ -84,7 +103,8 @@ void AddExport(CLI::App& app, cli::Action& action) {
       "The columns of a list are state.0, state.1 and so on; a matrix is written row by row.\n"
       "Time is header.utime, in microseconds. In a MAT-file each channel is a struct:\n"
       "TRUTH.host_gap_m has a row for each message. An incomplete log is written as far as it\n"
-      "goes.\n\n"
+      "goes. A message that is missing has a row with empty cells; in a MAT-file the row has NaN\n"
+      "and 0, and the field heard is 0. Without a scenario the channels are written alone.\n\n"
       "Examples:\n"
       "  fogline export logs/paper-1.lcm --out logs/paper-1\n"
       "  fogline export logs/paper-1.lcm --out logs/paper-1.mat\n"

@@ -17,6 +17,7 @@
 #include "common/text.h"
 #include "tools/cli/arguments.h"
 #include "tools/cli/help.h"
+#include "tools/cli/logs/log_reading.h"
 #include "tools/cli/measures/take_over_text.h"
 #include "tools/cli/pairing.h"
 #include "tools/export/take_over_csv.h"
@@ -27,6 +28,9 @@ namespace fogline {
 namespace {
 
 struct MetricsArguments {
+  explicit MetricsArguments(CLI::App& verb) : reading(verb) {}
+
+  cli::LogReading reading;
   std::vector<std::filesystem::path> logs;
   std::filesystem::path take_overs;
   bool json = false;
@@ -56,6 +60,25 @@ void WriteTakeOvers(const std::vector<runner::LoggedRun>& runs, const std::files
   exports::WriteTakeOverCsv(rows, file);
 }
 
+/// Says on stderr what a log lacks, and what is unknown for this reason.
+void SayAbout(const runner::LoggedRun& run, const cli::Pairing& pair) {
+  cli::SayAboutLog(run.result.log, run);
+  std::string unknown = cli::UnknownMeasures(run.result);
+  if (pair.unknown) unknown += (unknown.empty() ? "" : ", ") + std::string("si_pct");
+  if (!metrics::AreTakeOversKnown(run.result.lack)) {
+    unknown += (unknown.empty() ? "" : ", ") + std::string("the measures of take-overs");
+  }
+  if (unknown.empty()) return;
+  Complain(fmt::format("{}: unknown, because messages are missing: {}", PathText(run.result.log),
+                       unknown));
+}
+
+/// The digest of a run; null if it cannot be computed because messages are missing.
+nlohmann::ordered_json DigestJson(const runner::LoggedRun& run) {
+  if (run.gaps.Any()) return nullptr;
+  return run.result.digest;
+}
+
 int RunMetrics(const MetricsArguments& arguments) {
   const bool writes_csv = !arguments.take_overs.empty();
   if (writes_csv) {
@@ -63,20 +86,22 @@ int RunMetrics(const MetricsArguments& arguments) {
     RequireTakeOverTable(arguments.take_overs);
     RequireWritable(arguments.take_overs, "--take-overs");
   }
+  const log::ReadOptions options = arguments.reading.Options();
   std::vector<runner::LoggedRun> runs;
   const bool readable = cli::ForEachReadable(arguments.logs, [&](const std::filesystem::path& log) {
-    runs.push_back(runner::ReadLoggedRun(log));
+    runs.push_back(runner::ReadLoggedRun(log, options));
   });
   if (writes_csv) WriteTakeOvers(runs, arguments.take_overs);
   const std::vector<cli::Pairing> pairs = cli::MeasurePairs(runs);
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
   for (std::size_t i = 0; i < runs.size(); ++i) {
     const runner::LoggedRun& run = runs[i];
-    if (!run.note.empty()) Complain(fmt::format("{}: {}", PathText(run.result.log), run.note));
+    SayAbout(run, pairs[i]);
     if (arguments.json) {
       nlohmann::ordered_json row{{"log", run.result.log.string()}, {"title", run.scenario.title},
                                  {"seed", run.result.seed},        {"steps", run.result.steps},
-                                 {"complete", run.complete},       {"digest", run.result.digest}};
+                                 {"complete", run.complete},       {"digest", DigestJson(run)}};
+      if (run.gaps.Any()) row["gaps"] = cli::GapsJson(run.gaps);
       metrics::VisitPairedMetrics(
           pairs[i].measures,
           [&row](std::string_view name, const std::optional<double>& value, std::string_view,
@@ -111,7 +136,7 @@ int RunMetrics(const MetricsArguments& arguments) {
 
 void AddMetrics(CLI::App& app, cli::Action& action) {
   CLI::App* verb = app.add_subcommand("metrics", "Measure runs from their logs alone");
-  const auto arguments = std::make_shared<MetricsArguments>();
+  const auto arguments = std::make_shared<MetricsArguments>(*verb);
   verb->add_option("LOG", arguments->logs, "Event logs")->required();
   verb->add_option("--take-overs", arguments->take_overs,
                    "CSV file to write: a line for each request to take over; an existing file is "
@@ -122,7 +147,9 @@ void AddMetrics(CLI::App& app, cli::Action& action) {
       "The safety improvement SI appears for runs whose pair without traded control (policy\n"
       "none) is among the logs. The measures of a request to take over (take_overs in JSON)\n"
       "appear for runs with such requests, the latency of inputs for runs in which a person\n"
-      "drove. services/metrics/README.md defines them.\n\n"
+      "drove. services/metrics/README.md defines them. If a log lacks messages, the measures are\n"
+      "those of the steps that are there; measures that need every step are then unknown "
+      "(null).\n\n"
       "Examples:\n  fogline metrics logs/paper-1.lcm\n"
       "  fogline metrics logs/paper-table/*.lcm --json\n"
       "  fogline metrics logs/drive-*.lcm --take-overs take-overs.csv");

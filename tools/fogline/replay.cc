@@ -12,6 +12,7 @@
 #include "common/text.h"
 #include "tools/cli/arguments.h"
 #include "tools/cli/help.h"
+#include "tools/fogline/logs/live_replay.h"
 #include "tools/fogline/verbs.h"
 #include "tools/replay/role_check.h"
 
@@ -19,6 +20,9 @@ namespace fogline {
 namespace {
 
 struct ReplayArguments {
+  explicit ReplayArguments(CLI::App& verb) : live(verb) {}
+
+  LiveReplay live;
   std::filesystem::path log;
   std::string role;
   bool all = false;
@@ -92,6 +96,12 @@ void PrintText(const replay::RoleCheck& one, std::int64_t steps) {
 }
 
 int RunReplay(const ReplayArguments& arguments) {
+  if (arguments.live.chosen()) {
+    if (arguments.all || !arguments.role.empty()) {
+      throw InputError("error: --live makes a run; --role and --all compute the steps of the log");
+    }
+    return arguments.live.Run(arguments.log, arguments.json);
+  }
   if (arguments.all == !arguments.role.empty()) {
     throw InputError("error: give one of --role and --all");
   }
@@ -126,23 +136,29 @@ int RunReplay(const ReplayArguments& arguments) {
 void AddReplay(CLI::App& app, cli::Action& action) {
   CLI::App* verb =
       app.add_subcommand("replay", "Compute a log's steps again, role by role, and compare");
-  const auto arguments = std::make_shared<ReplayArguments>();
+  const auto arguments = std::make_shared<ReplayArguments>(*verb);
   verb->add_option("LOG", arguments->log, "Event log of a run")->required();
   CLI::Option* role =
       verb->add_option("--role", arguments->role, "Role to replay, such as fusion or arbitrator");
   verb->add_flag("--all", arguments->all, "Replay every role, each by itself")->excludes(role);
   verb->add_flag("--json", arguments->json, "Print as JSON");
-  cli::ShowExitCodes(*verb, {.check_failed = "outputs differ or the log is incomplete"});
+  cli::ShowExitCodes(
+      *verb, {.check_failed = "outputs differ or the log is incomplete", .interruptible = true});
   verb->footer(
       "Each step takes its inputs from the log, so a difference in one role does not affect\n"
       "another role. Scenario and seed are those of the log, too. Outputs are compared bit by\n"
       "bit: a log from before a change shows which steps of which role the change alters.\n"
       "In a run in real time, only the role driver can be computed again, and only if a person\n"
       "drove: each command names the input of the person from which it was made.\n\n"
+      "With --live, the messages of some channels come from the log, and all other roles live: an\n"
+      "open loop, because the recorded sensors do not see what the living cars do. The scenario\n"
+      "is that of the log; --set changes the living rest. It tells how much TRACK differs.\n\n"
       "Examples:\n"
       "  fogline run scenario/paper.json --log before.lcm\n"
       "  fogline replay before.lcm --role fusion      # after a change of the fusion\n"
-      "  fogline replay before.lcm --all --json");
+      "  fogline replay before.lcm --all --json\n"
+      "  fogline replay before.lcm --live --channels RADAR,LIDAR --set "
+      "/fusion/radar_range_std_m=0.1");
   verb->callback([&action, arguments] { action = [arguments] { return RunReplay(*arguments); }; });
 }
 

@@ -27,6 +27,7 @@
 #include "scenario/sections/decision.h"
 #include "tools/cli/arguments.h"
 #include "tools/cli/help.h"
+#include "tools/cli/logs/log_reading.h"
 #include "tools/cli/pairing.h"
 #include "tools/cli/threshold_rows.h"
 #include "tools/fogline/verbs.h"
@@ -38,6 +39,9 @@ namespace {
 constexpr std::string_view kDocumentType = "<!DOCTYPE html>";
 
 struct ReportArguments {
+  explicit ReportArguments(CLI::App& verb) : reading(verb) {}
+
+  cli::LogReading reading;
   std::vector<std::filesystem::path> logs;
   std::filesystem::path curves;
   std::vector<std::string> overrides;
@@ -120,17 +124,19 @@ std::vector<std::string> NamesOf(std::span<const runner::LoggedRun> runs) {
   return names;
 }
 
-std::vector<report::ReportMetric> MetricsOf(const metrics::RunMetrics& measures) {
+std::vector<report::ReportMetric> MetricsOf(const metrics::RunMetrics& measures,
+                                            const metrics::Lack& lack) {
   std::vector<report::ReportMetric> out;
   metrics::VisitMetrics(
-      measures, [&out]<class V>(std::string_view name, const V& value, std::string_view unit,
-                                std::string_view description) {
+      measures, [&]<class V>(std::string_view name, const V& value, std::string_view unit,
+                             std::string_view description) {
         double number = std::numeric_limits<double>::quiet_NaN();
         if constexpr (std::is_same_v<V, std::optional<double>>) {
           number = value.value_or(number);
         } else {
           number = static_cast<double>(value);
         }
+        if (!metrics::IsKnown(name, lack)) number = std::numeric_limits<double>::quiet_NaN();
         out.push_back({std::string(name), number, std::string(unit), std::string(description)});
       });
   return out;
@@ -166,13 +172,12 @@ std::optional<report::ReportTable> TableOf(std::span<const runner::LoggedRun> ru
 
 /// The runs of the logs. Runs without traded control come first, because the other runs are
 /// compared with them.
-std::vector<runner::LoggedRun> ReadRuns(std::span<const std::filesystem::path> logs) {
+std::vector<runner::LoggedRun> ReadRuns(std::span<const std::filesystem::path> logs,
+                                        const log::ReadOptions& options) {
   std::vector<runner::LoggedRun> runs;
   for (const std::filesystem::path& log : logs) {
-    runs.push_back(runner::ReadLoggedRun(log));
-    if (!runs.back().note.empty()) {
-      Complain(fmt::format("{}: {}", PathText(log), runs.back().note));
-    }
+    runs.push_back(runner::ReadLoggedRun(log, options));
+    cli::SayAboutLog(log, runs.back());
   }
   std::stable_partition(runs.begin(), runs.end(), [](const runner::LoggedRun& run) {
     return run.scenario.arbitrator.policy == Policy::kNone;
@@ -182,7 +187,7 @@ std::vector<runner::LoggedRun> ReadRuns(std::span<const std::filesystem::path> l
 
 /// The measures of a run, and the latency of a person's inputs.
 std::vector<report::ReportMetric> MetricsOf(const runner::ExperimentResult& result) {
-  std::vector<report::ReportMetric> out = MetricsOf(result.measures);
+  std::vector<report::ReportMetric> out = MetricsOf(result.measures, result.lack);
   if (!result.input_latency) return out;
   log::VisitLatency(
       *result.input_latency, [&out](std::string_view name, std::int64_t value,
@@ -191,6 +196,50 @@ std::vector<report::ReportMetric> MetricsOf(const runner::ExperimentResult& resu
                        std::string(unit), std::string(description)});
       });
   return out;
+}
+
+/// A sample without values, so that a curve has a hole there.
+metrics::Sample Hole(const metrics::Sample& before, double step_s) {
+  metrics::Sample hole{.step = before.step + 1, .time_s = before.time_s + step_s};
+  for (double metrics::Sample::*field : {&metrics::Sample::preceding_speed_mps,
+                                         &metrics::Sample::preceding_acceleration_mps2,
+                                         &metrics::Sample::host_speed_mps,
+                                         &metrics::Sample::host_acceleration_mps2,
+                                         &metrics::Sample::host_gap_m,
+                                         &metrics::Sample::host_safe_distance_m,
+                                         &metrics::Sample::radar_range_m,
+                                         &metrics::Sample::lidar_range_m,
+                                         &metrics::Sample::fused_distance_m,
+                                         &metrics::Sample::follower_speed_mps,
+                                         &metrics::Sample::follower_acceleration_mps2,
+                                         &metrics::Sample::follower_gap_m,
+                                         &metrics::Sample::follower_safe_distance_m,
+                                         &metrics::Sample::acc_acceleration_mps2,
+                                         &metrics::Sample::driver_acceleration_mps2,
+                                         &metrics::Sample::command_mps2,
+                                         &metrics::Sample::lambda_automation,
+                                         &metrics::Sample::lambda_human,
+                                         &metrics::Sample::conflict_m,
+                                         &metrics::Sample::doc,
+                                         &metrics::Sample::threshold,
+                                         &metrics::Sample::fog_level,
+                                         &metrics::Sample::fog_visibility_m}) {
+    hole.*field = std::numeric_limits<double>::quiet_NaN();
+  }
+  return hole;
+}
+
+/// The samples of a run, with a hole at the beginning of each gap.
+std::vector<metrics::Sample> SamplesOf(runner::LoggedRun& run) {
+  if (!run.gaps.Any()) return std::move(run.result.samples);
+  std::vector<metrics::Sample> samples;
+  for (const metrics::Sample& sample : run.result.samples) {
+    if (!samples.empty() && sample.step > samples.back().step + 1) {
+      samples.push_back(Hole(samples.back(), run.scenario.step_s));
+    }
+    samples.push_back(sample);
+  }
+  return samples;
 }
 
 /// The content of a run on the page. PageOf() moves the samples out of `run`.
@@ -204,8 +253,9 @@ report::ReportRun PageOf(runner::LoggedRun& run, const std::string& name,
           .scenario_title = run.scenario.title,
           .scenario_json = run.scenario_text,
           .seed = run.result.seed,
-          .digest = run.result.digest,
-          .samples = std::move(run.result.samples),
+          .digest = run.gaps.Any() ? "unknown" : run.result.digest,
+          .has_gaps = run.gaps.Any(),
+          .samples = SamplesOf(run),
           .measures = MetricsOf(run.result),
           .si_pct = paired.si_pct,
           .si_until_recovery_pct = paired.si_until_recovery_pct,
@@ -277,7 +327,7 @@ int RunReport(const ReportArguments& arguments) {
     if (!folder.empty()) folders.emplace_back(folder, option.name);
   }
   if (!arguments.curves.empty()) WatchInterrupts();
-  std::vector<runner::LoggedRun> runs = ReadRuns(arguments.logs);
+  std::vector<runner::LoggedRun> runs = ReadRuns(arguments.logs, arguments.reading.Options());
   const std::vector<cli::Pairing> pairs = cli::MeasurePairs(runs);
   const std::optional<report::ReportTable> table = TableOf(runs, pairs);
   std::vector<report::ReportRun> pages;
@@ -301,7 +351,7 @@ int RunReport(const ReportArguments& arguments) {
 
 void AddReport(CLI::App& app, cli::Action& action) {
   CLI::App* verb = app.add_subcommand("report", "Figures and measures of logs as one HTML file");
-  const auto arguments = std::make_shared<ReportArguments>();
+  const auto arguments = std::make_shared<ReportArguments>(*verb);
   verb->add_option("LOG", arguments->logs, "Event logs");
   CLI::Option* curves =
       verb->add_option("--curves", arguments->curves,
@@ -328,7 +378,8 @@ void AddReport(CLI::App& app, cli::Action& action) {
   cli::ShowExitCodes(*verb, {.check_failed = "a log is not complete", .interruptible = true});
   verb->footer(
       "Prints the name of the page. The page needs no network. It shows an incomplete log as\n"
-      "far as it goes, and marks it; the exit code is then 1. The table appears for runs whose\n"
+      "far as it goes, and marks it; the exit code is then 1. Measures that need every step are\n"
+      "unknown if messages are missing. The table appears for runs whose\n"
       "pair without traded control is among the logs. Curves are computed on all cores: means\n"
       "of the seeds with their 95 % confidence intervals, percentiles, and the Pareto front of\n"
       "SI and RHE.\n\n"

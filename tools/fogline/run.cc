@@ -92,6 +92,9 @@ struct RunArguments {
                     "death ends the run)")
         ->check(CLI::Range(0, 1'000'000))
         ->capture_default_str();
+    verb.add_flag("--wall-clock", options.wall_clock,
+                  "In lockstep: write the wall clock of each step into the log, beside the digest "
+                  "(in real time it is always there)");
     verb.add_flag("--view", view, "Show the run, and then its log, in a browser");
     verb.add_flag("--json", json, "Print the result as JSON");
     verb.add_flag("--quiet", quiet, "Print only errors on stderr");
@@ -128,6 +131,9 @@ void ApplyOptions(RunArguments& arguments) {
   }
   if (direct && options.pace != 0) {
     throw InputError("error: --pace: a run with --transport direct has no pace");
+  }
+  if (direct && options.wall_clock) {
+    throw InputError("error: --wall-clock: a run with --transport direct has no recorder");
   }
   if (options.realtime) cli::RunInRealtime(options, arguments.speed);
   options.stall_limit = duration_cast<Duration>(std::chrono::duration<double>(arguments.stall_s));

@@ -23,6 +23,7 @@ void AddReplay(CLI::App& app, cli::Action& action);
 void AddExport(CLI::App& app, cli::Action& action);
 void AddGraph(CLI::App& app, cli::Action& action);
 void AddCheck(CLI::App& app, cli::Action& action);
+void AddRecord(CLI::App& app, cli::Action& action);
 void AddTop(CLI::App& app, cli::Action& action);
 void AddSpy(CLI::App& app, cli::Action& action);
 void AddDoctor(CLI::App& app, cli::Action& action);

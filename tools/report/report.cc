@@ -73,7 +73,9 @@ std::string RunCard(std::span<const ReportRun> runs, std::size_t index) {
   std::string facts;
   if (run.si_pct) facts += MetricFact("Safety improvement", "si_pct", *run.si_pct, "%");
   const metrics::RunMetrics measures = metrics::Measure(run.samples, run.scenario);
-  facts += MetricFact("Human drives", "human_time_s", measures.human_time_s, "s");
+  if (!run.has_gaps) {
+    facts += MetricFact("Human drives", "human_time_s", measures.human_time_s, "s");
+  }
   if (measures.max_compromised_safety_m) {
     facts += MetricFact("Worst compromised safety", "max_compromised_safety_m",
                         *measures.max_compromised_safety_m, "m");

@@ -35,11 +35,11 @@ struct Told {
 using Group = std::vector<Told>;
 
 /// Groups of runs that differ only in their arbitrator, in the order of their first runs. Runs
-/// without a step are left out.
+/// without a step are left out, and runs with gaps, because their measures are unknown.
 std::vector<Group> GroupsOf(std::span<const ReportRun> runs) {
   std::vector<std::pair<std::string, Group>> situations;
   for (std::size_t i = 0; i < runs.size(); ++i) {
-    if (runs[i].samples.empty()) continue;
+    if (runs[i].samples.empty() || runs[i].has_gaps) continue;
     Scenario scenario = runs[i].scenario;
     scenario.arbitrator = {};
     std::string key = PrintScenario(scenario);

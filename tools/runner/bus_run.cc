@@ -126,7 +126,9 @@ void RunInMemory(runtime::Bus& bus, runtime::RunCoordinator& coordinator, std::i
   roles.push_back(std::make_unique<recorder::Recorder>(
       bus, run_id, log,
       options.resume ? recorder::Recorder::Existing::kResume
-                     : recorder::Recorder::Existing::kReplace));
+                     : recorder::Recorder::Existing::kReplace,
+      options.wall_clock ? recorder::Recorder::WallClock::kYes
+                         : recorder::Recorder::WallClock::kNo));
   Progress progress("step", scenario.steps);
   while (coordinator.phase() == runtime::RunCoordinator::Phase::kJoining ||
          coordinator.phase() == runtime::RunCoordinator::Phase::kRunning) {
@@ -249,6 +251,7 @@ std::vector<Restarts> RunAsProcesses(runtime::Bus& bus, runtime::RunCoordinator&
                          .run_id = run_id,
                          .log = log,
                          .resume = options.resume.has_value(),
+                         .wall_clock = options.wall_clock,
                          .arguments = runtime::ToArguments(options.traffic),
                          .external = options.external,
                          .restarts = options.restarts,

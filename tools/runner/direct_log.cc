@@ -18,6 +18,12 @@ DirectLog::DirectLog(const ExperimentOptions& options, std::int64_t run_id,
   run_.run_id = run_id;
   run_.scenario = scenario;
   builds_.fill(runtime::OwnBuildId());
+  if (options.resume && options.resume->front.wall_clock) {
+    throw InputError(fmt::format(
+        "{}: error: --resume: the log has the wall clock of each step, which a run with "
+        "--transport direct has not",
+        PathText(file_)));
+  }
   if (options.resume) {
     run_.scenario_hash = options.resume->front.parts.hash();
     remains_ = options.resume->remains;

@@ -162,17 +162,18 @@ class MessageMeasures {
 /// Reads a run from its log, without the measures that need only the samples.
 /// @param use gets the sample of each step
 template <class Use>
-LoggedRun ReadSteps(const std::filesystem::path& log, const Use& use) {
+LoggedRun ReadSteps(const std::filesystem::path& log, const log::ReadOptions& options,
+                    const Use& use) {
   LoggedRun logged;
   MessageMeasures measures;
   metrics::SampleDecoder decoder;
-  log::RunLogReader reader(log);
+  log::RunLogReader reader(log, options);
   while (const log::StepMessages* messages = reader.Next()) {
+    if (reader.InTail()) continue;
     const bool holes = std::ranges::any_of(kChannels, [&](const ChannelInfo& channel) {
       return channel.pace == Pace::kStep && (*messages)[PlaceOf(channel)].empty();
     });
-    // Only the log of a run in real time can lack messages. Without TRUTH the state of the step is
-    // unknown.
+    // Without TRUTH the state of the step is unknown.
     if (holes && (*messages)[IndexOf<truth_t>()].empty()) continue;
     const metrics::Sample* sample =
         holes ? decoder.DecodeWithHoles(*messages) : decoder.Decode(*messages);
@@ -180,7 +181,7 @@ LoggedRun ReadSteps(const std::filesystem::path& log, const Use& use) {
       throw InputError(
           fmt::format("{}: error: step {} does not decode: was it recorded with other "
                       "message types?",
-                      PathText(log), reader.run().steps - 1));
+                      PathText(log), reader.step()));
     }
     use(*sample);
     measures.Add(*messages, decoder);
@@ -191,7 +192,12 @@ LoggedRun ReadSteps(const std::filesystem::path& log, const Use& use) {
   logged.result.digest = logged.digest;
   logged.result.log = log;
   logged.result.realtime = logged.realtime;
+  for (std::size_t i = 0; i < kNumChannels; ++i) {
+    logged.result.lack.channels[i] = logged.gaps.messages[i] > 0;
+  }
+  logged.result.lack.beginning = logged.gaps.first > 0;
   measures.PutInto(logged);
+  if (!metrics::AreTakeOversKnown(logged.result.lack)) logged.result.take_overs.clear();
   return logged;
 }
 
@@ -292,18 +298,20 @@ ExperimentResult RunExperiment(const Scenario& scenario, const ExperimentOptions
   return result;
 }
 
-LoggedRun ReadLoggedRun(const std::filesystem::path& log) {
+LoggedRun ReadLoggedRun(const std::filesystem::path& log, const log::ReadOptions& options) {
   std::vector<metrics::Sample> samples;
   LoggedRun logged =
-      ReadSteps(log, [&](const metrics::Sample& sample) { samples.push_back(sample); });
+      ReadSteps(log, options, [&](const metrics::Sample& sample) { samples.push_back(sample); });
   logged.result.measures = metrics::Measure(samples, logged.scenario);
   logged.result.samples = std::move(samples);
   return logged;
 }
 
-LoggedRun MeasureLoggedRun(const std::filesystem::path& log, const Scenario& scenario) {
+LoggedRun MeasureLoggedRun(const std::filesystem::path& log, const Scenario& scenario,
+                           const log::ReadOptions& options) {
   metrics::MetricsAccumulator measures(scenario);
-  LoggedRun logged = ReadSteps(log, [&](const metrics::Sample& sample) { measures.Add(sample); });
+  LoggedRun logged =
+      ReadSteps(log, options, [&](const metrics::Sample& sample) { measures.Add(sample); });
   logged.result.measures = measures.Result();
   return logged;
 }

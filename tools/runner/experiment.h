@@ -15,6 +15,7 @@
 #include "services/log/remains.h"
 #include "services/log/run_log.h"
 #include "services/metrics/follower_metrics.h"
+#include "services/metrics/gaps/gap_rules.h"
 #include "services/metrics/run_metrics.h"
 #include "services/metrics/sample.h"
 #include "services/metrics/take_over/take_over_measures.h"
@@ -56,6 +57,7 @@ struct ExperimentOptions {
   bool same_build = false;  // end the run if a role's build differs from the runner's build
   runtime::TrafficOptions traffic;
   bool announce = false;         // print on stderr the network of the run and its processes
+  bool wall_clock = false;       // in lockstep: the log has the wall clock of each step
   bool samples = false;          // keep the samples of every step in the result
   std::string command_to_go_on;  // resumes the run; shown to the user if the run ends early
   /// Called with the URL of the run's network, before any role is started. A run in memory has no
@@ -92,6 +94,7 @@ struct ExperimentResult {
   bool checked = true;        // every byte of the log agrees with the recorder's reports
   std::filesystem::path log;  // empty if there is no log
   metrics::RunMetrics measures;
+  metrics::Lack lack;  // of a log with gaps: it says which measures are unknown (IsKnown)
   std::vector<metrics::FollowerMetrics> followers;    // nearest to the host first
   std::vector<metrics::TakeOverMeasures> take_overs;  // one for each request to take over
   std::optional<log::InputLatency> input_latency;     // only for a run in which a person drove
@@ -114,11 +117,14 @@ ExperimentResult RunExperiment(const Scenario& scenario, const ExperimentOptions
 struct LoggedRun : log::RunLog {
   ExperimentResult result;
 };
-/// Reads a run with the samples of all its steps. @throws InputError
-LoggedRun ReadLoggedRun(const std::filesystem::path& log);
+/// Reads a run with the samples of all its steps. If the options say that gaps are read, a step
+/// that lacks TRUTH has no sample, and the measures of take-overs are left out if they are unknown.
+/// @throws InputError
+LoggedRun ReadLoggedRun(const std::filesystem::path& log, const log::ReadOptions& options = {});
 /// Reads a run without samples, in memory that does not grow with the length of the run.
 /// @param scenario the scenario in the log
 /// @throws InputError
-LoggedRun MeasureLoggedRun(const std::filesystem::path& log, const Scenario& scenario);
+LoggedRun MeasureLoggedRun(const std::filesystem::path& log, const Scenario& scenario,
+                           const log::ReadOptions& options = {});
 
 }  // namespace fogline::runner

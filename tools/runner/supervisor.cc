@@ -58,6 +58,7 @@ void Supervisor::Start(Child& child, TimePoint now) {
   arguments.insert(arguments.end(), options_.arguments.begin(), options_.arguments.end());
   if (child.role == Role::kRecorder) {
     arguments.insert(arguments.end(), {"--log", options_.log.string(), "--shared-log"});
+    if (options_.wall_clock) arguments.emplace_back("--wall-clock");
     // Only a log of this run may be resumed. Before the first STATUS of the recorder, the file may
     // be an old log that is to be replaced.
     if (options_.resume || coordinator_.Met(Role::kRecorder)) arguments.emplace_back("--resume");

@@ -23,6 +23,7 @@ class Supervisor {
     std::int64_t run_id = 0;
     std::filesystem::path log;
     bool resume = false;                 // the log already belongs to this run
+    bool wall_clock = false;             // the log has the wall clock of each step
     std::vector<std::string> arguments;  // further arguments for every process
     std::vector<Role> external;          // roles that are started elsewhere
     int restarts = 0;                    // limit for each role; 0: the first death ends the run

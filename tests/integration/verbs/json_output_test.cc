@@ -50,6 +50,7 @@ class JsonOutputTest : public testing::Test {
         {"graph", {}},
         {"check", {paper}},
         {"top", {"--once", "--interval", "0.1", "--lcm-url", url}},
+        {"record", {File("all.lcm"), "--for", "0.1", "--lcm-url", url}},
         {"doctor", {"--lcm-url", url}},
         {"keygen", {File("test.key")}},
     };

@@ -7,6 +7,8 @@ constexpr std::uint32_t kShort = 0x4c433032;     // "LC02"
 constexpr std::uint32_t kFragment = 0x4c433033;  // "LC03"
 constexpr std::size_t kShortHead = 8;
 constexpr std::size_t kFragmentHead = 20;
+constexpr std::size_t kSizeOffset = 8;
+constexpr std::size_t kPartOffset = 12;
 constexpr std::size_t kFragmentOffset = 16;
 constexpr std::size_t kFragmentsOffset = 18;
 
@@ -35,16 +37,20 @@ std::optional<LcmPacket> ParsePacket(runtime::Bytes head) {
   if (kind == kFragment) {
     end = kFragmentHead;
     if (head.size() < end) return std::nullopt;
+    packet.size = Number(head, kSizeOffset, 4);
+    packet.offset = Number(head, kPartOffset, 4);
     packet.fragment = static_cast<std::uint16_t>(Number(head, kFragmentOffset, 2));
     packet.fragments = static_cast<std::uint16_t>(Number(head, kFragmentsOffset, 2));
     if (packet.fragment >= packet.fragments) return std::nullopt;
   } else if (kind != kShort) {
     return std::nullopt;
   }
+  packet.data_at = end;
   if (!packet.First()) return packet;
   const auto channel = ChannelAt(head.subspan(end));
   if (!channel) return std::nullopt;
   packet.channel = *channel;
+  packet.data_at += channel->size() + 1;
   return packet;
 }
 

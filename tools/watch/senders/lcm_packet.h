@@ -19,6 +19,9 @@ struct LcmPacket {
   std::uint16_t fragment = 0;
   std::uint16_t fragments = 1;
   std::string_view channel;  // in the first packet of a message, otherwise ""
+  std::size_t data_at = 0;   // where the packet's data begins
+  std::uint32_t size = 0;    // of the message's data, in a fragment; otherwise 0
+  std::uint32_t offset = 0;  // of this part of the data, in a fragment
 
   bool First() const { return fragment == 0; }
   bool Whole() const { return fragments == 1; }

@@ -2,14 +2,11 @@
 // messages away, so a second socket in the same multicast group reads them.
 #pragma once
 
-#include <cstdint>
 #include <memory>
-#include <optional>
 #include <string>
-#include <vector>
 
 #include "common/clock.h"
-#include "services/runtime/transport/lcm_sockets.h"
+#include "tools/watch/senders/packet_socket.h"
 #include "tools/watch/senders/senders.h"
 
 namespace fogline::watch {
@@ -23,9 +20,6 @@ class PacketTap {
   /// @return nullptr if the URL is of another transport, whose packets have no numbers
   /// @throws std::runtime_error if the network cannot be heard
   static std::unique_ptr<PacketTap> Open(const std::string& url, Senders& senders);
-  ~PacketTap();
-  PacketTap(const PacketTap&) = delete;
-  PacketTap& operator=(const PacketTap&) = delete;
 
   /// Takes the packets that are there, but at most kDrained, so that a flood does not keep the
   /// caller from other work.
@@ -33,20 +27,14 @@ class PacketTap {
   static constexpr int kDrained = 4096;
 
   /// This descriptor is readable when packets are there.
-  int fd() const { return fd_; }
+  int fd() const { return socket_.fd(); }
 
  private:
-  struct Batch;
-  PacketTap(int fd, const std::string& url, Senders& senders);
-  int Receive(TimePoint now);
+  PacketTap(const std::string& url, Senders& senders)
+      : socket_(url, {.packet_bytes = kPacketHead}), senders_(senders) {}
 
-  int fd_;
+  PacketSocket socket_;
   Senders& senders_;
-  std::unique_ptr<Batch> batch_;  // buffers for one system call
-  std::uint32_t dropped_ = 0;  // packets that found no room, as the kernel counts: it wraps around
-  // Set if packets come over the route, which may change.
-  std::optional<runtime::GroupMembership> membership_;
-  TimePoint heard_{};  // when packets came last, or the membership was renewed
 };
 
 }  // namespace fogline::watch

@@ -4,7 +4,15 @@
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+#include <vector>
+
+#include "common/errors.h"
+#include "services/log/step_order.h"
 #include "tests/support/command.h"
+#include "tests/support/copied_log.h"
 #include "tests/unit/services/log/short_log.h"
 
 namespace fogline {
@@ -84,6 +92,174 @@ TEST_F(RunLogTest, InLockstepIsIncompleteWithoutTheLastStateOfTheWorld) {
   EXPECT_EQ(run.steps, kSteps - 1);
   EXPECT_FALSE(run.complete);
   EXPECT_THAT(run.note, HasSubstr("ends after step 1 of 3"));
+}
+
+/// The steps of a log with gaps: the number of each step, and how many messages it has.
+class LogWithGapsTest : public testing::Test {
+ protected:
+  using Steps = std::vector<std::pair<std::int64_t, std::size_t>>;
+
+  log::RunLog Read(const test::ShortLog& contents, log::ReadOptions options = {}) {
+    test::WriteShortLog(file_, contents);
+    return ReadFile(std::move(options));
+  }
+  log::RunLog ReadFile(log::ReadOptions options = {}) {
+    options.gaps = true;
+    log::RunLogReader reader(file_, options);
+    steps_.clear();
+    while (const log::StepMessages* messages = reader.Next()) {
+      const auto there =
+          std::ranges::count_if(*messages, [](runtime::Bytes message) { return !message.empty(); });
+      steps_.emplace_back(reader.step(), static_cast<std::size_t>(there));
+      tail_ += reader.InTail() ? 1 : 0;
+    }
+    return reader.run();
+  }
+  /// A copy of the log without its RUN.
+  void RemoveScenario() {
+    const std::string copy = folder_.File("copy");
+    test::Copy(file_, copy, [](auto&, const log::Event& event, auto& data) {
+      if (event.channel == ChannelOf<run_t>().name) data.clear();
+      return true;
+    });
+    std::filesystem::rename(copy, file_);
+  }
+
+  static constexpr std::size_t kAll = log::kStepChannels;
+  test::ScratchFolder folder_;
+  const std::string file_ = folder_.File("log");
+  Steps steps_;
+  int tail_ = 0;
+};
+
+TEST_F(LogWithGapsTest, GivesTheStepsAfterAMissingMessage) {
+  const log::RunLog run = Read({.has = [](std::string_view channel, std::int64_t step) {
+    return !(channel == ChannelOf<radar_t>().name && step == 1);
+  }});
+  EXPECT_EQ(steps_, (Steps{{0, kAll}, {1, kAll - 1}, {2, kAll}}));
+  EXPECT_FALSE(run.complete);
+  EXPECT_EQ(run.steps, 2);
+  EXPECT_EQ(run.digest, "");
+  EXPECT_EQ(run.gaps.messages[IndexOf<radar_t>()], 1);
+  EXPECT_EQ(run.note, "1 message of 1 step is missing (RADAR 1), first: step 1 lacks RADAR");
+}
+
+TEST_F(LogWithGapsTest, GivesAnEmptyStepForAStepWithoutAMessage) {
+  const log::RunLog run =
+      Read({.has = [](std::string_view, std::int64_t step) { return step != 1; }});
+  EXPECT_EQ(steps_, (Steps{{0, kAll}, {1, 0}, {2, kAll}}));
+  EXPECT_EQ(run.gaps.Messages(), static_cast<std::int64_t>(kAll));
+}
+
+TEST_F(LogWithGapsTest, CountsAMessageThatTheLastStepLacksAsMissing) {
+  const log::RunLog run = Read({.has = [](std::string_view channel, std::int64_t step) {
+    return !(channel == ChannelOf<radar_t>().name && step == test::kSteps - 1);
+  }});
+  EXPECT_EQ(run.gaps.steps, 1);
+  EXPECT_EQ(tail_, 0);
+}
+
+TEST_F(LogWithGapsTest, TakesTheIncompleteStepAtTheEndOfARunThatWasCutOffForNoGap) {
+  const log::RunLog run = Read({.has = [](std::string_view channel, std::int64_t step) {
+    return step == 0 || (step == 1 && channel == ChannelOf<truth_t>().name);
+  }});
+  EXPECT_EQ(steps_, (Steps{{0, kAll}, {1, 1}}));
+  EXPECT_EQ(tail_, 1);
+  EXPECT_FALSE(run.gaps.Any());
+  EXPECT_NE(run.digest, "");
+  EXPECT_THAT(run.note, HasSubstr("ends after step 0 of 3; step 1 lacks HOST_EGO, RADAR"));
+}
+
+TEST_F(LogWithGapsTest, BeginsWithTheFirstStepOfALoggerThatCameLate) {
+  const log::RunLog run =
+      Read({.has = [](std::string_view, std::int64_t step) { return step > 0; }});
+  EXPECT_EQ(steps_, (Steps{{1, kAll}, {2, kAll}}));
+  EXPECT_EQ(run.gaps.first, 1);
+  EXPECT_EQ(run.note, "begins at step 1 of 3");
+}
+
+TEST_F(LogWithGapsTest, OfACompleteLogHasTheDigestAndTheStepsOfTheUsualReader) {
+  const log::RunLog run = Read({});
+  log::RunLogReader usual(file_);
+  while (usual.Next() != nullptr) {
+  }
+  EXPECT_TRUE(run.complete) << run.note;
+  EXPECT_EQ(run.digest, usual.run().digest);
+  EXPECT_EQ(run.steps, usual.run().steps);
+}
+
+TEST_F(LogWithGapsTest, IsReadWithoutAScenarioOnlyIfNoneIsNeeded) {
+  Read({});
+  RemoveScenario();
+  try {
+    ReadFile();
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("the log has no complete scenario of a run; --scenario"));
+  }
+  const log::RunLog run = ReadFile({.needs_scenario = false});
+  EXPECT_EQ(steps_.size(), 3U);
+  EXPECT_EQ(run.run_id, test::kRunId);
+  EXPECT_FALSE(run.has_scenario);
+  EXPECT_EQ(run.note, "the log has no scenario");
+}
+
+TEST_F(LogWithGapsTest, TakesTheGivenScenarioIfItsHashAgreesWithTheLog) {
+  Read({});
+  const log::RunLog same = ReadFile({.scenario_text = std::string(test::kScenario)});
+  EXPECT_TRUE(same.complete) << same.note;
+  const std::string other = R"({"version":1,"steps":4})";
+  EXPECT_THROW(ReadFile({.scenario_text = other}), InputError);
+  RemoveScenario();
+  EXPECT_EQ(ReadFile({.scenario_text = other}).scenario.steps, 4);
+}
+
+TEST_F(LogWithGapsTest, OfSeveralRunsIsReadForTheFirstRunOrTheChosenOne) {
+  Read({});
+  const std::string both = folder_.File("both");
+  constexpr std::int64_t kOther = test::kRunId + 1;
+  {
+    log::EventLogWriter writer(both);
+    for (const bool second : {false, true}) {
+      log::EventLogReader reader(file_);
+      while (const auto event = reader.Next()) {
+        std::vector<std::uint8_t> data(event->data.begin(), event->data.end());
+        if (second) data[runtime::kRunIdOffset + 7] = kOther;
+        writer.Write(event->channel, event->utime, data);
+      }
+    }
+  }
+  std::filesystem::rename(both, file_);
+  const log::RunLog first = ReadFile();
+  EXPECT_EQ(first.run_id, test::kRunId);
+  ASSERT_EQ(first.other_runs.size(), 1U);
+  EXPECT_EQ(first.other_runs.front().run_id, kOther);
+  const log::RunLog chosen = ReadFile({.run_id = kOther});
+  EXPECT_EQ(chosen.run_id, kOther);
+  EXPECT_TRUE(chosen.complete) << chosen.note;
+  EXPECT_EQ(chosen.digest, first.digest);
+  try {
+    ReadFile({.run_id = 99});
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("--run 99: the log has no such run; it has 7, 8"));
+  }
+}
+
+TEST_F(LogWithGapsTest, IsNotFilledUpToAnImpossibleStep) {
+  test::WriteShortLog(file_, {});
+  const std::string copy = folder_.File("copy");
+  test::Copy(file_, copy, [](log::EventLogWriter& writer, const log::Event& event, auto& data) {
+    if (event.channel != ChannelOf<radar_t>().name) return true;
+    std::vector<std::uint8_t> far = data;
+    far[runtime::kStepOffset] = 1;  // step 2^56 and more
+    writer.Write(event.channel, event.utime, far);
+    return true;
+  });
+  std::filesystem::rename(copy, file_);
+  const log::RunLog run = ReadFile();
+  EXPECT_EQ(steps_.size(), 3U);
+  EXPECT_THAT(run.note, HasSubstr("3 impossible steps ignored"));
 }
 
 }  // namespace

@@ -1,0 +1,49 @@
+// The messages that the log of a run in lockstep lacks: a logger that joined late, or that lost
+// some messages, leaves such a log. A run in real time counts its missing messages in
+// RealtimeFigures.
+#pragma once
+
+#include <array>
+#include <bitset>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "services/graph.h"
+
+namespace fogline::log {
+
+/// Successive steps that lack the messages of the same channels.
+struct Gap {
+  std::int64_t first = 0;
+  std::int64_t last = 0;
+  std::bitset<kNumChannels> channels;
+
+  /// "step 394 lacks RADAR", or "steps 394 to 396 lack RADAR, LIDAR".
+  std::string Text() const;
+};
+
+struct LogGaps {
+  /// At most this many gaps are stored, so that the memory is limited.
+  static constexpr std::size_t kMostGaps = 1000;
+
+  std::int64_t first = 0;  // the first step of which the log has a message
+  std::int64_t steps = 0;  // steps after it that lack a message
+  std::array<std::int64_t, kNumChannels> messages{};  // missing messages of each channel
+  std::vector<Gap> gaps;                              // the first ones
+  std::int64_t left_out = 0;                          // gaps that came after `gaps` was full
+
+  /// Whether the log lacks its first steps, or a message after them.
+  bool Any() const { return first > 0 || steps > 0; }
+  std::int64_t Messages() const;
+  /// Adds a step that lacks the messages of these channels. Steps come in order.
+  void Add(std::int64_t step, const std::bitset<kNumChannels>& channels);
+  /// Such as "2 messages of 2 steps are missing (RADAR 1, LIDAR 1), first: step 394 lacks RADAR";
+  /// "" if no message is missing. It does not name the steps before the first one.
+  std::string Text() const;
+};
+
+/// "RADAR, LIDAR"
+std::string NamesOfChannels(const std::bitset<kNumChannels>& channels);
+
+}  // namespace fogline::log

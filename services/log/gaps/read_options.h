@@ -1,0 +1,29 @@
+// How a log is read.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+namespace fogline::log {
+
+struct ReadOptions {
+  /// The part of a log that is compared with its seal.
+  enum class Compared {
+    kRun,   // scenario and steps; in real time all bytes, because STATUS gives results, too
+    kFile,  // all bytes of the file, which are read once more at the end
+  };
+
+  Compared compared = Compared::kRun;
+  /// In lockstep: whether the reader also gives steps that lack messages. Otherwise the run ends
+  /// before the first of these steps.
+  bool gaps = false;
+  /// The run to read; nullopt: the first run in the log.
+  std::optional<std::int64_t> run_id;
+  /// The effective scenario of a log that lacks its scenario; "": not known.
+  std::string scenario_text;
+  /// Whether a log without a scenario is refused.
+  bool needs_scenario = true;
+};
+
+}  // namespace fogline::log

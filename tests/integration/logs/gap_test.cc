@@ -1,0 +1,267 @@
+// Logs that lack messages: what a lossy or late logger leaves, and logs of several runs. The verbs
+// use what there is, name what is missing, and compute nothing from a gap.
+#include <algorithm>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock-matchers.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "services/log/event_log.h"
+#include "services/log/remains.h"
+#include "services/runtime/transport/bus.h"
+#include "services/runtime/wire/wire.h"
+#include "tests/support/command.h"
+
+namespace fogline::test {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+using ::testing::StartsWith;
+using Words = std::vector<std::string>;
+using nlohmann::json;
+
+std::vector<std::string> LinesOf(const std::string& file) {
+  std::istringstream text(Content(file));
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(text, line);) lines.push_back(line);
+  return lines;
+}
+
+class GapTest : public testing::Test {
+ protected:
+  GapTest() {
+    const Outcome run = RunCommand({Program("fogline"), "run", "scenario/paper.json", "--transport",
+                                    "direct", "--quiet", "--log", whole_});
+    EXPECT_EQ(run.code, 0) << run.err;
+  }
+
+  /// A copy of a log without its seal and without some messages.
+  std::string Without(const std::function<bool(std::string_view channel, std::int64_t step)>& lost,
+                      const std::string& name = "gaps.lcm") const {
+    const std::string copy = folder_.File(name);
+    log::EventLogReader reader(whole_);
+    log::EventLogWriter writer(copy);
+    while (const auto event = reader.Next()) {
+      const std::int64_t step = runtime::ReadInt64(event->data, runtime::kStepOffset);
+      if (event->channel == "FOGLINE_SEAL" || lost(event->channel, step)) continue;
+      writer.Write(event->channel, event->utime, event->data);
+    }
+    return copy;
+  }
+  std::string WithoutOne(const std::string& channel) const {
+    return Without(
+        [&](std::string_view of, std::int64_t step) { return of == channel && step == 394; });
+  }
+
+  static Outcome Fogline(const Words& words) {
+    Words command{Program("fogline")};
+    command.insert(command.end(), words.begin(), words.end());
+    return RunCommand(command);
+  }
+  static json Json(const Words& words, int code) {
+    Words command = words;
+    command.emplace_back("--json");
+    const Outcome outcome = Fogline(command);
+    EXPECT_EQ(outcome.code, code) << outcome.err;
+    return json::parse(outcome.out);
+  }
+
+  const ScratchFolder folder_;
+  const std::string whole_ = folder_.File("whole.lcm");
+};
+
+TEST_F(GapTest, MetricsAreThoseOfTheWholeLogIfTheMissingMessageIsOfNoMeasure) {
+  const std::string log = WithoutOne("RADAR");
+  const json whole = Json({"metrics", whole_}, 0)[0];
+  const json gap = Json({"metrics", log}, 1)[0];
+  EXPECT_EQ(gap["metrics"], whole["metrics"]);
+  EXPECT_EQ(gap["complete"], false);
+  EXPECT_EQ(gap["steps"], 499);
+  EXPECT_EQ(gap["digest"], nullptr);
+  EXPECT_EQ(gap["gaps"]["messages"], (json{{"RADAR", 1}}));
+  EXPECT_EQ(gap["gaps"]["gaps"][0],
+            (json{{"first_step", 394}, {"last_step", 394}, {"channels", {"RADAR"}}}));
+  EXPECT_THAT(Fogline({"metrics", log}).err,
+              HasSubstr("1 message of 1 step is missing (RADAR 1), first: step 394 lacks RADAR"));
+}
+
+TEST_F(GapTest, MetricsSayWhatIsUnknownBecauseOfAGap) {
+  const std::string log = WithoutOne("HOST_COMMAND");
+  const json whole = Json({"metrics", whole_}, 0)[0]["metrics"];
+  const json gap = Json({"metrics", log}, 1)[0]["metrics"];
+  for (const char* unknown : {"rhe_pct", "human_time_s", "transfers", "wrong_human_s"}) {
+    EXPECT_FALSE(whole[unknown].is_null()) << unknown;
+    EXPECT_TRUE(gap[unknown].is_null()) << unknown;
+  }
+  for (const char* known : {"min_host_gap_m", "max_abs_jerk_mps3", "rms_fusion_error_m"}) {
+    EXPECT_EQ(gap[known], whole[known]) << known;
+  }
+  const Outcome text = Fogline({"metrics", log});
+  EXPECT_THAT(text.err, HasSubstr("unknown, because messages are missing: "));
+  EXPECT_THAT(text.out, HasSubstr("transfers                            unknown"));
+}
+
+TEST_F(GapTest, TheSafetyImprovementIsUnknownIfOneOfTheTwoLogsHasAGap) {
+  const std::string none = folder_.File("none.lcm");
+  ASSERT_EQ(Fogline({"run", "scenario/paper.json", "--transport", "direct", "--quiet", "--log",
+                     none, "--set", "/arbitrator/policy=none"})
+                .code,
+            0);
+  EXPECT_FALSE(Json({"metrics", none, whole_}, 0)[1]["si_pct"].is_null());
+  const std::string log = WithoutOne("TRUTH");
+  EXPECT_TRUE(Json({"metrics", none, log}, 1)[1]["si_pct"].is_null());
+  EXPECT_THAT(Fogline({"metrics", none, log}).err, HasSubstr("si_pct"));
+}
+
+TEST_F(GapTest, EventsGoOnAfterAGapAndShowIt) {
+  const std::string log = Without([](std::string_view channel, std::int64_t step) {
+    return channel == "HOST_COMMAND" && step >= 394 && step <= 396;
+  });
+  const json whole = Json({"events", whole_}, 0)[0];
+  const json gap = Json({"events", log}, 1)[0];
+  EXPECT_EQ(gap["events"], whole["events"]);
+  EXPECT_EQ(gap["gaps"]["gaps"][0]["last_step"], 396);
+  const Outcome text = Fogline({"events", log});
+  EXPECT_THAT(text.out, HasSubstr("     394     39.40 s  unknown: steps 394 to 396 lack "
+                                  "HOST_COMMAND\n"));
+}
+
+TEST_F(GapTest, ExportHasARowWithEmptyCellsForAMissingMessage) {
+  const std::string log = WithoutOne("RADAR");
+  const std::string out = folder_.File("csv");
+  const std::string out_of_whole = folder_.File("csv_of_whole");
+  const Outcome outcome = Fogline({"export", log, "--out", out});
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_THAT(outcome.err, HasSubstr("step 394 lacks RADAR"));
+  ASSERT_EQ(Fogline({"export", whole_, "--out", out_of_whole}).code, 0);
+  for (const std::string channel : {"TRUTH", "HOST_COMMAND"}) {
+    EXPECT_EQ(Content(out + "/" + channel + ".csv"),
+              Content(out_of_whole + "/" + channel + ".csv"));
+  }
+  const std::vector<std::string> rows = LinesOf(out + "/RADAR.csv");
+  std::vector<std::string> expected = LinesOf(out_of_whole + "/RADAR.csv");
+  ASSERT_EQ(expected.size(), 501U);
+  std::string& row = expected[395];
+  // The header is "header.run_id,header.step,header.utime".
+  std::size_t end = 0;
+  for (int comma = 0; comma < 3; ++comma) end = row.find(',', end) + 1;
+  const auto cells = std::count(row.begin() + static_cast<std::ptrdiff_t>(end), row.end(), ',');
+  row = row.substr(0, end) + std::string(static_cast<std::size_t>(cells), ',');
+  EXPECT_EQ(rows, expected);
+}
+
+TEST_F(GapTest, ALogWithoutTheBeginningIsUsedFromItsFirstStepOn) {
+  const std::string log = Without(
+      [](std::string_view channel, std::int64_t step) { return channel != "RUN" && step < 124; });
+  const json metrics = Json({"metrics", log}, 1)[0];
+  EXPECT_EQ(metrics["steps"], 376);
+  EXPECT_EQ(metrics["gaps"]["first_step"], 124);
+  EXPECT_NEAR(metrics["metrics"]["duration_s"], 37.5, 1e-9);
+  EXPECT_THAT(Fogline({"metrics", log}).err, HasSubstr("begins at step 124 of 500"));
+  const std::string out = folder_.File("csv");
+  EXPECT_EQ(Fogline({"export", log, "--out", out}).code, 1);
+  EXPECT_EQ(LinesOf(out + "/TRUTH.csv").size(), 377U);
+}
+
+TEST_F(GapTest, ALogWithoutAScenarioIsExportedAndMeasuredWithAGivenScenario) {
+  const std::string log = Without(
+      [](std::string_view channel, std::int64_t step) { return channel == "RUN" || step < 124; });
+  const std::string out = folder_.File("csv");
+  const Outcome exported = Fogline({"export", log, "--out", out});
+  EXPECT_EQ(exported.code, 1);
+  EXPECT_THAT(exported.err, HasSubstr("the log has no scenario; begins at step 124"));
+  EXPECT_EQ(LinesOf(out + "/LIDAR.csv").size(), 377U);
+  EXPECT_FALSE(std::filesystem::exists(out + "/scenario.json"));
+  const Outcome refused = Fogline({"metrics", log});
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_THAT(refused.err, HasSubstr("--scenario FILE gives it"));
+  const json given = Json({"metrics", log, "--scenario", "scenario/paper.json"}, 1)[0];
+  EXPECT_EQ(given["steps"], 376);
+  EXPECT_EQ(given["title"], Json({"metrics", whole_}, 0)[0]["title"]);
+}
+
+TEST_F(GapTest, AScenarioThatTheLogContradictsIsRefused) {
+  const Outcome outcome = Fogline({"metrics", whole_, "--scenario", "scenario/dense_fog.json"});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("--scenario: the log is of another scenario: its hash is "));
+}
+
+TEST_F(GapTest, ALogOfSeveralRunsNamesThemAndIsReadForTheChosenOne) {
+  const std::string other = folder_.File("other.lcm");
+  ASSERT_EQ(Fogline({"run", "scenario/paper.json", "--transport", "direct", "--quiet", "--log",
+                     other, "--seed", "2"})
+                .code,
+            0);
+  const std::string both = folder_.File("both.lcm");
+  std::ofstream(both, std::ios::binary) << Content(whole_) << Content(other);
+  const std::int64_t first = log::ReadFront(whole_).run_id;
+  const std::int64_t second = log::ReadFront(other).run_id;
+  const Outcome digest = Fogline({"digest", both});
+  EXPECT_THAT(digest.err, HasSubstr("this is run " + std::to_string(first) +
+                                    "; the log also has run " + std::to_string(second)));
+  const std::string whole = Fogline({"digest", whole_}).out;
+  EXPECT_THAT(digest.out, StartsWith(whole.substr(0, whole.find(' '))));
+  const std::string chosen = Fogline({"digest", other}).out;
+  const Outcome of_second = Fogline({"digest", both, "--run", std::to_string(second)});
+  EXPECT_THAT(of_second.out, StartsWith(chosen.substr(0, chosen.find(' '))));
+  const json metrics = Json({"metrics", both, "--run", std::to_string(second)}, 0)[0];
+  EXPECT_EQ(metrics["metrics"], Json({"metrics", other}, 0)[0]["metrics"]);
+  const Outcome unknown = Fogline({"metrics", both, "--run", "5"});
+  EXPECT_EQ(unknown.code, 2);
+  EXPECT_THAT(unknown.err, HasSubstr("--run 5: the log has no such run; it has "));
+}
+
+TEST_F(GapTest, TheReportOfALogWithAGapLeavesOutWhatIsUnknown) {
+  const std::string log = WithoutOne("HOST_COMMAND");
+  const std::string page = folder_.File("report.html");
+  const Outcome outcome = Fogline({"report", log, "--output", page});
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_THAT(outcome.err, HasSubstr("step 394 lacks HOST_COMMAND"));
+  EXPECT_THAT(Content(page), Not(HasSubstr("Human drives")));
+}
+
+TEST_F(GapTest, AFileOfLcmLoggerThatBeganInTheMiddleOfARunIsUsed) {
+  // GIVEN a run that is under way
+  runtime::Bus bus(runtime::FreshMulticastUrl());
+  std::int64_t step = -1;
+  bus.Subscribe("TRUTH", [&step](runtime::Bytes truth) {
+    step = runtime::ReadInt64(truth, runtime::kStepOffset);
+  });
+  Background run({Program("fogline"), "run", "scenario/paper.json", "--quiet", "--pace", "25",
+                  "--set", "/steps=300", "--log", folder_.File("own.lcm"), "--lcm-url", bus.url()});
+  const TimePoint end = Clock::now() + kPatience;
+  while (step < 40 && Clock::now() < end) bus.Wait(milliseconds(10));
+  ASSERT_GE(step, 40);
+  // WHEN lcm-logger joins, and the run ends
+  const std::string log = folder_.File("late.lcm");
+  Background logger(
+      {"lcm-logger", "--quiet", "--flush-interval=10", "--lcm-url=" + bus.url(), log});
+  ASSERT_EQ(run.Wait(), 0) << run.Err();
+  while (Content(log).find("AFTER_RUN") == std::string::npos && Clock::now() < end) {
+    bus.Publish("AFTER_RUN", std::vector<std::uint8_t>(runtime::kHeaderEnd));
+    bus.Wait(milliseconds(10));
+  }
+  logger.Signal(SIGINT);
+  ASSERT_EQ(logger.Wait(), 0);
+  // THEN the verbs show the steps that it has. lcm-logger may lose messages besides.
+  const std::string scenario = folder_.File("effective.json");
+  std::ofstream(scenario)
+      << Fogline({"check", "scenario/paper.json", "--print", "--set", "/steps=300"}).out;
+  const json metrics = Json({"metrics", log, "--scenario", scenario}, 1)[0];
+  EXPECT_GT(metrics["steps"], 0);
+  EXPECT_GE(metrics["gaps"]["first_step"], 40);
+  const std::string out = folder_.File("csv");
+  EXPECT_EQ(Fogline({"export", log, "--out", out}).code, 1);
+  EXPECT_GT(LinesOf(out + "/TRUTH.csv").size(), 1U);
+}
+
+}  // namespace
+}  // namespace fogline::test

@@ -1,0 +1,131 @@
+// `fogline replay --live`: recorded messages of some roles drive the living rest of the system.
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock-matchers.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "services/log/event_log.h"
+#include "services/runtime/wire/wire.h"
+#include "tests/support/command.h"
+
+namespace fogline::test {
+namespace {
+
+using ::testing::HasSubstr;
+using Words = std::vector<std::string>;
+using nlohmann::json;
+
+class LiveReplayTest : public testing::Test {
+ protected:
+  LiveReplayTest() {
+    const Outcome run = RunCommand({Program("fogline"), "run", "scenario/paper.json", "--transport",
+                                    "direct", "--json", "--log", log_, "--set", "/steps=250"});
+    EXPECT_EQ(run.code, 0) << run.err;
+    digest_ = json::parse(run.out)["digest"];
+  }
+
+  Outcome Replay(const std::string& log, const Words& more) const {
+    Words command{Program("fogline"), "replay", log, "--live", "--log", live_, "--force", "--json"};
+    command.insert(command.end(), more.begin(), more.end());
+    return RunCommand(command);
+  }
+  json Live(const Words& more) const {
+    const Outcome outcome = Replay(log_, more);
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    return json::parse(outcome.out, nullptr, false);
+  }
+
+  const ScratchFolder folder_;
+  const std::string log_ = folder_.File("run.lcm");
+  const std::string live_ = folder_.File("live.lcm");
+  std::string digest_;
+};
+
+TEST_F(LiveReplayTest, OfUnchangedRolesIsTheRecordedRun) {
+  const json live = Live({});
+  EXPECT_EQ(live["channels"], (json{"RADAR", "LIDAR"}));
+  EXPECT_EQ(live["digest"], digest_);
+  EXPECT_EQ(live["track"]["compared_steps"], 250);
+  EXPECT_EQ(live["track"]["distance_m"]["largest"], 0);
+  EXPECT_EQ(live["track"]["distance_m"]["rms"], 0);
+}
+
+TEST_F(LiveReplayTest, TellsHowMuchTheTrackOfAnotherFusionDiffers) {
+  // GIVEN the recorded sensors and a fusion that trusts the radar less
+  const json live = Live({"--set", "/fusion/radar_range_std_m=0.5", "--transport", "tcpq"});
+  const json& distance = live["track"]["distance_m"];
+  EXPECT_GT(distance["largest"], 0.01);
+  EXPECT_GT(distance["rms"], 0);
+  EXPECT_LT(distance["rms"], distance["largest"]);
+  // THEN the new log has the recorded messages, and the difference that the two logs show
+  const auto track_of = [](const std::string& log, std::int64_t step) {
+    log::EventLogReader reader(log);
+    track_t track{};
+    while (const auto event = reader.Next()) {
+      if (event->channel == "TRACK" && runtime::Decode(event->data, track) &&
+          track.header.step == step) {
+        return track.state[0];
+      }
+    }
+    return 0.0;
+  };
+  const std::int64_t step = distance["step"];
+  EXPECT_EQ(std::abs(track_of(log_, step) - track_of(live_, step)), distance["largest"]);
+  const Outcome diff = RunCommand({Program("fogline"), "diff", log_, live_});
+  EXPECT_THAT(diff.out, HasSubstr(": TRACK "));  // RADAR and LIDAR come before TRACK, and are equal
+}
+
+TEST_F(LiveReplayTest, OfAnyOtherChannelReplacesItsRole) {
+  const json live = Live({"--channels", "DRIVER_COMMAND"});
+  EXPECT_EQ(live["digest"], digest_);
+}
+
+TEST_F(LiveReplayTest, OfALogWithAGapIsRefusedInLockstep) {
+  const std::string gap = folder_.File("gap.lcm");
+  log::EventLogReader reader(log_);
+  {
+    log::EventLogWriter writer(gap);
+    while (const auto event = reader.Next()) {
+      const std::int64_t step = runtime::ReadInt64(event->data, runtime::kStepOffset);
+      if (event->channel == "RADAR" && step == 100) continue;
+      writer.Write(event->channel, event->utime, event->data);
+    }
+  }
+  const Outcome outcome = Replay(gap, {});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("gap.lcm: error: step 100 lacks RADAR: a run in lockstep"));
+  // The roles of the other channels have all their messages.
+  EXPECT_EQ(Replay(gap, {"--channels", "LIDAR"}).code, 1);
+}
+
+TEST_F(LiveReplayTest, SaysWhatIsWrongWithItsArguments) {
+  const auto error = [&](const Words& more) {
+    const Outcome outcome = Replay(log_, more);
+    EXPECT_EQ(outcome.code, 2);
+    return outcome.err;
+  };
+  EXPECT_THAT(error({"--channels", "RADRA"}),
+              HasSubstr("error: --channels RADRA: not one of \"RADAR\", \"LIDAR\""));
+  EXPECT_THAT(error({"--channels", "TRUTH"}), HasSubstr("--channels TRUTH: not one of"));
+  EXPECT_THAT(error({"--transport", "memq"}), HasSubstr("--transport memq: a live replay needs"));
+  EXPECT_THAT(error({"--set", "/step_s=0.05"}), HasSubstr("--set /step_s"));
+  EXPECT_THAT(error({"--all"}), HasSubstr("--live makes a run"));
+}
+
+class LiveReplayInRealtimeTest : public LiveReplayTest {};
+
+TEST_F(LiveReplayInRealtimeTest, DrivesTheSystemByTheWallClock) {
+  const json live = Live({"--realtime", "--speed", "5"});
+  EXPECT_EQ(live["steps"], 250);
+  EXPECT_EQ(live["realtime"]["speed"], 5);
+  // A late message changes a step of the fusion, but not the recorded sensors: the tracks agree to
+  // within the largest step of the range.
+  EXPECT_GT(live["track"]["compared_steps"], 200);
+  EXPECT_LT(live["track"]["distance_m"]["rms"], 0.1);
+}
+
+}  // namespace
+}  // namespace fogline::test

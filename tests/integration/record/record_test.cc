@@ -1,0 +1,231 @@
+// `fogline record` writes all messages of a network, of any LCM programs.
+#include <lcm/lcm.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <memory>
+
+#include <gmock/gmock-matchers.h>
+
+#include "tests/integration/record/recorder_process.h"
+#include "tests/support/file_size_limit.h"
+#include "tests/support/machine.h"
+#include "tests/support/numbered_sender.h"
+
+namespace fogline::test {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+using testing::IsSupersetOf;
+
+std::vector<std::uint8_t> Payload(std::size_t number, std::size_t size) {
+  std::vector<std::uint8_t> payload(size);
+  for (std::size_t i = 0; i < size; ++i) {
+    payload[i] = static_cast<std::uint8_t>(number + i * (number + 1));
+  }
+  return payload;
+}
+
+class RecordTest : public testing::Test {
+ protected:
+  const ScratchFolder folder_;
+  const std::string log_ = folder_.File("all.lcm");
+  runtime::Bus bus_{runtime::FreshMulticastUrl()};
+};
+
+TEST_F(RecordTest, HasEveryMessageOfABurstOfWhichLcmLoggerLosesSome) {
+  // A process of another user gets a smaller buffer from the kernel.
+  if (geteuid() != 0) return MachineLacks("root, for a large receive buffer");
+  // GIVEN lcm-logger and fogline record, both listening
+  const std::string theirs = folder_.File("lcm-logger.lcm");
+  Background logger(
+      {"lcm-logger", "--quiet", "--flush-interval=10", "--lcm-url=" + bus_.url(), theirs});
+  RecordProcess record(bus_, log_, {"--recv-buffer-mb", "64"});
+  ASSERT_TRUE(record.CatchUp("BEGIN", theirs));
+  ASSERT_TRUE(record.CatchUp("BEGIN"));
+  // WHEN 20000 messages are sent as fast as LCM can
+  constexpr std::size_t kMessages = 20'000;
+  std::vector<Recorded> sent;
+  for (std::size_t i = 0; i < kMessages; ++i) {
+    sent.push_back({"BURST_" + std::to_string(i % 7), Payload(i, 200)});
+    bus_.Publish(sent.back().channel, sent.back().data);
+  }
+  ASSERT_TRUE(record.CatchUp("END"));
+  ASSERT_TRUE(record.CatchUp("END", theirs));
+  const json summary = record.End();
+  logger.Signal(SIGINT);
+  ASSERT_EQ(logger.Wait(), 0);
+  // THEN the recording has all of them in order, and lcm-logger has not
+  const std::vector<Recorded> recorded = MessagesIn(log_);
+  EXPECT_EQ(recorded.size(), kMessages);
+  EXPECT_TRUE(recorded == sent);
+  EXPECT_EQ(summary["own_overflow"], 0);
+  ASSERT_EQ(summary["senders"].size(), 1U);
+  EXPECT_EQ(summary["senders"][0]["lost"], 0);
+  EXPECT_LT(MessagesIn(theirs).size(), kMessages);
+}
+
+TEST_F(RecordTest, NamesTheSenderWhoseMessagesWereLostOnTheWay) {
+  RecordProcess record(bus_, log_);
+  NumberedSender sender(bus_.url());
+  for (const std::uint32_t number : {10U, 11U, 12U, 15U, 16U}) sender.Send(number, "CAMERA");
+  ASSERT_TRUE(record.CatchUp("END"));
+  const json summary = record.End();
+  const auto of_sender = std::ranges::find_if(
+      summary["senders"], [&](const json& one) { return one["address"] == sender.Address(); });
+  ASSERT_NE(of_sender, summary["senders"].end()) << summary;
+  EXPECT_EQ((*of_sender)["received"], 5);
+  EXPECT_EQ((*of_sender)["lost"], 2);
+}
+
+TEST_F(RecordTest, IsPlayedByLcmLogplayer) {
+  RecordProcess record(bus_, log_);
+  std::vector<Recorded> sent;
+  for (std::size_t i = 0; i < 50; ++i) {
+    sent.push_back({"CHANNEL", Payload(i, 10 + i)});
+    bus_.Publish(sent.back().channel, sent.back().data);
+  }
+  ASSERT_TRUE(record.CatchUp("END"));
+  record.End();
+  runtime::Bus receiver(runtime::FreshMulticastUrl());
+  std::vector<Recorded> played;
+  receiver.Subscribe("CHANNEL", [&](runtime::Bytes bytes) {
+    played.push_back({"CHANNEL", {bytes.begin(), bytes.end()}});
+  });
+  Background player({"lcm-logplayer", "--lcm-url=" + receiver.url(), log_});
+  ASSERT_EQ(player.Wait(), 0) << player.Err();
+  while (played.size() < sent.size() && receiver.Wait(kPatience)) {
+  }
+  EXPECT_TRUE(played == sent);
+}
+
+TEST_F(RecordTest, HasMessagesThatAreLargerThanADatagram) {
+  RecordProcess record(bus_, log_);
+  const std::vector<std::uint8_t> image = Payload(3, 300'000);
+  lcm_t* lcm = lcm_create(bus_.url().c_str());
+  ASSERT_NE(lcm, nullptr);
+  EXPECT_EQ(lcm_publish(lcm, "CAMERA", image.data(), static_cast<unsigned>(image.size())), 0);
+  EXPECT_EQ(lcm_publish(lcm, "CAMERA", image.data(), 10), 0);
+  ASSERT_TRUE(record.CatchUp("END"));
+  lcm_destroy(lcm);
+  const json summary = record.End();
+  const std::vector<Recorded> recorded = MessagesIn(log_);
+  ASSERT_EQ(recorded.size(), 2U);
+  EXPECT_EQ(recorded[0].channel, "CAMERA");
+  EXPECT_TRUE(recorded[0].data == image);
+  EXPECT_EQ(recorded[1].data.size(), 10U);
+  EXPECT_EQ(summary["incomplete_messages"], 0);
+}
+
+TEST_F(RecordTest, LeavesOutChannelsThatDoNotMatch) {
+  RecordProcess record(bus_, log_, {"--channels", "RADAR|LIDAR|MARK_.*"});
+  for (const char* channel : {"RADAR", "TRACK", "RADAR2", "LIDAR"}) {
+    bus_.Publish(channel, Payload(1, 4));
+  }
+  ASSERT_TRUE(record.CatchUp("END"));
+  const json summary = record.End();
+  const std::vector<Recorded> recorded = MessagesIn(log_);
+  ASSERT_EQ(recorded.size(), 2U);
+  EXPECT_EQ(recorded[0].channel, "RADAR");
+  EXPECT_EQ(recorded[1].channel, "LIDAR");
+}
+
+TEST_F(RecordTest, BeginsANewFileAtASize) {
+  RecordProcess record(bus_, log_, {"--rotate-mb", "0.01"});
+  std::vector<Recorded> sent;
+  for (std::size_t i = 0; i < 100; ++i) {
+    sent.push_back({"CHANNEL", Payload(i, 500)});
+    bus_.Publish(sent.back().channel, sent.back().data);
+  }
+  // 53.5 kB of events: the mark is in the sixth file.
+  ASSERT_TRUE(record.CatchUp("END", folder_.File("all-005.lcm")));
+  const json summary = record.End();
+  ASSERT_GE(summary["files"].size(), 6U);
+  EXPECT_EQ(summary["files"][0], folder_.File("all-000.lcm"));
+  std::vector<Recorded> recorded;
+  for (const json& file : summary["files"]) {
+    EXPECT_LE(std::filesystem::file_size(file.get<std::string>()), 10'000U);
+    std::ranges::move(MessagesIn(file), std::back_inserter(recorded));
+  }
+  EXPECT_TRUE(recorded == sent);
+}
+
+TEST_F(RecordTest, EndsWithOneErrorAndAValidLogIfTheDiskIsFull) {
+  std::unique_ptr<RecordProcess> record;
+  {
+    const FileSizeLimit full(100'000);
+    record = std::make_unique<RecordProcess>(bus_, log_);
+  }
+  const TimePoint end = Clock::now() + kPatience;
+  while (IsAlive(record->process().pid()) && Clock::now() < end) {
+    bus_.Publish("CHANNEL", Payload(1, 700));
+    bus_.Wait(milliseconds(1));
+  }
+  EXPECT_EQ(record->process().Wait(), 3);
+  const std::string err = record->process().Err();
+  EXPECT_THAT(err, HasSubstr("fogline record: error: cannot write to " + log_));
+  EXPECT_EQ(err.find("error"), err.rfind("error")) << err;
+  // All whole messages that fit are there: an event has 35 bytes besides its data.
+  EXPECT_EQ(MessagesIn(log_).size(), 100'000U / 735);
+}
+
+TEST_F(RecordTest, OfARunIsALogOfThisRun) {
+  RecordProcess record(bus_, log_);
+  const Outcome run =
+      RunCommand({Program("fogline"), "run", "scenario/paper.json", "--json", "--quiet", "--set",
+                  "/steps=100", "--log", folder_.File("own.lcm"), "--lcm-url", bus_.url()});
+  ASSERT_EQ(run.code, 0) << run.err;
+  ASSERT_TRUE(record.CatchUp("END"));
+  const json summary = record.End();
+  std::vector<std::string> channels;
+  for (const json& one : summary["channels"]) channels.push_back(one["channel"]);
+  EXPECT_THAT(channels, IsSupersetOf({"RUN", "TRUTH", "TRACK", "STATUS"}));
+  const Outcome digest = RunCommand({Program("fogline"), "digest", log_});
+  EXPECT_EQ(digest.code, 0) << digest.err;
+  EXPECT_EQ(digest.out.substr(0, digest.out.find(' ')), json::parse(run.out)["digest"]);
+}
+
+TEST_F(RecordTest, FollowsTheRunThatIsAnnounced) {
+  // GIVEN a recording without a network, at a meeting address of its own
+  const std::string meeting = runtime::FreshMulticastUrl();
+  Background record({"env", "LCM_DEFAULT_URL=" + meeting, Program("fogline"), "record", log_,
+                     "--json", "--flush-ms", "10"});
+  ASSERT_TRUE(record.WaitForErr("records "));
+  // WHEN a run announces itself there
+  Background run({"env", "LCM_DEFAULT_URL=" + meeting, Program("fogline"), "run",
+                  "scenario/paper.json", "--quiet", "--transport", "udpm", "--pace", "25", "--set",
+                  "/steps=300", "--log", folder_.File("own.lcm")});
+  EXPECT_TRUE(record.WaitForErr("follows run "));
+  ASSERT_EQ(run.Wait(), 0) << run.Err();
+  record.Signal(SIGINT);
+  ASSERT_EQ(record.Wait(), 0);
+  // THEN its messages are there
+  const std::vector<Recorded> recorded = MessagesIn(log_);
+  EXPECT_TRUE(std::ranges::any_of(
+      recorded, [](const Recorded& message) { return message.channel == "TRACK"; }));
+}
+
+TEST_F(RecordTest, SaysWhatIsWrongWithItsArguments) {
+  const auto error = [&](std::vector<std::string> more) {
+    std::vector<std::string> command{Program("fogline"), "record", log_};
+    command.insert(command.end(), more.begin(), more.end());
+    const Outcome outcome = RunCommand(command);
+    EXPECT_EQ(outcome.code, 2);
+    return outcome.err;
+  };
+  EXPECT_THAT(error({"--channels", "RADAR("}),
+              HasSubstr("error: --channels RADAR(: no regular expression: "));
+  EXPECT_THAT(error({"--lcm-url", "memq://"}), HasSubstr("memq"));
+  EXPECT_THAT(error({"--lcm-url", "udpm://10.0.0.1:7700"}), HasSubstr("10.0.0.1"));
+  EXPECT_FALSE(std::filesystem::exists(log_));
+  std::ofstream(log_) << "text";
+  EXPECT_THAT(error({}), HasSubstr("all.lcm: error: LOG: the file exists; --force replaces it"));
+  EXPECT_THAT(error({"--force"}), HasSubstr("is no event log and is not replaced"));
+}
+
+}  // namespace
+}  // namespace fogline::test

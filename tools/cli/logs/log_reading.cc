@@ -1,0 +1,71 @@
+#include "tools/cli/logs/log_reading.h"
+
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
+
+#include "common/process/console.h"
+#include "common/text.h"
+#include "scenario/io/loader.h"
+
+namespace fogline::cli {
+
+void AddRunOption(CLI::App& verb, std::optional<std::int64_t>& run_id) {
+  verb.add_option("--run", run_id, "Id of the run to read (default: the first run in the log)");
+}
+
+LogReading::LogReading(CLI::App& verb) {
+  AddRunOption(verb, run_id_);
+  verb.add_option("--scenario", scenario_,
+                  "Effective scenario of a log that lacks it (fogline check --print); checked by "
+                  "its hash if the log has the hash");
+}
+
+log::ReadOptions LogReading::Options() const {
+  log::ReadOptions options{.gaps = true, .run_id = run_id_};
+  if (!scenario_.empty()) options.scenario_text = PrintScenario(LoadScenario(scenario_));
+  return options;
+}
+
+void SayAboutLog(const std::filesystem::path& log, const log::RunLog& run) {
+  if (!run.note.empty()) Complain(fmt::format("{}: {}", PathText(log), run.note));
+  if (run.other_runs.empty()) return;
+  std::string others;
+  for (const log::RunInLog& other : run.other_runs) {
+    others += fmt::format("{}{} ({} message{})", others.empty() ? "" : ", ", other.run_id,
+                          other.messages, other.messages == 1 ? "" : "s");
+  }
+  Complain(fmt::format("{}: this is run {}; the log also has run {}; --run chooses", PathText(log),
+                       run.run_id, others));
+}
+
+nlohmann::ordered_json GapsJson(const log::LogGaps& gaps) {
+  nlohmann::ordered_json json{{"first_step", gaps.first},
+                              {"steps", gaps.steps},
+                              {"messages", nlohmann::ordered_json::object()},
+                              {"gaps", nlohmann::ordered_json::array()},
+                              {"gaps_left_out", gaps.left_out}};
+  for (std::size_t i = 0; i < kNumChannels; ++i) {
+    if (gaps.messages[i] > 0) json["messages"][std::string(kChannels[i].name)] = gaps.messages[i];
+  }
+  for (const log::Gap& gap : gaps.gaps) {
+    auto channels = nlohmann::ordered_json::array();
+    for (std::size_t i = 0; i < kNumChannels; ++i) {
+      if (gap.channels[i]) channels.push_back(kChannels[i].name);
+    }
+    json["gaps"].push_back(
+        {{"first_step", gap.first}, {"last_step", gap.last}, {"channels", channels}});
+  }
+  return json;
+}
+
+std::string UnknownMeasures(const runner::ExperimentResult& result) {
+  std::string names;
+  metrics::VisitMetrics(
+      result.measures, [&](std::string_view name, const auto&, std::string_view, std::string_view) {
+        if (metrics::IsKnown(name, result.lack)) return;
+        names += fmt::format("{}{}", names.empty() ? "" : ", ", name);
+      });
+  return names;
+}
+
+}  // namespace fogline::cli

@@ -1,0 +1,45 @@
+// The options of verbs that read a log with gaps, of several runs, or without its scenario; and
+// what such a verb says about such a log.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json_fwd.hpp>
+
+#include "services/log/run_log.h"
+#include "tools/runner/experiment.h"
+
+namespace fogline::cli {
+
+/// The options --run and --scenario.
+class LogReading {
+ public:
+  explicit LogReading(CLI::App& verb);
+
+  /// Gaps are read. @throws InputError for an invalid scenario
+  log::ReadOptions Options() const;
+
+ private:
+  std::optional<std::int64_t> run_id_;
+  std::filesystem::path scenario_;
+};
+
+/// The option --run alone.
+void AddRunOption(CLI::App& verb, std::optional<std::int64_t>& run_id);
+
+/// Prints on stderr why a log is not complete, and which other runs it has.
+void SayAboutLog(const std::filesystem::path& log, const log::RunLog& run);
+
+/// {"first_step": 0, "steps": 1, "messages": {"RADAR": 1}, "gaps": [{"first_step": 394,
+/// "last_step": 394, "channels": ["RADAR"]}], "gaps_left_out": 0}
+nlohmann::ordered_json GapsJson(const log::LogGaps& gaps);
+
+/// The names of the measures of a run that are unknown, because its log has gaps: "rhe_pct,
+/// transfers"; "" if all are known.
+std::string UnknownMeasures(const runner::ExperimentResult& result);
+
+}  // namespace fogline::cli

@@ -1,0 +1,36 @@
+// fogline replay --live: recorded messages of some roles drive the living rest of the system.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "services/runtime/transport/traffic_options.h"
+
+namespace fogline {
+
+class LiveReplay {
+ public:
+  /// Adds --live and the options that need it.
+  explicit LiveReplay(CLI::App& verb);
+
+  bool chosen() const { return live_; }
+  /// Makes the run and prints how much its track differs. @return the exit code
+  /// @throws InputError, Interrupted, std::runtime_error as RunExperiment()
+  int Run(const std::filesystem::path& recorded, bool json) const;
+
+ private:
+  bool live_ = false;
+  std::string channels_ = "RADAR,LIDAR";
+  std::vector<std::string> overrides_;
+  std::filesystem::path log_;
+  bool force_ = false;
+  std::string transport_ = "udpm";
+  bool realtime_ = false;
+  double speed_ = 0;  // 0: that of the log
+  bool quiet_ = false;
+};
+
+}  // namespace fogline

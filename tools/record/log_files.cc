@@ -1,0 +1,79 @@
+#include "tools/record/log_files.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <system_error>
+#include <utility>
+
+#include <fmt/core.h>
+
+#include "common/errors.h"
+
+namespace fogline::record {
+
+LogFiles::LogFiles(std::filesystem::path file, const Rotation& rotation, TimePoint now)
+    : file_(std::move(file)), rotation_(rotation) {
+  Begin(now);
+}
+
+std::filesystem::path LogFiles::NameOf(const std::filesystem::path& file, std::size_t number) {
+  return file.parent_path() /
+         fmt::format("{}-{:03}{}", file.stem().string(), number, file.extension().string());
+}
+
+void LogFiles::Begin(TimePoint now) {
+  if (log_) earlier_bytes_ += log_->size();
+  log_.reset();
+  ends_.clear();
+  flushed_ = 0;
+  begun_ = now;
+  files_.push_back(rotation_.Any() ? NameOf(file_, files_.size()) : file_);
+  log_.emplace(files_.back());
+}
+
+void LogFiles::Write(const log::Event& event, TimePoint now) {
+  const std::int64_t size = static_cast<std::int64_t>(log::SizeInFile(event));
+  const bool is_full =
+      rotation_.most_bytes > 0 && log_->size() > 0 && log_->size() + size > rotation_.most_bytes;
+  const bool is_old = rotation_.longest > Duration::zero() && now - begun_ >= rotation_.longest;
+  try {
+    if (is_full || is_old) {
+      log_->Flush();
+      Begin(now);
+    }
+    ends_.push_back(log_->size() + size);
+    log_->Write(event.channel, event.utime, event.data);
+  } catch (const InputError& error) {  // the next file cannot be opened
+    throw std::runtime_error(error.what());
+  } catch (const std::runtime_error&) {
+    CutTornEvent();
+    throw;
+  }
+}
+
+void LogFiles::Flush() {
+  try {
+    log_->Flush();
+  } catch (const std::runtime_error&) {
+    CutTornEvent();
+    throw;
+  }
+  flushed_ = log_->size();
+  ends_.clear();
+}
+
+void LogFiles::CutTornEvent() {
+  earlier_bytes_ += flushed_;
+  log_.reset();  // tries once more to write the rest
+  std::error_code ignored;
+  const auto written =
+      static_cast<std::int64_t>(std::filesystem::file_size(files_.back(), ignored));
+  std::int64_t whole = flushed_;
+  for (const std::int64_t end : ends_) whole = end <= written ? std::max(whole, end) : whole;
+  if (whole < written) {
+    std::filesystem::resize_file(files_.back(), static_cast<std::uintmax_t>(whole), ignored);
+  }
+  earlier_bytes_ += whole - flushed_;
+}
+
+}  // namespace fogline::record

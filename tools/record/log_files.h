@@ -1,0 +1,56 @@
+// Writes events into a log, or into one log after another.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "common/clock.h"
+#include "services/log/event_log.h"
+
+namespace fogline::record {
+
+/// When the next file begins. Without a limit there is one file.
+struct Rotation {
+  std::int64_t most_bytes = 0;  // size of a file; 0: no limit
+  Duration longest{};           // time since the file was begun; 0: no limit
+
+  bool Any() const { return most_bytes > 0 || longest > Duration::zero(); }
+};
+
+/// The files of a recording: "day.lcm", or with a rotation "day-000.lcm", "day-001.lcm" and so on.
+/// Every file is an event log of its own, whose events are numbered from 0 on.
+class LogFiles {
+ public:
+  /// Begins the first file. An existing file is replaced. @throws InputError
+  LogFiles(std::filesystem::path file, const Rotation& rotation, TimePoint now);
+
+  /// Appends an event. @throws std::runtime_error, for example if the disk is full; the file then
+  /// ends with the last whole event that was written
+  void Write(const log::Event& event, TimePoint now);
+  /// Hands all events to the operating system. @throws as Write()
+  void Flush();
+
+  const std::vector<std::filesystem::path>& files() const { return files_; }
+  std::int64_t bytes() const { return earlier_bytes_ + (log_ ? log_->size() : 0); }
+
+  /// The name of a file of a recording.
+  static std::filesystem::path NameOf(const std::filesystem::path& file, std::size_t number);
+
+ private:
+  void Begin(TimePoint now);
+  /// Removes the part of an event at the end of the file.
+  void CutTornEvent();
+
+  std::filesystem::path file_;
+  Rotation rotation_;
+  std::vector<std::filesystem::path> files_;
+  std::optional<log::EventLogWriter> log_;
+  std::vector<std::int64_t> ends_;  // where the events end that are not flushed yet
+  std::int64_t flushed_ = 0;        // the bytes of the file before them
+  std::int64_t earlier_bytes_ = 0;
+  TimePoint begun_{};
+};
+
+}  // namespace fogline::record

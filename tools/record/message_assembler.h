@@ -1,0 +1,65 @@
+// Puts the messages of LCM together from UDP packets. LCM's own library is not used here: it hides
+// the numbers by which a loss is found, loses a message whose fragments come in another order, and
+// delivers a wrong message if a fragment comes twice (LCM 1.3.1).
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "tools/watch/senders/lcm_packet.h"
+#include "tools/watch/senders/packet_socket.h"
+
+namespace fogline::record {
+
+/// A message as its sender has sent it.
+struct Message {
+  std::string_view channel;
+  std::int64_t unix_us = 0;  // when its last packet came: the wall clock, in us since 1970
+  runtime::Bytes data;
+};
+
+/// Its memory is bounded for any packets: when there is no room, it gives up the message that has
+/// waited longest for a fragment.
+class MessageAssembler {
+ public:
+  /// The data of a UDP packet is smaller than this.
+  static constexpr std::size_t kMostPacket = 1 << 16;
+
+  /// @return the message that this packet completes; valid until the next call
+  std::optional<Message> Add(const watch::Packet& packet);
+
+  /// Messages that were given up, because fragments did not come.
+  std::int64_t given_up() const { return given_up_; }
+
+  /// LCM's limits for messages that wait for fragments are 1000 messages of 16 MiB together. A
+  /// single message may be larger.
+  static constexpr std::size_t kMostPartial = 1000;
+  static constexpr std::size_t kMostBytes = 16 << 20;
+
+ private:
+  using Key = std::pair<watch::SenderAddress, std::uint32_t>;  // sender and number
+  struct Partial {
+    std::string channel;
+    std::vector<std::uint8_t> data;
+    std::uint32_t size = 0;
+    std::vector<bool> arrived;
+    std::size_t missing = 0;
+    std::int64_t order = 0;  // the number of the message's first packet
+  };
+
+  std::optional<Message> AddFragment(const watch::Packet& packet, const watch::LcmPacket& head);
+  void MakeRoom(const Key& keep);
+
+  std::map<Key, Partial> partial_;
+  std::size_t bytes_ = 0;  // of partial_
+  std::int64_t packets_ = 0;
+  std::int64_t given_up_ = 0;
+  Partial whole_;  // the last message that was completed
+};
+
+}  // namespace fogline::record

@@ -1,0 +1,87 @@
+#include "tools/record/traffic_source.h"
+
+#include <chrono>
+
+#include "common/errors.h"
+#include "services/runtime/transport/bus.h"
+#include "services/runtime/transport/lcm_url.h"
+#include "services/runtime/transport/multicast_route.h"
+#include "tools/watch/senders/packet_socket.h"
+
+namespace fogline::record {
+namespace {
+
+// Packets that are taken before the caller looks at its other work.
+constexpr int kDrained = 4096;
+
+/// udpm: from the packets themselves, so their numbers tell what the log lacks.
+class MulticastSource final : public TrafficSource {
+ public:
+  MulticastSource(const std::string& url, int buffer_bytes, watch::Senders& senders)
+      : socket_(url, {.packet_bytes = MessageAssembler::kMostPacket, .buffer_bytes = buffer_bytes}),
+        senders_(senders) {}
+
+  void Drain(TimePoint now, const Use& use) override {
+    int taken = 0;
+    while (taken < kDrained) {
+      const int count = socket_.Receive([&](const watch::Packet& packet) {
+        senders_.AddDropped(packet.dropped);
+        senders_.Add(packet.from, packet.bytes, now);
+        if (const auto message = assembler_.Add(packet)) use(*message);
+      });
+      taken += count;
+      if (count < static_cast<int>(watch::PacketSocket::kBatch)) break;
+    }
+    socket_.Attend(taken > 0, now);
+  }
+
+  int fd() const override { return socket_.fd(); }
+  int buffer_bytes() const override { return socket_.buffer_bytes(); }
+  std::int64_t given_up() const override { return assembler_.given_up(); }
+
+ private:
+  watch::PacketSocket socket_;
+  watch::Senders& senders_;
+  MessageAssembler assembler_;
+};
+
+/// Other networks, such as tcpq: by a bus. Their messages have no numbers.
+class BusSource final : public TrafficSource {
+ public:
+  explicit BusSource(const std::string& url) : bus_(url) {
+    bus_.SubscribeAll([this](std::string_view channel, runtime::Bytes data) {
+      const auto time = std::chrono::system_clock::now().time_since_epoch();
+      (*use_)({.channel = channel,
+               .unix_us = duration_cast<std::chrono::microseconds>(time).count(),
+               .data = data});
+    });
+  }
+
+  void Drain(TimePoint /*now*/, const Use& use) override {
+    use_ = &use;
+    bus_.Drain();
+  }
+
+  int fd() const override { return bus_.fd(); }
+  int buffer_bytes() const override { return 0; }
+  std::int64_t given_up() const override { return 0; }
+
+ private:
+  runtime::Bus bus_;
+  const Use* use_ = nullptr;
+};
+
+}  // namespace
+
+std::unique_ptr<TrafficSource> TrafficSource::Open(const std::string& url, int buffer_bytes,
+                                                   watch::Senders& senders) {
+  if (runtime::ParseMulticastUrl(url)) {
+    if (const std::string why = runtime::WhyNoMulticast(url); !why.empty()) {
+      throw InputError("error: " + why);
+    }
+    return std::make_unique<MulticastSource>(url, buffer_bytes, senders);
+  }
+  return std::make_unique<BusSource>(url);
+}
+
+}  // namespace fogline::record

@@ -1,0 +1,42 @@
+// All messages on an LCM network, as they come.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "common/clock.h"
+#include "tools/record/message_assembler.h"
+#include "tools/watch/senders/senders.h"
+
+namespace fogline::record {
+
+class TrafficSource {
+ public:
+  using Use = std::function<void(const Message&)>;
+
+  /// Begins to listen. @param buffer_bytes size of the receive buffer to ask the kernel for
+  /// @param senders counts the messages of udpm, by their numbers; it must outlive the source
+  /// @throws InputError, std::runtime_error if the network cannot be heard
+  static std::unique_ptr<TrafficSource> Open(const std::string& url, int buffer_bytes,
+                                             watch::Senders& senders);
+  virtual ~TrafficSource() = default;
+  TrafficSource(const TrafficSource&) = delete;
+  TrafficSource& operator=(const TrafficSource&) = delete;
+
+  /// Passes the messages that have come, but at most some thousands.
+  /// @throws std::runtime_error if the network is lost
+  virtual void Drain(TimePoint now, const Use& use) = 0;
+  /// This descriptor is readable when messages are there.
+  virtual int fd() const = 0;
+  /// The size of the receive buffer that the kernel grants; 0: not known.
+  virtual int buffer_bytes() const = 0;
+  /// Messages that were not put together, because fragments did not come.
+  virtual std::int64_t given_up() const = 0;
+
+ protected:
+  TrafficSource() = default;
+};
+
+}  // namespace fogline::record

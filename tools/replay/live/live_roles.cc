@@ -1,0 +1,59 @@
+#include "tools/replay/live/live_roles.h"
+
+#include <algorithm>
+#include <exception>
+#include <utility>
+
+#include "services/runtime/transport/bus.h"
+
+namespace fogline::replay {
+namespace {
+
+// A thread looks at least so often whether it should end.
+constexpr Duration kLookEvery = milliseconds(50);
+
+}  // namespace
+
+LiveRoles::LiveRoles(const RecordedMessages& messages, runtime::TrafficOptions traffic)
+    : messages_(messages), traffic_(std::move(traffic)) {}
+
+LiveRoles::~LiveRoles() {
+  over_ = true;
+  for (const auto& part : parts_) part->thread.join();
+}
+
+std::vector<Role> LiveRoles::roles() const {
+  std::vector<Role> roles;
+  for (const RoleInfo& info : kRoles) {
+    const bool is_recorded = std::ranges::any_of(messages_.channels(), [&](std::size_t channel) {
+      return kChannels[channel].from == info.role;
+    });
+    if (is_recorded) roles.push_back(info.role);
+  }
+  return roles;
+}
+
+void LiveRoles::Join(std::int64_t run_id, const std::string& url) {
+  for (const Role role : roles()) {
+    auto part = std::make_unique<Part>();
+    part->bus = std::make_unique<runtime::Bus>(url);
+    runtime::Apply(traffic_, role, *part->bus);
+    part->node = std::make_unique<RecordedNode>(*part->bus, role, run_id, messages_);
+    part->thread = std::thread([this, &part = *part] { TakePart(part); });
+    parts_.push_back(std::move(part));
+  }
+}
+
+void LiveRoles::TakePart(Part& part) const {
+  runtime::Node& node = part.node->node();
+  try {
+    while (!over_ && !node.parts().own.left()) {
+      const TimePoint now = Clock::now();
+      part.bus->Wait(std::min(node.Poll(now) - now, kLookEvery));
+    }
+  } catch (const std::exception& error) {
+    node.parts().own.Fail(error.what());  // the runner reports it and ends the run
+  }
+}
+
+}  // namespace fogline::replay

@@ -1,0 +1,33 @@
+// A role that computes nothing: in each step it publishes the messages of a log. It takes part in a
+// run as the role itself does, in lockstep and in real time.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "services/runtime/node/node.h"
+#include "tools/replay/live/recorded_messages.h"
+
+namespace fogline::replay {
+
+class RecordedNode final : public runtime::Work {
+ public:
+  /// @param messages they have the channels of the role
+  RecordedNode(runtime::Bus& bus, Role role, std::int64_t run_id, const RecordedMessages& messages);
+
+  runtime::Node& node() override { return node_; }
+
+ private:
+  std::unique_ptr<runtime::FireRule> Join(const Scenario& scenario) override;
+  /// In real time, a message that the log lacks is left out.
+  /// @throws std::runtime_error in lockstep for a message that the log lacks
+  void Compute(std::int64_t step) override;
+
+  runtime::Node node_;
+  const RecordedMessages& messages_;
+  std::vector<std::size_t> own_;  // the role's channels, as indices in messages_.channels()
+  std::vector<std::uint8_t> bytes_;
+};
+
+}  // namespace fogline::replay

@@ -1,0 +1,66 @@
+// A UDP socket that hears the packets of a udpm:// network beside LCM.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "common/clock.h"
+#include "services/runtime/transport/lcm_sockets.h"
+#include "services/runtime/wire/wire.h"
+#include "tools/watch/senders/senders.h"
+
+namespace fogline::watch {
+
+/// A packet as the kernel has received it.
+struct Packet {
+  SenderAddress from;
+  runtime::Bytes bytes;  // valid during the call
+  // Packets that the kernel dropped before this one, because they found no room in the socket's
+  // buffer (SO_RXQ_OVFL).
+  std::uint32_t dropped = 0;
+  std::int64_t unix_us = 0;  // when it came: the wall clock, microseconds since 1970
+};
+
+/// For one thread. It sends nothing.
+class PacketSocket {
+ public:
+  struct Options {
+    std::size_t packet_bytes;            // each packet is cut off after this many bytes
+    int buffer_bytes = 8 * 1024 * 1024;  // without CAP_NET_ADMIN at most net.core.rmem_max
+  };
+
+  /// @pre the URL is a udpm:// URL (runtime::ParseMulticastUrl)
+  /// @throws std::runtime_error if the network cannot be heard
+  PacketSocket(const std::string& url, const Options& options);
+  ~PacketSocket();
+  PacketSocket(const PacketSocket&) = delete;
+  PacketSocket& operator=(const PacketSocket&) = delete;
+
+  /// Calls `use` for the packets that are there, at most kBatch. @return their number
+  int Receive(const std::function<void(const Packet&)>& use);
+  static constexpr std::size_t kBatch = 64;
+
+  /// Renews the membership of the group if nothing has come for a second, as a bus does.
+  /// @param heard whether packets have come at `now`
+  void Attend(bool heard, TimePoint now);
+
+  int fd() const { return fd_; }
+  /// The size of the buffer that the kernel grants.
+  int buffer_bytes() const;
+
+ private:
+  struct Batch;
+
+  int fd_;
+  std::unique_ptr<Batch> batch_;  // buffers for one system call
+  std::uint32_t dropped_ = 0;  // packets that found no room, as the kernel counts: it wraps around
+  // Set if packets come over the route, which may change.
+  std::optional<runtime::GroupMembership> membership_;
+  TimePoint heard_{};  // when packets came last, or the membership was renewed
+};
+
+}  // namespace fogline::watch
