@@ -6,6 +6,7 @@
 
 #include <fmt/core.h>
 
+#include "services/graph.h"
 #include "services/runtime/transport/multicast_route.h"
 
 namespace fogline::doctor {
@@ -75,6 +76,8 @@ std::vector<Recipe> FirewallRecipes(const std::string& group, std::uint16_t port
 }
 
 std::vector<Recipe> PriorityRecipes(const std::string& user, const std::string& programs) {
+  std::string roles;
+  for (const RoleInfo& info : kRoles) roles += fmt::format(" {}", info.name);
   return {{"for a user; it counts from the next login on",
            fmt::format("cat >/etc/security/limits.d/fogline.conf <<'END'\n"
                        "{0} - rtprio 10\n"
@@ -82,7 +85,10 @@ std::vector<Recipe> PriorityRecipes(const std::string& user, const std::string& 
                        "END\n",
                        user)},
           {"for these programs; a role then outlives a killed runner by up to 19 s",
-           fmt::format("setcap cap_sys_nice,cap_ipc_lock=ep '{}'/fogline-*\n", programs)}};
+           fmt::format("for role in{}; do\n"
+                       "  setcap cap_sys_nice,cap_ipc_lock=ep \"{}/fogline-$role\"\n"
+                       "done\n",
+                       roles, programs)}};
 }
 
 std::string InterfaceToOthers() {
