@@ -222,8 +222,8 @@ bool ShowsEveryRole(const EmulatedScreen& screen) {
   });
 }
 
-std::vector<std::string> Run(const std::string& url, const ScratchFolder& folder,
-                             const std::vector<std::string>& more) {
+std::vector<std::string> RunOn(const std::string& url, const ScratchFolder& folder,
+                               const std::vector<std::string>& more) {
   std::vector<std::string> command{
       Program("fogline"),    "run", "scenario/paper.json", "--quiet", "--lcm-url", url, "--log",
       folder.File("run.lcm")};
@@ -234,7 +234,7 @@ std::vector<std::string> Run(const std::string& url, const ScratchFolder& folder
 TEST(TopScreenTest, ShowsScrollsSortsAndOpensARunOn80By24AndFollowsTheWindow) {
   const ScratchFolder folder;
   const std::string url = runtime::FreshMulticastUrl();
-  const Background run(Run(url, folder, {"--pace", "1"}));
+  const Background run(RunOn(url, folder, {"--pace", "1"}));
   TopOnTerminal top(url);
   // THEN all roles with their diagnosis are visible at once
   ASSERT_TRUE(top.WaitUntil([&] { return ShowsEveryRole(top.screen()); })) << top.screen().Text();
@@ -284,7 +284,7 @@ TEST(TopScreenTest, SaysInRealtimeWhoDrivesAndWhichInputIsLost) {
   const ScratchFolder folder;
   const std::string url = runtime::FreshMulticastUrl();
   Background driver({Program("fogline-driver"), "--lcm-url", url});
-  Background run(Run(url, folder, {"--realtime", "--external", "driver"}));
+  Background run(RunOn(url, folder, {"--realtime", "--external", "driver"}));
   TopOnTerminal top(url);
   ASSERT_TRUE(top.WaitUntil([&] { return ShowsEveryRole(top.screen()); })) << top.screen().Text();
   ASSERT_TRUE(top.Shows("real time x1  the automation drives"));
