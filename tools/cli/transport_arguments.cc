@@ -17,10 +17,20 @@ namespace {
 // messages of a step. The signs of life of these processes must arrive within 64 steps.
 constexpr double kMinPeriodS = 0.005;
 
-std::vector<std::string> RoleNames() {
+// The recorder is not among the roles that a run can wait for: the runner reads the result from the
+// log, so the log is on its machine.
+std::vector<std::string> ExternalRoleNames() {
   std::vector<std::string> names;
-  for (const RoleInfo& info : kRoles) names.emplace_back(info.name);
+  for (const RoleInfo& info : kRoles) {
+    if (info.role != Role::kRecorder) names.emplace_back(info.name);
+  }
   return names;
+}
+
+/// Refuses the recorder with the reason. The list of names would only say that it is not possible.
+std::string RefuseRecorder(const std::string& role) {
+  return role == NameOf(Role::kRecorder) ? "recorder: the run's result is read from its own log"
+                                         : "";
 }
 
 }  // namespace
@@ -40,7 +50,8 @@ TransportArguments::TransportArguments(CLI::App& verb, std::string transport)
       ->excludes(said_);
   verb.add_option("--external", external_, "Wait for this role, started elsewhere (repeatable)")
       ->allow_extra_args(false)
-      ->check(CLI::IsMember(RoleNames()));
+      ->check(RefuseRecorder)
+      ->check(CLI::IsMember(ExternalRoleNames()));
   verb.add_option("--wait", wait_s_, "Longest wait for roles started elsewhere, in s (0: for ever)")
       ->check(NumberIn(0, 1e6))
       ->capture_default_str();
@@ -97,9 +108,6 @@ void TransportArguments::Apply(runner::ExperimentOptions& options) const {
         fmt::format("error: --external {}: no other process can join a run with --transport {}, "
                     "which is one process",
                     external_.front(), options.transport));
-  }
-  if (std::ranges::find(options.external, Role::kRecorder) != options.external.end()) {
-    throw InputError("error: --external recorder: the run's result is read from its own log");
   }
 }
 

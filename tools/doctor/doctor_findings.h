@@ -8,6 +8,9 @@
 #include <string_view>
 #include <vector>
 
+#include "common/clock.h"
+#include "tools/doctor/recipes.h"
+
 namespace fogline::doctor {
 
 struct Finding {
@@ -19,7 +22,8 @@ struct Finding {
   std::string check;  // key of the examined item, for programs that read the findings
   Level level = Level::kOk;
   std::string what;
-  std::string remedy;  // "" if no remedy is needed
+  std::string remedy;           // "" if no remedy is needed
+  std::vector<Recipe> recipes;  // ways to make the remedy last, to choose from
 };
 using Findings = std::vector<Finding>;
 
@@ -29,11 +33,21 @@ std::string_view NameOf(Finding::Level level);
 /// Examines route, multicast, socket filter and receive buffer, or the relay of a tcpq:// URL.
 void ExamineNetwork(const std::string& url, Findings& findings);
 
-/// Finds the runs on the network, and the runs that are announced on the network, within a second.
+/// Finds the runs on the network, the runs that are announced on the network, and the roles that
+/// wait for a run, within a second.
 void ExamineTraffic(const std::string& url, Findings& findings);
 
-/// Examines clock, wake-up time, synchronisation, processors and disk.
-void ExamineMachine(Findings& findings);
+/// Examines whether this machine and another machine hear each other on the network, while
+/// `fogline doctor --with` examines the same there.
+/// @param host name or address of the other machine
+/// @param limit how long to wait for its messages
+/// @throws Interrupted
+void ExamineWith(const std::string& url, const std::string& host, Duration limit,
+                 Findings& findings);
+
+/// Examines clock, real-time priority, wake-up time, synchronisation, processors and disk.
+/// @param programs folder of this program
+void ExamineMachine(const std::filesystem::path& programs, Findings& findings);
 
 /// Examines LCM's programs, Java and the message types for lcm-spy.
 /// @param programs folder of this program

@@ -1,9 +1,13 @@
 // The machine: clocks, processors, disk.
+#include <pwd.h>
 #include <sched.h>
+#include <sys/mman.h>
 #include <sys/timex.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <ctime>
 #include <filesystem>
 #include <fstream>
@@ -43,11 +47,63 @@ void ExamineClock(Findings& findings) {
                       fine ? "" : "real time needs a high-resolution clock source"});
 }
 
+/// While an object lives, the kernel runs this thread before ordinary processes, as a role in real
+/// time, if it grants this.
+class Priority {
+ public:
+  Priority() {
+    sched_param wanted{};
+    wanted.sched_priority = 1;
+    if (sched_setscheduler(0, SCHED_FIFO | SCHED_RESET_ON_FORK, &wanted) != 0) error_ = errno;
+  }
+  ~Priority() {
+    const sched_param usual{};
+    if (error_ == 0) sched_setscheduler(0, SCHED_OTHER, &usual);
+  }
+  Priority(const Priority&) = delete;
+  Priority& operator=(const Priority&) = delete;
+
+  /// errno; 0 if the kernel has granted it.
+  int error() const { return error_; }
+
+ private:
+  int error_ = 0;
+};
+
+std::string UserName() {
+  const passwd* user = getpwuid(getuid());
+  return user != nullptr ? user->pw_name : std::to_string(getuid());
+}
+
+/// Examines what a role in real time asks of the kernel (RunBeforeOthers()).
+void ExaminePriority(const std::filesystem::path& programs, Findings& findings) {
+  const auto report = [&](std::string_view what, int error) {
+    findings.push_back(
+        error == 0 ? Finding{"realtime_priority", Level::kOk,
+                             fmt::format("roles in real time get {}", what), ""}
+                   : Finding{"realtime_priority", Level::kWarning,
+                             fmt::format("roles in real time do not get {}: {}", what,
+                                         std::strerror(error)),
+                             "on a busy machine steps of a run in real time begin late: see the "
+                             "recipes",
+                             PriorityRecipes(UserName(), programs.string())});
+  };
+  const int refused = Priority().error();
+  report("priority over other processes (SCHED_FIFO)", refused);
+  const bool locks = mlockall(MCL_CURRENT | MCL_ONFAULT) == 0;
+  const int error = locks ? 0 : errno;
+  if (locks) munlockall();
+  // One set of recipes grants both.
+  report("locked memory", error);
+  if (refused != 0 && error != 0) findings.back().recipes.clear();
+}
+
 /// Measures how late a process wakes up after a sleep of one millisecond, over many sleeps.
 void ExamineWakeUp(Findings& findings) {
   constexpr int kSleeps = 200;
   constexpr Duration kSleep = milliseconds(1);
   constexpr double kTooLateMs = 5;  // a run in real time counts such a tick as late
+  const Priority priority;
   std::vector<double> late_ms;
   TimePoint due = Clock::now();
   for (int i = 0; i < kSleeps; ++i) {
@@ -61,8 +117,9 @@ void ExamineWakeUp(Findings& findings) {
   findings.push_back(
       {"wakeup", late ? Level::kWarning : Level::kOk,
        fmt::format("sleepers wake up late by {:.3f} ms (median), {:.3f} ms (99 %), "
-                   "{:.3f} ms (worst of {})",
-                   late_ms[late_ms.size() / 2], p99_ms, late_ms.back(), late_ms.size()),
+                   "{:.3f} ms (worst of {}){}",
+                   late_ms[late_ms.size() / 2], p99_ms, late_ms.back(), late_ms.size(),
+                   priority.error() == 0 ? ", with real-time priority" : ""),
        late ? "end other work, or give Fogline processors of its own: real time "
               "will miss ticks; lockstep only slows down"
             : ""});
@@ -128,8 +185,9 @@ void ExamineDisk(Findings& findings) {
 
 }  // namespace
 
-void ExamineMachine(Findings& findings) {
+void ExamineMachine(const std::filesystem::path& programs, Findings& findings) {
   ExamineClock(findings);
+  ExaminePriority(programs, findings);
   ExamineWakeUp(findings);
   ExamineTimeSynchronisation(findings);
   ExamineProcessors(findings);

@@ -1,4 +1,4 @@
-// The network that LCM uses: route, multicast, buffers, and other processes on it.
+// The network that LCM uses: route, multicast, buffers.
 #include <netinet/in.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -11,15 +11,12 @@
 #include <fmt/core.h>
 
 #include "common/errors.h"
-#include "common/text.h"
-#include "services/runtime/discovery/beacon.h"
 #include "services/runtime/transport/bus.h"
 #include "services/runtime/transport/lcm_url.h"
 #include "services/runtime/transport/multicast_route.h"
 #include "services/runtime/transport/tcpq_client.h"
 #include "services/runtime/wire/channel_filter.h"
 #include "tools/doctor/doctor_findings.h"
-#include "tools/watch/traffic_statistics.h"
 
 namespace fogline::doctor {
 namespace {
@@ -67,7 +64,7 @@ bool ExamineOwnMachine(const std::string& url, const std::string& group, Finding
                     fmt::format("{} goes over loopback and stays on this machine (ttl=0), but "
                                 "LCM's own programs need a route, and there is none: {}",
                                 group, error),
-                    RouteRemedy()});
+                    RouteRemedy(), RouteRecipes("lo")});
   return true;
 }
 
@@ -75,7 +72,8 @@ bool ExamineRoute(const std::string& group, int ttl, Findings& findings) {
   const std::string error = runtime::RouteError(group);
   if (!error.empty()) {
     findings.push_back({"multicast_route", Level::kProblem,
-                        fmt::format("no route to {}: {}", group, error), RouteRemedy()});
+                        fmt::format("no route to {}: {}", group, error), RouteRemedy(),
+                        RouteRecipes(ttl > 0 ? InterfaceToOthers() : "lo")});
     return false;
   }
   const std::string interface =
@@ -86,7 +84,8 @@ bool ExamineRoute(const std::string& group, int ttl, Findings& findings) {
     findings.push_back(
         {"multicast_route", Level::kProblem,
          fmt::format("{} goes through lo: with ttl={} no other machine hears it", group, ttl),
-         "as root: ip route replace 239.0.0.0/8 dev INTERFACE"});
+         fmt::format("as root: ip route replace 239.0.0.0/8 dev {}", InterfaceToOthers()),
+         RouteRecipes(InterfaceToOthers())});
     return true;
   }
   findings.push_back({"multicast_route", Level::kOk,
@@ -112,11 +111,10 @@ Duration RoundTrip(runtime::Bus& here, runtime::Bus& there, bool& back) {
   return back ? Clock::now() - began : Duration::zero();
 }
 
-/// Sends real LCM messages on a port that no other process uses, over the route for this ttl.
-void ExamineLoopback(const std::string& group, int ttl, Findings& findings) {
+/// The times that messages take from one connection on this network to another one and back; none
+/// if no message comes back.
+std::vector<double> RoundTripsUs(const std::string& url) {
   constexpr int kRounds = 50;
-  const runtime::MulticastAddress fresh = *runtime::ParseMulticastUrl(runtime::FreshMulticastUrl());
-  const std::string url = fmt::format("udpm://{}:{}?ttl={}", group, fresh.port, ttl);
   runtime::Bus here(url);
   runtime::Bus there(url);
   bool back = false;
@@ -133,16 +131,34 @@ void ExamineLoopback(const std::string& group, int ttl, Findings& findings) {
       break;
     }
   }
+  std::ranges::sort(times_us);
+  return times_us;
+}
+
+/// Sends real LCM messages to the group and port of the URL, because a firewall may pass this port
+/// and no other.
+void ExamineLoopback(const std::string& url, const std::string& group, int ttl,
+                     Findings& findings) {
+  constexpr std::uint16_t kLcmPort = 7667;
+  const auto address = runtime::ParseMulticastUrl(url);
+  const std::uint16_t port = address ? address->port : kLcmPort;
+  std::vector<double> times_us;
+  try {
+    times_us = RoundTripsUs(fmt::format("udpm://{}:{}?ttl={}", group, port, ttl));
+  } catch (const std::exception&) {  // LCM's own test of the network has failed, too
+  }
   if (times_us.empty()) {
-    findings.push_back({"multicast_loopback", Level::kProblem,
-                        fmt::format("a message to {} does not come back to this machine", group),
-                        "let the firewall pass multicast (nft list ruleset; iptables -L)"});
+    findings.push_back(
+        {"multicast_loopback", Level::kProblem,
+         fmt::format("a message to {}:{} does not come back to this machine", group, port),
+         fmt::format("let the firewall pass UDP to {}:{} and IGMP (nft list ruleset; iptables -L)",
+                     group, port),
+         FirewallRecipes(group, port)});
     return;
   }
-  std::ranges::sort(times_us);
   findings.push_back({"multicast_loopback", Level::kOk,
-                      fmt::format("LCM messages go to {} and back in {:.0f} us (median of {})",
-                                  group, times_us[times_us.size() / 2], times_us.size()),
+                      fmt::format("LCM messages go to {}:{} and back in {:.0f} us (median of {})",
+                                  group, port, times_us[times_us.size() / 2], times_us.size()),
                       ""});
 }
 
@@ -222,29 +238,6 @@ void ExamineRelay(const std::string& url, Findings& findings) {
   }
 }
 
-std::string DescribeRun(const watch::RunView& run) {
-  std::string text = fmt::format("run {} at step {}", run.run_id, run.step);
-  for (const watch::RoleView& role : run.roles) {
-    text += fmt::format("{} {} {}@{}", &role == run.roles.data() ? ":" : ",",
-                        Printable(role.status.role), role.status.pid, Printable(role.status.host));
-  }
-  return text;
-}
-
-void ReportAnnounced(const std::string& url, const runtime::BeaconListener& beacons,
-                     Findings& findings) {
-  for (const runtime::Announcement& run : beacons.Runs()) {
-    findings.push_back({"announced_runs", Level::kOk, run.Text(), ""});
-  }
-  if (beacons.refused() > 0) {
-    findings.push_back({"announced_runs", Level::kWarning,
-                        fmt::format("on {}: {} announcements were refused, because no run of this "
-                                    "machine can have made them",
-                                    url, beacons.refused()),
-                        "use another port for runs of your own"});
-  }
-}
-
 }  // namespace
 
 void ExamineNetwork(const std::string& url, Findings& findings) {
@@ -256,42 +249,11 @@ void ExamineNetwork(const std::string& url, Findings& findings) {
     // mpudpm uses the route with every ttl.
     const bool here = ttl == 0 && url.starts_with("udpm://");
     if (here ? ExamineOwnMachine(url, *group, findings) : ExamineRoute(*group, ttl, findings)) {
-      ExamineLoopback(*group, std::min(ttl, 1), findings);
+      ExamineLoopback(url, *group, std::min(ttl, 1), findings);
     }
   }
   ExamineFilter(url, findings);
   ExamineReceiveBuffer(UrlOption(url, "recv_buf_size", kReceiveBuffer), findings);
-}
-
-void ExamineTraffic(const std::string& url, Findings& findings) {
-  constexpr Duration kListen = milliseconds(1000);
-  constexpr Duration kLookEvery = milliseconds(20);
-  runtime::Bus bus(url);
-  runtime::BeaconListener beacons(url);
-  const TimePoint end = Clock::now() + kListen;
-  watch::TrafficStatistics statistics(Clock::now());
-  bus.SubscribeAll([&statistics](std::string_view channel, runtime::Bytes bytes) {
-    if (!watch::IsHousekeeping(channel)) statistics.Add(channel, bytes, Clock::now());
-  });
-  for (TimePoint now = Clock::now(); now < end; now = Clock::now()) {
-    bus.Wait(std::min(end - now, kLookEvery));
-    beacons.Look();
-  }
-  ReportAnnounced(url, beacons, findings);
-  const watch::TrafficView view = statistics.Observe(Clock::now());
-  for (const watch::RunView& run : view.runs) {
-    findings.push_back(
-        {"other_runs", Level::kOk, fmt::format("on {}: {}", url, DescribeRun(run)), ""});
-  }
-  for (const watch::ChannelView& other : view.others) {
-    findings.push_back({"other_runs", Level::kWarning,
-                        fmt::format("on {}: {} messages on channel {} belong to no run", url,
-                                    other.arrivals.messages, Printable(other.channel)),
-                        "fogline top shows more; use another port for runs of your own"});
-  }
-  if (view.runs.empty() && view.others.empty()) {
-    findings.push_back({"other_runs", Level::kOk, fmt::format("no traffic on {}", url), ""});
-  }
 }
 
 }  // namespace fogline::doctor

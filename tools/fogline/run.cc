@@ -1,6 +1,7 @@
 // fogline run: makes one run of a scenario.
 #include <cstddef>
 #include <cstdio>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <thread>
@@ -75,6 +76,11 @@ struct RunArguments {
                     "Limit of the lockstep's speed, in simulated seconds per second (0: no limit)")
         ->check(cli::NumberIn(0, runtime::kMaxSpeed))
         ->capture_default_str();
+    verb.add_option("--run-id", options.run_id,
+                    "Id of the run (default: a random number). Roles that are started with this "
+                    "--run-id take part in no other run")
+        ->check(CLI::Range(std::int64_t{1}, std::numeric_limits<std::int64_t>::max()))
+        ->type_name("ID");
     CLI::Option* realtime =
         verb.add_flag("--realtime", options.realtime,
                       "Run on the wall clock; no role waits for late inputs. If inputs fail, the "
@@ -251,7 +257,7 @@ void CheckResume(const CLI::App& verb) {
     if (verb.get_option("SCENARIO")->count() == 0) throw CLI::RequiredError("SCENARIO");
     return;
   }
-  for (const char* of_the_log : {"SCENARIO", "--seed", "--set", "--log", "--force"}) {
+  for (const char* of_the_log : {"SCENARIO", "--seed", "--set", "--log", "--force", "--run-id"}) {
     if (verb.get_option(of_the_log)->count() == 0) continue;
     throw CLI::ValidationError(
         fmt::format("{}: --resume goes on with the scenario and the log of its run", of_the_log));

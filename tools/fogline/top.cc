@@ -20,6 +20,7 @@
 #include "tools/fogline/verbs.h"
 #include "tools/watch/announced.h"
 #include "tools/watch/followed_network.h"
+#include "tools/watch/screen/top_screen.h"
 #include "tools/watch/senders/senders_report.h"
 #include "tools/watch/terminal.h"
 #include "tools/watch/traffic_statistics.h"
@@ -38,7 +39,12 @@ silent after 1 s without STATUS. Per sender of LCM traffic of any kind, by LCM's
 messages (udpm only): messages that are missing because they were lost on the way, or because top
 itself was too slow (here). Without --lcm-url top follows the newest run that is announced on
 this machine, and names all announced runs. Top sees only messages that reach this machine; a
-message that is lost on the way here may have arrived elsewhere. q quits.
+message that is lost on the way here may have arrived elsewhere. Roles that wait for a run are
+listed before any run.
+
+On a terminal the tables scroll: arrows move, Tab goes to the next table, Enter opens a row (the
+fields of a channel's newest message, all of a role's STATUS), Esc closes it, s sorts the table by
+the next column, r reverses it, q quits.
 
 Examples:
   fogline run scenario/paper.json --pace 1 & fogline top
@@ -94,7 +100,7 @@ class Top {
     const TimePoint end =
         arguments_.limit_s > 0 ? began + FromSeconds(arguments_.limit_s) : TimePoint::max();
     const Duration interval = FromSeconds(arguments_.interval_s);
-    if (terminal_) Show();
+    if (terminal_) ShowOnTerminal();
     for (TimePoint next = began + interval; Clock::now() < end; next += interval) {
       const bool whole = Listen(std::min(next, end));
       if (!whole && !WasInterrupted()) return kDone;  // q
@@ -132,13 +138,41 @@ class Top {
       if (WasInterrupted()) return false;
       network_.Handle(now);
       network_.ForgetNames(statistics_.unknown_names());
-      if (terminal_ && terminal_->Key() == 'q') return false;
+      if (terminal_ && !HandleKeys()) return false;
     }
   }
 
+  /// Handles the keys that were pressed, and draws again if they or the size of the window change
+  /// the screen. @return false if the user quits
+  bool HandleKeys() {
+    bool changed = watch::Terminal::size() != size_;
+    while (const auto key = terminal_->NextKey()) {
+      if (!screen_.OnKey(*key)) return false;
+      changed = true;
+    }
+    if (changed) Draw();
+    return true;
+  }
+
+  void Draw() {
+    size_ = watch::Terminal::size();
+    terminal_->Draw(screen_.Lines(size_.columns, size_.rows));
+  }
+
+  void ShowOnTerminal() {
+    const TimePoint now = Clock::now();
+    screen_.Show({.url = network_.url(),
+                  .traffic = statistics_.Observe(now),
+                  .senders = network_.ViewSenders(now),
+                  .announced = network_.runs(),
+                  .followed = network_.followed(),
+                  .waiting = network_.waiting(now)});
+    Draw();
+  }
+
   void Show() {
+    if (terminal_) return ShowOnTerminal();
     const watch::TrafficView view = statistics_.Observe(Clock::now());
-    if (terminal_) return terminal_->Draw(Lines(view));
     if (arguments_.json) {
       cli::PrintJson(Json(view), arguments_.once ? 2 : -1);
     } else {
@@ -153,6 +187,9 @@ class Top {
     const std::vector<watch::Line> announced =
         watch::AnnouncedLines(network_.runs(), network_.followed());
     lines.insert(lines.begin() + 1, announced.begin(), announced.end());
+    for (const runtime::WaitingRole& role : network_.waiting(Clock::now())) {
+      lines.push_back({role.Text()});
+    }
     std::ranges::move(watch::SenderLines(network_.ViewSenders(Clock::now())),
                       std::back_inserter(lines));
     return lines;
@@ -164,6 +201,7 @@ class Top {
     json["senders"] =
         network_.numbered() ? watch::SendersJson(senders) : nlohmann::ordered_json(nullptr);
     json["own_overflow"] = senders.own_overflow;
+    json["waiting"] = watch::WaitingJson(network_.waiting(Clock::now()));
     if (network_.follows()) {
       json["announced"] = watch::AnnouncedJson(network_.runs(), network_.followed());
     }
@@ -174,6 +212,8 @@ class Top {
   watch::TrafficStatistics statistics_;
   watch::FollowedNetwork network_;
   std::optional<watch::Terminal> terminal_;
+  watch::TopScreen screen_;
+  watch::Terminal::Size size_;
 };
 
 }  // namespace

@@ -2,7 +2,9 @@
 // them.
 #pragma once
 
+#include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "services/runtime/coordination/run_coordinator.h"
@@ -21,19 +23,26 @@ class ExternalRoles {
   std::string Limit() const;
   /// The command that starts a role for this run, such as
   /// "fogline-driver --lcm-url 'udpm://239.255.76.67:7700?ttl=0'".
-  std::string Command(Role role) const;
-  /// A line for each role, without the last line feed. The line says that the run waits for the
-  /// role, for how long, and which command starts the role.
+  std::string Command(Role role) const { return Command(NameOf(role)); }
+  /// Says for which roles the run waits, for how long, and which command starts a role; "" without
+  /// roles. Several roles share one command, in which ROLE stands for the name of the role.
   std::string Text(const std::vector<Role>& roles) const;
+  /// Which of these roles have come or gone since the last call, and which are missing; "" if
+  /// nothing has changed, or the run has begun.
+  std::string News(const std::vector<Role>& roles, const runtime::RunCoordinator& coordinator,
+                   TimePoint now);
 
   /// Ends the run after the time limit, with the names of the missing roles.
   void Check(runtime::RunCoordinator& coordinator, TimePoint now) const;
 
  private:
+  std::string Command(std::string_view role) const;
+
   std::string url_;
   std::string key_file_;
   Duration limit_;
   TimePoint began_;
+  std::set<Role> come_;  // the roles that News() has named as come
 };
 
 }  // namespace fogline::processes

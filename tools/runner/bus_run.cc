@@ -8,7 +8,6 @@
 #include <functional>
 #include <memory>
 #include <optional>
-#include <set>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -29,7 +28,6 @@
 #include "services/recorder/recorder.h"
 #include "services/runtime/coordination/run_coordinator.h"
 #include "services/runtime/discovery/beacon.h"
-#include "services/runtime/node/runner_watch.h"
 #include "services/runtime/process/step_node.h"
 #include "services/runtime/realtime/fallback_log.h"
 #include "services/runtime/transport/lcm_url.h"
@@ -38,6 +36,7 @@
 #include "tools/processes/external_roles.h"
 #include "tools/processes/relay_process.h"
 #include "tools/runner/kept_log.h"
+#include "tools/runner/role_news.h"
 #include "tools/runner/supervisor.h"
 
 namespace fogline::runner {
@@ -47,8 +46,6 @@ namespace {
 constexpr Duration kJoinLimit = milliseconds(10'000);
 // Interval at which the runner checks its processes while no message arrives.
 constexpr Duration kLookEvery = milliseconds(20);
-// Interval at which the runner checks whether awaited roles belong to other runs.
-constexpr Duration kLookForExternal = milliseconds(100);
 // A process without a STATUS for this long counts as hanging. A living process sends ten STATUS
 // messages in this time.
 constexpr Duration kHangLimit = milliseconds(2000);
@@ -84,7 +81,7 @@ runtime::RunCoordinatorOptions MakeCoordinatorOptions(const Scenario& scenario,
   // pace is not a stall.
   const std::chrono::duration<double> step(options.pace > 0 ? scenario.step_s / options.pace : 0.0);
   const auto& resume = options.resume;
-  return {.run_id = resume ? resume->front.run_id : DrawRunId(),
+  return {.run_id = resume ? resume->front.run_id : RunIdOf(options),
           .scenario_text = resume ? resume->front.parts.Text() : PrintScenario(scenario),
           .steps = scenario.steps,
           .progress = resume ? resume->remains.steps - 1 : -1,
@@ -145,26 +142,6 @@ void RunInMemory(runtime::Bus& bus, runtime::RunCoordinator& coordinator, std::i
   bus.Drain();
 }
 
-/// The last STATUS of each process of a role.
-std::vector<status_t> LastWords(const runtime::RunCoordinator& coordinator, Role role) {
-  const runtime::RunCoordinator::Member& member = coordinator.member(role);
-  std::vector<status_t> words = member.dead;
-  if (member.status) words.push_back(*member.status);
-  return words;
-}
-
-/// The processes, including dead processes, whose build differs from the runner's build.
-std::vector<runtime::OtherBuild> OtherBuilds(const runtime::RunCoordinator& coordinator) {
-  std::vector<runtime::OtherBuild> others;
-  for (const RoleInfo& info : kRoles) {
-    for (const status_t& status : LastWords(coordinator, info.role)) {
-      auto other = runtime::OtherBuildOf(info.role, status, coordinator.builds());
-      if (other) others.push_back(std::move(*other));
-    }
-  }
-  return others;
-}
-
 // ---- processes ---------------------------------------------------------------------------------
 
 void AnnounceProcesses(const runtime::Bus& bus, std::int64_t run_id,
@@ -174,78 +151,23 @@ void AnnounceProcesses(const runtime::Bus& bus, std::int64_t run_id,
   if (!external.empty()) Notice(external);
 }
 
-/// Reports the processes that have an awaited role but belong to another run, each process once.
-class BusyElsewhere {
- public:
-  explicit BusyElsewhere(std::function<void(const std::string&)> say) : say_(std::move(say)) {}
-
-  void Look(const runtime::RunCoordinator& coordinator, TimePoint now) {
-    if (now < look_at_) return;
-    look_at_ = now + kLookForExternal;
-    const std::vector<Role> awaited = coordinator.Awaited(now);
-    if (awaited.empty()) return;
-    for (const runtime::ForeignPeer& peer : coordinator.foreign_peers().known()) {
-      const std::string description = Describe(peer);
-      const bool is_awaited =
-          std::ranges::any_of(awaited, [&peer](Role role) { return NameOf(role) == peer.role; });
-      if (!is_awaited || !told_.insert(description).second) continue;
-      say_(
-          fmt::format("{} is not free: it joins this run when that run is over, or when its runner "
-                      "has been silent for {:g} s",
-                      description, Seconds(runtime::RunnerWatch::kSilent)));
-    }
-  }
-
- private:
-  std::function<void(const std::string&)> say_;
-  std::set<std::string> told_;
-  TimePoint look_at_{};
+/// What RunAsProcesses() learns about the processes.
+struct ProcessNews {
+  std::vector<Restarts> restarts;
+  std::optional<RealtimePriority> priority;
 };
 
-/// Prints warnings while a run goes on, each warning once.
-class Warnings {
- public:
-  Warnings(runtime::RunCoordinator& coordinator, Progress& progress)
-      : coordinator_(coordinator), progress_(progress) {}
-
-  void LookAtTheClock() {
-    const Duration away = coordinator_.TakeLongestPause();
-    if (away == Duration::zero()) return;
-    Say(fmt::format("the runner was held up for {:.1f} s {}",
-                    std::chrono::duration<double>(away).count(), coordinator_.Where()));
-  }
-
-  void LookAtTheRoles() {
-    if (!compared_ && coordinator_.phase() == runtime::RunCoordinator::Phase::kRunning) {
-      compared_ = true;
-      for (const runtime::OtherBuild& other : OtherBuilds(coordinator_)) Say(other.Text());
-    }
-    if (key_trouble_.empty()) {
-      key_trouble_ = coordinator_.KeyTrouble();
-      if (!key_trouble_.empty()) Say(key_trouble_);
-    }
-  }
-
- private:
-  void Say(const std::string& what) { progress_.Say("warning: " + what); }
-
-  runtime::RunCoordinator& coordinator_;
-  Progress& progress_;
-  bool compared_ = false;  // whether the builds were compared
-  std::string key_trouble_;
-};
-
-std::vector<Restarts> RunAsProcesses(runtime::Bus& bus, runtime::RunCoordinator& coordinator,
-                                     processes::RelayProcess* relay, std::int64_t run_id,
-                                     const Scenario& scenario, const ExperimentOptions& options,
-                                     const std::filesystem::path& log) {
+ProcessNews RunAsProcesses(runtime::Bus& bus, runtime::RunCoordinator& coordinator,
+                           processes::RelayProcess* relay, std::int64_t run_id,
+                           const Scenario& scenario, const ExperimentOptions& options,
+                           const std::filesystem::path& log) {
   Progress progress("step", scenario.steps);
   runtime::Beacon beacon({.run_id = run_id, .url = bus.url(), .scenario = scenario.title});
-  const processes::ExternalRoles external(bus.url(), options.traffic, options.wait);
+  processes::ExternalRoles external(bus.url(), options.traffic, options.wait);
   const auto say = [&](const std::string& line) {
     if (options.announce) progress.Say(line);
   };
-  BusyElsewhere elsewhere(say);
+  BusyElsewhere elsewhere(run_id, say);
   Supervisor supervisor(bus, coordinator,
                         {.url = bus.url(),
                          .run_id = run_id,
@@ -264,6 +186,7 @@ std::vector<Restarts> RunAsProcesses(runtime::Bus& bus, runtime::RunCoordinator&
   }
   Warnings warnings(coordinator, progress);
   runtime::FallbackLog fallbacks(std::llround(scenario.step_s * 1e6), options.pace, scenario.steps);
+  PriorityWatch priority(options.realtime);
   if (options.realtime && options.announce) {
     coordinator.OnEveryStatus([&](const status_t& status) {
       if (const runtime::Fallback* change = fallbacks.Add(status)) progress.Say(change->Text());
@@ -286,13 +209,17 @@ std::vector<Restarts> RunAsProcesses(runtime::Bus& bus, runtime::RunCoordinator&
       progress.Show(coordinator.step());
       TellLoggedStep(coordinator, options);
       if (options.announce) warnings.LookAtTheRoles();
+      if (priority.Look(coordinator, now)) say(priority.Text());
+      if (const auto news = external.News(options.external, coordinator, now); !news.empty()) {
+        say(news);
+      }
       if (WasInterrupted()) break;
     }
   } catch (const std::exception& error) {
     coordinator.Fail(error.what());  // the code below still ends the processes properly
   }
   supervisor.End();
-  return supervisor.restarts();
+  return {.restarts = supervisor.restarts(), .priority = priority.found()};
 }
 
 /// The reports of a run's recorders about the log. All recorders but the last one are dead. In real
@@ -340,14 +267,15 @@ BusRun RunOnBus(const Scenario& scenario, const ExperimentOptions& options,
   if (!in_memory) options.on_run(conducting.run_id, bus.url());
   runtime::RunCoordinator coordinator(bus, conducting);
   const TimePoint began = Clock::now();
-  std::vector<Restarts> restarts;
+  ProcessNews news;
   if (in_memory) {
     RunInMemory(bus, coordinator, conducting.run_id, scenario, options, log);
   } else {
-    restarts = RunAsProcesses(bus, coordinator, relay ? &*relay : nullptr, conducting.run_id,
-                              scenario, options, log);
+    news = RunAsProcesses(bus, coordinator, relay ? &*relay : nullptr, conducting.run_id, scenario,
+                          options, log);
     if (relay && relay->restarts() > 0) {
-      restarts.push_back({.role = "relay", .count = relay->restarts(), .last = relay->death()});
+      news.restarts.push_back(
+          {.role = "relay", .count = relay->restarts(), .last = relay->death()});
     }
   }
   BusRun run{.run_id = conducting.run_id,
@@ -356,7 +284,8 @@ BusRun RunOnBus(const Scenario& scenario, const ExperimentOptions& options,
              .refused = coordinator.Refused(),
              .send_troubles = coordinator.SendTroubles(),
              .foreign_peers = coordinator.foreign_peers().known(),
-             .restarts = std::move(restarts)};
+             .restarts = std::move(news.restarts),
+             .priority = std::move(news.priority)};
   for (const RoleInfo& info : kRoles) {
     const auto& status = coordinator.member(info.role).status;
     if (status) run.builds[static_cast<std::size_t>(info.role)] = status->build_id;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 #include "services/runtime/coordination/foreign_peers.h"
@@ -20,6 +21,7 @@ struct BusRun {
   std::vector<runtime::SendTrouble> send_troubles;
   std::vector<runtime::ForeignPeer> foreign_peers;
   std::vector<Restarts> restarts;
+  std::optional<RealtimePriority> priority;       // only in real time, if the run has begun
   runtime::RoleBuilds builds{};                   // as each role has reported it
   std::vector<runtime::OtherBuild> other_builds;  // the builds that differ from the runner's build
   std::vector<log::WrittenLog> written;           // the last report of each recorder about the log
@@ -27,6 +29,10 @@ struct BusRun {
 
 /// A run id that no other run has.
 std::int64_t DrawRunId();
+/// The id of a new run: the one that was agreed on, or a drawn one.
+inline std::int64_t RunIdOf(const ExperimentOptions& options) {
+  return options.run_id ? *options.run_id : DrawRunId();
+}
 
 /// Runs a scenario to its end and leaves the log of the run.
 /// @param keeper seals the log of a run that ends early

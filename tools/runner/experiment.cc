@@ -112,7 +112,7 @@ ExperimentResult Compute(const Scenario& scenario, const ExperimentOptions& opti
 }
 
 ExperimentResult RunDirect(const Scenario& scenario, const ExperimentOptions& options) {
-  const std::int64_t run_id = options.resume ? options.resume->front.run_id : DrawRunId();
+  const std::int64_t run_id = options.resume ? options.resume->front.run_id : RunIdOf(options);
   try {
     return Compute(scenario, options, run_id);
   } catch (const Interrupted& interrupted) {
@@ -255,6 +255,7 @@ ExperimentResult ReadResult(const LogKeeper& keeper, const std::filesystem::path
   result.send_troubles = std::move(run.send_troubles);
   result.foreign_peers = run.foreign_peers;
   result.restarts = std::move(run.restarts);
+  result.priority = std::move(run.priority);
   result.other_builds = std::move(run.other_builds);
   result.log = options.log;
   return result;

@@ -44,6 +44,7 @@ struct ExperimentOptions {
   std::filesystem::path log;
   /// The part of the run that the log already has, if the run is resumed.
   std::optional<Resumption> resume;
+  std::optional<std::int64_t> run_id;    // id of the run; nullopt: drawn at random
   double pace = 0;                       // simulated seconds per second; 0: no limit
   bool realtime = false;                 // run at this pace by the wall clock, and do not wait for
                                          // slow roles
@@ -78,6 +79,14 @@ struct Restarts {
   std::string last;  // how the previous process ended
 };
 
+/// Which roles of a run in real time the kernel runs before ordinary processes (SCHED_FIFO), when
+/// the run has begun. Roles on other machines are unknown.
+struct RealtimePriority {
+  std::vector<std::string> granted;
+  std::vector<std::string> refused;
+  std::vector<std::string> unknown;
+};
+
 struct ExperimentResult {
   std::int64_t seed = 0;
   std::string transport;
@@ -99,6 +108,7 @@ struct ExperimentResult {
   std::vector<metrics::TakeOverMeasures> take_overs;  // one for each request to take over
   std::optional<log::InputLatency> input_latency;     // only for a run in which a person drove
   std::vector<metrics::Sample> samples;               // if requested
+  std::optional<RealtimePriority> priority;           // only for a run in real time
   std::optional<log::RealtimeFigures> realtime;       // only for a run in real time
 };
 

@@ -204,10 +204,13 @@ std::vector<Restarts> Supervisor::restarts() const {
       restarts.push_back({.role = std::string(info.name),
                           .count = child->policy.restarts(),
                           .last = child->death});
-    } else if (const int elsewhere = member.replaced + (member.rival ? 1 : 0); elsewhere > 0) {
+    } else {
       // The newest process may have come so late that the death of its predecessor was not certain
       // before the end of the run.
-      const status_t& dead = member.rival ? *member.status : member.dead.back();
+      const bool late = member.rival && member.status && member.heard < member.rival_since;
+      const int elsewhere = member.replaced + (late ? 1 : 0);
+      if (elsewhere == 0) continue;
+      const status_t& dead = late ? *member.status : member.dead.back();
       restarts.push_back({.role = std::string(info.name),
                           .count = elsewhere,
                           .last = fmt::format("pid {} on {} fell silent at step {}", dead.pid,

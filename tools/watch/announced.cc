@@ -42,4 +42,18 @@ nlohmann::ordered_json AnnouncedJson(const std::vector<runtime::Announcement>& r
   return list;
 }
 
+nlohmann::ordered_json WaitingJson(const std::vector<runtime::WaitingRole>& roles) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const runtime::WaitingRole& role : roles) {
+    list.push_back({{"role", role.role},
+                    {"host", role.host},
+                    {"pid", role.pid},
+                    {"version", role.version},
+                    {"lcm_url", role.url},
+                    {"waiting_s", role.waiting_s},
+                    {"same_types", role.same_types}});
+  }
+  return list;
+}
+
 }  // namespace fogline::watch

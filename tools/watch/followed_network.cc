@@ -21,7 +21,8 @@ constexpr std::size_t kMaxUnreachable = 64;
 
 FollowedNetwork::FollowedNetwork(std::string url, bool follows, runtime::Bus::Watcher watcher)
     : url_(std::move(url)),
-      watcher_([watch = std::move(watcher)](std::string_view channel, runtime::Bytes bytes) {
+      watcher_([this, watch = std::move(watcher)](std::string_view channel, runtime::Bytes bytes) {
+        if (channel == runtime::kWaitingChannel) waiting_.Hear(bytes, Clock::now());
         if (!IsHousekeeping(channel)) watch(channel, bytes);
       }) {
   Open();

@@ -11,6 +11,7 @@
 
 #include "common/clock.h"
 #include "services/runtime/discovery/beacon.h"
+#include "services/runtime/discovery/waiting_roles.h"
 #include "services/runtime/transport/bus.h"
 #include "tools/watch/senders/packet_tap.h"
 #include "tools/watch/senders/senders.h"
@@ -49,6 +50,8 @@ class FollowedNetwork {
 
   /// The network of the followed run, or else the given network.
   const std::string& url() const { return followed_ ? followed_->bus.url() : network_->bus.url(); }
+  /// The roles that wait for a run on the given network or, without one, on this machine.
+  std::vector<runtime::WaitingRole> waiting(TimePoint now) const { return waiting_.Current(now); }
   bool follows() const { return listener_.has_value(); }
   bool followed() const { return followed_.has_value(); }
   /// The announced runs, the followed one first.
@@ -83,6 +86,7 @@ class FollowedNetwork {
 
   std::string url_;
   runtime::Bus::Watcher watcher_;
+  runtime::WaitingRoles waiting_;
   Senders senders_;
   std::optional<Network> network_;
   std::int64_t names_ = 0;                           // unknown names when network_ was opened

@@ -4,10 +4,10 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <cstdio>
 #include <string>
-#include <utility>
 
 #include <fmt/core.h>
 
@@ -21,7 +21,22 @@ constexpr const char* kClearLine = "\033[K";
 constexpr const char* kClearBelow = "\033[J";
 constexpr const char* kBold = "\033[1m";
 constexpr const char* kRed = "\033[31m";
+constexpr const char* kReverse = "\033[7m";
 constexpr const char* kNormal = "\033[0m";
+
+const char* StyleOf(Line::Style style) {
+  switch (style) {
+    case Line::Style::kHeading:
+      return kBold;
+    case Line::Style::kBad:
+      return kRed;
+    case Line::Style::kSelected:
+      return kReverse;
+    case Line::Style::kPlain:
+      break;
+  }
+  return "";
+}
 
 }  // namespace
 
@@ -42,32 +57,42 @@ Terminal::~Terminal() {
   if (fd_ >= 0) tcsetattr(fd_, TCSANOW, &before_);
 }
 
-void Terminal::Draw(std::vector<Line> lines) {
+Terminal::Size Terminal::size() {
   winsize size{};
-  if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 && size.ws_row > 0) {
-    lines = Fit(std::move(lines), size.ws_col, size.ws_row);
+  if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col == 0 || size.ws_row == 0) {
+    return {};
   }
+  return {.columns = size.ws_col, .rows = size.ws_row};
+}
+
+void Terminal::Draw(const std::vector<Line>& lines) {
   std::string text = kHome;
   for (std::size_t i = 0; i < lines.size(); ++i) {
     const Line& line = lines[i];
-    const char* style = line.style == Line::Style::kHeading ? kBold
-                        : line.style == Line::Style::kBad   ? kRed
-                                                            : "";
+    const char* style = StyleOf(line.style);
     text += fmt::format("{}{}{}{}{}", i == 0 ? "" : "\r\n", style, line.text,
                         *style == '\0' ? "" : kNormal, kClearLine);
   }
   Write(text + kClearBelow);
 }
 
-std::optional<char> Terminal::Key() {
+std::optional<Key> Terminal::NextKey() {
+  const bool read = Read();
+  return keys_.Next(!read);
+}
+
+bool Terminal::Read() {
   pollfd keys{.fd = fd_, .events = POLLIN, .revents = 0};
-  char key = 0;
-  if (!has_keys_ || poll(&keys, 1, 0) <= 0) return std::nullopt;
-  const ssize_t size = read(fd_, &key, 1);
-  if (size == 1) return key;
+  if (!has_keys_ || poll(&keys, 1, 0) <= 0) return false;
+  std::array<char, 64> bytes{};
+  const ssize_t size = read(fd_, bytes.data(), bytes.size());
+  if (size > 0) {
+    keys_.Take({bytes.data(), static_cast<std::size_t>(size)});
+    return true;
+  }
   // At the end of stdin, poll() would report stdin as readable forever.
   if (size == 0 || (errno != EINTR && errno != EAGAIN)) has_keys_ = false;
-  return std::nullopt;
+  return false;
 }
 
 void Terminal::Write(const std::string& text) {

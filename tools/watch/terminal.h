@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "tools/watch/screen/keys.h"
 #include "tools/watch/traffic_text.h"
 
 namespace fogline::watch {
@@ -21,23 +22,34 @@ class Terminal {
   Terminal(const Terminal&) = delete;
   Terminal& operator=(const Terminal&) = delete;
 
-  /// Replaces the shown text; lines that do not fit are cut.
-  void Draw(std::vector<Line> lines);
+  /// Replaces the shown text.
+  void Draw(const std::vector<Line>& lines);
 
   /// Whether output to the terminal fails, for example because its window was closed.
   bool gone() const { return gone_; }
 
+  /// The size of its window; 80 by 24 if the terminal does not tell it.
+  struct Size {
+    std::size_t columns = 80;
+    std::size_t rows = 24;
+    bool operator==(const Size&) const = default;
+  };
+  static Size size();
+
   /// Descriptor to wait on for keys; -1 if no keys can come.
   int fd() const { return has_keys_ ? fd_ : -1; }
-  /// The next key that was pressed, if any.
-  std::optional<char> Key();
+  /// The next key that was pressed, if any. Does not wait.
+  std::optional<Key> NextKey();
 
  private:
+  /// Reads the bytes that have come. @return whether there were any
+  bool Read();
   void Write(const std::string& text);
 
   int fd_ = -1;
   bool has_keys_ = false;
   bool gone_ = false;
+  KeyReader keys_;
   termios before_{};
 };
 

@@ -4,6 +4,7 @@
 #include <tuple>
 
 #include "services/runtime/discovery/announcements.h"
+#include "services/runtime/discovery/waiting_roles.h"
 #include "services/runtime/wire/message_signer.h"
 
 namespace fogline::watch {
@@ -55,7 +56,8 @@ std::int64_t ChannelView::NumUndecodable() const {
 
 bool IsHousekeeping(std::string_view channel) {
   return channel == "LCM_SELF_TEST" || channel.starts_with("#!mpudpm") ||
-         channel == runtime::kBeaconChannel;
+         channel == runtime::kBeaconChannel || channel == runtime::kWaitingChannel ||
+         channel == "FOGLINE_PING" || channel == "FOGLINE_PONG" || channel == "FOGLINE_DOCTOR";
 }
 
 void TrafficStatistics::Add(std::string_view channel, runtime::Bytes bytes, TimePoint now) {
@@ -77,6 +79,7 @@ void TrafficStatistics::Add(std::string_view channel, runtime::Bytes bytes, Time
   }
   ChannelRecord& record = OtherOf(channel);
   record.arrivals.Add(bytes.size(), now);
+  record.newest.assign(bytes.begin(), bytes.end());
   if (index < kNumChannels) {
     record.type = KnownTypes()[index].name;
     CountUndecodable(bytes, record.undecodable);
@@ -91,6 +94,7 @@ void TrafficStatistics::AddToRun(RunRecord& run, std::size_t channel, runtime::B
   record.any = true;
   record.type = KnownTypes()[channel].name;
   record.arrivals.Add(bytes.size(), now);
+  record.newest.assign(bytes.begin(), bytes.end());
   run.heard = now;
   if (kChannels[channel].pace == Pace::kStep) {
     if (!record.steps) record.steps.emplace();
@@ -107,6 +111,7 @@ void TrafficStatistics::AddRun(RunRecord& run, runtime::Bytes bytes) {
   if (!runtime::Decode(bytes, message)) return;
   run.phase = message.phase;
   run.pace = message.pace;
+  run.realtime = message.realtime != 0;
   run.scenario_hash = message.scenario_hash;
 }
 
@@ -166,6 +171,7 @@ TrafficView TrafficStatistics::Observe(TimePoint now) {
     RunView& shown = view.runs.emplace_back(RunView{.run_id = run.run_id,
                                                     .phase = run.phase,
                                                     .pace = run.pace,
+                                                    .realtime = run.realtime,
                                                     .scenario_hash = run.scenario_hash});
     for (std::size_t i = 0; i < kNumChannels; ++i) {
       ChannelRecord& record = run.channels[i];
@@ -188,7 +194,8 @@ ChannelView TrafficStatistics::ObserveChannel(std::string_view name, ChannelReco
   ChannelView view{.channel = std::string(name),
                    .type = record.type,
                    .arrivals = record.arrivals.Observe(now, interval),
-                   .undecodable = record.undecodable};
+                   .undecodable = record.undecodable,
+                   .newest = record.newest};
   if (record.steps) view.steps = record.steps->counts();
   return view;
 }

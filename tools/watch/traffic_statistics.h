@@ -30,6 +30,7 @@ struct ChannelView {
   ArrivalView arrivals;
   std::optional<StepSequence::Counts> steps;  // only for channels with a message in every step
   Undecodable undecodable;
+  std::vector<std::uint8_t> newest;  // the last message that could be decoded, or is of no run
 
   std::int64_t NumUndecodable() const;
 };
@@ -47,6 +48,7 @@ struct RunView {
   std::int64_t step = -1;            // newest step on all channels
   std::optional<std::int8_t> phase;  // phase of the last RUN; nullopt before the first RUN
   double pace = 0;
+  bool realtime = false;
   std::string scenario_hash;
   std::vector<ChannelView> channels;  // in the order of kGraph
   std::vector<RoleView> roles;        // in the order of kRoles, instances in the order of their
@@ -62,7 +64,8 @@ struct TrafficView {
 };
 
 /// Whether a channel is LCM's own (its test of the network, and the announcements of ports by
-/// mpudpm), or has the beacons of runs. Such a channel carries no traffic of programs.
+/// mpudpm), has the beacons of runs or the STATUS of waiting roles, or belongs to `fogline doctor`.
+/// Such a channel carries no traffic of programs.
 bool IsHousekeeping(std::string_view channel);
 
 /// Statistics of all messages that arrive. The memory is bounded for any input: if there is no
@@ -93,6 +96,7 @@ class TrafficStatistics {
     Arrivals arrivals;
     std::optional<StepSequence> steps;
     Undecodable undecodable;
+    std::vector<std::uint8_t> newest;
     bool any = false;
   };
   struct RoleRecord {
@@ -108,6 +112,7 @@ class TrafficStatistics {
     TimePoint heard;
     std::optional<std::int8_t> phase;
     double pace = 0;
+    bool realtime = false;
     std::string scenario_hash;
     std::array<ChannelRecord, kNumChannels> channels;
     std::vector<RoleRecord> roles;

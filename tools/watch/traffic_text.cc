@@ -120,7 +120,9 @@ Line RunHeading(const RunView& run) {
   return {text, Line::Style::kHeading};
 }
 
-Line Summary(const TrafficView& view, std::string_view url) {
+}  // namespace
+
+Line SummaryLine(const TrafficView& view, std::string_view url) {
   double rate_hz = 0;
   double bandwidth_bytes_per_s = 0;
   const auto add = [&](const std::vector<ChannelView>& channels) {
@@ -137,10 +139,8 @@ Line Summary(const TrafficView& view, std::string_view url) {
           Line::Style::kHeading};
 }
 
-}  // namespace
-
 std::vector<Line> TrafficLines(const TrafficView& view, std::string_view url) {
-  std::vector<Line> lines{Summary(view, url)};
+  std::vector<Line> lines{SummaryLine(view, url)};
   for (const RunView& run : view.runs) {
     lines.push_back({});
     lines.push_back(RunHeading(run));
@@ -162,16 +162,6 @@ std::vector<Line> TrafficLines(const TrafficView& view, std::string_view url) {
     lines.push_back({fmt::format(
         "{} runs, channels or roles are not shown, because there were too many", view.forgotten)});
   }
-  return lines;
-}
-
-std::vector<Line> Fit(std::vector<Line> lines, std::size_t columns, std::size_t rows) {
-  if (lines.size() > rows && rows > 0) {
-    const std::size_t hidden = lines.size() - rows + 1;
-    lines.resize(rows - 1);
-    lines.push_back({fmt::format("{} more lines: make the window taller", hidden)});
-  }
-  for (Line& line : lines) line.text.resize(std::min(line.text.size(), columns));
   return lines;
 }
 

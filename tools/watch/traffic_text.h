@@ -13,7 +13,7 @@ namespace fogline::watch {
 
 /// One line, without a line feed.
 struct Line {
-  enum class Style { kPlain, kHeading, kBad };
+  enum class Style { kPlain, kHeading, kBad, kSelected };
   std::string text;
   Style style = Style::kPlain;
 };
@@ -22,8 +22,8 @@ struct Line {
 /// signs and spaces is printed as '?'. So no sender can send commands to the terminal.
 std::vector<Line> TrafficLines(const TrafficView& view, std::string_view url);
 
-/// The lines that fit into a window. The last line says how many lines do not fit.
-std::vector<Line> Fit(std::vector<Line> lines, std::size_t columns, std::size_t rows);
+/// The first of these lines: the network, and its traffic in the last interval.
+Line SummaryLine(const TrafficView& view, std::string_view url);
 
 nlohmann::ordered_json TrafficJson(const TrafficView& view, std::string_view url);
 

@@ -198,7 +198,7 @@ void RunCoordinator::Stop() { Announce(run_t::STOP, 0); }
 void RunCoordinator::Fail(std::string error) {
   if (phase_ == Phase::kFailed || phase_ == Phase::kDone) return;
   phase_ = Phase::kFailed;
-  error_ = std::move(error);
+  error_ = std::move(error) + RefusedText();
   if (const std::string trouble = KeyTrouble(); !trouble.empty()) error_ += "\n  " + trouble;
   if (const auto troubles = SendTroubles(); !troubles.empty()) {
     error_ += "\n  messages that could not be sent: " + Text(troubles);
@@ -316,9 +316,12 @@ void RunCoordinator::Announce(std::int8_t phase, std::size_t part, std::int64_t 
   run.realtime = options_.realtime;
   run.minimal_risk = minimal_risk_;
   run.stall_ms = Milliseconds(options_.stall_limit);
-  for (const Role role : options_.external) {
-    run.external.emplace_back(NameOf(role));
-    run.holder.push_back(HolderOf(role, now));
+  for (const RoleInfo& info : kRoles) {
+    // A role that the runner starts itself is named if another process claims it.
+    const std::int64_t holder = HolderOf(info.role, now);
+    if (!IsExternal(info.role) && !(member(info.role).rival && holder != 0)) continue;
+    run.external.emplace_back(info.name);
+    run.holder.push_back(holder);
   }
   run.num_external = static_cast<std::int32_t>(run.external.size());
   Encode(run, buffer_);

@@ -133,9 +133,12 @@ class RunCoordinator {
     TimePoint heard{};
     std::vector<status_t> dead;      // last STATUS of each dead instance
     std::vector<std::int32_t> pids;  // ids of dead processes on this machine
+    std::int32_t child = 0;          // id of the process that the runner has started; 0: none
     std::optional<status_t> rival;   // another instance that claims this role
     TimePoint rival_since{};
     TimePoint rival_heard{};
+    // The last process that claims this role for so long that it cannot have missed the refusal.
+    std::optional<status_t> refused;
     // `undead` is the time at which an instance that counts as dead began to send again;
     // `undead_heard` is the time of its last STATUS.
     std::optional<TimePoint> undead;
@@ -174,10 +177,15 @@ class RunCoordinator {
   bool AdmitOther(Role role, const status_t& status, TimePoint now);
   /// Handles a STATUS of a process that counts as dead.
   void OnUndead(Role role, const status_t& status, TimePoint now);
-  void FailForTwo(const status_t& one, const status_t& other);
+  /// Notes that a process claims a role that another process has. RUN then says who has the role.
+  void NoteRival(Role role, const status_t& status, TimePoint now);
+  /// Notes that a process is refused although it continues to claim the role.
+  void NoteRefused(Role role, const status_t& status);
+  /// A line for each role that two processes claim; "" if there is none.
+  std::string RefusedText() const;
   bool HasRival(Role role, TimePoint now) const;
-  /// Instance of the process that has an external role; 0 if no process has the role, or the role's
-  /// process is silent.
+  /// Instance of the process that has a role; 0 if no process has the role, or the role's process
+  /// is silent.
   std::int64_t HolderOf(Role role, TimePoint now) const;
   void AnnounceWhenDue(TimePoint now);
   void Announce(std::size_t part, std::int64_t answer_to = 0);

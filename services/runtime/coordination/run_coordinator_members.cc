@@ -26,9 +26,10 @@ bool RunCoordinator::IsExternal(Role role) const {
 
 bool RunCoordinator::HasRival(Role role, TimePoint now) const {
   const Member& of = member(role);
-  // The runner does not see the death of a process that was started elsewhere, so a silent rival
-  // counts as gone.
-  return of.rival && !(IsExternal(role) && HeldAgainst(of.rival_heard, now) > kLeaves);
+  // The run waits until the rival has left. A rival that stays is refused, and a silent rival
+  // counts as gone: the runner does not see the death of a process that was started elsewhere.
+  return of.rival && of.child == 0 && HeldAgainst(of.rival_since, now) <= kLeaves &&
+         HeldAgainst(of.rival_heard, now) <= kLeaves;
 }
 
 std::int64_t RunCoordinator::HolderOf(Role role, TimePoint now) const {
@@ -46,11 +47,15 @@ bool RunCoordinator::Admit(Role role, const status_t& status, TimePoint now) {
   if (status.host == host_ && std::ranges::find(member.pids, status.pid) != member.pids.end()) {
     return false;
   }
-  if (member.status && !same(*member.status)) return AdmitOther(role, status, now);
-  if (!IsExternal(role) && member.rival && status.sequence > member.status->sequence &&
-      HeldAgainst(member.rival_since, now) > kOnItsWay) {
-    FailForTwo(status, *member.rival);
+  // The runner knows the process that it has started. Every other process is refused, even if its
+  // messages come first.
+  const bool started = member.child != 0 && status.host == host_ && status.pid == member.child;
+  if (member.child != 0 && !started) {
+    NoteRival(role, status, now);
+    if (member.rival) NoteRefused(role, status);
+    return false;
   }
+  if (member.status && !same(*member.status)) return AdmitOther(role, status, now);
   if (status.state != status_t::LEFT) return true;
   if (member.status) {
     member.dead.push_back(status);
@@ -76,14 +81,14 @@ void RunCoordinator::OnUndead(Role role, const status_t& status, TimePoint now) 
   if (!speaks_on) member.undead = now;
   member.undead_instance = status.instance;
   member.undead_heard = now;
-  if (HeldAgainst(*member.undead, now) > kLeaves) FailForTwo(*member.status, status);
+  if (HeldAgainst(*member.undead, now) > kLeaves) NoteRefused(role, status);
 }
 
-bool RunCoordinator::AdmitOther(Role role, const status_t& status, TimePoint now) {
+void RunCoordinator::NoteRival(Role role, const status_t& status, TimePoint now) {
   Member& member = members_[static_cast<std::size_t>(role)];
-  if (status.state == status_t::LEFT) {
+  if (status.state == status_t::LEFT || status.state == status_t::FAILED) {
     if (member.rival && member.rival->instance == status.instance) member.rival.reset();
-    return false;
+    return;
   }
   const bool speaks_on = member.rival && member.rival->instance == status.instance &&
                          HeldAgainst(member.rival_heard, now) <= kSilent;
@@ -93,10 +98,33 @@ bool RunCoordinator::AdmitOther(Role role, const status_t& status, TimePoint now
     announce_at_ = now;  // tells the process that another process has its role
   }
   member.rival_heard = now;
-  if (!IsExternal(role)) return false;
-  if (HeldAgainst(member.heard, now) <= kSilent) {
-    const bool both = member.heard > member.rival_since;
-    if (both && HeldAgainst(member.rival_since, now) > kLeaves) FailForTwo(*member.status, status);
+}
+
+void RunCoordinator::NoteRefused(Role role, const status_t& status) {
+  members_[static_cast<std::size_t>(role)].refused = status;
+  foreign_peers_.Hear(status);
+}
+
+std::string RunCoordinator::RefusedText() const {
+  std::string text;
+  for (const Member& member : members_) {
+    if (!member.refused || !member.status) continue;
+    text += fmt::format(
+        "\n  two processes have the role {}: pid {} on {}, and pid {} on {}, which was "
+        "refused",
+        member.status->role, member.status->pid, member.status->host, member.refused->pid,
+        member.refused->host);
+  }
+  return text;
+}
+
+bool RunCoordinator::AdmitOther(Role role, const status_t& status, TimePoint now) {
+  Member& member = members_[static_cast<std::size_t>(role)];
+  NoteRival(role, status, now);
+  if (!member.rival || member.rival->instance != status.instance) return false;  // it has left
+  // The first process keeps the role while it lives.
+  if (!IsExternal(role) || HeldAgainst(member.heard, now) <= kSilent) {
+    if (HeldAgainst(member.rival_since, now) > kLeaves) NoteRefused(role, status);
     return false;
   }
   if (++member.replaced > options_.restarts) {
@@ -113,11 +141,6 @@ bool RunCoordinator::AdmitOther(Role role, const status_t& status, TimePoint now
   deaf_.Forget(role);
   member.replaced_at = now;
   return true;
-}
-
-void RunCoordinator::FailForTwo(const status_t& one, const status_t& other) {
-  Fail(fmt::format("two processes have the role {}: pid {} on {} and pid {} on {}", one.role,
-                   one.pid, one.host, other.pid, other.host));
 }
 
 void RunCoordinator::MarkDead(Role role, std::int32_t pid, TimePoint now) {
@@ -139,6 +162,7 @@ void RunCoordinator::Hinder(Role role, std::string why) {
 void RunCoordinator::Launched(Role role, std::int32_t pid, TimePoint now) {
   Member& member = members_[static_cast<std::size_t>(role)];
   std::erase(member.pids, pid);
+  member.child = pid;
   member.hindrance.clear();
   signs_of_life_.Since(role, now);
   progressed_ = now;

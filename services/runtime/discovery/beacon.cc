@@ -1,18 +1,13 @@
 #include "services/runtime/discovery/beacon.h"
 
-#include <lcm/lcm.h>
 #include <unistd.h>
 
 #include <chrono>
 #include <utility>
 
-#include <fmt/core.h>
-
 #include "common/process/this_process.h"
 #include "common/text.h"
-#include "services/runtime/transport/lcm_sockets.h"
 #include "services/runtime/transport/lcm_url.h"
-#include "services/runtime/transport/multicast_route.h"
 
 namespace fogline::runtime {
 namespace {
@@ -32,35 +27,22 @@ std::string TitleOf(const std::string& scenario) {
   return title.substr(0, end);
 }
 
-/// The URL to send beacons to; nullopt if beacons cannot or need not be sent.
-std::optional<std::string> BeaconUrl(const std::string& run_url) {
-  const std::string meeting = MeetingUrl();
-  const auto address = ParseMulticastUrl(meeting);
-  if (!address || SameNetwork(meeting, run_url) || !MayBeAnnounced(run_url)) return std::nullopt;
-  const std::string url = fmt::format("udpm://{}:{}?ttl=0", address->group, address->port);
-  return WhyNoMulticast(url).empty() ? std::optional(url) : std::nullopt;
-}
-
 }  // namespace
 
-Beacon::Beacon(Announcement run) {
+Beacon::Beacon(Announcement run)
+    // No program may follow a beacon to a URL that must not be announced.
+    : sender_(MayBeAnnounced(run.url) ? run.url : MeetingUrl()) {
   beacon_.header.run_id = run.run_id;
   beacon_.began_us = WallMicroseconds();
   beacon_.url = std::move(run.url);
   beacon_.scenario = TitleOf(run.scenario);
   beacon_.host = HostName();
   beacon_.pid = getpid();
-  const auto url = BeaconUrl(beacon_.url);
-  if (!url) return;
-  const LcmSockets sockets({}, ReachOf(*url));
-  lcm_ = lcm_create(url->c_str());
 }
 
 Beacon::~Beacon() {
-  if (lcm_ == nullptr) return;
   beacon_.over = 1;
   Publish();
-  lcm_destroy(lcm_);
 }
 
 void Beacon::Send(TimePoint now, const std::vector<Role>& awaited) {
@@ -73,8 +55,7 @@ void Beacon::Send(TimePoint now, const std::vector<Role>& awaited) {
 
 void Beacon::Publish() {
   Encode(beacon_, buffer_);
-  static_cast<void>(lcm_publish(lcm_, std::string(kBeaconChannel).c_str(), buffer_.data(),
-                                static_cast<unsigned>(buffer_.size())));
+  sender_.Publish(kBeaconChannel, buffer_);
 }
 
 BeaconListener::BeaconListener(const std::string& meeting_url) : announcements_(HostName()) {

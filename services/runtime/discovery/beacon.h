@@ -8,10 +8,9 @@
 
 #include "fogline/beacon_t.hpp"
 #include "services/runtime/discovery/announcements.h"
+#include "services/runtime/discovery/meeting_sender.h"
 #include "services/runtime/transport/bus.h"
 #include "services/runtime/transport/load_shedder.h"
-
-struct _lcm_t;
 
 namespace fogline::runtime {
 
@@ -33,7 +32,7 @@ class Beacon {
   Beacon& operator=(const Beacon&) = delete;
 
   /// Whether the next beacon is due.
-  bool Due(TimePoint now) const { return lcm_ != nullptr && now >= due_; }
+  bool Due(TimePoint now) const { return sender_.is_open() && now >= due_; }
   /// @param awaited roles that the run waits for now
   void Send(TimePoint now, const std::vector<Role>& awaited);
 
@@ -41,8 +40,7 @@ class Beacon {
   void Publish();
 
   beacon_t beacon_{};
-  // This is LCM itself, not a Bus: if LCM only sends, it starts no thread and no self-test.
-  _lcm_t* lcm_ = nullptr;
+  MeetingSender sender_;
   TimePoint due_{};
   std::vector<std::uint8_t> buffer_;
 };

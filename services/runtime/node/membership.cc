@@ -41,6 +41,7 @@ TimePoint Membership::Poll(TimePoint now) {
     own_.Fail(
         fmt::format("the runner has been silent for {:.0f} s", Seconds(runner_.Silence(now))));
   }
+  if (LogIsOver(now)) own_.Leave();
   if (own_.HastensForFailedSends()) CheckSends(now);
   if (own_.left() || !own_.Waits() || !run_.id) return TimePoint::max();
   if (now >= part_at_) {
@@ -52,9 +53,11 @@ TimePoint Membership::Poll(TimePoint now) {
 
 void Membership::CheckSends(TimePoint now) {
   const Bus::FailedSends& failed = parts_.bus.failed_sends();
-  // In real time the other roles go on without this role, and the runner decides how long this role
-  // may be silent.
-  if (own_.left() || run_.realtime || !failed.since || !runner_.Stalled(*failed.since, now)) return;
+  // A role without a run sends only that it waits. In real time the other roles go on without this
+  // role, and the runner decides how long this role may be silent.
+  if (own_.left() || !run_.id || run_.realtime || !failed.since ||
+      !runner_.Stalled(*failed.since, now))
+    return;
   own_.Fail(fmt::format("nothing could be sent for {:.1f} s: {}", Seconds(now - *failed.since),
                         failed.error));
 }
@@ -68,6 +71,8 @@ void Membership::OnRun(Bytes bytes) {
     OnOtherRun(run, now);
     return own_.Refuse(&status_t::foreign);
   }
+  // The RUN of a log has no number. It invites no role.
+  if (!run_.id && run.sequence < 1) return own_.Refuse(&status_t::foreign);
   const status_t& own = own_.message();
   if (!run_.id && SeatIn(run, own.role, own.instance) != Seat::kFree) return;
   if (run.progress > run_.steps) return own_.Refuse(&status_t::out_of_window);
@@ -106,6 +111,21 @@ void Membership::AskWhetherThere(const run_t& run, TimePoint now) {
   parts_.requests.AskIn(run.header.run_id, ChannelOf<run_t>().name, {.first = 0, .count = 1});
 }
 
+bool Membership::HasLostItsPlace(const run_t& run, TimePoint now) {
+  const std::int64_t instance = own_.message().instance;
+  if (SeatIn(run, own_.message().role, instance) != Seat::kTaken) return false;
+  if (!chosen_ || run.answer_to == instance) return true;
+  AskWhetherThere(run, now);
+  return false;
+}
+
+bool Membership::LogIsOver(TimePoint now) {
+  if (!chosen_ || run_.sequence > 0 || !own_.Running()) return false;
+  TimePoint heard = joined_;
+  for (const Input& input : parts_.inputs.all()) heard = std::max(heard, input.heard);
+  return runner_.GoneSince(heard, now);
+}
+
 bool Membership::TakeNews(const run_t& run, TimePoint now) {
   if (run.sequence <= run_.sequence) {
     ++own_.message().duplicates;
@@ -119,7 +139,7 @@ bool Membership::TakeNews(const run_t& run, TimePoint now) {
   const status_t& own = own_.message();
   if (run.phase == run_t::STOP) {
     own_.Leave();
-  } else if (!chosen_ && SeatIn(run, own.role, own.instance) == Seat::kTaken) {
+  } else if (HasLostItsPlace(run, now)) {
     own_.Release(fmt::format("another process is the {} of run {}", own.role, run.header.run_id));
   } else if (!own_.Waits() && run.phase == run_t::PREPARE && run.header.step == 0 &&
              now >= announced_at_ + kAnnouncedRetry) {
@@ -139,6 +159,7 @@ void Membership::Join(const run_t& run) {
   if (!run_.parts.HashHolds()) {
     return own_.Fail("the scenario that arrived does not match its hash");
   }
+  joined_ = Clock::now();
   run_.realtime = run.realtime;
   run_.pace = run.pace;
   try {

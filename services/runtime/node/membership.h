@@ -39,6 +39,11 @@ class Membership {
   void AskWhetherThere(const run_t& run, TimePoint now);
   /// In lockstep the role fails if nothing could be sent for longer than the run's stall limit.
   void CheckSends(TimePoint now);
+  /// Whether the runner has given the role's place to another process. A role that knows its run
+  /// from an option first asks: the RUN of a log that is played names a process of the logged run.
+  bool HasLostItsPlace(const run_t& run, TimePoint now);
+  /// Whether a log was played in place of a run, and is over.
+  bool LogIsOver(TimePoint now);
   /// Takes a RUN's news about the whole run. @return whether this RUN is newer than all earlier RUN
   /// messages
   bool TakeNews(const run_t& run, TimePoint now);
@@ -55,6 +60,7 @@ class Membership {
   bool fresh_;         // whether the runner has answered this process; also true without a key
   RateLimiter questions_{200, 20};  // limits the requests that ask runners for an answer
   TimePoint part_at_{};             // when to ask for the next part of the scenario
+  TimePoint joined_{};              // when the role joined its run
   TimePoint announced_at_{};        // when a repeated announcement was last answered
   RunnerWatch runner_{Clock::now()};
   // Whether the runner has started this process. The kernel then ends this process when the runner

@@ -62,6 +62,10 @@ class RunnerWatch {
   }
   bool Silent(TimePoint now) const { return Silence(now) > kSilent; }
   bool Gone(TimePoint now) const { return Silence(now) > stall_limit_ + kGone; }
+  /// The same for a sender that was last heard at the time `heard`.
+  bool GoneSince(TimePoint heard, TimePoint now) const {
+    return pauses_.HeldAgainst(heard, now) > stall_limit_ + kGone;
+  }
   /// Whether something that began at `since` has lasted for longer than the stall limit.
   bool Stalled(TimePoint since, TimePoint now) const {
     return pauses_.HeldAgainst(since, now) > stall_limit_;

@@ -16,6 +16,7 @@
 #include "common/process/console.h"
 #include "common/process/this_process.h"
 #include "services/runtime/discovery/run_seeker.h"
+#include "services/runtime/discovery/waiting_roles.h"
 #include "services/runtime/process/version.h"
 #include "services/runtime/transport/lcm_url.h"
 #include "services/runtime/transport/traffic_options.h"
@@ -76,9 +77,11 @@ class Service {
       const TimePoint now = Clock::now();
       pauses_.Attend(now);
       if (own().released()) {
+        if (arguments_.run_id) break;  // its run has another process
         StartOver(now);
       } else if (own().Waits()) {
         WarnOfSignatures();
+        SayThatItWaits(now);
         Seek(now);
       } else if (work_->node().membership().RunnerSilent(now)) {
         SeekAnother(now);
@@ -242,6 +245,12 @@ class Service {
     Say(fmt::format("{}; waiting for a run on {} again", why, bus_->url()));
   }
 
+  /// A role that a runner has started waits only for moments.
+  void SayThatItWaits(TimePoint now) {
+    if (!waiting_.Due(now) || EndsWithItsParent()) return;
+    waiting_.Send(own().message(), *bus_, began_, now);
+  }
+
   void WarnOfSignatures() {
     if (warned_) return;
     const std::string trouble = SignatureTrouble(bus_->unverified());
@@ -251,8 +260,11 @@ class Service {
 
   void PreferIfRealtime() {
     if (!news().realtime || std::exchange(preferred_, true)) return;
-    // If the kernel does not grant the priority, the process runs with the usual priority.
-    RunBeforeOthers(arguments_.role == Role::kWorld ? kWorldPriority : kPriority);
+    const int priority = arguments_.role == Role::kWorld ? kWorldPriority : kPriority;
+    if (RunBeforeOthers(priority) || EndsWithItsParent()) return;  // a runner says it for its roles
+    Say("the kernel grants no real-time priority, or locks no memory: on a busy machine steps "
+        "begin "
+        "late; `fogline doctor` says how to grant it");
   }
 
   const Arguments& arguments_;
@@ -262,7 +274,8 @@ class Service {
   std::unique_ptr<Bus> bus_;
   std::unique_ptr<Work> work_;
   std::optional<RunSeeker> seeker_;  // while the role has no run, or its runner is silent
-  TimePoint try_at_{};               // when to try again to join a network
+  WaitingNotice waiting_;
+  TimePoint try_at_{};  // when to try again to join a network
   bool starts_over_ = false;
   bool warned_ = false;
   bool preferred_ = false;

@@ -61,17 +61,31 @@ class BareDriver {
   }
 
  private:
-  // The driver joins the first run from which it receives a RUN message. The runner repeats PREPARE
-  // until every role has reported READY with the scenario's hash. Then the world starts.
+  // The driver joins the first run that waits for a driver. The runner repeats PREPARE until every
+  // role has reported READY with the scenario's hash. Then the world starts.
   void OnRun(const lcm::ReceiveBuffer*, const std::string&, const run_t* run) {
-    if (status_.state == status_t::WAITING && run->phase == run_t::PREPARE) {
+    if (status_.state == status_t::WAITING && run->phase == run_t::PREPARE && IsFree(*run)) {
       status_.header.run_id = run->header.run_id;
       status_.scenario_hash = run->scenario_hash;
       status_.state = status_t::READY;
     }
     if (!IsOurs(run->header)) return;
     if (run->phase == run_t::PREPARE) SayStatus();
-    stopped_ = run->phase == run_t::STOP;
+    stopped_ = run->phase == run_t::STOP || HasAnother(*run);
+  }
+
+  // RUN names each role that is started elsewhere, and the process that has this role: 0 while the
+  // run waits for the role. Two processes of one role would contradict each other.
+  bool IsFree(const run_t& run) const { return DriverOf(run) == 0; }
+  bool HasAnother(const run_t& run) const {
+    const int64_t driver = DriverOf(run);
+    return driver != 0 && driver != status_.instance;
+  }
+  int64_t DriverOf(const run_t& run) const {
+    for (int i = 0; i < run.num_external; ++i) {
+      if (run.external[i] == status_.role) return run.holder[i];
+    }
+    return -1;  // the runner starts the driver itself
   }
 
   // Answers each step once. A TRUTH that comes twice gets no second answer.

@@ -82,8 +82,8 @@ TEST(WaitTest, OfARunSaysWhatIsMissingAndWhatStartsItAndHasALimit) {
   EXPECT_EQ(run.code, 3);
   const std::string url =
       run.err.substr(run.err.find(" on ") + 4, run.err.find('\n') - run.err.find(" on ") - 4);
-  EXPECT_THAT(run.err, HasSubstr("waiting for the driver (0.5 s): start it with: fogline-driver "
-                                 "--lcm-url '" +
+  EXPECT_THAT(run.err, HasSubstr("waiting for the acc, the driver (0.5 s): start each with: "
+                                 "fogline-ROLE --lcm-url '" +
                                  url + "'\n"));
   EXPECT_EQ(run.err.find("\n\n"), std::string::npos) << run.err;
   EXPECT_THAT(run.err, HasSubstr("fogline run: error: waited 0.5 s for the acc, the driver in "

@@ -7,6 +7,7 @@
 #include <csignal>
 #include <deque>
 #include <map>
+#include <set>
 #include <thread>
 
 #include "common/clock.h"
@@ -155,18 +156,38 @@ TEST_F(NetworkTest, ARoleWhoseRunnerHasDiedTakesNoPartInTheNextRun) {
                                       " on lab2) of run " + id + "\n"));
 }
 
-TEST_F(NetworkTest, TwoProducersOfOneChannelEndTheRunByTheNamesOfBoth) {
+TEST_F(NetworkTest, OfTwoProcessesThatAreToldTheRunTheFirstHasTheRoleAndTheOtherEnds) {
   const Lab lab(3);
-  Background run(lab[0].On(Run({"--lcm-url", kUrl, "--external", "driver", "--pace", "1"})));
+  Background run(lab[0].On(Run({"--lcm-url", kUrl, "--external", "driver", "--pace", "10"})));
   ASSERT_TRUE(run.WaitForErr("waiting for the driver"));
-  // A role with --run-id joins this run without a check whether another process has the role.
   const std::string id = run.Err().substr(4, run.Err().find(" on ") - 4);
-  Background one(lab[1].On({Program("fogline-driver"), "--lcm-url", kUrl, "--run-id", id}));
-  Background two(lab[2].On({Program("fogline-driver"), "--lcm-url", kUrl, "--run-id", id}));
-  EXPECT_EQ(run.Wait(), 3);
-  EXPECT_THAT(run.Err(), HasSubstr("two processes have the role driver: "));
-  EXPECT_THAT(run.Err(), HasSubstr("pid " + std::to_string(one.pid()) + " on lab2"));
-  EXPECT_THAT(run.Err(), HasSubstr("pid " + std::to_string(two.pid()) + " on lab3"));
+  std::deque<Background> drivers;
+  for (const std::size_t place : {1U, 2U}) {
+    drivers.emplace_back(
+        lab[place].On({Program("fogline-driver"), "--lcm-url", kUrl, "--run-id", id}));
+  }
+  const auto result = ResultOf(run);
+  EXPECT_EQ(result["digest"], Undisturbed());
+  EXPECT_EQ(result["restarts"].size(), 0U) << result["restarts"];
+  std::multiset<int> codes;
+  for (Background& driver : drivers) codes.insert(driver.Wait());
+  EXPECT_EQ(codes, (std::multiset<int>{0, 3})) << drivers[0].Err() << drivers[1].Err();
+  EXPECT_THAT(drivers[0].Err() + drivers[1].Err(),
+              HasSubstr("error: another process is the driver of run " + id + "\n"));
+}
+
+TEST_F(NetworkTest, AProcessWithTheKeyThatComesLaterIsRefusedToo) {
+  const Lab lab(2);
+  const ScratchFolder keys;
+  const std::string key = keys.File("key");
+  ASSERT_EQ(RunCommand({Program("fogline"), "keygen", key}).code, 0);
+  Background run(lab[0].On(Run({"--lcm-url", kUrl, "--pace", "10", "--key", key})));
+  ASSERT_TRUE(run.WaitForErr("processes: "));
+  const std::string id = run.Err().substr(4, run.Err().find(" on ") - 4);
+  Background stray(
+      lab[1].On({Program("fogline-driver"), "--lcm-url", kUrl, "--run-id", id, "--key", key}));
+  EXPECT_EQ(stray.Wait(), 3);
+  EXPECT_EQ(ResultOf(run)["digest"], Undisturbed());
 }
 
 TEST_F(NetworkTest, OfTwoProcessesOfOneRoleOneTakesPartAndTheOtherWaits) {

@@ -85,10 +85,22 @@ TEST(TransportArgumentsTest, RefuseContradictions) {
   EXPECT_EQ(Refusal({"--transport", "memq", "--external", "acc"}),
             "error: --external acc: no other process can join a run with --transport memq, which "
             "is one process");
-  EXPECT_EQ(Refusal({"--external", "recorder"}),
-            "error: --external recorder: the run's result is read from its own log");
+  try {
+    Read({"--external", "recorder"});
+    FAIL() << "a run cannot wait for a recorder";
+  } catch (const CLI::ParseError& error) {
+    EXPECT_STREQ(error.what(), "--external: recorder: the run's result is read from its own log");
+  }
   EXPECT_THROW(Read({"--external", "pilot"}), CLI::ParseError);
   EXPECT_THROW(Read({"--wait", "-1"}), CLI::ParseError);
+}
+
+TEST(TransportArgumentsTest, OfferNoRecorderFromElsewhere) {
+  CLI::App app;
+  const cli::TransportArguments arguments(app, "udpm");
+  const std::string help = app.help();
+  EXPECT_NE(help.find("follower"), std::string::npos);
+  EXPECT_EQ(help.find("recorder"), std::string::npos) << help;
 }
 
 TEST(TransportArgumentsTest, RefuseAKeyThatIsNoneEvenWithoutMessages) {

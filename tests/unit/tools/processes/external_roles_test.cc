@@ -32,11 +32,13 @@ TEST(ExternalRolesTest, NameTheCommandThatStartsARoleOfThisRun) {
             "fogline-acc --lcm-url '" + kUrl + "' --key 'my key'");
 }
 
-TEST(ExternalRolesTest, HaveALineEach) {
+TEST(ExternalRolesTest, ShareOneLineHoweverManyTheyAre) {
   const ExternalRoles roles = With(milliseconds(60'000));
-  EXPECT_EQ(roles.Text({Role::kDriver, Role::kAcc}),
-            "waiting for the driver (60 s): start it with: " + roles.Command(Role::kDriver) +
-                "\nwaiting for the acc (60 s): start it with: " + roles.Command(Role::kAcc));
+  EXPECT_EQ(roles.Text({Role::kDriver}),
+            "waiting for the driver (60 s): start it with: " + roles.Command(Role::kDriver));
+  EXPECT_EQ(roles.Text({Role::kAcc, Role::kDriver}),
+            "waiting for the acc, the driver (60 s): start each with: fogline-ROLE --lcm-url '" +
+                kUrl + "'");
   EXPECT_EQ(roles.Text({}), "");
 }
 
@@ -60,6 +62,29 @@ TEST_F(AwaitedRolesTest, EndTheRunByNameAfterTheLimit) {
   EXPECT_EQ(coordinator_.error(), "waited 10 s for the acc, the driver in vain; start with: " +
                                       roles.Command(Role::kAcc) + " and " +
                                       roles.Command(Role::kDriver) + " (--wait 0 waits for ever)");
+}
+
+TEST_F(AwaitedRolesTest, AreNamedWhenTheyComeAndWhenTheyGo) {
+  ExternalRoles roles = With(milliseconds(10'000));
+  const std::vector<Role> external{Role::kAcc, Role::kDriver};
+  const auto news = [&] { return roles.News(external, coordinator_, Clock::now()); };
+  EXPECT_EQ(news(), "");
+  auto status = Script::Of<status_t>(-1);
+  status.role = "driver";
+  status.host = "lab2";
+  status.pid = 4711;
+  status.instance = 1;
+  status.sequence = 1;
+  status.state = status_t::READY;
+  status.scenario_hash = runtime::HashOf(script_.text());
+  status.type_fingerprint = TypeFingerprint();
+  script_.Say(status);
+  EXPECT_EQ(news(), "the driver has come (pid 4711 on lab2); missing: the acc");
+  EXPECT_EQ(news(), "") << "it is said once";
+  status.state = status_t::LEFT;
+  ++status.sequence;
+  script_.Say(status);
+  EXPECT_EQ(news(), "the driver has gone; missing: the acc, the driver");
 }
 
 TEST_F(AwaitedRolesTest, AreAwaitedForEverWithoutALimit) {

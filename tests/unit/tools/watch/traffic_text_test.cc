@@ -56,15 +56,6 @@ TEST(TrafficTextTest, PassesNoControlCharactersFromTheNetworkOn) {
   }
 }
 
-TEST(TrafficTextTest, FitsTheWindowAndSaysWhatItLeavesOut) {
-  const std::vector<watch::Line> lines(10, watch::Line{"0123456789"});
-  const std::vector<watch::Line> fitted = watch::Fit(lines, 60, 4);
-  ASSERT_EQ(fitted.size(), 4U);
-  EXPECT_EQ(fitted[2].text, "0123456789");
-  EXPECT_THAT(fitted[3].text, HasSubstr("7 more lines"));
-  EXPECT_EQ(watch::Fit(lines, 5, 10)[9].text, "01234");
-}
-
 TEST(TrafficTextTest, ShowsTheLossOfAChannelWithinEightyColumns) {
   watch::TrafficView view;
   watch::ChannelView channel;

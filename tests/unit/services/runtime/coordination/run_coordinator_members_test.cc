@@ -44,21 +44,33 @@ TEST_F(RunCoordinatorTest, AwaitsRolesFromElsewhereUntilTheyAreThereAndWhenTheyF
   EXPECT_THAT(coordinator.Awaited(later), ElementsAre(Role::kAcc, Role::kDriver));
 }
 
-TEST_F(RunCoordinatorTest, EndsTheRunWhenTwoLivingProcessesAreOneRole) {
+TEST_F(RunCoordinatorTest, TakesARoleThatItHasStartedFromThisProcessAlone) {
+  // GIVEN a process that claims a role before the runner's own process speaks
+  status_t& acc = role(Role::kAcc);
+  coordinator_.Launched(Role::kAcc, acc.pid, Clock::now());
+  status_t stray = acc;
+  stray.pid += 1000;
+  stray.instance += 1000;
+  stray.sequence = 1;
+  script_.Say(stray);
+  EXPECT_FALSE(coordinator_.member(Role::kAcc).status);
+  // WHEN both speak, THEN the run goes on with the runner's process, and RUN names this process
   BeAtStep(-1);
-  const status_t first = role(Role::kAcc);
-  Replace(Role::kAcc);
-  SayStatus(Role::kAcc);
-  EXPECT_EQ(coordinator_.phase(), runtime::RunCoordinator::Phase::kRunning)
-      << "the first may be dead";
-  // WHEN the first process sends a STATUS long after the second process has come
-  const TimePoint end = Clock::now() + milliseconds(120);
-  while (Clock::now() < end) Poll(Clock::now());
-  role(Role::kAcc) = first;
-  SayStatus(Role::kAcc);
-  EXPECT_EQ(coordinator_.phase(), runtime::RunCoordinator::Phase::kFailed);
-  EXPECT_THAT(coordinator_.error(), HasSubstr("two processes have the role acc: pid 104 on "));
-  EXPECT_THAT(coordinator_.error(), HasSubstr(" and pid 1104 on "));
+  ++stray.sequence;
+  script_.Say(stray);
+  BeAtStep(0);
+  EXPECT_EQ(coordinator_.phase(), runtime::RunCoordinator::Phase::kRunning);
+  EXPECT_EQ(coordinator_.member(Role::kAcc).status->instance, acc.instance);
+  EXPECT_EQ(coordinator_.member(Role::kAcc).refused->pid, stray.pid);
+  Poll(Clock::now() + milliseconds(300));
+  EXPECT_EQ(said_.back().external, std::vector<std::string>{"acc"});
+  EXPECT_EQ(said_.back().holder.at(0), acc.instance);
+  EXPECT_EQ(said_.back().phase, run_t::GO);
+  // AND the failure of the stray process is not one of the run
+  stray.state = status_t::FAILED;
+  ++stray.sequence;
+  script_.Say(stray);
+  EXPECT_EQ(coordinator_.phase(), runtime::RunCoordinator::Phase::kRunning) << coordinator_.error();
 }
 
 /// A run whose driver is started elsewhere.
@@ -156,12 +168,20 @@ TEST_F(StrayWordTest, OfARivalLongAfterAnotherIsNotTwoProcesses) {
   SpeakFor(milliseconds(1300), driver);
   Say(other);
   EXPECT_NE(external_.phase(), runtime::RunCoordinator::Phase::kFailed) << external_.error();
-  // The run fails if the rival continues to send.
+  EXPECT_FALSE(external_.member(Role::kDriver).refused);
+  // If the rival continues to send, it is refused, and the run goes on.
   for (int i = 0; i < 12; ++i) {
     Say(other);
     SpeakFor(milliseconds(100), driver);
   }
-  EXPECT_THAT(external_.error(), HasSubstr("two processes have the role driver: "));
+  EXPECT_EQ(external_.phase(), runtime::RunCoordinator::Phase::kRunning) << external_.error();
+  EXPECT_EQ(external_.member(Role::kDriver).status->instance, driver.instance);
+  ASSERT_TRUE(external_.member(Role::kDriver).refused);
+  EXPECT_EQ(external_.member(Role::kDriver).refused->pid, other.pid);
+  // AND if the run fails for another reason, both are named
+  external_.Fail("step 5: DRIVER_COMMAND came twice with different contents");
+  EXPECT_THAT(external_.error(), HasSubstr("\n  two processes have the role driver: pid 105 on "));
+  EXPECT_THAT(external_.error(), HasSubstr(", and pid 1105 on "));
 }
 
 TEST_F(StrayWordTest, OfADeadProcessLongAfterAnotherIsNotEither) {

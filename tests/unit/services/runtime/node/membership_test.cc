@@ -143,6 +143,62 @@ TEST_F(MembershipOfADriverTest,
   EXPECT_FALSE(node.node().parts().own.Waits());
 }
 
+TEST_F(MembershipOfADriverTest, LeavesARunThatHasAnotherDriverWhenItsRunnerSaysSo) {
+  // GIVEN a driver with --run-id, and a RUN that names another driver. It may come from a log
+  script_.SayRun(run_t::GO, -1);
+  const std::vector<std::string> parts = runtime::SplitScenario(script_.text());
+  run_t taken = Script::WithDriver(
+      runtime::MakeRunPart(Script::kRunId, run_t::GO, 0, runtime::HashOf(script_.text()), parts, 0),
+      4711);
+  script_.Say(taken);
+  EXPECT_FALSE(own_.released());
+  // THEN the driver asks the runner, and leaves when a runner answers
+  ASSERT_FALSE(requests_.empty());
+  EXPECT_EQ(requests_.back().channel, "RUN");
+  EXPECT_EQ(requests_.back().instance, own_.message().instance);
+  taken.answer_to = own_.message().instance;
+  script_.Say(taken);
+  EXPECT_TRUE(own_.released());
+  EXPECT_EQ(own_.message().error, "another process is the driver of run 7");
+}
+
+/// The RUN messages that a log has: without a number, and without roles that are awaited.
+void SayLogged(Script& script, std::int64_t run_id) {
+  const std::vector<std::string> parts = runtime::SplitScenario(script.text());
+  std::vector<std::uint8_t> bytes;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    runtime::Encode(
+        Script::WithDriver(runtime::MakeRunPart(run_id, run_t::PREPARE, 0,
+                                                runtime::HashOf(script.text()), parts, i),
+                           0),
+        bytes);
+    script.bus().Publish("RUN", bytes);
+    script.bus().Drain();
+  }
+}
+
+TEST_F(MembershipOfADriverTest, IsInvitedByNoLogThatIsPlayed) {
+  Script other;
+  runtime::StepNode<driver::Driver> node(other.bus(), std::nullopt);
+  SayLogged(other, Script::kRunId);
+  EXPECT_FALSE(node.node().parts().run.id);
+  other.SayRun(run_t::PREPARE, -1);
+  EXPECT_FALSE(node.node().parts().own.Waits());
+}
+
+TEST_F(MembershipOfADriverTest, LeavesALogThatItWasToldToFollowWhenTheLogIsOver) {
+  SayLogged(script_, Script::kRunId);
+  EXPECT_TRUE(own_.Running());
+  script_.Say(Truth(0));
+  EXPECT_EQ(commands_.size(), 1U);
+  const TimePoint now = Clock::now();
+  script_.PollUpTo(node_, now + milliseconds(18'000));
+  EXPECT_FALSE(own_.left());
+  script_.PollUpTo(node_, now + milliseconds(20'000));
+  EXPECT_TRUE(own_.left());
+  EXPECT_EQ(own_.message().error, "");
+}
+
 /// A driver that a person has started, in a run that waited for a driver.
 class ExternalRoleTest : public testing::Test {
  protected:

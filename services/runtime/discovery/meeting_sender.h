@@ -1,0 +1,32 @@
+// Sends messages to the meeting address (lcm_url.h), where programs without a URL listen.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "services/runtime/wire/wire.h"
+
+struct _lcm_t;
+
+namespace fogline::runtime {
+
+/// The messages stay on this machine (ttl=0), even if the meeting address has another ttl, and are
+/// never signed. A message that cannot be sent is lost.
+class MeetingSender {
+ public:
+  /// Sends nothing if `own_url` is the meeting address itself, or if the meeting address is no
+  /// multicast group or has no route. @param own_url the network of which the messages tell
+  explicit MeetingSender(const std::string& own_url);
+  ~MeetingSender();
+  MeetingSender(const MeetingSender&) = delete;
+  MeetingSender& operator=(const MeetingSender&) = delete;
+
+  bool is_open() const { return lcm_ != nullptr; }
+  void Publish(std::string_view channel, Bytes bytes);
+
+ private:
+  // This is LCM itself, not a Bus: if LCM only sends, it starts no thread and no self-test.
+  _lcm_t* lcm_ = nullptr;
+};
+
+}  // namespace fogline::runtime

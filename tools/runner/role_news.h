@@ -1,0 +1,78 @@
+// What the user of a run should know about the processes of its roles. Each fact is said once.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "common/clock.h"
+#include "common/process/progress.h"
+#include "services/runtime/coordination/run_coordinator.h"
+#include "tools/runner/experiment.h"
+
+namespace fogline::runner {
+
+/// The last STATUS of each process of a role.
+std::vector<status_t> LastWords(const runtime::RunCoordinator& coordinator, Role role);
+
+/// The processes, including dead processes, whose build differs from the runner's build.
+std::vector<runtime::OtherBuild> OtherBuilds(const runtime::RunCoordinator& coordinator);
+
+/// Reports the processes that have an awaited role but belong to another run, each process once.
+class BusyElsewhere {
+ public:
+  BusyElsewhere(std::int64_t run_id, std::function<void(const std::string&)> say)
+      : run_id_(run_id), say_(std::move(say)) {}
+
+  void Look(const runtime::RunCoordinator& coordinator, TimePoint now);
+
+ private:
+  std::int64_t run_id_;
+  std::function<void(const std::string&)> say_;
+  std::set<std::string> told_;
+  TimePoint look_at_{};
+};
+
+/// Prints warnings while a run goes on, each warning once.
+class Warnings {
+ public:
+  Warnings(runtime::RunCoordinator& coordinator, Progress& progress)
+      : coordinator_(coordinator), progress_(progress) {}
+
+  void LookAtTheClock();
+  void LookAtTheRoles();
+
+ private:
+  void Say(const std::string& what) { progress_.Say("warning: " + what); }
+  /// Names the processes that claim a role of another process.
+  void NameTheRefused();
+
+  runtime::RunCoordinator& coordinator_;
+  Progress& progress_;
+  bool compared_ = false;  // whether the builds were compared
+  std::string key_trouble_;
+  std::set<std::int64_t> refused_;  // instances
+};
+
+/// Examines once, when a run in real time has begun, which roles have real-time priority.
+class PriorityWatch {
+ public:
+  explicit PriorityWatch(bool realtime) : done_(!realtime) {}
+
+  /// @return true at the call that has made the examination
+  bool Look(const runtime::RunCoordinator& coordinator, TimePoint now);
+  /// nullopt before the examination.
+  const std::optional<RealtimePriority>& found() const { return found_; }
+  /// @pre found()
+  std::string Text() const;
+
+ private:
+  bool done_;
+  TimePoint since_{};  // when the run was first seen to go on
+  std::optional<RealtimePriority> found_;
+};
+
+}  // namespace fogline::runner

@@ -1,0 +1,55 @@
+// Everything that top knows, as rows of tables for 80 columns.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "services/runtime/discovery/announcements.h"
+#include "services/runtime/discovery/waiting_roles.h"
+#include "tools/watch/senders/senders.h"
+#include "tools/watch/traffic_statistics.h"
+#include "tools/watch/traffic_text.h"
+
+namespace fogline::watch {
+
+/// All of it at one time.
+struct TopView {
+  std::string url;
+  TrafficView traffic;
+  SendersView senders;
+  std::vector<runtime::Announcement> announced;
+  bool followed = false;  // whether the first announced run is shown
+  std::vector<runtime::WaitingRole> waiting;
+};
+
+enum class Table : std::size_t { kNone, kRoles, kChannels, kWaiting, kSenders };
+inline constexpr std::size_t kTables = 5;
+
+/// The order of a table.
+struct TableOrder {
+  std::size_t column = 0;  // index in SortColumns(); 0: the natural order
+  bool reversed = false;
+};
+using TableOrders = std::array<TableOrder, kTables>;
+
+/// The columns by which a table can be sorted; the first is its natural order.
+std::vector<std::string_view> SortColumns(Table table);
+
+/// A row; rows with a key can be opened.
+struct TopRow {
+  Line line;
+  Table table = Table::kNone;
+  std::string key;  // the same for the same thing at another time; "" for headings
+};
+
+/// The rows of all tables: of each run its roles and channels, waiting roles, other channels,
+/// senders.
+std::vector<TopRow> TopRows(const TopView& view, const TableOrders& orders);
+
+/// Everything about the thing of a row; the first line is its title. Empty if the thing is gone.
+std::vector<Line> DetailsOf(const std::string& key, const TopView& view);
+
+}  // namespace fogline::watch
