@@ -210,7 +210,8 @@ def class_text(struct: Struct, structs: dict, fingerprint: str) -> str:
     lines += [f"    {name}: ClassVar[int] = {value}" for name, value, _ in struct.constants]
     lines += [""]
     lines += [f"    {one.name}: {python_type(one)} = {default(one)}" for one in struct.fields]
-    lines += ["", "    @classmethod", f'    def _read(cls, data, at: int) -> tuple["{struct.name}", int]:']
+    lines += ["", "    @classmethod"]
+    lines += [f'    def _read(cls, data, at: int) -> tuple["{struct.name}", int]:']
     lines += [f"        {read}" for read in coder.reads]
     lines += [f"        return cls({', '.join(coder.values)}), at"]
     lines += ["", "    def _write(self) -> bytes:", "        return b''.join((self.FINGERPRINT,"]
@@ -233,8 +234,8 @@ def main() -> None:
         "from dataclasses import dataclass, field\n"
         "from struct import Struct\n"
         "from typing import ClassVar\n\n"
-        "from fogline_lab.codec import (Field, Message, count, read_numbers, read_text, read_texts,\n"
-        "                               write_numbers, write_text, write_texts)\n\n"
+        "from fogline_lab.codec import (Field, Message, count, read_numbers, read_text,\n"
+        "                               read_texts, write_numbers, write_text, write_texts)\n\n"
     )
     names = ",\n    ".join(one.name for one in order)
     for struct in order:

@@ -190,7 +190,8 @@ class Relay:
             except BlockingIOError:
                 break
             except OSError as error:
-                raise FoglineError(f"the relay at {self._where} is lost: {error.strerror}") from None
+                lost = f"the relay at {self._where} is lost: {error.strerror}"
+                raise FoglineError(lost) from None
             if not piece:
                 raise FoglineError(f"the relay at {self._where} has ended")
             self._received += piece
@@ -218,7 +219,9 @@ class Relay:
             return False
         (payload_bytes,) = struct.unpack_from(">I", self._received, begin - 4)
         if payload_bytes > _MOST_BYTES:
-            raise FoglineError(f"the relay at {self._where} sends a message of {payload_bytes} bytes")
+            raise FoglineError(
+                f"the relay at {self._where} sends a message of {payload_bytes} bytes"
+            )
         if len(self._received) < begin + payload_bytes:
             return False
         name = bytes(self._received[8 : begin - 4]).decode("utf-8", "replace")

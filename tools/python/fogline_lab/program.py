@@ -14,7 +14,7 @@ import threading
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Callable, Iterable, Mapping, Sequence, Union
 
-from fogline_lab.errors import BadInput, CheckFailed, FoglineError, ProgramError, RunFailed
+from fogline_lab.errors import BadInput, CheckFailed, FoglineError, RunFailed
 
 if TYPE_CHECKING:
     import pandas

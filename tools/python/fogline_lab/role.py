@@ -168,10 +168,12 @@ class _Instance:
     def step(self, *payloads: bytes) -> tuple[bytes, ...]:
         role = self._role
         inputs = [kind.decode(payload) for kind, payload in zip(role.READS, payloads)]
-        header = inputs[0].header
+        # A copy, because a step may change its inputs.
+        first = inputs[0].header
+        header = header_t(first.run_id, first.step, first.utime)
         if role.BEGINS:  # its inputs are those of the step before
-            step = header.step + 1
-            header = header_t(header.run_id, step, step * self._step_us)
+            header.step += 1
+            header.utime = header.step * self._step_us
         try:
             return self._encoded(role.step(*inputs), header)
         except BaseException as error:

@@ -96,8 +96,8 @@ class UrlTest(unittest.TestCase):
                     "tcpq://127.0.0.1:7700"):
             self.assertTrue(network.may_be_followed(url), url)
         for url in ("udpm://239.255.76.67:7700?ttl=2", "udpm://192.168.0.1:7700?ttl=0",
-                    "tcpq://lab1:7700", "tcpq://198.51.100.7:7700", "tcpq://0.0.0.0:7700", "memq://",
-                    "nonsense"):
+                    "tcpq://lab1:7700", "tcpq://198.51.100.7:7700", "tcpq://0.0.0.0:7700",
+                    "memq://", "nonsense"):
             self.assertFalse(network.may_be_followed(url), url)
 
 

@@ -38,6 +38,13 @@ class RoleTest(unittest.TestCase):
             (message,) = step_of(kind, lambda self, *inputs: self.WRITES[0]())
             self.assertEqual(message, kind.WRITES[0](header=HEADER))
 
+    def test_a_step_that_changes_its_inputs_changes_no_header_of_an_output(self):
+        def step(self, truth):
+            truth.header.run_id = 0
+            return fl.radar_t()
+
+        self.assertEqual(step_of(fl.Radar, step)[0].header, HEADER)
+
     def test_the_world_begins_the_step_after_its_inputs(self):
         truth, ego = step_of(fl.World, lambda self, *inputs: (fl.truth_t(), fl.ego_t()))
         self.assertEqual(truth.header, fl.header_t(5, 4, 400_000))
