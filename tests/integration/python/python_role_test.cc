@@ -188,11 +188,25 @@ TEST_F(PythonRoleTest, AnExceptionEndsTheRunByItsText) {
   Background driver(Python(script, {"--lcm-url", url_}));
   const Outcome run = RunCommand(Run({"driver"}));
   EXPECT_EQ(run.code, 3);
-  const std::string text = "step 20: Hasty.step(): ZeroDivisionError: float division by zero";
-  EXPECT_THAT(run.err, testing::AnyOf(HasSubstr(text), HasSubstr("division by zero")));
+  const std::string text = "step 20: Hasty.step(): ZeroDivisionError: division by zero\n";
+  EXPECT_THAT(run.err, HasSubstr("error: driver: " + text));
   EXPECT_EQ(driver.Wait(), 3);
-  EXPECT_THAT(driver.Err(), HasSubstr("fogline-driver: error: step 20: Hasty.step(): "));
+  EXPECT_THAT(driver.Err(), HasSubstr("fogline-driver: error: " + text));
   EXPECT_THAT(driver.Err(), HasSubstr("script.py\", line 4, in step"));
+}
+
+TEST_F(PythonRoleTest, ANumberThatIsNotFiniteEndsTheRunByItsField) {
+  const std::string script = WriteScript(folder_,
+                                         "import fogline_lab as fl\n"
+                                         "class Lost(fl.Driver):\n"
+                                         "    def step(self, truth):\n"
+                                         "        return float('nan')\n"
+                                         "fl.serve(Lost)\n");
+  const Background driver(Python(script, {"--lcm-url", url_}));
+  const Outcome run = RunCommand(Run({"driver"}));
+  EXPECT_EQ(run.code, 3);
+  EXPECT_THAT(run.err, HasSubstr("error: driver: step 0: acceleration_mps2 of DRIVER_COMMAND is "
+                                 "not a finite number\n"));
 }
 
 TEST_F(PythonRoleTest, HasTheCommandLineOfTheRole) {

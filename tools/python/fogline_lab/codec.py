@@ -7,7 +7,6 @@ needed.
 from __future__ import annotations
 
 import functools
-import math
 import struct
 from typing import Any, ClassVar, NamedTuple, Sequence, TypeVar
 
@@ -65,13 +64,6 @@ class Message:
         except (struct.error, TypeError, AttributeError, IndexError, OverflowError) as error:
             raise ValueError(self._fault() or f"{type(self).__name__}: {error}") from None
 
-    def not_finite(self) -> str:
-        """Name of the first field with a number that is not finite; "" if there is none."""
-        for field in self.FIELDS:
-            if field.type == "double" and not _finite(getattr(self, field.name)):
-                return field.name
-        return ""
-
     @classmethod
     def _read(cls, data: Any, at: int) -> tuple[Any, int]:
         raise NotImplementedError
@@ -111,12 +103,6 @@ def _fits(value: Any, kind: str, dims: Sequence) -> bool:
     except (struct.error, TypeError, OverflowError):
         return False
     return True
-
-
-def _finite(value: Any) -> bool:
-    if isinstance(value, (list, tuple)):
-        return all(_finite(one) for one in value)
-    return math.isfinite(value)
 
 
 def count(message: Message, name: str, lists: Sequence[str]) -> int:
