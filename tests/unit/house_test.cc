@@ -97,6 +97,7 @@ constexpr std::array kRooms = std::to_array<Room>({
     {"tools/web/seat", "web", "one person at the page drives; the only client that is heard"},
     {"tools/trials", "trials", "experiments with people: trials, questions, tables"},
     {"tools/fogline", "", "the verbs"},
+    {"tools/python", "python", "a module for Python: a class there as a role"},
     {"tools/benchmarks", "benchmarks", "a program that measures the others"},
 });
 

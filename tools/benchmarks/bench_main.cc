@@ -81,8 +81,8 @@ int Main(int argc, char** argv) {
   app.add_option("--rounds", arguments.rounds, "Rounds of each comparison")
       ->check(CLI::Range(1, 1000));
   app.add_option("--only", arguments.only,
-                 "octave, sumo, udpm, udpm-messages, udpm-graph, key, memq, log, cores, memory "
-                 "(repeatable)")
+                 "octave, sumo, udpm, udpm-messages, udpm-graph, key, python, memq, log, cores, "
+                 "memory (repeatable)")
       ->check(WhyNoComparison)
       ->allow_extra_args(false);
   app.add_flag("--json", arguments.json, "Print as JSON");

@@ -20,6 +20,7 @@
 #include <nlohmann/json.hpp>
 
 #include "services/graph.h"
+#include "services/runtime/transport/bus.h"
 #include "tools/benchmarks/bare_lcm.h"
 #include "tools/benchmarks/comparisons.h"
 #include "tools/benchmarks/program.h"
@@ -39,26 +40,22 @@ constexpr int StepMessages() {
 using Options = std::vector<std::string>;
 
 /// Wall-clock seconds that `fogline run` reports for a run of `steps` steps.
-double RunSeconds(const Options& options, int steps) {
-  Options command{ProgramPath("fogline"),
-                  "run",
-                  "scenario/paper.json",
-                  "--quiet",
-                  "--json",
-                  "--force",
-                  "--log",
-                  ScratchFolder() / "run.lcm",
-                  "--set",
-                  "/steps=" + std::to_string(steps)};
+/// @param launcher the beginning of the command line; "fogline run" follows
+double RunSeconds(const Options& options, int steps, const Options& launcher = {}) {
+  Options command = launcher;
+  command.insert(command.end(), {ProgramPath("fogline"), "run", "scenario/paper.json", "--quiet",
+                                 "--json", "--force", "--log", ScratchFolder() / "run.lcm", "--set",
+                                 "/steps=" + std::to_string(steps)});
   command.insert(command.end(), options.begin(), options.end());
   return nlohmann::json::parse(RunProgram(command).out)["wall_s"];
 }
 
 /// Microseconds per step. They are computed from a long and a short run, so that the cost of the
 /// start and the end of a run cancels out.
-double LockstepStepMicros(const Options& options, int steps) {
+double LockstepStepMicros(const Options& options, int steps, const Options& launcher = {}) {
   constexpr int kShort = 500;
-  const double more_s = RunSeconds(options, kShort + steps) - RunSeconds(options, kShort);
+  const double more_s =
+      RunSeconds(options, kShort + steps, launcher) - RunSeconds(options, kShort, launcher);
   return kMicrosPerSecond * more_s / steps;
 }
 
@@ -98,6 +95,34 @@ Comparison SignedOverUdpm(int steps) {
   return comparison;
 }
 
+/// Steps per second of a run whose driver is a program of its own. "--lcm-url URL" follows the
+/// driver's command.
+double StepsPerSecondWith(const std::string& driver, int steps) {
+  const std::string url = runtime::FreshMulticastUrl();
+  const Options beside{"sh", "-c",
+                       driver + " --lcm-url '" + url + "' >/dev/null 2>&1 & \"$0\" \"$@\"; " +
+                           "code=$?; wait; exit $code"};
+  const Options external{"--external", "driver", "--no-verify", "--lcm-url", url};
+  return kMicrosPerSecond / LockstepStepMicros(external, steps, beside);
+}
+
+/// A driver in Python, compared with the same driver in C++.
+Comparison DriverInPython(int steps) {
+  const std::string programs = std::filesystem::path(ProgramPath("fogline")).parent_path();
+  const std::string python =
+      "PYTHONPATH='" + programs + "/../python' /usr/bin/python3 -B tools/python/examples/driver.py";
+  return {.name = "python",
+          .quantity = "steps per second",
+          .unit = "1/s",
+          .ours = "lockstep over udpm, driver in Python",
+          .reference = "the same, driver in C++",
+          .bound = Bound::kAtLeast,
+          .goal = 0.8,
+          .measure_ours = [python, steps] { return StepsPerSecondWith(python, steps); },
+          .measure_reference =
+              [steps] { return StepsPerSecondWith(ProgramPath("fogline-driver"), steps); }};
+}
+
 }  // namespace
 
 std::vector<Comparison> LockstepComparisons(Effort effort) {
@@ -111,6 +136,7 @@ std::vector<Comparison> LockstepComparisons(Effort effort) {
                BareRing(messages)),
       OverUdpm(steps, "udpm-graph", "9 bare LCM processes wired like the graph", BareGraph()),
       SignedOverUdpm(steps),
+      DriverInPython(steps),
       {.name = "memq",
        .quantity = "time per step",
        .unit = "us",

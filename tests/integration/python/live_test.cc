@@ -1,0 +1,80 @@
+// fl.Live listens to a run that announces itself, over any transport.
+#include <gmock/gmock-matchers.h>
+#include <gtest/gtest.h>
+
+#include "services/runtime/wire/message_signer.h"
+#include "tests/integration/network/meeting.h"
+#include "tests/integration/python/python.h"
+
+namespace fogline::test {
+namespace {
+
+using testing::HasSubstr;
+
+// Prints the steps of TRUTH that have come, when the last one has come.
+constexpr const char* kListener = R"(
+import fogline_lab as fl
+
+steps = set()
+with fl.Live() as live:
+    print("listening", flush=True)
+    for channel, message in live:
+        if channel == "TRUTH":
+            steps.add(message.header.step)
+            if message.last:
+                break
+    print(len(steps), min(steps), max(steps), dict(live.refused))
+)";
+
+class LiveTest : public testing::Test {
+ protected:
+  /// Expects that a listener without a URL gets each step of a run with these options.
+  void ExpectHears(const std::vector<std::string>& options) {
+    std::vector<std::string> listener = Python(WriteScript(folder_, kListener), {});
+    listener.insert(listener.begin() + 1, "LCM_DEFAULT_URL=" + meeting_.url());
+    Background live(listener);
+    ASSERT_TRUE(live.WaitForOut("listening")) << live.Err();
+    // The run is slow, so a busy machine loses no message that the listener has not read yet.
+    std::vector<std::string> more{"--pace", "2", "--set", "/steps=40"};
+    more.insert(more.end(), options.begin(), options.end());
+    const Outcome run = RunCommand(meeting_.Run(more));
+    ASSERT_EQ(run.code, 0) << run.err;
+    EXPECT_EQ(live.Wait(), 0) << live.Err();
+    EXPECT_THAT(live.Out(), HasSubstr("\n40 0 39 {}\n"));
+  }
+
+  ScratchFolder folder_;
+  Meeting meeting_;
+};
+
+TEST_F(LiveTest, HearsEachStepOfARunOnItsOwnPort) {
+  ExpectHears({"--lcm-url", runtime::FreshMulticastUrl()});
+}
+
+TEST_F(LiveTest, HearsEachStepOfARunOverARelay) { ExpectHears({"--transport", "tcpq"}); }
+
+TEST_F(LiveTest, HearsEachStepOfASignedRunAtTheMeetingAddress) {
+  const std::string key = folder_.File("key");
+  runtime::SigningKey::Create(key);
+  ExpectHears({"--key", key});
+}
+
+TEST_F(LiveTest, EndsWhenNothingComesAnyMore) {
+  const std::string script = WriteScript(folder_,
+                                         "import fogline_lab as fl, sys\n"
+                                         "print(list(fl.Live(sys.argv[1], timeout_s=0.3)))\n");
+  const Outcome outcome = RunCommand(Python(script, {runtime::FreshMulticastUrl()}));
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(outcome.out, "[]\n");
+}
+
+TEST_F(LiveTest, SaysWhichRelayIsMissing) {
+  const std::string script =
+      WriteScript(folder_, "import fogline_lab as fl\nfl.Live('tcpq://127.0.0.1:1')\n");
+  const Outcome outcome = RunCommand(Python(script, {}));
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_THAT(outcome.err, HasSubstr("FoglineError: no relay at 127.0.0.1:1: Connection refused"));
+}
+
+}  // namespace
+}  // namespace fogline::test

@@ -1,0 +1,260 @@
+"""LCM networks: the messages that others send, by UDP multicast (udpm) or from a relay (tcpq).
+
+Only the standard library is needed. LCM's own library is not used, because Debian has none for
+Python. Sources: lcm_udpm.c, lcm_tcpq.c and TCPService.java of LCM 1.3.1.
+"""
+
+from __future__ import annotations
+
+import os
+import socket
+import struct
+from typing import Callable, NamedTuple
+
+from fogline_lab.errors import BadInput, FoglineError
+
+DEFAULT_URL = "udpm://239.255.76.67:7667?ttl=0"
+_DEFAULT_GROUP, _DEFAULT_PORT = "239.255.76.67", 7667
+_DEFAULT_RELAY_PORT = 7700
+
+# A datagram: mark, number of the message, channel, 0, payload. A large message comes in fragments:
+# mark, number of the message, its bytes, offset, number of the fragment, number of all fragments;
+# the first one also has the channel and a 0 before its bytes.
+_WHOLE, _FRAGMENT = 0x4C433032, 0x4C433033
+_WHOLE_HEAD, _FRAGMENT_HEAD = struct.Struct(">II"), struct.Struct(">IIIIHH")
+_DATAGRAM_BYTES = 1 << 16
+# What is waiting for the rest of its fragments: the most messages, and the most bytes of one.
+_MOST_PARTIAL, _MOST_BYTES = 64, 4 << 20
+# The kernel keeps datagrams in this many bytes until they are read (net.core.rmem_max limits it).
+_RECEIVE_BYTES = 2 << 20
+
+_RELAY_MAGIC, _CLIENT_MAGIC, _RELAY_VERSION = 0x287617FA, 0x287617FB, 0x0100
+_PUBLISH, _SUBSCRIBE = 1, 2
+_CONNECT_S = 5.0
+
+IP_MULTICAST_ALL = 49  # linux/in.h; the module socket does not name it
+
+
+class Address(NamedTuple):
+    """The network of a URL: its kind (udpm or tcpq), its host or group, and its port."""
+
+    kind: str
+    host: str
+    port: int
+    ttl: int = 0
+
+
+def network_url(url: str | None) -> str:
+    """The URL of a network: the given one, else $LCM_DEFAULT_URL, else LCM's default."""
+    return url or os.environ.get("LCM_DEFAULT_URL") or DEFAULT_URL
+
+
+def address_of(url: str) -> Address:
+    """Raises BadInput for a URL that is neither udpm:// nor tcpq://."""
+    kind, found, rest = url.partition("://")
+    place, _, options = rest.partition("?")
+    host, _, port = place.partition(":")
+    try:
+        given = dict(option.split("=", 1) for option in options.split("&") if option)
+        if not found or kind not in ("udpm", "tcpq"):
+            raise ValueError
+        if kind == "tcpq":
+            return Address(kind, host or "127.0.0.1", int(port or _DEFAULT_RELAY_PORT))
+        socket.inet_pton(socket.AF_INET, host or _DEFAULT_GROUP)
+        number = int(port or _DEFAULT_PORT)
+        if not 0 < number < 1 << 16:
+            raise ValueError
+        return Address(kind, host or _DEFAULT_GROUP, number, int(given.get("ttl", 0)))
+    except (ValueError, OSError):
+        raise BadInput(
+            f"{url}: not the URL of an LCM network, such as {DEFAULT_URL} or tcpq://host:7700",
+            [], 2,
+        ) from None
+
+
+# What a network calls with each message: channel and payload.
+Receiver = Callable[[str, bytes], None]
+
+
+class Fragments:
+    """Puts the datagrams of LCM together."""
+
+    def __init__(self) -> None:
+        self._partial: dict[tuple, tuple[str, bytearray, set[int], int]] = {}
+
+    def take(self, datagram: bytes, sender: tuple, receiver: Receiver) -> bool:
+        """Calls the receiver if a message is whole. @return False for what is not of LCM."""
+        try:
+            mark, number = _WHOLE_HEAD.unpack_from(datagram)
+            if mark == _WHOLE:
+                end = datagram.index(b"\0", _WHOLE_HEAD.size)
+                receiver(datagram[_WHOLE_HEAD.size : end].decode(), datagram[end + 1 :])
+                return True
+            if mark == _FRAGMENT:
+                return self._take_fragment(datagram, (sender, number), receiver)
+        except (struct.error, ValueError):  # too short, no 0, or no UTF-8
+            pass
+        return False
+
+    def _take_fragment(self, datagram: bytes, key: tuple, receiver: Receiver) -> bool:
+        _, _, size, offset, part, parts = _FRAGMENT_HEAD.unpack_from(datagram)
+        body = datagram[_FRAGMENT_HEAD.size :]
+        if size > _MOST_BYTES or part >= parts:
+            return False
+        channel, message, have, wanted = self._partial.pop(key, ("", bytearray(size), set(), parts))
+        if part == 0:
+            end = body.index(b"\0")
+            channel, body = body[:end].decode(), body[end + 1 :]
+        if len(message) != size or wanted != parts or offset + len(body) > size:
+            return False
+        message[offset : offset + len(body)] = body
+        have.add(part)
+        if len(have) == parts:
+            receiver(channel, bytes(message))
+        else:
+            if len(self._partial) >= _MOST_PARTIAL:
+                self._partial.pop(next(iter(self._partial)))  # the oldest one
+            self._partial[key] = (channel, message, have, parts)
+        return True
+
+
+class Multicast:
+    """Listens to a multicast group. Sends nothing."""
+
+    def __init__(self, address: Address) -> None:
+        self.socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        self._fragments = Fragments()
+        try:
+            self.socket.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+            self.socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, _RECEIVE_BYTES)
+            self.socket.setsockopt(socket.IPPROTO_IP, IP_MULTICAST_ALL, 0)
+            self.socket.bind((address.host, address.port))
+            self._join(address.host)
+            self.socket.setblocking(False)
+        except OSError as error:
+            self.socket.close()
+            raise FoglineError(
+                f"cannot listen to {address.host}:{address.port}: {error.strerror}"
+            ) from None
+
+    def _join(self, group: str) -> None:
+        """Joins the group on loopback, where the traffic of this machine is, and on the interface
+        of the route to the group. One of the two is enough. Raises OSError if both fail."""
+        failures = []
+        for interface in ("127.0.0.1", "0.0.0.0"):
+            membership = socket.inet_aton(group) + socket.inet_aton(interface)
+            try:
+                self.socket.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP, membership)
+            except OSError as error:
+                failures.append(error)
+        # If the route leads over loopback, the second try finds the group joined.
+        if len(failures) == 2:
+            raise failures[0]
+
+    def read(self, receiver: Receiver) -> int:
+        """Hands on the messages that have come. @return the datagrams that are not of LCM"""
+        strange = 0
+        while True:
+            try:
+                datagram, sender = self.socket.recvfrom(_DATAGRAM_BYTES)
+            except BlockingIOError:
+                return strange
+            strange += not self._fragments.take(datagram, sender, receiver)
+
+    def close(self) -> None:
+        self.socket.close()
+
+
+class Relay:
+    """Listens to all channels of a relay. Sends nothing but the subscription."""
+
+    def __init__(self, address: Address) -> None:
+        where = f"{address.host}:{address.port}"
+        try:
+            self.socket = socket.create_connection((address.host, address.port), _CONNECT_S)
+        except OSError as error:
+            raise FoglineError(f"no relay at {where}: {error.strerror or error}") from None
+        pattern = b".*"
+        self.socket.sendall(struct.pack(">IIII", _CLIENT_MAGIC, _RELAY_VERSION, _SUBSCRIBE,
+                                        len(pattern)) + pattern)
+        self.socket.setblocking(False)
+        self._where = where
+        self._received = bytearray()
+        self._greeted = False
+
+    def read(self, receiver: Receiver) -> int:
+        """As Multicast.read(). Raises FoglineError if the relay has ended."""
+        while True:
+            try:
+                piece = self.socket.recv(1 << 16)
+            except BlockingIOError:
+                break
+            except OSError as error:
+                lost = f"the relay at {self._where} is lost: {error.strerror}"
+                raise FoglineError(lost) from None
+            if not piece:
+                raise FoglineError(f"the relay at {self._where} has ended")
+            self._received += piece
+        while self._take(receiver):
+            pass
+        return 0
+
+    def _take(self, receiver: Receiver) -> bool:
+        """Hands on the first message. @return whether there was a whole one"""
+        if not self._greeted:
+            if len(self._received) < 8:
+                return False
+            magic, _ = struct.unpack_from(">II", self._received)
+            self._greeted = magic == _RELAY_MAGIC
+            if not self._greeted:
+                raise FoglineError(f"{self._where} is no relay of LCM")
+            del self._received[:8]
+        if len(self._received) < 8:
+            return False
+        kind, name_bytes = struct.unpack_from(">II", self._received)
+        if kind != _PUBLISH or name_bytes > _MOST_BYTES:
+            raise FoglineError(f"the relay at {self._where} sends something else than messages")
+        begin = 8 + name_bytes + 4
+        if len(self._received) < begin:
+            return False
+        (payload_bytes,) = struct.unpack_from(">I", self._received, begin - 4)
+        if payload_bytes > _MOST_BYTES:
+            raise FoglineError(
+                f"the relay at {self._where} sends a message of {payload_bytes} bytes"
+            )
+        if len(self._received) < begin + payload_bytes:
+            return False
+        name = bytes(self._received[8 : begin - 4]).decode("utf-8", "replace")
+        payload = bytes(self._received[begin : begin + payload_bytes])
+        del self._received[: begin + payload_bytes]
+        receiver(name, payload)
+        return True
+
+    def close(self) -> None:
+        self.socket.close()
+
+
+def open_network(url: str) -> Multicast | Relay:
+    """Joins a network to listen. Raises BadInput for a bad URL, FoglineError if that fails."""
+    address = address_of(url)
+    return Multicast(address) if address.kind == "udpm" else Relay(address)
+
+
+def may_be_followed(url: str) -> bool:
+    """Whether a program may join this network if it knows the network only from a message: a
+    multicast group whose traffic ends at the next router or before, or a relay of this machine."""
+    try:
+        address = address_of(url)
+        packed = socket.inet_pton(socket.AF_INET, address.host)
+    except (BadInput, OSError):
+        return False
+    if address.kind == "udpm":
+        return packed[0] >> 4 == 14 and address.ttl <= 1  # 224.0.0.0/4
+    if packed[0] == 127:
+        return True
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+        try:
+            probe.bind((address.host, 0))  # only an address of this machine
+        except OSError:
+            return False
+    return packed != b"\0\0\0\0"
