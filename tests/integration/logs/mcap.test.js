@@ -17,6 +17,8 @@ const {FileDescriptorSet} = require("protobufjs/ext/descriptor");
 const root = path.resolve(path.dirname(new URL(import.meta.url).pathname), "../../..");
 const decompressHandlers = {zstd: (bytes, size) => decompress(bytes, new Uint8Array(Number(size)))};
 
+const STEPS = 2000;  // enough for several chunks
+
 let folder;
 let file;
 
@@ -26,9 +28,8 @@ before(() => {
   folder = mkdtempSync(path.join(tmpdir(), "fogline-mcap-"));
   const log = path.join(folder, "run.lcm");
   file = path.join(folder, "run.mcap");
-  // Several chunks, with fog, and two following cars.
   fogline("run", "scenario/dense_fog.json", "--transport", "direct", "--quiet", "--log", log,
-          "--set", "/followers/count=2");
+          "--set", "/followers/count=2", "--set", `/steps=${STEPS}`);
   fogline("export", log, "--out", path.join(folder, "csv"));
   fogline("export", log, "--mcap", file);
 });
@@ -123,12 +124,12 @@ test("every number of every channel is that of the CSV export", async (t) => {
 test("the summary counts what the file has, and finds one channel at one moment", async (t) => {
   const reader = await indexed(t);
   const {statistics} = reader;
-  assert.equal(statistics.messageCount, 9n * 700n);
+  assert.equal(statistics.messageCount, 9n * BigInt(STEPS));
   assert.equal(statistics.chunkCount, reader.chunkIndexes.length);
   assert.ok(reader.chunkIndexes.length >= 2, "a file of one chunk would test little");
   assert.equal(statistics.messageStartTime, 0n);
-  assert.equal(statistics.messageEndTime, 69_900_000_000n);
-  assert.deepEqual([...statistics.channelMessageCounts.values()], Array(9).fill(700n));
+  assert.equal(statistics.messageEndTime, BigInt(STEPS - 1) * 100_000_000n);
+  assert.deepEqual([...statistics.channelMessageCounts.values()], Array(9).fill(BigInt(STEPS)));
   const found = [];
   const moment = {startTime: 35_000_000_000n, endTime: 35_200_000_000n};
   for await (const {sequence} of reader.readMessages({topics: ["TRUTH"], ...moment})) found.push(sequence);
@@ -141,13 +142,13 @@ test("a reader that checks every checksum reads the file from front to back", ()
   const counts = {};
   for (let record; (record = reader.nextRecord());) counts[record.type] = (counts[record.type] ?? 0) + 1;
   assert.ok(reader.done());
-  assert.equal(counts.Message, 9 * 700);
+  assert.equal(counts.Message, 9 * STEPS);
   assert.equal(counts.DataEnd, 1);
 });
 
 test("a changed byte of a message does not pass the checksum of its chunk", () => {
   const bytes = readFileSync(file);
-  bytes[Math.floor(bytes.length / 2)] ^= 1;
+  bytes[Math.floor(bytes.length / 4)] ^= 1;  // in the middle of the first of two chunks
   const reader = new McapStreamReader({decompressHandlers, validateCrcs: true});
   reader.append(bytes);
   assert.throws(() => {
@@ -167,7 +168,7 @@ test("the attached scenario, run again, has the digest of the metadata", async (
   const run = JSON.parse(fogline("run", again, "--transport", "direct", "--json", "--quiet",
                                  "--log", path.join(folder, "again.lcm")));
   assert.equal(run.digest, metadata.get("digest"));
-  assert.equal(metadata.get("steps"), "700");
+  assert.equal(metadata.get("steps"), String(STEPS));
   assert.equal(metadata.get("complete"), "true");
   assert.match(metadata.get("run_id"), /^[1-9][0-9]*$/);
 });
