@@ -11,6 +11,9 @@ endforeach()
 install(TARGETS ${programs} RUNTIME DESTINATION bin)
 
 install(TARGETS fogline_hear_loopback LIBRARY DESTINATION lib)
+if(TARGET fogline_sumo)
+  install(TARGETS fogline_sumo LIBRARY DESTINATION lib/fogline)  # load_sumo.h finds it there
+endif()
 
 foreach(part IN ITEMS common lcmtypes scenario wire runtime)
   set_target_properties(fogline_${part} PROPERTIES EXPORT_NAME ${part})
@@ -23,6 +26,7 @@ install(DIRECTORY services/runtime DESTINATION include/services FILES_MATCHING P
 install(DIRECTORY scenario/ DESTINATION include/scenario
   FILES_MATCHING PATTERN "*.h" PATTERN "bad" EXCLUDE PATTERN "ensemble" EXCLUDE)
 install(FILES scenario/paper.json scenario/dense_fog.json scenario/recorded_lead.json
+  scenario/sumo_queue.json
   scenario/scenario.schema.json DESTINATION share/fogline/scenario)
 install(DIRECTORY scenario/data scenario/ensemble DESTINATION share/fogline/scenario)
 

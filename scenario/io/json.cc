@@ -270,6 +270,20 @@ const JsonMember* FindMember(const JsonObject& object, std::string_view key) {
 }
 JsonMember* FindMember(JsonObject& object, std::string_view key) { return Find(object, key); }
 
+Place FindPlace(const JsonValue& root, std::string_view pointer) {
+  const JsonValue* at = &root;
+  while (!pointer.empty()) {
+    const std::size_t end = std::min(pointer.find('/', 1), pointer.size());
+    const auto* object = at->As<JsonObject>();
+    const JsonMember* member =
+        object == nullptr ? nullptr : FindMember(*object, pointer.substr(1, end - 1));
+    if (member == nullptr) break;
+    at = &member->value;
+    pointer.remove_prefix(end);
+  }
+  return at->place;
+}
+
 std::string Describe(const JsonValue& value) { return std::visit(DescribeKind{}, value.data); }
 
 std::string JoinPointer(std::string_view base, std::string_view key) {

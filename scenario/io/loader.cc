@@ -12,6 +12,7 @@
 #include "scenario/io/overrides.h"
 #include "scenario/io/reader.h"
 #include "scenario/io/recorded.h"
+#include "scenario/io/sumo_files.h"
 
 namespace fogline {
 namespace {
@@ -59,6 +60,9 @@ Scenario LoadScenario(const std::filesystem::path& file,
   const LeadSection& lead = document.scenario.lead;
   if (lead.profile == LeadProfile::kRecorded && lead.recorded.speeds_mps.empty()) {
     ResolveRecorded(file.parent_path(), document.root, document.sources, document.scenario);
+  }
+  if (lead.profile == LeadProfile::kSumo) {
+    ResolveSumo(file.parent_path(), document.root, document.sources, document.scenario);
   }
   return std::move(document.scenario);
 }

@@ -39,12 +39,13 @@ class ScenarioError : public InputError {
 /// Reads a scenario file and applies `overrides` ("/arbitrator/threshold=0.8", as after --set)
 /// before all checks. If the leader is recorded and lead.recorded.speeds_mps is empty, the function
 /// reads the CSV file (relative to the scenario's folder). Then the function fills speeds_mps with
-/// the speeds at steps 0 to steps - 1, interpolated linearly.
+/// the speeds at steps 0 to steps - 1, interpolated linearly. If the leader comes from SUMO, the
+/// function fills lead.sumo.net and lead.sumo.routes in the same way with the lines of their files.
 /// @throws ScenarioError
 Scenario LoadScenario(const std::filesystem::path& file,
                       const std::vector<std::string>& overrides = {});
 
-/// As LoadScenario(), for a text in memory. Messages show `name` as the file's name. Reads no CSV
+/// As LoadScenario(), for a text in memory. Messages show `name` as the file's name. Reads no other
 /// file.
 /// @throws ScenarioError
 Scenario ParseScenario(std::string_view text, std::string_view name = "scenario",

@@ -142,9 +142,10 @@ void AddNeed(Json& object, std::string_view section, const NeedSpec& need) {
     any_of.push_back(
         {{"required", {field}}, {"properties", {{field, {{"minLength", 1}, {"minItems", 1}}}}}});
   }
-  object["if"] = {{"required", {need.choice}},
-                  {"properties", {{need.choice, {{"const", need.value}}}}}};
-  object["then"] = {{"required", {section}}, {"properties", {{section, {{"anyOf", any_of}}}}}};
+  const Json chosen{{"required", {need.choice}},
+                    {"properties", {{need.choice, {{"const", need.value}}}}}};
+  const Json given{{"required", {section}}, {"properties", {{section, {{"anyOf", any_of}}}}}};
+  object["allOf"].push_back({{"if", chosen}, {"then", given}});
 }
 
 /// The schema of a file.

@@ -35,14 +35,15 @@ struct WorldSection {
                 "m/s and 3 m");
 };
 
-enum class LeadProfile { kConstant, kBreakpoints, kSinusoid, kEmergencyBrake, kRecorded };
+enum class LeadProfile { kConstant, kBreakpoints, kSinusoid, kEmergencyBrake, kRecorded, kSumo };
 constexpr auto ChoicesOf(LeadProfile) {
   return std::to_array<Choice>(
       {{"constant", "speed_mps throughout"},
        {"breakpoints", "from speed_mps linearly to each breakpoint's speed in turn"},
        {"sinusoid", "speed_mps plus a sine"},
        {"emergency_brake", "speed_mps, then hard braking"},
-       {"recorded", "a recorded speed from a CSV file"}});
+       {"recorded", "a recorded speed from a CSV file"},
+       {"sumo", "the nearest of the cars that SUMO moves"}});
 }
 
 /// The leader's speed changes linearly from its last value to `speed_mps` within `duration_s`.
@@ -95,11 +96,38 @@ struct RecordedSection {
                 "the recording that file names, or the scenario's own list");
 };
 
+/// Largest number of lines of a text for SUMO.
+inline constexpr std::int64_t kMaxSumoLines = 200'000;
+
+/// A traffic simulation by SUMO, with the host in it. LoadScenario() reads the two files and fills
+/// `net` and `routes` with their lines, so that no other machine needs the files.
+struct SumoSection {
+  FOGLINE_FIELD(std::string, net_file, {},
+                "SUMO's network (.net.xml), relative to the scenario's folder; without effect if "
+                "net is given.");
+  FOGLINE_FIELD(std::string, route_file, {},
+                "SUMO's routes and cars (.rou.xml), relative to the scenario's folder; without "
+                "effect if routes is given.");
+  FOGLINE_FIELD(std::string, behind, {},
+                "Name of the car of SUMO behind which the host begins, at world.host_gap_m. The "
+                "host drives along the route of this car.");
+  FOGLINE_FIELD(double, start_s, 1.0, {0.001, 1e5, "s"},
+                "SUMO's time that belongs to step 0; SUMO's cars drive alone before it.",
+                "our choice, because cars that depart at 0 s are then on the road");
+  FOGLINE_FIELD(std::string, version, {},
+                "SUMO's version, such as \"SUMO 1.15.0\"; a machine with another one refuses the "
+                "scenario. If it is empty, a run states here the version that it has.");
+  FOGLINE_FIELD(std::vector<std::string>, net, {}, {0, kMaxSumoLines},
+                "Lines of the network, instead of net_file.");
+  FOGLINE_FIELD(std::vector<std::string>, routes, {}, {0, kMaxSumoLines},
+                "Lines of the routes and cars, instead of route_file.");
+};
+
 /// Speed of the preceding car over time.
 struct LeadSection {
   FOGLINE_FIELD(LeadProfile, profile, LeadProfile::kConstant, "Kind of speed profile.");
   FOGLINE_FIELD(double, speed_mps, 20.0, {0, 70, "m/s"},
-                "Speed at step 0, for every profile except recorded.",
+                "Speed at step 0, for every profile except recorded and sumo.",
                 "our choice, because the paper prints none; from 20 m/s on the limits of ISO 15622 "
                 "are the tightest");
   FOGLINE_FIELD(std::vector<SpeedBreakpoint>, breakpoints, {}, {0, 10'000},
@@ -109,6 +137,8 @@ struct LeadSection {
                 "Parameters of profile emergency_brake.");
   FOGLINE_FIELD(RecordedSection, recorded, {}, "Parameters of profile recorded.",
                 {.choice = "profile", .value = "recorded", .fields = {"file", "speeds_mps"}});
+  FOGLINE_FIELD(SumoSection, sumo, {}, "Parameters of profile sumo.",
+                {.choice = "profile", .value = "sumo", .fields = {"net_file", "net"}});
 };
 
 enum class FogModel { kNone, kBias, kBeam, kModes };

@@ -72,6 +72,7 @@ class ClosedLoop {
     if (person_) throw InputError(std::string(kPersonNeedsRealtime));
     static const arbitration_t kBeforeTheRun{};
     const arbitration_t* last = &kBeforeTheRun;
+    const EndOfRun end(world_);
     const auto* made = &world_.Start(run_id);
     while (true) {
       const auto& [truth, ego] = *made;
@@ -93,6 +94,18 @@ class ClosedLoop {
   }
 
  private:
+  /// Ends the run of a world, even if a step throws.
+  class EndOfRun {
+   public:
+    explicit EndOfRun(world::World& world) : world_(world) {}
+    ~EndOfRun() { world_.End(); }
+    EndOfRun(const EndOfRun&) = delete;
+    EndOfRun& operator=(const EndOfRun&) = delete;
+
+   private:
+    world::World& world_;
+  };
+
   /// Which roles use their inputs on demand in this scenario (services/algorithm.h).
   struct OnDemandRoles {
     explicit OnDemandRoles(const Scenario& scenario)

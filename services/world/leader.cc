@@ -23,6 +23,7 @@ Leader::Leader(const LeadSection& lead) : lead_(lead) {
 double Leader::SpeedAt(std::int64_t step, double time_s) const {
   switch (lead_.profile) {
     case LeadProfile::kConstant:
+    case LeadProfile::kSumo:
       return lead_.speed_mps;
     case LeadProfile::kBreakpoints:
       return BreakpointSpeed(time_s);

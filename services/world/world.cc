@@ -10,6 +10,7 @@
 
 #include "common/errors.h"
 #include "services/graph.h"
+#include "services/models/traffic/load_sumo.h"
 
 namespace fogline::world {
 namespace {
@@ -55,6 +56,7 @@ World::World(const Scenario& scenario)
       cars_(kFirstFollower + static_cast<std::size_t>(scenario.followers.count)),
       vehicles_(cars_.size()) {
   MakeVehicles(scenario);
+  if (scenario.lead.profile == LeadProfile::kSumo) traffic_ = models::LoadSumo(scenario);
   truth_t& truth = std::get<truth_t>(output_);
   truth.num_followers = static_cast<std::int32_t>(num_followers());
   for (auto* values : {&truth.follower_position_m, &truth.follower_speed_mps,
@@ -83,10 +85,26 @@ const World::Output& World::Start(std::int64_t run_id) {
     const double position_m = cars_[i - 1].motion.position_m - (world_.follower_gap_m + length_m);
     Place(i, {position_m, world_.follower_speed_mps}, 0.0);
   }
+  if (traffic_) BeginTraffic();
   return Publish();
 }
 
+void World::BeginTraffic() {
+  in_traffic_.clear();
+  for (std::size_t i = kHost; i < cars_.size(); ++i) in_traffic_.push_back(cars_[i].motion);
+  ahead_ = traffic_->Begin(in_traffic_);
+  Place(kPreceding, {ahead_->rear_m + world_.vehicle_length_m, ahead_->speed_mps}, 0.0);
+}
+
+void World::End() {
+  if (traffic_) traffic_->End();
+}
+
 void World::Resume(const truth_t& truth) {
+  if (traffic_) {
+    throw std::runtime_error(
+        "a world with cars from SUMO cannot go on in real time: the state of these cars is lost");
+  }
   if (truth.num_followers != static_cast<std::int32_t>(num_followers())) {
     throw std::invalid_argument("TRUTH: " + std::to_string(truth.num_followers) +
                                 " following cars instead of " + std::to_string(num_followers()));
@@ -135,11 +153,11 @@ void World::Command(const arbitration_t& host, const follower_command_t& followe
                                 " accelerations for " + std::to_string(num_followers()) +
                                 " following cars");
   }
-  Lead();
   Obey(kHost, Finite(host.acceleration_mps2, "HOST_COMMAND"));
   for (std::size_t i = 0; i < num_followers(); ++i) {
     Obey(kFirstFollower + i, Finite(followers.acceleration_mps2[i], "FOLLOWER_COMMAND"));
   }
+  traffic_ ? FollowTraffic() : Lead();
 }
 
 void World::Lead() {
@@ -150,6 +168,24 @@ void World::Lead() {
   profile_mps_.reset();
   if (possible_mps2 == profile_mps2) profile_mps_ = next_mps;
   Obey(kPreceding, possible_mps2);
+}
+
+void World::FollowTraffic() {
+  for (std::size_t i = kHost; i < cars_.size(); ++i) {
+    in_traffic_[i - kHost] = models::Advance(cars_[i].motion, cars_[i].acceleration_mps2, step_s_);
+  }
+  ahead_ = traffic_->Step(in_traffic_);
+  // Until another car is in its place, and in front of an empty lane, the car keeps its speed.
+  const bool same = ahead_ && !ahead_->changed;
+  const double change_mps = same ? ahead_->speed_mps - cars_[kPreceding].motion.speed_mps : 0.0;
+  Obey(kPreceding, change_mps / step_s_);
+}
+
+// Where SUMO has the car, without the rounding of the integration.
+void World::PlaceByTraffic() {
+  Car& preceding = cars_[kPreceding];
+  preceding.motion = {ahead_->rear_m + world_.vehicle_length_m, ahead_->speed_mps};
+  if (ahead_->changed) preceding.applied_mps2 = ahead_->acceleration_mps2;
 }
 
 void World::Obey(std::size_t car, double command_mps2) {
@@ -175,6 +211,7 @@ void World::Integrate() {
     const bool rested = car.acceleration_mps2 < 0.0 && car.motion.speed_mps == 0.0;
     car.applied_mps2 = rested ? (0.0 - car.begin_mps) / step_s_ : car.acceleration_mps2;
   }
+  if (ahead_) PlaceByTraffic();
 }
 
 void World::RecordCollision(double begin_s, double duration_s) {
@@ -224,6 +261,8 @@ const World::Output& World::Publish() {
   truth.collision_time_s = collision_time_s_;
   const bool crashed = collision_ != truth_t::COLLISION_NONE && world_.end_on_collision;
   truth.last = crashed || step_ == steps_ - 1;
+
+  if (truth.last) End();
 
   ego.header = truth.header;
   ego.speed_mps = truth.host_speed_mps;

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <tuple>
 #include <vector>
@@ -13,6 +14,7 @@
 #include "fogline/follower_command_t.hpp"
 #include "fogline/truth_t.hpp"
 #include "scenario/sections/scenario.h"
+#include "services/models/traffic/traffic.h"
 #include "services/models/vehicle/longitudinal_vehicle.h"
 #include "services/models/vehicle/motion.h"
 #include "services/world/fog_schedule.h"
@@ -23,30 +25,33 @@ namespace fogline::world {
 
 /// The preceding car, the host and the cars that follow it, in one lane. The preceding car has the
 /// speed of its profile. While the profile brakes harder than friction allows, the car is faster
-/// than its profile (leader_friction.h). Each other car is a point mass or a vehicle. A point mass
-/// has exactly the commanded acceleration. A vehicle follows the command as far as it can
-/// (services/models/vehicle). The acceleration of every car is constant within a step
-/// (services/models/vehicle/motion.h). Cars that have collided do not push each other. If the run
-/// does not end, these cars continue to follow their commands, and the gap between them is
-/// negative.
+/// than its profile (leader_friction.h). With profile sumo the preceding car is the nearest of the
+/// cars that SUMO moves (services/models/traffic), so it may be another car than a step before.
+/// Each other car is a point mass or a vehicle. A point mass has exactly the commanded
+/// acceleration. A vehicle follows the command as far as it can (services/models/vehicle). The
+/// acceleration of every car is constant within a step (services/models/vehicle/motion.h). Cars
+/// that have collided do not push each other. If the run does not end, these cars continue to
+/// follow their commands, and the gap between them is negative.
 class World {
  public:
   using Output = std::tuple<truth_t, ego_t>;
 
   /// @throw std::invalid_argument if the scenario's recorded leader has no speeds
   /// @throw InputError if the places of the scenario's hills do not increase, a step is too short
-  ///     for the delays of a vehicle, or the leader's profile states a braking that friction does
-  ///     not allow
+  ///     for the delays of a vehicle, the leader's profile states a braking that friction does not
+  ///     allow, or the leader comes from SUMO and this machine has no SUMO
   explicit World(const Scenario& scenario);
 
   /// Step 0: the state that the scenario describes. Begins a new run.
+  /// @throw InputError if the leader comes from SUMO, and SUMO refuses its network or routes
   const Output& Start(std::int64_t run_id);
 
   /// Continues after a step that another instance published. With point masses, this instance
   /// computes the same steps that the other instance would compute. TRUTH does not contain the
   /// state of a vehicle's engine and brakes, so a vehicle begins as if it had kept its acceleration
   /// for a long time.
-  /// @throw std::invalid_argument if that instance had another number of cars
+  /// @throw std::invalid_argument if that instance had another number of cars;
+  ///     std::runtime_error if the leader comes from SUMO, whose state is lost
   void Resume(const truth_t& truth);
 
   /// Computes step k + 1 from the commands of step k. The acceleration that truth and ego report is
@@ -57,6 +62,9 @@ class World {
   /// @throw std::invalid_argument if a command is not finite, or if there are more or fewer
   ///     commands than following cars.
   const Output& Step(const arbitration_t& host, const follower_command_t& followers);
+
+  /// Ends the run, so that another object can begin one: a process runs one simulation of SUMO.
+  void End();
 
   /// The last published step.
   const truth_t& truth() const { return std::get<truth_t>(output_); }
@@ -79,6 +87,9 @@ class World {
   void Place(std::size_t car, const models::Motion& motion, double acceleration_mps2);
   void Command(const arbitration_t& host, const follower_command_t& followers);
   void Lead();
+  void BeginTraffic();
+  void FollowTraffic();
+  void PlaceByTraffic();
   void Obey(std::size_t car, double command_mps2);
   void Integrate();
   void RecordCollision(double begin_s, double duration_s);
@@ -91,6 +102,9 @@ class World {
   Leader leader_;
   LeaderFriction friction_;
   FogSchedule fog_;
+  std::unique_ptr<models::Traffic> traffic_;  // nullptr: the leader has a profile
+  std::vector<models::Motion> in_traffic_;    // the host and its followers at the end of the step
+  std::optional<models::LeaderInTraffic> ahead_;  // at the end of the step; nullopt: an empty lane
 
   std::int64_t run_id_ = 0;
   std::int64_t step_ = 0;

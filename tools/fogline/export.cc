@@ -1,4 +1,4 @@
-// fogline export: writes a log as CSV or as a MAT-file, for programs that do not know LCM.
+// fogline export: writes a log as CSV, MAT-file or MCAP file, for programs that do not know LCM.
 #include <memory>
 #include <string>
 #include <utility>
@@ -11,11 +11,13 @@
 #include "common/interrupt.h"
 #include "common/process/console.h"
 #include "common/text.h"
+#include "services/log/run_log.h"
 #include "tools/cli/arguments.h"
 #include "tools/cli/help.h"
 #include "tools/cli/logs/log_reading.h"
 #include "tools/export/csv_export.h"
 #include "tools/export/mat_export.h"
+#include "tools/export/mcap/mcap_export.h"
 #include "tools/fogline/verbs.h"
 
 namespace fogline {
@@ -27,6 +29,7 @@ struct ExportArguments {
   cli::LogReading reading;
   std::filesystem::path log;
   std::filesystem::path out;
+  std::filesystem::path mcap;
   bool force = false;
   bool json = false;
 };
@@ -60,41 +63,64 @@ std::vector<std::filesystem::path> Write(const exports::RunTables& tables,
   return {out};
 }
 
-int RunExport(const ExportArguments& arguments) {
+/// What an export has written, and what the log has.
+struct Exported {
+  std::vector<std::filesystem::path> files;
+  log::RunLog run;
+};
+
+Exported ExportTables(const ExportArguments& arguments, const log::ReadOptions& options) {
   CheckFiles(arguments);
-  WatchInterrupts();
   // The log is read first, so that no folder is made if the file is no log.
+  exports::RunTables tables = exports::ReadRunTables(arguments.log, options);
+  std::vector<std::filesystem::path> files = Write(tables, arguments.out);
+  return {.files = std::move(files), .run = std::move(tables.run)};
+}
+
+Exported ExportMcap(const ExportArguments& arguments, const log::ReadOptions& options) {
+  RefuseToReplace(arguments.mcap, "--mcap", arguments.force, "export", mcap::IsMcapExport);
+  RequireWritable(arguments.mcap, "--mcap");
+  cli::RefuseJsonBeside(arguments.mcap, "--mcap", arguments.json);
+  return {.files = {arguments.mcap},
+          .run = mcap::WriteMcap(arguments.log, options, arguments.mcap)};
+}
+
+int RunExport(const ExportArguments& arguments) {
+  WatchInterrupts();
   log::ReadOptions options = arguments.reading.Options();
   options.needs_scenario = false;
-  const exports::RunTables tables = exports::ReadRunTables(arguments.log, options);
-  const std::vector<std::filesystem::path> files = Write(tables, arguments.out);
-  const log::RunLog& run = tables.run;
+  const Exported exported =
+      arguments.mcap.empty() ? ExportTables(arguments, options) : ExportMcap(arguments, options);
   if (arguments.json) {
     nlohmann::ordered_json json{{"log", arguments.log.string()},
-                                {"steps", run.steps},
-                                {"complete", run.complete},
+                                {"steps", exported.run.steps},
+                                {"complete", exported.run.complete},
                                 {"files", nlohmann::ordered_json::array()}};
-    if (run.gaps.Any()) json["gaps"] = cli::GapsJson(run.gaps);
-    for (const std::filesystem::path& file : files) json["files"].push_back(file.string());
+    if (exported.run.gaps.Any()) json["gaps"] = cli::GapsJson(exported.run.gaps);
+    for (const std::filesystem::path& file : exported.files) json["files"].push_back(file.string());
     cli::PrintJson(json);
   } else {
-    for (const std::filesystem::path& file : files) fmt::print("{}\n", PathText(file));
+    for (const std::filesystem::path& file : exported.files) {
+      cli::PrintBeside(arguments.mcap, fmt::format("{}\n", PathText(file)));
+    }
   }
-  cli::SayAboutLog(arguments.log, run);
-  return run.complete ? kDone : kCheckFailed;
+  cli::SayAboutLog(arguments.log, exported.run);
+  return exported.run.complete ? kDone : kCheckFailed;
 }
 
 }  // namespace
 
 void AddExport(CLI::App& app, cli::Action& action) {
-  CLI::App* verb = app.add_subcommand("export", "Write a log as CSV files or as a MAT-file");
+  CLI::App* verb = app.add_subcommand("export", "Write a log as CSV, MAT or MCAP files");
   const auto arguments = std::make_shared<ExportArguments>(*verb);
   verb->add_option("LOG", arguments->log, "Event log")->required();
-  verb->add_option(
-          "--out", arguments->out,
-          "FILE.mat: one MAT-file of level 5. Else a folder: CHANNEL.csv for each channel, "
-          "and scenario.json")
-      ->required();
+  auto* out = verb->add_option(
+      "--out", arguments->out,
+      "FILE.mat: one MAT-file of level 5. Else a folder: CHANNEL.csv for each channel, and "
+      "scenario.json");
+  verb->add_option("--mcap", arguments->mcap,
+                   "In place of --out: one MCAP file, for Foxglove, Lichtblick, PlotJuggler, rerun")
+      ->excludes(out);
   verb->add_flag("--force", arguments->force, "Replace existing files of an export");
   verb->add_flag("--json", arguments->json, "Print the names of the files as JSON");
   cli::ShowExitCodes(*verb, {.check_failed = "the log is not complete", .interruptible = true});
@@ -108,8 +134,14 @@ void AddExport(CLI::App& app, cli::Action& action) {
       "Examples:\n"
       "  fogline export logs/paper-1.lcm --out logs/paper-1\n"
       "  fogline export logs/paper-1.lcm --out logs/paper-1.mat\n"
+      "  fogline export logs/paper-1.lcm --mcap logs/paper-1.mcap\n"
       "  octave --eval 'load logs/paper-1.mat; plot(TRUTH.header.step, TRUTH.host_gap_m)'");
-  verb->callback([&action, arguments] { action = [arguments] { return RunExport(*arguments); }; });
+  verb->callback([&action, arguments] {
+    if (arguments->out.empty() && arguments->mcap.empty()) {
+      throw CLI::RequiredError("--out or --mcap");
+    }
+    action = [arguments] { return RunExport(*arguments); };
+  });
 }
 
 }  // namespace fogline

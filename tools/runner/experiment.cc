@@ -16,6 +16,7 @@
 #include "services/closed_loop/closed_loop.h"
 #include "services/metrics/sample_decoder.h"
 #include "services/metrics/take_over/take_over_accumulator.h"
+#include "services/models/traffic/load_sumo.h"
 #include "services/runtime/wire/digest.h"
 #include "tools/runner/bus_run.h"
 #include "tools/runner/direct_log.h"
@@ -279,6 +280,8 @@ ExperimentResult RunLogged(const Scenario& scenario, const ExperimentOptions& op
 void CheckPossible(const Scenario& scenario, const std::filesystem::path& file) {
   try {
     const closed_loop::ClosedLoop parts(scenario);
+    // SUMO reads its network and its routes only when a run begins.
+    if (scenario.lead.profile == LeadProfile::kSumo) world::World(scenario).Start(0);
   } catch (const InputError& error) {
     // The text is "/pointer: message", or only a message if no single field is the cause.
     const std::string what = error.what();
@@ -293,6 +296,12 @@ void CheckPossible(const Scenario& scenario, const std::filesystem::path& file) 
 }
 
 ExperimentResult RunExperiment(const Scenario& scenario, const ExperimentOptions& options) {
+  if (scenario.lead.profile == LeadProfile::kSumo && scenario.lead.sumo.version.empty()) {
+    // So the log says with which version it can be computed again.
+    Scenario stated = scenario;
+    stated.lead.sumo.version = models::SumoVersion();
+    return RunExperiment(stated, options);
+  }
   ExperimentResult result =
       options.transport == "direct" ? RunDirect(scenario, options) : RunLogged(scenario, options);
   result.transport = options.transport;

@@ -57,7 +57,7 @@ def schema_verdict(validator, path):
 
 def loader_verdicts(fogline, paths):
     """For each path None if the loader accepts it, otherwise the reason. It ignores mistakes that a schema
-    cannot find: in the rows of a recorded leader's own file (rules csv-*), and in fields that contradict
+    cannot find: in a recorded leader's or SUMO's own files (rules csv-*, sumo-*), and in fields that contradict
     each other (rule impossible)."""
     names = [str(path) for path in paths]
     process = subprocess.run([fogline, "check", "--json", *names], capture_output=True, check=False)
@@ -65,7 +65,7 @@ def loader_verdicts(fogline, paths):
         sys.exit(f"fogline check: exit code {process.returncode}: {process.stderr.decode()}")
     verdicts = dict.fromkeys(names)
     for mistake in json.loads(process.stdout):
-        if not mistake["rule"].startswith(("csv-", "impossible")):
+        if not mistake["rule"].startswith(("csv-", "sumo-", "impossible")):
             verdicts[mistake["file"]] = f"{mistake['pointer']}: {mistake['message'][:200]}"
     return [verdicts[name] for name in names]
 

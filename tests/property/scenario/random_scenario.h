@@ -113,6 +113,7 @@ inline Scenario RandomScenario(ValueDraw& draw) {
   if (scenario.lead.profile == LeadProfile::kRecorded) {
     scenario.lead.recorded.speeds_mps.push_back(draw.Number(0, 70));
   }
+  if (scenario.lead.profile == LeadProfile::kSumo) scenario.lead.sumo.net.emplace_back("<net/>");
   return scenario;
 }
 

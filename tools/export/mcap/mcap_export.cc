@@ -1,0 +1,174 @@
+#include "tools/export/mcap/mcap_export.h"
+
+#include <array>
+#include <cstddef>
+#include <fstream>
+#include <iterator>
+#include <optional>
+#include <string_view>
+#include <tuple>
+
+#include <fmt/core.h>
+
+#include "common/atomic_file.h"
+#include "common/errors.h"
+#include "common/interrupt.h"
+#include "common/text.h"
+#include "services/log/run_log.h"
+#include "services/log/step_order.h"
+#include "tools/export/mcap/descriptor.h"
+#include "tools/export/mcap/translate.h"
+#include "tools/export/mcap/writer.h"
+#include "tools/web/types/lcm_types.h"
+
+namespace fogline::mcap {
+namespace {
+
+constexpr std::string_view kLibrary = "fogline";
+constexpr std::string_view kEncoding = "protobuf";
+constexpr std::int64_t kNanosPerMicro = 1000;
+
+/// The message type of a channel. @param channel index in kChannels
+const web::LcmStruct& TypeOf(std::size_t channel) {
+  static const auto kTypes = std::apply(
+      []<class... M>(const fogline::Channel<M>&...) {
+        return std::array{web::FoglineTypes().Named(M::getTypeName())...};
+      },
+      kGraph);
+  return *kTypes[channel];
+}
+
+/// The steps of a run, and between them the messages outside of steps, as channels of a file.
+class Exporter {
+ public:
+  Exporter(const std::filesystem::path& log, const log::ReadOptions& options, AtomicFile& file)
+      : log_(log),
+        options_(options),
+        events_(log),
+        writer_([&file](std::string_view bytes) { file.Write(bytes); }, kLibrary) {
+    for (std::size_t channel = 0; channel < kNumChannels; ++channel) {
+      if (kChannels[channel].pace == Pace::kStep) Add(channel);
+    }
+  }
+
+  log::RunLog Run() {
+    log::RunLogReader reader(log_, options_);
+    while (const log::StepMessages* messages = reader.Next()) {
+      if (WasInterrupted()) throw Interrupted("interrupted; no file was written");
+      AddStep(*messages);
+    }
+    const log::RunLog& run = reader.run();
+    run_id_ = run.run_id;
+    AddEventsUntil(std::nullopt);
+    AddFacts(run);
+    writer_.Finish();
+    return run;
+  }
+
+ private:
+  void AddStep(const log::StepMessages& messages) {
+    for (std::size_t channel = 0; channel < kNumChannels; ++channel) {
+      const runtime::Bytes bytes = messages[channel];
+      if (bytes.size() < runtime::kHeaderEnd) continue;  // a run in real time may lack a message
+      const std::int64_t utime = runtime::ReadInt64(bytes, kUtimeOffset);
+      if (!run_id_) run_id_ = runtime::ReadInt64(bytes, runtime::kRunIdOffset);
+      AddEventsUntil(utime);
+      AddMessage(channel, bytes, runtime::ReadInt64(bytes, runtime::kStepOffset), utime);
+    }
+  }
+
+  /// Adds the messages of this run outside of steps, up to the first event after `utime`; nullopt:
+  /// all of them.
+  void AddEventsUntil(std::optional<std::int64_t> utime) {
+    while (true) {
+      if (!event_) event_ = events_.Next();
+      if (!event_ || (utime && event_->utime > *utime)) return;
+      const std::size_t channel = ChannelNamed(event_->channel);
+      if (channel < kNumChannels && channel != IndexOf<run_t>() &&
+          kChannels[channel].pace == Pace::kControl && log::IsOfRun(*event_, run_id_.value_or(0))) {
+        AddMessage(channel, event_->data, runtime::ReadInt64(event_->data, runtime::kStepOffset),
+                   event_->utime);
+      }
+      event_.reset();
+    }
+  }
+
+  void AddMessage(std::size_t channel, runtime::Bytes bytes, std::int64_t step,
+                  std::int64_t utime) {
+    Add(channel);
+    protobuf_.clear();
+    if (!AppendProtobuf(types_, TypeOf(channel), bytes, protobuf_)) {
+      throw InputError(
+          fmt::format("{}: error: message {} of {} does not decode: was it recorded with other "
+                      "message types?",
+                      PathText(log_), counts_[channel], kChannels[channel].name));
+    }
+    ++counts_[channel];
+    const auto nanos = static_cast<std::uint64_t>(utime * kNanosPerMicro);
+    writer_.Write(*ids_[channel], {.sequence = static_cast<std::uint32_t>(step),
+                                   .log_time = nanos,
+                                   .publish_time = nanos,
+                                   .data = protobuf_});
+  }
+
+  /// Adds a channel and its schema, unless the file has them.
+  void Add(std::size_t channel) {
+    if (ids_[channel]) return;
+    const web::LcmStruct& type = TypeOf(channel);
+    const SchemaId schema =
+        writer_.AddSchema(type.FullName(), kEncoding, DescriptorSetOf(types_, type));
+    const ChannelInfo& info = kChannels[channel];
+    ids_[channel] = writer_.AddChannel(
+        schema, info.name, kEncoding,
+        {{"from", std::string(NameOf(info.from))}, {"what", std::string(info.what)}});
+  }
+
+  void AddFacts(const log::RunLog& run) {
+    writer_.AddAttachment("scenario.json", "application/json", run.scenario_text);
+    writer_.AddMetadata("fogline", {{"complete", run.complete ? "true" : "false"},
+                                    {"digest", run.digest},
+                                    {"run_id", std::to_string(run.run_id)},
+                                    {"scenario_hash", run.scenario_hash},
+                                    {"seed", std::to_string(run.scenario.seed)},
+                                    {"steps", std::to_string(run.steps)},
+                                    {"title", run.scenario.title}});
+  }
+
+  static constexpr std::size_t kUtimeOffset = runtime::kStepOffset + sizeof(std::int64_t);
+
+  const std::filesystem::path& log_;
+  const log::ReadOptions& options_;
+  const web::LcmTypes& types_ = web::FoglineTypes();
+  log::EventLogReader events_;       // the messages outside of steps
+  std::optional<log::Event> event_;  // read, but not added yet
+  std::optional<std::int64_t> run_id_;
+  Writer writer_;
+  std::array<std::optional<ChannelId>, kNumChannels> ids_{};
+  std::array<std::int64_t, kNumChannels> counts_{};
+  std::string protobuf_;
+};
+
+}  // namespace
+
+bool IsMcapExport(const std::filesystem::path& file) {
+  // The beginning of what Writer() writes: the magic, and a Header without a profile.
+  std::string content;
+  PutString("", content);
+  PutString(kLibrary, content);
+  std::string expected(kMagic);
+  PutRecord(Opcode::kHeader, content, expected);
+  std::ifstream in(file, std::ios::binary);
+  std::string head(expected.size(), '\0');
+  in.read(head.data(), std::ssize(head));
+  return head == expected;
+}
+
+log::RunLog WriteMcap(const std::filesystem::path& log, const log::ReadOptions& options,
+                      const std::filesystem::path& file) {
+  AtomicFile out(file);
+  log::RunLog run = Exporter(log, options, out).Run();
+  out.Finish();
+  return run;
+}
+
+}  // namespace fogline::mcap

@@ -1,0 +1,24 @@
+// Writes a log as an MCAP file, which Foxglove, Lichtblick, PlotJuggler and rerun read.
+#pragma once
+
+#include <filesystem>
+
+#include "services/log/run_log.h"
+
+namespace fogline::mcap {
+
+/// Whether WriteMcap() has written the file, judged by its beginning.
+bool IsMcapExport(const std::filesystem::path& file);
+
+/// Writes the complete file or nothing, in memory that does not grow with the messages of the log.
+/// Each channel of the log becomes a channel of the file, with the messages of the run. RUN is left
+/// out: the scenario is the attachment scenario.json. Both times of a message are its simulated
+/// time, and its sequence is its step. The metadata record "fogline" has the run's id, digest,
+/// steps, seed and title. Equal logs give equal files.
+/// @throws InputError if the log is no log, has messages that do not fit their channel, or the file
+///     cannot be created; std::runtime_error when the disk is full; Interrupted
+/// @return what the log has
+log::RunLog WriteMcap(const std::filesystem::path& log, const log::ReadOptions& options,
+                      const std::filesystem::path& file);
+
+}  // namespace fogline::mcap

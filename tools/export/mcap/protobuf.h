@@ -1,0 +1,46 @@
+// The wire format of Protocol Buffers (protobuf.dev/programming-guides/encoding), as far as
+// messages of lcmtypes/ need it. A record is a tag, which has the number of the field and the kind
+// of its value, and the value.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "tools/web/types/little_endian.h"
+
+namespace fogline::mcap {
+
+/// How a value is written.
+enum class WireKind : std::uint8_t {
+  kVarint = 0,   // integers and booleans
+  kFixed64 = 1,  // double
+  kLength = 2,   // strings, bytes, messages, packed numbers: a length, then so many bytes
+  kFixed32 = 5,  // float
+};
+
+/// Groups of seven bits, the lowest first; all but the last have the highest bit set. A negative
+/// number has ten groups, as int32 and int64 of protobuf do.
+inline void PutVarint(std::uint64_t value, std::string& to) {
+  constexpr std::uint64_t kMore = 0x80;
+  for (; value >= kMore; value >>= 7) to += static_cast<char>(value | kMore);
+  to += static_cast<char>(value);
+}
+
+inline void PutTag(std::uint32_t number, WireKind kind, std::string& to) {
+  PutVarint(std::uint64_t{number} << 3 | static_cast<std::uint64_t>(kind), to);
+}
+
+inline void PutIntegerField(std::uint32_t number, std::int64_t value, std::string& to) {
+  PutTag(number, WireKind::kVarint, to);
+  PutVarint(static_cast<std::uint64_t>(value), to);
+}
+
+/// A string, the bytes of a message, or packed numbers.
+inline void PutLengthField(std::uint32_t number, std::string_view bytes, std::string& to) {
+  PutTag(number, WireKind::kLength, to);
+  PutVarint(bytes.size(), to);
+  to += bytes;
+}
+
+}  // namespace fogline::mcap
