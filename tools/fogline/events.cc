@@ -80,7 +80,7 @@ nlohmann::ordered_json EventsJson(const RunEvents& events) {
   for (const take_over::TakeOverEntry& entry : events.log.entries()) {
     rows.push_back({{"step", entry.step},
                     {"time_s", static_cast<double>(entry.utime) / 1e6},
-                    {"event", take_over::TextOf(entry, events.run.scenario.person.drives)},
+                    {"event", take_over::TextOf(entry, events.run.scenario.person)},
                     {"transfer", entry.transfer},
                     {"from", take_over::NameOfMode(entry.from)},
                     {"to", take_over::NameOfMode(entry.to)}});
@@ -109,7 +109,7 @@ void PrintText(const std::filesystem::path& file, const RunEvents& events) {
              events.run.scenario.seed);
   for (const take_over::TakeOverEntry& entry : events.log.entries()) {
     fmt::print("{:>8}{:>10.2f} s  {:<42}{}", entry.step, static_cast<double>(entry.utime) / 1e6,
-               take_over::TextOf(entry, events.run.scenario.person.drives),
+               take_over::TextOf(entry, events.run.scenario.person),
                take_over::NameOfMode(entry.from));
     fmt::print("{}\n", entry.from == entry.to
                            ? ""

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "fogline/arbitration_t.hpp"
+#include "scenario/sections/person.h"
 #include "services/decision/take_over/take_over_request.h"
 
 namespace fogline::take_over {
@@ -30,9 +31,10 @@ struct TakeOverEntry {
 };
 
 /// The text of an entry, for a person who reads it. It says whether a person has acknowledged a
-/// request, or whether the acknowledgement of the model of a driver was drawn.
-/// @param person whether a person drives in this run (scenario section person)
-std::string_view TextOf(const TakeOverEntry& entry, bool person);
+/// request, or whether the acknowledgement of the model of a driver was drawn. It also says whether
+/// a person has overridden.
+/// @param person section of the scenario of this run
+std::string_view TextOf(const TakeOverEntry& entry, const PersonSection& person);
 
 /// Reads commands in the order of steps; some commands may be missing.
 ///
@@ -75,6 +77,7 @@ class TakeOverLog {
   // after the driver's first effective input), and whether the driver was asked.
   std::optional<double> before_share_mps2_;
   bool asked_ = false;
+  bool overridden_ = false;  // whether the driver has this share without a request
   std::vector<TakeOverEntry> entries_;
   std::vector<TakeOverRequest> requests_;
 };

@@ -1,9 +1,12 @@
 // The fallback for a driver whom the car must ask to take over, in real time. Inputs may fail, too.
 #include <cstdint>
+#include <string_view>
 
 #include <gtest/gtest.h>
 
+#include "common/errors.h"
 #include "services/arbitrator/failsafe_arbitrator.h"
+#include "tests/support/find_row.h"
 
 namespace fogline {
 namespace {
@@ -204,6 +207,100 @@ TEST_F(FailsafePersonTest, StopsWhenTheAutomationIsLostAndTheSeatIsEmpty) {
   Leave();
   inputs_.automation.state = InputState::kLost;
   EXPECT_EQ(Step().mode, arbitration_t::MINIMAL_RISK);
+}
+
+/// A person who overrides by the brake. The authority otherwise changes within 5 s.
+Scenario Overriding(std::string_view policy = "traded") {
+  Scenario scenario = AskingAPerson();
+  scenario.arbitrator.policy = test::FindPolicy(policy).value();
+  scenario.arbitrator.transfer.profile = TransferProfile::kLinear;
+  scenario.arbitrator.transfer.duration_s = 5;
+  scenario.person.override_by = OverrideBy::kBrake;
+  return scenario;
+}
+
+class FailsafeOverrideTest : public FailsafeTakeOverTest {
+ protected:
+  explicit FailsafeOverrideTest(const Scenario& scenario = Overriding())
+      : FailsafeTakeOverTest(scenario) {
+    Agree();
+    driver_.acceleration_mps2 = kReleased_mps2;
+  }
+  void Brake() { driver_.acceleration_mps2 = kBraking_mps2; }
+
+  static constexpr double kReleased_mps2 = -0.5;
+  static constexpr double kBraking_mps2 = -5;
+};
+
+TEST_F(FailsafeOverrideTest, TakesTheWholeAuthorityAtOnceWhateverTheProfile) {
+  for (int k = 0; k < 10; ++k) ASSERT_EQ(Step().mode, arbitration_t::AUTOMATION);
+  Brake();
+  EXPECT_EQ(Step().mode, arbitration_t::RECOVERING);
+  EXPECT_EQ(last_.lambda_human, 1);
+  EXPECT_EQ(last_.acceleration_mps2, kBraking_mps2);
+  driver_.acceleration_mps2 = kReleased_mps2;
+  for (int k = 0; k < 100; ++k) {
+    ASSERT_EQ(Step().lambda_human, 1) << "until the person gives back";
+    ASSERT_EQ(last_.acceleration_mps2, kReleased_mps2);
+  }
+  driver_.gives_back = 1;
+  EXPECT_EQ(Step().mode, arbitration_t::AUTOMATION);
+}
+
+TEST_F(FailsafeOverrideTest, HappensAlsoInTheFirstStep) {
+  Brake();
+  EXPECT_EQ(Step().mode, arbitration_t::RECOVERING);
+  EXPECT_EQ(last_.acceleration_mps2, kBraking_mps2);
+}
+
+TEST_F(FailsafeOverrideTest, IsNothingThatAnEmptySeatCouldDo) {
+  Step();
+  Brake();
+  driver_.readiness = 0;
+  for (int k = 0; k < 20; ++k) ASSERT_EQ(Step().mode, arbitration_t::AUTOMATION);
+}
+
+TEST_F(FailsafeOverrideTest, KeepsNoAuthorityWhenThePersonHasGone) {
+  Step();
+  Brake();
+  Step();
+  driver_.readiness = 0;
+  EXPECT_EQ(Step().mode, arbitration_t::MINIMAL_RISK);
+}
+
+TEST_F(FailsafeOverrideTest, LetsThePersonDriveWhenTheAutomationIsLostInTheSameStep) {
+  Step();
+  Brake();
+  inputs_.automation.state = InputState::kLost;
+  EXPECT_EQ(Step().mode, arbitration_t::HUMAN);
+  EXPECT_EQ(last_.acceleration_mps2, kBraking_mps2);
+}
+
+class FailsafeSharedOverrideTest : public FailsafeOverrideTest {
+ protected:
+  FailsafeSharedOverrideTest() : FailsafeOverrideTest(Overriding("blend")) {}
+};
+
+TEST_F(FailsafeSharedOverrideTest, LeavesTheAutomationNoShare) {
+  Step();
+  Brake();
+  for (int k = 0; k < 20; ++k) {
+    ASSERT_EQ(Step().lambda_human, 1);
+    ASSERT_EQ(last_.acceleration_mps2, kBraking_mps2);
+  }
+}
+
+TEST(OverrideScenarioTest, NeedsADriverWhoIsAsked) {
+  Scenario scenario = Overriding();
+  scenario.arbitrator.take_over.mode = TakeOverMode::kInstant;
+  try {
+    const arbitrator::FailsafeArbitrator arbitrator(scenario);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(),
+                 "/person/override_by: \"brake\" needs /arbitrator/take_over/mode "
+                 "\"requested\": only then can the person give back");
+  }
 }
 
 /// A person who need not be asked.

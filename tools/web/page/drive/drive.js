@@ -168,6 +168,7 @@ class Drive {
     this.newest.setRun(run);
     this.person.ramps.rates = ratesOf(run.scenario);
     this.length_m = run.scenario?.world?.vehicle_length_m ?? 4.5;
+    byId("override").hidden = run.scenario?.person?.override_by !== "brake";
   }
 
   sit(state) {

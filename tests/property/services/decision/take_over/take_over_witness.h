@@ -51,6 +51,12 @@ inline Scenario AnyScenario(Dice& dice) {
       .comfort_deceleration_mps2 = dice.Between(0.5, 3),
       .emergency_deceleration_mps2 = dice.Between(3.2, 4),
       .jerk_mps3 = dice.Between(0.5, 20)};
+  if (dice.Chance(0.4)) {
+    scenario.person = {.drives = true,
+                       .coasting_mps2 = 0.5,
+                       .override_by = dice.Chance(0.8) ? OverrideBy::kBrake : OverrideBy::kNone,
+                       .override_pedal = dice.Between(0.01, 0.9)};
+  }
   return scenario;
 }
 
@@ -58,18 +64,23 @@ inline Scenario AnyScenario(Dice& dice) {
 /// the host. The host's brake may fail for a while.
 class Events {
  public:
-  explicit Events(Dice& dice, double step_s)
-      : dice_(dice), step_s_(step_s), brakes_(!dice.Chance(0.15)) {
+  Events(Dice& dice, const Scenario& scenario)
+      : dice_(dice),
+        step_s_(scenario.step_s),
+        person_(scenario.person.drives),
+        brakes_(!dice.Chance(0.15)) {
     track_.valid = true;
     inputs_.speed_mps = dice.Chance(0.5) ? dice.Between(0, 5) : dice.Between(5, 40);
     inputs_.applied_mps2 = dice.Between(-6, 2);
     danger_ = dice.Chance(0.3) ? 0.05 : 0.002;
+    liveliness_ = dice.Chance(0.5) ? 0.05 : 0.002;
   }
 
   const take_over::TakeOverInputs& Next() {
     if (dice_.Chance(0.03)) inputs_.human_wanted = !inputs_.human_wanted;
     inputs_.automation_mps2 = dice_.Between(-6, 2);
     inputs_.human_mps2 = dice_.Between(-8, 3);
+    if (person_) Act();
     inputs_.readiness = dice_.Between(0, 1);
     track_.state[0] = dice_.Chance(danger_) ? dice_.Between(-1, 20) : dice_.Between(80, 200);
     track_.state[1] = dice_.Between(-20, 20);
@@ -78,12 +89,13 @@ class Events {
     return inputs_;
   }
 
-  /// Draws other offers. They have no influence on the events.
+  /// Draws other offers. They have no influence on the events. A person's offer may be an override,
+  /// so it stays.
   void OtherOffers() {
     const bool eager = dice_.Chance(0.5);
     inputs_.automation_mps2 =
         eager ? std::max(0.0, inputs_.applied_mps2) + dice_.Between(0.1, 1) : dice_.Between(-6, 2);
-    inputs_.human_mps2 = dice_.Between(-8, 3);
+    if (!person_) inputs_.human_mps2 = dice_.Between(-8, 3);
   }
   const take_over::TakeOverInputs& inputs() const { return inputs_; }
 
@@ -96,8 +108,17 @@ class Events {
   }
 
  private:
+  /// A person usually leaves the brake alone.
+  void Act() {
+    inputs_.human_mps2 = dice_.Chance(liveliness_) ? dice_.Between(-8, 0) : dice_.Between(-0.5, 3);
+    inputs_.acknowledged = dice_.Chance(liveliness_);
+    inputs_.gives_back = dice_.Chance(0.1);
+  }
+
   Dice& dice_;
   double step_s_;
+  bool person_;
+  double liveliness_ = 0;  // how often a person does something
   bool brakes_;
   double danger_;
   track_t track_{};
@@ -110,6 +131,7 @@ class Witness {
  public:
   explicit Witness(const Scenario& scenario)
       : section_(scenario.arbitrator.take_over),
+        person_(scenario.person),
         step_s_(scenario.step_s),
         random_(scenario.seed, Stream::kTakeOver),
         time_(section_.time, section_.lead_s),
@@ -119,25 +141,32 @@ class Witness {
 
   take_over::TakeOverEvents EventsOf(std::int64_t step,
                                      const take_over::TakeOverInputs& inputs) const {
-    take_over::TakeOverEvents events = take_over::Bit(
-        inputs.human_wanted ? take_over::TakeOverEvent::kWanted : take_over::TakeOverEvent::kCalm);
+    take_over::TakeOverEvents events = 0;
     const auto set = [&events](take_over::TakeOverEvent event, bool holds) {
       if (holds) events = static_cast<take_over::TakeOverEvents>(events | take_over::Bit(event));
     };
+    const bool may_return = !person_.drives || inputs.gives_back;
+    set(take_over::TakeOverEvent::kWanted, inputs.human_wanted);
+    set(take_over::TakeOverEvent::kCalm, !inputs.human_wanted && may_return);
+    set(take_over::TakeOverEvent::kOverride, Overrides(inputs));
+    set(take_over::TakeOverEvent::kRecovered,
+        transferred_ && Since(step, *transferred_) + kTolerance >= section_.recovery_s);
     set(take_over::TakeOverEvent::kSevere, Ttc_s(inputs) < section_.severe_ttc_s);
     set(take_over::TakeOverEvent::kStandstill, inputs.speed_mps < 0.01 && inputs.applied_mps2 <= 0);
     set(take_over::TakeOverEvent::kOverdue,
         stage_ && Since(step, *stage_ + 1) + kTolerance >= overdue_s_);
     if (!requested_) return events;
     const double t = Since(step, *requested_);
-    const bool answered = section_.absent_probability < 1 && t + kTolerance >= time_s_;
+    const double answer_s = AnswerTime_s(step, inputs);
+    const bool answered = t + kTolerance >= answer_s;
+    // A person may answer until the step of the deadline. A drawn time is compared directly.
+    const double latest_s = section_.lead_s + (person_.drives ? step_s_ - kTolerance : 0);
     set(take_over::TakeOverEvent::kEscalation, t + kTolerance >= section_.escalation_s);
-    set(take_over::TakeOverEvent::kAcknowledged, answered && time_s_ <= section_.lead_s);
+    set(take_over::TakeOverEvent::kAcknowledged,
+        answered && (person_.drives ? answer_s < latest_s : answer_s <= latest_s));
     set(take_over::TakeOverEvent::kReady,
         answered && inputs.readiness >= section_.required_readiness);
     set(take_over::TakeOverEvent::kDeadline, t + kTolerance >= section_.lead_s);
-    set(take_over::TakeOverEvent::kRecovered,
-        transferred_ && Since(step, *transferred_) + kTolerance >= section_.recovery_s);
     return events;
   }
 
@@ -166,11 +195,13 @@ class Witness {
   void Note(const take_over::TakeOverOutcome& out, take_over::TakeOverState before,
             std::int64_t step, const take_over::TakeOverInputs& inputs) {
     using enum take_over::TakeOverState;
+    if (requested_) time_s_ = AnswerTime_s(step, inputs);
     if (out.state == kDemand && before == kAutomated) {
       requested_ = step;
-      transferred_.reset();
-      time_s_ = time_.Draw(random_, step);
+      const bool absent = person_.drives || section_.absent_probability >= 1;
+      time_s_ = absent ? kNever_s : time_.Draw(random_, step);
     }
+    if (out.state == kRecovering && before == kAutomated) requested_.reset();
     if (out.state == kRecovering && before != kRecovering) transferred_ = step;
     if (out.authority >= take_over::Authority::kComfort) manoeuvre_.Begin(inputs.applied_mps2);
     if (out.state == before) return;
@@ -206,6 +237,23 @@ class Witness {
   bool manoeuvred() const { return manoeuvre_.begun(); }
 
  private:
+  static constexpr double kNever_s = std::numeric_limits<double>::infinity();
+
+  /// Whether a person brakes harder than the car, and beyond the threshold. The pedal map is
+  /// progressive, with the power 1.5 and a full brake of 8 m/s2.
+  bool Overrides(const take_over::TakeOverInputs& inputs) const {
+    if (!person_.drives || person_.override_by == OverrideBy::kNone) return false;
+    const double threshold_mps2 = std::max(-0.5 - 8 * std::pow(person_.override_pedal, 1.5), -8.0);
+    return inputs.readiness >= section_.required_readiness && inputs.human_mps2 <= threshold_mps2 &&
+           inputs.human_mps2 < inputs.applied_mps2;
+  }
+
+  /// Time from the request to the answer, as far as it is known in this step.
+  double AnswerTime_s(std::int64_t step, const take_over::TakeOverInputs& inputs) const {
+    if (!person_.drives || time_s_ < kNever_s) return time_s_;
+    return inputs.acknowledged ? Since(step, *requested_) : kNever_s;
+  }
+
   /// The upper bound of services/models/minimal_risk/README.md for the time to rest on a level
   /// road: apply the brake, slow down, release the brake, and three steps.
   double LongestStop_s(const take_over::TakeOverInputs& inputs, double deceleration_mps2) const {
@@ -220,6 +268,7 @@ class Witness {
   }
 
   TakeOverSection section_;
+  PersonSection person_;
   double step_s_;
   Random random_;
   models::TakeOverTime time_;
