@@ -34,6 +34,16 @@ constexpr auto ChoicesOf(OverrideBy) {
         "over at once (UN R157, 6.3); needs arbitrator.take_over.mode requested"}});
 }
 
+enum class WhenGone { kLocked, kUntilBack };
+constexpr auto ChoicesOf(WhenGone) {
+  return std::to_array<Choice>(
+      {{"locked", "the host stops, and stands until the end of the run"},
+       {"until_back",
+        "the host stops as after a request without an answer: until it stands, a person who is "
+        "back "
+        "drives on after an answer (take_over_by); needs arbitrator.take_over.mode requested"}});
+}
+
 /// A person who drives. services/models/driver/pedal_response.h has the equation of the pedal map.
 struct PersonSection {
   FOGLINE_FIELD(bool, drives, false,
@@ -59,6 +69,8 @@ struct PersonSection {
                 "pedals released.",
                 "our choice, because a seat sends at least every 50 ms, so six messages in a row "
                 "are then missing");
+  FOGLINE_FIELD(WhenGone, when_gone, WhenGone::kLocked,
+                "What happens when the seat becomes empty while the person has the authority.");
   FOGLINE_FIELD(TakeOverBy, take_over_by, TakeOverBy::kEither,
                 "How the person answers a request to take over.");
   FOGLINE_FIELD(double, take_over_pedal, 0.1, {0.01, 1},

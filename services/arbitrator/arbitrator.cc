@@ -1,11 +1,27 @@
 #include "services/arbitrator/arbitrator.h"
 
 #include <algorithm>
+#include <string>
 
 #include "common/errors.h"
 #include "services/decision/policies/policies.h"
 
 namespace fogline::arbitrator {
+namespace {
+
+/// Only a driver who is asked also answers, and gives back. @throws InputError for a choice of the
+/// scenario that needs this
+void RequireNoAnswers(const PersonSection& person) {
+  constexpr const char* kNeeds = " needs /arbitrator/take_over/mode \"requested\"";
+  if (person.override_by != OverrideBy::kNone) {
+    throw InputError(std::string("/person/override_by: \"brake\"") + kNeeds);
+  }
+  if (person.when_gone != WhenGone::kLocked) {
+    throw InputError(std::string("/person/when_gone: \"until_back\"") + kNeeds);
+  }
+}
+
+}  // namespace
 
 Arbitrator::Arbitrator(const Scenario& scenario)
     : threshold_(scenario.arbitrator.threshold),
@@ -22,11 +38,7 @@ Arbitrator::Arbitrator(const Scenario& scenario)
   if (scenario.arbitrator.transfer.hand_back == HandBack::kFusion) recovery_.emplace(scenario);
   if (scenario.arbitrator.take_over.mode == TakeOverMode::kRequested) take_over_.emplace(scenario);
   if (scenario.aeb.enabled) aeb_.emplace(scenario.aeb);
-  if (scenario.person.override_by != OverrideBy::kNone && !take_over_) {
-    throw InputError(
-        "/person/override_by: \"brake\" needs /arbitrator/take_over/mode \"requested\": only then "
-        "can the person give back");
-  }
+  if (!take_over_) RequireNoAnswers(scenario.person);
 }
 
 bool Arbitrator::UsesOnDemandInput(const Scenario& scenario) {

@@ -68,6 +68,9 @@ inline constexpr double kOverdueFactor = 2.0;
 /// the request in which the person answers. The automation gets authority back only if, in
 /// addition, the person gives it back.
 ///
+/// With when_gone until_back, the manoeuvre also begins when a person who has the authority is gone
+/// (readiness 0). It then waits for a new answer, as after a request.
+///
 /// A person overrides with a brake that is at override_pedal or beyond, and that brakes harder than
 /// the last sent command a'. a_P is the acceleration of a brake at override_pedal with the throttle
 /// released (services/models/driver/pedal_response.h).
@@ -82,8 +85,9 @@ class TakeOver {
   const TakeOverOutcome& Step(const header_t& header, const TakeOverInputs& inputs);
 
   const TakeOverOutcome& outcome() const { return out_; }
-  /// The last request, if there has been a request, and the driver has not overridden without a
-  /// request since. The field `effective` of this request is always empty.
+  /// The last request, if there has been a request. Empty again after an override without a
+  /// request, and after a person who had the authority is gone. The field `effective` is always
+  /// empty.
   const std::optional<TakeOverRequest>& request() const { return request_; }
   /// Whether a manoeuvre is running, has failed, or has ended in standstill.
   bool in_manoeuvre() const { return out_.authority >= Authority::kComfort; }
@@ -98,6 +102,7 @@ class TakeOver {
   bool Overrides(const TakeOverInputs& inputs) const;
   void Enter(const TakeOverRow& row, std::int64_t step, const TakeOverInputs& inputs);
   void TakeAuthority(const TakeOverRow& row, std::int64_t step);
+  void LoseAuthority();
   void Ask(std::int64_t step);
   void HearAnswer(std::int64_t step, const TakeOverInputs& inputs);
   void BeginStage(Authority stage, std::int64_t step, const TakeOverInputs& inputs);
@@ -105,6 +110,7 @@ class TakeOver {
 
   TakeOverSection section_;
   bool person_;                          // whether a person drives
+  bool returns_;                         // whether a person who is gone may come back
   std::optional<double> override_mps2_;  // a_P; nullopt if no person can override
   double step_s_;
   std::int64_t lead_steps_;
@@ -115,7 +121,8 @@ class TakeOver {
   models::MinimalRisk manoeuvre_;
 
   std::optional<TakeOverRequest> request_;
-  std::int64_t answer_step_ = 0;   // step of this request's acknowledgement
+  bool awaits_answer_ = false;     // of a person
+  std::int64_t answer_step_;       // step of the last answer
   bool in_time_ = false;           // whether the driver answers within lead_s
   std::int64_t overdue_step_ = 0;  // last step before this stage of the manoeuvre is overdue
   std::optional<std::int64_t> transferred_;  // step in which the driver got the authority

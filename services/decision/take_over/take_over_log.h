@@ -68,6 +68,7 @@ class TakeOverLog {
   void AddDecided(const arbitration_t& command, std::optional<double> human_mps2);
   void AddEmergency(const arbitration_t& command);
   void Change(const arbitration_t& command, std::int8_t from, bool transfer);
+  void NoteUnasked(std::int8_t from, std::int8_t to);
   void Transfer(const arbitration_t& command);
   void Drive(const arbitration_t& command, double human_mps2);
 
@@ -77,7 +78,9 @@ class TakeOverLog {
   // after the driver's first effective input), and whether the driver was asked.
   std::optional<double> before_share_mps2_;
   bool asked_ = false;
-  bool overridden_ = false;  // whether the driver has this share without a request
+  // Whether the driver has, or had, authority without an open request: after an override, and after
+  // a person who had taken over was gone.
+  bool unasked_ = false;
   std::vector<TakeOverEntry> entries_;
   std::vector<TakeOverRequest> requests_;
 };

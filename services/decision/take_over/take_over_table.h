@@ -38,6 +38,7 @@ enum class TakeOverEvent : std::uint8_t {
   kStandstill,
   kOverdue,   // the stage of the manoeuvre takes kOverdueFactor times the time that its brake needs
   kOverride,  // the driver overrides by the brake (TakeOver)
+  kGone,      // the seat of a person who may come back is empty
 };
 
 /// The events of a step, one bit each.
@@ -114,8 +115,10 @@ inline constexpr std::array kTakeOverTable{
     Row{kHandover,     kSevere,       kAny,   kMrmEmergency, kHard,       "emergency manoeuvre"},
     Row{kHandover,     kDeadline,     kAny,   kMrmComfort,   kComfort,    "comfortable manoeuvre"},
 
+    Row{kRecovering,   kGone,         kAny,   kMrmComfort,   kComfort,    "comfortable manoeuvre"},
     Row{kRecovering,   kRecovered,    kAny,   kManual,       kHuman,      "driver recovered"},
 
+    Row{kManual,       kGone,         kAny,   kMrmComfort,   kComfort,    "comfortable manoeuvre"},
     Row{kManual,       kCalm,         kFresh, kAutomated,    kAutomation, "return to automation"},
 
     Row{kMrmComfort,   kStandstill,   kAny,   kMrmDone,      kHard,       "standstill, locked"},

@@ -1,77 +1,10 @@
 // The fallback for a driver whom the car must ask to take over, in real time. Inputs may fail, too.
-#include <cstdint>
-#include <string_view>
-
 #include <gtest/gtest.h>
 
-#include "common/errors.h"
-#include "services/arbitrator/failsafe_arbitrator.h"
-#include "tests/support/find_row.h"
+#include "tests/unit/services/arbitrator/failsafe_take_over.h"
 
-namespace fogline {
+namespace fogline::test {
 namespace {
-
-Scenario Asking() {
-  Scenario scenario;
-  scenario.arbitrator.window_steps = 1;
-  scenario.arbitrator.take_over = {.mode = TakeOverMode::kRequested,
-                                   .lead_s = 10,
-                                   .escalation_s = 1,
-                                   .time = {.mean_s = 2, .std_s = 1e-3},
-                                   .recovery_s = 1};
-  return scenario;
-}
-
-/// The driver is a person.
-Scenario AskingAPerson() {
-  Scenario scenario = Asking();
-  scenario.person.drives = true;
-  return scenario;
-}
-
-class FailsafeTakeOverTest : public testing::Test {
- protected:
-  explicit FailsafeTakeOverTest(const Scenario& scenario = Asking()) : arbitrator_(scenario) {
-    radar_.valid = lidar_.valid = 1;
-    radar_.range_m = 37;
-    lidar_.range_m = 32;  // radar and LiDAR disagree
-    ego_.speed_mps = 20;
-    automation_.acceleration_mps2 = 0.2;
-    driver_.acceleration_mps2 = -0.4;
-    driver_.readiness = 1;
-    inputs_ = {.ego = {InputState::kOk, &ego_},
-               .radar = {InputState::kOk, &radar_},
-               .lidar = {InputState::kOk, &lidar_},
-               .track = {InputState::kOk, &track_},
-               .automation = {InputState::kOk, &automation_},
-               .driver = {InputState::kOk, &driver_}};
-  }
-
-  const arbitration_t& Step() {
-    const header_t header{.run_id = 7, .step = step_, .utime = step_ * 100'000};
-    ++step_;
-    ego_.header = radar_.header = lidar_.header = header;
-    return last_ = arbitrator_.Step(header, inputs_);
-  }
-  /// Makes steps until the mode is reached, for at most a minute.
-  void StepUntil(std::int8_t mode) {
-    for (int k = 0; k < 600 && Step().mode != mode; ++k) {
-    }
-    ASSERT_EQ(last_.mode, mode);
-  }
-  void Agree() { radar_.range_m = lidar_.range_m; }
-
-  arbitrator::FailsafeArbitrator arbitrator_;
-  ego_t ego_{};
-  radar_t radar_{};
-  lidar_t lidar_{};
-  track_t track_{};
-  accel_command_t automation_{};
-  driver_command_t driver_{};
-  arbitrator::ArbitratorInputs inputs_;
-  arbitration_t last_{};
-  std::int64_t step_ = 0;
-};
 
 TEST_F(FailsafeTakeOverTest, AsksHandsOverAndReturnsWhileEverythingIsThere) {
   EXPECT_EQ(Step().mode, arbitration_t::REQUEST);
@@ -209,103 +142,9 @@ TEST_F(FailsafePersonTest, StopsWhenTheAutomationIsLostAndTheSeatIsEmpty) {
   EXPECT_EQ(Step().mode, arbitration_t::MINIMAL_RISK);
 }
 
-/// A person who overrides by the brake. The authority otherwise changes within 5 s.
-Scenario Overriding(std::string_view policy = "traded") {
-  Scenario scenario = AskingAPerson();
-  scenario.arbitrator.policy = test::FindPolicy(policy).value();
-  scenario.arbitrator.transfer.profile = TransferProfile::kLinear;
-  scenario.arbitrator.transfer.duration_s = 5;
-  scenario.person.override_by = OverrideBy::kBrake;
-  return scenario;
-}
-
-class FailsafeOverrideTest : public FailsafeTakeOverTest {
- protected:
-  explicit FailsafeOverrideTest(const Scenario& scenario = Overriding())
-      : FailsafeTakeOverTest(scenario) {
-    Agree();
-    driver_.acceleration_mps2 = kReleased_mps2;
-  }
-  void Brake() { driver_.acceleration_mps2 = kBraking_mps2; }
-
-  static constexpr double kReleased_mps2 = -0.5;
-  static constexpr double kBraking_mps2 = -5;
-};
-
-TEST_F(FailsafeOverrideTest, TakesTheWholeAuthorityAtOnceWhateverTheProfile) {
-  for (int k = 0; k < 10; ++k) ASSERT_EQ(Step().mode, arbitration_t::AUTOMATION);
-  Brake();
-  EXPECT_EQ(Step().mode, arbitration_t::RECOVERING);
-  EXPECT_EQ(last_.lambda_human, 1);
-  EXPECT_EQ(last_.acceleration_mps2, kBraking_mps2);
-  driver_.acceleration_mps2 = kReleased_mps2;
-  for (int k = 0; k < 100; ++k) {
-    ASSERT_EQ(Step().lambda_human, 1) << "until the person gives back";
-    ASSERT_EQ(last_.acceleration_mps2, kReleased_mps2);
-  }
-  driver_.gives_back = 1;
-  EXPECT_EQ(Step().mode, arbitration_t::AUTOMATION);
-}
-
-TEST_F(FailsafeOverrideTest, HappensAlsoInTheFirstStep) {
-  Brake();
-  EXPECT_EQ(Step().mode, arbitration_t::RECOVERING);
-  EXPECT_EQ(last_.acceleration_mps2, kBraking_mps2);
-}
-
-TEST_F(FailsafeOverrideTest, IsNothingThatAnEmptySeatCouldDo) {
-  Step();
-  Brake();
-  driver_.readiness = 0;
-  for (int k = 0; k < 20; ++k) ASSERT_EQ(Step().mode, arbitration_t::AUTOMATION);
-}
-
-TEST_F(FailsafeOverrideTest, KeepsNoAuthorityWhenThePersonHasGone) {
-  Step();
-  Brake();
-  Step();
-  driver_.readiness = 0;
-  EXPECT_EQ(Step().mode, arbitration_t::MINIMAL_RISK);
-}
-
-TEST_F(FailsafeOverrideTest, LetsThePersonDriveWhenTheAutomationIsLostInTheSameStep) {
-  Step();
-  Brake();
-  inputs_.automation.state = InputState::kLost;
-  EXPECT_EQ(Step().mode, arbitration_t::HUMAN);
-  EXPECT_EQ(last_.acceleration_mps2, kBraking_mps2);
-}
-
-class FailsafeSharedOverrideTest : public FailsafeOverrideTest {
- protected:
-  FailsafeSharedOverrideTest() : FailsafeOverrideTest(Overriding("blend")) {}
-};
-
-TEST_F(FailsafeSharedOverrideTest, LeavesTheAutomationNoShare) {
-  Step();
-  Brake();
-  for (int k = 0; k < 20; ++k) {
-    ASSERT_EQ(Step().lambda_human, 1);
-    ASSERT_EQ(last_.acceleration_mps2, kBraking_mps2);
-  }
-}
-
-TEST(OverrideScenarioTest, NeedsADriverWhoIsAsked) {
-  Scenario scenario = Overriding();
-  scenario.arbitrator.take_over.mode = TakeOverMode::kInstant;
-  try {
-    const arbitrator::FailsafeArbitrator arbitrator(scenario);
-    FAIL();
-  } catch (const InputError& error) {
-    EXPECT_STREQ(error.what(),
-                 "/person/override_by: \"brake\" needs /arbitrator/take_over/mode "
-                 "\"requested\": only then can the person give back");
-  }
-}
-
 /// A person who need not be asked.
 Scenario InstantPerson() {
-  Scenario scenario = AskingAPerson();
+  Scenario scenario = FailsafeTakeOverTest::AskingAPerson();
   scenario.arbitrator.take_over.mode = TakeOverMode::kInstant;
   return scenario;
 }
@@ -330,4 +169,4 @@ TEST_F(FailsafeFirstInputTest, IsNotAwaitedLongerThanTheDeadmansTime) {
 }
 
 }  // namespace
-}  // namespace fogline
+}  // namespace fogline::test

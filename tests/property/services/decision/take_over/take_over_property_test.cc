@@ -70,7 +70,7 @@ void ExpectNoManoeuvreTooEarly(const take_over::TakeOverRow& row, const Witness&
                                std::int64_t step, const take_over::TakeOverInputs& inputs,
                                const TakeOverSection& section) {
   if (row.authority < take_over::Authority::kComfort ||
-      take_over::AuthorityOf(row.state) >= take_over::Authority::kComfort)
+      take_over::AuthorityOf(row.state) >= take_over::Authority::kHuman)
     return;
   if (row.next == kMrmComfort) {
     EXPECT_GE(witness.SinceRequest(step), section.lead_s - kTolerance);

@@ -54,6 +54,7 @@ inline Scenario AnyScenario(Dice& dice) {
   if (dice.Chance(0.4)) {
     scenario.person = {.drives = true,
                        .coasting_mps2 = 0.5,
+                       .when_gone = dice.Chance(0.5) ? WhenGone::kUntilBack : WhenGone::kLocked,
                        .override_by = dice.Chance(0.8) ? OverrideBy::kBrake : OverrideBy::kNone,
                        .override_pedal = dice.Between(0.01, 0.9)};
   }
@@ -82,6 +83,7 @@ class Events {
     inputs_.human_mps2 = dice_.Between(-8, 3);
     if (person_) Act();
     inputs_.readiness = dice_.Between(0, 1);
+    if (person_ && dice_.Chance(liveliness_ / 2)) inputs_.readiness = 0;
     track_.state[0] = dice_.Chance(danger_) ? dice_.Between(-1, 20) : dice_.Between(80, 200);
     track_.state[1] = dice_.Between(-20, 20);
     track_.valid = dice_.Chance(0.95);
@@ -135,9 +137,7 @@ class Witness {
         step_s_(scenario.step_s),
         random_(scenario.seed, Stream::kTakeOver),
         time_(section_.time, section_.lead_s),
-        manoeuvre_({.deceleration_mps2 = section_.emergency_deceleration_mps2,
-                    .jerk_mps3 = section_.jerk_mps3},
-                   scenario.step_s) {}
+        manoeuvre_(Fresh()) {}
 
   take_over::TakeOverEvents EventsOf(std::int64_t step,
                                      const take_over::TakeOverInputs& inputs) const {
@@ -149,6 +149,14 @@ class Witness {
     set(take_over::TakeOverEvent::kWanted, inputs.human_wanted);
     set(take_over::TakeOverEvent::kCalm, !inputs.human_wanted && may_return);
     set(take_over::TakeOverEvent::kOverride, Overrides(inputs));
+    set(take_over::TakeOverEvent::kGone,
+        person_.drives && person_.when_gone == WhenGone::kUntilBack && inputs.readiness == 0);
+    const bool answers_now = awaits_ && inputs.acknowledged;
+    const bool answered = person_.drives
+                              ? answered_ || answers_now
+                              : requested_ && Since(step, *requested_) + kTolerance >= time_s_;
+    set(take_over::TakeOverEvent::kReady,
+        answered && inputs.readiness >= section_.required_readiness);
     set(take_over::TakeOverEvent::kRecovered,
         transferred_ && Since(step, *transferred_) + kTolerance >= section_.recovery_s);
     set(take_over::TakeOverEvent::kSevere, Ttc_s(inputs) < section_.severe_ttc_s);
@@ -157,15 +165,12 @@ class Witness {
         stage_ && Since(step, *stage_ + 1) + kTolerance >= overdue_s_);
     if (!requested_) return events;
     const double t = Since(step, *requested_);
-    const double answer_s = AnswerTime_s(step, inputs);
-    const bool answered = t + kTolerance >= answer_s;
     // A person may answer until the step of the deadline. A drawn time is compared directly.
-    const double latest_s = section_.lead_s + (person_.drives ? step_s_ - kTolerance : 0);
+    const double answer_s = answers_now ? t : time_s_;
+    const bool in_time = person_.drives ? answer_s < section_.lead_s + step_s_ - kTolerance
+                                        : answer_s <= section_.lead_s;
     set(take_over::TakeOverEvent::kEscalation, t + kTolerance >= section_.escalation_s);
-    set(take_over::TakeOverEvent::kAcknowledged,
-        answered && (person_.drives ? answer_s < latest_s : answer_s <= latest_s));
-    set(take_over::TakeOverEvent::kReady,
-        answered && inputs.readiness >= section_.required_readiness);
+    set(take_over::TakeOverEvent::kAcknowledged, answered && in_time);
     set(take_over::TakeOverEvent::kDeadline, t + kTolerance >= section_.lead_s);
     return events;
   }
@@ -195,13 +200,27 @@ class Witness {
   void Note(const take_over::TakeOverOutcome& out, take_over::TakeOverState before,
             std::int64_t step, const take_over::TakeOverInputs& inputs) {
     using enum take_over::TakeOverState;
-    if (requested_) time_s_ = AnswerTime_s(step, inputs);
+    if (awaits_ && inputs.acknowledged) {
+      awaits_ = false;
+      answered_ = true;
+      if (requested_) time_s_ = Since(step, *requested_);
+    }
     if (out.state == kDemand && before == kAutomated) {
       requested_ = step;
+      Await();
       const bool absent = person_.drives || section_.absent_probability >= 1;
       time_s_ = absent ? kNever_s : time_.Draw(random_, step);
     }
-    if (out.state == kRecovering && before == kAutomated) requested_.reset();
+    if (out.state == kRecovering && before == kAutomated) {
+      requested_.reset();
+      awaits_ = false;
+    }
+    if (out.state == kMrmComfort && human_) {
+      requested_.reset();
+      Await();
+      manoeuvre_ = Fresh();
+    }
+    human_ = out.authority == take_over::Authority::kHuman;
     if (out.state == kRecovering && before != kRecovering) transferred_ = step;
     if (out.authority >= take_over::Authority::kComfort) manoeuvre_.Begin(inputs.applied_mps2);
     if (out.state == before) return;
@@ -216,6 +235,7 @@ class Witness {
   /// The command that `authority` would give in this step if it had control.
   double Would(take_over::Authority authority, const take_over::TakeOverInputs& inputs) const {
     Witness other = *this;
+    if (human_) other.manoeuvre_ = Fresh();
     if (authority >= take_over::Authority::kComfort) other.manoeuvre_.Begin(inputs.applied_mps2);
     return other.Source(authority, inputs);
   }
@@ -248,10 +268,17 @@ class Witness {
            inputs.human_mps2 < inputs.applied_mps2;
   }
 
-  /// Time from the request to the answer, as far as it is known in this step.
-  double AnswerTime_s(std::int64_t step, const take_over::TakeOverInputs& inputs) const {
-    if (!person_.drives || time_s_ < kNever_s) return time_s_;
-    return inputs.acknowledged ? Since(step, *requested_) : kNever_s;
+  /// A manoeuvre that has not begun.
+  models::MinimalRisk Fresh() const {
+    return {{.deceleration_mps2 = section_.emergency_deceleration_mps2,
+             .jerk_mps3 = section_.jerk_mps3},
+            step_s_};
+  }
+
+  /// From now on an answer of a person counts.
+  void Await() {
+    awaits_ = person_.drives;
+    answered_ = false;
   }
 
   /// The upper bound of services/models/minimal_risk/README.md for the time to rest on a level
@@ -275,7 +302,10 @@ class Witness {
   models::MinimalRisk manoeuvre_;
   std::optional<std::int64_t> requested_;
   std::optional<std::int64_t> transferred_;
-  double time_s_ = 0;
+  double time_s_ = 0;  // from the request to the answer
+  bool awaits_ = false;
+  bool answered_ = false;
+  bool human_ = false;                 // whether the human has the authority
   std::optional<std::int64_t> stage_;  // first step of the current stage of the manoeuvre
   double overdue_s_ = 0;               // the stage is overdue after this time
 };

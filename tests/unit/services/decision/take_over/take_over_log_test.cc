@@ -281,6 +281,25 @@ TEST(TakeOverLogTest, MakesNoRequestOfAnOverrideAndLeavesTheLastOneAsItWas) {
   EXPECT_THAT(log.requests(), ElementsAre(answered));
 }
 
+TEST(TakeOverLogTest, LeavesARequestAsItWasWhenThePersonIsGoneAfterIt) {
+  take_over::TakeOverLog log;
+  Add(log, Command(0, arbitration_t::AUTOMATION));
+  Add(log, Command(10, arbitration_t::REQUEST));
+  Add(log, Command(11, arbitration_t::HANDOVER));
+  Add(log, Command(12, arbitration_t::RECOVERING, -1));
+  const take_over::TakeOverRequest answered{
+      .requested = 10, .acknowledged = 11, .transferred = 12, .effective = 12};
+  ASSERT_THAT(log.requests(), ElementsAre(answered));
+  Add(log, Command(13, arbitration_t::MRM_COMFORT, -1.5));
+  Add(log, Command(14, arbitration_t::RECOVERING, -3));
+  Add(log, Command(15, arbitration_t::HUMAN, -3));
+  EXPECT_THAT(log.requests(), ElementsAre(answered));
+  EXPECT_THAT(Transfers(log), ElementsAre(12, 13, 14));
+  const take_over::TakeOverEntry gone = log.entries()[5];
+  EXPECT_EQ(gone.step, 13);
+  EXPECT_EQ(take_over::TextOf(gone, {.drives = true}), "manoeuvre begins: person gone");
+}
+
 TEST(TakeOverLogTest, TakesAnOverrideDuringARequestForItsAnswer) {
   take_over::TakeOverLog log;
   Add(log, Command(0, arbitration_t::AUTOMATION));

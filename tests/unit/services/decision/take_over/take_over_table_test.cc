@@ -12,7 +12,7 @@ namespace {
 using enum take_over::TakeOverState;
 using Change = std::pair<take_over::TakeOverState, take_over::TakeOverState>;
 
-constexpr unsigned kEventSets = 1U << 11;
+constexpr unsigned kEventSets = 1U << 12;
 
 // A second list of the allowed changes of state, without their events.
 const std::set<Change> kChanges{
@@ -23,7 +23,8 @@ const std::set<Change> kChanges{
     {kManual, kAutomated},        {kMrmComfort, kMrmDone},        {kMrmComfort, kRecovering},
     {kMrmComfort, kMrmEmergency}, {kMrmEmergency, kMrmDone},      {kMrmEmergency, kRecovering},
     {kMrmEmergency, kMrmFailed},  {kMrmFailed, kMrmDone},         {kMrmFailed, kRecovering},
-    {kAutomated, kRecovering},    {kDemand, kRecovering},         {kUrgentDemand, kRecovering}};
+    {kAutomated, kRecovering},    {kDemand, kRecovering},         {kUrgentDemand, kRecovering},
+    {kRecovering, kMrmComfort},   {kManual, kMrmComfort}};
 
 TEST(TakeOverTableTest, HasTheseChangesOfStateAndNoOtherWhateverHappens) {
   std::set<Change> seen;
