@@ -38,7 +38,7 @@ nlohmann::json Measured(const std::string& log) {
   return nlohmann::json::parse(outcome.out, nullptr, false).at(0);
 }
 
-TEST(TakeOverMeasuresTest, OfAPersonAreThoseThatTheRawMessagesGive) {
+TEST(TakeOverMeasuresInRealtimeTest, OfAPersonAreThoseThatTheRawMessagesGive) {
   RealtimeRun run(kDriveScenario, 750, 1, ShortStory());
   const Background seat(SeatCommand(run.url(), kStory));
   const nlohmann::json result = run.Finish();
