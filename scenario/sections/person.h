@@ -25,6 +25,25 @@ constexpr auto ChoicesOf(TakeOverBy) {
                                 {"either", "the button, or a pedal"}});
 }
 
+enum class OverrideBy { kNone, kBrake };
+constexpr auto ChoicesOf(OverrideBy) {
+  return std::to_array<Choice>(
+      {{"none", "the automation drives until it has asked the person"},
+       {"brake",
+        "a brake at override_pedal or beyond that brakes harder than the car does already takes "
+        "over at once (UN R157, 6.3); needs arbitrator.take_over.mode requested"}});
+}
+
+enum class WhenGone { kLocked, kUntilBack };
+constexpr auto ChoicesOf(WhenGone) {
+  return std::to_array<Choice>(
+      {{"locked", "the host stops, and stands until the end of the run"},
+       {"until_back",
+        "the host stops as after a request without an answer: until it stands, a person who is "
+        "back "
+        "drives on after an answer (take_over_by); needs arbitrator.take_over.mode requested"}});
+}
+
 /// A person who drives. services/models/driver/pedal_response.h has the equation of the pedal map.
 struct PersonSection {
   FOGLINE_FIELD(bool, drives, false,
@@ -50,12 +69,20 @@ struct PersonSection {
                 "pedals released.",
                 "our choice, because a seat sends at least every 50 ms, so six messages in a row "
                 "are then missing");
+  FOGLINE_FIELD(WhenGone, when_gone, WhenGone::kLocked,
+                "What happens when the seat becomes empty while the person has the authority.");
   FOGLINE_FIELD(TakeOverBy, take_over_by, TakeOverBy::kEither,
                 "How the person answers a request to take over.");
   FOGLINE_FIELD(double, take_over_pedal, 0.1, {0.01, 1},
                 "For pedal and either: travel of throttle or brake from which on the person takes "
                 "over.",
                 "our choice, because a foot that rests on a pedal presses less than a tenth");
+  FOGLINE_FIELD(OverrideBy, override_by, OverrideBy::kNone,
+                "How the person takes over without a request, until they give back.");
+  FOGLINE_FIELD(double, override_pedal, 0.1, {0.01, 1},
+                "For brake: travel of the brake, with the throttle released, from which on it "
+                "overrides.",
+                "our choice, the same as take_over_pedal: a resting foot presses less");
   FOGLINE_FIELD(double, key_press_ps, 1.5, {0.1, 20, "1/s"},
                 "How fast a pedal moves while its key is down.",
                 "our choice, because full brake in 0.7 s still lets a short press brake gently");

@@ -1,10 +1,27 @@
 #include "services/arbitrator/arbitrator.h"
 
 #include <algorithm>
+#include <string>
 
+#include "common/errors.h"
 #include "services/decision/policies/policies.h"
 
 namespace fogline::arbitrator {
+namespace {
+
+/// Only a driver who is asked also answers, and gives back. @throws InputError for a choice of the
+/// scenario that needs this
+void RequireNoAnswers(const PersonSection& person) {
+  constexpr const char* kNeeds = " needs /arbitrator/take_over/mode \"requested\"";
+  if (person.override_by != OverrideBy::kNone) {
+    throw InputError(std::string("/person/override_by: \"brake\"") + kNeeds);
+  }
+  if (person.when_gone != WhenGone::kLocked) {
+    throw InputError(std::string("/person/when_gone: \"until_back\"") + kNeeds);
+  }
+}
+
+}  // namespace
 
 Arbitrator::Arbitrator(const Scenario& scenario)
     : threshold_(scenario.arbitrator.threshold),
@@ -21,6 +38,7 @@ Arbitrator::Arbitrator(const Scenario& scenario)
   if (scenario.arbitrator.transfer.hand_back == HandBack::kFusion) recovery_.emplace(scenario);
   if (scenario.arbitrator.take_over.mode == TakeOverMode::kRequested) take_over_.emplace(scenario);
   if (scenario.aeb.enabled) aeb_.emplace(scenario.aeb);
+  if (!take_over_) RequireNoAnswers(scenario.person);
 }
 
 bool Arbitrator::UsesOnDemandInput(const Scenario& scenario) {
@@ -112,8 +130,9 @@ bool Arbitrator::Ask(double wanted, const ego_t& ego, const track_t& track,
   }
   if (asked.authority == take_over::Authority::kHuman) {
     // The driver shares authority only with an available automation. After a manoeuvre, the
-    // automation is off for the rest of the run.
-    const bool shared = shares_ && automation_there_ && !take_over_->manoeuvred();
+    // automation is off for the rest of the run. A driver who has overridden drives alone.
+    const bool shared =
+        shares_ && automation_there_ && !take_over_->manoeuvred() && !take_over_->overridden();
     granted_ = shared ? wanted : 1;
     // During a transfer from the automation to the driver, the limit of the automation's
     // acceleration falls to 0.
@@ -124,8 +143,12 @@ bool Arbitrator::Ask(double wanted, const ego_t& ego, const track_t& track,
     offers.automation_mps2 = asked.acceleration_mps2;
     eased_mps2_ = std::max(0.0, asked.acceleration_mps2);
   }
-  // A driver who ends a manoeuvre has the whole authority at once, because the automation is off.
-  if (manoeuvre_ran) transfer_.Overrule({.lambda_human = 1, .acceleration_mps2 = *sent_mps2_});
+  // A driver who overrides has the whole authority at once. So has a driver who ends a manoeuvre,
+  // because the automation is off.
+  if (manoeuvre_ran || take_over_->overridden()) {
+    transfer_.Overrule(
+        {.lambda_human = 1, .acceleration_mps2 = sent_mps2_.value_or(ego.acceleration_mps2)});
+  }
   return true;
 }
 

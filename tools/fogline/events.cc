@@ -86,7 +86,7 @@ nlohmann::ordered_json EventsJson(const RunEvents& events) {
   for (const take_over::TakeOverEntry& entry : events.log.entries()) {
     rows.push_back({{"step", entry.step},
                     {"time_s", static_cast<double>(entry.utime) / 1e6},
-                    {"event", take_over::TextOf(entry, events.run.scenario.person.drives)},
+                    {"event", take_over::TextOf(entry, events.run.scenario.person)},
                     {"transfer", entry.transfer},
                     {"from", take_over::NameOfMode(entry.from)},
                     {"to", take_over::NameOfMode(entry.to)}});

@@ -12,6 +12,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -31,6 +32,7 @@
 #include "tools/cli/pairing.h"
 #include "tools/cli/threshold_rows.h"
 #include "tools/fogline/verbs.h"
+#include "tools/report/assets.h"
 
 namespace fogline {
 namespace {
@@ -317,6 +319,9 @@ void WriteFiles(const ReportArguments& arguments, std::span<const report::Report
 int RunReport(const ReportArguments& arguments) {
   if (arguments.logs.empty() && arguments.curves.empty()) {
     throw InputError("error: neither LOG nor --curves is given: nothing to report");
+  }
+  if (const std::string why(report::assets::WhyNoPages()); !why.empty()) {
+    throw std::runtime_error(why);
   }
   cli::RefuseJsonBeside(arguments.output, "--output", arguments.json);
   RefuseToReplaceOther(arguments.output);

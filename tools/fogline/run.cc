@@ -242,7 +242,7 @@ int RunShown(RunArguments& arguments, processes::RunViewer& viewer) {
 int RunAndView(RunArguments& arguments) {
   runner::ExperimentOptions& options = arguments.options;
   processes::RunViewer viewer(runtime::ToArguments({.key_file = options.traffic.key_file}));
-  options.on_network = [&viewer](const std::string& url) { viewer.ShowNetwork(url); };
+  options.on_network = [&viewer](std::int64_t, const std::string& url) { viewer.ShowNetwork(url); };
   const int code = RunShown(arguments, viewer);
   std::fflush(stdout);
   viewer.ShowLog(options.log);

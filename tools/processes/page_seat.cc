@@ -26,14 +26,15 @@ runtime::TrafficOptions OnlyKey(const runtime::TrafficOptions& traffic) {
 
 }  // namespace
 
-bool WaitForPerson(const std::string& url, const runtime::TrafficOptions& traffic,
-                   const std::function<void()>& look) {
+bool WaitForPerson(std::int64_t run_id, const std::string& url,
+                   const runtime::TrafficOptions& traffic, const std::function<void()>& look) {
   runtime::Bus bus(url);
   runtime::Apply(OnlyKey(traffic), Role::kDriver, bus);
   bool present = false;
-  bus.Subscribe(ChannelOf<driver_input_t>().name, [&present](runtime::Arrival& arrival) {
+  bus.Subscribe(ChannelOf<driver_input_t>().name, [&](runtime::Arrival& arrival) {
     const auto* input = arrival.As<driver_input_t>();
-    present = present || (input != nullptr && input->present);
+    const bool ours = input != nullptr && input->header.run_id == run_id;
+    present = present || (ours && input->present);
   });
   while (!present && !WasInterrupted()) {
     bus.Wait(kLook);
@@ -42,10 +43,10 @@ bool WaitForPerson(const std::string& url, const runtime::TrafficOptions& traffi
   return present;
 }
 
-PageSeat::PageSeat(const std::string& url, const runtime::TrafficOptions& traffic,
-                   const std::vector<std::string>& more)
-    : url_(url), traffic_(OnlyKey(traffic)) {
-  std::vector<std::string> arguments{"--seat", "--lcm-url", url};
+PageSeat::PageSeat(std::int64_t run_id, const std::string& url,
+                   const runtime::TrafficOptions& traffic, const std::vector<std::string>& more)
+    : run_id_(run_id), url_(url), traffic_(OnlyKey(traffic)) {
+  std::vector<std::string> arguments{"--seat", "--run", std::to_string(run_id), "--lcm-url", url};
   for (const std::string& argument : runtime::ToArguments(traffic_)) arguments.push_back(argument);
   arguments.insert(arguments.end(), more.begin(), more.end());
   web_.Start(arguments);
@@ -58,7 +59,7 @@ PageSeat::PageSeat(const std::string& url, const runtime::TrafficOptions& traffi
 }
 
 bool PageSeat::WaitForPerson() {
-  return processes::WaitForPerson(url_, traffic_, [this] {
+  return processes::WaitForPerson(run_id_, url_, traffic_, [this] {
     if (!Runs()) throw std::runtime_error("the page is gone, so no person can drive");
   });
 }

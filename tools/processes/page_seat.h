@@ -2,6 +2,7 @@
 // ends it.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>
@@ -11,19 +12,19 @@
 
 namespace fogline::processes {
 
-/// Waits until a person at a seat of this network is ready to drive.
+/// Waits until a person at a seat of this run is ready to drive.
 /// @param look is called again and again while it waits
 /// @return false if the user has interrupted this program
 /// @throws what `look` throws
-bool WaitForPerson(const std::string& url, const runtime::TrafficOptions& traffic,
-                   const std::function<void()>& look);
+bool WaitForPerson(std::int64_t run_id, const std::string& url,
+                   const runtime::TrafficOptions& traffic, const std::function<void()>& look);
 
 class PageSeat {
  public:
-  /// Starts the page on this network. Returns when it can be opened.
+  /// Starts the page of this run on this network. Returns when it can be opened.
   /// @param more arguments of fogline-web, such as --listen ADDRESS
   /// @throws std::runtime_error if there is no page; Interrupted
-  PageSeat(const std::string& url, const runtime::TrafficOptions& traffic,
+  PageSeat(std::int64_t run_id, const std::string& url, const runtime::TrafficOptions& traffic,
            const std::vector<std::string>& more);
 
   /// The address of the participant's page, and that of the page for those who look.
@@ -38,6 +39,7 @@ class PageSeat {
   bool Runs();
 
  private:
+  std::int64_t run_id_;
   std::string url_;
   runtime::TrafficOptions traffic_;
   WebChild web_;

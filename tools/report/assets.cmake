@@ -1,5 +1,5 @@
-# cmake -DOUT=FILE.cc -DDIR=FOLDER -P assets.cmake: writes the definitions for assets.h. Each file
-# becomes a raw string, or several files one. So the program contains its page, and needs no path to the page at run time.
+# cmake -DOUT=FILE.cc -DDIR=FOLDER -DHAS_UPLOT=BOOL -P assets.cmake: writes the definitions for
+# assets.h. Each file becomes a raw string, or several files one. So the program contains its page, and needs no path to the page at run time.
 set(uplot ../../node_modules/uplot)
 set(assets
   kPageHtml=page.html
@@ -13,12 +13,20 @@ set(assets
   kPageJs=page.js
   kStudyHtml=study.html
   kStudyCss=study.css
-  kStudyJs=study_axes.js,study.js
+  kStudyJs=study_axes.js,study.js)
+set(uplot_assets
   kUplotJs=${uplot}/dist/uPlot.iife.min.js
   kUplotCss=${uplot}/dist/uPlot.min.css
   kUplotLicense=${uplot}/LICENSE)
 
 set(source "#include \"tools/report/assets.h\"\n\nnamespace fogline::report::assets {\n\n")
+if(HAS_UPLOT)
+  list(APPEND assets ${uplot_assets})
+else()
+  foreach(name IN ITEMS kUplotJs kUplotCss kUplotLicense)
+    string(APPEND source "const std::string_view ${name}{};\n")
+  endforeach()
+endif()
 foreach(asset IN LISTS assets)
   string(REPLACE "=" ";" asset "${asset}")
   list(GET asset 0 name)
@@ -31,8 +39,11 @@ foreach(asset IN LISTS assets)
   endforeach()
   string(APPEND source "const std::string_view ${name} = R\"asset(${text})asset\";\n")
 endforeach()
-file(READ "${DIR}/${uplot}/package.json" package)
-string(JSON version GET "${package}" version)
+set(version)
+if(HAS_UPLOT)
+  file(READ "${DIR}/${uplot}/package.json" package)
+  string(JSON version GET "${package}" version)
+endif()
 string(APPEND source "const std::string_view kUplotVersion = \"${version}\";\n")
 string(APPEND source "\n}  // namespace fogline::report::assets\n")
 file(WRITE "${OUT}" "${source}")

@@ -1,4 +1,5 @@
-// The files of the page, as texts in the program. assets.cmake writes the definitions.
+// The files of the page, as texts in the program. assets.cmake writes the definitions. The texts of
+// uPlot are empty if its package of npm was missing.
 #pragma once
 
 #include <string_view>
@@ -21,5 +22,12 @@ extern const std::string_view kUplotJs;
 extern const std::string_view kUplotCss;
 extern const std::string_view kUplotLicense;
 extern const std::string_view kUplotVersion;
+
+/// Why this build can make no pages; "" if it can.
+inline std::string_view WhyNoPages() {
+  if (!kUplotJs.empty()) return "";
+  return "this build has no charts, because packages of npm were missing when it was configured; "
+         "install and build: tools/setup run && tools/build fogline_demo";
+}
 
 }  // namespace fogline::report::assets

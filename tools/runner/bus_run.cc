@@ -260,10 +260,10 @@ BusRun RunOnBus(const Scenario& scenario, const ExperimentOptions& options,
   if (options.transport == "tcpq") relay.emplace(options.restarts);
   runtime::Bus bus(relay ? relay->url() : UrlOf(options.transport));
   const bool in_memory = bus.url().starts_with("memq");
-  if (!in_memory) options.on_network(bus.url());
-  runtime::Apply(options.traffic, in_memory ? std::nullopt : std::optional(Role::kRunner), bus);
   const runtime::RunCoordinatorOptions conducting =
       MakeCoordinatorOptions(scenario, options, in_memory);
+  if (!in_memory) options.on_network(conducting.run_id, bus.url());
+  runtime::Apply(options.traffic, in_memory ? std::nullopt : std::optional(Role::kRunner), bus);
   if (!in_memory) options.on_run(conducting.run_id, bus.url());
   runtime::RunCoordinator coordinator(bus, conducting);
   const TimePoint began = Clock::now();

@@ -61,11 +61,11 @@ struct ExperimentOptions {
   bool wall_clock = false;       // in lockstep: the log has the wall clock of each step
   bool samples = false;          // keep the samples of every step in the result
   std::string command_to_go_on;  // resumes the run; shown to the user if the run ends early
-  /// Called with the URL of the run's network, before any role is started. A run in memory has no
-  /// network.
-  std::function<void(const std::string& url)> on_network = [](const std::string&) {};
-  /// Called with the run's id and the URL of its network, after on_network and before any role is
-  /// started. A run in memory has no network.
+  /// Called with the run's id and the URL of its network, before any role is started. It may wait
+  /// for a person. A run in memory has no network.
+  std::function<void(std::int64_t run_id, const std::string& url)> on_network =
+      [](std::int64_t, const std::string&) {};
+  /// Called with the same values after on_network, when the roles are started at once.
   std::function<void(std::int64_t run_id, const std::string& url)> on_run =
       [](std::int64_t, const std::string&) {};
   /// Called when the operating system has the first step of the log, and perhaps again later.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,7 @@
 #include "tools/cli/help.h"
 #include "tools/cli/own_program.h"
 #include "tools/cli/verb_program.h"
+#include "tools/report/assets.h"
 #include "tools/report/study_page.h"
 #include "tools/study/claims.h"
 #include "tools/study/ensemble/parameter_sets.h"
@@ -183,6 +185,9 @@ int RunStudy(const StudyArguments& arguments) {
   const std::vector<const Study*> chosen = Chosen(arguments.name);
   if (!arguments.seeds.empty()) RequireFew(cli::ReadSeeds(arguments.seeds), arguments.seeds);
   RequireScenarios(arguments.scenarios, chosen);
+  if (const std::string why(report::assets::WhyNoPages()); !why.empty()) {
+    throw std::runtime_error(why);
+  }
   const OutputFolder folder(arguments.out, "--out");
   WatchInterrupts();
   std::vector<Made> all;

@@ -101,7 +101,9 @@ class Session {
     run.log = log.path();
     run.realtime = true;
     run.pace = options_.speed;
-    run.on_network = [&](const std::string& url) { desk_.RunOpens(url); };
+    run.on_network = [&](std::int64_t run_id, const std::string& url) {
+      desk_.RunOpens(run_id, url);
+    };
     run.on_run = [&](std::int64_t run_id, const std::string& url) {
       speaker.emplace(url, run_id, run.traffic, base);
       if (pedals) seat.emplace(url, run_id, run.traffic, std::move(pedals));

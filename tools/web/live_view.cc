@@ -49,6 +49,7 @@ LiveView::LiveView(asio::io_context& context, LiveOptions options)
     : context_(context),
       statistics_(FourStatistics()),
       foxglove_channels_(FoglineTypes()),
+      tracker_(options.run),
       network_(std::move(options.url), options.follows,
                [this](std::string_view channel, runtime::Bytes bytes) { Hear(channel, bytes); }),
       look_(context),

@@ -30,6 +30,7 @@ namespace fogline::web {
 struct LiveOptions {
   std::string url;
   bool follows = false;                    // whether to follow announced runs
+  std::optional<std::int64_t> run;         // if set, only this run is shown
   std::optional<runtime::SigningKey> key;  // if set, messages without its signature are not shown
 };
 

@@ -27,6 +27,7 @@ void RunTracker::Hear(std::size_t channel, runtime::Bytes bytes, TimePoint now) 
 void RunTracker::HearRun(runtime::Bytes bytes, TimePoint now) {
   run_t run{};
   if (!runtime::Decode(bytes, run) || run.num_parts > kMostParts) return;
+  if (only_ && run.header.run_id != *only_) return;
   const bool free = !run_id_ || stopped_ || now - heard_ > kSilent;
   if (run_id_ != run.header.run_id) {
     if (!free || run.phase == run_t::STOP) return;

@@ -24,9 +24,15 @@ class RunTracker {
   /// The most parts of a scenario: about 4 MB of text. A page could not use more.
   static constexpr std::int32_t kMostParts = 4096;
 
+  RunTracker() = default;
+  /// @param only follows this run and no other
+  explicit RunTracker(std::optional<std::int64_t> only) : run_id_(only), only_(only) {}
+
   /// Takes a message. @param channel its place in kChannels
   void Hear(std::size_t channel, runtime::Bytes bytes, TimePoint now);
 
+  /// The run that is followed; nullopt before the first one.
+  std::optional<std::int64_t> followed() const { return run_id_; }
   /// The run whose scenario is known; nullopt if there is none.
   const std::optional<RunFacts>& run() const { return shown_; }
   /// RunText() of run(); "" if there is none.
@@ -49,6 +55,7 @@ class RunTracker {
   void ForgetEvents();
 
   std::optional<std::int64_t> run_id_;
+  std::optional<std::int64_t> only_;
   TimePoint heard_{};
   bool stopped_ = false;
   runtime::ScenarioParts parts_;

@@ -92,6 +92,7 @@ struct ViewArguments {
                     "(repeatable)")
         ->allow_extra_args(false);
     verb.add_flag("--no-browser", no_browser, "Only print the address");
+    verb.add_option("--run", run, "Show only the run with this id, also if the network has others");
     verb.add_flag("--seat", seat, "One person may drive in the run, at the page /drive");
     verb.add_option("--open-at", open_at, "Step of the log that the page shows first")
         ->check(CLI::Range(0, 1'000'000'000));
@@ -110,6 +111,7 @@ struct ViewArguments {
   std::vector<std::string> origins;
   bool no_browser = false;
   bool seat = false;
+  std::optional<std::int64_t> run;
   std::optional<std::int64_t> open_at;
 };
 
@@ -127,6 +129,9 @@ void CheckTogether(const ViewArguments& arguments) {
   }
   if (!live && arguments.seat) {
     throw InputError("error: --seat: no person can drive in a log; leave out LOG");
+  }
+  if (!live && arguments.run) {
+    throw InputError("error: --run: a log has one run; leave out LOG or --run");
   }
   for (const std::string& origin : arguments.origins) {
     if (IsOrigin(origin)) continue;
@@ -235,9 +240,10 @@ int RunView(const ViewArguments& arguments) {
   asio::io_context context(1);
   if (arguments.log.empty()) {
     const std::optional<runtime::SigningKey> key = runtime::KeyOf(arguments.traffic);
-    LiveView view(
-        context,
-        {.url = arguments.network.Url(), .follows = arguments.network.Follows(), .key = key});
+    LiveView view(context, {.url = arguments.network.Url(),
+                            .follows = arguments.network.Follows(),
+                            .run = arguments.run,
+                            .key = key});
     std::optional<SeatView> seat;
     if (arguments.seat) seat.emplace(context, view, key);
     View& shown = seat ? static_cast<View&>(*seat) : view;

@@ -5,7 +5,11 @@
 #include <limits>
 #include <stdexcept>
 
+#include <fmt/core.h>
+
+#include "common/errors.h"
 #include "common/whole_steps.h"
+#include "services/models/driver/pedal_response.h"
 
 namespace fogline::take_over {
 namespace {
@@ -17,6 +21,18 @@ constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
 
 MinimalRiskSection LimitsOf(const TakeOverSection& section) {
   return {.deceleration_mps2 = section.emergency_deceleration_mps2, .jerk_mps3 = section.jerk_mps3};
+}
+
+/// The acceleration of a person who overrides, or a lower one; nullopt if no person can override.
+std::optional<double> OverrideOf(const PersonSection& person) {
+  if (!person.drives || person.override_by == OverrideBy::kNone) return std::nullopt;
+  const models::PedalResponse pedals(person);
+  const double braking_mps2 = pedals.Acceleration(0, person.override_pedal);
+  if (braking_mps2 < pedals.Acceleration(0, 0)) return braking_mps2;
+  throw InputError(fmt::format(
+      "/person/override_pedal: a brake at {} brakes no harder than the released pedals: "
+      "/person/full_brake_mps2 is {}, and /person/coasting_mps2 is {}",
+      person.override_pedal, person.full_brake_mps2, person.coasting_mps2));
 }
 
 /// Upper bound of the time until the car stands (services/models/minimal_risk/README.md).
@@ -33,13 +49,16 @@ double LongestTimeToRest_s(double speed_mps, double acceleration_mps2, double de
 TakeOver::TakeOver(const Scenario& scenario)
     : section_(scenario.arbitrator.take_over),
       person_(scenario.person.drives),
+      returns_(person_ && scenario.person.when_gone == WhenGone::kUntilBack),
+      override_mps2_(OverrideOf(scenario.person)),
       step_s_(scenario.step_s),
       lead_steps_(StepsUntil(section_.lead_s, step_s_)),
       escalation_steps_(StepsUntil(section_.escalation_s, step_s_)),
       recovery_steps_(StepsUntil(section_.recovery_s, step_s_)),
       random_(scenario.seed, Stream::kTakeOver),
       time_(section_.time, section_.lead_s),
-      manoeuvre_(LimitsOf(section_), step_s_) {
+      manoeuvre_(LimitsOf(section_), step_s_),
+      answer_step_(kNever) {
   if (section_.lead_s < kLeastLead_s) {
     throw std::invalid_argument("take-over: the lead time is below the 10 s of UN R157");
   }
@@ -66,15 +85,16 @@ TakeOverEvents TakeOver::EventsOf(std::int64_t step, const TakeOverInputs& input
   set(TakeOverEvent::kSevere, Severe(inputs.track));
   set(TakeOverEvent::kStandstill, inputs.speed_mps < kStandstill_mps && inputs.applied_mps2 <= 0);
   set(TakeOverEvent::kOverdue, in_manoeuvre() && step > overdue_step_);
+  set(TakeOverEvent::kOverride, Overrides(inputs));
+  set(TakeOverEvent::kGone, returns_ && inputs.readiness <= 0);
+  const bool answered = step >= answer_step_;
+  set(TakeOverEvent::kReady, answered && inputs.readiness >= section_.required_readiness);
+  set(TakeOverEvent::kRecovered, transferred_ && step - *transferred_ >= recovery_steps_);
   if (!request_) return events;
   const std::int64_t since = step - request_->requested;
-  const bool answered = step >= answer_step_;
   set(TakeOverEvent::kEscalation, since >= escalation_steps_);
   set(TakeOverEvent::kAcknowledged, answered && in_time_);
-  set(TakeOverEvent::kReady, answered && inputs.readiness >= section_.required_readiness);
   set(TakeOverEvent::kDeadline, since >= lead_steps_);
-  set(TakeOverEvent::kRecovered,
-      request_->transferred && step - *request_->transferred >= recovery_steps_);
   return events;
 }
 
@@ -84,14 +104,39 @@ bool TakeOver::Severe(const track_t* track) const {
   return closing_mps > 0 && track->state[0] < section_.severe_ttc_s * closing_mps;
 }
 
+bool TakeOver::Overrides(const TakeOverInputs& inputs) const {
+  return override_mps2_ && inputs.human_mps2 <= *override_mps2_ &&
+         inputs.human_mps2 < inputs.applied_mps2 && inputs.readiness >= section_.required_readiness;
+}
+
 void TakeOver::Enter(const TakeOverRow& row, std::int64_t step, const TakeOverInputs& inputs) {
   out_.state = row.next;
   out_.authority = row.authority;
+  if (row.event == TakeOverEvent::kGone) LoseAuthority();
   if (row.next == TakeOverState::kDemand) Ask(step);
-  request_->Enter(row.next, step);
+  if (row.next == TakeOverState::kRecovering) TakeAuthority(row, step);
+  if (row.next == TakeOverState::kAutomated) overridden_ = false;
+  if (request_) request_->Enter(row.next, step);
   const bool stage =
       row.next == TakeOverState::kMrmComfort || row.next == TakeOverState::kMrmEmergency;
   if (stage) BeginStage(row.authority, step, inputs);
+}
+
+void TakeOver::TakeAuthority(const TakeOverRow& row, std::int64_t step) {
+  transferred_ = step;
+  overridden_ = row.event == TakeOverEvent::kOverride;
+  if (row.state != TakeOverState::kAutomated) return;
+  // No request led to this authority: the last one ended before.
+  request_.reset();
+  awaits_answer_ = false;
+}
+
+// The manoeuvre begins from the person's command, also if there has been a manoeuvre before.
+void TakeOver::LoseAuthority() {
+  request_.reset();
+  awaits_answer_ = true;
+  answer_step_ = kNever;
+  manoeuvre_ = models::MinimalRisk(LimitsOf(section_), step_s_);
 }
 
 // Draws the modelled driver's answer once. Later events do not change the answer.
@@ -99,6 +144,7 @@ void TakeOver::Ask(std::int64_t step) {
   request_ = TakeOverRequest{.requested = step};
   in_time_ = false;
   answer_step_ = kNever;
+  awaits_answer_ = person_;
   if (person_) return;
   const double time_s = time_.Draw(random_, step);
   const bool absent = random_.Uniform2(step, kAbsenceDraw)[0] < section_.absent_probability;
@@ -108,9 +154,10 @@ void TakeOver::Ask(std::int64_t step) {
 
 // A person's answer holds until the next request, like that of the modelled driver.
 void TakeOver::HearAnswer(std::int64_t step, const TakeOverInputs& inputs) {
-  if (!request_ || answer_step_ != kNever || !inputs.acknowledged) return;
+  if (!awaits_answer_ || !inputs.acknowledged) return;
+  awaits_answer_ = false;
   answer_step_ = step;
-  in_time_ = step - request_->requested <= lead_steps_;
+  in_time_ = request_ && step - request_->requested <= lead_steps_;
 }
 
 void TakeOver::BeginStage(Authority stage, std::int64_t step, const TakeOverInputs& inputs) {

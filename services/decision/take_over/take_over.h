@@ -51,6 +51,8 @@ inline constexpr double kOverdueFactor = 2.0;
 ///     acknowledgement  t >= T, if T <= lead_s. T is drawn in the step of the request
 ///                      (take_over_time.h). With absent_probability, T is infinite.
 ///     transfer         t >= T and readiness >= required_readiness
+///     override         only for a person, and only with override_by brake: a_H <= a_P, a_H < a',
+///                      and readiness >= required_readiness
 ///     escalation       t >= escalation_s
 ///     deadline         t >= lead_s
 ///     easing           a = min(a_A, max(-slow_down_mps2, a' - j h)), a' the last sent command
@@ -65,8 +67,16 @@ inline constexpr double kOverdueFactor = 2.0;
 /// If the scenario has a person who drives, nothing is drawn: T is the time of the first step after
 /// the request in which the person answers. The automation gets authority back only if, in
 /// addition, the person gives it back.
+///
+/// With when_gone until_back, the manoeuvre also begins when a person who has the authority is gone
+/// (readiness 0). It then waits for a new answer, as after a request.
+///
+/// A person overrides with a brake that is at override_pedal or beyond, and that brakes harder than
+/// the last sent command a'. a_P is the acceleration of a brake at override_pedal with the throttle
+/// released (services/models/driver/pedal_response.h).
 class TakeOver {
  public:
+  /// @throw InputError if the released pedals already brake as hard as a brake at override_pedal
   /// @throw std::invalid_argument if lead_s is below kLeastLead_s, or if TakeOverTime throws it
   explicit TakeOver(const Scenario& scenario);
 
@@ -75,25 +85,33 @@ class TakeOver {
   const TakeOverOutcome& Step(const header_t& header, const TakeOverInputs& inputs);
 
   const TakeOverOutcome& outcome() const { return out_; }
-  /// The last request, if there has been a request. The field `effective` of this request is always
+  /// The last request, if there has been a request. Empty again after an override without a
+  /// request, and after a person who had the authority is gone. The field `effective` is always
   /// empty.
   const std::optional<TakeOverRequest>& request() const { return request_; }
   /// Whether a manoeuvre is running, has failed, or has ended in standstill.
   bool in_manoeuvre() const { return out_.authority >= Authority::kComfort; }
   /// Whether a manoeuvre has begun in this run, even if the driver has ended this manoeuvre.
   bool manoeuvred() const { return manoeuvre_.begun(); }
+  /// Whether the driver has the authority because of an override.
+  bool overridden() const { return overridden_; }
 
  private:
   TakeOverEvents EventsOf(std::int64_t step, const TakeOverInputs& inputs) const;
   bool Severe(const track_t* track) const;
+  bool Overrides(const TakeOverInputs& inputs) const;
   void Enter(const TakeOverRow& row, std::int64_t step, const TakeOverInputs& inputs);
+  void TakeAuthority(const TakeOverRow& row, std::int64_t step);
+  void LoseAuthority();
   void Ask(std::int64_t step);
   void HearAnswer(std::int64_t step, const TakeOverInputs& inputs);
   void BeginStage(Authority stage, std::int64_t step, const TakeOverInputs& inputs);
   double Acceleration(const TakeOverInputs& inputs);
 
   TakeOverSection section_;
-  bool person_;  // whether a person drives
+  bool person_;                          // whether a person drives
+  bool returns_;                         // whether a person who is gone may come back
+  std::optional<double> override_mps2_;  // a_P; nullopt if no person can override
   double step_s_;
   std::int64_t lead_steps_;
   std::int64_t escalation_steps_;
@@ -103,9 +121,12 @@ class TakeOver {
   models::MinimalRisk manoeuvre_;
 
   std::optional<TakeOverRequest> request_;
-  std::int64_t answer_step_ = 0;   // step of this request's acknowledgement
+  bool awaits_answer_ = false;     // of a person
+  std::int64_t answer_step_;       // step of the last answer
   bool in_time_ = false;           // whether the driver answers within lead_s
   std::int64_t overdue_step_ = 0;  // last step before this stage of the manoeuvre is overdue
+  std::optional<std::int64_t> transferred_;  // step in which the driver got the authority
+  bool overridden_ = false;
   TakeOverOutcome out_;
 };
 

@@ -33,6 +33,13 @@ std::string_view LoggedOf(std::int8_t from, std::int8_t to) {
   return "change of state";
 }
 
+/// Whether the automation drives without an answer of the driver. Only an override leads from such
+/// a mode to RECOVERING.
+bool IsUnanswered(std::int8_t mode) {
+  return mode == arbitration_t::AUTOMATION || mode == arbitration_t::REQUEST ||
+         mode == arbitration_t::REQUEST_URGENT;
+}
+
 }  // namespace
 
 std::string_view NameOfMode(std::int8_t mode) {
@@ -43,13 +50,20 @@ std::string_view NameOfMode(std::int8_t mode) {
   return info == nullptr ? "UNKNOWN" : info->name;
 }
 
-std::string_view TextOf(const TakeOverEntry& entry, bool person) {
+std::string_view TextOf(const TakeOverEntry& entry, const PersonSection& person) {
   if (entry.from == entry.to) return entry.logged;
-  if (person && entry.to == arbitration_t::MINIMAL_RISK) {
+  if (person.drives && entry.to == arbitration_t::MINIMAL_RISK) {
     return "manoeuvre begins: inputs or person gone";
   }
+  if (person.drives && HumanDrives(entry.from) && InMinimalRisk(entry.to)) {
+    return "manoeuvre begins: person gone";
+  }
+  if (person.drives && person.override_by != OverrideBy::kNone && IsUnanswered(entry.from) &&
+      entry.to == arbitration_t::RECOVERING) {
+    return "override by the person";
+  }
   if (entry.to != arbitration_t::HANDOVER) return entry.logged;
-  return person ? "acknowledgement by the person" : "acknowledgement (modelled driver)";
+  return person.drives ? "acknowledgement by the person" : "acknowledgement (modelled driver)";
 }
 
 void TakeOverLog::Add(const arbitration_t& command, std::optional<double> human_mps2) {
@@ -67,7 +81,7 @@ std::vector<TakeOverEntry> TakeOverLog::TakeEntries() {
 
 std::int8_t TakeOverLog::DecidedMode(const arbitration_t& command) const {
   if (!InEmergency(command.mode)) return command.mode;
-  if (last_ && !requests_.empty()) return last_->mode;
+  if (last_ && (!requests_.empty() || unasked_)) return last_->mode;
   return HumanDrives(command.lambda_human) ? arbitration_t::HUMAN : arbitration_t::AUTOMATION;
 }
 
@@ -132,21 +146,31 @@ void TakeOverLog::Change(const arbitration_t& command, std::int8_t from, bool tr
                       .to = command.mode,
                       .transfer = transfer,
                       .logged = logged});
+  NoteUnasked(from, command.mode);
   if (share_changes) {
     before_share_mps2_.reset();
     if (has_share && last_) before_share_mps2_ = last_->acceleration_mps2;
-    asked_ = command.mode == arbitration_t::RECOVERING;
+    asked_ = command.mode == arbitration_t::RECOVERING && !unasked_;
   }
   const TakeOverStateInfo* state = StateOf(command.mode);
   if (state == nullptr) return;
   if (state->state == TakeOverState::kDemand) {
     requests_.push_back({.requested = command.header.step});
   }
-  // If the driver was never asked, there is no request to update.
-  if (requests_.empty()) return;
+  // There may be no open request to update.
+  if (requests_.empty() || unasked_) return;
   requests_.back().Enter(state->state, command.header.step);
   // Transfer() sets `transferred`, because in kRecovering the driver's share may still be small.
   if (state->state == TakeOverState::kRecovering) requests_.back().transferred.reset();
+}
+
+void TakeOverLog::NoteUnasked(std::int8_t from, std::int8_t to) {
+  if (to == arbitration_t::AUTOMATION || to == arbitration_t::REQUEST) unasked_ = false;
+  const bool overrides = from == arbitration_t::AUTOMATION && to == arbitration_t::RECOVERING;
+  const bool has_taken_over =
+      HumanDrives(from) && !requests_.empty() && requests_.back().transferred;
+  const bool leaves = has_taken_over && InMinimalRisk(to) && to != arbitration_t::MINIMAL_RISK;
+  if (overrides || leaves) unasked_ = true;
 }
 
 void TakeOverLog::Transfer(const arbitration_t& command) {

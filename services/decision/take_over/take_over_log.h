@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "fogline/arbitration_t.hpp"
+#include "scenario/sections/person.h"
 #include "services/decision/take_over/take_over_request.h"
 
 namespace fogline::take_over {
@@ -30,9 +31,10 @@ struct TakeOverEntry {
 };
 
 /// The text of an entry, for a person who reads it. It says whether a person has acknowledged a
-/// request, or whether the acknowledgement of the model of a driver was drawn.
-/// @param person whether a person drives in this run (scenario section person)
-std::string_view TextOf(const TakeOverEntry& entry, bool person);
+/// request, or whether the acknowledgement of the model of a driver was drawn. It also says whether
+/// a person has overridden.
+/// @param person section of the scenario of this run
+std::string_view TextOf(const TakeOverEntry& entry, const PersonSection& person);
 
 /// Reads commands in the order of steps; some commands may be missing.
 ///
@@ -66,6 +68,7 @@ class TakeOverLog {
   void AddDecided(const arbitration_t& command, std::optional<double> human_mps2);
   void AddEmergency(const arbitration_t& command);
   void Change(const arbitration_t& command, std::int8_t from, bool transfer);
+  void NoteUnasked(std::int8_t from, std::int8_t to);
   void Transfer(const arbitration_t& command);
   void Drive(const arbitration_t& command, double human_mps2);
 
@@ -75,6 +78,9 @@ class TakeOverLog {
   // after the driver's first effective input), and whether the driver was asked.
   std::optional<double> before_share_mps2_;
   bool asked_ = false;
+  // Whether the driver has, or had, authority without an open request: after an override, and after
+  // a person who had taken over was gone.
+  bool unasked_ = false;
   std::vector<TakeOverEntry> entries_;
   std::vector<TakeOverRequest> requests_;
 };

@@ -36,7 +36,9 @@ enum class TakeOverEvent : std::uint8_t {
   kSevere,        // time to collision with the tracked car is below severe_ttc_s
   kRecovered,     // recovery_s after the transfer
   kStandstill,
-  kOverdue,  // the stage of the manoeuvre takes kOverdueFactor times the time that its brake needs
+  kOverdue,   // the stage of the manoeuvre takes kOverdueFactor times the time that its brake needs
+  kOverride,  // the driver overrides by the brake (TakeOver)
+  kGone,      // the seat of a person who may come back is empty
 };
 
 /// The events of a step, one bit each.
@@ -90,38 +92,49 @@ using Row = TakeOverRow;
 ///     does not drive off, because driving off (5.5.4) is a new run.
 ///   - The manoeuvre never returns from its second stage to its first stage (Autoware's
 ///     mrm_handler).
+///   - A driver who brakes harder than the car does overrides at once, with or without a request
+///     (6.3). A car that stands after a manoeuvre stays locked.
 inline constexpr std::array kTakeOverTable{
     //  state          event          guard   next           authority    logged
+    Row{kAutomated,    kOverride,     kAny,   kRecovering,   kHuman,      "transfer to the driver"},
     Row{kAutomated,    kWanted,       kAny,   kDemand,       kEasing,     "request to take over"},
 
+    Row{kDemand,       kOverride,     kAny,   kRecovering,   kHuman,      "transfer to the driver"},
     Row{kDemand,       kSevere,       kAny,   kMrmEmergency, kHard,       "emergency manoeuvre"},
     Row{kDemand,       kAcknowledged, kAny,   kHandover,     kEasing,     "acknowledgement"},
     Row{kDemand,       kDeadline,     kAny,   kMrmComfort,   kComfort,    "comfortable manoeuvre"},
     Row{kDemand,       kEscalation,   kAny,   kUrgentDemand, kEasing,     "escalation"},
 
+    Row{kUrgentDemand, kOverride,     kAny,   kRecovering,   kHuman,      "transfer to the driver"},
     Row{kUrgentDemand, kSevere,       kAny,   kMrmEmergency, kHard,       "emergency manoeuvre"},
     Row{kUrgentDemand, kAcknowledged, kAny,   kHandover,     kEasing,     "acknowledgement"},
     Row{kUrgentDemand, kDeadline,     kAny,   kMrmComfort,   kComfort,    "comfortable manoeuvre"},
 
+    Row{kHandover,     kOverride,     kAny,   kRecovering,   kHuman,      "transfer to the driver"},
     Row{kHandover,     kReady,        kAny,   kRecovering,   kHuman,      "transfer to the driver"},
     Row{kHandover,     kSevere,       kAny,   kMrmEmergency, kHard,       "emergency manoeuvre"},
     Row{kHandover,     kDeadline,     kAny,   kMrmComfort,   kComfort,    "comfortable manoeuvre"},
 
+    Row{kRecovering,   kGone,         kAny,   kMrmComfort,   kComfort,    "comfortable manoeuvre"},
     Row{kRecovering,   kRecovered,    kAny,   kManual,       kHuman,      "driver recovered"},
 
+    Row{kManual,       kGone,         kAny,   kMrmComfort,   kComfort,    "comfortable manoeuvre"},
     Row{kManual,       kCalm,         kFresh, kAutomated,    kAutomation, "return to automation"},
 
     Row{kMrmComfort,   kStandstill,   kAny,   kMrmDone,      kHard,       "standstill, locked"},
     Row{kMrmComfort,   kReady,        kAny,   kRecovering,   kHuman,      "driver ends manoeuvre"},
+    Row{kMrmComfort,   kOverride,     kAny,   kRecovering,   kHuman,      "driver ends manoeuvre"},
     Row{kMrmComfort,   kSevere,       kAny,   kMrmEmergency, kHard,       "emergency manoeuvre"},
     Row{kMrmComfort,   kOverdue,      kAny,   kMrmEmergency, kHard,       "emergency manoeuvre"},
 
     Row{kMrmEmergency, kStandstill,   kAny,   kMrmDone,      kHard,       "standstill, locked"},
     Row{kMrmEmergency, kReady,        kAny,   kRecovering,   kHuman,      "driver ends manoeuvre"},
+    Row{kMrmEmergency, kOverride,     kAny,   kRecovering,   kHuman,      "driver ends manoeuvre"},
     Row{kMrmEmergency, kOverdue,      kAny,   kMrmFailed,    kHard,       "manoeuvre fails"},
 
     Row{kMrmFailed,    kStandstill,   kAny,   kMrmDone,      kHard,       "standstill, locked"},
     Row{kMrmFailed,    kReady,        kAny,   kRecovering,   kHuman,      "driver ends manoeuvre"},
+    Row{kMrmFailed,    kOverride,     kAny,   kRecovering,   kHuman,      "driver ends manoeuvre"},
 };
 }  // namespace internal
 // clang-format on

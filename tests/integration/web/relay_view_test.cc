@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <fstream>
 #include <thread>
 
 #include <boost/asio/io_context.hpp>
@@ -16,19 +15,6 @@ namespace fogline::test {
 namespace {
 
 using nlohmann::json;
-
-/// Processor time of a process, in seconds (proc(5): utime and stime).
-double ProcessorTime_s(pid_t pid) {
-  std::ifstream file("/proc/" + std::to_string(pid) + "/stat");
-  std::string text((std::istreambuf_iterator<char>(file)), {});
-  std::istringstream fields(text.substr(text.rfind(')') + 2));
-  std::string skipped;
-  for (int field = 3; field < 14; ++field) fields >> skipped;
-  double user = 0;
-  double system = 0;
-  fields >> user >> system;
-  return (user + system) / static_cast<double>(sysconf(_SC_CLK_TCK));
-}
 
 /// Publishes on a channel until the client is told of this channel.
 /// @return whether it is told within kFrameLimit

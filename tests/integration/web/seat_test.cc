@@ -1,5 +1,4 @@
-// `fogline view --seat`: the frames of a page become DRIVER_INPUT on the network of the run. The
-// test takes the place of the run: it sends TRUTH and hears DRIVER_INPUT, as the driver role does.
+// `fogline view --seat`: the frames of a page become DRIVER_INPUT on the network of the run.
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 
@@ -7,11 +6,8 @@
 #include <optional>
 #include <set>
 
-#include "services/runtime/transport/bus.h"
-#include "services/runtime/wire/driver_input.h"
-#include "services/runtime/wire/message_signer.h"
 #include "tests/integration/drive/page_person.h"
-#include "tests/integration/web/viewed.h"
+#include "tests/integration/web/seat_network.h"
 
 namespace fogline::test {
 namespace {
@@ -19,26 +15,6 @@ namespace {
 using nlohmann::json;
 using testing::HasSubstr;
 using testing::Not;
-
-constexpr std::int64_t kRunId = 4711;
-
-WebClient Page(std::uint16_t port, const std::string& target = "/ws") {
-  return WebClient(port, {.target = target, .protocol = "fogline.drive.v1"});
-}
-
-std::string Braking(std::int64_t sequence, double brake = 0.5) {
-  return json{{"op", "input"},
-              {"sequence", sequence},
-              {"age_ms", 3},
-              {"present", true},
-              {"throttle", 0},
-              {"brake", brake},
-              {"axes", {0.25, -1}},
-              {"buttons", {"take_over"}},
-              {"device", {{"kind", "wheel"}, {"name", "G29"}}},
-              {"latency_ms", 21}}
-      .dump();
-}
 
 /// A frame of a page at which no person is.
 std::string Away(std::int64_t sequence) {
@@ -57,66 +33,6 @@ json AnswerTo(WebClient& client) {
   }
 }
 
-/// The network of a run. It sends TRUTH, and keeps the DRIVER_INPUT that come.
-class Network {
- public:
-  explicit Network(const std::optional<runtime::SigningKey>& key = std::nullopt) : bus_(url_) {
-    if (key) bus_.Secure(runtime::MessageSigner(*key, std::nullopt));
-    bus_.Subscribe(ChannelOf<driver_input_t>().name, [this](runtime::Arrival& arrival) {
-      const auto* input = arrival.As<driver_input_t>();
-      ASSERT_NE(input, nullptr);
-      EXPECT_EQ(runtime::WrongIn(*input), nullptr);
-      heard_.push_back(*input);
-    });
-  }
-
-  const std::string& url() const { return url_; }
-  runtime::Bus& bus() { return bus_; }
-  std::vector<driver_input_t>& heard() { return heard_; }
-
-  void SendTruth(std::int64_t step) {
-    truth_t truth{};
-    truth.header = {.run_id = kRunId, .step = step, .utime = step * 20'000};
-    Send(truth);
-  }
-  template <class Message>
-  void Send(const Message& message) {
-    runtime::Encode(message, bytes_);
-    bus_.Publish(ChannelOf<Message>().name, bytes_);
-  }
-  /// The first message from now on that fits. @throws std::runtime_error after kPatience
-  template <class Fits>
-  driver_input_t Hear(const Fits& fits) {
-    const TimePoint end = Clock::now() + kPatience;
-    heard_.clear();
-    while (Clock::now() < end) {
-      bus_.Wait(milliseconds(20));
-      for (const driver_input_t& input : heard_) {
-        if (fits(input)) return input;
-      }
-    }
-    throw std::runtime_error("no such DRIVER_INPUT comes");
-  }
-
- private:
-  std::string url_ = runtime::FreshMulticastUrl();
-  runtime::Bus bus_;
-  std::vector<driver_input_t> heard_;
-  std::vector<std::uint8_t> bytes_;
-};
-
-bool IsThere(const driver_input_t& input) { return input.present; }
-bool IsAway(const driver_input_t& input) { return !input.present; }
-
-class SeatPageTest : public testing::Test {
- protected:
-  void SetUp() override { ASSERT_NE(viewed_.port(), 0) << viewed_.process().Err(); }
-  std::uint16_t port() const { return viewed_.port(); }
-
-  Network network_;
-  Viewed viewed_{{"--seat", "--lcm-url", network_.url()}};
-};
-
 TEST_F(SeatPageTest, PrintsTheAddressOfThePageAndThatOfTheView) {
   const std::string host = "http://127.0.0.1:" + std::to_string(port());
   ASSERT_TRUE(viewed_.process().WaitForOut(host + "/\n", kPatience));
@@ -134,7 +50,7 @@ TEST_F(SeatPageTest, AnInputIsPublishedWithTheNewestStep) {
   network_.Hear([](const driver_input_t& input) { return input.header.step == 7; });
   page.Send(Braking(40));
   const driver_input_t input = network_.Hear(IsThere);
-  EXPECT_EQ(input.header.run_id, kRunId);
+  EXPECT_EQ(input.header.run_id, kSeatRun);
   EXPECT_EQ(input.header.step, 7);
   EXPECT_EQ(input.header.utime, 140'000);
   EXPECT_NE(input.instance, 0);
@@ -297,7 +213,7 @@ TEST_F(SeatPageTest, TheEndOfTheProgramReleasesThePedals) {
 }
 
 TEST(SeatAccessTest, TheDriverHasATokenOfItsOwn) {
-  const Network network;
+  const SeatNetwork network;
   Viewed viewed({"--seat", "--lcm-url", network.url()}, {"--listen", "127.0.0.1:0"});
   ASSERT_NE(viewed.port(), 0) << viewed.process().Err();
   ASSERT_TRUE(viewed.process().WaitForOut("/#token=", kPatience));
@@ -364,7 +280,7 @@ TEST(SeatKeyTest, SignsWithTheKeyOfTheRun) {
   const ScratchFolder folder;
   const std::string file = folder.File("run.key");
   runtime::SigningKey::Create(file);
-  Network network(runtime::SigningKey::Load(file));
+  SeatNetwork network(runtime::SigningKey::Load(file));
   Viewed viewed({"--seat", "--lcm-url", network.url(), "--key", file});
   ASSERT_NE(viewed.port(), 0) << viewed.process().Err();
   WebClient page = Page(viewed.port());

@@ -1,4 +1,5 @@
 // fogline drive: a run in real time in which a person drives.
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -108,14 +109,14 @@ std::unique_ptr<drive::PedalSource> MakeSource(const DriveArguments& arguments,
   return std::make_unique<drive::EvdevDevice>(arguments.device, arguments.names, person);
 }
 
-/// Opens the page on a network, and waits until the person is ready.
+/// Opens the page of a run, and waits until the person is ready.
 /// @throws Interrupted, std::runtime_error if there is no page
-std::unique_ptr<processes::PageSeat> OpenPage(const DriveArguments& arguments,
+std::unique_ptr<processes::PageSeat> OpenPage(const DriveArguments& arguments, std::int64_t run_id,
                                               const std::string& url) {
   std::vector<std::string> more;
   if (!arguments.listen.empty()) more = {"--listen", arguments.listen};
   if (arguments.no_browser) more.emplace_back("--no-browser");
-  auto page = std::make_unique<processes::PageSeat>(url, arguments.options.traffic, more);
+  auto page = std::make_unique<processes::PageSeat>(run_id, url, arguments.options.traffic, more);
   Notice("drive: " + page->drive_address());
   Notice("view: " + page->view_address());
   if (!page->WaitForPerson()) throw Interrupted("interrupted before the drive began");
@@ -137,8 +138,8 @@ int Drive(DriveArguments& arguments) {
   options.on_logged_step = [&log] { log.RemoveOlder(); };
   std::optional<drive::Seat> seat;
   std::unique_ptr<processes::PageSeat> page;
-  options.on_network = [&](const std::string& url) {
-    if (AtPage(arguments)) page = OpenPage(arguments, url);
+  options.on_network = [&](std::int64_t run_id, const std::string& url) {
+    if (AtPage(arguments)) page = OpenPage(arguments, run_id, url);
   };
   options.on_run = [&](std::int64_t run_id, const std::string& url) {
     if (source) seat.emplace(url, run_id, options.traffic, std::move(source));

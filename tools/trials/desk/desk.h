@@ -1,6 +1,7 @@
 // A desk: a session talks to the people there, in a terminal or in pages of a browser.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -36,7 +37,7 @@ class Desk {
   /// The run has a network, and no role yet. Returns when the roles may begin: if the participant
   /// drives at the seat of the page, when they are ready there.
   /// @throws as WaitForBegin()
-  virtual void RunOpens(const std::string& url) = 0;
+  virtual void RunOpens(std::int64_t run_id, const std::string& url) = 0;
   /// The run begins. The speaker takes markers until RunEnded().
   virtual void RunBegins(Speaker& speaker) = 0;
   /// Called again and again from the first step of the log on.

@@ -220,8 +220,8 @@ class PageDesk::Pages {
   std::string experimenter_address() const { return experimenter_->access().Url(); }
 
   /// @throws as RunPage::Show()
-  void ShowRun(const std::string& url, RunPage::Seat seat) {
-    run_page_.Show(url, seat);
+  void ShowRun(std::int64_t run_id, const std::string& url, RunPage::Seat seat) {
+    run_page_.Show(run_id, url, seat);
     Set([&](PageState& state) {
       state.OpenRun(run_page_.view_address(), run_page_.seat_address());
       if (seat == RunPage::Seat::kOpen) state.Tell("the seat is open");
@@ -230,8 +230,8 @@ class PageDesk::Pages {
 
   /// Waits until the participant is ready at the seat.
   /// @throws Interrupted; std::runtime_error if there is no seat any more
-  void WaitForPerson(const std::string& url) {
-    const bool ready = processes::WaitForPerson(url, traffic_, [this] {
+  void WaitForPerson(std::int64_t run_id, const std::string& url) {
+    const bool ready = processes::WaitForPerson(run_id, url, traffic_, [this] {
       LookAtRunPage();
       if (const std::string why = run_page_.WhyHopeless(); !why.empty()) {
         throw std::runtime_error(why);
@@ -331,9 +331,9 @@ void PageDesk::WaitForBegin(const Next& next) {
   pages_->WaitFor(PageMessage::Kind::kBegin);
 }
 
-void PageDesk::RunOpens(const std::string& url) {
-  pages_->ShowRun(url, seat_ ? RunPage::Seat::kOpen : RunPage::Seat::kNone);
-  if (seat_) pages_->WaitForPerson(url);
+void PageDesk::RunOpens(std::int64_t run_id, const std::string& url) {
+  pages_->ShowRun(run_id, url, seat_ ? RunPage::Seat::kOpen : RunPage::Seat::kNone);
+  if (seat_) pages_->WaitForPerson(run_id, url);
 }
 
 void PageDesk::RunBegins(Speaker& speaker) { pages_->BeginRun(speaker); }

@@ -39,7 +39,7 @@ class PageDesk final : public Desk {
   std::string experimenter_address() const;
 
   void WaitForBegin(const Next& next) override;
-  void RunOpens(const std::string& url) override;
+  void RunOpens(std::int64_t run_id, const std::string& url) override;
   void RunBegins(Speaker& speaker) override;
   void RunGoesOn() override;
   void RunEnded() override;

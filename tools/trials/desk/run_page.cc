@@ -29,7 +29,8 @@ RunPage::RunPage(RunPageOptions options)
       view_token_(web::DrawToken()),
       seat_token_(web::DrawToken()) {}
 
-void RunPage::Show(const std::string& url, Seat seat) {
+void RunPage::Show(std::int64_t run_id, const std::string& url, Seat seat) {
+  run_id_ = run_id;
   End();
   url_ = url;
   seat_ = seat;
@@ -52,6 +53,7 @@ bool RunPage::Comes() {
 
 void RunPage::Start() {
   std::vector<std::string> arguments{"--lcm-url",    url_,
+                                     "--run",        std::to_string(run_id_),
                                      "--no-browser", "--tokens-on-stdin",
                                      "--listen",     fmt::format("{}:{}", options_.address, port_)};
   if (seat_ == Seat::kOpen) arguments.emplace_back("--seat");

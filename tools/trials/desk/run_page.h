@@ -26,11 +26,11 @@ class RunPage {
 
   explicit RunPage(RunPageOptions options);
 
-  /// Shows the run on this network, and returns when the pages can be opened.
+  /// Shows this run on this network, and returns when the pages can be opened.
   /// @throws Interrupted; std::runtime_error if there is no seat. A run can do without its view,
   /// but
   ///     not without the person who drives
-  void Show(const std::string& url, Seat seat);
+  void Show(std::int64_t run_id, const std::string& url, Seat seat);
   /// Starts fogline-web again if it has died. Call it now and then while the run goes on.
   Change Look();
   /// Why no fogline-web can be expected any more; "" if there is one, or the next start may help.
@@ -57,6 +57,7 @@ class RunPage {
   // They stay the same, so a page that was open connects again after fogline-web has died.
   const std::string view_token_;
   const std::string seat_token_;
+  std::int64_t run_id_ = 0;
   std::string url_;  // of the network
   Seat seat_ = Seat::kNone;
   std::string view_address_;

@@ -1,6 +1,7 @@
 // A session in the terminal: prompts on stdout, answers from stdin, one in a line.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -11,7 +12,7 @@ namespace fogline::trials {
 class TerminalDesk final : public Desk {
  public:
   void WaitForBegin(const Next& next) override;
-  void RunOpens(const std::string&) override {}
+  void RunOpens(std::int64_t, const std::string&) override {}
   void RunBegins(Speaker&) override {}
   void RunGoesOn() override {}
   void RunEnded() override {}

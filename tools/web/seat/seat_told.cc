@@ -21,7 +21,8 @@ constexpr std::array kTold{IndexOf<truth_t>(), IndexOf<driver_command_t>(),
                            IndexOf<arbitration_t>()};
 constexpr std::string_view kHeaderType = "header_t";
 constexpr std::array kScenarioFields{"/person/key_press_ps", "/person/key_release_ps",
-                                     "/world/vehicle_length_m", "/arbitrator/take_over/lead_s"};
+                                     "/person/override_by", "/world/vehicle_length_m",
+                                     "/arbitrator/take_over/lead_s"};
 
 /// The fields of a host's command that the page shows.
 arbitration_t Shown(const arbitration_t& message) {

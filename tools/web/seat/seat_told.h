@@ -17,8 +17,8 @@ namespace fogline::web {
 /// The first frame: the three channels of the seat and their types.
 std::string SeatHelloText();
 
-/// The run, with those fields of its scenario that the page needs: how keys move the pedals, the
-/// length of a car, and the time of the countdown.
+/// The run, with those fields of its scenario that the page needs: how keys move the pedals,
+/// whether the brake overrides, the length of a car, and the time of the countdown.
 /// @pre the scenario is a JSON object
 std::string SeatRunText(const RunFacts& run);
 

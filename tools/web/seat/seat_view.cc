@@ -25,6 +25,9 @@ SeatView::SeatView(boost::asio::io_context& context, LiveView& live,
                    std::optional<runtime::SigningKey> key)
     : live_(live), key_(std::move(key)), seat_(runtime::DrawSeatInstance()), look_(context) {
   live_.TellMessages([this](const RingMessage& message) { Hear(message); });
+  if (const auto run = live_.tracker().followed()) {
+    seat_.Hear({.run_id = *run, .step = -1, .utime = 0});
+  }
   Open();
   WaitToLook();
 }
@@ -64,6 +67,10 @@ void SeatView::Publish(const driver_input_t& message) {
 }
 
 void SeatView::Hear(const RingMessage& message) {
+  if (message.bytes.size() < runtime::kHeaderEnd) return;
+  // Another run on the same network is not the one in which the person drives.
+  const auto followed = live_.tracker().followed();
+  if (followed && runtime::ReadInt64(message.bytes, runtime::kRunIdOffset) != *followed) return;
   TellRun();
   TellMessage(message);
   if (message.channel == IndexOf<truth_t>()) {

@@ -1,74 +1,10 @@
 // The fallback for a driver whom the car must ask to take over, in real time. Inputs may fail, too.
-#include <cstdint>
-
 #include <gtest/gtest.h>
 
-#include "services/arbitrator/failsafe_arbitrator.h"
+#include "tests/unit/services/arbitrator/failsafe_take_over.h"
 
-namespace fogline {
+namespace fogline::test {
 namespace {
-
-Scenario Asking() {
-  Scenario scenario;
-  scenario.arbitrator.window_steps = 1;
-  scenario.arbitrator.take_over = {.mode = TakeOverMode::kRequested,
-                                   .lead_s = 10,
-                                   .escalation_s = 1,
-                                   .time = {.mean_s = 2, .std_s = 1e-3},
-                                   .recovery_s = 1};
-  return scenario;
-}
-
-/// The driver is a person.
-Scenario AskingAPerson() {
-  Scenario scenario = Asking();
-  scenario.person.drives = true;
-  return scenario;
-}
-
-class FailsafeTakeOverTest : public testing::Test {
- protected:
-  explicit FailsafeTakeOverTest(const Scenario& scenario = Asking()) : arbitrator_(scenario) {
-    radar_.valid = lidar_.valid = 1;
-    radar_.range_m = 37;
-    lidar_.range_m = 32;  // radar and LiDAR disagree
-    ego_.speed_mps = 20;
-    automation_.acceleration_mps2 = 0.2;
-    driver_.acceleration_mps2 = -0.4;
-    driver_.readiness = 1;
-    inputs_ = {.ego = {InputState::kOk, &ego_},
-               .radar = {InputState::kOk, &radar_},
-               .lidar = {InputState::kOk, &lidar_},
-               .track = {InputState::kOk, &track_},
-               .automation = {InputState::kOk, &automation_},
-               .driver = {InputState::kOk, &driver_}};
-  }
-
-  const arbitration_t& Step() {
-    const header_t header{.run_id = 7, .step = step_, .utime = step_ * 100'000};
-    ++step_;
-    ego_.header = radar_.header = lidar_.header = header;
-    return last_ = arbitrator_.Step(header, inputs_);
-  }
-  /// Makes steps until the mode is reached, for at most a minute.
-  void StepUntil(std::int8_t mode) {
-    for (int k = 0; k < 600 && Step().mode != mode; ++k) {
-    }
-    ASSERT_EQ(last_.mode, mode);
-  }
-  void Agree() { radar_.range_m = lidar_.range_m; }
-
-  arbitrator::FailsafeArbitrator arbitrator_;
-  ego_t ego_{};
-  radar_t radar_{};
-  lidar_t lidar_{};
-  track_t track_{};
-  accel_command_t automation_{};
-  driver_command_t driver_{};
-  arbitrator::ArbitratorInputs inputs_;
-  arbitration_t last_{};
-  std::int64_t step_ = 0;
-};
 
 TEST_F(FailsafeTakeOverTest, AsksHandsOverAndReturnsWhileEverythingIsThere) {
   EXPECT_EQ(Step().mode, arbitration_t::REQUEST);
@@ -208,7 +144,7 @@ TEST_F(FailsafePersonTest, StopsWhenTheAutomationIsLostAndTheSeatIsEmpty) {
 
 /// A person who need not be asked.
 Scenario InstantPerson() {
-  Scenario scenario = AskingAPerson();
+  Scenario scenario = FailsafeTakeOverTest::AskingAPerson();
   scenario.arbitrator.take_over.mode = TakeOverMode::kInstant;
   return scenario;
 }
@@ -233,4 +169,4 @@ TEST_F(FailsafeFirstInputTest, IsNotAwaitedLongerThanTheDeadmansTime) {
 }
 
 }  // namespace
-}  // namespace fogline
+}  // namespace fogline::test

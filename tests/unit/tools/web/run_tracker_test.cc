@@ -78,6 +78,20 @@ TEST(RunTrackerTest, StaysWithARunUntilItStops) {
   EXPECT_EQ(tracker.runs(), 2);
 }
 
+TEST(RunTrackerTest, ShowsOnlyTheRunThatItWasMadeFor) {
+  RunTracker tracker(6);
+  EXPECT_EQ(tracker.followed(), 6);
+  Speaker first(tracker, 5), second(tracker, 6);
+  first.AllParts(kBegin);
+  EXPECT_FALSE(tracker.run());
+  second.AllParts(kBegin);
+  EXPECT_EQ(tracker.run()->run_id, 6);
+  second.Part(0, kBegin, run_t::STOP);
+  first.AllParts(kBegin + 2 * RunTracker::kSilent);
+  EXPECT_EQ(tracker.run()->run_id, 6);
+  EXPECT_EQ(tracker.runs(), 1);
+}
+
 TEST(RunTrackerTest, LeavesARunThatIsSilent) {
   RunTracker tracker;
   Speaker first(tracker, 5), second(tracker, 6);

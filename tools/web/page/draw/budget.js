@@ -1,10 +1,12 @@
 // How much the page may draw, so that it shows at least 30 frames a second on slow machines, too.
-// It looks at the time between frames, because that contains the work of the graphics processor.
+// It looks at the time between frames, because that contains the work of the graphics processor. A
+// level that was too slow before is tried again after a longer time.
 
 const SLOW_MS = 30;         // mean time between frames
 const FAST_MS = 20;
 const LOOK_EVERY_MS = 500;
-const CALM_LOOKS = 10;      // fast looks before more is drawn again
+const CALM_LOOKS = 10;      // fast looks before more is drawn again; twice as many after each relapse
+const MOST_PATIENCE = 320;
 const HIDDEN_MS = 1000;     // a longer time between frames: the page was hidden
 
 /** For each level: rest between two drawings of a chart; pixels and rate of the driver's view. */
@@ -17,11 +19,15 @@ const LEVELS = [
 ];
 
 export class Budget {
-  constructor() {
+  /** @param slow_ms mean time between frames from which on it draws less */
+  constructor({slow_ms = SLOW_MS} = {}) {
+    this.slow_ms = slow_ms;
+    this.patience = CALM_LOOKS;
     this.level = 0;
     this.began = null;
     this.frames = 0;
     this.calm = 0;
+    this.raised = false;  // the last change of the level was that more is drawn
     this.last = null;
   }
 
@@ -45,8 +51,13 @@ export class Budget {
 
   judge(mean_ms) {
     this.calm = mean_ms < FAST_MS ? this.calm + 1 : 0;
-    if (mean_ms > SLOW_MS) this.level = Math.min(this.level + 1, LEVELS.length - 1);
-    if (this.calm >= CALM_LOOKS) {
+    if (mean_ms > this.slow_ms) {
+      if (this.raised) this.patience = Math.min(2 * this.patience, MOST_PATIENCE);
+      this.level = Math.min(this.level + 1, LEVELS.length - 1);
+      this.raised = false;
+    }
+    if (this.calm >= this.patience) {
+      this.raised = this.level > 0;
       this.level = Math.max(0, this.level - 1);
       this.calm = 0;
     }

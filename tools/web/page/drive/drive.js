@@ -17,6 +17,9 @@ import {LEAST_GAP_MS, LOOK_EVERY_MS, Sender} from "./sender.js";
 import {Setup} from "./setup.js";
 import {Countdown, told, whyAwayInWords} from "./told.js";
 
+// A person waits for the next frame after each input. So this page draws less as soon as it misses
+// one frame of 60 Hz in three.
+const SLOW_MS = 22;
 const GONE_MS = 5000;  // if the server is away for so long, it does not come back to this page
 
 class Drive {
@@ -26,7 +29,7 @@ class Drive {
     this.latency = new Latency();
     this.alarm = new Alarm();
     this.countdown = new Countdown();
-    this.budget = new Budget();
+    this.budget = new Budget({slow_ms: SLOW_MS});
     this.newest = null;
     this.view = null;
     this.instance = "";
@@ -165,6 +168,7 @@ class Drive {
     this.newest.setRun(run);
     this.person.ramps.rates = ratesOf(run.scenario);
     this.length_m = run.scenario?.world?.vehicle_length_m ?? 4.5;
+    byId("override").hidden = run.scenario?.person?.override_by !== "brake";
   }
 
   sit(state) {

@@ -3,7 +3,9 @@
 
 export const KEEP_ALIVE_MS = 50;  // a seat that hears nothing for longer knows that something is wrong
 export const LEAST_GAP_MS = 4;    // at most 250 frames a second
-export const LOOK_EVERY_MS = 20;  // how often the page looks whether a frame is due
+// How often the page looks at the devices, and whether a frame is due. A browser does not tell a page
+// that a pedal has moved, so half of this time is part of the latency.
+export const LOOK_EVERY_MS = 8;
 const MOST_NAME_BYTES = 64;
 const MOST_AXES = 16;
 const MOST_MS = 3_600_000;        // a longer time is sent as this one

@@ -51,6 +51,13 @@ inline Scenario AnyScenario(Dice& dice) {
       .comfort_deceleration_mps2 = dice.Between(0.5, 3),
       .emergency_deceleration_mps2 = dice.Between(3.2, 4),
       .jerk_mps3 = dice.Between(0.5, 20)};
+  if (dice.Chance(0.4)) {
+    scenario.person = {.drives = true,
+                       .coasting_mps2 = 0.5,
+                       .when_gone = dice.Chance(0.5) ? WhenGone::kUntilBack : WhenGone::kLocked,
+                       .override_by = dice.Chance(0.8) ? OverrideBy::kBrake : OverrideBy::kNone,
+                       .override_pedal = dice.Between(0.01, 0.9)};
+  }
   return scenario;
 }
 
@@ -58,19 +65,25 @@ inline Scenario AnyScenario(Dice& dice) {
 /// the host. The host's brake may fail for a while.
 class Events {
  public:
-  explicit Events(Dice& dice, double step_s)
-      : dice_(dice), step_s_(step_s), brakes_(!dice.Chance(0.15)) {
+  Events(Dice& dice, const Scenario& scenario)
+      : dice_(dice),
+        step_s_(scenario.step_s),
+        person_(scenario.person.drives),
+        brakes_(!dice.Chance(0.15)) {
     track_.valid = true;
     inputs_.speed_mps = dice.Chance(0.5) ? dice.Between(0, 5) : dice.Between(5, 40);
     inputs_.applied_mps2 = dice.Between(-6, 2);
     danger_ = dice.Chance(0.3) ? 0.05 : 0.002;
+    liveliness_ = dice.Chance(0.5) ? 0.05 : 0.002;
   }
 
   const take_over::TakeOverInputs& Next() {
     if (dice_.Chance(0.03)) inputs_.human_wanted = !inputs_.human_wanted;
     inputs_.automation_mps2 = dice_.Between(-6, 2);
     inputs_.human_mps2 = dice_.Between(-8, 3);
+    if (person_) Act();
     inputs_.readiness = dice_.Between(0, 1);
+    if (person_ && dice_.Chance(liveliness_ / 2)) inputs_.readiness = 0;
     track_.state[0] = dice_.Chance(danger_) ? dice_.Between(-1, 20) : dice_.Between(80, 200);
     track_.state[1] = dice_.Between(-20, 20);
     track_.valid = dice_.Chance(0.95);
@@ -78,12 +91,13 @@ class Events {
     return inputs_;
   }
 
-  /// Draws other offers. They have no influence on the events.
+  /// Draws other offers. They have no influence on the events. A person's offer may be an override,
+  /// so it stays.
   void OtherOffers() {
     const bool eager = dice_.Chance(0.5);
     inputs_.automation_mps2 =
         eager ? std::max(0.0, inputs_.applied_mps2) + dice_.Between(0.1, 1) : dice_.Between(-6, 2);
-    inputs_.human_mps2 = dice_.Between(-8, 3);
+    if (!person_) inputs_.human_mps2 = dice_.Between(-8, 3);
   }
   const take_over::TakeOverInputs& inputs() const { return inputs_; }
 
@@ -96,8 +110,17 @@ class Events {
   }
 
  private:
+  /// A person usually leaves the brake alone.
+  void Act() {
+    inputs_.human_mps2 = dice_.Chance(liveliness_) ? dice_.Between(-8, 0) : dice_.Between(-0.5, 3);
+    inputs_.acknowledged = dice_.Chance(liveliness_);
+    inputs_.gives_back = dice_.Chance(0.1);
+  }
+
   Dice& dice_;
   double step_s_;
+  bool person_;
+  double liveliness_ = 0;  // how often a person does something
   bool brakes_;
   double danger_;
   track_t track_{};
@@ -110,34 +133,45 @@ class Witness {
  public:
   explicit Witness(const Scenario& scenario)
       : section_(scenario.arbitrator.take_over),
+        person_(scenario.person),
         step_s_(scenario.step_s),
         random_(scenario.seed, Stream::kTakeOver),
         time_(section_.time, section_.lead_s),
-        manoeuvre_({.deceleration_mps2 = section_.emergency_deceleration_mps2,
-                    .jerk_mps3 = section_.jerk_mps3},
-                   scenario.step_s) {}
+        manoeuvre_(Fresh()) {}
 
   take_over::TakeOverEvents EventsOf(std::int64_t step,
                                      const take_over::TakeOverInputs& inputs) const {
-    take_over::TakeOverEvents events = take_over::Bit(
-        inputs.human_wanted ? take_over::TakeOverEvent::kWanted : take_over::TakeOverEvent::kCalm);
+    take_over::TakeOverEvents events = 0;
     const auto set = [&events](take_over::TakeOverEvent event, bool holds) {
       if (holds) events = static_cast<take_over::TakeOverEvents>(events | take_over::Bit(event));
     };
+    const bool may_return = !person_.drives || inputs.gives_back;
+    set(take_over::TakeOverEvent::kWanted, inputs.human_wanted);
+    set(take_over::TakeOverEvent::kCalm, !inputs.human_wanted && may_return);
+    set(take_over::TakeOverEvent::kOverride, Overrides(inputs));
+    set(take_over::TakeOverEvent::kGone,
+        person_.drives && person_.when_gone == WhenGone::kUntilBack && inputs.readiness == 0);
+    const bool answers_now = awaits_ && inputs.acknowledged;
+    const bool answered = person_.drives
+                              ? answered_ || answers_now
+                              : requested_ && Since(step, *requested_) + kTolerance >= time_s_;
+    set(take_over::TakeOverEvent::kReady,
+        answered && inputs.readiness >= section_.required_readiness);
+    set(take_over::TakeOverEvent::kRecovered,
+        transferred_ && Since(step, *transferred_) + kTolerance >= section_.recovery_s);
     set(take_over::TakeOverEvent::kSevere, Ttc_s(inputs) < section_.severe_ttc_s);
     set(take_over::TakeOverEvent::kStandstill, inputs.speed_mps < 0.01 && inputs.applied_mps2 <= 0);
     set(take_over::TakeOverEvent::kOverdue,
         stage_ && Since(step, *stage_ + 1) + kTolerance >= overdue_s_);
     if (!requested_) return events;
     const double t = Since(step, *requested_);
-    const bool answered = section_.absent_probability < 1 && t + kTolerance >= time_s_;
+    // A person may answer until the step of the deadline. A drawn time is compared directly.
+    const double answer_s = answers_now ? t : time_s_;
+    const bool in_time = person_.drives ? answer_s < section_.lead_s + step_s_ - kTolerance
+                                        : answer_s <= section_.lead_s;
     set(take_over::TakeOverEvent::kEscalation, t + kTolerance >= section_.escalation_s);
-    set(take_over::TakeOverEvent::kAcknowledged, answered && time_s_ <= section_.lead_s);
-    set(take_over::TakeOverEvent::kReady,
-        answered && inputs.readiness >= section_.required_readiness);
+    set(take_over::TakeOverEvent::kAcknowledged, answered && in_time);
     set(take_over::TakeOverEvent::kDeadline, t + kTolerance >= section_.lead_s);
-    set(take_over::TakeOverEvent::kRecovered,
-        transferred_ && Since(step, *transferred_) + kTolerance >= section_.recovery_s);
     return events;
   }
 
@@ -166,11 +200,27 @@ class Witness {
   void Note(const take_over::TakeOverOutcome& out, take_over::TakeOverState before,
             std::int64_t step, const take_over::TakeOverInputs& inputs) {
     using enum take_over::TakeOverState;
+    if (awaits_ && inputs.acknowledged) {
+      awaits_ = false;
+      answered_ = true;
+      if (requested_) time_s_ = Since(step, *requested_);
+    }
     if (out.state == kDemand && before == kAutomated) {
       requested_ = step;
-      transferred_.reset();
-      time_s_ = time_.Draw(random_, step);
+      Await();
+      const bool absent = person_.drives || section_.absent_probability >= 1;
+      time_s_ = absent ? kNever_s : time_.Draw(random_, step);
     }
+    if (out.state == kRecovering && before == kAutomated) {
+      requested_.reset();
+      awaits_ = false;
+    }
+    if (out.state == kMrmComfort && human_) {
+      requested_.reset();
+      Await();
+      manoeuvre_ = Fresh();
+    }
+    human_ = out.authority == take_over::Authority::kHuman;
     if (out.state == kRecovering && before != kRecovering) transferred_ = step;
     if (out.authority >= take_over::Authority::kComfort) manoeuvre_.Begin(inputs.applied_mps2);
     if (out.state == before) return;
@@ -185,6 +235,7 @@ class Witness {
   /// The command that `authority` would give in this step if it had control.
   double Would(take_over::Authority authority, const take_over::TakeOverInputs& inputs) const {
     Witness other = *this;
+    if (human_) other.manoeuvre_ = Fresh();
     if (authority >= take_over::Authority::kComfort) other.manoeuvre_.Begin(inputs.applied_mps2);
     return other.Source(authority, inputs);
   }
@@ -206,6 +257,30 @@ class Witness {
   bool manoeuvred() const { return manoeuvre_.begun(); }
 
  private:
+  static constexpr double kNever_s = std::numeric_limits<double>::infinity();
+
+  /// Whether a person brakes harder than the car, and beyond the threshold. The pedal map is
+  /// progressive, with the power 1.5 and a full brake of 8 m/s2.
+  bool Overrides(const take_over::TakeOverInputs& inputs) const {
+    if (!person_.drives || person_.override_by == OverrideBy::kNone) return false;
+    const double threshold_mps2 = std::max(-0.5 - 8 * std::pow(person_.override_pedal, 1.5), -8.0);
+    return inputs.readiness >= section_.required_readiness && inputs.human_mps2 <= threshold_mps2 &&
+           inputs.human_mps2 < inputs.applied_mps2;
+  }
+
+  /// A manoeuvre that has not begun.
+  models::MinimalRisk Fresh() const {
+    return {{.deceleration_mps2 = section_.emergency_deceleration_mps2,
+             .jerk_mps3 = section_.jerk_mps3},
+            step_s_};
+  }
+
+  /// From now on an answer of a person counts.
+  void Await() {
+    awaits_ = person_.drives;
+    answered_ = false;
+  }
+
   /// The upper bound of services/models/minimal_risk/README.md for the time to rest on a level
   /// road: apply the brake, slow down, release the brake, and three steps.
   double LongestStop_s(const take_over::TakeOverInputs& inputs, double deceleration_mps2) const {
@@ -220,13 +295,17 @@ class Witness {
   }
 
   TakeOverSection section_;
+  PersonSection person_;
   double step_s_;
   Random random_;
   models::TakeOverTime time_;
   models::MinimalRisk manoeuvre_;
   std::optional<std::int64_t> requested_;
   std::optional<std::int64_t> transferred_;
-  double time_s_ = 0;
+  double time_s_ = 0;  // from the request to the answer
+  bool awaits_ = false;
+  bool answered_ = false;
+  bool human_ = false;                 // whether the human has the authority
   std::optional<std::int64_t> stage_;  // first step of the current stage of the manoeuvre
   double overdue_s_ = 0;               // the stage is overdue after this time
 };

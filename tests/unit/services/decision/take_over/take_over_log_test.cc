@@ -232,11 +232,95 @@ TEST(TakeOverLogTest, TakesARequestBehindEmergencyBrakingForTheSame) {
 TEST(TakeOverLogTest, SaysWhoHasAcknowledged) {
   const take_over::TakeOverEntry answer{
       .from = arbitration_t::REQUEST, .to = arbitration_t::HANDOVER, .logged = "acknowledgement"};
-  EXPECT_EQ(take_over::TextOf(answer, true), "acknowledgement by the person");
-  EXPECT_EQ(take_over::TextOf(answer, false), "acknowledgement (modelled driver)");
+  const PersonSection drives{.drives = true};
+  EXPECT_EQ(take_over::TextOf(answer, drives), "acknowledgement by the person");
+  EXPECT_EQ(take_over::TextOf(answer, {}), "acknowledgement (modelled driver)");
   const take_over::TakeOverEntry other{
       .from = arbitration_t::HANDOVER, .to = arbitration_t::HANDOVER, .logged = "something"};
-  EXPECT_EQ(take_over::TextOf(other, true), "something");
+  EXPECT_EQ(take_over::TextOf(other, drives), "something");
+}
+
+TEST(TakeOverLogTest, SaysThatAPersonHasOverridden) {
+  const PersonSection drives{.drives = true};
+  const PersonSection overrides{.drives = true, .override_by = OverrideBy::kBrake};
+  for (const std::int8_t from :
+       {arbitration_t::AUTOMATION, arbitration_t::REQUEST, arbitration_t::REQUEST_URGENT}) {
+    const take_over::TakeOverEntry entry{
+        .from = from, .to = arbitration_t::RECOVERING, .logged = "transfer to the driver"};
+    EXPECT_EQ(take_over::TextOf(entry, overrides), "override by the person");
+    EXPECT_EQ(take_over::TextOf(entry, drives), "transfer to the driver");
+  }
+  const take_over::TakeOverEntry answered{.from = arbitration_t::HANDOVER,
+                                          .to = arbitration_t::RECOVERING,
+                                          .logged = "transfer to the driver"};
+  EXPECT_EQ(take_over::TextOf(answered, overrides), "transfer to the driver");
+}
+
+TEST(TakeOverLogTest, MakesNoRequestOfAnOverrideAndLeavesTheLastOneAsItWas) {
+  take_over::TakeOverLog log;
+  const auto override_at = [&](std::int64_t step) {
+    Add(log, Command(step, arbitration_t::AUTOMATION));
+    Add(log, Command(step + 1, arbitration_t::RECOVERING, -3));
+    Add(log, Command(step + 2, arbitration_t::HUMAN, -3));
+    Add(log, Command(step + 3, arbitration_t::AUTOMATION));
+  };
+  override_at(0);
+  EXPECT_THAT(log.requests(), IsEmpty());
+  EXPECT_THAT(Texts(log), ElementsAre("activation of the automation", "transfer to the driver",
+                                      "first effective input of the driver", "driver recovered",
+                                      "return to automation"));
+  EXPECT_THAT(Transfers(log), ElementsAre(1, 3));
+  Add(log, Command(10, arbitration_t::REQUEST));
+  Add(log, Command(11, arbitration_t::HANDOVER));
+  Add(log, Command(12, arbitration_t::RECOVERING, -1));
+  Add(log, Command(13, arbitration_t::HUMAN, -1));
+  const take_over::TakeOverRequest answered{
+      .requested = 10, .acknowledged = 11, .transferred = 12, .effective = 12};
+  ASSERT_THAT(log.requests(), ElementsAre(answered));
+  override_at(20);
+  EXPECT_THAT(log.requests(), ElementsAre(answered));
+}
+
+TEST(TakeOverLogTest, LeavesARequestAsItWasWhenThePersonIsGoneAfterIt) {
+  take_over::TakeOverLog log;
+  Add(log, Command(0, arbitration_t::AUTOMATION));
+  Add(log, Command(10, arbitration_t::REQUEST));
+  Add(log, Command(11, arbitration_t::HANDOVER));
+  Add(log, Command(12, arbitration_t::RECOVERING, -1));
+  const take_over::TakeOverRequest answered{
+      .requested = 10, .acknowledged = 11, .transferred = 12, .effective = 12};
+  ASSERT_THAT(log.requests(), ElementsAre(answered));
+  Add(log, Command(13, arbitration_t::MRM_COMFORT, -1.5));
+  Add(log, Command(14, arbitration_t::RECOVERING, -3));
+  Add(log, Command(15, arbitration_t::HUMAN, -3));
+  EXPECT_THAT(log.requests(), ElementsAre(answered));
+  EXPECT_THAT(Transfers(log), ElementsAre(12, 13, 14));
+  const take_over::TakeOverEntry gone = log.entries()[5];
+  EXPECT_EQ(gone.step, 13);
+  EXPECT_EQ(take_over::TextOf(gone, {.drives = true}), "manoeuvre begins: person gone");
+}
+
+TEST(TakeOverLogTest, TakesAnOverrideDuringARequestForItsAnswer) {
+  take_over::TakeOverLog log;
+  Add(log, Command(0, arbitration_t::AUTOMATION));
+  Add(log, Command(1, arbitration_t::REQUEST));
+  Add(log, Command(2, arbitration_t::RECOVERING, -3));
+  EXPECT_THAT(log.requests(),
+              ElementsAre(take_over::TakeOverRequest{
+                  .requested = 1, .acknowledged = 2, .transferred = 2, .effective = 2}));
+}
+
+TEST(TakeOverLogTest, TakesAnOverrideBehindEmergencyBrakingForTheSame) {
+  take_over::TakeOverLog log;
+  Add(log, Command(0, arbitration_t::AUTOMATION));
+  Add(log, Command(1, arbitration_t::RECOVERING, -3));
+  Add(log, Emergency(2, arbitration_t::EMERGENCY_BRAKING, 1));
+  Add(log, Command(3, arbitration_t::RECOVERING, -3));
+  Add(log, Command(4, arbitration_t::HUMAN, -3));
+  EXPECT_THAT(Texts(log),
+              ElementsAre("activation of the automation", "transfer to the driver",
+                          "first effective input of the driver", "emergency braking begins",
+                          "emergency braking ends", "driver recovered"));
 }
 
 }  // namespace

@@ -12,7 +12,7 @@ namespace {
 using enum take_over::TakeOverState;
 using Change = std::pair<take_over::TakeOverState, take_over::TakeOverState>;
 
-constexpr unsigned kEventSets = 1U << 10;
+constexpr unsigned kEventSets = 1U << 12;
 
 // A second list of the allowed changes of state, without their events.
 const std::set<Change> kChanges{
@@ -22,7 +22,9 @@ const std::set<Change> kChanges{
     {kHandover, kMrmComfort},     {kHandover, kMrmEmergency},     {kRecovering, kManual},
     {kManual, kAutomated},        {kMrmComfort, kMrmDone},        {kMrmComfort, kRecovering},
     {kMrmComfort, kMrmEmergency}, {kMrmEmergency, kMrmDone},      {kMrmEmergency, kRecovering},
-    {kMrmEmergency, kMrmFailed},  {kMrmFailed, kMrmDone},         {kMrmFailed, kRecovering}};
+    {kMrmEmergency, kMrmFailed},  {kMrmFailed, kMrmDone},         {kMrmFailed, kRecovering},
+    {kAutomated, kRecovering},    {kDemand, kRecovering},         {kUrgentDemand, kRecovering},
+    {kRecovering, kMrmComfort},   {kManual, kMrmComfort}};
 
 TEST(TakeOverTableTest, HasTheseChangesOfStateAndNoOtherWhateverHappens) {
   std::set<Change> seen;
@@ -42,6 +44,24 @@ TEST(TakeOverTableTest, HasTheseChangesOfStateAndNoOtherWhateverHappens) {
   }
   EXPECT_EQ(seen, kChanges);
   EXPECT_EQ(taken.size(), take_over::kTakeOverTable.size()) << "a row that nothing leads to";
+}
+
+TEST(TakeOverTableTest, GivesAuthorityToADriverWhoOverridesWhateverElseHappens) {
+  using enum take_over::TakeOverEvent;
+  for (const take_over::TakeOverStateInfo& info : take_over::kTakeOverStates) {
+    if (info.state == kMrmDone) continue;
+    const take_over::Authority authority = take_over::AuthorityOf(info.state);
+    if (authority == take_over::Authority::kHuman) continue;
+    for (unsigned set = 0; set < kEventSets; ++set) {
+      const auto events = static_cast<take_over::TakeOverEvents>(set | take_over::Bit(kOverride));
+      const bool stands = (events & take_over::Bit(kStandstill)) != 0;
+      if (stands && authority >= take_over::Authority::kComfort) continue;
+      const take_over::TakeOverRow* row =
+          take_over::TakeOverRowOf(info.state, events, /*manoeuvred=*/false);
+      ASSERT_NE(row, nullptr) << info.name;
+      EXPECT_EQ(row->next, kRecovering) << info.name << ", events " << set;
+    }
+  }
 }
 
 TEST(TakeOverTableTest, NeverLeavesTheLock) {

@@ -89,11 +89,17 @@ TEST(SeatToldTest, ARunHasOnlyWhatThePageNeeds) {
                       {"seed", 4711},
                       {"step_s", 0.02},
                       {"world", {{"vehicle_length_m", 5}, {"host_gap_m", 33}}},
-                      {"person", {{"key_press_ps", 2}, {"key_release_ps", 3}, {"deadman_s", 1}}},
+                      {"person",
+                       {{"key_press_ps", 2},
+                        {"key_release_ps", 3},
+                        {"override_by", "brake"},
+                        {"override_pedal", 0.3},
+                        {"deadman_s", 1}}},
                       {"arbitrator", {{"threshold", 0.4711}, {"take_over", {{"lead_s", 12}}}}}};
   const std::string told = SeatRunText(
       {.run_id = 1LL << 60, .scenario_text = scenario.dump(), .realtime = true, .pace = 1});
-  for (const char* hidden : {"secret", "4711", "threshold", "host_gap_m", "deadman_s"}) {
+  for (const char* hidden :
+       {"secret", "4711", "threshold", "host_gap_m", "deadman_s", "override_pedal"}) {
     EXPECT_THAT(told, Not(HasSubstr(hidden)));
   }
   const json run = json::parse(told);
@@ -101,9 +107,11 @@ TEST(SeatToldTest, ARunHasOnlyWhatThePageNeeds) {
   EXPECT_EQ(run["run_id"], std::to_string(1LL << 60));
   EXPECT_EQ(run["step_s"], 0.02);
   EXPECT_EQ(run["pace"], 1);
-  EXPECT_EQ(run["scenario"], json({{"world", {{"vehicle_length_m", 5}}},
-                                   {"person", {{"key_press_ps", 2}, {"key_release_ps", 3}}},
-                                   {"arbitrator", {{"take_over", {{"lead_s", 12}}}}}}));
+  EXPECT_EQ(
+      run["scenario"],
+      json({{"world", {{"vehicle_length_m", 5}}},
+            {"person", {{"key_press_ps", 2}, {"key_release_ps", 3}, {"override_by", "brake"}}},
+            {"arbitrator", {{"take_over", {{"lead_s", 12}}}}}}));
 }
 
 }  // namespace

@@ -19,6 +19,20 @@ test("a slow machine draws less, a fast one again more", () => {
   assert.deepEqual(budget.now, whole);
 });
 
+test("a level that was too slow is tried again, but later and later", () => {
+  const budget = new Budget();
+  let now = run(budget, 60, 1100);
+  const tries = [];
+  for (let i = 0; i < 4; ++i) {
+    const {level} = budget;
+    const begin = now;
+    while (budget.level >= level) now = run(budget, 16, 500, now);
+    tries.push(now - begin);
+    while (budget.level < level) now = run(budget, 60, 500, now);
+  }
+  tries.forEach((time_ms, i) => assert.ok(i === 0 || time_ms > 1.5 * tries[i - 1], `${tries}`));
+});
+
 test("frames within the budget change nothing", () => {
   const budget = new Budget();
   const {level} = budget;

@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import {test} from "node:test";
 
-import {Ramps, ratesOf} from "../../../../../../tools/web/page/drive/ramps.js";
+import {FIRST_S, Ramps, ratesOf} from "../../../../../../tools/web/page/drive/ramps.js";
 
 const RATES = {press_ps: 1, release_ps: 3};
 
@@ -14,11 +14,20 @@ function advance(ramps, from_ms, to_ms) {
 test("a pedal follows its key by its ramp, and comes back when the key is released", () => {
   const ramps = new Ramps(RATES);
   ramps.hold("throttle", true, 1000);
-  assert.ok(Math.abs(advance(ramps, 1000, 1500).throttle - 0.5 * RATES.press_ps) < 1e-9);
+  assert.ok(Math.abs(advance(ramps, 1000, 1500).throttle - (0.5 + FIRST_S) * RATES.press_ps) < 1e-9);
   assert.equal(advance(ramps, 1500, 9000).throttle, 1);
   ramps.hold("throttle", false, 9000);
-  assert.ok(Math.abs(advance(ramps, 9000, 9100).throttle - (1 - 0.1 * RATES.release_ps)) < 1e-9);
+  assert.ok(Math.abs(advance(ramps, 9000, 9100).throttle - (1 - (0.1 + FIRST_S) * RATES.release_ps)) < 1e-9);
   assert.deepEqual(advance(ramps, 9100, 10000), {throttle: 0, brake: 0});
+});
+
+test("a key moves its pedal at once, so that the event of the key can be sent", () => {
+  const ramps = new Ramps(RATES);
+  ramps.hold("brake", true, 1000);
+  assert.ok(Math.abs(ramps.advance(1000).brake - FIRST_S * RATES.press_ps) < 1e-12);
+  advance(ramps, 1000, 3000);
+  ramps.hold("brake", false, 3000);
+  assert.ok(Math.abs(ramps.advance(3000).brake - (1 - FIRST_S * RATES.release_ps)) < 1e-12);
 });
 
 test("the ramp does not depend on how often it is looked at", () => {
@@ -41,7 +50,7 @@ test("the brake wins while both keys are down", () => {
 test("a pause of the page is no time in which a key was held", () => {
   const ramps = new Ramps(RATES);
   ramps.hold("throttle", true, 0);
-  assert.ok(ramps.advance(60000).throttle <= 0.1 * RATES.press_ps + 1e-9);
+  assert.ok(ramps.advance(60000).throttle <= (0.1 + FIRST_S) * RATES.press_ps + 1e-9);
 });
 
 test("who leaves leaves both pedals at once", () => {

@@ -1,0 +1,73 @@
+// The measures of a take-over by a person, in real processes, beside those that a script works out
+// from the raw messages of the log without our code.
+#include <set>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "tests/integration/drive/driven_run.h"
+
+namespace fogline::test {
+namespace {
+
+/// The story of scenario/drive.json in 15 s: fog from 1 s on, in which the person is asked, and a
+/// car ahead that brakes.
+std::vector<std::string> ShortStory() {
+  return {"/person/drives=true", "/fog/start_s=1", "/fog/duration_s=20",
+          "/arbitrator/take_over/recovery_s=4",
+          R"(/lead/breakpoints=[{"duration_s":7,"speed_mps":20},{"duration_s":3,"speed_mps":12}])"};
+}
+
+/// The person answers by the button, brakes with two positions of the pedal, and accelerates.
+constexpr const char* kStory =
+    "0 0 0 0 1; 7 0 0.02 0 1; 7.5 0 0.05 1 1; 7.8 0 0.3 0 1; 9 0 0.6 0 1; 10 0.4 0 0 1";
+
+/// What the script prints for this log.
+nlohmann::json WorkedOut(const std::string& log) {
+  const Outcome outcome =
+      RunCommand({"python3", "tests/integration/drive/take_over_measures.py", log, "0.1"});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  return nlohmann::json::parse(outcome.out, nullptr, false);
+}
+
+nlohmann::json Measured(const std::string& log) {
+  const Outcome outcome = RunCommand({Program("fogline"), "metrics", log, "--json"});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  return nlohmann::json::parse(outcome.out, nullptr, false).at(0);
+}
+
+TEST(TakeOverMeasuresInRealtimeTest, OfAPersonAreThoseThatTheRawMessagesGive) {
+  RealtimeRun run(kDriveScenario, 750, 1, ShortStory());
+  const Background seat(SeatCommand(run.url(), kStory));
+  const nlohmann::json result = run.Finish();
+  ASSERT_TRUE(result.is_object());
+  const nlohmann::json expected = WorkedOut(run.log());
+  const nlohmann::json measured = Measured(run.log());
+  ASSERT_EQ(expected.size(), 1U);
+  ASSERT_EQ(measured["take_overs"].size(), 1U) << measured;
+  const nlohmann::json& request = measured["take_overs"][0];
+  EXPECT_EQ(request["outcome"], "taken_over");
+  for (const auto& [name, value] : expected[0].items()) {
+    ASSERT_TRUE(request.contains(name)) << name;
+    ASSERT_EQ(request[name].is_null(), value.is_null()) << name << ": " << request[name];
+    if (value.is_null()) continue;
+    EXPECT_NEAR(request[name], value, 1e-9) << name;
+  }
+  // The run of the verb and the log have the same measures.
+  EXPECT_EQ(result["take_overs"], measured["take_overs"]);
+  // THEN the numbers are those of the story: first the pedal moves a little, then the button
+  // answers
+  const double moved_s = request["first_movement_time_s"];
+  const double answered_s = request["reaction_time_s"];
+  EXPECT_GT(moved_s, 0);
+  EXPECT_GT(answered_s, moved_s);
+  EXPECT_GT(request["take_over_time_s"], answered_s);
+  EXPECT_GT(request["pedal_on_time_s"], moved_s);
+  EXPECT_GT(request["max_deceleration_mps2"], 2.0);
+  EXPECT_GT(request["driver_drove_s"], 3.5);
+}
+
+}  // namespace
+}  // namespace fogline::test
