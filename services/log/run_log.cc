@@ -9,6 +9,7 @@
 
 #include "common/text.h"
 #include "scenario/io/loader.h"
+#include "services/log/log_version.h"
 #include "services/log/step_order.h"
 #include "services/runtime/wire/digest.h"
 #include "services/runtime/wire/message_signer.h"
@@ -100,6 +101,9 @@ class RunLogReader::Assembler {
       ++foreign_;
       return;
     }
+    if (other_types_ && runtime::ReadInt64(data, 0) != runtime::FingerprintOf(channel)) {
+      RefuseVersion();
+    }
     const std::int64_t step = runtime::ReadInt64(data, runtime::kStepOffset);
     if (step < run_.steps) return;  // a repeated message
     if (realtime_ && step >= steps_) return;
@@ -121,6 +125,7 @@ class RunLogReader::Assembler {
                                    PathText(file_)));
     }
     if (!parts_.Complete()) {
+      if (VersionOf(file_).other_types) RefuseVersion();
       throw InputError(
           fmt::format("{}: error: the log has no complete scenario of a run", PathText(file_)));
     }
@@ -130,7 +135,7 @@ class RunLogReader::Assembler {
     }
     run_.scenario_text = parts_.Text();
     run_.scenario_hash = parts_.hash();
-    run_.scenario = ParseScenario(run_.scenario_text, file_.string());
+    run_.scenario = LoggedScenario();
     run_.digest = digest_.Hex();
     run_.events = reader_.head();
     const std::string alteration = Alteration();
@@ -156,6 +161,23 @@ class RunLogReader::Assembler {
     }
     if (!conflict_.empty()) note(conflict_);
     if (foreign_ > 0) note(fmt::format("{} messages of other runs ignored", foreign_));
+  }
+
+  /// @throws InputError that names the version that wrote the log
+  [[noreturn]] void RefuseVersion() const {
+    throw InputError(fmt::format("{}: error: {}", PathText(file_), VersionOf(file_).Text()));
+  }
+
+  /// The scenario of the log. @pre the scenario is complete
+  /// @throws InputError; for the log of another version, a last line names this version
+  Scenario LoggedScenario() const {
+    try {
+      return ParseScenario(parts_.Text(), file_.string());
+    } catch (const InputError& error) {
+      const std::string version = VersionOf(file_).Text();
+      if (version.empty()) throw;
+      throw InputError(fmt::format("{}\n{}: {}", error.what(), PathText(file_), version));
+    }
   }
 
   /// How the log differs from its seal; "" if it does not differ or has no seal.
@@ -198,6 +220,7 @@ class RunLogReader::Assembler {
     if (parts_.empty()) {
       run_.run_id = run.header.run_id;
       is_signed_ = is_signed;
+      other_types_ = run.type_fingerprint != TypeFingerprint();
     }
     if (run.header.run_id != run_.run_id) return;
     const bool known = parts_.Complete();
@@ -216,7 +239,7 @@ class RunLogReader::Assembler {
   }
 
   void ExpectRealtime(const run_t& run) {
-    const Scenario scenario = ParseScenario(parts_.Text(), file_.string());
+    const Scenario scenario = LoggedScenario();
     steps_ = scenario.steps;
     // A message that came before the scenario can claim any step.
     pending_.erase(pending_.lower_bound(steps_), pending_.end());
@@ -262,8 +285,9 @@ class RunLogReader::Assembler {
   StepMessages current_{};
   std::size_t guess_ = 0;
   std::int64_t foreign_ = 0;
-  bool is_signed_ = false;  // whether the run's messages are signed
-  std::string conflict_;    // names the first step with two different messages of one channel
+  bool is_signed_ = false;    // whether the run's messages are signed
+  bool other_types_ = false;  // whether the writer's message types are not those of this build
+  std::string conflict_;      // names the first step with two different messages of one channel
   truth_t truth_{};
   bool last_ = false;
   bool over_ = false;   // no further step comes: the log has ended, or an error was thrown

@@ -58,7 +58,8 @@ class RunLogReader {
   /// incomplete. The bytes of the step are valid for the lifetime of the reader.
   /// After an exception it returns nullptr.
   /// @throws InputError at the end, when the log has no scenario of a run; in real time also at the
-  /// first message of a run whose scenario is invalid
+  /// first message of a run whose scenario is invalid; at a message whose type is that of another
+  /// version of Fogline, which the error then names
   const StepMessages* Next();
 
   /// The contents of the whole log. Known once Next() has returned nullptr.
