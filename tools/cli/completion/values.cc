@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <iterator>
 #include <sstream>
 #include <string_view>
+#include <utility>
 
 #include "common/text.h"
 #include "scenario/io/catalogue.h"
