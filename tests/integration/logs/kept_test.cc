@@ -54,7 +54,8 @@ Words VerbsOn(const std::string& verb, const std::string& log, const std::string
   Words command{Program("fogline"), verb, log};
   if (verb == "replay") command.emplace_back("--all");
   if (verb == "diff") command.push_back(log);
-  if (verb == "export" || verb == "report") command.insert(command.end(), {"--out", out});
+  if (verb == "export") command.insert(command.end(), {"--out", out + ".mat"});
+  if (verb == "report") command.insert(command.end(), {"--output", out + ".html"});
   return command;
 }
 
