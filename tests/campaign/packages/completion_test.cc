@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/integration/drive/in_terminal.h"
 #include "tests/support/command.h"
-#include "tests/support/in_terminal.h"
 
 namespace fogline::test {
 namespace {

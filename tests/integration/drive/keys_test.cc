@@ -12,7 +12,7 @@
 #include "services/log/event_log.h"
 #include "services/log/run_log.h"
 #include "tests/integration/drive/driven_run.h"
-#include "tests/support/in_terminal.h"
+#include "tests/integration/drive/in_terminal.h"
 
 namespace fogline::test {
 namespace {
