@@ -66,32 +66,32 @@ set(CPACK_DEBIAN_FOGLINE_PACKAGE_SUGGESTS
   "default-jre, fogline-dev, libjchart2d-java, liblcm-java, openssh-client")
 set(CPACK_DEBIAN_FOGLINE_PACKAGE_CONTROL_EXTRA "${package_files}/conffiles;${package_files}/prerm")
 set(CPACK_DEBIAN_FOGLINE_DESCRIPTION "distributed testbed for traded control in fog
- Who should drive, the automation or the person, when fog makes radar and LiDAR
- disagree? Each part of the car is a process on an LCM network. Each part can be
- replaced, or can run on another machine. A run has the same result, bit by bit,
- on any transport.
- .
- This package has the programs, the scenarios and a systemd unit for roles.")
+Who should drive, the automation or the person, when fog makes radar and LiDAR
+disagree? Each part of the car is a process on an LCM network. Each part can be
+replaced, or can run on another machine. A run has the same result, bit by bit,
+on any transport.
+.
+This package has the programs, the scenarios and a systemd unit for roles.")
 
 set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "libfmt-dev, liblcm-dev, libsodium-dev")
 set(CPACK_DEBIAN_DEV_PACKAGE_RECOMMENDS "fogline (= ${PROJECT_VERSION})")
 set(CPACK_DEBIAN_DEV_DESCRIPTION "distributed testbed for traded control in fog (development files)
- Fogline runs each part of a car as a process on an LCM network.
- .
- This package has what a part of another project needs: the C++ headers, static
- libraries and CMake package of Fogline's runtime, and the message types as .lcm
- files for lcm-gen.")
+Fogline runs each part of a car as a process on an LCM network.
+.
+This package has what a part of another project needs: the C++ headers, static
+libraries and CMake package of Fogline's runtime, and the message types as .lcm
+files for lcm-gen.")
 
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3, fogline (= ${PROJECT_VERSION})")
 set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS "python3-pandas")
 set(CPACK_DEBIAN_PYTHON_DESCRIPTION "distributed testbed for traded control in fog (Python)
- Fogline runs each part of a car as a process on an LCM network.
- .
- This package has the Python module fogline_lab: logs as pandas tables, runs,
- tables and sweeps, live messages, and roles in Python.")
+Fogline runs each part of a car as a process on an LCM network.
+.
+This package has the Python module fogline_lab: logs as pandas tables, runs,
+tables and sweeps, live messages, and roles in Python.")
 include(CPack)
 
 # CPack with Ninja builds nothing itself.

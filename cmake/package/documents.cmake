@@ -1,5 +1,6 @@
 # Writes the copyright and the changelog of PACKAGE into OUT. Needs SOURCE (the source folder) and
 # MAINTAINER. The changelog has the versions of CHANGELOG.md in Debian's form.
+cmake_policy(VERSION 3.25)
 file(MAKE_DIRECTORY "${OUT}")
 
 file(READ "${SOURCE}/LICENSE" text)

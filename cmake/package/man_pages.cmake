@@ -1,5 +1,6 @@
 # Makes a man page of each program and each verb in OUT from its --help, by help2man. `fogline
 # --complete` names the verbs. Needs PROGRAMS, PROGRAM_FOLDER and VERSION.
+cmake_policy(VERSION 3.25)
 find_program(HELP2MAN help2man)
 if(NOT HELP2MAN)
   message(FATAL_ERROR "there is no help2man: apt-get install help2man")
