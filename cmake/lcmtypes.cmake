@@ -65,6 +65,7 @@ function(lcm_add_types target dir)
     COMMAND "${LCM_GEN}" -p --ppath "${out}/python" ${lcm_files}
     COMMENT "Generating Python message types in ${out}/python")
 
-  install(DIRECTORY "${out}/cpp/fogline" DESTINATION include)
-  install(FILES "${CMAKE_LIBRARY_OUTPUT_DIRECTORY}/${target}.jar" DESTINATION share/java OPTIONAL)
+  install(DIRECTORY "${out}/cpp/fogline" DESTINATION include COMPONENT dev)
+  install(FILES "${CMAKE_LIBRARY_OUTPUT_DIRECTORY}/${target}.jar" DESTINATION share/java
+    COMPONENT fogline OPTIONAL)
 endfunction()

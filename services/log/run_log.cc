@@ -9,6 +9,7 @@
 
 #include "common/text.h"
 #include "scenario/io/loader.h"
+#include "services/log/log_version.h"
 #include "services/log/step_order.h"
 #include "services/runtime/wire/digest.h"
 #include "services/runtime/wire/message_signer.h"
@@ -158,6 +159,9 @@ class RunLogReader::Assembler {
       if (run_id != run_.run_id) others_.Add(run_id);
       return;
     }
+    if (other_types_ && runtime::ReadInt64(data, 0) != runtime::FingerprintOf(channel)) {
+      RefuseVersion();
+    }
     const std::int64_t step = runtime::ReadInt64(data, runtime::kStepOffset);
     if (step < next_) return;  // a repeated message
     if (realtime_ && step >= steps_) return;
@@ -225,6 +229,7 @@ class RunLogReader::Assembler {
     if (!parts_.Complete() && given.empty()) {
       run_.has_scenario = false;
       if (!options_.needs_scenario && begun_) return;
+      if (VersionOf(file_).other_types) RefuseVersion();
       throw InputError(fmt::format("{}: error: the log has no complete scenario of a run{}",
                                    PathText(file_),
                                    options_.gaps && begun_ ? "; --scenario FILE gives it" : ""));
@@ -242,13 +247,30 @@ class RunLogReader::Assembler {
     }
     run_.scenario_text = parts_.Complete() ? parts_.Text() : given;
     run_.scenario_hash = parts_.Complete() ? parts_.hash() : runtime::HashOf(given);
-    run_.scenario = ParseScenario(run_.scenario_text, file_.string());
+    run_.scenario = LoggedScenario(run_.scenario_text);
   }
 
   [[noreturn]] void RefuseRun() const {
     const std::string ids = IdsOf(others_.all());
     throw InputError(fmt::format("{}: error: --run {}: the log has no such run{}", PathText(file_),
                                  run_.run_id, ids.empty() ? "" : "; it has " + ids));
+  }
+
+  /// @throws InputError that names the version that wrote the log
+  [[noreturn]] void RefuseVersion() const {
+    throw InputError(fmt::format("{}: error: {}", PathText(file_), VersionOf(file_).Text()));
+  }
+
+  /// The scenario of the log.
+  /// @throws InputError; for the log of another version, a last line names this version
+  Scenario LoggedScenario(const std::string& text) const {
+    try {
+      return ParseScenario(text, file_.string());
+    } catch (const InputError& error) {
+      const std::string version = VersionOf(file_).Text();
+      if (version.empty()) throw;
+      throw InputError(fmt::format("{}\n{}: {}", error.what(), PathText(file_), version));
+    }
   }
 
   /// How the log differs from its seal; "" if it does not differ or has no seal.
@@ -299,6 +321,7 @@ class RunLogReader::Assembler {
     if (!was_chosen && parts_.empty()) run_.run_id = run.header.run_id;
     if (run.header.run_id != run_.run_id) return others_.Add(run.header.run_id);
     if (parts_.empty()) is_signed_ = is_signed;
+    if (parts_.empty()) other_types_ = run.type_fingerprint != TypeFingerprint();
     const bool known = parts_.Complete();
     if (!parts_.Add(run)) ++foreign_;
     if (!known && parts_.Complete() && run.realtime != 0) ExpectRealtime(run);
@@ -324,7 +347,7 @@ class RunLogReader::Assembler {
   }
 
   void ExpectRealtime(const run_t& run) {
-    const Scenario scenario = ParseScenario(parts_.Text(), file_.string());
+    const Scenario scenario = LoggedScenario(parts_.Text());
     steps_ = scenario.steps;
     // A message that came before the scenario can claim any step.
     pending_.erase(pending_.lower_bound(steps_), pending_.end());
@@ -372,10 +395,11 @@ class RunLogReader::Assembler {
   std::int64_t foreign_ = 0;
   std::int64_t astray_ = 0;  // steps that are too far from the others
   OtherRuns others_;
-  bool has_run_;             // whether run_.run_id is known
-  std::string status_hash_;  // the scenario's hash as a role has told it; "" if not known
-  bool is_signed_ = false;   // whether the run's messages are signed
-  std::string conflict_;     // names the first step with two different messages of one channel
+  bool has_run_;              // whether run_.run_id is known
+  std::string status_hash_;   // the scenario's hash as a role has told it; "" if not known
+  bool is_signed_ = false;    // whether the run's messages are signed
+  bool other_types_ = false;  // whether the writer's message types are not those of this build
+  std::string conflict_;      // names the first step with two different messages of one channel
   truth_t truth_{};
   bool last_ = false;
   bool over_ = false;   // no further step comes: the log has ended, or an error was thrown

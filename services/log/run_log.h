@@ -67,7 +67,8 @@ class RunLogReader {
   /// the reader. After an exception it returns nullptr.
   /// @throws InputError at the end, when the log has no scenario of a run, lacks the chosen run, or
   /// is of another scenario than the given one; in real time also at the first message of a run
-  /// whose scenario is invalid
+  /// whose scenario is invalid; at a message whose type is that of another version of
+  /// Fogline, which the error then names
   const StepMessages* Next();
   /// The number of the step that Next() has returned.
   std::int64_t step() const;

@@ -12,6 +12,7 @@
 #include <fmt/core.h>
 
 #include "common/process/console.h"
+#include "tools/cli/completion/completion.h"
 #include "tools/processes/child.h"
 
 namespace fogline::cli {
@@ -25,15 +26,17 @@ void AddOwnPrograms(CLI::App& app, Action&) {
 void BecomeOwnProgram(int argc, char** argv) {
   if (argc < 2) return;
   const bool help = argc == 3 && std::string_view(argv[1]) == "help";
-  const std::string verb = argv[help ? 2 : 1];
+  // The word after the verb is complete or at the cursor, so the verb itself is complete.
+  const bool completes = argc > 3 && std::string_view(argv[1]) == kComplete;
+  const std::string verb = argv[help || completes ? 2 : 1];
   const auto is_verb = [&](const OwnProgram& program) { return program.verb == verb; };
   const auto own = std::ranges::find_if(kOwnPrograms, is_verb);
   if (own == kOwnPrograms.end()) return;
   std::string name = own->program;
-  std::string option = "--help";
+  std::string option = help ? "--help" : kComplete;
   const std::string path = processes::ProgramBeside(name).string();
   argv[1] = name.data();
-  if (help) argv[2] = option.data();
+  if (help || completes) argv[2] = option.data();
   execv(path.c_str(), argv + 1);
   Complain(fmt::format("fogline {}: error: {}: {}{}", verb, path, std::strerror(errno),
                        errno == ENOENT ? "; it is built by: ninja -C build " + name : ""));

@@ -18,6 +18,7 @@
 #include "common/process/this_process.h"
 #include "common/text.h"
 #include "services/runtime/process/version.h"
+#include "tools/cli/completion/completion.h"
 #include "tools/cli/help.h"
 #include "tools/cli/refusal.h"
 
@@ -59,7 +60,9 @@ int Run(const CLI::App& app, const Action& action) {
 }
 
 /// @param arguments without the program's name, in reverse order
-int Main(std::vector<std::string> arguments, std::initializer_list<AddVerb> verbs) {
+/// @param asks_for_completion whether to print what may stand in place of the last argument
+int Main(std::vector<std::string> arguments, std::initializer_list<AddVerb> verbs,
+         bool asks_for_completion) {
   FailWritesBeyondTheSizeLimit();
   CLI::App app{"Fogline: a distributed testbed for traded control in fog.", "fogline"};
   app.set_version_flag("--version", runtime::VersionText());
@@ -73,6 +76,11 @@ int Main(std::vector<std::string> arguments, std::initializer_list<AddVerb> verb
       "  fogline table --help");
   Action action;
   for (const AddVerb add : verbs) add(app, action);
+  if (asks_for_completion) {
+    std::ranges::reverse(arguments);
+    fmt::print("{}", ToText(Complete(app, arguments)));
+    return kDone;
+  }
   RefuseEmptyTexts(app);
   try {
     app.parse(std::move(arguments));
@@ -95,8 +103,15 @@ int Main(std::vector<std::string> arguments, std::initializer_list<AddVerb> verb
   return Run(app, action);
 }
 
+/// Whether a command line asks for completion. Then its other words are those to complete.
+bool AsksForCompletion(int argc, char** argv) {
+  return argc > 1 && std::string_view(argv[1]) == kComplete;
+}
+
 std::vector<std::string> Reversed(int argc, char** argv) {
-  std::vector<std::string> arguments = SeparateEmptyValues({argv + 1, argv + argc});
+  std::vector<std::string> arguments = AsksForCompletion(argc, argv)
+                                           ? std::vector<std::string>(argv + 2, argv + argc)
+                                           : SeparateEmptyValues({argv + 1, argv + argc});
   std::ranges::reverse(arguments);
   return arguments;
 }
@@ -105,7 +120,7 @@ std::vector<std::string> Reversed(int argc, char** argv) {
 
 int RunVerbs(int argc, char** argv, std::initializer_list<AddVerb> verbs) {
   TakeStandardDescriptors();
-  return Main(Reversed(argc, argv), verbs);
+  return Main(Reversed(argc, argv), verbs, AsksForCompletion(argc, argv));
 }
 
 int RunOneVerb(int argc, char** argv, AddVerb verb) {
@@ -116,7 +131,7 @@ int RunOneVerb(int argc, char** argv, AddVerb verb) {
   verb(probe, ignored);
   std::vector<std::string> arguments = Reversed(argc, argv);
   arguments.push_back(probe.get_subcommands({}).front()->get_name());
-  return Main(std::move(arguments), {verb});
+  return Main(std::move(arguments), {verb}, AsksForCompletion(argc, argv));
 }
 
 }  // namespace fogline::cli

@@ -145,10 +145,9 @@ std::vector<EventLine> LinesOf(const RunEvents& events) {
   std::vector<EventLine> lines;
   AddGaps(events.run.gaps, lines);
   for (const take_over::TakeOverEntry& entry : events.log.entries()) {
-    lines.emplace_back(
-        entry.step,
-        fmt::format("{:<42}{}", take_over::TextOf(entry, events.run.scenario.person.drives),
-                    ModesText(entry)));
+    lines.emplace_back(entry.step,
+                       fmt::format("{:<42}{}", take_over::TextOf(entry, events.run.scenario.person),
+                                   ModesText(entry)));
   }
   AddFallbacks(events.run, lines);
   std::ranges::stable_sort(lines, {}, &EventLine::first);

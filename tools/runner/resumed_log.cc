@@ -9,6 +9,7 @@
 #include "common/text.h"
 #include "scenario/io/loader.h"
 #include "services/log/log_of_run.h"
+#include "services/log/log_version.h"
 #include "services/log/run_log.h"
 #include "services/runtime/wire/message_signer.h"
 #include "services/runtime/wire/wire.h"
@@ -49,17 +50,23 @@ void CheckSeal(const std::filesystem::path& log, const runtime::SigningKey* key)
   Refuse(log, "the seal of the log is not signed with this key");
 }
 
+/// Refuses a log of other message types. @throws InputError that names the version that wrote it
+void CheckVersion(const std::filesystem::path& log) {
+  const log::LogVersion version = log::VersionOf(log);
+  if (!version.other_types) return;
+  const std::string writer = version.writer.empty() ? "another version of Fogline" : version.writer;
+  Refuse(log, "the log was made with other message types, by " + writer);
+}
+
 Resumption Read(const std::filesystem::path& log, const runtime::SigningKey* key) {
   log::LogFront front = log::ReadFront(log);
+  if (!front.parts.Complete() || front.type_fingerprint != TypeFingerprint()) CheckVersion(log);
   if (!front.parts.Complete()) {
     Refuse(log, "the log does not begin with the scenario of a run: start a new run");
   }
   if (!front.parts.HashHolds()) Refuse(log, "the scenario in the log does not match its hash");
   if (front.realtime) {
     Refuse(log, "a run in real time cannot be resumed; only runs in lockstep can");
-  }
-  if (front.type_fingerprint != TypeFingerprint()) {
-    Refuse(log, "the log was made with other message types, by another version of Fogline");
   }
   CheckSeal(log, key);
   const log::Remains remains = log::ReadRemains(log, front);

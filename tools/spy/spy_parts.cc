@@ -92,8 +92,11 @@ fs::path TypesJar(const fs::path& programs) {
 }
 
 fs::path HearLoopback(const fs::path& programs) {
-  const fs::path library = (programs / "../lib/libfogline_hear_loopback.so").lexically_normal();
-  return Readable(library) ? library : fs::path();
+  for (const char* place : {"../lib", "../lib/fogline"}) {
+    const fs::path library = (programs / place / "libfogline_hear_loopback.so").lexically_normal();
+    if (Readable(library)) return library;
+  }
+  return {};
 }
 
 }  // namespace fogline::spy

@@ -109,16 +109,29 @@ class Logger {
   Background process_;
 };
 
+/// A screen of its own for programs with windows.
+class OwnScreen {
+ public:
+  OwnScreen()
+      : server_({"Xvfb", "-displayfd", "1", "-nolisten", "tcp", "-screen", "0", "1000x700x24"}) {
+    EXPECT_TRUE(server_.WaitForOut("\n", kPatience)) << "no X server: " << server_.Err();
+  }
+  /// The value of the environment variable DISPLAY, such as "DISPLAY=:7".
+  std::string Setting() {
+    const std::string out = server_.Out();
+    return "DISPLAY=:" + out.substr(0, out.find('\n'));
+  }
+
+ private:
+  Background server_;
+};
+
 /// Debian's lcm-spy as `fogline spy` starts it, on a screen of its own. SpyProbe reads lcm-spy's
 /// window.
 class Spy {
  public:
-  explicit Spy(runtime::Bus& bus)
-      : bus_(bus),
-        screen_({"Xvfb", "-displayfd", "1", "-nolisten", "tcp", "-screen", "0", "1000x700x24"}) {
-    EXPECT_TRUE(screen_.WaitForOut("\n", kPatience)) << "no X server: " << screen_.Err();
-    const std::string display = screen_.Out().substr(0, screen_.Out().find('\n'));
-    process_.emplace(std::vector<std::string>{"env", "DISPLAY=:" + display,
+  explicit Spy(runtime::Bus& bus) : bus_(bus) {
+    process_.emplace(std::vector<std::string>{"env", screen_.Setting(),
                                               "JAVA_TOOL_OPTIONS=-javaagent:" + BuildProbe(),
                                               Program("fogline"), "spy", "--lcm-url", bus.url()});
   }
@@ -171,7 +184,7 @@ class Spy {
 
   runtime::Bus& bus_;
   ScratchFolder folder_;
-  Background screen_;
+  OwnScreen screen_;
   std::optional<Background> process_;
 };
 
@@ -384,6 +397,31 @@ TEST(LcmToolsTest, LogplayerPlaysEveryMessageToASubscriberThatDecodesIt) {
   EXPECT_TRUE(received == logged);
   EXPECT_EQ(received["TRUTH"].size(), 500U);
   EXPECT_TRUE(undecodable.empty());
+}
+
+TEST(LcmToolsTest, LogplayerGuiPlaysALogAsFoglineStartsIt) {
+  // GIVEN a log of three steps, and a subscriber
+  const ScratchFolder folder;
+  const std::string log = folder.File("run.lcm");
+  const Outcome run = RunCommand({Program("fogline"), "run", "scenario/paper.json", "--transport",
+                                  "direct", "--set", "/steps=3", "--quiet", "--log", log});
+  ASSERT_EQ(run.code, 0) << run.err;
+  runtime::Bus bus(runtime::FreshMulticastUrl());
+  std::vector<Payload> truths;
+  bus.Subscribe("TRUTH", [&truths](runtime::Bytes bytes) {
+    truths.emplace_back(bytes.begin(), bytes.end());
+  });
+  // WHEN lcm-logplayer-gui opens the log THEN its messages arrive
+  OwnScreen screen;
+  Background player(
+      {"env", screen.Setting(), Program("fogline"), "logplayer", log, "--lcm-url", bus.url()});
+  const std::vector<Payload> logged = ReadTraffic(log)["TRUTH"];
+  for (const auto end = Clock::now() + kPatience; truths.size() < logged.size();) {
+    ASSERT_TRUE(IsAlive(player.pid()) && Clock::now() < end) << player.Err();
+    bus.Wait(milliseconds(20));
+    bus.Drain();
+  }
+  EXPECT_EQ(truths, logged);
 }
 
 }  // namespace

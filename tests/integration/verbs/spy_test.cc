@@ -128,6 +128,33 @@ TEST(SpyTest, SaysHowTheTypesAreMadeWhereThereAreNone) {
                                  "-C build fogline_lcmtypes_java\n"));
 }
 
+TEST(LogplayerTest, StartsLcmsOwnOnTheNetworkWithTheLog) {
+  const Parts parts;
+  std::vector<std::string> command =
+      parts.Command(Program("fogline"), {"tests/integration/logs/kept/0.1.0.lcm", "--paused",
+                                         "--lcm-url", "udpm://239.255.76.67:7700?ttl=0"});
+  std::ranges::replace(command, std::string("spy"), std::string("logplayer"));
+  const Outcome player = RunCommand(command);
+  EXPECT_EQ(player.code, 0) << player.err;
+  EXPECT_EQ(player.out, "-Djava.net.preferIPv4Stack=true -cp " + parts.File("jars/lcm.jar") +
+                            " lcm.logging.LogPlayer --lcm-url=udpm://239.255.76.67:7700?ttl=0 "
+                            "--paused tests/integration/logs/kept/0.1.0.lcm\n");
+}
+
+TEST(LogplayerTest, RefusesWhatItCannotPlay) {
+  const auto error = [](const std::vector<std::string>& arguments) {
+    std::vector<std::string> command{Program("fogline"), "logplayer"};
+    command.insert(command.end(), arguments.begin(), arguments.end());
+    const Outcome player = RunCommand(command);
+    EXPECT_EQ(player.code, 2);
+    EXPECT_EQ(player.out, "");
+    return player.err;
+  };
+  EXPECT_THAT(error({"scenario/paper.json"}), testing::StartsWith("scenario/paper.json: error: "));
+  EXPECT_THAT(error({"none.lcm"}), testing::StartsWith("none.lcm: error: "));
+  EXPECT_THAT(error({"none.lcm", "--lcm-url", "file://x"}), HasSubstr("not an LCM network"));
+}
+
 /// Tests in which programs without a URL use the meeting address of this test.
 class SpyAtMeetingTest : public testing::Test {
  protected:

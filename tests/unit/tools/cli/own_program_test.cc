@@ -47,6 +47,7 @@ std::string Become(std::vector<std::string> words) {
 TEST(OwnProgramTest, IsTheProgramOfItsVerbWithItsArguments) {
   EXPECT_THAT(Become({"fogline", "calibrate", "--help"}), HasSubstr("fogline calibrate ["));
   EXPECT_THAT(Become({"fogline", "help", "study"}), HasSubstr("fogline study ["));
+  EXPECT_THAT(Become({"fogline", "--complete", "study", "--see"}), HasSubstr("--seeds\t"));
 }
 
 TEST(OwnProgramTest, IsNoneForOtherVerbs) {
@@ -54,6 +55,7 @@ TEST(OwnProgramTest, IsNoneForOtherVerbs) {
                                                 {"fogline", "run", "calibrate"},
                                                 {"fogline", "help"},
                                                 {"fogline", "help", "run"},
+                                                {"fogline", "--complete", "study"},
                                                 {"fogline", "help", "study", "more"}}) {
     EXPECT_EQ(Become(words), "itself") << words.back();
   }

@@ -104,6 +104,13 @@ TEST(VerbProgramTest, ExplainsItself) {
   EXPECT_EQ(Call({"--version"}).out, runtime::VersionText() + "\n");
 }
 
+TEST(VerbProgramTest, CompletesItsCommandLineAndRunsNoVerb) {
+  EXPECT_EQ(Call({"--complete", "e"}).out, "end\tEnds in one way or another\n");
+  EXPECT_EQ(Call({"--complete", "end", "problem"}).code, 0);
+  EXPECT_EQ(Call({"--complete", "--he"}, true).out, Call({"--complete", "end", "--he"}).out);
+  EXPECT_THAT(Call({"--complete", "--he"}, true).out, StartsWith("--help\t"));
+}
+
 TEST(VerbProgramTest, OfOneVerbHasNoVerbInItsCommandLine) {
   const Ended good = Call({"well"}, true);
   EXPECT_EQ(good.code, 0);

@@ -1,12 +1,6 @@
-// fogline spy: starts LCM's own lcm-spy with Fogline's message types. Debian's /usr/bin/lcm-spy
-// cannot show these types. It passes an option that Java removed in version 14, and its class path
-// lacks the types.
-#include <unistd.h>
-
-#include <cerrno>
+// fogline spy: starts LCM's own lcm-spy with Fogline's message types, which the class path of
+// Debian's /usr/bin/lcm-spy lacks.
 #include <chrono>
-#include <cstdlib>
-#include <cstring>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -22,6 +16,7 @@
 #include "services/runtime/discovery/beacon.h"
 #include "tools/cli/arguments.h"
 #include "tools/cli/help.h"
+#include "tools/fogline/lcm/java_program.h"
 #include "tools/fogline/verbs.h"
 #include "tools/spy/spy_parts.h"
 #include "tools/watch/traffic_statistics.h"
@@ -62,22 +57,6 @@ struct SpyArguments {
   fs::path jars;
 };
 
-/// A file that the command line names. @throws InputError if it cannot be read
-const fs::path& Named(const fs::path& file, std::string_view option) {
-  if (access(file.c_str(), R_OK) == 0) return file;
-  throw InputError(fmt::format("{}: error: {}: cannot be read: {}", PathText(file), option,
-                               std::strerror(errno)));
-}
-
-/// @throws InputError, std::runtime_error that names the missing package
-fs::path JarOf(const SpyArguments& arguments, const std::string& name, const char* package) {
-  if (!arguments.jars.empty()) return Named(arguments.jars / name, "--jars");
-  const fs::path jar = spy::InstalledJar(name);
-  if (!jar.empty()) return jar;
-  throw std::runtime_error(
-      fmt::format("there is no /usr/share/java/{}: apt-get install {}", name, package));
-}
-
 /// @throws InputError, std::runtime_error that says how to build the types
 fs::path TypesOf(const SpyArguments& arguments) {
   if (!arguments.types.empty()) return Named(arguments.types, "--types");
@@ -93,20 +72,11 @@ fs::path TypesOf(const SpyArguments& arguments) {
 /// The command line of lcm-spy without its network. @throws InputError, std::runtime_error if
 /// lcm-spy cannot run
 std::vector<std::string> SpyCommand(const SpyArguments& arguments) {
-  const fs::path java = spy::JavaProgram();
-  if (java.empty()) throw std::runtime_error("there is no java: apt-get install default-jre");
-  if (!spy::OpensWindows(java)) {
-    throw std::runtime_error(
-        fmt::format("{} cannot open windows (default-jre-headless?): apt-get install default-jre",
-                    PathText(java)));
-  }
-  const fs::path lcm = JarOf(arguments, "lcm.jar", "liblcm-java");
-  const fs::path charts = JarOf(arguments, "jchart2d.jar", "libjchart2d-java");
+  const fs::path java = RequireJava();
+  const fs::path lcm = FindJar(arguments.jars, "lcm.jar", "liblcm-java");
+  const fs::path charts = FindJar(arguments.jars, "jchart2d.jar", "libjchart2d-java");
   const fs::path types = TypesOf(arguments);
-  const char* display = std::getenv("DISPLAY");
-  if (const std::string why = spy::WhyNoScreen(display == nullptr ? "" : display); !why.empty()) {
-    throw std::runtime_error("no screen: " + why);
-  }
+  RequireScreen();
   return {java.string(), "-Djava.net.preferIPv4Stack=true", "-cp",
           fmt::format("{}:{}:{}", lcm.string(), charts.string(), types.string()), "lcm.spy.Spy"};
 }
@@ -150,15 +120,6 @@ std::string FindNetwork(const SpyArguments& arguments) {
   throw Interrupted("interrupted before a run came");
 }
 
-/// Lets lcm-spy receive traffic that stays on this machine.
-void PreloadHearLoopback() {
-  const fs::path library = spy::HearLoopback(fs::read_symlink("/proc/self/exe").parent_path());
-  if (library.empty()) return;  // lcm-spy still receives traffic over other interfaces
-  std::string preload = library.string();
-  if (const char* others = std::getenv("LD_PRELOAD")) preload += fmt::format(":{}", others);
-  setenv("LD_PRELOAD", preload.c_str(), 1);
-}
-
 int Spy(const SpyArguments& arguments) {
   std::string url = arguments.network.Url();
   std::vector<std::string> command = SpyCommand(arguments);
@@ -167,13 +128,7 @@ int Spy(const SpyArguments& arguments) {
     url = FindNetwork(arguments);
   }
   command.push_back("--lcm-url=" + url);
-  std::vector<char*> argv;
-  for (std::string& word : command) argv.push_back(word.data());
-  argv.push_back(nullptr);
-  PreloadHearLoopback();
-  execv(argv.front(), argv.data());
-  throw std::runtime_error(
-      fmt::format("{} cannot be started: {}", command.front(), std::strerror(errno)));
+  BecomeJava(std::move(command));
 }
 
 }  // namespace

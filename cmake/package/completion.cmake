@@ -1,0 +1,30 @@
+# Completion of command lines in bash, zsh and fish. The scripts ask the programs themselves, so they
+# have no lists of verbs and options.
+set(completing fogline fogline-calibrate fogline-study fogline-web)
+set(plain ${FOGLINE_PROGRAMS})
+list(REMOVE_ITEM plain ${completing})
+set(scripts "${CMAKE_CURRENT_BINARY_DIR}/completion")
+set(programs ${FOGLINE_PROGRAMS})
+list(JOIN completing " " completing)
+list(JOIN plain " " plain)
+foreach(script IN ITEMS fogline.bash _fogline fogline.fish)
+  configure_file("${CMAKE_CURRENT_LIST_DIR}/completion/${script}.in" "${scripts}/${script}" @ONLY)
+endforeach()
+install(FILES "${scripts}/_fogline" DESTINATION share/zsh/vendor-completions COMPONENT fogline)
+
+# bash and fish look for a file with the name of the program.
+install(FILES "${scripts}/fogline.bash" DESTINATION share/bash-completion/completions RENAME fogline
+  COMPONENT fogline)
+install(FILES "${scripts}/fogline.fish" DESTINATION share/fish/vendor_completions.d COMPONENT fogline)
+list(REMOVE_ITEM programs fogline)
+file(MAKE_DIRECTORY "${scripts}/links")
+foreach(program IN LISTS programs)
+  foreach(link IN ITEMS ${program} ${program}.fish)
+    string(REPLACE "${program}" fogline target "${link}")
+    file(CREATE_LINK "${target}" "${scripts}/links/${link}" SYMBOLIC)
+  endforeach()
+endforeach()
+list(TRANSFORM programs PREPEND "${scripts}/links/" OUTPUT_VARIABLE links)
+install(FILES ${links} DESTINATION share/bash-completion/completions COMPONENT fogline)
+list(TRANSFORM links APPEND .fish)
+install(FILES ${links} DESTINATION share/fish/vendor_completions.d COMPONENT fogline)

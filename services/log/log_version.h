@@ -1,0 +1,26 @@
+// The version of Fogline that wrote a log, for the error of a reader that cannot read it.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace fogline::log {
+
+/// The writer of a log.
+struct LogVersion {
+  /// Such as "Fogline 0.1.0"; "" if the log does not tell. The seal tells the version. A log
+  /// without a seal tells it if the table of released versions (log_version.cc) has its message
+  /// types.
+  std::string writer;
+  /// Whether the message types of the writer differ from those of this build.
+  bool other_types = false;
+
+  /// Such as "written by Fogline 0.1.0 with other message types; this is Fogline 0.2.0"; "" if the
+  /// log has the version of this build, or does not tell a version.
+  std::string Text() const;
+};
+
+/// Reads the whole log. @throws InputError if the file cannot be read or is no event log
+LogVersion VersionOf(const std::filesystem::path& log);
+
+}  // namespace fogline::log

@@ -1,0 +1,36 @@
+// Completion of command lines in a shell. The shell's script (cmake/package/completion) calls
+// `fogline --complete WORD...` with the words of the command line up to the cursor. The suggestions
+// come from the definitions of the command line, so they are those of this build.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+namespace fogline::cli {
+
+/// The option that asks for suggestions. It is an option of the program, stands first, and is not
+/// in the help text.
+inline constexpr const char* kComplete = "--complete";
+
+/// A word that may stand at the cursor. If the word ends with '/' or '=', it is not finished.
+struct Suggestion {
+  std::string word;
+  std::string meaning;
+};
+
+struct Completion {
+  std::vector<Suggestion> words;
+  std::string files;  // files of this pattern may stand there, too, such as "*.json"; "": no files
+};
+
+/// What may stand in place of the last word.
+/// @param words of the command line without the program's name; the last one is the word at the
+///     cursor, which may be empty
+Completion Complete(const CLI::App& app, const std::vector<std::string>& words);
+
+/// A line "WORD<tab>MEANING" for each suggestion, and a line "@files<tab>PATTERN" for files.
+std::string ToText(const Completion& completion);
+
+}  // namespace fogline::cli
