@@ -43,6 +43,9 @@ struct JsonMember {
 const JsonMember* FindMember(const JsonObject& object, std::string_view key);
 JsonMember* FindMember(JsonObject& object, std::string_view key);
 
+/// Place of the value with this pointer, or of the innermost value around it that the tree has.
+Place FindPlace(const JsonValue& root, std::string_view pointer);
+
 /// Description of the value for a message: `the text "abc"`, `the number 3`, `null`, `a list`.
 std::string Describe(const JsonValue& value);
 

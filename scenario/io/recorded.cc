@@ -26,21 +26,6 @@ constexpr std::string_view kTimeColumn = "/lead/recorded/time_column";
 constexpr std::string_view kSpeedColumn = "/lead/recorded/speed_column";
 constexpr std::string_view kStart = "/lead/recorded/start_s";
 
-// Place of the field, or of the innermost enclosing section that the file has.
-Place FindPlace(const JsonValue& root, std::string_view pointer) {
-  const JsonValue* at = &root;
-  while (!pointer.empty()) {
-    const std::size_t end = std::min(pointer.find('/', 1), pointer.size());
-    const auto* object = at->As<JsonObject>();
-    const JsonMember* member =
-        object == nullptr ? nullptr : FindMember(*object, pointer.substr(1, end - 1));
-    if (member == nullptr) break;
-    at = &member->value;
-    pointer.remove_prefix(end);
-  }
-  return at->place;
-}
-
 // The range that the scenario allows for a recorded speed.
 NumberSpec SpeedRange() {
   Scenario scenario;
