@@ -43,7 +43,8 @@ bool RunCoordinator::Admit(Role role, const status_t& status, TimePoint now) {
     if (status.sequence > dead->sequence) OnUndead(role, status, now);
     return false;
   }
-  if (status.host == host_ && std::ranges::find(member.pids, status.pid) != member.pids.end()) {
+  const Process sender{.host = status.host, .pid = status.pid};
+  if (std::ranges::find(member.ended, sender) != member.ended.end()) {
     return false;
   }
   if (member.status && !same(*member.status)) return AdmitOther(role, status, now);
@@ -120,10 +121,10 @@ void RunCoordinator::FailForTwo(const status_t& one, const status_t& other) {
                    one.pid, one.host, other.pid, other.host));
 }
 
-void RunCoordinator::MarkDead(Role role, std::int32_t pid, TimePoint now) {
+void RunCoordinator::MarkDead(Role role, std::int32_t pid, TimePoint now, const std::string& host) {
   Member& member = members_[static_cast<std::size_t>(role)];
-  member.pids.push_back(pid);
-  if (member.status && member.status->pid == pid && member.status->host == host_) {
+  const Process& dead = member.ended.emplace_back(ProcessOn(host, pid));
+  if (member.status && dead == Process{.host = member.status->host, .pid = member.status->pid}) {
     member.dead.push_back(std::move(*member.status));
     member.status.reset();
     deaf_.Forget(role);
@@ -136,9 +137,9 @@ void RunCoordinator::Hinder(Role role, std::string why) {
   members_[static_cast<std::size_t>(role)].hindrance = std::move(why);
 }
 
-void RunCoordinator::Launched(Role role, std::int32_t pid, TimePoint now) {
+void RunCoordinator::Launched(Role role, std::int32_t pid, TimePoint now, const std::string& host) {
   Member& member = members_[static_cast<std::size_t>(role)];
-  std::erase(member.pids, pid);
+  std::erase(member.ended, ProcessOn(host, pid));
   member.hindrance.clear();
   signs_of_life_.Since(role, now);
   progressed_ = now;
