@@ -10,5 +10,6 @@ int main(int argc, char** argv) {
       argc, argv,
       {AddRun,        AddDrive,  AddTable, AddSweep,  cli::AddOwnPrograms, AddMetrics, AddCompare,
        AddReport,     AddDigest, AddDiff,  AddEvents, AddReplay,           AddExport,  AddGraph,
-       AddExperiment, AddCheck,  AddTop,   AddSpy,    AddDoctor,           AddKeygen,  AddHelp});
+       AddExperiment, AddCheck,  AddTop,   AddSpy,    AddDoctor,           AddHost,    AddKeygen,
+       AddHelp});
 }
