@@ -75,6 +75,12 @@ const FieldList& ExperimentCatalogue() {
   return catalogue;
 }
 
+const FieldList& LabCatalogue() {
+  static LabPlan plan;
+  static const FieldList catalogue = CatalogueOf(plan);
+  return catalogue;
+}
+
 const Field* FindField(std::string_view pointer) {
   static const Field root{
       .pointer = "/", .name = "", .doc = "A scenario.", .source = "", .value = SectionField{}};

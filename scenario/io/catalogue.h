@@ -14,8 +14,9 @@ namespace fogline {
 /// callers share the values, so a caller must not change them.
 const FieldList& Catalogue();
 
-/// The same for an experiment.
+/// The same for an experiment and for a laboratory.
 const FieldList& ExperimentCatalogue();
+const FieldList& LabCatalogue();
 
 /// Finds the field with this pointer, or returns null. Any index in the pointer finds the one item
 /// of its list. "/" and "" find the whole scenario, which is not in Catalogue().

@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/text.h"
+#include "scenario/sections/field_view.h"
 
 namespace fogline {
 namespace {
@@ -274,11 +275,17 @@ Place FindPlace(const JsonValue& root, std::string_view pointer) {
   const JsonValue* at = &root;
   while (!pointer.empty()) {
     const std::size_t end = std::min(pointer.find('/', 1), pointer.size());
-    const auto* object = at->As<JsonObject>();
-    const JsonMember* member =
-        object == nullptr ? nullptr : FindMember(*object, pointer.substr(1, end - 1));
-    if (member == nullptr) break;
-    at = &member->value;
+    const std::string_view segment = pointer.substr(1, end - 1);
+    const JsonValue* inner = nullptr;
+    if (const auto* object = at->As<JsonObject>()) {
+      const JsonMember* member = FindMember(*object, segment);
+      inner = member == nullptr ? nullptr : &member->value;
+    } else if (const auto* list = at->As<JsonArray>()) {
+      const auto index = ListIndex(segment);
+      inner = index && *index < list->size() ? &(*list)[*index] : nullptr;
+    }
+    if (inner == nullptr) break;
+    at = inner;
     pointer.remove_prefix(end);
   }
   return at->place;

@@ -43,8 +43,7 @@ struct JsonMember {
 const JsonMember* FindMember(const JsonObject& object, std::string_view key);
 JsonMember* FindMember(JsonObject& object, std::string_view key);
 
-/// Place of a field, or of the innermost enclosing section that the file has.
-/// @param pointer of a field outside of lists
+/// Place of the value with this pointer, or of the innermost value around it that the tree has.
 Place FindPlace(const JsonValue& root, std::string_view pointer);
 
 /// Description of the value for a message: `the text "abc"`, `the number 3`, `null`, `a list`.

@@ -63,6 +63,9 @@ std::string ScenarioSchema();
 /// JSON schema (draft-07) of the files of experiments with people (sections/experiment.h).
 std::string ExperimentSchema();
 
+/// JSON schema (draft-07) of the files of laboratories (sections/lab.h).
+std::string LabSchema();
+
 /// Explanation of a field or section for a person: meaning, type, unit, range, default, source. "/"
 /// or "" is the whole scenario; an item of a list is /published/0 or /published/*.
 /// @throws InputError (no such field)

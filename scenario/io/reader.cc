@@ -316,4 +316,10 @@ ExperimentPlan ReadExperiment(const JsonValue& root, DiagnosticList& mistakes) {
   return plan;
 }
 
+LabPlan ReadLab(const JsonValue& root, DiagnosticList& mistakes) {
+  LabPlan plan;
+  ReadRoot(root, FieldsOf(plan), "a laboratory", Reader::Hints::kNone, mistakes);
+  return plan;
+}
+
 }  // namespace fogline

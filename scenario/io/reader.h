@@ -4,6 +4,7 @@
 #include "scenario/io/diagnostic_list.h"
 #include "scenario/io/json.h"
 #include "scenario/sections/experiment.h"
+#include "scenario/sections/lab.h"
 #include "scenario/sections/scenario.h"
 
 namespace fogline {
@@ -13,5 +14,8 @@ Scenario ReadScenario(const JsonValue& root, DiagnosticList& mistakes);
 
 /// The experiment that `root` describes. The experiment is valid only if `mistakes` stays empty.
 ExperimentPlan ReadExperiment(const JsonValue& root, DiagnosticList& mistakes);
+
+/// The laboratory that `root` describes. The laboratory is valid only if `mistakes` stays empty.
+LabPlan ReadLab(const JsonValue& root, DiagnosticList& mistakes);
 
 }  // namespace fogline

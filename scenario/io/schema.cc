@@ -176,4 +176,8 @@ std::string ExperimentSchema() {
   return SchemaOf("Fogline experiment", "An experiment with people.", ExperimentCatalogue());
 }
 
+std::string LabSchema() {
+  return SchemaOf("Fogline laboratory", "The machines of a laboratory.", LabCatalogue());
+}
+
 }  // namespace fogline

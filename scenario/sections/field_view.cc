@@ -123,6 +123,12 @@ void AddWithContents(FieldList fields, FieldList& all) {
   }
 }
 
+FieldList WithContents(FieldList fields) {
+  FieldList all;
+  AddWithContents(std::move(fields), all);
+  return all;
+}
+
 Field NumberAt(const Field& list, std::size_t index) {
   const auto* numbers = list.As<NumbersField>();
   return Item(list.pointer, index, list.doc, list.source,
@@ -148,22 +154,15 @@ FieldList Field::Contents() const {
 
 FieldList FieldsOf(Scenario& scenario) { return ListFields(scenario, ""); }
 FieldList FieldsOf(ExperimentPlan& plan) { return ListFields(plan, ""); }
+FieldList FieldsOf(LabPlan& plan) { return ListFields(plan, ""); }
 
 FieldList FieldsOf(PublishedRow& row, const std::string& pointer) {
   return ListFields(row, pointer);
 }
 
-FieldList AllFields(Scenario& scenario) {
-  FieldList all;
-  AddWithContents(FieldsOf(scenario), all);
-  return all;
-}
-
-FieldList AllFields(ExperimentPlan& plan) {
-  FieldList all;
-  AddWithContents(FieldsOf(plan), all);
-  return all;
-}
+FieldList AllFields(Scenario& scenario) { return WithContents(FieldsOf(scenario)); }
+FieldList AllFields(ExperimentPlan& plan) { return WithContents(FieldsOf(plan)); }
+FieldList AllFields(LabPlan& plan) { return WithContents(FieldsOf(plan)); }
 
 std::optional<std::size_t> ListIndex(std::string_view segment) {
   if (segment.size() > 1 && segment.front() == '0') return std::nullopt;

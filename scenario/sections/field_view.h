@@ -14,6 +14,7 @@
 
 #include "scenario/sections/experiment.h"
 #include "scenario/sections/field.h"
+#include "scenario/sections/lab.h"
 #include "scenario/sections/scenario.h"
 
 namespace fogline {
@@ -89,13 +90,15 @@ FieldList FieldsOf(Scenario& scenario);
 /// The fields of a published row, with pointers that begin with `pointer`.
 FieldList FieldsOf(PublishedRow& row, const std::string& pointer);
 
-/// The fields of an experiment, as those of a scenario.
+/// The fields of an experiment and of a laboratory, as those of a scenario.
 FieldList FieldsOf(ExperimentPlan& plan);
+FieldList FieldsOf(LabPlan& plan);
 
 /// All fields of the scenario and all items of its lists. The contents of a section or list follow
 /// the section or list.
 FieldList AllFields(Scenario& scenario);
 FieldList AllFields(ExperimentPlan& plan);
+FieldList AllFields(LabPlan& plan);
 
 /// The index that a segment of a pointer states: digits without a leading zero (RFC 6901, section
 /// 4). Nothing if the segment is not an index.

@@ -87,6 +87,7 @@ constexpr std::array kRooms = std::to_array<Room>({
     {"tools/web/foxglove", "web", "the same messages for viewers of other projects"},
     {"tools/relay", "relay", "carries messages over TCP"},
     {"tools/processes", "processes", "starts and watches processes"},
+    {"tools/hosts", "hosts", "the same on other machines"},
     {"tools/replay", "replay", "computes a role again from a log"},
     {"tools/runner", "runner", "makes one run, over any transport"},
     {"tools/drive", "drive", "a seat: what a person does, as messages"},

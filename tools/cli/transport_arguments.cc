@@ -9,6 +9,7 @@
 #include "services/graph.h"
 #include "services/runtime/transport/lcm_url.h"
 #include "tools/cli/help.h"
+#include "tools/hosts/plan_options.h"
 
 namespace fogline::cli {
 namespace {
@@ -52,6 +53,7 @@ TransportArguments::TransportArguments(CLI::App& verb, std::string transport)
       ->allow_extra_args(false)
       ->check(RefuseRecorder)
       ->check(CLI::IsMember(ExternalRoleNames()));
+  hosts::AddPlanOptions(verb, hosts_);
   verb.add_option("--wait", wait_s_, "Longest wait for roles started elsewhere, in s (0: for ever)")
       ->check(NumberIn(0, 1e6))
       ->capture_default_str();
@@ -59,15 +61,18 @@ TransportArguments::TransportArguments(CLI::App& verb, std::string transport)
                 "End the run if the build of a role is unknown, or is not that of the runner");
   CLI::Option* verify = verb.add_flag(
       "--verify", verify_,
-      "Compute each step again from the log and compare (default with --external, and for a "
-      "resumed run). Roles of another build and runs in real time are not compared");
+      "Compute each step again from the log and compare (default with --external, --on and "
+      "--lab, and for a resumed run). Roles of another build and runs in real time are not "
+      "compared");
   verb.add_flag("--no-verify", no_verify_, "Do not compute the steps again")->excludes(verify);
   runtime::AddTrafficOptions(verb, traffic_);
 }
 
-std::string TransportArguments::Unsaid() const {
+std::string TransportArguments::Unsaid(const hosts::RunPlan& plan) const {
+  if (plan.relay) return "tcpq";
+  if (!plan.url.empty()) return plan.url;
   const auto url = runtime::UrlOfEnvironment();
-  const bool as_processes = transport_ != "direct" || !external_.empty();
+  const bool as_processes = transport_ != "direct" || !external_.empty() || !plan.empty();
   if (!url || !as_processes) return transport_;
   if (!runtime::IsLcmUrl(*url)) {
     throw InputError(fmt::format("error: LCM_DEFAULT_URL is {}, which is no LCM URL such as \"{}\"",
@@ -81,11 +86,15 @@ void TransportArguments::Apply(runner::ExperimentOptions& options) const {
     throw InputError(fmt::format("error: --lcm-url {}: not an LCM URL such as \"{}\"", url_,
                                  runtime::kLcmDefaultUrl));
   }
-  options.transport = !url_.empty() ? url_ : said_->count() > 0 ? transport_ : Unsaid();
+  options.hosts = hosts::MakePlan(hosts_);
+  options.transport = !url_.empty()        ? url_
+                      : said_->count() > 0 ? transport_
+                                           : Unsaid(options.hosts);
   options.wait = duration_cast<Duration>(std::chrono::duration<double>(wait_s_));
   options.traffic = traffic_;
+  if (traffic_.key_file.empty()) options.traffic.key_file = options.hosts.key_file;
   // A wrong key is refused even for a run that has no messages to sign.
-  runtime::KeyOf(traffic_);
+  runtime::KeyOf(options.traffic);
   if (options.transport == "direct" && !traffic_.faults.empty()) {
     throw InputError("error: --faults: a run with --transport direct has no messages");
   }
@@ -102,12 +111,40 @@ void TransportArguments::Apply(runner::ExperimentOptions& options) const {
   }
   options.verify = verify_ ? std::optional(true) : no_verify_ ? std::optional(false) : std::nullopt;
   options.same_build = same_build_;
+  CheckHosts(options);
   if (external_.empty()) return;
   if (options.transport == "direct" || options.transport.starts_with("memq")) {
     throw InputError(
         fmt::format("error: --external {}: no other process can join a run with --transport {}, "
                     "which is one process",
                     external_.front(), options.transport));
+  }
+}
+
+void TransportArguments::CheckHosts(const runner::ExperimentOptions& options) const {
+  const hosts::RunPlan& plan = options.hosts;
+  if (plan.empty()) return;
+  const auto [role, place] = *plan.places.begin();
+  const std::string where = fmt::format("{} on {}", NameOf(role), plan.hosts[place].name);
+  if (options.transport == "direct" || options.transport.starts_with("memq")) {
+    throw InputError(fmt::format("error: {}: a run with --transport {} is one process", where,
+                                 options.transport));
+  }
+  if (plan.relay && options.transport != "tcpq") {
+    throw InputError(
+        fmt::format("error: --relay: the run has a relay of its own, and not the network {}",
+                    options.transport));
+  }
+  const auto address = runtime::ParseMulticastUrl(options.transport);
+  if (address && address->ttl == 0) {
+    throw InputError(
+        fmt::format("error: {}: messages to {} stay on this machine; other machines need ttl=1",
+                    where, options.transport));
+  }
+  for (const Role external : options.external) {
+    if (!plan.places.contains(external)) continue;
+    throw InputError(fmt::format("error: --external {0}: the run itself starts the {0} on {1}",
+                                 NameOf(external), plan.hosts[plan.places.at(external)].name));
   }
 }
 

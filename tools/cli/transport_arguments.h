@@ -7,11 +7,13 @@
 #include <CLI/CLI.hpp>
 
 #include "scenario/sections/scenario.h"
+#include "tools/hosts/run_plan.h"
 #include "tools/runner/experiment.h"
 
 namespace fogline::cli {
 
-/// The options --transport, --lcm-url, --external, --wait, --same-build, --verify, --key, --faults.
+/// The options --transport, --lcm-url, --external, --wait, --same-build, --verify, --key, --faults,
+/// and those of roles on other machines.
 class TransportArguments {
  public:
   /// @param transport default transport. If this transport starts the roles as processes, and
@@ -24,12 +26,15 @@ class TransportArguments {
 
  private:
   /// The transport of a run without --transport and --lcm-url.
-  std::string Unsaid() const;
+  std::string Unsaid(const hosts::RunPlan& plan) const;
+  /// @throws InputError if roles on other machines cannot join the run
+  void CheckHosts(const runner::ExperimentOptions& options) const;
 
   std::string transport_;
   CLI::Option* said_;  // --transport
   std::string url_;
   std::vector<std::string> external_;
+  hosts::PlanWords hosts_;
   double wait_s_ = 60;
   bool same_build_ = false;
   bool verify_ = false;

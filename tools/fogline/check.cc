@@ -13,6 +13,7 @@
 #include "tools/cli/arguments.h"
 #include "tools/cli/help.h"
 #include "tools/fogline/verbs.h"
+#include "tools/hosts/lab_file.h"
 #include "tools/runner/experiment.h"
 
 namespace fogline {
@@ -24,6 +25,7 @@ struct CheckOptions {
   std::optional<std::string> explain;
   bool print = false;
   bool schema = false;
+  bool lab = false;
   bool json = false;
 };
 
@@ -33,18 +35,27 @@ nlohmann::ordered_json ToJson(const Diagnostic& diagnostic) {
           {"rule", diagnostic.rule},     {"message", diagnostic.message}};
 }
 
+/// Checks a file, and prints that it is good. @throws ScenarioError with its mistakes
+void CheckFile(const std::string& file, const CheckOptions& options) {
+  if (options.lab) {
+    hosts::LoadLab(file);
+  } else {
+    const Scenario scenario = LoadScenario(file, options.overrides);
+    runner::CheckPossible(scenario, file);
+    if (options.print) {
+      fmt::print("{}", PrintScenario(scenario));
+      return;
+    }
+  }
+  if (!options.json) fmt::print("{}: ok\n", PathText(file));
+}
+
 int CheckFiles(const CheckOptions& options) {
   int code = kDone;
   nlohmann::ordered_json diagnostics = nlohmann::ordered_json::array();
   for (const std::string& file : options.files) {
     try {
-      const Scenario scenario = LoadScenario(file, options.overrides);
-      runner::CheckPossible(scenario, file);
-      if (options.print) {
-        fmt::print("{}", PrintScenario(scenario));
-      } else if (!options.json) {
-        fmt::print("{}: ok\n", PathText(file));
-      }
+      CheckFile(file, options);
     } catch (const ScenarioError& error) {
       code = kBadInput;
       for (const Diagnostic& diagnostic : error.diagnostics())
@@ -62,8 +73,11 @@ int Check(const CheckOptions& options) {
   if (modes > 1) {
     throw InputError("error: --print, --schema, --explain and --json exclude each other");
   }
+  if (options.lab && (options.print || options.explain || !options.overrides.empty())) {
+    throw InputError("error: --lab: --print, --explain and --set are for scenarios");
+  }
   if (options.schema) {
-    fmt::print("{}", ScenarioSchema());
+    fmt::print("{}", options.lab ? LabSchema() : ScenarioSchema());
     return kDone;
   }
   if (options.explain) {
@@ -90,6 +104,8 @@ void AddCheck(CLI::App& app, cli::Action& action) {
   verb->add_flag("--schema", options->schema, "Print the JSON schema of scenarios");
   verb->add_option("--explain", options->explain, "Print a field's meaning, range, default")
       ->type_name("/POINTER");
+  verb->add_flag("--lab", options->lab,
+                 "The files, or the schema, are of laboratories (run --lab)");
   verb->add_flag("--json", options->json, "Print mistakes as a JSON list");
   cli::ShowExitCodes(*verb, {.done = "every file is good"});
   verb->footer(
@@ -99,7 +115,8 @@ void AddCheck(CLI::App& app, cli::Action& action) {
       "  fogline check scenario/paper.json scenario/dense_fog.json\n"
       "  fogline check --print --set /arbitrator/threshold=0.8 scenario/paper.json\n"
       "  fogline check --explain /fog/visibility_m\n"
-      "  fogline check --explain /");
+      "  fogline check --explain /\n"
+      "  fogline check --lab lab.json");
   verb->callback([options, &action] { action = [options] { return Check(*options); }; });
 }
 

@@ -7,8 +7,9 @@ int main(int argc, char** argv) {
   using namespace fogline;
   cli::BecomeOwnProgram(argc, argv);
   return cli::RunVerbs(
-      argc, argv, {AddRun,       AddDrive,  AddTable,  AddSweep, cli::AddOwnPrograms, AddMetrics,
-                   AddCompare,   AddReport, AddDigest, AddDiff,  AddEvents,           AddReplay,
-                   AddExport,    AddGraph,  AddCheck,  AddTop,   AddRecord,           AddSpy,
-                   AddLogplayer, AddDoctor, AddKeygen, AddHelp});
+      argc, argv,
+      {AddRun,    AddDrive,  AddTable,  AddSweep,  cli::AddOwnPrograms, AddMetrics, AddCompare,
+       AddReport, AddDigest, AddDiff,   AddEvents, AddReplay,           AddExport,  AddGraph,
+       AddCheck,  AddTop,    AddRecord, AddSpy,    AddLogplayer,        AddDoctor,  AddHost,
+       AddKeygen, AddHelp});
 }

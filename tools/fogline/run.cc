@@ -64,7 +64,9 @@ Examples:
   fogline run --resume logs/paper-1.lcm          goes on with a run that has ended early
   fogline run scenario/paper.json --faults loss=0.3,duplicate=0.1,reorder=0.1,delay_ms=5
   fogline-driver & fogline run scenario/paper.json --external driver
-  fogline run scenario/paper.json --external driver --lcm-url 'udpm://239.255.76.67:7700?ttl=0')";
+  fogline run scenario/paper.json --external driver --lcm-url 'udpm://239.255.76.67:7700?ttl=0'
+  fogline run scenario/paper.json --on fusion=lab2 --on acc=user@lab3       by ssh
+  fogline run scenario/paper.json --lab lab.json --relay)";
 
 struct RunArguments {
   explicit RunArguments(CLI::App& verb) : scenario(verb), transport(verb, "udpm") {

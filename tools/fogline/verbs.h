@@ -27,6 +27,7 @@ void AddRecord(CLI::App& app, cli::Action& action);
 void AddTop(CLI::App& app, cli::Action& action);
 void AddSpy(CLI::App& app, cli::Action& action);
 void AddLogplayer(CLI::App& app, cli::Action& action);
+void AddHost(CLI::App& app, cli::Action& action);
 void AddDoctor(CLI::App& app, cli::Action& action);
 void AddKeygen(CLI::App& app, cli::Action& action);
 void AddHelp(CLI::App& app, cli::Action& action);

@@ -4,15 +4,20 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <csignal>
+#include <fstream>
 #include <utility>
 
 #include <fmt/core.h>
 
+#include "common/process/this_process.h"
 #include "tools/processes/child.h"
 
 namespace fogline::processes {
+
+ProcessGroup::ProcessGroup() : host_(HostName()) {}
 
 ProcessGroup::~ProcessGroup() {
   Signal(SIGKILL);
@@ -30,6 +35,10 @@ pid_t ProcessGroup::Start(Role role, const std::filesystem::path& program,
   processes_.push_back(
       {.role = role, .pid = pid, .output = std::exchange(output.read, -1), .printed = {}});
   return pid;
+}
+
+pid_t ProcessGroup::StartRole(Role role, const std::vector<std::string>& arguments) {
+  return Start(role, ProgramOf(role), arguments);
 }
 
 std::vector<ProcessGroup::Exit> ProcessGroup::Collect() {
@@ -61,6 +70,11 @@ std::string ProcessGroup::Describe() const {
   return text;
 }
 
+void ProcessGroup::Kill(pid_t pid) {
+  // The id of a process that was collected may belong to another process.
+  if (std::ranges::find(processes_, pid, &Process::pid) != processes_.end()) kill(pid, SIGKILL);
+}
+
 void ProcessGroup::Signal(int signal) {
   for (const Process& process : processes_) kill(process.pid, signal);
 }
@@ -75,6 +89,19 @@ void ProcessGroup::ReadOutput(Process& process) {
     if (size <= 0) return;
     process.printed.Append({buffer.data(), static_cast<std::size_t>(size)});
   }
+}
+
+std::optional<std::int64_t> OwnActivityOf(pid_t pid) {
+  std::ifstream status(fmt::format("/proc/{}/status", pid));
+  std::int64_t sum = 0;
+  bool known = false;
+  for (std::string key; status >> key;) {
+    if (!key.ends_with("voluntary_ctxt_switches:")) continue;
+    std::int64_t count = 0;
+    known = static_cast<bool>(status >> count);
+    sum += count;
+  }
+  return known ? std::optional(sum) : std::nullopt;
 }
 
 }  // namespace fogline::processes

@@ -4,43 +4,41 @@
 
 #include <sys/types.h>
 
+#include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "common/clock.h"
 #include "services/graph.h"
 #include "tools/processes/last_lines.h"
+#include "tools/processes/role_place.h"
 
 namespace fogline::processes {
 
-class ProcessGroup {
+class ProcessGroup : public RolePlace {
  public:
-  ProcessGroup() = default;
+  ProcessGroup();
   /// Kills all processes that still run.
-  ~ProcessGroup();
-  ProcessGroup(const ProcessGroup&) = delete;
-  ProcessGroup& operator=(const ProcessGroup&) = delete;
+  ~ProcessGroup() override;
+
+  const std::string& host() const override { return host_; }
+  const std::string& name() const override { return name_; }
 
   /// Starts a program for a role, and keeps its output.
   pid_t Start(Role role, const std::filesystem::path& program,
               const std::vector<std::string>& arguments);
 
-  /// A process that has ended.
-  struct Exit {
-    Role role;
-    pid_t pid;
-    std::string how;                 // such as "exited with code 3" or "was killed by signal 9"
-    bool killed;                     // ended by a signal; the process then printed no reason
-    std::vector<std::string> lines;  // the last lines that the process printed
-  };
-  /// Reads the output of the processes and collects the processes that have ended since the last
-  /// call.
-  std::vector<Exit> Collect();
+  /// Starts the program of a role that is in the folder of the running program.
+  pid_t StartRole(Role role, const std::vector<std::string>& arguments) override;
+  /// Reads the output of the processes, too.
+  std::vector<Exit> Collect() override;
 
-  bool empty() const { return processes_.empty(); }
-  /// "world 4711, radar 4712, ...", for people who want to inspect or signal a process.
-  std::string Describe() const;
+  bool empty() const override { return processes_.empty(); }
+  std::string Describe() const override;
+  void Kill(pid_t pid) override;
+  std::optional<std::int64_t> ActivityOf(pid_t pid) override { return OwnActivityOf(pid); }
   /// Sends a signal to all processes that still run.
   void Signal(int signal);
 
@@ -53,6 +51,8 @@ class ProcessGroup {
   };
   static void ReadOutput(Process& process);
 
+  std::string host_;
+  std::string name_;  // empty, because this is the runner's machine
   std::vector<Process> processes_;
 };
 

@@ -5,7 +5,6 @@
 
 #include <csignal>
 #include <stdexcept>
-#include <string_view>
 #include <utility>
 
 #include <fmt/core.h>
@@ -18,12 +17,10 @@ namespace {
 
 constexpr Duration kListenLimit = milliseconds(5000);
 
-constexpr std::string_view kHere = "127.0.0.1";
-
 }  // namespace
 
-RelayProcess::RelayProcess(int restarts)
-    : policy_(restarts), url_(Start(fmt::format("{}:0", kHere))) {}
+RelayProcess::RelayProcess(int restarts, const std::string& place)
+    : policy_(restarts), url_(Start(place)) {}
 
 RelayProcess::~RelayProcess() { End(); }
 

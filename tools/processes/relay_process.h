@@ -1,4 +1,4 @@
-// A relay for one run: fogline-relay on a free port of this machine. A relay that dies is restarted
+// A relay for one run: fogline-relay on this machine. A relay that dies is restarted
 // at the same address. The destructor ends the relay.
 #pragma once
 
@@ -15,8 +15,10 @@ namespace fogline::processes {
 class RelayProcess {
  public:
   /// Starts the relay and waits until it listens.
-  /// @param restarts maximum number of restarts @throws std::runtime_error
-  explicit RelayProcess(int restarts);
+  /// @param restarts maximum number of restarts
+  /// @param place ADDRESS:PORT at which it listens; port 0: any free port
+  /// @throws std::runtime_error
+  explicit RelayProcess(int restarts, const std::string& place = "127.0.0.1:0");
   ~RelayProcess();
   RelayProcess(const RelayProcess&) = delete;
   RelayProcess& operator=(const RelayProcess&) = delete;

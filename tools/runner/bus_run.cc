@@ -32,6 +32,7 @@
 #include "services/runtime/realtime/fallback_log.h"
 #include "services/runtime/transport/lcm_url.h"
 #include "services/world/world.h"
+#include "tools/hosts/host_group.h"
 #include "tools/processes/child.h"
 #include "tools/processes/external_roles.h"
 #include "tools/processes/relay_process.h"
@@ -144,10 +145,10 @@ void RunInMemory(runtime::Bus& bus, runtime::RunCoordinator& coordinator, std::i
 
 // ---- processes ---------------------------------------------------------------------------------
 
-void AnnounceProcesses(const runtime::Bus& bus, std::int64_t run_id,
-                       const processes::ProcessGroup& group, const std::string& external) {
+void AnnounceProcesses(const runtime::Bus& bus, std::int64_t run_id, const std::string& started,
+                       const std::string& external) {
   Notice(fmt::format("run {} on {}", run_id, bus.url()));
-  if (!group.empty()) Notice(fmt::format("processes: {}", group.Describe()));
+  if (!started.empty()) Notice(fmt::format("processes: {}", started));
   if (!external.empty()) Notice(external);
 }
 
@@ -158,9 +159,9 @@ struct ProcessNews {
 };
 
 ProcessNews RunAsProcesses(runtime::Bus& bus, runtime::RunCoordinator& coordinator,
-                           processes::RelayProcess* relay, std::int64_t run_id,
-                           const Scenario& scenario, const ExperimentOptions& options,
-                           const std::filesystem::path& log) {
+                           processes::RelayProcess* relay, const hosts::HostGroup* hosts,
+                           std::int64_t run_id, const Scenario& scenario,
+                           const ExperimentOptions& options, const std::filesystem::path& log) {
   Progress progress("step", scenario.steps);
   runtime::Beacon beacon({.run_id = run_id, .url = bus.url(), .scenario = scenario.title});
   processes::ExternalRoles external(bus.url(), options.traffic, options.wait);
@@ -174,15 +175,16 @@ ProcessNews RunAsProcesses(runtime::Bus& bus, runtime::RunCoordinator& coordinat
                          .log = log,
                          .resume = options.resume.has_value(),
                          .wall_clock = options.wall_clock,
-                         .arguments = runtime::ToArguments(options.traffic),
+                         .traffic = options.traffic,
                          .external = options.external,
+                         .hosts = hosts,
                          .restarts = options.restarts,
                          // A hanging process is found before the run counts as stalled.
                          .silence = std::min(options.realtime ? kRealtimeHangLimit : kHangLimit,
                                              options.stall_limit / 2),
                          .say = say});
   if (options.announce) {
-    AnnounceProcesses(bus, run_id, supervisor.group(), external.Text(options.external));
+    AnnounceProcesses(bus, run_id, supervisor.Describe(), external.Text(options.external));
   }
   Warnings warnings(coordinator, progress);
   runtime::FallbackLog fallbacks(std::llround(scenario.step_s * 1e6), options.pace, scenario.steps);
@@ -236,9 +238,14 @@ std::vector<log::WrittenLog> WrittenBy(const runtime::RunCoordinator& coordinato
   return written;
 }
 
-std::string UrlOf(const std::string& transport) {
+/// @param far whether messages must reach other machines
+std::string UrlOf(const std::string& transport, bool far) {
   if (transport == "memq") return "memq://";
-  if (transport == "udpm") return runtime::FreshMulticastUrl();
+  if (transport == "udpm") {
+    const std::string here = runtime::FreshMulticastUrl();
+    const runtime::MulticastAddress address = *runtime::ParseMulticastUrl(here);
+    return far ? fmt::format("udpm://{}:{}?ttl=1", address.group, address.port) : here;
+  }
   if (runtime::IsLcmUrl(transport)) return transport;
   throw InputError(
       fmt::format("error: --transport {}: neither direct, memq, udpm, tcpq nor an LCM URL such as "
@@ -256,10 +263,17 @@ std::int64_t DrawRunId() {
 
 BusRun RunOnBus(const Scenario& scenario, const ExperimentOptions& options,
                 const std::filesystem::path& log, const LogKeeper& keeper) {
+  const auto hosts = hosts::Connect(options.hosts);
   std::optional<processes::RelayProcess> relay;
-  if (options.transport == "tcpq") relay.emplace(options.restarts);
-  runtime::Bus bus(relay ? relay->url() : UrlOf(options.transport));
+  if (options.transport == "tcpq") {
+    relay.emplace(options.restarts, hosts ? hosts->RelayPlace() : "127.0.0.1:0");
+  }
+  runtime::Bus bus(relay ? relay->url() : UrlOf(options.transport, hosts != nullptr));
   const bool in_memory = bus.url().starts_with("memq");
+  // Roles on other machines wait for a silent runner as long as roles that were started by hand.
+  if (hosts) {
+    hosts->Check(bus.url(), options.traffic, options.stall_limit + runtime::RunnerWatch::kGone);
+  }
   const runtime::RunCoordinatorOptions conducting =
       MakeCoordinatorOptions(scenario, options, in_memory);
   if (!in_memory) options.on_network(conducting.run_id, bus.url());
@@ -271,8 +285,8 @@ BusRun RunOnBus(const Scenario& scenario, const ExperimentOptions& options,
   if (in_memory) {
     RunInMemory(bus, coordinator, conducting.run_id, scenario, options, log);
   } else {
-    news = RunAsProcesses(bus, coordinator, relay ? &*relay : nullptr, conducting.run_id, scenario,
-                          options, log);
+    news = RunAsProcesses(bus, coordinator, relay ? &*relay : nullptr, hosts.get(),
+                          conducting.run_id, scenario, options, log);
     if (relay && relay->restarts() > 0) {
       news.restarts.push_back(
           {.role = "relay", .count = relay->restarts(), .last = relay->death()});

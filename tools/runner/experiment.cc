@@ -243,7 +243,8 @@ ExperimentResult ReadResult(const LogKeeper& keeper, const std::filesystem::path
                     PathText(log)));
   }
   ExperimentResult result = std::move(logged.result);
-  if (options.verify.value_or(options.resume || !options.external.empty())) {
+  const bool elsewhere = !options.external.empty() || !options.hosts.empty();
+  if (options.verify.value_or(options.resume || elsewhere)) {
     result.verification = replay::VerifyRun(log, logged, run.other_builds);
   }
   if (checked && !options.log.empty()) {

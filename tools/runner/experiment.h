@@ -24,6 +24,7 @@
 #include "services/runtime/transport/traffic_options.h"
 #include "services/runtime/wire/other_build.h"
 #include "services/runtime/wire/refusals.h"
+#include "tools/hosts/run_plan.h"
 #include "tools/replay/role_check.h"
 
 namespace fogline::runner {
@@ -49,11 +50,13 @@ struct ExperimentOptions {
   bool realtime = false;                 // run at this pace by the wall clock, and do not wait for
                                          // slow roles
   std::vector<Role> external;            // roles that are started elsewhere
+  hosts::RunPlan hosts;                  // roles that the run starts on other machines
   Duration wait = milliseconds(60'000);  // longest wait until these roles are ready; 0: forever
   Duration stall_limit = milliseconds(4000);
   int restarts = 10;  // most restarts of each role that is killed or hangs; 0: its end ends the run
   /// Whether to compute the roles' steps again from the log, and compare the results. By default,
-  /// the steps are computed again if roles are started elsewhere or the run is resumed.
+  /// the steps are computed again if roles run on other machines, are started elsewhere, or the run
+  /// is resumed.
   std::optional<bool> verify;
   bool same_build = false;  // end the run if a role's build differs from the runner's build
   runtime::TrafficOptions traffic;

@@ -1,11 +1,14 @@
 #include "tools/runner/kept_log.h"
 
+#include <algorithm>
 #include <chrono>
-#include <string_view>
+#include <iterator>
+#include <vector>
 
 #include <fmt/core.h>
 
 #include "common/errors.h"
+#include "common/process/shell_word.h"
 #include "common/text.h"
 #include "services/log/log_of_run.h"
 #include "services/log/remains.h"
@@ -22,18 +25,6 @@ bool HasStepsOf(std::int64_t run_id, const std::filesystem::path& log) {
   } catch (const InputError&) {
     return false;
   }
-}
-
-/// A word of a command, quoted for a shell if needed.
-std::string Word(std::string_view text) {
-  constexpr std::string_view kPlain =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_./-,=+";
-  if (!text.empty() && text.find_first_not_of(kPlain) == std::string_view::npos) {
-    return std::string(text);
-  }
-  std::string quoted = "'";
-  for (const char c : text) quoted += c == '\'' ? "'\\''" : std::string(1, c);
-  return quoted + "'";
 }
 
 std::string InSeconds(Duration time) {
@@ -53,9 +44,9 @@ std::string KeptLog(std::int64_t run_id, const ExperimentOptions& options) {
 std::string CommandToGoOn(const ExperimentOptions& options) {
   if (options.log.empty() || options.realtime) return "";
   const ExperimentOptions unsaid;
-  std::string command = "fogline run --resume " + Word(options.log.string());
+  std::string command = "fogline run --resume " + ShellWord(options.log.string());
   if (runtime::IsLcmUrl(options.transport)) {
-    command += " --lcm-url " + Word(options.transport);
+    command += " --lcm-url " + ShellWord(options.transport);
   } else if (options.transport != unsaid.transport || runtime::UrlOfEnvironment()) {
     command += " --transport " + options.transport;
   }
@@ -70,7 +61,9 @@ std::string CommandToGoOn(const ExperimentOptions& options) {
   if (options.wait != unsaid.wait) command += " --wait " + InSeconds(options.wait);
   if (options.same_build) command += " --same-build";
   if (options.verify) command += *options.verify ? " --verify" : " --no-verify";
-  for (const std::string& word : runtime::ToArguments(options.traffic)) command += " " + Word(word);
+  std::vector<std::string> words = options.hosts.words;
+  std::ranges::copy(runtime::ToArguments(options.traffic), std::back_inserter(words));
+  for (const std::string& word : words) command += " " + ShellWord(word);
   return command;
 }
 

@@ -1,8 +1,7 @@
 #include "tools/runner/supervisor.h"
 
 #include <algorithm>
-#include <csignal>
-#include <fstream>
+#include <iterator>
 #include <utility>
 
 #include <fmt/core.h>
@@ -25,19 +24,9 @@ constexpr Duration kStartLimit = milliseconds(5000);
 // killed by mistake in one of a few thousand runs.
 constexpr double kUnlikely = 1e-6;
 
-/// Number of context switches of a process, voluntary or not; nullopt if unknown. A live process
-/// has many context switches each second.
-std::optional<std::int64_t> ActivityOf(pid_t pid) {
-  std::ifstream status(fmt::format("/proc/{}/status", pid));
-  std::int64_t sum = 0;
-  bool known = false;
-  for (std::string key; status >> key;) {
-    if (!key.ends_with("voluntary_ctxt_switches:")) continue;
-    std::int64_t count = 0;
-    known = static_cast<bool>(status >> count);
-    sum += count;
-  }
-  return known ? std::optional(sum) : std::nullopt;
+/// "pid 4711", or "pid 4711 on lab2" for a process on another machine.
+std::string PidText(const processes::RolePlace& place, pid_t pid) {
+  return fmt::format("pid {}{}{}", pid, place.name().empty() ? "" : " on ", place.name());
 }
 
 }  // namespace
@@ -45,9 +34,16 @@ std::optional<std::int64_t> ActivityOf(pid_t pid) {
 Supervisor::Supervisor(runtime::Bus& bus, runtime::RunCoordinator& coordinator, Options options)
     : bus_(bus), coordinator_(coordinator), options_(std::move(options)) {
   const TimePoint now = Clock::now();
+  places_.push_back(&group_);
+  if (options_.hosts != nullptr) {
+    std::ranges::copy(options_.hosts->places(), std::back_inserter(places_));
+  }
   for (const RoleInfo& info : kRoles) {
     if (std::ranges::find(options_.external, info.role) != options_.external.end()) continue;
-    children_.push_back({.role = info.role, .policy = runtime::RestartPolicy(options_.restarts)});
+    auto* place = options_.hosts == nullptr ? nullptr : options_.hosts->PlaceOf(info.role);
+    if (place == nullptr) place = &group_;
+    children_.push_back(
+        {.role = info.role, .place = place, .policy = runtime::RestartPolicy(options_.restarts)});
     Start(children_.back(), now);
   }
 }
@@ -55,7 +51,9 @@ Supervisor::Supervisor(runtime::Bus& bus, runtime::RunCoordinator& coordinator, 
 void Supervisor::Start(Child& child, TimePoint now) {
   std::vector<std::string> arguments{"--lcm-url", options_.url, "--run-id",
                                      std::to_string(options_.run_id)};
-  arguments.insert(arguments.end(), options_.arguments.begin(), options_.arguments.end());
+  runtime::TrafficOptions traffic = options_.traffic;
+  if (child.place != &group_) traffic.key_file.clear();  // that machine has the key already
+  std::ranges::copy(runtime::ToArguments(traffic), std::back_inserter(arguments));
   if (child.role == Role::kRecorder) {
     arguments.insert(arguments.end(), {"--log", options_.log.string(), "--shared-log"});
     if (options_.wall_clock) arguments.emplace_back("--wall-clock");
@@ -63,24 +61,40 @@ void Supervisor::Start(Child& child, TimePoint now) {
     // be an old log that is to be replaced.
     if (options_.resume || coordinator_.Met(Role::kRecorder)) arguments.emplace_back("--resume");
   }
-  child.pid = group_.Start(child.role, processes::ProgramOf(child.role), arguments);
+  child.pid = child.place->StartRole(child.role, arguments);
   child.started = now;
   child.start_at.reset();
   child.activity.reset();
   child.killed_for.clear();
   child.deaf = false;
-  coordinator_.Launched(child.role, child.pid, now);
+  coordinator_.Launched(child.role, child.pid, now, child.place->host());
+}
+
+std::vector<processes::RolePlace::Exit> Supervisor::Collect() {
+  std::vector<processes::RolePlace::Exit> exits;
+  for (processes::RolePlace* place : places_) {
+    std::ranges::move(place->Collect(), std::back_inserter(exits));
+  }
+  return exits;
+}
+
+std::string Supervisor::Describe() const {
+  std::string text;
+  for (const processes::RolePlace* place : places_) {
+    if (!place->empty()) text += (text.empty() ? "" : ", ") + place->Describe();
+  }
+  return text;
 }
 
 void Supervisor::Look(TimePoint now) {
   coordinator_.Attend(now);
-  const std::vector<processes::ProcessGroup::Exit> exits = group_.Collect();
+  const std::vector<processes::RolePlace::Exit> exits = Collect();
   if (!exits.empty()) {
     // Handles the last messages of the processes first, and then the ends of the processes.
     bus_.Wait(kLookEvery);
     bus_.Drain();
   }
-  for (const processes::ProcessGroup::Exit& exit : exits) OnExit(exit, now);
+  for (const processes::RolePlace::Exit& exit : exits) OnExit(exit, now);
   for (Child& child : children_) {
     if (child.start_at && now >= *child.start_at) {
       StartAgain(child, now);
@@ -101,23 +115,26 @@ void Supervisor::StartAgain(Child& child, TimePoint now) {
     coordinator_.Hinder(child.role, error.what());
     return;
   }
-  options_.say(fmt::format("{} (pid {}) {}; started again as pid {} ({} of {})", NameOf(child.role),
-                           before, child.death, child.pid, child.policy.restarts(),
-                           child.policy.limit()));
+  options_.say(fmt::format("{} ({}) {}; started again as pid {} ({} of {})", NameOf(child.role),
+                           PidText(*child.place, before), child.death, child.pid,
+                           child.policy.restarts(), child.policy.limit()));
 }
 
-void Supervisor::OnExit(const processes::ProcessGroup::Exit& exit, TimePoint now) {
+void Supervisor::OnExit(const processes::RolePlace::Exit& exit, TimePoint now) {
   const auto child = std::ranges::find(children_, exit.role, &Child::role);
+  if (exit.pid != child->pid) return;  // a process whose start the runner has not heard of in time
+  const std::string& host = child->place->name();
   const std::string how = child->killed_for.empty() ? exit.how : child->killed_for;
   child->death = fmt::format("{} {}", how, coordinator_.Where());
   const auto wait = exit.killed ? child->policy.OnDeath(coordinator_.step()) : std::nullopt;
   if (wait) {
-    coordinator_.MarkDead(exit.role, exit.pid, now);
+    coordinator_.MarkDead(exit.role, exit.pid, now, child->place->host());
     child->start_at = now + *wait;
     return;
   }
   // One line that names the dead process, then the last lines that it printed.
-  std::string text = fmt::format("{} (pid {}) {}", NameOf(exit.role), exit.pid, child->death);
+  std::string text =
+      fmt::format("{} ({}) {}", NameOf(exit.role), PidText(*child->place, exit.pid), child->death);
   if (exit.killed && options_.restarts > 0) {
     text += fmt::format(", after {} restarts (--restarts)", child->policy.restarts());
   }
@@ -125,10 +142,10 @@ void Supervisor::OnExit(const processes::ProcessGroup::Exit& exit, TimePoint now
       options_.restarts > 0 && coordinator_.GoesOnWithout(exit.role) && !child->deaf;
   if (goes_on) text += "; the run goes on without it";
   for (const std::string& line : exit.lines) {
-    text += fmt::format("\n  {}: {}", NameOf(exit.role), line);
+    text += fmt::format("\n  {}{}{}: {}", host, host.empty() ? "" : ": ", NameOf(exit.role), line);
   }
   if (!goes_on) return coordinator_.Fail(std::move(text));
-  coordinator_.MarkDead(exit.role, exit.pid, now);
+  coordinator_.MarkDead(exit.role, exit.pid, now, child->place->host());
   child->gone = true;
   options_.say(text);
 }
@@ -139,15 +156,32 @@ void Supervisor::KillIfItHangs(Child& child, TimePoint now) {
   const Duration silent = coordinator_.HeldAgainst(met ? member.heard : child.started, now);
   const Duration limit = met ? options_.silence : kStartLimit;
   if (silent < limit / 2) child.activity.reset();
-  if (silent < limit / 2 || !child.killed_for.empty()) return;
-  if (!child.activity) child.activity = ActivityOf(child.pid);
+  if (!InSight(child) || silent < limit / 2 || !child.killed_for.empty()) return;
+  if (!child.activity) child.activity = child.place->ActivityOf(child.pid);
   if (silent < limit) return;
   // A process that still runs may be alive although its messages are lost.
-  if (ActivityOf(child.pid) != child.activity &&
-      coordinator_.ChanceOfLife(child.role, silent) > kUnlikely) {
-    return;
+  const bool runs = child.place->ActivityOf(child.pid) != child.activity;
+  const std::string& host = child.place->name();
+  if (runs && !met && !host.empty()) {
+    return Hinder(child, fmt::format("it runs on {}, but none of its messages arrive; if the "
+                                     "network carries no multicast: --relay",
+                                     host));
   }
+  if (runs && coordinator_.ChanceOfLife(child.role, silent) > kUnlikely) return;
   Kill(child, fmt::format("was silent for {:.1f} s and was killed", Seconds(silent)));
+}
+
+bool Supervisor::InSight(Child& child) {
+  const std::string why = child.place->WhyOutOfSight();
+  if (!why.empty()) child.activity.reset();
+  Hinder(child, why);
+  return why.empty();
+}
+
+void Supervisor::Hinder(Child& child, const std::string& why) {
+  if (why.empty() && !child.hindered) return;
+  child.hindered = !why.empty();
+  coordinator_.Hinder(child.role, why);
 }
 
 void Supervisor::KillIfItIsDeaf(Child& child) {
@@ -159,7 +193,7 @@ void Supervisor::KillIfItIsDeaf(Child& child) {
 
 void Supervisor::Kill(Child& child, std::string why) {
   child.killed_for = std::move(why);
-  kill(child.pid, SIGKILL);
+  child.place->Kill(child.pid);
 }
 
 void Supervisor::NameTheDeaf() {
@@ -181,7 +215,8 @@ void Supervisor::NameTheDeaf() {
 void Supervisor::End() {
   const TimePoint began = Clock::now();
   int said = 0;
-  while ((!group_.empty() && Clock::now() - began < kLeaveLimit) ||
+  const auto runs = [](const processes::RolePlace* place) { return !place->empty(); };
+  while ((std::ranges::any_of(places_, runs) && Clock::now() - began < kLeaveLimit) ||
          (said < kStopRepeats && !options_.external.empty())) {
     coordinator_.Stop();
     ++said;
@@ -189,7 +224,7 @@ void Supervisor::End() {
     // Handles messages until the time `pause`. If messages arrive faster than they are handled, a
     // loop until no message is left would never end.
     while (Clock::now() < pause) bus_.Wait(pause - Clock::now());
-    group_.Collect();
+    Collect();
   }
   bus_.Drain();  // the last messages of the processes
 }

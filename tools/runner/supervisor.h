@@ -1,6 +1,6 @@
-// The supervisor of a run's processes on this machine. It starts and watches the processes, and
-// restarts processes that are killed, hang or are deaf. A process that exits by itself has printed
-// the reason, and its exit ends the run.
+// The supervisor of a run's processes, on this machine and on others. It starts and watches the
+// processes, and restarts processes that are killed, hang or are deaf. A process that exits by
+// itself has printed the reason, and its exit ends the run.
 #pragma once
 
 #include <functional>
@@ -11,6 +11,8 @@
 
 #include "services/runtime/coordination/restart_policy.h"
 #include "services/runtime/coordination/run_coordinator.h"
+#include "services/runtime/transport/traffic_options.h"
+#include "tools/hosts/host_group.h"
 #include "tools/processes/process_group.h"
 #include "tools/runner/experiment.h"
 
@@ -22,11 +24,12 @@ class Supervisor {
     std::string url;
     std::int64_t run_id = 0;
     std::filesystem::path log;
-    bool resume = false;                 // the log already belongs to this run
-    bool wall_clock = false;             // the log has the wall clock of each step
-    std::vector<std::string> arguments;  // further arguments for every process
-    std::vector<Role> external;          // roles that are started elsewhere
-    int restarts = 0;                    // limit for each role; 0: the first death ends the run
+    bool resume = false;                      // the log already belongs to this run
+    bool wall_clock = false;                  // the log has the wall clock of each step
+    runtime::TrafficOptions traffic;          // of every process
+    std::vector<Role> external;               // roles that are started elsewhere
+    const hosts::HostGroup* hosts = nullptr;  // other machines on which it starts roles
+    int restarts = 0;    // limit for each role; 0: the first death ends the run
     Duration silence{};  // time without a STATUS after which a process counts as hanging and is
                          // killed
     std::function<void(const std::string&)> say;  // prints a line for the user
@@ -45,11 +48,13 @@ class Supervisor {
 
   /// The roles that were restarted, on this machine or elsewhere.
   std::vector<Restarts> restarts() const;
-  const processes::ProcessGroup& group() const { return group_; }
+  /// The processes of all machines, for the user; "" if there are none.
+  std::string Describe() const;
 
  private:
   struct Child {
     Role role;
+    processes::RolePlace* place;
     runtime::RestartPolicy policy;
     pid_t pid = 0;
     TimePoint started{};
@@ -58,12 +63,18 @@ class Supervisor {
     bool deaf = false;                       // whether this reason was deafness
     std::string death{};                     // how the role's last process ended
     std::optional<TimePoint> start_at{};
-    bool gone = false;  // whether the process has ended for good while the run continues
+    bool gone = false;      // whether the process has ended for good while the run continues
+    bool hindered = false;  // whether the coordinator has been told why the process is not watched
   };
   void Start(Child& child, TimePoint now);
   /// Restarts the process; if the restart fails, a later call tries again.
   void StartAgain(Child& child, TimePoint now);
-  void OnExit(const processes::ProcessGroup::Exit& exit, TimePoint now);
+  /// The processes that have ended since the last call.
+  std::vector<processes::RolePlace::Exit> Collect();
+  void OnExit(const processes::RolePlace::Exit& exit, TimePoint now);
+  /// Whether the machine of the process answers. Stores why it does not, for an error text.
+  bool InSight(Child& child);
+  void Hinder(Child& child, const std::string& why);
   void KillIfItHangs(Child& child, TimePoint now);
   void KillIfItIsDeaf(Child& child);
   void Kill(Child& child, std::string why);
@@ -74,7 +85,8 @@ class Supervisor {
   runtime::Bus& bus_;
   runtime::RunCoordinator& coordinator_;
   Options options_;
-  processes::ProcessGroup group_;
+  processes::ProcessGroup group_;  // of this machine
+  std::vector<processes::RolePlace*> places_;
   std::vector<Child> children_;
   std::set<Role> deaf_;  // deaf roles that were reported
 };

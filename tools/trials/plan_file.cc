@@ -1,6 +1,5 @@
 #include "tools/trials/plan_file.h"
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -16,7 +15,6 @@
 #include "scenario/io/diagnostic_list.h"
 #include "scenario/io/json.h"
 #include "scenario/io/reader.h"
-#include "scenario/sections/field_view.h"
 #include "services/runtime/wire/digest.h"
 #include "tools/runner/experiment.h"
 
@@ -27,27 +25,6 @@ constexpr std::string_view kAllowed = "fogline experiment check --schema";
 // Names become parts of file names and of columns. Our choice: file systems allow 255 bytes.
 constexpr std::size_t kMostNameCharacters = 40;
 constexpr std::size_t kMostTitleCharacters = 80;
-
-// Place of the value with this pointer, or of the innermost value around it that the file has.
-Place FindPlace(const JsonValue& root, std::string_view pointer) {
-  const JsonValue* at = &root;
-  while (!pointer.empty()) {
-    const std::size_t end = std::min(pointer.find('/', 1), pointer.size());
-    const std::string_view segment = pointer.substr(1, end - 1);
-    const JsonValue* inner = nullptr;
-    if (const auto* object = at->As<JsonObject>()) {
-      const JsonMember* member = FindMember(*object, segment);
-      inner = member == nullptr ? nullptr : &member->value;
-    } else if (const auto* list = at->As<JsonArray>()) {
-      const auto index = ListIndex(segment);
-      inner = index && *index < list->size() ? &(*list)[*index] : nullptr;
-    }
-    if (inner == nullptr) break;
-    at = inner;
-    pointer.remove_prefix(end);
-  }
-  return at->place;
-}
 
 /// Checks what one field alone does not show.
 class PlanCheck {

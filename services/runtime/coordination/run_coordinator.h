@@ -112,13 +112,15 @@ class RunCoordinator {
   void Stop();
   /// Ends the run with an error from outside, such as the death of a process.
   void Fail(std::string error);
-  /// Notes that the role's process on this machine is dead and will be started again. From now on
-  /// late messages of that process are ignored, and another instance may take the role.
-  void MarkDead(Role role, std::int32_t pid, TimePoint now);
-  /// Stores why the role cannot be started again at present, for the error message of a stall.
+  /// Notes that a process that the runner has started is dead and will be started again. From now
+  /// on late messages of that process are ignored, and another instance may take the role.
+  /// @param host the machine of the process, as STATUS names it; "": this machine
+  void MarkDead(Role role, std::int32_t pid, TimePoint now, const std::string& host = "");
+  /// Stores why the role cannot be started again or watched at present, for the error message of a
+  /// stall; "" if it can.
   void Hinder(Role role, std::string why);
-  /// Notes that the role has been started again, as this process on this machine.
-  void Launched(Role role, std::int32_t pid, TimePoint now);
+  /// Notes that the runner has started the role again, as this process.
+  void Launched(Role role, std::int32_t pid, TimePoint now, const std::string& host = "");
   /// Calls `handler` for every STATUS that is accepted. A STATUS that comes after a newer STATUS of
   /// the same process is not accepted.
   void OnEveryStatus(std::function<void(const status_t&)> handler) {
@@ -127,14 +129,20 @@ class RunCoordinator {
   /// Whether a STATUS of any process of the role has been accepted.
   bool Met(Role role) const { return member(role).status || !member(role).dead.empty(); }
 
+  /// A process that the runner has started.
+  struct Process {
+    std::string host;
+    std::int32_t pid = 0;
+    bool operator==(const Process&) const = default;
+  };
   /// A role's process as its STATUS describes it.
   struct Member {
     std::optional<status_t> status;  // last STATUS of the accepted instance
     TimePoint heard{};
-    std::vector<status_t> dead;      // last STATUS of each dead instance
-    std::vector<std::int32_t> pids;  // ids of dead processes on this machine
-    std::int32_t child = 0;          // id of the process that the runner has started; 0: none
-    std::optional<status_t> rival;   // another instance that claims this role
+    std::vector<status_t> dead;     // last STATUS of each dead instance
+    std::vector<Process> ended;     // dead processes that the runner had started
+    std::optional<Process> child;   // the process that the runner has started
+    std::optional<status_t> rival;  // another instance that claims this role
     TimePoint rival_since{};
     TimePoint rival_heard{};
     // The last process that claims this role for so long that it cannot have missed the refusal.
@@ -144,7 +152,7 @@ class RunCoordinator {
     std::optional<TimePoint> undead;
     std::int64_t undead_instance = 0;
     TimePoint undead_heard{};
-    std::string hindrance;    // why the role cannot be started again at present
+    std::string hindrance;    // why the role cannot be started again or watched at present
     int replaced = 0;         // number of times that an external role was started again
     TimePoint replaced_at{};  // when the role was last started again
   };
@@ -171,6 +179,10 @@ class RunCoordinator {
   /// Whether this role is missing, so that the run cannot begin or go on.
   bool Lacks(Role role, TimePoint now) const;
   bool IsExternal(Role role) const;
+  /// A process on this machine, or on another one.
+  Process ProcessOn(const std::string& host, std::int32_t pid) const {
+    return {.host = host.empty() ? host_ : host, .pid = pid};
+  }
   /// Whether to accept the STATUS; false if it comes from a dead or second instance of the role.
   bool Admit(Role role, const status_t& status, TimePoint now);
   /// Admit() for a STATUS of a process that is not the role's current process.

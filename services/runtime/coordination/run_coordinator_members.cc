@@ -28,7 +28,7 @@ bool RunCoordinator::HasRival(Role role, TimePoint now) const {
   const Member& of = member(role);
   // The run waits until the rival has left. A rival that stays is refused, and a silent rival
   // counts as gone: the runner does not see the death of a process that was started elsewhere.
-  return of.rival && of.child == 0 && HeldAgainst(of.rival_since, now) <= kLeaves &&
+  return of.rival && !of.child && HeldAgainst(of.rival_since, now) <= kLeaves &&
          HeldAgainst(of.rival_heard, now) <= kLeaves;
 }
 
@@ -44,13 +44,13 @@ bool RunCoordinator::Admit(Role role, const status_t& status, TimePoint now) {
     if (status.sequence > dead->sequence) OnUndead(role, status, now);
     return false;
   }
-  if (status.host == host_ && std::ranges::find(member.pids, status.pid) != member.pids.end()) {
+  const Process sender{.host = status.host, .pid = status.pid};
+  if (std::ranges::find(member.ended, sender) != member.ended.end()) {
     return false;
   }
   // The runner knows the process that it has started. Every other process is refused, even if its
   // messages come first.
-  const bool started = member.child != 0 && status.host == host_ && status.pid == member.child;
-  if (member.child != 0 && !started) {
+  if (member.child && *member.child != sender) {
     NoteRival(role, status, now);
     if (member.rival) NoteRefused(role, status);
     return false;
@@ -143,10 +143,10 @@ bool RunCoordinator::AdmitOther(Role role, const status_t& status, TimePoint now
   return true;
 }
 
-void RunCoordinator::MarkDead(Role role, std::int32_t pid, TimePoint now) {
+void RunCoordinator::MarkDead(Role role, std::int32_t pid, TimePoint now, const std::string& host) {
   Member& member = members_[static_cast<std::size_t>(role)];
-  member.pids.push_back(pid);
-  if (member.status && member.status->pid == pid && member.status->host == host_) {
+  const Process& dead = member.ended.emplace_back(ProcessOn(host, pid));
+  if (member.status && dead == Process{.host = member.status->host, .pid = member.status->pid}) {
     member.dead.push_back(std::move(*member.status));
     member.status.reset();
     deaf_.Forget(role);
@@ -159,10 +159,10 @@ void RunCoordinator::Hinder(Role role, std::string why) {
   members_[static_cast<std::size_t>(role)].hindrance = std::move(why);
 }
 
-void RunCoordinator::Launched(Role role, std::int32_t pid, TimePoint now) {
+void RunCoordinator::Launched(Role role, std::int32_t pid, TimePoint now, const std::string& host) {
   Member& member = members_[static_cast<std::size_t>(role)];
-  std::erase(member.pids, pid);
-  member.child = pid;
+  std::erase(member.ended, ProcessOn(host, pid));
+  member.child = ProcessOn(host, pid);
   member.hindrance.clear();
   signs_of_life_.Since(role, now);
   progressed_ = now;

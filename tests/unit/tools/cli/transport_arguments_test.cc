@@ -103,6 +103,31 @@ TEST(TransportArgumentsTest, OfferNoRecorderFromElsewhere) {
   EXPECT_EQ(help.find("recorder"), std::string::npos) << help;
 }
 
+TEST(TransportArgumentsTest, PlaceRolesOnOtherMachines) {
+  const EnvironmentUrl environment;
+  const ExperimentOptions options = Read({"--on", "acc=lab2", "--on", "radar=lab3"});
+  EXPECT_EQ(options.transport, "udpm");
+  EXPECT_EQ(options.hosts.hosts.size(), 2U);
+  EXPECT_TRUE(options.hosts.places.contains(Role::kAcc));
+  EXPECT_EQ(Read({"--on", "acc=lab2", "--relay"}).transport, "tcpq");
+  EXPECT_EQ(Read({"--on", "acc=lab2", "--relay-at", "10.0.0.1"}).transport, "tcpq");
+  environment.Set("udpm://239.255.76.67:7700?ttl=1");
+  EXPECT_EQ(Read({"--on", "acc=lab2"}, "direct").transport, "udpm://239.255.76.67:7700?ttl=1");
+}
+
+TEST(TransportArgumentsTest, RefuseRolesOnOtherMachinesThatCannotJoin) {
+  const EnvironmentUrl environment;
+  EXPECT_EQ(Refusal({"--on", "acc=lab2", "--transport", "memq"}),
+            "error: acc on lab2: a run with --transport memq is one process");
+  EXPECT_EQ(Refusal({"--on", "acc=lab2", "--lcm-url", kUrl}),
+            "error: acc on lab2: messages to " + kUrl +
+                " stay on this machine; other machines need ttl=1");
+  EXPECT_EQ(Refusal({"--on", "acc=lab2", "--relay", "--lcm-url", "tcpq://lab1"}),
+            "error: --relay: the run has a relay of its own, and not the network tcpq://lab1");
+  EXPECT_EQ(Refusal({"--on", "acc=lab2", "--external", "acc"}),
+            "error: --external acc: the run itself starts the acc on lab2");
+}
+
 TEST(TransportArgumentsTest, RefuseAKeyThatIsNoneEvenWithoutMessages) {
   const ScratchFolder folder;
   const std::string key = folder.File("key");

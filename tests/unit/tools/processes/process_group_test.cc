@@ -2,6 +2,7 @@
 
 #include <gmock/gmock-more-matchers.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <chrono>
 #include <csignal>
@@ -70,6 +71,19 @@ TEST(ProcessGroupTest, SendsASignalToAll) {
     EXPECT_TRUE(exit.killed);
     EXPECT_EQ(exit.how, "was killed by signal 15 (Terminated)");
   }
+}
+
+TEST(ProcessGroupTest, KillsOneOfItsProcesses) {
+  ProcessGroup group;
+  const pid_t killed = StartScript(group, Role::kAcc, "exec sleep 100");
+  const pid_t other = StartScript(group, Role::kRadar, "exec sleep 100");
+  group.Kill(killed);
+  const auto exits = CollectUntil(group, 1);
+  ASSERT_EQ(exits.size(), 1U);
+  EXPECT_EQ(exits[0].pid, killed);
+  EXPECT_TRUE(exits[0].killed);
+  EXPECT_TRUE(IsAlive(other));
+  group.Kill(getpid());  // is none of them
 }
 
 TEST(ProcessGroupTest, EndsWithItsProcesses) {

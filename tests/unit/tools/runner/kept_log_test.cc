@@ -49,6 +49,13 @@ TEST_F(CommandToGoOnTest, HasWhatTheLogDoesNotContain) {
   EXPECT_EQ(CommandToGoOn(options), "fogline run --resume run.lcm --verify");
 }
 
+TEST_F(CommandToGoOnTest, PlacesTheRolesOnTheSameMachines) {
+  ExperimentOptions options = OnlyLog();
+  options.hosts = hosts::MakePlan({.on = {"fusion=anna@lab2"}, .ssh = "ssh -4"});
+  EXPECT_EQ(CommandToGoOn(options),
+            "fogline run --resume run.lcm --on 'fusion=anna@lab2' --ssh 'ssh -4'");
+}
+
 TEST_F(CommandToGoOnTest, QuotesWordsForAShell) {
   ExperimentOptions options = OnlyLog();
   options.log = "my run's log.lcm";

@@ -64,7 +64,7 @@ class SupervisorTest : public testing::Test {
     return PlayUntil([&] { return coordinator_->phase() == phase; });
   }
   pid_t PidOfRole(Role role) const {
-    const std::string group = supervisor_->group().Describe();
+    const std::string group = supervisor_->Describe();
     return PidOf("processes: " + group, std::string(NameOf(role)));
   }
 
@@ -83,7 +83,7 @@ TEST_F(SupervisorTest, StartsEveryRoleAndEndsThemAfterTheRun) {
   EXPECT_THAT(pids, testing::Not(testing::Contains(0)));
   ASSERT_TRUE(PlayUntilPhase(Phase::kDone)) << coordinator_->error();
   supervisor_->End();
-  EXPECT_TRUE(supervisor_->group().empty()) << supervisor_->group().Describe();
+  EXPECT_EQ(supervisor_->Describe(), "");
   for (const pid_t pid : pids) EXPECT_FALSE(IsAlive(pid));
   EXPECT_THAT(supervisor_->restarts(), IsEmpty());
   EXPECT_THAT(said_, IsEmpty());
@@ -132,7 +132,7 @@ TEST_F(SupervisorTest, EndsTheRunAtAnyDeathIfNothingMayBeStartedAgain) {
 }
 
 TEST_F(SupervisorTest, StartsNoProcessAgainThatExitsByItself) {
-  Begin(kManySteps, {.arguments = {"--no-such-option"}, .restarts = 5});
+  Begin(kManySteps, {.traffic = {.faults = "no such fault"}, .restarts = 5});
   ASSERT_TRUE(PlayUntilPhase(Phase::kFailed));
   EXPECT_THAT(coordinator_->error(), HasSubstr(") exited with code 2 before step 0\n"));
   EXPECT_THAT(coordinator_->error(), HasSubstr(": error: ")) << "what it has printed";

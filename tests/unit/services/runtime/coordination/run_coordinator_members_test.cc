@@ -23,6 +23,20 @@ TEST_F(RunCoordinatorTest, IgnoresADeadProcessThatItHadNeverHeardOf) {
   EXPECT_TRUE(coordinator_.member(Role::kFusion).status);
 }
 
+TEST_F(RunCoordinatorTest, TellsProcessesOfTwoMachinesApartThatHaveOneId) {
+  const std::int32_t pid = role(Role::kFusion).pid;
+  coordinator_.MarkDead(Role::kFusion, pid, Clock::now(), "lab2");
+  SayStatus(Role::kFusion);
+  EXPECT_TRUE(coordinator_.member(Role::kFusion).status) << "it is a process of this machine";
+  // WHEN the process on the other machine is the role's current one
+  role(Role::kAcc).host = "lab2";
+  SayStatus(Role::kAcc);
+  coordinator_.MarkDead(Role::kAcc, role(Role::kAcc).pid, Clock::now());
+  EXPECT_TRUE(coordinator_.member(Role::kAcc).status) << "the dead one was on this machine";
+  coordinator_.MarkDead(Role::kAcc, role(Role::kAcc).pid, Clock::now(), "lab2");
+  EXPECT_FALSE(coordinator_.member(Role::kAcc).status);
+}
+
 TEST_F(RunCoordinatorTest, AwaitsRolesFromElsewhereUntilTheyAreThereAndWhenTheyFallSilent) {
   using testing::ElementsAre;
   using testing::IsEmpty;

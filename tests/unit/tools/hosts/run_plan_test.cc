@@ -1,0 +1,100 @@
+#include "tools/hosts/run_plan.h"
+
+#include <gmock/gmock-more-matchers.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "tests/support/command.h"
+#include "tests/support/input_errors.h"
+
+namespace fogline::test {
+namespace {
+
+using hosts::HostPlan;
+using hosts::MakePlan;
+using hosts::PlanWords;
+using hosts::RunPlan;
+using testing::ElementsAre;
+
+std::string Refusal(const PlanWords& words) {
+  return ErrorOf([&words] { MakePlan(words); });
+}
+
+/// The only machine of a plan with one --on.
+HostPlan HostOf(const std::string& host) {
+  return MakePlan({.on = {"fusion=" + host}}).hosts.at(0);
+}
+
+TEST(RunPlanTest, WithoutOnAndLabNoRoleRunsElsewhere) { EXPECT_TRUE(MakePlan({}).empty()); }
+
+TEST(RunPlanTest, OneMachineMayHaveSeveralRoles) {
+  const RunPlan plan = MakePlan({.on = {"fusion=lab2", "acc=anna@lab3", "radar=lab2"}});
+  EXPECT_THAT(plan.hosts,
+              ElementsAre(HostPlan{"lab2", "lab2", ""}, HostPlan{"anna@lab3", "anna@lab3", ""}));
+  EXPECT_EQ(plan.places,
+            (std::map<Role, std::size_t>{{Role::kFusion, 0}, {Role::kAcc, 1}, {Role::kRadar, 0}}));
+}
+
+TEST(RunPlanTest, AMachineMayNameTheFolderOfItsPrograms) {
+  EXPECT_EQ(HostOf("anna@lab2:/opt/fogline/bin"),
+            (HostPlan{"anna@lab2", "anna@lab2", "/opt/fogline/bin"}));
+  EXPECT_EQ(HostOf("lab2:~/fogline/build/bin").programs, "~/fogline/build/bin");
+  EXPECT_EQ(HostOf("ssh://anna@lab2:2222"),
+            (HostPlan{"ssh://anna@lab2:2222", "ssh://anna@lab2:2222", ""}));
+  EXPECT_EQ(HostOf("fd00::2"), (HostPlan{"fd00::2", "fd00::2", ""}));
+}
+
+TEST(RunPlanTest, WrongPlacesAreNamed) {
+  EXPECT_EQ(Refusal({.on = {"fusion"}}),
+            "error: --on fusion: must be ROLE=HOST, such as fusion=user@lab2");
+  EXPECT_EQ(Refusal({.on = {"fusoin=lab2"}}),
+            "error: --on fusoin=lab2: \"fusoin\" is no role; did you mean \"fusion\"?; roles are "
+            "\"world\", \"radar\", \"lidar\", \"fusion\", \"acc\", \"driver\", \"arbitrator\", "
+            "\"follower\"");
+  EXPECT_EQ(Refusal({.on = {"recorder=lab2"}}),
+            "error: --on recorder=lab2: the recorder runs on the machine of the run, whose result "
+            "is read from its log");
+  EXPECT_EQ(Refusal({.on = {"fusion="}}),
+            "error: --on fusion=: the name of the machine is missing");
+  EXPECT_EQ(Refusal({.on = {"fusion=-oProxyCommand=x"}}),
+            "error: --on fusion=-oProxyCommand=x: \"-oProxyCommand=x\" is no machine, because ssh "
+            "would read it as an option");
+  EXPECT_EQ(Refusal({.on = {"fusion=lab2:/a", "acc=lab2:/b"}}),
+            "error: --on acc=lab2:/b: the programs of \"lab2\" are in \"/a\" already");
+  EXPECT_EQ(Refusal({.relay = true}), "error: --relay: no role runs on another machine; see --on");
+}
+
+TEST(RunPlanTest, TheCommandLineComesBeforeTheLaboratorysFile) {
+  const ScratchFolder folder;
+  const std::string file = folder.File("lab.json");
+  std::ofstream(file) << R"({"version": 1, "key": "lab.key", "ssh": "ssh -p 2222", "hosts": [
+      {"name": "rig", "ssh": "anna@10.0.0.2", "programs": "/opt/bin", "roles": ["fusion", "acc"]},
+      {"name": "spare"}]})";
+  const RunPlan plan = MakePlan({.on = {"acc=spare", "radar=lab9"}, .lab = file});
+  EXPECT_THAT(plan.hosts, ElementsAre(HostPlan{"lab9", "lab9", ""},
+                                      HostPlan{"rig", "anna@10.0.0.2", "/opt/bin"},
+                                      HostPlan{"spare", "spare", ""}));
+  EXPECT_EQ(plan.places,
+            (std::map<Role, std::size_t>{{Role::kRadar, 0}, {Role::kFusion, 1}, {Role::kAcc, 2}}));
+  EXPECT_EQ(plan.key_file, folder.File("lab.key"));
+  EXPECT_EQ(plan.ssh, "ssh -p 2222");
+  EXPECT_EQ(MakePlan({.lab = file, .ssh = "ssh -4"}).ssh, "ssh -4");
+  EXPECT_THAT(plan.words, ElementsAre("--lab", file, "--on", "acc=spare", "--on", "radar=lab9"));
+}
+
+TEST(RunPlanTest, TheEnvironmentMayReplaceSsh) {
+  setenv("FOGLINE_SSH", "ssh -F lab.ssh", 1);
+  const std::string from_environment = MakePlan({.on = {"acc=lab2"}}).ssh;
+  const std::string from_option = MakePlan({.on = {"acc=lab2"}, .ssh = "ssh -4"}).ssh;
+  unsetenv("FOGLINE_SSH");
+  EXPECT_EQ(from_environment, "ssh -F lab.ssh");
+  EXPECT_EQ(from_option, "ssh -4");
+  EXPECT_EQ(MakePlan({.on = {"acc=lab2"}}).ssh, "ssh");
+}
+
+}  // namespace
+}  // namespace fogline::test

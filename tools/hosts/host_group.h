@@ -1,0 +1,42 @@
+// The other machines of a run. The destructor ends the roles there.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "services/runtime/transport/traffic_options.h"
+#include "tools/hosts/remote_host.h"
+#include "tools/hosts/run_plan.h"
+
+namespace fogline::hosts {
+
+class HostGroup {
+ public:
+  /// Connects to all machines at the same time, and compares versions.
+  /// @throws std::runtime_error with the name of a machine that cannot take part; Interrupted
+  explicit HostGroup(const RunPlan& plan);
+
+  /// ADDRESS:PORT at which the relay of the run must listen; port 0: any free port.
+  /// @throws std::runtime_error if the machines see this one at different addresses
+  std::string RelayPlace() const;
+  /// Gives the key to every machine, and lets it examine its way to the network of the run.
+  /// @param silence a machine ends its roles if it hears nothing of the runner for so long
+  /// @throws std::runtime_error with the name of a machine and what is wrong there; InputError if
+  ///     the key cannot be read; Interrupted
+  void Check(const std::string& url, const runtime::TrafficOptions& traffic, Duration silence);
+
+  /// The machine of a role; nullptr: this machine.
+  processes::RolePlace* PlaceOf(Role role) const;
+  /// All machines.
+  std::vector<processes::RolePlace*> places() const;
+
+ private:
+  RunPlan plan_;
+  std::vector<std::unique_ptr<RemoteHost>> hosts_;
+};
+
+/// The other machines of a run; nullptr if it has none. @throws as HostGroup()
+std::unique_ptr<HostGroup> Connect(const RunPlan& plan);
+
+}  // namespace fogline::hosts

@@ -1,0 +1,38 @@
+// The keys of the messages between a runner and `fogline host` (json_lines.h). Both have the same
+// version, which the first message shows.
+#pragma once
+
+#include "common/clock.h"
+
+namespace fogline::hosts {
+
+// From the machine to the runner.
+inline constexpr const char* kHello = "fogline_host";  // version and message types; with:
+inline constexpr const char* kHost = "host";           //   name of the machine
+inline constexpr const char* kRunner = "runner";       //   address of the runner's machine, or ""
+inline constexpr const char* kProblems = "problems";   // texts: result of the check
+inline constexpr const char* kStarted = "started";     // a role: answer to kStart; with kPid, or:
+inline constexpr const char* kWhy = "why";             //   why it cannot be started
+inline constexpr const char* kEnded = "ended";         // a role: its process has ended; with kPid:
+inline constexpr const char* kHow = "how";             //   how it ended
+inline constexpr const char* kKilled = "killed";       //   whether a signal ended it
+inline constexpr const char* kLines = "lines";         //   the last lines that it printed
+
+// From the runner to the machine.
+inline constexpr const char* kCheck = "check";      // URL of the network to examine; with:
+inline constexpr const char* kKey = "key";          //   the key, as in its file; "": none
+inline constexpr const char* kSilence = "silence";  //   end without a message for so long, in s
+inline constexpr const char* kStart = "start";      // a role to start; with:
+inline constexpr const char* kArguments = "arguments";
+inline constexpr const char* kKill = "kill";  // process id of a role to kill
+
+// Both ways.
+inline constexpr const char* kPid = "pid";
+// A sign of life. The machine answers with a list of [process id, context switches].
+inline constexpr const char* kAlive = "alive";
+
+/// The interval between two signs of life of the runner. A process counts as hanging after a second
+/// or two, and its context switches must be known twice in this time.
+inline constexpr Duration kAliveEvery = milliseconds(250);
+
+}  // namespace fogline::hosts

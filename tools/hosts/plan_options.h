@@ -1,0 +1,15 @@
+// The options of a command line that start roles on other machines.
+#pragma once
+
+#include "tools/hosts/run_plan.h"
+
+namespace CLI {
+class App;
+}
+
+namespace fogline::hosts {
+
+/// Adds --on, --lab, --ssh, --relay and --relay-at to a command line.
+void AddPlanOptions(CLI::App& app, PlanWords& words);
+
+}  // namespace fogline::hosts

@@ -1,0 +1,86 @@
+// Another machine of a run: starts and watches roles there, through `fogline host`. The destructor
+// ends the roles.
+#pragma once
+
+#include <sys/types.h>
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/clock.h"
+#include "tools/hosts/ssh_connection.h"
+#include "tools/processes/role_place.h"
+
+namespace fogline::hosts {
+
+/// What a machine must know of a run before it starts roles.
+struct RunOnHost {
+  std::string url;
+  std::string key;  // text of the key's file; "": messages are not signed
+  double silence_s =
+      60;  // the machine ends its roles if it hears nothing of the runner for so long
+};
+
+class RemoteHost : public processes::RolePlace {
+ public:
+  /// Begins to connect. Does not wait. @throws std::runtime_error
+  RemoteHost(HostPlan plan, const std::string& ssh);
+
+  /// Waits until the machine answers, and compares versions.
+  /// @throws std::runtime_error with the name of the machine if it does not answer until `end`, or
+  ///     has another version; Interrupted
+  void Greet(TimePoint end);
+  /// Asks the machine to examine the way to the network of the run. Does not wait.
+  void BeginCheck(const RunOnHost& run);
+  /// Waits for the result. @throws std::runtime_error with what is wrong there; Interrupted
+  void EndCheck(TimePoint end);
+  /// The address at which that machine sees this one; "" if unknown.
+  const std::string& own_address() const { return own_address_; }
+
+  const std::string& host() const override { return host_; }
+  const std::string& name() const override { return plan_.name; }
+  pid_t StartRole(Role role, const std::vector<std::string>& arguments) override;
+  std::vector<Exit> Collect() override;
+  bool empty() const override { return processes_.empty(); }
+  std::string Describe() const override;
+  void Kill(pid_t pid) override;
+  std::optional<std::int64_t> ActivityOf(pid_t pid) override;
+  std::string WhyOutOfSight() const override;
+
+ private:
+  struct Process {
+    Role role;
+    std::optional<std::int64_t> activity{};
+  };
+  /// Sends a sign of life when it is due, and reads what has come.
+  void Look();
+  /// Takes one message. @throws NotUnderstood, nlohmann::json::exception if it is none of ours
+  void Take(const nlohmann::json& message);
+  void OnStarted(const nlohmann::json& message);
+  void OnEnded(const nlohmann::json& message);
+  void OnAlive(const nlohmann::json& message);
+  /// Waits until `done` holds. @throws as Greet()
+  template <class Condition>
+  void Await(const Condition& done, TimePoint end, const char* what);
+  /// Counts all processes there as ended, because the connection has ended or makes no sense.
+  void Lose(const std::string& nonsense = "");
+  [[noreturn]] void Fail(const std::string& why) const;
+
+  HostPlan plan_;
+  SshConnection connection_;
+  std::string version_;  // "" until the machine has answered
+  std::string host_;
+  std::string own_address_;
+  std::optional<std::string> problems_;  // result of the check; "": none
+  std::map<pid_t, Process> processes_;
+  std::map<Role, nlohmann::json> starts_;  // answers to the last order to start a role
+  std::vector<Exit> exits_;
+  std::string lost_;                      // why the connection has ended; "": it has not
+  std::optional<TimePoint> asked_since_;  // oldest sign of life without an answer
+  TimePoint alive_at_{};
+};
+
+}  // namespace fogline::hosts

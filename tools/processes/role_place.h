@@ -1,0 +1,60 @@
+// A machine on which the processes of a run's roles are started and watched: this machine
+// (ProcessGroup), or another one.
+#pragma once
+
+#include <sys/types.h>
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "services/graph.h"
+
+namespace fogline::processes {
+
+class RolePlace {
+ public:
+  virtual ~RolePlace() = default;
+  RolePlace() = default;
+  RolePlace(const RolePlace&) = delete;
+  RolePlace& operator=(const RolePlace&) = delete;
+
+  /// The name of the machine, as the STATUS of its processes has it.
+  virtual const std::string& host() const = 0;
+  /// The name of the machine in messages for the user; "" for this machine.
+  virtual const std::string& name() const = 0;
+
+  /// Starts the program of a role, and keeps its output.
+  /// @return the process id on that machine @throws std::runtime_error if the program cannot be
+  ///     started. The reason may be temporary
+  virtual pid_t StartRole(Role role, const std::vector<std::string>& arguments) = 0;
+
+  /// A process that has ended.
+  struct Exit {
+    Role role;
+    pid_t pid;
+    std::string how;                 // such as "exited with code 3" or "was killed by signal 9"
+    bool killed;                     // ended by a signal; the process then printed no reason
+    std::vector<std::string> lines;  // the last lines that the process printed
+  };
+  /// The processes that have ended since the last call. Call it every few tens of milliseconds.
+  virtual std::vector<Exit> Collect() = 0;
+  /// Whether no process runs there.
+  virtual bool empty() const = 0;
+  /// "world 4711, radar 4712, ...", for people who want to inspect or signal a process.
+  virtual std::string Describe() const = 0;
+
+  /// Kills one of these processes.
+  virtual void Kill(pid_t pid) = 0;
+  /// Number of context switches of a process, voluntary or not; nullopt if unknown. A live process
+  /// has many context switches each second.
+  virtual std::optional<std::int64_t> ActivityOf(pid_t pid) = 0;
+  /// Why nothing is known of the processes there at present; "" if they can be watched.
+  virtual std::string WhyOutOfSight() const { return ""; }
+};
+
+/// ActivityOf() for a process of this machine.
+std::optional<std::int64_t> OwnActivityOf(pid_t pid);
+
+}  // namespace fogline::processes
