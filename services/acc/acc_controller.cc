@@ -35,7 +35,7 @@ AccController::AccController(const AccSection& section, double step_s, VehicleMo
       program_(section, step_s),
       solver_(MakeSolver(program_, section)) {
   const Eigen::Index n = program_.horizon();
-  gain_ = -solver_.SolveHessian(program_.gradient()).bottomRows(n);
+  unconstrained_ = LinearPlan(-solver_.SolveHessian(program_.gradient()).bottomRows(n));
   linear_.setZero(n + 1);
   lower_.setZero(program_.constraints().rows());
   upper_.setZero(program_.constraints().rows());
@@ -50,6 +50,7 @@ void AccController::Restart(const AccSection& section, double step_s, VehicleMod
   vehicle_ = vehicle;
   solver_.Restart();
   plan_.setZero();
+  has_plan_ = true;
   control_ = 0;
   acceleration_mps2_ = 0;
 }
@@ -67,18 +68,18 @@ AccController::Output AccController::Step(const Input& input) {
                 .safe_distance_m = safe_distance,
                 .solver = Solver::kFallback,
                 .iterations = 0};
-  if (input.has_target && Solve(now, output)) {
-    output.control = plan_(0);
-  } else {
-    output.control = program_.FallbackControl(now.previous_control);
-  }
+  std::optional<double> control;
+  if (input.has_target) control = Solve(now, output);
+  output.control = control ? *control : program_.FallbackControl(now.previous_control);
   output.acceleration_mps2 = CommandOf(output.control, input.acceleration_mps2);
   control_ = output.control;
   acceleration_mps2_ = output.acceleration_mps2;
   return output;
 }
 
-std::span<const double> AccController::plan() const {
+std::span<const double> AccController::plan() {
+  if (!has_plan_) unconstrained_.Compute(situation_, plan_);
+  has_plan_ = true;
   return {plan_.data(), static_cast<std::size_t>(plan_.size())};
 }
 
@@ -110,25 +111,25 @@ double AccController::PreviousControl(double acceleration_mps2) const {
   return std::clamp(control, program_.MinControl(), program_.MaxControl());
 }
 
-// Computes plan_; returns false if there is no plan.
-bool AccController::Solve(const AccSituation& now, Output& output) {
-  const Eigen::Vector4d parameters(now.state(kDeltaD), now.state(kDeltaV),
-                                   now.state(kOwnAcceleration), now.previous_control);
-  // Column by column: so the compiler vectorises the sums.
-  plan_ = (gain_.col(0) * parameters(0) + gain_.col(1) * parameters(1)) +
-          (gain_.col(2) * parameters(2) + gain_.col(3) * parameters(3));
-  if (program_.IsWithinLimits(now, plan())) {
+// Returns u_0 of the plan; nullopt if there is no plan.
+std::optional<double> AccController::Solve(const AccSituation& now, Output& output) {
+  situation_ << now.state(kDeltaD), now.state(kDeltaV), now.state(kOwnAcceleration),
+      now.previous_control;
+  has_plan_ = false;
+  if (program_.IsCertainlyWithinLimits(now, unconstrained_.ControlBound(situation_),
+                                       unconstrained_.ChangeBound(situation_)) ||
+      program_.IsWithinLimits(now, plan())) {
     output.solver = Solver::kUnconstrained;
-    return true;
+    return unconstrained_.First(situation_);
   }
-  linear_.noalias() = program_.gradient() * parameters;
+  linear_.noalias() = program_.gradient() * situation_;
   program_.Limits(now, lower_, upper_);
   const QpSolver::Result result = solver_.Solve(linear_, lower_, upper_);
   output.iterations = static_cast<std::int32_t>(result.iterations);
-  if (result.status != QpSolver::Status::kOptimal) return false;
+  if (result.status != QpSolver::Status::kOptimal) return std::nullopt;
   output.solver = Solver::kActiveSet;
   plan_ = solver_.solution().tail(plan_.size());
-  return true;
+  return plan_(0);
 }
 
 }  // namespace fogline::acc

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include <Eigen/Core>
@@ -9,6 +10,7 @@
 #include "scenario/sections/control.h"
 #include "scenario/sections/vehicle.h"
 #include "services/acc/acc_program.h"
+#include "services/acc/linear_plan.h"
 #include "services/acc/qp.h"
 
 namespace fogline::acc {
@@ -63,24 +65,27 @@ class AccController {
   void Restart(const AccSection& section, double step_s,
                VehicleModel vehicle = VehicleModel::kPointMass);
 
-  /// u_0, ..., u_{N-1} of the last step with kUnconstrained or kActiveSet.
-  std::span<const double> plan() const;
+  /// u_0, ..., u_{N-1} of the last step with kUnconstrained or kActiveSet. A controller computes
+  /// the whole plan only if it must, so this function may compute it.
+  std::span<const double> plan();
 
  private:
   double PreviousControl(double acceleration_mps2) const;
   double CommandOf(double control, double acceleration_mps2) const;
-  bool Solve(const AccSituation& now, Output& output);
+  std::optional<double> Solve(const AccSituation& now, Output& output);
 
   AccSection section_;
   double step_s_;
   VehicleModel vehicle_;
   AccProgram program_;
   QpSolver solver_;
-  Eigen::MatrixX4d gain_;  // N x 4, unconstrained u_j = row j [x; u_{-1}]
+  LinearPlan unconstrained_;
+  Eigen::Vector4d situation_;  // [x; u_{-1}] of the last step
   Eigen::VectorXd linear_;
   Eigen::VectorXd lower_;
   Eigen::VectorXd upper_;
   Eigen::VectorXd plan_;
+  bool has_plan_ = true;  // whether plan_ is the plan of the last step
 
   // Results of the last step.
   double control_ = 0;

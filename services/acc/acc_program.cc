@@ -177,6 +177,14 @@ bool AccProgram::IsWithinLimits(const AccSituation& now, std::span<const double>
          (!reach.gap || GapsAreWithinLimits(now, controls));
 }
 
+bool AccProgram::IsCertainlyWithinLimits(const AccSituation& now, double largest_control,
+                                         double largest_change) const {
+  if (!(largest_control <= std::min(-min_control_, max_control_))) return false;
+  if (!(largest_change <= max_control_change_)) return false;
+  const Reach reach = ReachOf(now);
+  return !reach.speed && !reach.gap;
+}
+
 bool AccProgram::SpeedsAreWithinLimits(const AccSituation& now,
                                        std::span<const double> controls) const {
   double settled = SettledSpeed(now);

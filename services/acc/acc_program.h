@@ -68,6 +68,13 @@ class AccProgram {
   /// Whether a plan u_0, ..., u_{N-1} meets every limit with s = 0.
   bool IsWithinLimits(const AccSituation& now, std::span<const double> controls) const;
 
+  /// Whether bounds of a plan prove that IsWithinLimits() is true for it. False proves nothing.
+  /// The result does not depend on rounding, which is far below kTolerance.
+  /// @param largest_control no |u_j| of the plan is larger
+  /// @param largest_change no |u_j - u_{j-1}| is larger, with u_{-1} = now.previous_control
+  bool IsCertainlyWithinLimits(const AccSituation& now, double largest_control,
+                               double largest_change) const;
+
   double MinControl() const { return min_control_; }
   double MaxControl() const { return max_control_; }
 

@@ -2,15 +2,12 @@
 
 namespace fogline::fusion {
 
-Ekf::Ekf(double step_s, double jerk_density_m2ps5) {
+Ekf::Ekf(double step_s, double jerk_density_m2ps5) : step_s_(step_s) {
   const double t = step_s;
   const double t2 = t * t;
   const double t3 = t2 * t;
   const double t4 = t2 * t2;
   const double t5 = t4 * t;
-  transition_ << 1, t, t2 / 2,  //
-      0, 1, t,                  //
-      0, 0, 1;
   input_ << -t2 / 2, -t, 0;
   process_noise_ << t5 / 20, t4 / 8, t3 / 6,  //
       t4 / 8, t3 / 3, t2 / 2,                 //
@@ -23,19 +20,67 @@ void Ekf::Start(const State& state, const Covariance& covariance) {
   SetCovariance(covariance);
 }
 
+// F has ones on its diagonal and zeros below it. The function leaves out these factors. The sums
+// have the order a + (b + c), as in Correct().
 void Ekf::Predict(double host_acceleration_mps2) {
-  state_ = transition_ * state_ + input_ * host_acceleration_mps2;
-  SetCovariance(transition_ * covariance_ * transition_.transpose() + process_noise_);
+  const double t = step_s_;
+  const double half_t2 = t * t / 2;
+  state_(0) += t * state_(1) + half_t2 * state_(2);
+  state_(1) += t * state_(2);
+  state_ += input_ * host_acceleration_mps2;
+
+  Covariance p = covariance_;
+  p.row(0) += t * p.row(1) + half_t2 * p.row(2);  // F P
+  p.row(1) += t * p.row(2);
+  p.col(0) += t * p.col(1) + half_t2 * p.col(2);  // F P F'
+  p.col(1) += t * p.col(2);
+  SetCovariance(p + process_noise_);
 }
 
 double Ekf::InnovationVariance(const Jacobian& jacobian, double noise_variance) const {
   return jacobian.dot(jacobian * covariance_.topLeftCorner<2, 2>()) + noise_variance;
 }
 
+// Without a lateral offset a value depends on one state alone, and only that column of I - K H
+// differs from the column of I. The function leaves out all zeros, so it costs half as much as the
+// general one. Both give equal results, bit by bit.
+template <int kState>
+void Ekf::CorrectBy(double slope, double innovation, double noise_variance) {
+  const double variance = slope * (slope * covariance_(kState, kState)) + noise_variance;
+  const Eigen::Vector3d gain = covariance_.col(kState) * slope / variance;
+  Eigen::Vector3d keep = -(gain * slope);  // column kState of I - K H
+  keep(kState) += 1;
+  state_ += gain * innovation;
+
+  Covariance once;  // (I - K H) P
+  for (int row = 0; row < 3; ++row) {
+    once.row(row) = keep(row) * covariance_.row(kState);
+    if (row != kState) once.row(row) += covariance_.row(row);
+  }
+  const Eigen::Vector3d measured = once.col(kState);
+  Covariance twice;  // ... (I - K H)'
+  for (int column = 0; column < 3; ++column) {
+    twice.col(column) = measured * keep(column);
+    if (column != kState) twice.col(column) += once.col(column);
+  }
+  const Eigen::Vector3d noise = gain * noise_variance;
+  SetCovariance(twice + noise.lazyProduct(gain.transpose()));
+}
+
+void Ekf::Correct(const Jacobian& jacobian, double innovation, double noise_variance) {
+  if (jacobian(1) == 0) {
+    CorrectBy<0>(jacobian(0), innovation, noise_variance);
+  } else if (jacobian(0) == 0) {
+    CorrectBy<1>(jacobian(1), innovation, noise_variance);
+  } else {
+    CorrectByBoth(jacobian, innovation, noise_variance);
+  }
+}
+
 // The third column of I - K H is that of I, because no sensor measures a_p. So both products leave
 // out its zeros. Each sum has the order a + (b + c), as a product of whole matrices has: another
 // order would change the last bit of results.
-void Ekf::Correct(const Jacobian& jacobian, double innovation, double noise_variance) {
+void Ekf::CorrectByBoth(const Jacobian& jacobian, double innovation, double noise_variance) {
   const Eigen::Vector3d gain = covariance_.leftCols<2>() * jacobian.transpose() /
                                InnovationVariance(jacobian, noise_variance);
   Eigen::Matrix<double, 3, 2> keep = -gain.lazyProduct(jacobian);  // I - K H without column 3
@@ -56,7 +101,14 @@ void Ekf::Correct(const Jacobian& jacobian, double innovation, double noise_vari
 // Rounding differs between an element and its mirror image. Both elements get their mean, so that
 // the covariance is symmetric to the last bit.
 void Ekf::SetCovariance(const Covariance& covariance) {
-  covariance_ = (covariance + covariance.transpose()) / 2;
+  covariance_ = covariance;
+  for (int row = 1; row < 3; ++row) {
+    for (int column = 0; column < row; ++column) {
+      const double mean = (covariance(row, column) + covariance(column, row)) / 2;
+      covariance_(row, column) = mean;
+      covariance_(column, row) = mean;
+    }
+  }
 }
 
 }  // namespace fogline::fusion

@@ -48,9 +48,14 @@ class Ekf {
   const Covariance& covariance() const { return covariance_; }
 
  private:
+  // Correct() for a value that depends on one state alone, with the derivative `slope`.
+  template <int kState>
+  void CorrectBy(double slope, double innovation, double noise_variance);
+  // Correct() for any Jacobian.
+  void CorrectByBoth(const Jacobian& jacobian, double innovation, double noise_variance);
   void SetCovariance(const Covariance& covariance);
 
-  Eigen::Matrix3d transition_;     // F
+  double step_s_;                  // T
   Eigen::Vector3d input_;          // effect of the host's acceleration
   Eigen::Matrix3d process_noise_;  // Q
   State state_ = State::Zero();

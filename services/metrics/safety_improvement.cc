@@ -27,6 +27,12 @@ void AddPairs(std::span<const Sample> baseline, std::span<const Sample> traded,
   for (std::size_t i = 0; i < steps; ++i) accumulator.Add(baseline[i], traded[i]);
 }
 
+[[noreturn]] void RefuseToPair(const Sample& baseline, const Sample& traded) {
+  throw std::invalid_argument("safety improvement: step " + std::to_string(baseline.step) +
+                              " of the baseline does not pair with step " +
+                              std::to_string(traded.step));
+}
+
 }  // namespace
 
 std::optional<double> MeanImprovement::Pct() const {
@@ -44,11 +50,8 @@ double CompromisedSafetyOfRun::Next(const Sample& sample) {
 }
 
 void SafetyImprovement::Add(const Sample& baseline, const Sample& traded) {
-  if (baseline.step != traded.step) {
-    throw std::invalid_argument("safety improvement: step " + std::to_string(baseline.step) +
-                                " of the baseline does not pair with step " +
-                                std::to_string(traded.step));
-  }
+  if (baseline.step != traded.step) RefuseToPair(baseline, traded);
+  if (!baseline.fog_present && !traded.fog_present) return;  // nothing begins, and nothing counts
   const double without = baseline_.Next(baseline);
   const double with = traded_.Next(traded);
   if (!baseline.fog_present || !(without > floor_m_)) return;

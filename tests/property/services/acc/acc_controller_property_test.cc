@@ -64,9 +64,49 @@ TEST(AccControllerPropertyTest, EverySituationHasAnOptimum) {
   EXPECT_LT(on_limits, 1900);
 }
 
+// The controller leaves the exact check out where the bounds of the plan prove its result.
+TEST(AccControllerPropertyTest, BoundsAreNeverBelowThePlanAndProveOnlyWhatTheExactCheckFinds) {
+  Draw draw(7);
+  int proved = 0;
+  int within = 0;
+  for (int i = 0; i < 200; ++i) {
+    const AccSection section = RandomSection(draw);
+    const acc::AccProgram program(section, RandomStep(draw));
+    const Eigen::Index n = program.horizon();
+    const acc::LinearPlan plan(0.1 * draw.Matrix(n, 4));
+    for (int k = 0; k < 20; ++k) {
+      const double scale = draw.LogUniform(1e-4, 10);
+      const acc::AccSituation now{
+          .state = scale * draw.Vector(3),
+          .speed_mps = draw.LogUniform(0.5, 55),
+          .previous_control =
+              std::clamp(scale * draw.Uniform(-1, 1), program.MinControl(), program.MaxControl())};
+      const Eigen::Vector4d p(now.state(0), now.state(1), now.state(2), now.previous_control);
+      Eigen::VectorXd controls;
+      plan.Compute(p, controls);
+      ASSERT_EQ(plan.First(p), controls(0));
+      double change = std::abs(controls(0) - now.previous_control);
+      for (Eigen::Index j = 1; j < n; ++j) {
+        change = std::max(change, std::abs(controls(j) - controls(j - 1)));
+      }
+      ASSERT_GE(plan.ControlBound(p), controls.cwiseAbs().maxCoeff() - kTolerance);
+      ASSERT_GE(plan.ChangeBound(p), change - kTolerance);
+      const bool exact =
+          program.IsWithinLimits(now, {controls.data(), static_cast<std::size_t>(controls.size())});
+      const bool certain =
+          program.IsCertainlyWithinLimits(now, plan.ControlBound(p), plan.ChangeBound(p));
+      ASSERT_LE(certain, exact) << "section " << i << " situation " << k;
+      proved += certain;
+      within += exact;
+    }
+  }
+  EXPECT_GT(proved, 100) << "the bounds must be of use";
+  EXPECT_LT(proved, within) << "the exact check must be of use";
+}
+
 TEST(AccControllerPropertyTest, PlansKeepTheLimitsOfTheControlAndOfItsChange) {
   ForRandomSituations(2, [](const AccSection& section, double step_s, const auto& input,
-                            const acc::AccController& acc, const auto& output) {
+                            acc::AccController& acc, const auto& output) {
     const double change = section.max_jerk_mps3 * step_s / section.engine_gain;
     double previous = PreviousControl(section, input.acceleration_mps2);
     for (const double u : acc.plan()) {
@@ -99,7 +139,7 @@ double HighestInFallback(const AccSection& section, double step_s,
 TEST(AccControllerPropertyTest, PlansKeepTheMaximumSpeedWhereTheFallbackDoes) {
   int close = 0;
   ForRandomSituations(3, [&](const AccSection& section, double step_s, const auto& input,
-                             const acc::AccController& acc, const auto&) {
+                             acc::AccController& acc, const auto&) {
     if (HighestInFallback(section, step_s, input) > section.max_speed_mps) return;
     const double tau = section.engine_time_constant_s;
     double speed = input.speed_mps;
@@ -121,7 +161,7 @@ TEST(AccControllerPropertyTest, PlansKeepTheMaximumSpeedWhereTheFallbackDoes) {
 TEST(AccControllerPropertyTest, PlansOfAFasterCarLoseSpeedAsInAFallback) {
   int faster = 0;
   ForRandomSituations(4, [&](const AccSection& section, double step_s, const auto& input,
-                             const acc::AccController& acc, const auto&) {
+                             acc::AccController& acc, const auto&) {
     const acc::AccProgram program(section, step_s);
     double settled = input.speed_mps + section.engine_time_constant_s * input.acceleration_mps2;
     if (settled <= section.max_speed_mps) return;
@@ -143,7 +183,7 @@ TEST(AccControllerPropertyTest, PlansOfAFasterCarLoseSpeedAsInAFallback) {
 TEST(AccControllerPropertyTest, UnconstrainedPlansKeepTheMinimumGapAndDoNotReverse) {
   int close = 0;
   ForRandomSituations(5, [&](const AccSection& section, double step_s, const auto& input,
-                             const acc::AccController& acc, const auto& output) {
+                             acc::AccController& acc, const auto& output) {
     if (output.solver != Solver::kUnconstrained) return;
     const acc::DiscreteAccModel model = acc::Discretise(acc::MakeAccModel(section), step_s);
     const double preceding = input.speed_mps + input.relative_speed_mps;

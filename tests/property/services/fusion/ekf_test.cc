@@ -130,6 +130,49 @@ TEST(EkfPropertyTest, PredictionInTwoHalvesIsThePredictionOfTheWhole) {
   EXPECT_LT((whole.covariance() - half.covariance()).cwiseAbs().maxCoeff(), 1e-14);
 }
 
+// Joseph's form with whole matrices. Eigen adds three products in the order a + (b + c).
+Eigen::Matrix3d JosephForm(const Eigen::Matrix3d& p, const fusion::Ekf::Jacobian& jacobian,
+                           double noise_variance) {
+  const Eigen::RowVector3d h(jacobian(0), jacobian(1), 0);
+  const double variance = jacobian.dot(jacobian * p.topLeftCorner<2, 2>()) + noise_variance;
+  const Eigen::Vector3d gain = p.leftCols<2>() * jacobian.transpose() / variance;
+  const Eigen::Matrix3d keep = Eigen::Matrix3d::Identity() - gain * h;
+  const Eigen::Vector3d noise = gain * noise_variance;
+  const Eigen::Matrix3d sum = keep * p * keep.transpose() + noise * gain.transpose();
+  return (sum + sum.transpose()) / 2;
+}
+
+TEST(EkfPropertyTest, PredictionAndCorrectionLeaveOutOnlyZeros) {
+  const Random random(9, Stream::kLidar);
+  for (std::uint32_t i = 0; i < 300; ++i) {
+    const double t = Magnitude(random, i, -2, 0);
+    const double density = Magnitude(random, i + 1, -4, 2);
+    fusion::Ekf ekf(t, density);
+    ekf.Start({30, 1, 0.1}, Eigen::Vector3d(2, 3, 4).asDiagonal());
+    for (std::int64_t k = 0; k < 30; ++k) {
+      // The expected values use whole matrices.
+      Eigen::Matrix3d f;
+      f << 1, t, t * t / 2, 0, 1, t, 0, 0, 1;
+      fusion::Ekf noise_alone(t, density);
+      noise_alone.Predict(0);  // from P = 0: Q
+      const Eigen::Matrix3d sum = f * ekf.covariance() * f.transpose() + noise_alone.covariance();
+      const Eigen::Vector3d state = f * ekf.state() + Eigen::Vector3d(-t * t / 2, -t, 0) * 0.7;
+      ekf.Predict(0.7);
+      ASSERT_EQ(ekf.covariance(), (sum + sum.transpose()) / 2) << "draw " << i << " step " << k;
+      ASSERT_EQ(ekf.state(), state);
+
+      const auto [a, b] = random.Normal2(k, i);
+      for (const fusion::Ekf::Jacobian& jacobian :
+           {fusion::Ekf::Jacobian(1, 0), fusion::Ekf::Jacobian(0, 1), fusion::Ekf::Jacobian(a, 0),
+            fusion::Ekf::Jacobian(a, b)}) {
+        const Eigen::Matrix3d expected = JosephForm(ekf.covariance(), jacobian, 0.04);
+        ekf.Correct(jacobian, b, 0.04);
+        ASSERT_EQ(ekf.covariance(), expected) << "H = " << jacobian;
+      }
+    }
+  }
+}
+
 TEST(LineOfSightPropertyTest, JacobiansAreTheSlopes) {
   constexpr double kStep = 1e-5;  // errors: kStep^2 of truncation, 1e-16 * 100 / kStep of rounding
   const Random random(3, Stream::kLidar);
