@@ -5,6 +5,7 @@
 #include <fmt/core.h>
 
 #include "common/text.h"
+#include "services/log/log_graph.h"
 #include "services/log/log_seal.h"
 #include "services/log/step_order.h"
 #include "services/runtime/wire/step_ring.h"
@@ -162,6 +163,11 @@ LogFront ReadFront(const std::filesystem::path& file) {
       front.type_fingerprint = run.type_fingerprint;
     }
     if (run.header.run_id != front.run_id || !front.parts.Add(run)) break;
+    front.head.bytes = static_cast<std::int64_t>(reader.good_bytes());
+    ++front.head.events;
+  }
+  if (!front.parts.Complete()) return front;
+  if (const auto event = reader.Next(); event && event->channel == kLogGraphChannel) {
     front.head.bytes = static_cast<std::int64_t>(reader.good_bytes());
     ++front.head.events;
   }

@@ -9,6 +9,7 @@
 
 #include "common/text.h"
 #include "scenario/io/loader.h"
+#include "services/log/log_graph.h"
 #include "services/log/step_order.h"
 #include "services/runtime/wire/digest.h"
 #include "services/runtime/wire/message_signer.h"
@@ -38,7 +39,7 @@ class RunLogReader::Assembler {
 
   struct Pending {
     StepMessages messages{};
-    std::size_t count = 0;
+    runtime::ChannelSet there;
   };
 
   /// The next step; nullptr at the end of the log.
@@ -67,7 +68,7 @@ class RunLogReader::Assembler {
   bool Ready() const {
     if (pending_.empty()) return false;
     const auto& [step, next] = *pending_.begin();
-    if (step == run_.steps && next.count == kStepChannels) return true;
+    if (step == run_.steps && next.there == run_.channels) return true;
     return realtime_ && (ended_ || pending_.rbegin()->first > run_.steps + kLongestOverdue);
   }
 
@@ -82,7 +83,7 @@ class RunLogReader::Assembler {
     if (realtime_) {
       runtime::ChannelSet there;
       for (std::size_t i = 0; i < kNumChannels; ++i) there[i] = !messages[i].empty();
-      realtime_->AddStep(there);
+      realtime_->AddStep(there | ~run_.channels);  // the log lacks no channel that it does not have
     }
     return messages;
   }
@@ -90,10 +91,12 @@ class RunLogReader::Assembler {
   void Take(const Event& event) {
     const std::size_t channel = Find(event.channel);
     if (channel == kNumChannels && IsLogSeal(event)) return TakeSeal(event);
+    if (channel == kNumChannels && event.channel == kLogGraphChannel) return TakeGraph(event);
     if (channel == kNumChannels || event.data.size() < runtime::kHeaderEnd) return;
     if (channel == IndexOf<run_t>()) return TakeRun(event.data);
     if (channel == IndexOf<status_t>()) return TakeStatus(event.data);
     if (kChannels[channel].pace != Pace::kStep) return;
+    if (!parts_.empty() && !run_.channels[channel]) return;
     const runtime::Bytes data = Payload(event.data);
     if (parts_.empty() || data.empty() ||
         runtime::ReadInt64(data, runtime::kRunIdOffset) != run_.run_id) {
@@ -111,7 +114,7 @@ class RunLogReader::Assembler {
       return;
     }
     pending.messages[channel] = data;
-    ++pending.count;
+    pending.there.set(channel);
   }
 
   void Finish() {
@@ -197,12 +200,25 @@ class RunLogReader::Assembler {
     if (!is_signed && !runtime::Decode(data, run)) return;
     if (parts_.empty()) {
       run_.run_id = run.header.run_id;
+      run_.channels = StepChannelsOf(run.type_fingerprint);
       is_signed_ = is_signed;
     }
     if (run.header.run_id != run_.run_id) return;
     const bool known = parts_.Complete();
     if (!parts_.Add(run)) ++foreign_;
     if (!known && parts_.Complete() && run.realtime != 0) ExpectRealtime(run);
+  }
+
+  /// The recorder writes the graph before all steps. Signed traffic has no graph, because no
+  /// process sends one.
+  void TakeGraph(const Event& event) {
+    if (parts_.empty() || is_signed_ || run_.steps > 0 || !pending_.empty()) return;
+    try {
+      const runtime::ChannelSet channels = ReadLogGraph(event, run_.run_id);
+      if (channels.any()) run_.channels = channels;
+    } catch (const InputError& error) {
+      throw InputError(fmt::format("{}: error: {}", PathText(file_), error.what()));
+    }
   }
 
   void TakeSeal(const Event& event) {
@@ -243,10 +259,10 @@ class RunLogReader::Assembler {
                : runtime::Bytes();
   }
 
-  static std::string Lacking(const StepMessages& messages) {
+  std::string Lacking(const StepMessages& messages) const {
     std::string names;
     for (std::size_t i = 0; i < kNumChannels; ++i) {
-      if (kChannels[i].pace != Pace::kStep || !messages[i].empty()) continue;
+      if (!run_.channels[i] || !messages[i].empty()) continue;
       names += fmt::format("{}{}", names.empty() ? "" : ", ", kChannels[i].name);
     }
     return names;

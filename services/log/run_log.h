@@ -12,6 +12,7 @@
 #include "services/log/event_log.h"
 #include "services/log/log_seal.h"
 #include "services/log/realtime_figures.h"
+#include "services/runtime/realtime/culprit.h"
 
 namespace fogline::log {
 
@@ -24,8 +25,9 @@ struct RunLog {
   Scenario scenario;
   std::string scenario_text;
   std::string scenario_hash;
-  std::int64_t steps = 0;  // number of complete steps
-  std::string digest;      // digest of these steps
+  runtime::ChannelSet channels;  // the channels of a step (log_graph.h)
+  std::int64_t steps = 0;        // number of complete steps
+  std::string digest;            // digest of these steps
   // Whether four conditions are met: the log ends with the last step of the run, the log was not
   // changed after it was sealed, no event is torn, and no two messages of one step and channel
   // differ. In lockstep, all messages must be in the log, too.

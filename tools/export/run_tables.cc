@@ -93,10 +93,11 @@ RunTables ReadRunTables(const std::filesystem::path& log) {
     if (what.starts_with(PathText(log))) throw;
     throw InputError(fmt::format("{}: error: {}", PathText(log), what));
   }
-  ForEachStepChannel([&]<class M>(std::size_t) {
+  const log::RunLog& run = reader.run();
+  ForEachStepChannel([&]<class M>(std::size_t channel) {
+    if (!run.channels[channel]) return;
     tables.channels.push_back(std::move(std::get<Tabulator<M>>(tabulators).table()));
   });
-  const log::RunLog& run = reader.run();
   constexpr int kIndent = 2;
   tables.scenario =
       nlohmann::ordered_json::parse(run.scenario_text).dump(kIndent, ' ', /*ensure_ascii=*/true);

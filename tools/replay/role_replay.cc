@@ -154,6 +154,17 @@ std::unique_ptr<RoleReplay> MakeRoleReplay(Role role, const log::RunLog& run,
   return replay;
 }
 
+std::string MissingChannels(Role role, const log::RunLog& run) {
+  std::string names;
+  for (std::size_t i = 0; i < kNumChannels; ++i) {
+    const ChannelInfo& channel = kChannels[i];
+    if (channel.pace != Pace::kStep || run.channels[i]) continue;
+    if (channel.from != role && !channel.to.Has(role)) continue;
+    names += fmt::format("{}{}", names.empty() ? "" : ", ", channel.name);
+  }
+  return names;
+}
+
 bool CanReplay(Role role, const log::RunLog& run) {
   return !run.realtime || (role == Role::kDriver && run.scenario.person.drives);
 }
