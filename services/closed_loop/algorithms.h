@@ -41,13 +41,12 @@ concept Defined = requires {
   sizeof(A);
 };
 
-#define FOGLINE_CHECK_ROLE(folder, Class, purpose)                                              \
-  static_assert(                                                                                \
-      Defined<folder::Class>,                                                      \
-      "the role " #folder " of graph.h needs services/" #folder "/" #folder                     \
-      "_main.cc, and the class " #folder "::" #Class " in services/" #folder "/" #folder ".h"); \
-  static_assert(AlgorithmTraits<folder::Class>::kRole == Role::k##Class,                        \
-                "graph.h gives the messages that " #folder "::" #Class                          \
+#define FOGLINE_CHECK_ROLE(folder, Class, purpose)                                                 \
+  static_assert(Defined<folder::Class>, "the role " #folder " of graph.h needs services/" #folder  \
+                                        "/" #folder "_main.cc, and the class " #folder "::" #Class \
+                                        " in services/" #folder "/" #folder ".h");                 \
+  static_assert(AlgorithmTraits<folder::Class>::kRole == Role::k##Class,                           \
+                "graph.h gives the messages that " #folder "::" #Class                             \
                 "::Step returns to another role");
 FOGLINE_ROLES(FOGLINE_CHECK_ROLE)
 #undef FOGLINE_CHECK_ROLE

@@ -11,6 +11,7 @@
 
 #include "services/runtime/transport/bus.h"
 #include "tests/support/command.h"
+#include "tests/support/pages.h"
 
 namespace fogline::test {
 namespace {
@@ -36,10 +37,7 @@ print("lost", Lossy.lost)
 
 /// The program that the page shows.
 std::string ProgramOfThePage() {
-  const std::string page = Content(SourceDirectory() / "docs/protocol.md");
-  const std::string fence = "\n```python\n";
-  const std::size_t begin = page.find(fence) + fence.size();
-  return page.substr(begin, page.find("```\n", begin) - begin);
+  return FenceOf(Content(SourceDirectory() / "docs/protocol.md"), "python");
 }
 
 /// A folder with the driver of the page and the types that it needs, and a network.

@@ -2,6 +2,7 @@
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 
+#include <cstdio>
 #include <fstream>
 #include <map>
 #include <regex>
@@ -93,10 +94,8 @@ TEST_F(RecipesTest, RecordedSensorsDriveFusionAndAccWhichComputeTheSameAgain) {
 }
 
 TEST_F(RecipesTest, AProgramThatAsksAPersonDrivesInLockstepAtThePaceOfTheWallClock) {
-  const std::string page = Content(SourceDirectory() / "docs/protocol.md");
-  const std::string fence = "\n```python\n";
-  const std::size_t begin = page.find(fence) + fence.size();
-  std::ofstream(folder_.File("driver.py")) << page.substr(begin, page.find("```\n", begin) - begin);
+  std::ofstream(folder_.File("driver.py"))
+      << FenceOf(Content(SourceDirectory() / "docs/protocol.md"), "python");
   const Outcome shell = Shell("lcm-gen -p --ppath types " + SourceDirectory().string() +
                               "/lcmtypes/*.lcm\n" + Recipe("--pace 1") + "\nwait");
   EXPECT_EQ(shell.code, 0) << shell.out << shell.err;

@@ -38,13 +38,7 @@ log_graph_t WithoutFollowers() {
 
 class LogGraphTest : public testing::Test {
  protected:
-  log::RunLog Read(const test::ShortLog& contents) const {
-    test::WriteShortLog(file_, contents);
-    log::RunLogReader reader(file_);
-    while (reader.Next() != nullptr) {
-    }
-    return reader.run();
-  }
+  log::RunLog Read(const test::ShortLog& contents) const { return test::RunOf(file_, contents); }
 
   test::ScratchFolder folder_;
   const std::string file_ = folder_.File("log");

@@ -15,6 +15,7 @@
 #include "services/graph.h"
 #include "services/log/event_log.h"
 #include "services/log/log_graph.h"
+#include "services/log/run_log.h"
 #include "services/runtime/wire/digest.h"
 #include "services/runtime/wire/scenario_parts.h"
 
@@ -91,6 +92,15 @@ inline log::LogHead WriteShortLog(const std::filesystem::path& file,
   }
   writer.Flush();
   return writer.head();
+}
+
+/// Writes a log. @return its run
+inline log::RunLog RunOf(const std::filesystem::path& file, const ShortLog& contents) {
+  WriteShortLog(file, contents);
+  log::RunLogReader reader(file);
+  while (reader.Next() != nullptr) {
+  }
+  return reader.run();
 }
 
 }  // namespace fogline::test
