@@ -271,8 +271,8 @@ TEST(RelayTest, LetsLcmLoggerRecordEveryMessageOfARunInRealSpeed) {
   };
   const auto logged = payloads(stock);
   for (const auto& [channel, payload] : payloads(folder.File("own.lcm"))) {
-    // Three channels differ. Our log has only one RUN message, in another phase. It also has a graph
-    // and a seal, which no process sends.
+    // Three channels differ. Our log has only one RUN message, in another phase. It also has a
+    // graph and a seal, which no process sends.
     if (channel == ChannelOf<run_t>().name || channel == log::kLogGraphChannel ||
         channel == log::kLogSealChannel) {
       continue;
