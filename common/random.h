@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 #include <numbers>
+#include <string_view>
 
 #include <Random123/philox.h>
 
@@ -29,6 +30,14 @@ enum class Stream : std::uint32_t {
 /// are independent.
 constexpr Stream FollowerErrors(std::uint32_t car) {
   return static_cast<Stream>(static_cast<std::uint32_t>(Stream::kFollowerErrors) + car);
+}
+
+/// The stream of a role that has no number above. The largest bit of its number is set, so it
+/// differs from all streams with a number. @param role name of the role
+constexpr Stream StreamOf(std::string_view role) {
+  std::uint32_t hash = 2'166'136'261;  // FNV-1a
+  for (const char c : role) hash = (hash ^ static_cast<unsigned char>(c)) * 16'777'619;
+  return static_cast<Stream>(hash | 0x8000'0000);
 }
 
 /// The random numbers of one stream under one seed.

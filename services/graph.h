@@ -11,42 +11,39 @@
 #include <type_traits>
 #include <utility>
 
-#include "fogline/accel_command_t.hpp"
-#include "fogline/arbitration_t.hpp"
-#include "fogline/driver_command_t.hpp"
-#include "fogline/driver_input_t.hpp"
-#include "fogline/ego_t.hpp"
-#include "fogline/follower_command_t.hpp"
-#include "fogline/lidar_t.hpp"
-#include "fogline/radar_t.hpp"
-#include "fogline/resend_t.hpp"
-#include "fogline/run_t.hpp"
-#include "fogline/status_t.hpp"
-#include "fogline/track_t.hpp"
-#include "fogline/trial_t.hpp"
-#include "fogline/truth_t.hpp"
+#include "fogline/fields.hpp"  // all message types
 
 namespace fogline {
 
+// Every role that computes messages, in the order of evaluation within a step. A row is
+// ROLE(folder, Class, purpose). The role is the class fogline::FOLDER::CLASS of
+// services/FOLDER/FOLDER.h, its name is FOLDER, its program is fogline-FOLDER, and its value is
+// Role::kCLASS. services/closed_loop/algorithms.h compares rows and folders.
+#define FOGLINE_ROLES(ROLE)                                                         \
+  ROLE(world, World, "moves the cars and is the clock of the run")                  \
+  ROLE(radar, Radar, "measures range and range rate; fog hardly affects it")        \
+  ROLE(lidar, Lidar, "measures range; fog deceives it")                             \
+  ROLE(fusion, Fusion, "extended Kalman filter over both sensors")                  \
+  ROLE(acc, Acc, "the automation agent: MPC-based adaptive cruise control")         \
+  ROLE(driver, Driver, "the human agent: follows the car ahead, as far as it sees") \
+  ROLE(arbitrator, Arbitrator, "Degree of Conflict; decides who drives the host")   \
+  ROLE(follower, Follower, "drives the cars behind the host: the same ACC, or human drivers")
+
+#define FOGLINE_ROLE_VALUE(folder, Class, purpose) k##Class,
 enum class Role : std::uint8_t {
-  kWorld,
-  kRadar,
-  kLidar,
-  kFusion,
-  kAcc,
-  kDriver,
-  kArbitrator,
-  kFollower,
-  kRecorder,
+  FOGLINE_ROLES(FOGLINE_ROLE_VALUE)  // the roles that compute messages
+  kRecorder,                         // writes the log; its row is in kRoles
   kRunner,  // `fogline run`: starts and ends a run, and computes nothing in its steps
 };
+#undef FOGLINE_ROLE_VALUE
 
 /// A set of roles.
 class RoleSet {
  public:
   constexpr RoleSet(std::initializer_list<Role> roles) {
-    for (const Role role : roles) bits_ |= Bit(role);
+    for (const Role role : roles) Add(role);
   }
+  constexpr void Add(Role role) { bits_ |= Bit(role); }
   constexpr bool Has(Role role) const { return (bits_ & Bit(role)) != 0; }
 
  private:
@@ -60,24 +57,20 @@ struct RoleInfo {
   std::string_view purpose;
 };
 
+#define FOGLINE_ROLE_INFO(folder, Class, purpose) RoleInfo{Role::k##Class, #folder, purpose},
 /// Every role that is a separate process, in the order of evaluation within a step.
 inline constexpr std::array kRoles{
-    RoleInfo{Role::kWorld, "world", "moves the cars and is the clock of the run"},
-    RoleInfo{Role::kRadar, "radar", "measures range and range rate; fog hardly affects it"},
-    RoleInfo{Role::kLidar, "lidar", "measures range; fog deceives it"},
-    RoleInfo{Role::kFusion, "fusion", "extended Kalman filter over both sensors"},
-    RoleInfo{Role::kAcc, "acc", "the automation agent: MPC-based adaptive cruise control"},
-    RoleInfo{Role::kDriver, "driver", "the human agent: follows the car ahead, as far as it sees"},
-    RoleInfo{Role::kArbitrator, "arbitrator", "Degree of Conflict; decides who drives the host"},
-    RoleInfo{Role::kFollower, "follower",
-             "drives the cars behind the host: the same ACC, or human drivers"},
-    RoleInfo{Role::kRecorder, "recorder", "writes the LCM event log; the world waits for it"},
+    FOGLINE_ROLES(FOGLINE_ROLE_INFO)
+        RoleInfo{Role::kRecorder, "recorder", "writes the LCM event log; the world waits for it"},
 };
+#undef FOGLINE_ROLE_INFO
 
 /// All roles of `kRoles`, and the runner.
-inline constexpr RoleSet kEveryone{
-    Role::kWorld,  Role::kRadar,      Role::kLidar,    Role::kFusion,   Role::kAcc,
-    Role::kDriver, Role::kArbitrator, Role::kFollower, Role::kRecorder, Role::kRunner};
+inline constexpr RoleSet kEveryone = [] {
+  RoleSet everyone{Role::kRunner};
+  for (const RoleInfo& info : kRoles) everyone.Add(info.role);
+  return everyone;
+}();
 
 /// How often a channel carries a message.
 enum class Pace : std::uint8_t {
@@ -168,6 +161,9 @@ inline constexpr std::tuple kGraph{
 };
 
 inline constexpr std::size_t kNumChannels = std::tuple_size_v<decltype(kGraph)>;
+
+// Sets of roles and of channels have 32 bits.
+static_assert(kRoles.size() < 32 && kNumChannels <= 32, "a set of 32 bits is too small");
 
 /// A channel without its type, for code that works on all channels.
 struct ChannelInfo {

@@ -3,27 +3,64 @@
 // table. The results equal those of the distributed run.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <tuple>
+#include <type_traits>
 
 #include "common/errors.h"
 #include "scenario/sections/scenario.h"
-#include "services/acc/acc.h"
 #include "services/algorithm.h"
-#include "services/arbitrator/arbitrator.h"
-#include "services/driver/driver.h"
-#include "services/follower/follower.h"
-#include "services/fusion/fusion.h"
-#include "services/lidar/lidar.h"
+#include "services/closed_loop/algorithms.h"
+#include "services/graph.h"
 #include "services/metrics/sample.h"
-#include "services/radar/radar.h"
-#include "services/world/world.h"
 
 namespace fogline::closed_loop {
 
+/// The newest message of each kStep channel; before the first, a message in which all is zero.
+class Messages {
+ public:
+  Messages() {
+    ForEachStepChannel([this]<class M>(std::size_t /*channel*/) {
+      static const M kBeforeTheRun{};
+      this->Put(kBeforeTheRun);
+    });
+  }
+
+  template <class M>
+  const M& Get() const {
+    return *static_cast<const M*>(messages_[IndexOf<M>()]);
+  }
+  template <class M>
+  void Put(const M& message) {
+    messages_[IndexOf<M>()] = &message;
+  }
+  template <class... M>
+  void Put(const std::tuple<M...>& messages) {
+    (Put(std::get<M>(messages)), ...);
+  }
+
+ private:
+  std::array<const void*, kNumChannels> messages_{};
+};
+
 /// The messages of one step; they belong to the algorithms and are valid until the next step.
 struct StepView {
+  explicit StepView(const Messages& messages)
+      : truth(messages.Get<truth_t>()),
+        ego(messages.Get<ego_t>()),
+        radar(messages.Get<radar_t>()),
+        lidar(messages.Get<lidar_t>()),
+        track(messages.Get<track_t>()),
+        acc(messages.Get<accel_command_t>()),
+        driver(messages.Get<driver_command_t>()),
+        host(messages.Get<arbitration_t>()),
+        follower(messages.Get<follower_command_t>()),
+        all(messages) {}
+
+  // The messages that the measures and the studies use.
   const truth_t& truth;
   const ego_t& ego;
   const radar_t& radar;
@@ -33,19 +70,12 @@ struct StepView {
   const driver_command_t& driver;
   const arbitration_t& host;
   const follower_command_t& follower;
+  const Messages& all;
 
   /// Calls `visit(message)` for each message, in the order of the graph table.
   template <class Visit>
   void ForEachMessage(Visit&& visit) const {
-    visit(truth);
-    visit(ego);
-    visit(radar);
-    visit(lidar);
-    visit(track);
-    visit(acc);
-    visit(driver);
-    visit(host);
-    visit(follower);
+    ForEachStepChannel([&]<class M>(std::size_t /*channel*/) { visit(all.Get<M>()); });
   }
 
   metrics::Sample ToSample() const {
@@ -70,71 +100,84 @@ class ClosedLoop {
   template <class Visit>
   void Run(std::int64_t run_id, Visit&& visit) {
     if (person_) throw InputError(std::string(kPersonNeedsRealtime));
-    static const arbitration_t kBeforeTheRun{};
-    const arbitration_t* last = &kBeforeTheRun;
-    const EndOfRun end(world_);
-    const auto* made = &world_.Start(run_id);
+    // The algorithms are evaluated in their order. So an input is of the same step if its producer
+    // comes before its reader, and of the previous step otherwise (LagOf() in graph.h).
+    const EndOfRun end(first().algorithm);
+    Messages messages;
+    messages.Put(first().algorithm.Start(run_id));
     while (true) {
-      const auto& [truth, ego] = *made;
-      const radar_t& radar = radar_.Step(truth);
-      const lidar_t& lidar = lidar_.Step(truth);
-      PassOnDemandInput(on_demand_.fusion, fusion_, truth);
-      const track_t& track = fusion_.Step(ego, radar, lidar);
-      const accel_command_t& acc = acc_.Step(ego, track);
-      PassOnDemandInput(on_demand_.driver, driver_, *last);
-      const driver_command_t& driver = driver_.Step(truth);
-      PassOnDemandInput(on_demand_.arbitrator, arbitrator_, truth);
-      const arbitration_t& host = arbitrator_.Step(ego, radar, lidar, track, acc, driver);
-      const follower_command_t& follower = follower_.Step(truth);
-      visit(StepView{truth, ego, radar, lidar, track, acc, driver, host, follower});
-      if (truth.last) return;
-      made = &world_.Step(host, follower);
-      last = &host;
+      std::apply(
+          [&messages](auto& /*first*/, auto&... others) { (Compute(others, messages), ...); },
+          roles_);
+      visit(StepView(messages));
+      if (messages.Get<truth_t>().last) return;
+      Compute(first(), messages);
     }
   }
 
  private:
-  /// Ends the run of a world, even if a step throws.
+  using First = std::tuple_element_t<0, Algorithms>;
+
+  /// Ends the run of the role that begins the steps, even if a step throws.
   class EndOfRun {
    public:
-    explicit EndOfRun(world::World& world) : world_(world) {}
-    ~EndOfRun() { world_.End(); }
+    explicit EndOfRun(First& first) : first_(first) {}
+    ~EndOfRun() { first_.End(); }
     EndOfRun(const EndOfRun&) = delete;
     EndOfRun& operator=(const EndOfRun&) = delete;
 
    private:
-    world::World& world_;
+    First& first_;
   };
 
-  /// Which roles use their inputs on demand in this scenario (services/algorithm.h).
-  struct OnDemandRoles {
-    explicit OnDemandRoles(const Scenario& scenario)
-        : fusion(AlgorithmTraits<fusion::Fusion>::UsesOnDemandInput(scenario)),
-          driver(AlgorithmTraits<driver::Driver>::UsesOnDemandInput(scenario)),
-          arbitrator(AlgorithmTraits<arbitrator::Arbitrator>::UsesOnDemandInput(scenario)) {}
-    bool fusion;
-    bool driver;
-    bool arbitrator;
-  };
-
-  template <class A, class M>
-  static void PassOnDemandInput([[maybe_unused]] bool is_used, [[maybe_unused]] A& algorithm,
-                                [[maybe_unused]] const M& message) {
-    if constexpr (AlgorithmTraits<A>::kHasOnDemand) {
-      if (is_used) algorithm.SetOnDemandInput(message);
+  /// An algorithm, and whether it uses its input on demand in this scenario (services/algorithm.h).
+  template <class A>
+  struct RoleOf {
+    explicit RoleOf(const Scenario& scenario)
+        : algorithm(scenario), uses_on_demand(AlgorithmTraits<A>::UsesOnDemandInput(scenario)) {}
+    void Restart(const Scenario& scenario) {
+      uses_on_demand = AlgorithmTraits<A>::UsesOnDemandInput(scenario);
+      if constexpr (requires { algorithm.Restart(scenario); }) {
+        algorithm.Restart(scenario);
+      } else {
+        algorithm = A(scenario);
+      }
     }
+    A algorithm;
+    bool uses_on_demand;
+  };
+  template <class T>
+  struct RolesOf;
+  template <class First, class... A>
+  struct RolesOf<std::tuple<First, A...>> {
+    static_assert(AlgorithmTraits<First>::kStarts, "the first role of graph.h begins the steps");
+    static_assert(!(AlgorithmTraits<A>::kStarts || ...), "one role begins the steps");
+    using Type = std::tuple<RoleOf<First>, RoleOf<A>...>;
+    template <class>
+    using Argument = const Scenario&;
+    static Type Make(const Scenario& scenario) {
+      return Type(scenario, static_cast<Argument<A>>(scenario)...);
+    }
+  };
+  using Roles = RolesOf<Algorithms>;
+
+  auto& first() { return std::get<0>(roles_); }
+
+  /// Computes a role's messages of a step from the newest messages.
+  template <class A>
+  static void Compute(RoleOf<A>& role, Messages& messages) {
+    using Traits = AlgorithmTraits<A>;
+    if constexpr (Traits::kHasOnDemand) {
+      using M = std::tuple_element_t<0, typename Traits::OnDemand>;
+      if (role.uses_on_demand) role.algorithm.SetOnDemandInput(messages.Get<M>());
+    }
+    [&]<class... In>(std::type_identity<std::tuple<In...>>) {
+      messages.Put(role.algorithm.Step(messages.Get<In>()...));
+    }(std::type_identity<typename Traits::Inputs>{});
   }
 
   bool person_;  // whether the scenario has a person who drives
-  OnDemandRoles on_demand_;
-  world::World world_;
-  radar::Radar radar_;
-  lidar::Lidar lidar_;
-  fusion::Fusion fusion_;
-  acc::Acc acc_;
-  driver::Driver driver_;
-  arbitrator::Arbitrator arbitrator_;
-  follower::Follower follower_;
+  Roles::Type roles_;
 };
 
 /// Runs one scenario after another. Only one thread may use an object.

@@ -15,6 +15,7 @@
 #include "common/errors.h"
 #include "common/text.h"
 #include "services/log/event_log.h"
+#include "services/log/log_graph.h"
 #include "services/log/log_seal.h"
 
 namespace fogline::log {
@@ -130,7 +131,9 @@ std::string TakeBackOlder(const std::filesystem::path& log, std::string_view opt
 bool HasSteps(const std::filesystem::path& log) {
   EventLogReader reader(log);
   while (const auto event = reader.Next()) {
-    if (event->channel != ChannelOf<run_t>().name && !IsLogSeal(*event)) return true;
+    const bool is_front =
+        event->channel == ChannelOf<run_t>().name || event->channel == kLogGraphChannel;
+    if (!is_front && !IsLogSeal(*event)) return true;
   }
   return false;
 }

@@ -8,6 +8,7 @@
 #include <fmt/core.h>
 
 #include "common/text.h"
+#include "services/log/log_graph.h"
 #include "services/log/log_seal.h"
 #include "services/log/step_order.h"
 #include "services/runtime/wire/step_ring.h"
@@ -177,8 +178,14 @@ LogFront ReadFront(const std::filesystem::path& file) {
     front.head.bytes = static_cast<std::int64_t>(reader.good_bytes());
     ++front.head.events;
   }
-  if (front.realtime || !front.parts.Complete()) return front;
+  if (!front.parts.Complete()) return front;
   auto event = reader.Next();
+  if (event && event->channel == kLogGraphChannel) {
+    front.head.bytes = static_cast<std::int64_t>(reader.good_bytes());
+    ++front.head.events;
+    event = reader.Next();
+  }
+  if (front.realtime) return front;
   for (std::size_t i = 0; i < kStepChannels && event; ++i) event = reader.Next();
   front.wall_clock = event && event->channel == kWallClockChannel;
   return front;

@@ -12,13 +12,13 @@
 
 namespace fogline::log {
 
-/// The beginning of a log: its run and scenario.
+/// The beginning of a log: its run, scenario and graph.
 struct LogFront {
   std::int64_t run_id = 0;
   runtime::ScenarioParts parts;  // empty if the log does not begin with a scenario
   bool realtime = false;
   std::int64_t type_fingerprint = 0;
-  LogHead head;  // the part with the scenario; step 0 follows
+  LogHead head;  // the part with scenario and graph; step 0 follows
   // In lockstep: whether each step has its wall clock. Known if the log has step 0.
   bool wall_clock = false;
 

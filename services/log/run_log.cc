@@ -9,6 +9,7 @@
 
 #include "common/text.h"
 #include "scenario/io/loader.h"
+#include "services/log/log_graph.h"
 #include "services/log/log_version.h"
 #include "services/log/step_order.h"
 #include "services/runtime/wire/digest.h"
@@ -18,11 +19,11 @@
 namespace fogline::log {
 namespace {
 
-/// The channels of which a step lacks its message.
-runtime::ChannelSet LackingIn(const StepMessages& messages) {
-  runtime::ChannelSet lacks;
+/// The channels of a log of which a step lacks its message.
+runtime::ChannelSet LackingIn(const StepMessages& messages, const runtime::ChannelSet& channels) {
+  runtime::ChannelSet lacks = channels;
   for (std::size_t i = 0; i < kNumChannels; ++i) {
-    lacks[i] = kChannels[i].pace == Pace::kStep && messages[i].empty();
+    if (!messages[i].empty()) lacks.reset(i);
   }
   return lacks;
 }
@@ -35,6 +36,7 @@ class RunLogReader::Assembler {
   Assembler(const std::filesystem::path& file, const ReadOptions& options)
       : file_(file), reader_(file), options_(options), has_run_(options.run_id.has_value()) {
     run_.run_id = options.run_id.value_or(0);
+    run_.channels = OwnStepChannels();
   }
 
   const StepMessages* Next() {
@@ -64,7 +66,7 @@ class RunLogReader::Assembler {
 
   struct Pending {
     StepMessages messages{};
-    std::size_t count = 0;
+    runtime::ChannelSet there;
   };
 
   /// The next step; nullptr at the end of the log.
@@ -89,7 +91,7 @@ class RunLogReader::Assembler {
   bool Ready() {
     if (pending_.empty()) return false;
     const auto& [step, next] = *pending_.begin();
-    if (step == next_ && next.count == kStepChannels) return true;
+    if (step == next_ && next.there == run_.channels) return true;
     if (realtime_) return ended_ || pending_.rbegin()->first > next_ + kLongestOverdue;
     if (!options_.gaps || !(ended_ || pending_.size() > kMostOpen)) return false;
     if (begun_ && step > next_ + kLongestGap) {
@@ -116,7 +118,7 @@ class RunLogReader::Assembler {
 
   /// Counts a step and its gaps, and adds the step to the digest.
   void Count(const StepMessages& messages) {
-    const runtime::ChannelSet lacks = LackingIn(messages);
+    const runtime::ChannelSet lacks = LackingIn(messages, run_.channels);
     if (realtime_) realtime_->AddStep(~lacks);
     if (ReadsGaps() && lacks.any()) {
       if (!InTail()) run_.gaps.Add(step(), lacks);
@@ -139,7 +141,7 @@ class RunLogReader::Assembler {
     // The run has ended with this step, so messages that are missing there are gaps.
     if (runtime::Decode(newest.messages[IndexOf<truth_t>()], truth_) && truth_.last) return;
     auto step = pending_.rbegin();
-    while (step != pending_.rend() && step->second.count < kStepChannels) ++step;
+    while (step != pending_.rend() && step->second.there != run_.channels) ++step;
     const std::int64_t last = step == pending_.rend() ? next_ - 1 : step->first;
     if (pending_.rbegin()->first <= last + runtime::kMaxAhead) tail_ = last + 1;
   }
@@ -147,10 +149,12 @@ class RunLogReader::Assembler {
   void Take(const Event& event) {
     const std::size_t channel = Find(event.channel);
     if (channel == kNumChannels && IsLogSeal(event)) return TakeSeal(event);
+    if (channel == kNumChannels && event.channel == kLogGraphChannel) return TakeGraph(event);
     if (channel == kNumChannels || event.data.size() < runtime::kHeaderEnd) return;
     if (channel == IndexOf<run_t>()) return TakeRun(event.data);
     if (channel == IndexOf<status_t>()) return TakeStatus(event.data);
     if (kChannels[channel].pace != Pace::kStep) return;
+    if (!parts_.empty() && !run_.channels[channel]) return;
     const std::int64_t run_id = runtime::ReadInt64(event.data, runtime::kRunIdOffset);
     if (options_.gaps && parts_.empty()) ChooseRun(event.data, channel, run_id);
     const runtime::Bytes data = Payload(event.data);
@@ -173,7 +177,7 @@ class RunLogReader::Assembler {
       return;
     }
     pending.messages[channel] = data;
-    ++pending.count;
+    pending.there.set(channel);
   }
 
   void Finish() {
@@ -214,7 +218,7 @@ class RunLogReader::Assembler {
     }
     if (tail_) note(fmt::format("step {} lacks {}", *tail_, tail_lacks_));
     if (!pending_.empty()) {
-      const runtime::ChannelSet lacks = LackingIn(pending_.begin()->second.messages);
+      const runtime::ChannelSet lacks = LackingIn(pending_.begin()->second.messages, run_.channels);
       note(fmt::format("step {} lacks {}", run_.steps, NamesOfChannels(lacks)));
     }
     if (astray_ > 0) note(fmt::format("{} impossible steps ignored", astray_));
@@ -322,6 +326,7 @@ class RunLogReader::Assembler {
     if (run.header.run_id != run_.run_id) return others_.Add(run.header.run_id);
     if (parts_.empty()) is_signed_ = is_signed;
     if (parts_.empty()) other_types_ = run.type_fingerprint != TypeFingerprint();
+    if (parts_.empty()) run_.channels = StepChannelsOf(run.type_fingerprint);
     const bool known = parts_.Complete();
     if (!parts_.Add(run)) ++foreign_;
     if (!known && parts_.Complete() && run.realtime != 0) ExpectRealtime(run);
@@ -333,6 +338,18 @@ class RunLogReader::Assembler {
     if (!std::exchange(has_run_, true)) run_.run_id = run_id;
     if (run_id == run_.run_id && !begun_ && pending_.empty()) {
       is_signed_ = runtime::LooksSigned(data);
+    }
+  }
+
+  /// The recorder writes the graph before all steps. Signed traffic has no graph, because no
+  /// process sends one.
+  void TakeGraph(const Event& event) {
+    if (parts_.empty() || is_signed_ || run_.steps > 0 || !pending_.empty()) return;
+    try {
+      const runtime::ChannelSet channels = ReadLogGraph(event, run_.run_id);
+      if (channels.any()) run_.channels = channels;
+    } catch (const InputError& error) {
+      throw InputError(fmt::format("{}: error: {}", PathText(file_), error.what()));
     }
   }
 

@@ -16,6 +16,7 @@
 #include "services/log/gaps/read_options.h"
 #include "services/log/log_seal.h"
 #include "services/log/realtime_figures.h"
+#include "services/runtime/realtime/culprit.h"
 
 namespace fogline::log {
 
@@ -28,7 +29,8 @@ struct RunLog {
   Scenario scenario;
   std::string scenario_text;
   std::string scenario_hash;
-  std::int64_t steps = 0;  // number of complete steps
+  runtime::ChannelSet channels;  // the channels of a step (log_graph.h)
+  std::int64_t steps = 0;        // number of complete steps
   // Digest of these steps; "" if the log has gaps and they were read (ReadOptions::gaps).
   std::string digest;
   // Whether four conditions are met: the log ends with the last step of the run, the log was not

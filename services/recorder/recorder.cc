@@ -6,6 +6,7 @@
 #include <fmt/core.h>
 
 #include "common/errors.h"
+#include "services/log/log_graph.h"
 #include "services/recorder/record_rule.h"
 #include "services/runtime/lockstep/lockstep_rule.h"
 
@@ -130,8 +131,9 @@ void Recorder::WriteScenario() {
     runtime::Encode(run, buffer);
     log_->Write(ChannelOf<run_t>().name, 0, buffer);
   }
+  log::WriteLogGraph(*log_, *news.id);
   log_->Flush();
-  const log::LogHead head{.bytes = log_->size(), .events = std::ssize(texts)};
+  const log::LogHead head = log_->head();
   history_.emplace(file_,
                    log::LogFront{.run_id = *news.id,
                                  .parts = {},

@@ -3,6 +3,7 @@
 #include <array>
 
 #include "common/errors.h"
+#include "services/log/log_graph.h"
 #include "services/log/run_log.h"
 #include "services/runtime/wire/message_signer.h"
 #include "tests/fuzz/samples.h"
@@ -46,7 +47,7 @@ void DemandWholeSteps(const Reading& reading) {
   for (std::size_t step = 0; step < reading.steps.size(); ++step) {
     for (std::size_t i = 0; i < kNumChannels; ++i) {
       const Input& message = reading.steps[step][i];
-      const bool expected = kChannels[i].pace == Pace::kStep;
+      const bool expected = reading.run.channels[i];
       // A run in real time continues if a message is missing.
       const bool hole = expected && message.empty() && reading.run.realtime;
       Demand(hole || message.empty() != expected, "a step has a message of each of its channels");
@@ -70,6 +71,7 @@ void Rewrite(const Reading& reading, const std::filesystem::path& file) {
                                            reading.run.scenario_hash, parts, i);
     log.Write(ChannelOf<run_t>().name, 0, Encoded(run));
   }
+  log::WriteLogGraph(log, reading.run.run_id, reading.run.channels);
   for (const auto& step : reading.steps) {
     for (std::size_t i = 0; i < kNumChannels; ++i) {
       if (!step[i].empty()) log.Write(kChannels[i].name, 0, step[i]);
@@ -98,6 +100,25 @@ void DemandRunOrRefusal(runtime::Bytes bytes) {
   } catch (const TooManySteps&) {
     return;
   }
+}
+
+/// Adds the graph of a run in which no channel but these has messages.
+Input WithLogGraph(const Input& log, const runtime::ChannelSet& channels) {
+  const MemoryFile from(log);
+  const MemoryFile to;
+  {
+    log::EventLogReader reader(from.path());
+    log::EventLogWriter writer(to.path());
+    bool has_graph = false;
+    while (const auto event = reader.Next()) {
+      if (event->channel != ChannelOf<run_t>().name && !has_graph) {
+        log::WriteLogGraph(writer, kRunId, channels);
+        has_graph = true;
+      }
+      writer.Write(event->channel, event->utime, event->data);
+    }
+  }
+  return to.Content();
 }
 
 /// Adds the seal that a run leaves in its log.
@@ -147,7 +168,15 @@ std::vector<Input> Seeds() {
     log::EventLogWriter writer(reversed.path());
     for (const log::Event& event : events) writer.Write(event.channel, event.utime, event.data);
   }
-  return {log, torn, signed_log.Content(), reversed.Content(), WithLogSeal(log)};
+  runtime::ChannelSet without_radar = log::OwnStepChannels();
+  without_radar.reset(IndexOf<radar_t>());
+  return {log,
+          torn,
+          signed_log.Content(),
+          reversed.Content(),
+          WithLogSeal(log),
+          WithLogSeal(WithLogGraph(log, log::OwnStepChannels())),
+          WithLogGraph(log, without_radar)};
 }
 
 }  // namespace fogline::fuzz

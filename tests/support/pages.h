@@ -46,6 +46,15 @@ inline std::vector<Block> BlocksOf(const std::string& page) {
   return blocks;
 }
 
+/// The contents of the first fenced block of a kind, such as "python".
+inline std::string FenceOf(const std::string& page, const std::string& kind) {
+  const std::string fence = "\n```" + kind + "\n";
+  const std::size_t begin = page.find(fence);
+  if (begin == std::string::npos) return "";
+  const std::size_t text = begin + fence.size();
+  return page.substr(text, page.find("```\n", text) - text);
+}
+
 /// README.md, and every page docs/*.md.
 inline std::vector<std::filesystem::path> Pages() {
   std::vector<std::filesystem::path> pages{SourceDirectory() / "README.md"};

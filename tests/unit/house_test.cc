@@ -28,14 +28,32 @@ using ::testing::StartsWith;
 using ::testing::UnorderedElementsAre;
 
 struct Room {
-  std::string_view folder;  // with its subfolders, unless they are rooms of their own; see kAlone
-  std::string_view space;   // its types lie in fogline::SPACE; "": in fogline, for all rooms
-  std::string_view why;     // reason for the position of this room in the order
+  std::string folder;  // with its subfolders, unless they are rooms of their own; see kAlone
+  std::string space;   // its types lie in fogline::SPACE; "": in fogline, for all rooms
+  std::string why;     // reason for the position of this room in the order
 };
+
+/// Stands for every folder services/NAME with NAME_main.cc, except the recorder's.
+constexpr const char* kRoleFolder = "services/NAME";
+
+/// The rooms, with the folders of the roles in place of the room kRoleFolder.
+std::vector<Room> WithRoles(std::vector<Room> rooms) {
+  std::set<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(SourceDirectory() / "services")) {
+    const std::string name = entry.path().filename();
+    if (std::filesystem::exists(entry.path() / (name + "_main.cc"))) names.insert(name);
+  }
+  names.erase("recorder");
+  auto place = rooms.erase(std::ranges::find(rooms, kRoleFolder, &Room::folder));
+  for (const std::string& name : names) {
+    place = rooms.insert(place, {"services/" + name, name, "a role"}) + 1;
+  }
+  return rooms;
+}
 
 /// A file may include files of its own room and of rooms before it, and a library may link
 /// libraries of rooms before it. NAME_main.cc is a program, so it may include files of all rooms.
-constexpr std::array kRooms = std::to_array<Room>({
+const std::vector<Room> kRooms = WithRoles({
     {"common", "", "knows nothing of Fogline"},
     {"common/process", "", "this process: its console, what it waits for, what it takes"},
     {"fogline", "", "the message types that lcm-gen makes of lcmtypes/"},
@@ -54,14 +72,7 @@ constexpr std::array kRooms = std::to_array<Room>({
     {"services/decision/take_over", "take_over", "the request to a person, and its end"},
     {"services/models/traffic", "models", "cars that another simulator moves"},
     {"services/models/sumo", "sumo", "this simulator, as a module that is loaded on demand"},
-    {"services/acc", "acc", "a role"},
-    {"services/world", "world", "a role"},
-    {"services/radar", "radar", "a role"},
-    {"services/lidar", "lidar", "a role"},
-    {"services/fusion", "fusion", "a role"},
-    {"services/driver", "driver", "a role"},
-    {"services/arbitrator", "arbitrator", "a role"},
-    {"services/follower", "follower", "a role; its car may have an ACC"},
+    {kRoleFolder, "", "the folders of roles, in the order of their names: a car may have an ACC"},
     {"services/runtime/wire", "runtime", "the bytes of messages"},
     {"services/metrics", "metrics", "judges what the messages of a run say"},
     {"services/closed_loop", "closed_loop", "all roles in one process, and their metrics"},
@@ -342,8 +353,8 @@ TEST(HouseTest, TypesLieInTheNamespaceOfTheirFolder) {
   for (const auto& file : Sources()) {
     const auto room = RoomOf(file);
     if (file.extension() != ".h" || !room) continue;
-    const std::string_view space = kRooms[*room].space;
-    const std::string begin = "fogline::" + std::string(space) + (space.empty() ? "" : "::");
+    const std::string& space = kRooms[*room].space;
+    const std::string begin = "fogline::" + space + (space.empty() ? "" : "::");
     for (const std::string& type : TypesOf(Read(SourceDirectory() / file))) {
       if (type.starts_with("internal::")) continue;  // nested in the namespace of its file
       EXPECT_THAT(type, StartsWith(begin)) << file;

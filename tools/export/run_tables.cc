@@ -194,10 +194,12 @@ RunTables ReadRunTables(const std::filesystem::path& log, const log::ReadOptions
     if (what.starts_with(PathText(log))) throw;
     throw InputError(fmt::format("{}: error: {}", PathText(log), what));
   }
-  ForEachStepChannel([&]<class M>(std::size_t) {
+  const log::RunLog& run = reader.run();
+  ForEachStepChannel([&]<class M>(std::size_t channel) {
+    if (!run.channels[channel]) return;
     tables.channels.push_back(std::move(std::get<Tabulator<M>>(tabulators).table()));
   });
-  tables.run = reader.run();
+  tables.run = run;
   Tabulator<wall_clock_t> clocks;
   log::ForEachWallClock(
       log, tables.run.run_id,

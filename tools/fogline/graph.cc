@@ -1,9 +1,19 @@
 // fogline graph: prints the roles and channels, from the table that defines them.
+#include <cstdint>
+#include <filesystem>
 #include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include "common/atomic_file.h"
+#include "common/errors.h"
+#include "common/file.h"
+#include "common/text.h"
+#include "fogline/fingerprint.hpp"
 #include "services/graph.h"
 #include "tools/cli/arguments.h"
 #include "tools/cli/help.h"
@@ -24,7 +34,9 @@ std::string NamesOf(const RoleSet& roles) {
 std::string Consumers(const ChannelInfo& channel) {
   if (channel.name == "RUN" || channel.name == "RESEND") return "everyone";
   if (channel.name == "TRIAL") return "recorder";
-  return NamesOf(channel.to) + (channel.name == "STATUS" ? "" : ", recorder");
+  const std::string names = NamesOf(channel.to);
+  if (channel.name == "STATUS") return names;
+  return names.empty() ? "recorder" : names + ", recorder";
 }
 
 std::string Producer(const ChannelInfo& channel) {
@@ -40,22 +52,66 @@ void ForEachChannel(Visit&& visit) {
   std::apply([&](const auto&... channel) { (visit(kChannels[i++], channel), ...); }, kGraph);
 }
 
-void PrintMarkdown() {
-  fmt::print("| role | program | does |\n|---|---|---|\n");
+constexpr std::string_view kHeadOfRoles = "| role | program | does |\n";
+constexpr std::string_view kHeadOfChannels = "| channel | type | from | to | what |\n";
+
+std::string TableOfRoles() {
+  std::string table = fmt::format("{}|---|---|---|\n", kHeadOfRoles);
   for (const RoleInfo& role : kRoles) {
-    fmt::print("| {0} | `fogline-{0}` | {1} |\n", role.name, role.purpose);
+    table += fmt::format("| {0} | `fogline-{0}` | {1} |\n", role.name, role.purpose);
   }
-  fmt::print("\n| channel | type | from | to | what |\n|---|---|---|---|---|\n");
-  ForEachChannel([](const ChannelInfo& info, const auto& channel) {
+  return table;
+}
+
+std::string TableOfChannels() {
+  std::string table = fmt::format("{}|---|---|---|---|---|\n", kHeadOfChannels);
+  ForEachChannel([&table](const ChannelInfo& info, const auto& channel) {
     using M = typename std::decay_t<decltype(channel)>::Message;
     const std::string on_demand = NamesOf(info.on_demand);
-    fmt::print("| {} | `{}` | {} | {}{}{} | {} |\n", info.name, M::getTypeName(), Producer(info),
-               Consumers(info), on_demand.empty() ? "" : "; on demand ", on_demand, info.what);
+    table += fmt::format("| {} | `{}` | {} | {}{}{} | {} |\n", info.name, M::getTypeName(),
+                         Producer(info), Consumers(info), on_demand.empty() ? "" : "; on demand ",
+                         on_demand, info.what);
   });
+  return table;
+}
+
+/// Replaces a table in a page. @return whether the page has a table with this head
+bool ReplaceTable(std::string& page, std::string_view head, const std::string& table) {
+  const std::size_t begin = page.find(head);
+  if (begin == std::string::npos) return false;
+  std::size_t end = begin;
+  while (end < page.size() && page[end] == '|') end = page.find('\n', end) + 1;
+  page.replace(begin, end - begin, table);
+  return true;
+}
+
+/// Replaces the tables in a page. @throws InputError if the page has no such table
+void PutInto(const std::filesystem::path& file) {
+  constexpr std::size_t kMostBytes = 10 << 20;
+  FileText page = ReadFile(file, kMostBytes);
+  if (!page.error.empty()) {
+    throw InputError(fmt::format("{}: error: {}", PathText(file), page.error));
+  }
+  if (!page.text.ends_with('\n')) page.text += '\n';
+  const bool has_roles = ReplaceTable(page.text, kHeadOfRoles, TableOfRoles());
+  const bool has_channels = ReplaceTable(page.text, kHeadOfChannels, TableOfChannels());
+  if (!has_roles && !has_channels) {
+    throw InputError(fmt::format("{}: error: no table that begins with \"{}\" or \"{}\"",
+                                 PathText(file), kHeadOfRoles.substr(0, kHeadOfRoles.size() - 1),
+                                 kHeadOfChannels.substr(0, kHeadOfChannels.size() - 1)));
+  }
+  AtomicFile out(file);
+  out.Write(page.text);
+  out.Finish();
+}
+
+std::string Hexadecimal(std::int64_t hash) {
+  return fmt::format("0x{:016x}", static_cast<std::uint64_t>(hash));
 }
 
 void PrintAsJson() {
-  nlohmann::ordered_json json{{"roles", nlohmann::ordered_json::array()},
+  nlohmann::ordered_json json{{"type_fingerprint", Hexadecimal(TypeFingerprint())},
+                              {"roles", nlohmann::ordered_json::array()},
                               {"channels", nlohmann::ordered_json::array()}};
   for (const RoleInfo& role : kRoles) {
     json["roles"].push_back({{"name", role.name}, {"purpose", role.purpose}});
@@ -64,6 +120,7 @@ void PrintAsJson() {
     using M = typename std::decay_t<decltype(channel)>::Message;
     json["channels"].push_back({{"name", info.name},
                                 {"type", M::getTypeName()},
+                                {"type_hash", Hexadecimal(M::getHash())},
                                 {"from", Producer(info)},
                                 {"to", Consumers(info)},
                                 {"on_demand", NamesOf(info.on_demand)},
@@ -74,17 +131,41 @@ void PrintAsJson() {
   cli::PrintJson(json);
 }
 
+struct GraphArguments {
+  bool json = false;
+  bool markdown = false;
+  std::vector<std::filesystem::path> into;
+};
+
 }  // namespace
 
 void AddGraph(CLI::App& app, cli::Action& action) {
   CLI::App* verb = app.add_subcommand("graph", "Print the roles and channels");
-  const auto json = std::make_shared<bool>(false);
-  verb->add_flag("--json", *json, "Print as JSON instead of Markdown tables");
+  const auto arguments = std::make_shared<GraphArguments>();
+  CLI::Option* json =
+      verb->add_flag("--json", arguments->json, "Print as JSON instead of Markdown tables");
+  CLI::Option* markdown =
+      verb->add_flag("--markdown", arguments->markdown, "Print as Markdown tables, the default");
+  verb->add_option("--into", arguments->into,
+                   "Replace the tables of roles and channels in these pages, and print nothing")
+      ->type_name("FILE...")
+      ->excludes(json)
+      ->excludes(markdown);
+  markdown->excludes(json);
   cli::ShowExitCodes(*verb);
-  verb->footer("Example:\n  fogline graph");
-  verb->callback([&action, json] {
-    action = [json] {
-      *json ? PrintAsJson() : PrintMarkdown();
+  verb->footer(
+      "Examples:\n"
+      "  fogline graph\n"
+      "  fogline graph --into README.md docs/architecture.md   # after a change of the graph");
+  verb->callback([&action, arguments] {
+    action = [arguments] {
+      for (const std::filesystem::path& file : arguments->into) PutInto(file);
+      if (!arguments->into.empty()) return kDone;
+      if (arguments->json) {
+        PrintAsJson();
+      } else {
+        fmt::print("{}\n{}", TableOfRoles(), TableOfChannels());
+      }
       return kDone;
     };
   });

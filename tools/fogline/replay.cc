@@ -62,6 +62,15 @@ std::vector<replay::RoleCheck> ChosenRoles(const ReplayArguments& arguments,
           ? log::DriverInputs(log::ReadDriverInputs(arguments.log, run.run_id))
           : log::DriverInputs();
   std::vector<replay::RoleCheck> roles = replay::MakeRoleChecks(run, inputs);
+  std::erase_if(roles, [&](const replay::RoleCheck& one) {
+    const std::string missing = replay::MissingChannels(one.role, run);
+    if (missing.empty()) return false;
+    const std::string why =
+        fmt::format("the log has no {}, which the role {} needs here", missing, NameOf(one.role));
+    if (NameOf(one.role) == arguments.role) RefuseLog(arguments.log, why);
+    if (arguments.all) Notice(fmt::format("{}: {}", PathText(arguments.log), why));
+    return true;
+  });
   std::vector<std::string_view> names;
   for (const replay::RoleCheck& one : roles) names.push_back(NameOf(one.role));
   if (arguments.all) return roles;

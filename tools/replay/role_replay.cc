@@ -10,23 +10,12 @@
 #include <fmt/core.h>
 
 #include "common/errors.h"
-#include "services/acc/acc.h"
 #include "services/algorithm.h"
-#include "services/arbitrator/arbitrator.h"
-#include "services/driver/driver.h"
-#include "services/follower/follower.h"
-#include "services/fusion/fusion.h"
-#include "services/lidar/lidar.h"
-#include "services/radar/radar.h"
+#include "services/closed_loop/algorithms.h"
 #include "services/runtime/wire/refusals.h"
-#include "services/world/world.h"
 
 namespace fogline::replay {
 namespace {
-
-/// The algorithms of all roles that compute messages.
-using Algorithms = std::tuple<world::World, radar::Radar, lidar::Lidar, fusion::Fusion, acc::Acc,
-                              driver::Driver, arbitrator::Arbitrator, follower::Follower>;
 
 template <class Algorithm>
 class ReplayOf final : public RoleReplay {
@@ -161,8 +150,19 @@ std::unique_ptr<RoleReplay> MakeRoleReplay(Role role, const log::RunLog& run,
             replay = std::make_unique<ReplayOf<A>>(run, inputs);
         }(),
         ...);
-  }(std::type_identity<Algorithms>{});
+  }(std::type_identity<closed_loop::Algorithms>{});
   return replay;
+}
+
+std::string MissingChannels(Role role, const log::RunLog& run) {
+  std::string names;
+  for (std::size_t i = 0; i < kNumChannels; ++i) {
+    const ChannelInfo& channel = kChannels[i];
+    if (channel.pace != Pace::kStep || run.channels[i]) continue;
+    if (channel.from != role && !channel.to.Has(role)) continue;
+    names += fmt::format("{}{}", names.empty() ? "" : ", ", channel.name);
+  }
+  return names;
 }
 
 bool CanReplay(Role role, const log::RunLog& run) {

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "scenario/sections/scenario.h"
 #include "services/graph.h"
@@ -35,6 +36,10 @@ class RoleReplay {
 /// @throws InputError for an impossible scenario
 std::unique_ptr<RoleReplay> MakeRoleReplay(Role role, const log::RunLog& run,
                                            const log::DriverInputs& inputs = {});
+
+/// The channels that a role reads or sends, and that the log of a run does not have, because
+/// another version of Fogline wrote it; "" if there are none.
+std::string MissingChannels(Role role, const log::RunLog& run);
 
 /// Whether the log of a run has everything that a role's commands depend on.
 bool CanReplay(Role role, const log::RunLog& run);

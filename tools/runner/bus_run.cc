@@ -9,6 +9,8 @@
 #include <memory>
 #include <optional>
 #include <stdexcept>
+#include <tuple>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -18,20 +20,13 @@
 #include "common/process/console.h"
 #include "common/process/progress.h"
 #include "scenario/io/loader.h"
-#include "services/acc/acc.h"
-#include "services/arbitrator/arbitrator.h"
-#include "services/driver/driver.h"
-#include "services/follower/follower.h"
-#include "services/fusion/fusion.h"
-#include "services/lidar/lidar.h"
-#include "services/radar/radar.h"
+#include "services/closed_loop/algorithms.h"
 #include "services/recorder/recorder.h"
 #include "services/runtime/coordination/run_coordinator.h"
 #include "services/runtime/discovery/beacon.h"
 #include "services/runtime/process/step_node.h"
 #include "services/runtime/realtime/fallback_log.h"
 #include "services/runtime/transport/lcm_url.h"
-#include "services/world/world.h"
 #include "tools/hosts/host_group.h"
 #include "tools/processes/child.h"
 #include "tools/processes/external_roles.h"
@@ -107,20 +102,13 @@ void TellLoggedStep(const runtime::RunCoordinator& coordinator, const Experiment
 
 // ---- memq --------------------------------------------------------------------------------------
 
-template <class Algorithm>
-std::unique_ptr<runtime::Work> MakeWork(runtime::Bus& bus, std::int64_t run_id) {
-  return std::make_unique<runtime::StepNode<Algorithm>>(bus, run_id);
-}
-
 void RunInMemory(runtime::Bus& bus, runtime::RunCoordinator& coordinator, std::int64_t run_id,
                  const Scenario& scenario, const ExperimentOptions& options,
                  const std::filesystem::path& log) {
   std::vector<std::unique_ptr<runtime::Work>> roles;
-  for (const auto make : {MakeWork<world::World>, MakeWork<radar::Radar>, MakeWork<lidar::Lidar>,
-                          MakeWork<fusion::Fusion>, MakeWork<acc::Acc>, MakeWork<driver::Driver>,
-                          MakeWork<arbitrator::Arbitrator>, MakeWork<follower::Follower>}) {
-    roles.push_back(make(bus, run_id));
-  }
+  [&]<class... A>(std::type_identity<std::tuple<A...>>) {
+    (roles.push_back(std::make_unique<runtime::StepNode<A>>(bus, run_id)), ...);
+  }(std::type_identity<closed_loop::Algorithms>{});
   roles.push_back(std::make_unique<recorder::Recorder>(
       bus, run_id, log,
       options.resume ? recorder::Recorder::Existing::kResume

@@ -6,6 +6,7 @@
 
 #include "common/text.h"
 #include "scenario/io/loader.h"
+#include "services/log/log_graph.h"
 #include "services/runtime/transport/traffic_options.h"
 #include "services/runtime/wire/build_id.h"
 #include "services/runtime/wire/scenario_parts.h"
@@ -45,6 +46,7 @@ void DirectLog::WriteScenario(const std::string& text) {
         runtime::MakeRunPart(run_.run_id, run_t::PREPARE, 0, run_.scenario_hash, parts, i), buffer);
     log_->Write(ChannelOf<run_t>().name, 0, buffer);
   }
+  log::WriteLogGraph(*log_, run_.run_id);
 }
 
 void DirectLog::Add(std::int64_t step, const ChannelInfo& channel, std::int64_t utime,

@@ -149,14 +149,13 @@ TEST(ShownOutputTest, MayDifferBehindATimeAndInSpacesAtTheEndOfALine) {
 }
 
 TEST(ReadmeTest, HasTheRolesOfTheGraphAndTheArchitectureBothTables) {
-  const Outcome graph = RunCommand({Program("fogline"), "graph"});
+  const Outcome graph = RunCommand({Program("fogline"), "graph", "--markdown"});
   ASSERT_EQ(graph.code, 0);
   EXPECT_NE(ReadSource("docs/architecture.md").find(graph.out), std::string::npos)
-      << "put this into docs/architecture.md:\n"
-      << graph.out;
+      << "call: fogline graph --into README.md docs/architecture.md";
   const std::string roles = graph.out.substr(0, graph.out.find("\n\n") + 1);
-  EXPECT_NE(ReadSource("README.md").find(roles), std::string::npos) << "put this into README.md:\n"
-                                                                    << roles;
+  EXPECT_NE(ReadSource("README.md").find(roles), std::string::npos)
+      << "call: fogline graph --into README.md docs/architecture.md";
 }
 
 TEST(DocsTest, ShowThePartThatTheSwapTestBuilds) {

@@ -12,6 +12,7 @@
 
 #include "services/driver/driver.h"
 #include "services/log/event_log.h"
+#include "services/log/log_graph.h"
 #include "services/log/log_seal.h"
 #include "services/runtime/process/step_node.h"
 #include "services/runtime/transport/bus.h"
@@ -393,7 +394,8 @@ TEST(LcmToolsTest, LogplayerPlaysEveryMessageToASubscriberThatDecodesIt) {
   }));
   // THEN every message has arrived, in order, and decodes
   Traffic logged = ReadTraffic(log);
-  EXPECT_EQ(logged.erase(std::string(log::kLogSealChannel)), 1U);  // no process sends a seal
+  EXPECT_EQ(logged.erase(std::string(log::kLogSealChannel)), 1U);   // no process sends a seal
+  EXPECT_EQ(logged.erase(std::string(log::kLogGraphChannel)), 1U);  // nor a graph
   EXPECT_TRUE(received == logged);
   EXPECT_EQ(received["TRUTH"].size(), 500U);
   EXPECT_TRUE(undecodable.empty());

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "services/log/run_log.h"
+#include "services/log/step_order.h"
 #include "services/runtime/transport/bus.h"
 #include "tests/integration/web/viewed.h"
 
@@ -91,7 +92,7 @@ TEST(LiveViewTest, GivesEachMessageAsTheRunLogsIt) {
   EXPECT_EQ(hello["mode"], "live");
   EXPECT_THAT(hello["url"].get<std::string>(), HasSubstr(url));
   constexpr int kSteps = 230;  // fog begins at 190, the human drives from 203 on
-  constexpr std::size_t kMessages = kSteps * 9;
+  constexpr std::size_t kMessages = kSteps * log::kStepChannels;
   Background run(RunOn(url, folder.File("run.lcm"), kSteps, "10"));
   Got got;
   json described;

@@ -2,18 +2,14 @@
 #include "services/graph.h"
 
 #include <algorithm>
+#include <array>
+#include <tuple>
+#include <type_traits>
 
 #include <gtest/gtest.h>
 
-#include "services/acc/acc.h"
 #include "services/algorithm.h"
-#include "services/arbitrator/arbitrator.h"
-#include "services/driver/driver.h"
-#include "services/follower/follower.h"
-#include "services/fusion/fusion.h"
-#include "services/lidar/lidar.h"
-#include "services/radar/radar.h"
-#include "services/world/world.h"
+#include "services/closed_loop/algorithms.h"
 
 namespace fogline {
 namespace {
@@ -35,19 +31,27 @@ TEST(GraphTest, LagsWhereTheProducerComesAfterTheReader) {
   EXPECT_EQ(LagOf(Role::kWorld, Role::kArbitrator), 0);
 }
 
-template <class... Algorithms>
-void ExpectListsRolesWithOnDemand() {
-  const auto expect = [](Role role, bool has_on_demand) {
-    const bool listed = std::ranges::any_of(
-        kChannels, [role](const ChannelInfo& channel) { return channel.on_demand.Has(role); });
-    EXPECT_EQ(listed, has_on_demand) << NameOf(role);
-  };
-  (expect(AlgorithmTraits<Algorithms>::kRole, AlgorithmTraits<Algorithms>::kHasOnDemand), ...);
+template <class Algorithm>
+void ExpectListedIfItHasOnDemand() {
+  constexpr Role kRole = AlgorithmTraits<Algorithm>::kRole;
+  const bool listed = std::ranges::any_of(
+      kChannels, [](const ChannelInfo& channel) { return channel.on_demand.Has(kRole); });
+  EXPECT_EQ(listed, AlgorithmTraits<Algorithm>::kHasOnDemand) << NameOf(kRole);
 }
 
 TEST(GraphTest, ListsExactlyTheRolesThatHaveAnInputOnDemand) {
-  ExpectListsRolesWithOnDemand<world::World, radar::Radar, lidar::Lidar, fusion::Fusion, acc::Acc,
-                               driver::Driver, arbitrator::Arbitrator, follower::Follower>();
+  []<class... A>(std::type_identity<std::tuple<A...>>) {
+    (ExpectListedIfItHasOnDemand<A>(), ...);
+  }(std::type_identity<closed_loop::Algorithms>{});
+}
+
+TEST(GraphTest, HasAnAlgorithmForEveryRoleThatIsAFolderInTheOrderOfEvaluation) {
+  []<class... A>(std::type_identity<std::tuple<A...>>) {
+    const std::array roles{AlgorithmTraits<A>::kRole...};
+    ASSERT_EQ(roles.size() + 1, kRoles.size());  // the recorder has no algorithm
+    EXPECT_EQ(kRoleFolders.size(), roles.size());
+    for (std::size_t i = 0; i < roles.size(); ++i) EXPECT_EQ(roles[i], kRoles[i].role);
+  }(std::type_identity<closed_loop::Algorithms>{});
 }
 
 TEST(GraphTest, SendsNoRoleAChannelTwice) {

@@ -24,13 +24,7 @@ using testing::HasSubstr;
 class RunLogTest : public testing::Test {
  protected:
   /// The run in a log that has these messages only.
-  log::RunLog Read(const test::ShortLog& contents) const {
-    test::WriteShortLog(file_, contents);
-    log::RunLogReader reader(file_);
-    while (reader.Next() != nullptr) {
-    }
-    return reader.run();
-  }
+  log::RunLog Read(const test::ShortLog& contents) const { return test::RunOf(file_, contents); }
   static test::ShortLog InRealTime(bool (*has)(std::string_view channel, std::int64_t step)) {
     return {.realtime = true, .has = has};
   }

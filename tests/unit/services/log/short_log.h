@@ -10,8 +10,12 @@
 #include <type_traits>
 #include <vector>
 
+#include "fogline/fingerprint.hpp"
+#include "fogline/log_graph_t.hpp"
 #include "services/graph.h"
 #include "services/log/event_log.h"
+#include "services/log/log_graph.h"
+#include "services/log/run_log.h"
 #include "services/runtime/wire/digest.h"
 #include "services/runtime/wire/scenario_parts.h"
 
@@ -32,6 +36,9 @@ struct ShortLog {
   std::optional<std::int64_t> done;
   /// If set, the scenario has two parts, and a TRUTH of this step comes between them.
   std::optional<std::int64_t> early;
+  /// If set, the log has this event on FOGLINE_GRAPH behind the scenario.
+  std::optional<log_graph_t> graph;
+  std::int64_t type_fingerprint = TypeFingerprint();
 };
 
 /// @return the position after the last event
@@ -57,8 +64,13 @@ inline log::LogHead WriteShortLog(const std::filesystem::path& file,
       run.realtime = 1;
       run.pace = 1;
     }
+    run.type_fingerprint = contents.type_fingerprint;
     runtime::Encode(run, bytes);
     writer.Write(ChannelOf<run_t>().name, 0, bytes);
+  }
+  if (contents.graph) {
+    runtime::Encode(*contents.graph, bytes);
+    writer.Write(log::kLogGraphChannel, 0, bytes);
   }
   for (std::int64_t step = 0; step < kSteps; ++step) {
     ForEachStepChannel([&]<class M>(std::size_t) {
@@ -80,6 +92,15 @@ inline log::LogHead WriteShortLog(const std::filesystem::path& file,
   }
   writer.Flush();
   return writer.head();
+}
+
+/// Writes a log. @return its run
+inline log::RunLog RunOf(const std::filesystem::path& file, const ShortLog& contents) {
+  WriteShortLog(file, contents);
+  log::RunLogReader reader(file);
+  while (reader.Next() != nullptr) {
+  }
+  return reader.run();
 }
 
 }  // namespace fogline::test

@@ -1,0 +1,39 @@
+// The graph of a log: the channels whose messages make its steps (lcmtypes/log_graph_t.lcm). A log
+// names its own graph, so a program with more channels still knows when a step of this log is
+// complete. The graph is not part of the digest.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+#include "services/log/event_log.h"
+#include "services/runtime/realtime/culprit.h"
+
+namespace fogline::log {
+
+/// The channel of log_graph_t. The channel is not part of kGraph, because no process publishes it.
+inline constexpr std::string_view kLogGraphChannel = "FOGLINE_GRAPH";
+
+/// The kStep channels of this program.
+runtime::ChannelSet OwnStepChannels();
+
+/// Writes the graph of a run, behind its scenario.
+/// @param channels kStep channels
+/// @throws std::runtime_error as EventLogWriter::Write()
+void WriteLogGraph(EventLogWriter& log, std::int64_t run_id,
+                   const runtime::ChannelSet& channels = OwnStepChannels());
+
+/// The channels that an event on kLogGraphChannel names.
+/// @return no channel if the event is no graph of this run with TRUTH, which says which step is the
+///     last
+/// @throws InputError for a channel that this program does not know; the error text does not
+///     contain the log's name
+runtime::ChannelSet ReadLogGraph(const Event& event, std::int64_t run_id);
+
+/// The channels of a log that does not name its graph, such as a log of lcm-logger. A run with the
+/// message types of this program has the graph of this program. Other such logs are from programs
+/// that did not yet name the graph: TRUTH to FOLLOWER_COMMAND, the nine channels of that time.
+/// @param type_fingerprint of the log's RUN messages
+runtime::ChannelSet StepChannelsOf(std::int64_t type_fingerprint);
+
+}  // namespace fogline::log
