@@ -12,8 +12,9 @@ namespace fogline::test {
 
 /// Whether the package can run a role: whether its extension module was built.
 inline bool PythonRunsRoles() {
-  for (const auto& entry : std::filesystem::directory_iterator(
-           std::filesystem::path(FOGLINE_BINARY_DIR) / "python/fogline_lab")) {
+  const auto package = std::filesystem::path(FOGLINE_BINARY_DIR) / "python/fogline_lab";
+  if (!std::filesystem::exists(package)) return false;
+  for (const auto& entry : std::filesystem::directory_iterator(package)) {
     if (entry.path().filename().string().starts_with("_runtime.")) return true;
   }
   return false;
