@@ -1,5 +1,5 @@
 // Runs that start roles on other machines by OpenSSH.
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock-more-matchers.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 

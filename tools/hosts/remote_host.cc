@@ -182,6 +182,7 @@ void RemoteHost::Lose(const std::string& nonsense) {
   }
   lost_ = why;
   for (std::string& line : lines) {
+    if (line.ends_with('\r')) line.pop_back();  // ssh ends its lines as for a terminal
     line = EscapeControls(line);
     lost_ += fmt::format("\n  {}: {}", plan_.name, line);
   }

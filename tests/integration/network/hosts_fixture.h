@@ -1,7 +1,7 @@
 // Common parts of the tests of runs that start roles on other machines.
 #pragma once
 
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock-more-matchers.h>
 #include <gtest/gtest.h>
 
 #include <chrono>

@@ -2,7 +2,7 @@
 // no server is needed. tests/campaign/ssh_hosts_test.cc has the same tests with OpenSSH, and more.
 #include "tests/integration/network/hosts_fixture.h"
 
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock-more-matchers.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>

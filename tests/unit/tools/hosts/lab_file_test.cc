@@ -15,7 +15,7 @@ using testing::HasSubstr;
 using testing::StartsWith;
 
 /// The message for a laboratory with these members.
-std::string Refusal(const std::string& members) {
+std::string LabRefusal(const std::string& members) {
   return ErrorOf([&] { hosts::ParseLab(R"({"version": 1, )" + members + "}", "lab.json"); });
 }
 
@@ -29,29 +29,29 @@ TEST(LabFileTest, TheShippedSchemaIsTheOneOfTheFields) {
 }
 
 TEST(LabFileTest, AMistakeIsNamedWithFileLineColumnAndField) {
-  EXPECT_THAT(Refusal(R"("hosts": [])"),
+  EXPECT_THAT(LabRefusal(R"("hosts": [])"),
               StartsWith("lab.json:1:25: error: /hosts: 0 items; allowed are"));
-  EXPECT_THAT(Refusal(R"("hosts": [{"name": "a", "rols": []}])"),
+  EXPECT_THAT(LabRefusal(R"("hosts": [{"name": "a", "rols": []}])"),
               HasSubstr("/hosts/0/rols: unknown key; did you mean \"roles\"?"));
-  EXPECT_THAT(Refusal(R"("hosts": [{"roles": ["acc"]}])"),
+  EXPECT_THAT(LabRefusal(R"("hosts": [{"roles": ["acc"]}])"),
               HasSubstr("/hosts/0/name: a name is needed"));
-  EXPECT_THAT(Refusal(R"("hosts": [{"name": "a"}, {"name": "a"}])"),
+  EXPECT_THAT(LabRefusal(R"("hosts": [{"name": "a"}, {"name": "a"}])"),
               StartsWith("lab.json:1:50: error: /hosts/1/name: two machines have the name \"a\""));
-  EXPECT_THAT(Refusal(R"("hosts": [{"name": "a", "ssh": "-v"}])"),
+  EXPECT_THAT(LabRefusal(R"("hosts": [{"name": "a", "ssh": "-v"}])"),
               HasSubstr("/hosts/0/ssh: \"-v\" is no machine"));
-  EXPECT_THAT(Refusal(R"("hosts": [{"name": "a", "roles": ["ac"]}])"),
+  EXPECT_THAT(LabRefusal(R"("hosts": [{"name": "a", "roles": ["ac"]}])"),
               StartsWith("lab.json:1:50: error: /hosts/0/roles/0: \"ac\" is no role; did you mean "
                          "\"acc\"?"));
-  EXPECT_THAT(Refusal(R"("hosts": [{"name": "a", "roles": ["recorder"]}])"),
+  EXPECT_THAT(LabRefusal(R"("hosts": [{"name": "a", "roles": ["recorder"]}])"),
               HasSubstr("/hosts/0/roles/0: the recorder runs on the machine of the run"));
   EXPECT_THAT(
-      Refusal(R"("hosts": [{"name": "a", "roles": ["acc"]}, {"name": "b", "roles": ["acc"]}])"),
+      LabRefusal(R"("hosts": [{"name": "a", "roles": ["acc"]}, {"name": "b", "roles": ["acc"]}])"),
       HasSubstr("/hosts/1/roles/0: the acc already runs on another machine (/hosts/0/roles/0)"));
-  EXPECT_THAT(Refusal(R"("url": "lab2:7700", "hosts": [{"name": "a"}])"),
+  EXPECT_THAT(LabRefusal(R"("url": "lab2:7700", "hosts": [{"name": "a"}])"),
               HasSubstr("/url: \"lab2:7700\" is no LCM URL"));
-  EXPECT_THAT(Refusal(R"("url": "tcpq://a", "relay": true, "hosts": [{"name": "a"}])"),
+  EXPECT_THAT(LabRefusal(R"("url": "tcpq://a", "relay": true, "hosts": [{"name": "a"}])"),
               HasSubstr("/url: the relay has a URL of its own"));
-  EXPECT_THAT(Refusal(R"("hosts": [{"name": "a"}], "relay": 1)"),
+  EXPECT_THAT(LabRefusal(R"("hosts": [{"name": "a"}], "relay": 1)"),
               HasSubstr("what is allowed: fogline check --lab --schema"));
 }
 

@@ -20,7 +20,7 @@ using hosts::PlanWords;
 using hosts::RunPlan;
 using testing::ElementsAre;
 
-std::string Refusal(const PlanWords& words) {
+std::string PlanRefusal(const PlanWords& words) {
   return ErrorOf([&words] { MakePlan(words); });
 }
 
@@ -49,23 +49,24 @@ TEST(RunPlanTest, AMachineMayNameTheFolderOfItsPrograms) {
 }
 
 TEST(RunPlanTest, WrongPlacesAreNamed) {
-  EXPECT_EQ(Refusal({.on = {"fusion"}}),
+  EXPECT_EQ(PlanRefusal({.on = {"fusion"}}),
             "error: --on fusion: must be ROLE=HOST, such as fusion=user@lab2");
-  EXPECT_EQ(Refusal({.on = {"fusoin=lab2"}}),
+  EXPECT_EQ(PlanRefusal({.on = {"fusoin=lab2"}}),
             "error: --on fusoin=lab2: \"fusoin\" is no role; did you mean \"fusion\"?; roles are "
             "\"world\", \"radar\", \"lidar\", \"fusion\", \"acc\", \"driver\", \"arbitrator\", "
             "\"follower\"");
-  EXPECT_EQ(Refusal({.on = {"recorder=lab2"}}),
+  EXPECT_EQ(PlanRefusal({.on = {"recorder=lab2"}}),
             "error: --on recorder=lab2: the recorder runs on the machine of the run, whose result "
             "is read from its log");
-  EXPECT_EQ(Refusal({.on = {"fusion="}}),
+  EXPECT_EQ(PlanRefusal({.on = {"fusion="}}),
             "error: --on fusion=: the name of the machine is missing");
-  EXPECT_EQ(Refusal({.on = {"fusion=-oProxyCommand=x"}}),
+  EXPECT_EQ(PlanRefusal({.on = {"fusion=-oProxyCommand=x"}}),
             "error: --on fusion=-oProxyCommand=x: \"-oProxyCommand=x\" is no machine, because ssh "
             "would read it as an option");
-  EXPECT_EQ(Refusal({.on = {"fusion=lab2:/a", "acc=lab2:/b"}}),
+  EXPECT_EQ(PlanRefusal({.on = {"fusion=lab2:/a", "acc=lab2:/b"}}),
             "error: --on acc=lab2:/b: the programs of \"lab2\" are in \"/a\" already");
-  EXPECT_EQ(Refusal({.relay = true}), "error: --relay: no role runs on another machine; see --on");
+  EXPECT_EQ(PlanRefusal({.relay = true}),
+            "error: --relay: no role runs on another machine; see --on");
 }
 
 TEST(RunPlanTest, TheCommandLineComesBeforeTheLaboratorysFile) {
