@@ -132,7 +132,7 @@ void AddFallbacks(const log::RunLog& run, std::vector<EventLine>& lines) {
   }
 }
 
-/// The gaps in the commands of the host: in a gap nobody knows which side drove.
+/// The gaps in the commands of the host: in a gap it is unknown which side drove.
 void AddGaps(const log::LogGaps& gaps, std::vector<EventLine>& lines) {
   for (const log::Gap& gap : gaps.gaps) {
     if (!gap.channels[IndexOf<arbitration_t>()]) continue;
