@@ -152,7 +152,7 @@ TEST_F(SumoTest, WhatSumoRefusesIsNamedBeforeTheRun) {
             begin +
                 "/lead/sumo/behind: between the host and \"queue.19\" is another car: "
                 "queue.20\n");
-  EXPECT_THAT(ErrorOf({"/followers/count=12"}), HasSubstr("/lead/sumo/behind: the road ends 345"));
+  EXPECT_THAT(ErrorOf({"/followers/count=12"}), HasSubstr("/lead/sumo/behind: the road ends 343"));
   EXPECT_EQ(
       ErrorOf({"/lead/sumo/version=SUMO 0.1"}).find(begin + "/lead/sumo/version: \"SUMO 0.1\""),
       0U);
