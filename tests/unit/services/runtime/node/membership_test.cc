@@ -191,6 +191,7 @@ TEST_F(MembershipOfADriverTest, LeavesALogThatItWasToldToFollowWhenTheLogIsOver)
   EXPECT_TRUE(own_.Running());
   script_.Say(Truth(0));
   EXPECT_EQ(commands_.size(), 1U);
+  script_.Poll(node_);
   const TimePoint now = Clock::now();
   script_.PollUpTo(node_, now + milliseconds(18'000));
   EXPECT_FALSE(own_.left());

@@ -10,7 +10,7 @@ using testing::ElementsAre;
 using testing::IsEmpty;
 
 RoleView Arbitrator() {
-  RoleView role;
+  RoleView role{};
   role.status.role = "arbitrator";
   role.status.state = status_t::RUNNING;
   return role;

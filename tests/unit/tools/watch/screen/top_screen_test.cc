@@ -27,7 +27,7 @@ TopView View() {
   run.phase = run_t::GO;
   run.pace = 1;
   for (const RoleInfo& info : kRoles) {
-    RoleView role;
+    RoleView role{};
     role.status.role = info.name;
     role.status.instance = static_cast<std::int64_t>(info.role) + 1;
     role.status.state = status_t::RUNNING;
