@@ -137,12 +137,13 @@ void Recording::WriteAll() {
 }
 
 void Recording::WriteMessages() {
-  std::optional<TimePoint> flush_at;  // set while messages wait to be flushed
+  constexpr TimePoint kNever = TimePoint::max();
+  TimePoint flush_at = kNever;  // kNever while no message waits to be flushed
   while (!queue_.Over()) {
     const std::vector<MessageQueue::Chunk> chunks =
-        queue_.Take(flush_at.value_or(Clock::now() + kIdle));
+        queue_.Take(flush_at == kNever ? Clock::now() + kIdle : flush_at);
     const TimePoint now = Clock::now();
-    if (!chunks.empty() && !flush_at) flush_at = now + options_.flush_every;
+    if (!chunks.empty() && flush_at == kNever) flush_at = now + options_.flush_every;
     for (const MessageQueue::Chunk& chunk : chunks) {
       runtime::Bytes rest = chunk;
       std::string_view why;
@@ -151,9 +152,9 @@ void Recording::WriteMessages() {
         rest = rest.subspan(log::SizeInFile(*event));
       }
     }
-    if (!flush_at || now < *flush_at) continue;
+    if (now < flush_at) continue;
     files_.Flush();
-    flush_at.reset();
+    flush_at = kNever;
   }
   files_.Flush();
 }
