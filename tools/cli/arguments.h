@@ -1,6 +1,7 @@
 // Arguments that several verbs share.
 #pragma once
 
+#include <chrono>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -12,6 +13,7 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json_fwd.hpp>
 
+#include "common/clock.h"
 #include "common/process/console.h"
 #include "scenario/io/loader.h"
 #include "services/log/log_of_run.h"
@@ -20,6 +22,11 @@
 #include "tools/sweep/plan.h"
 
 namespace fogline::cli {
+
+/// The duration that an option gives in seconds.
+inline Duration FromSeconds(double seconds) {
+  return duration_cast<Duration>(std::chrono::duration<double>(seconds));
+}
 
 /// The arguments SCENARIO, --set and --seed.
 class ScenarioArguments {

@@ -78,10 +78,6 @@ struct TopArguments {
 // Every run of this machine announces itself within this time.
 constexpr Duration kDiscovery = 2 * runtime::kBeaconEvery;
 
-Duration FromSeconds(double seconds) {
-  return duration_cast<Duration>(std::chrono::duration<double>(seconds));
-}
-
 class Top {
  public:
   explicit Top(const TopArguments& arguments)
@@ -98,8 +94,8 @@ class Top {
     if (!terminal_) Discover();
     const TimePoint began = Clock::now();
     const TimePoint end =
-        arguments_.limit_s > 0 ? began + FromSeconds(arguments_.limit_s) : TimePoint::max();
-    const Duration interval = FromSeconds(arguments_.interval_s);
+        arguments_.limit_s > 0 ? began + cli::FromSeconds(arguments_.limit_s) : TimePoint::max();
+    const Duration interval = cli::FromSeconds(arguments_.interval_s);
     if (terminal_) ShowOnTerminal();
     for (TimePoint next = began + interval; Clock::now() < end; next += interval) {
       const bool whole = Listen(std::min(next, end));

@@ -75,10 +75,6 @@ struct RecordArguments {
   bool json = false;
 };
 
-Duration FromSeconds(double seconds) {
-  return duration_cast<Duration>(std::chrono::duration<double>(seconds));
-}
-
 /// @throws InputError
 std::regex RegexOf(const std::string& channels) {
   try {
@@ -96,10 +92,10 @@ record::RecordingOptions OptionsOf(const RecordArguments& arguments) {
   options.file = arguments.log;
   if (!arguments.channels.empty()) options.channels = RegexOf(arguments.channels);
   options.buffer_bytes = static_cast<int>(arguments.buffer_mb * kMegabyte);
-  options.flush_every = FromSeconds(arguments.flush_ms / 1e3);
+  options.flush_every = cli::FromSeconds(arguments.flush_ms / 1e3);
   options.rotation = {.most_bytes = static_cast<std::int64_t>(arguments.rotate_mb * kMegabyte),
-                      .longest = FromSeconds(arguments.rotate_s)};
-  options.limit = FromSeconds(arguments.limit_s);
+                      .longest = cli::FromSeconds(arguments.rotate_s)};
+  options.limit = cli::FromSeconds(arguments.limit_s);
   options.say = [](const std::string& line) { Notice(line); };
   return options;
 }
