@@ -25,7 +25,7 @@
 namespace fogline {
 namespace {
 
-[[noreturn]] void Refuse(const std::filesystem::path& log, const std::string& why) {
+[[noreturn]] void RefuseLog(const std::filesystem::path& log, const std::string& why) {
   throw InputError(fmt::format("{}: error: {}", PathText(log), why));
 }
 
@@ -39,11 +39,11 @@ Scenario LiveScenario(const std::filesystem::path& log, const replay::RecordedMe
     throw InputError("error: --set /step_s: the recorded messages have the steps of their run");
   }
   scenario.steps = std::min(scenario.steps, messages.steps());
-  if (scenario.steps < 1) Refuse(log, "the log has no step");
+  if (scenario.steps < 1) RefuseLog(log, "the log has no step");
   if (scenario.person.drives) {
-    Refuse(log,
-           "a person drove in this run: set /person/drives=false, or record the commands "
-           "with --channels DRIVER_COMMAND");
+    RefuseLog(log,
+              "a person drove in this run: set /person/drives=false, or record the commands "
+              "with --channels DRIVER_COMMAND");
   }
   runner::CheckPossible(scenario, log);
   return scenario;
@@ -106,7 +106,8 @@ int LiveReplay::Run(const std::filesystem::path& recorded, bool json) const {
                                           replay::RecordedChannels(channels_));
   const log::RunLog& run = messages.run();
   if (const std::string gap = messages.FirstGap(); !realtime_ && !gap.empty()) {
-    Refuse(recorded, fmt::format("{}: a run in lockstep needs every message; use --realtime", gap));
+    RefuseLog(recorded,
+              fmt::format("{}: a run in lockstep needs every message; use --realtime", gap));
   }
   const Scenario scenario = LiveScenario(recorded, messages, overrides_);
   runner::ExperimentOptions options;
