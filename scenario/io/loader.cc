@@ -8,11 +8,11 @@
 #include "common/file.h"
 #include "common/text.h"
 #include "scenario/io/diagnostic_list.h"
+#include "scenario/io/files/recorded.h"
+#include "scenario/io/files/sumo_files.h"
 #include "scenario/io/json.h"
 #include "scenario/io/overrides.h"
 #include "scenario/io/reader.h"
-#include "scenario/io/recorded.h"
-#include "scenario/io/sumo_files.h"
 
 namespace fogline {
 namespace {

@@ -3,8 +3,8 @@
 
 #include "scenario/io/diagnostic_list.h"
 #include "scenario/io/json.h"
-#include "scenario/sections/experiment.h"
-#include "scenario/sections/lab.h"
+#include "scenario/sections/plans/experiment.h"
+#include "scenario/sections/plans/lab.h"
 #include "scenario/sections/scenario.h"
 
 namespace fogline {

@@ -12,9 +12,9 @@
 #include <variant>
 #include <vector>
 
-#include "scenario/sections/experiment.h"
 #include "scenario/sections/field.h"
-#include "scenario/sections/lab.h"
+#include "scenario/sections/plans/experiment.h"
+#include "scenario/sections/plans/lab.h"
 #include "scenario/sections/scenario.h"
 
 namespace fogline {

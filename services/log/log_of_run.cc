@@ -14,8 +14,8 @@
 
 #include "common/errors.h"
 #include "common/text.h"
+#include "services/log/about/log_graph.h"
 #include "services/log/event_log.h"
-#include "services/log/log_graph.h"
 #include "services/log/log_seal.h"
 
 namespace fogline::log {

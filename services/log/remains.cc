@@ -8,7 +8,7 @@
 #include <fmt/core.h>
 
 #include "common/text.h"
-#include "services/log/log_graph.h"
+#include "services/log/about/log_graph.h"
 #include "services/log/log_seal.h"
 #include "services/log/step_order.h"
 #include "services/runtime/wire/step_ring.h"

@@ -9,8 +9,8 @@
 
 #include "common/text.h"
 #include "scenario/io/loader.h"
-#include "services/log/log_graph.h"
-#include "services/log/log_version.h"
+#include "services/log/about/log_graph.h"
+#include "services/log/about/log_version.h"
 #include "services/log/step_order.h"
 #include "services/runtime/wire/digest.h"
 #include "services/runtime/wire/message_signer.h"

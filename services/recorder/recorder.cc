@@ -6,7 +6,7 @@
 #include <fmt/core.h>
 
 #include "common/errors.h"
-#include "services/log/log_graph.h"
+#include "services/log/about/log_graph.h"
 #include "services/recorder/record_rule.h"
 #include "services/runtime/lockstep/lockstep_rule.h"
 

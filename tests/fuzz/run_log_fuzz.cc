@@ -3,7 +3,7 @@
 #include <array>
 
 #include "common/errors.h"
-#include "services/log/log_graph.h"
+#include "services/log/about/log_graph.h"
 #include "services/log/run_log.h"
 #include "services/runtime/wire/message_signer.h"
 #include "tests/fuzz/samples.h"

@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "scenario/io/loader.h"
-#include "scenario/sections/lab.h"
+#include "scenario/sections/plans/lab.h"
 
 namespace fogline::hosts {
 

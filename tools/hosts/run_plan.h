@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "scenario/sections/lab.h"
+#include "scenario/sections/plans/lab.h"
 #include "services/graph.h"
 
 namespace fogline::hosts {

@@ -6,7 +6,7 @@
 
 #include "common/text.h"
 #include "scenario/io/loader.h"
-#include "services/log/log_graph.h"
+#include "services/log/about/log_graph.h"
 #include "services/runtime/transport/traffic_options.h"
 #include "services/runtime/wire/build_id.h"
 #include "services/runtime/wire/scenario_parts.h"

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "scenario/io/loader.h"
-#include "scenario/sections/experiment.h"
+#include "scenario/sections/plans/experiment.h"
 
 namespace fogline::trials {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "scenario/sections/experiment.h"
+#include "scenario/sections/plans/experiment.h"
 
 namespace fogline::trials {
 

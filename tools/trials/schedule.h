@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "scenario/sections/experiment.h"
+#include "scenario/sections/plans/experiment.h"
 
 namespace fogline::trials {
 

@@ -14,8 +14,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "services/log/about/log_graph.h"
 #include "services/log/event_log.h"
-#include "services/log/log_graph.h"
 #include "services/log/log_seal.h"
 #include "tests/integration/network/relay_fixture.h"
 

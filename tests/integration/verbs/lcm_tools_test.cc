@@ -11,8 +11,8 @@
 #include <sstream>
 
 #include "services/driver/driver.h"
+#include "services/log/about/log_graph.h"
 #include "services/log/event_log.h"
-#include "services/log/log_graph.h"
 #include "services/log/log_seal.h"
 #include "services/runtime/process/step_node.h"
 #include "services/runtime/transport/bus.h"

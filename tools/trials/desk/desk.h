@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "common/interrupt.h"
-#include "scenario/sections/experiment.h"
+#include "scenario/sections/plans/experiment.h"
 #include "tools/trials/questionnaires.h"
 #include "tools/trials/schedule.h"
 #include "tools/trials/speaker.h"

@@ -11,7 +11,7 @@
 namespace fogline::trials {
 namespace {
 
-// An experiment has at most this many conditions (scenario/sections/experiment.h).
+// An experiment has at most this many conditions (scenario/sections/plans/experiment.h).
 constexpr std::size_t kMostConditions = 20;
 
 TEST(WilliamsDesignProperty, EachOrderHasEachConditionOnce) {

@@ -1,4 +1,4 @@
-#include "services/log/log_version.h"
+#include "services/log/about/log_version.h"
 
 #include <array>
 #include <cstdint>

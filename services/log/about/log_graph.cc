@@ -1,4 +1,4 @@
-#include "services/log/log_graph.h"
+#include "services/log/about/log_graph.h"
 
 #include <algorithm>
 #include <array>

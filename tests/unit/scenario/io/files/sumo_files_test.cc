@@ -1,4 +1,4 @@
-#include "scenario/io/sumo_files.h"
+#include "scenario/io/files/sumo_files.h"
 
 #include <filesystem>
 #include <fstream>

@@ -1,5 +1,5 @@
 // A log names the channels of its steps, and readers demand these channels.
-#include "services/log/log_graph.h"
+#include "services/log/about/log_graph.h"
 
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>

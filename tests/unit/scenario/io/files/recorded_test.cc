@@ -1,4 +1,4 @@
-#include "scenario/io/recorded.h"
+#include "scenario/io/files/recorded.h"
 
 #include <filesystem>
 #include <fstream>
