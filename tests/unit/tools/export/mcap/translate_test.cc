@@ -39,7 +39,7 @@ const web::LcmTypes& Types() {
 }
 
 /// The bytes of a message on LCM's wire: the fingerprint, then `rest`.
-std::vector<std::uint8_t> Message(const std::string& rest) {
+std::vector<std::uint8_t> Encoded(const std::string& rest) {
   const auto fingerprint = static_cast<std::uint64_t>(Types().Named("all_t")->fingerprint);
   std::vector<std::uint8_t> bytes;
   for (int shift = 56; shift >= 0; shift -= 8) {
@@ -63,7 +63,7 @@ const std::string kRest =
 
 TEST(TranslateTest, WritesEveryKindOfMemberAsProtobufDoes) {
   std::string out;
-  ASSERT_TRUE(AppendProtobuf(Types(), *Types().Named("all_t"), Message(kRest), out));
+  ASSERT_TRUE(AppendProtobuf(Types(), *Types().Named("all_t"), Encoded(kRest), out));
   EXPECT_EQ(out,
             "\x08\xff\xff\xff\xff\xff\xff\xff\xff\xff\x01"s                    // 1: -1 in ten bytes
             "\x10\xac\x02"s                                                    // 2: 300
@@ -81,11 +81,11 @@ TEST(TranslateTest, RefusesBytesThatAreNotExactlyOneMessage) {
   std::string out;
   for (std::size_t size = 0; size < kRest.size(); ++size) {
     EXPECT_FALSE(
-        AppendProtobuf(Types(), *Types().Named("all_t"), Message(kRest.substr(0, size)), out))
+        AppendProtobuf(Types(), *Types().Named("all_t"), Encoded(kRest.substr(0, size)), out))
         << size;
   }
-  EXPECT_FALSE(AppendProtobuf(Types(), *Types().Named("all_t"), Message(kRest + '\0'), out));
-  std::vector<std::uint8_t> other = Message(kRest);
+  EXPECT_FALSE(AppendProtobuf(Types(), *Types().Named("all_t"), Encoded(kRest + '\0'), out));
+  std::vector<std::uint8_t> other = Encoded(kRest);
   other[0] ^= 1;
   EXPECT_FALSE(AppendProtobuf(Types(), *Types().Named("all_t"), other, out)) << "another type";
 }
