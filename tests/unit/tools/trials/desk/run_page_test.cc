@@ -21,6 +21,8 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::MatchesRegex;
 
+constexpr std::int64_t kRunId = 4711;
+
 class RunPageTest : public ::testing::Test {
  protected:
   /// Kills fogline-web, the only child of this process.
@@ -47,7 +49,7 @@ class RunPageTest : public ::testing::Test {
 
 TEST_F(RunPageTest, HasTheAddressesOfARunUntilItsEnd) {
   RunPage page({});
-  page.Show(url_, RunPage::Seat::kOpen);
+  page.Show(kRunId, url_, RunPage::Seat::kOpen);
   const std::string seat = page.seat_address();
   const std::string view = page.view_address();
   EXPECT_THAT(seat, MatchesRegex("http://127.0.0.1:[0-9]+/drive#token=[0-9a-f]+"));
@@ -55,14 +57,14 @@ TEST_F(RunPageTest, HasTheAddressesOfARunUntilItsEnd) {
   page.End();
   EXPECT_EQ(page.seat_address() + page.view_address(), "");
   EXPECT_EQ(page.Look(), RunPage::Change::kNone);
-  page.Show(url_, RunPage::Seat::kNone);
+  page.Show(kRunId, url_, RunPage::Seat::kNone);
   EXPECT_EQ(page.seat_address(), "");
   EXPECT_EQ(page.view_address(), view) << "the same for all runs";
 }
 
 TEST_F(RunPageTest, IsBackAtTheSameAddressesAfterAKill) {
   RunPage page({});
-  page.Show(url_, RunPage::Seat::kOpen);
+  page.Show(kRunId, url_, RunPage::Seat::kOpen);
   const std::string seat = page.seat_address();
   Kill();
   EXPECT_EQ(NextChange(page), RunPage::Change::kDied);
@@ -72,12 +74,12 @@ TEST_F(RunPageTest, IsBackAtTheSameAddressesAfterAKill) {
 
 TEST_F(RunPageTest, MovesIfAnotherProgramTakesAPortThatNobodyHasChosen) {
   RunPage page({});
-  page.Show(url_, RunPage::Seat::kOpen);
+  page.Show(kRunId, url_, RunPage::Seat::kOpen);
   const std::uint16_t port = PortOf(page.seat_address());
   page.End();
   test::TakenPort taken(port);
   ASSERT_TRUE(taken.Take());
-  page.Show(url_, RunPage::Seat::kOpen);
+  page.Show(kRunId, url_, RunPage::Seat::kOpen);
   EXPECT_NE(PortOf(page.seat_address()), port);
 }
 
@@ -85,17 +87,17 @@ TEST_F(RunPageTest, WithoutAPortThereIsNoSeatAndNoAddress) {
   test::TakenPort taken(0);
   ASSERT_TRUE(taken.Take());
   RunPage page({.port = taken.port(), .traffic = {}});
-  EXPECT_THROW(page.Show(url_, RunPage::Seat::kOpen), std::runtime_error);
+  EXPECT_THROW(page.Show(kRunId, url_, RunPage::Seat::kOpen), std::runtime_error);
   EXPECT_EQ(page.seat_address() + page.view_address(), "");
   // A run can do without its view, and the view comes when it can.
-  EXPECT_NO_THROW(page.Show(url_, RunPage::Seat::kNone));
+  EXPECT_NO_THROW(page.Show(kRunId, url_, RunPage::Seat::kNone));
 }
 
 TEST_F(RunPageTest, IsHopelessAfterSomeStartsInVainWithGrowingPauses) {
   test::TakenPort taken(0);
   ASSERT_TRUE(taken.Take());
   RunPage page({.port = taken.port(), .traffic = {}});
-  page.Show(url_, RunPage::Seat::kNone);
+  page.Show(kRunId, url_, RunPage::Seat::kNone);
   const TimePoint begin = Clock::now();
   EXPECT_EQ(NextChange(page), RunPage::Change::kNone);
   EXPECT_THAT(page.WhyHopeless(), HasSubstr("started 5 times in vain"));
