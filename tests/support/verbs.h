@@ -1,7 +1,7 @@
 // The verbs of `fogline`, as its help lists them, and the command lines that they refuse.
 #pragma once
 
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>

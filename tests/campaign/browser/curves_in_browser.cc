@@ -2,7 +2,7 @@
 #include <string>
 #include <string_view>
 
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "common/clock.h"

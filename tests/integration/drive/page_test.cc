@@ -1,6 +1,6 @@
 // `fogline drive` at the page: the verb, fogline-web and the whole run. The test is the page: a
 // client of the WebSocket that sends what the page would send.
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "services/log/run_log.h"

@@ -1,6 +1,6 @@
 // Trials in which the participant drives at the seat, with the real programs. The test is both
 // pages of the participant: the page of the session, and the page /drive.
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // Whole experiments with the real programs: every trial is a run in real time.
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <csignal>

@@ -6,7 +6,7 @@
 #include <sstream>
 #include <string>
 
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "scenario/io/loader.h"

@@ -1,6 +1,6 @@
 // Processes of a run are killed or hang. The run replaces them and has the same result, or it ends
 // with one clear error.
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 #include <nlohmann/json.hpp>

@@ -1,7 +1,7 @@
 // Roles of runs are killed or stopped. The runs have the results of undisturbed runs.
 #pragma once
 
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // `fogline run --resume` verifies and seals a log that has the whole run.
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 

@@ -1,5 +1,5 @@
 // A run continues from its log after its runner died or was interrupted: `fogline run --resume`.
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 

@@ -1,6 +1,6 @@
 // A process of a run is killed while the system cannot start it again: its program is missing, or
 // the user may not start another process. One test kills the relay of a run.
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <unistd.h>

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -26,7 +26,6 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 using ::testing::StartsWith;
 using Words = std::vector<std::string>;
-using nlohmann::json;
 
 std::vector<std::string> LinesOf(const std::string& file) {
   std::istringstream text(Content(file));
@@ -66,12 +65,12 @@ class GapTest : public testing::Test {
     command.insert(command.end(), words.begin(), words.end());
     return RunCommand(command);
   }
-  static json Json(const Words& words, int code) {
+  static nlohmann::json Json(const Words& words, int code) {
     Words command = words;
     command.emplace_back("--json");
     const Outcome outcome = Fogline(command);
     EXPECT_EQ(outcome.code, code) << outcome.err;
-    return json::parse(outcome.out);
+    return nlohmann::json::parse(outcome.out);
   }
 
   const ScratchFolder folder_;
@@ -80,23 +79,23 @@ class GapTest : public testing::Test {
 
 TEST_F(GapTest, MetricsAreThoseOfTheWholeLogIfTheMissingMessageIsOfNoMeasure) {
   const std::string log = WithoutOne("RADAR");
-  const json whole = Json({"metrics", whole_}, 0)[0];
-  const json gap = Json({"metrics", log}, 1)[0];
+  const nlohmann::json whole = Json({"metrics", whole_}, 0)[0];
+  const nlohmann::json gap = Json({"metrics", log}, 1)[0];
   EXPECT_EQ(gap["metrics"], whole["metrics"]);
   EXPECT_EQ(gap["complete"], false);
   EXPECT_EQ(gap["steps"], 499);
   EXPECT_EQ(gap["digest"], nullptr);
-  EXPECT_EQ(gap["gaps"]["messages"], (json{{"RADAR", 1}}));
+  EXPECT_EQ(gap["gaps"]["messages"], (nlohmann::json{{"RADAR", 1}}));
   EXPECT_EQ(gap["gaps"]["gaps"][0],
-            (json{{"first_step", 394}, {"last_step", 394}, {"channels", {"RADAR"}}}));
+            (nlohmann::json{{"first_step", 394}, {"last_step", 394}, {"channels", {"RADAR"}}}));
   EXPECT_THAT(Fogline({"metrics", log}).err,
               HasSubstr("1 message of 1 step is missing (RADAR 1), first: step 394 lacks RADAR"));
 }
 
 TEST_F(GapTest, MetricsSayWhatIsUnknownBecauseOfAGap) {
   const std::string log = WithoutOne("HOST_COMMAND");
-  const json whole = Json({"metrics", whole_}, 0)[0]["metrics"];
-  const json gap = Json({"metrics", log}, 1)[0]["metrics"];
+  const nlohmann::json whole = Json({"metrics", whole_}, 0)[0]["metrics"];
+  const nlohmann::json gap = Json({"metrics", log}, 1)[0]["metrics"];
   for (const char* unknown : {"rhe_pct", "human_time_s", "transfers", "wrong_human_s"}) {
     EXPECT_FALSE(whole[unknown].is_null()) << unknown;
     EXPECT_TRUE(gap[unknown].is_null()) << unknown;
@@ -125,8 +124,8 @@ TEST_F(GapTest, EventsGoOnAfterAGapAndShowIt) {
   const std::string log = Without([](std::string_view channel, std::int64_t step) {
     return channel == "HOST_COMMAND" && step >= 394 && step <= 396;
   });
-  const json whole = Json({"events", whole_}, 0)[0];
-  const json gap = Json({"events", log}, 1)[0];
+  const nlohmann::json whole = Json({"events", whole_}, 0)[0];
+  const nlohmann::json gap = Json({"events", log}, 1)[0];
   EXPECT_EQ(gap["events"], whole["events"]);
   EXPECT_EQ(gap["gaps"]["gaps"][0]["last_step"], 396);
   const Outcome text = Fogline({"events", log});
@@ -161,7 +160,7 @@ TEST_F(GapTest, ExportHasARowWithEmptyCellsForAMissingMessage) {
 TEST_F(GapTest, ALogWithoutTheBeginningIsUsedFromItsFirstStepOn) {
   const std::string log = Without(
       [](std::string_view channel, std::int64_t step) { return channel != "RUN" && step < 124; });
-  const json metrics = Json({"metrics", log}, 1)[0];
+  const nlohmann::json metrics = Json({"metrics", log}, 1)[0];
   EXPECT_EQ(metrics["steps"], 376);
   EXPECT_EQ(metrics["gaps"]["first_step"], 124);
   EXPECT_NEAR(metrics["metrics"]["duration_s"], 37.5, 1e-9);
@@ -183,7 +182,7 @@ TEST_F(GapTest, ALogWithoutAScenarioIsExportedAndMeasuredWithAGivenScenario) {
   const Outcome refused = Fogline({"metrics", log});
   EXPECT_EQ(refused.code, 2);
   EXPECT_THAT(refused.err, HasSubstr("--scenario FILE gives it"));
-  const json given = Json({"metrics", log, "--scenario", "scenario/paper.json"}, 1)[0];
+  const nlohmann::json given = Json({"metrics", log, "--scenario", "scenario/paper.json"}, 1)[0];
   EXPECT_EQ(given["steps"], 376);
   EXPECT_EQ(given["title"], Json({"metrics", whole_}, 0)[0]["title"]);
 }
@@ -212,7 +211,7 @@ TEST_F(GapTest, ALogOfSeveralRunsNamesThemAndIsReadForTheChosenOne) {
   const std::string chosen = Fogline({"digest", other}).out;
   const Outcome of_second = Fogline({"digest", both, "--run", std::to_string(second)});
   EXPECT_THAT(of_second.out, StartsWith(chosen.substr(0, chosen.find(' '))));
-  const json metrics = Json({"metrics", both, "--run", std::to_string(second)}, 0)[0];
+  const nlohmann::json metrics = Json({"metrics", both, "--run", std::to_string(second)}, 0)[0];
   EXPECT_EQ(metrics["metrics"], Json({"metrics", other}, 0)[0]["metrics"]);
   const Outcome unknown = Fogline({"metrics", both, "--run", "5"});
   EXPECT_EQ(unknown.code, 2);
@@ -255,7 +254,7 @@ TEST_F(GapTest, AFileOfLcmLoggerThatBeganInTheMiddleOfARunIsUsed) {
   const std::string scenario = folder_.File("effective.json");
   std::ofstream(scenario)
       << Fogline({"check", "scenario/paper.json", "--print", "--set", "/steps=300"}).out;
-  const json metrics = Json({"metrics", log, "--scenario", scenario}, 1)[0];
+  const nlohmann::json metrics = Json({"metrics", log, "--scenario", scenario}, 1)[0];
   EXPECT_GT(metrics["steps"], 0);
   EXPECT_GE(metrics["gaps"]["first_step"], 40);
   const std::string out = folder_.File("csv");

@@ -1,6 +1,6 @@
 // Logs and scenarios of older versions of Fogline, kept in the folder `kept`. Each is read with the
 // results of its time, or refused with the name of the version that wrote it.
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 

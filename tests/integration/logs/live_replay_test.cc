@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -16,7 +16,6 @@ namespace {
 
 using ::testing::HasSubstr;
 using Words = std::vector<std::string>;
-using nlohmann::json;
 
 class LiveReplayTest : public testing::Test {
  protected:
@@ -24,7 +23,7 @@ class LiveReplayTest : public testing::Test {
     const Outcome run = RunCommand({Program("fogline"), "run", "scenario/paper.json", "--transport",
                                     "direct", "--json", "--log", log_, "--set", "/steps=250"});
     EXPECT_EQ(run.code, 0) << run.err;
-    digest_ = json::parse(run.out)["digest"];
+    digest_ = nlohmann::json::parse(run.out)["digest"];
   }
 
   Outcome Replay(const std::string& log, const Words& more) const {
@@ -32,10 +31,10 @@ class LiveReplayTest : public testing::Test {
     command.insert(command.end(), more.begin(), more.end());
     return RunCommand(command);
   }
-  json Live(const Words& more) const {
+  nlohmann::json Live(const Words& more) const {
     const Outcome outcome = Replay(log_, more);
     EXPECT_EQ(outcome.code, 0) << outcome.err;
-    return json::parse(outcome.out, nullptr, false);
+    return nlohmann::json::parse(outcome.out, nullptr, false);
   }
 
   const ScratchFolder folder_;
@@ -45,8 +44,8 @@ class LiveReplayTest : public testing::Test {
 };
 
 TEST_F(LiveReplayTest, OfUnchangedRolesIsTheRecordedRun) {
-  const json live = Live({});
-  EXPECT_EQ(live["channels"], (json{"RADAR", "LIDAR"}));
+  const nlohmann::json live = Live({});
+  EXPECT_EQ(live["channels"], (nlohmann::json{"RADAR", "LIDAR"}));
   EXPECT_EQ(live["digest"], digest_);
   EXPECT_EQ(live["track"]["compared_steps"], 250);
   EXPECT_EQ(live["track"]["distance_m"]["largest"], 0);
@@ -55,8 +54,9 @@ TEST_F(LiveReplayTest, OfUnchangedRolesIsTheRecordedRun) {
 
 TEST_F(LiveReplayTest, TellsHowMuchTheTrackOfAnotherFusionDiffers) {
   // GIVEN the recorded sensors and a fusion that trusts the radar less
-  const json live = Live({"--set", "/fusion/radar_range_std_m=0.5", "--transport", "tcpq"});
-  const json& distance = live["track"]["distance_m"];
+  const nlohmann::json live =
+      Live({"--set", "/fusion/radar_range_std_m=0.5", "--transport", "tcpq"});
+  const nlohmann::json& distance = live["track"]["distance_m"];
   EXPECT_GT(distance["largest"], 0.01);
   EXPECT_GT(distance["rms"], 0);
   EXPECT_LT(distance["rms"], distance["largest"]);
@@ -79,7 +79,7 @@ TEST_F(LiveReplayTest, TellsHowMuchTheTrackOfAnotherFusionDiffers) {
 }
 
 TEST_F(LiveReplayTest, OfAnyOtherChannelReplacesItsRole) {
-  const json live = Live({"--channels", "DRIVER_COMMAND"});
+  const nlohmann::json live = Live({"--channels", "DRIVER_COMMAND"});
   EXPECT_EQ(live["digest"], digest_);
 }
 
@@ -118,7 +118,7 @@ TEST_F(LiveReplayTest, SaysWhatIsWrongWithItsArguments) {
 class LiveReplayInRealtimeTest : public LiveReplayTest {};
 
 TEST_F(LiveReplayInRealtimeTest, DrivesTheSystemByTheWallClock) {
-  const json live = Live({"--realtime", "--speed", "5"});
+  const nlohmann::json live = Live({"--realtime", "--speed", "5"});
   EXPECT_EQ(live["steps"], 250);
   EXPECT_EQ(live["realtime"]["speed"], 5);
   // A late message changes a step of the fusion, but not the recorded sensors: the tracks agree to

@@ -1,6 +1,6 @@
 // While a run writes its log, no other run may write this log. While a table writes its folder of
 // logs, no other table may write there.
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 

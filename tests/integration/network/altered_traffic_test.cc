@@ -1,6 +1,6 @@
 // A message of a run is altered on its way. The alteration is found when the steps of the log are
 // computed again.
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 

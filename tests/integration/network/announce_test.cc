@@ -1,7 +1,7 @@
 // top, doctor and roles find a run on its own port, although no user gives them the run's URL. Each
 // test has a meeting address of its own. So announcements on LCM's default address do not reach the
 // test.
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 

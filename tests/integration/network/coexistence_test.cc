@@ -1,5 +1,5 @@
 // Processes that share a network with a run, and with logs that are played.
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 

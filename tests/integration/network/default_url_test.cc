@@ -1,6 +1,6 @@
 // Every program obeys LCM_DEFAULT_URL, as LCM's own programs do. A program that waits for a process
 // says which command starts that process. The wait has a limit.
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 

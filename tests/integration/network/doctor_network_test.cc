@@ -1,5 +1,5 @@
 // `fogline doctor` behind firewalls and on two machines, and its recipes.
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 

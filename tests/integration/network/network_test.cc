@@ -1,6 +1,6 @@
 // The lockstep on networks that the kernel simulates. The machines of these networks have their own
 // addresses and lose messages.
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // Messages of a run cannot be sent for some time. An interface, its address or its route is removed
 // and restored, or a firewall drops outgoing messages. Each test has a network that the kernel
 // simulates.
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <csignal>

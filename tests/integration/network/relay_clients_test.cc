@@ -1,6 +1,6 @@
 // fogline-relay with clients that misbehave.
 #include <arpa/inet.h>
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <netinet/in.h>
 #include <sys/socket.h>

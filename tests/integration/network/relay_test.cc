@@ -1,6 +1,6 @@
 // fogline-relay with real programs: ours and Debian's. (relay_clients_test.cc has clients that
 // misbehave.)
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <lcm/lcm.h>
 

@@ -1,6 +1,6 @@
 // A process without a key, with another key, or with copies of other processes' messages has no
 // effect on a signed run.
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <lcm/lcm.h>
 #include <nlohmann/json.hpp>

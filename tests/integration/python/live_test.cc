@@ -1,5 +1,5 @@
 // fl.Live listens to a run that announces itself, over any transport.
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "services/runtime/wire/message_signer.h"

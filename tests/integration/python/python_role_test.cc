@@ -1,6 +1,6 @@
 // A class in Python takes a role of a run. The run has the result of the same role in C++, also on
 // a network with signatures, in real time, and after the process was killed.
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 #include <nlohmann/json.hpp>

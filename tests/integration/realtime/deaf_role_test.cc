@@ -1,7 +1,7 @@
 // Real time on networks that lose all messages of one channel. The run names a role that does not
 // receive this channel. If the runner has started this role, the runner starts it again. A run
 // fails if a role is deaf at the end of the run.
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "services/log/event_log.h"

@@ -1,6 +1,6 @@
 // Real time on a network that loses many messages. The tests examine when the recorder ends, which
 // steps its log has, and what the run reports about messages that stay lost.
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>

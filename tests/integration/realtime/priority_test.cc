@@ -1,5 +1,5 @@
 // Whether a run in real time says which roles have real-time priority.
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 

@@ -1,6 +1,6 @@
 // Runs in real time: undisturbed, with a driver who is late, and with some of the faults of the
 // campaign.
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 

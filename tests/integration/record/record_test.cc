@@ -8,7 +8,7 @@
 #include <iterator>
 #include <memory>
 
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 
 #include "tests/integration/record/recorder_process.h"
 #include "tests/support/file_size_limit.h"

@@ -1,6 +1,6 @@
 // A driver with human weaknesses. The digest is the same on every transport, even if driver and
 // arbitrator read each other's messages.
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 

@@ -1,5 +1,5 @@
 // The driver in Python of docs/protocol.md, as the page shows it, drives the host.
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <csignal>

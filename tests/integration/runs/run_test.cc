@@ -1,7 +1,7 @@
 // `fogline run` as a person uses it: real processes, real LCM, real logs.
 #include <csignal>
 
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 

@@ -1,6 +1,6 @@
 // Roles that were built outside of this tree replace ours: a program that knows only the message
 // types (bare_driver.cc), and a class on Fogline's own runtime (my_driver.cc).
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 

@@ -3,7 +3,7 @@
 // impossible scenario causes one clear error.
 #include <fstream>
 
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 

@@ -1,6 +1,6 @@
 // The benchmarks start the programs that they compare, and print figures. The tests do not examine
 // whether a goal is met, because the figures depend on the machine.
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>

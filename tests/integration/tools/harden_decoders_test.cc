@@ -4,7 +4,7 @@
 #include <iterator>
 #include <string>
 
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "tests/support/command.h"

@@ -1,5 +1,5 @@
 // The recipes of docs/network.md do what the page says, by the lines that it shows.
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cstdio>

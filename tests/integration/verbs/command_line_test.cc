@@ -7,7 +7,7 @@
 #include <vector>
 
 #include <fmt/core.h>
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 

@@ -14,7 +14,7 @@
 #include <thread>
 #include <vector>
 
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "common/clock.h"

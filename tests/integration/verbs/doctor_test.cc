@@ -1,5 +1,5 @@
 // `fogline doctor` on machines with and without a network.
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 

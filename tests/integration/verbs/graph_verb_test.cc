@@ -1,5 +1,5 @@
 // fogline graph prints the table of roles and channels, and puts it into pages.
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cstdint>

@@ -1,6 +1,6 @@
 // Debian's own LCM programs on a run of Fogline: lcm-logger records the run, lcm-logplayer plays
 // the log, and lcm-spy shows the messages.
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 

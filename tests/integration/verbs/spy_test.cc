@@ -1,6 +1,6 @@
 // `fogline spy` starts LCM's lcm-spy with all files that it needs, on the network of the run.
 // lcm_tools_test.cc tests the contents of lcm-spy's window.
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>

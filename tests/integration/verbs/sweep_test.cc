@@ -1,6 +1,6 @@
 // `fogline sweep` as a person uses it: the real program, which the tests kill, resume, and call
 // with bad arguments. The tests compare the bytes of its file.
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 

@@ -1,5 +1,5 @@
 // `fogline table` gives the paper's table.
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 

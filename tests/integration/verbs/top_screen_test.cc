@@ -1,6 +1,6 @@
 // `fogline top` on a real terminal: a pseudo-terminal whose other end is this test. The test reads
 // the screen as a terminal would show it.
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <poll.h>
 #include <pty.h>

@@ -1,6 +1,6 @@
 // `fogline top` on live traffic and on a log that lcm-logplayer plays.
 #include <fcntl.h>
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <lcm/lcm.h>
 #include <sys/stat.h>

@@ -1,5 +1,5 @@
 // The limits of the server of `fogline view`, against real clients.
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <vector>

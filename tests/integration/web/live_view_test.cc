@@ -1,6 +1,6 @@
 // `fogline view` on a network: its clients get the messages that the log of the run has. The
 // clients do not disturb the run.
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <lcm/lcm.h>
 

@@ -1,5 +1,5 @@
 // `fogline view LOG`: its clients get the messages of the log.
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,5 +1,5 @@
 // `fogline run --view`: the run, and then its log, at one address.
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>

@@ -1,5 +1,5 @@
 // `fogline view --seat`: the frames of a page become DRIVER_INPUT on the network of the run.
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <fstream>

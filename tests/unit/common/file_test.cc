@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <string>
 
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "common/errors.h"

@@ -1,5 +1,5 @@
 // A closed loop that is restarted again and again computes the same as a new one.
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "scenario/sections/decision.h"

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 namespace fogline {

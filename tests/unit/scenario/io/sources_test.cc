@@ -4,7 +4,7 @@
 #include <vector>
 
 #include <fmt/core.h>
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "scenario/io/catalogue.h"

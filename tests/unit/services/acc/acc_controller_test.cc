@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "tests/support/input_errors.h"

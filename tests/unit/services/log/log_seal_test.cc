@@ -1,7 +1,7 @@
 // The seal of a log: the changes that the seal reveals, and the changes that it cannot reveal.
 #include "services/log/log_seal.h"
 
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 

@@ -1,7 +1,7 @@
 // The tests read the run of a log in which messages are missing.
 #include "services/log/run_log.h"
 
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>

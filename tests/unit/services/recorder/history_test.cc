@@ -1,7 +1,7 @@
 // The steps of a run in a log of any length, and the positions of these steps in the log.
 #include "services/recorder/history.h"
 
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>

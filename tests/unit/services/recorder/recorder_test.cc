@@ -1,7 +1,7 @@
 // The recorder on a bus in memory: the requests that it answers, and how it continues a log.
 #include "services/recorder/recorder.h"
 
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <unistd.h>

@@ -1,6 +1,6 @@
 #include "tools/cli/help.h"
 
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <memory>

@@ -1,7 +1,7 @@
 #include "tools/processes/child.h"
 
 #include <fcntl.h>
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>

@@ -1,6 +1,6 @@
 #include "tools/processes/last_lines.h"
 
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 namespace fogline {

@@ -1,6 +1,6 @@
 #include "tools/processes/relay_process.h"
 
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 

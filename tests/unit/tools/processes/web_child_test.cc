@@ -2,7 +2,7 @@
 
 #include <sys/wait.h>
 
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <string>

@@ -1,6 +1,6 @@
 #include "tools/runner/resumed_log.h"
 
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cstdint>

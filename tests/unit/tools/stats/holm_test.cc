@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 namespace fogline {

@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "tests/unit/tools/study/examples.h"

@@ -1,6 +1,6 @@
 #include <string>
 
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "tests/support/input_errors.h"

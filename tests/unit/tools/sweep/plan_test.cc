@@ -4,7 +4,7 @@
 #include <set>
 #include <string>
 
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "scenario/io/loader.h"

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "scenario/io/loader.h"

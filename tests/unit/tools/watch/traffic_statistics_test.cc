@@ -3,7 +3,7 @@
 #include <limits>
 
 #include <fmt/core.h>
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "services/runtime/wire/message_signer.h"

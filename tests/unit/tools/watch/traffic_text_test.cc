@@ -1,6 +1,6 @@
 #include "tools/watch/traffic_text.h"
 
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 namespace fogline {

@@ -1,6 +1,6 @@
 #include "tools/web/view_request.h"
 
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 namespace fogline::web {

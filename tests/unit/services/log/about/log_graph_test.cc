@@ -1,7 +1,7 @@
 // A log names the channels of its steps, and readers demand these channels.
 #include "services/log/about/log_graph.h"
 
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "services/log/remains.h"

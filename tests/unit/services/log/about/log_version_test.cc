@@ -1,6 +1,6 @@
 #include "services/log/about/log_version.h"
 
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <string>

@@ -1,6 +1,6 @@
 #include "services/runtime/coordination/foreign_peers.h"
 
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #include "services/runtime/coordination/run_coordinator.h"
 
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 

@@ -1,7 +1,7 @@
 // How a role joins a run and leaves it.
 #include "services/runtime/node/membership.h"
 
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/prctl.h>
 

@@ -1,7 +1,7 @@
 // The steps that a role computes.
 #include "services/runtime/node/steps.h"
 
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <stdexcept>

@@ -1,6 +1,6 @@
 // Inputs that only some scenarios demand. The example is a driver who reads HOST_COMMAND. In each
 // step, the driver publishes DRIVER_COMMAND before HOST_COMMAND is published.
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>

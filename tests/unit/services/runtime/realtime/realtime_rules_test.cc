@@ -1,7 +1,7 @@
 // The times at which the roles of a run in real time compute, and the inputs that they use.
 // Messages arrive at once. Poll() gets the time as its argument. A period is so long that the
 // duration of the test itself does not matter.
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #include "services/runtime/transport/faults.h"
 
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #include "services/runtime/transport/multicast_route.h"
 
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 namespace fogline {

@@ -1,6 +1,6 @@
 #include "services/runtime/wire/message_signer.h"
 
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <unistd.h>

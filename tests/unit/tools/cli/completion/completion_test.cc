@@ -20,7 +20,7 @@ using testing::SizeIs;
 class CompletionTest : public testing::Test {
  protected:
   CompletionTest() {
-    app_.add_flag("--version", std::string("Print the version"));
+    app_.add_flag("--version")->description("Print the version");
     CLI::App* run = app_.add_subcommand("run", "Run a scenario");
     run->add_option("SCENARIO", text_);
     run->add_option("--set", texts_, "Override a field")->allow_extra_args(false);

@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "tools/web/types/little_endian.h"

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "common/atomic_file.h"

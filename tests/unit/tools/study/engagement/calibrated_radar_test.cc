@@ -1,6 +1,6 @@
 #include "tools/study/engagement/calibrated_radar.h"
 
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "scenario/io/loader.h"

@@ -1,6 +1,6 @@
 #include "tools/trials/desk/run_page.h"
 
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 

@@ -1,7 +1,7 @@
 #include "tools/watch/senders/senders.h"
 
-#include <gmock/gmock-matchers.h>
 #include <gmock/gmock-more-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>

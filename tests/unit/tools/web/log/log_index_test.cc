@@ -1,6 +1,6 @@
 #include "tools/web/log/log_index.h"
 
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #include "tools/web/seat/seat_frame.h"
 
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "services/runtime/wire/driver_input.h"

@@ -1,6 +1,6 @@
 #include "tools/web/seat/seat_told.h"
 
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>

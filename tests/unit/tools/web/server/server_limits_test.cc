@@ -1,6 +1,6 @@
 // The limits of docs/view.md, one test for each: who exceeds it is closed, counted and named on
 // stderr, and the server goes on. The times are shorter here.
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <array>

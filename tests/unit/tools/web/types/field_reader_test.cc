@@ -1,6 +1,6 @@
 #include "tools/web/types/field_reader.h"
 
-#include <gmock/gmock-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
