@@ -82,7 +82,7 @@ struct PersonSection {
   FOGLINE_FIELD(double, override_pedal, 0.1, {0.01, 1},
                 "For brake: travel of the brake, with the throttle released, from which on it "
                 "overrides.",
-                "our choice, the same as take_over_pedal: a resting foot presses less");
+                "our choice, because a resting foot presses less, as for take_over_pedal");
   FOGLINE_FIELD(double, key_press_ps, 1.5, {0.1, 20, "1/s"},
                 "How fast a pedal moves while its key is down.",
                 "our choice, because full brake in 0.7 s still lets a short press brake gently");

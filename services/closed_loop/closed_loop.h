@@ -153,10 +153,9 @@ class ClosedLoop {
     static_assert(AlgorithmTraits<First>::kStarts, "the first role of graph.h begins the steps");
     static_assert(!(AlgorithmTraits<A>::kStarts || ...), "one role begins the steps");
     using Type = std::tuple<RoleOf<First>, RoleOf<A>...>;
-    template <class>
-    using Argument = const Scenario&;
     static Type Make(const Scenario& scenario) {
-      return Type(scenario, static_cast<Argument<A>>(scenario)...);
+      // Braces construct the roles in their order, so the first refusal is the same everywhere.
+      return Type{RoleOf<First>(scenario), RoleOf<A>(scenario)...};
     }
   };
   using Roles = RolesOf<Algorithms>;

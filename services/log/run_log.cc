@@ -163,7 +163,8 @@ class RunLogReader::Assembler {
       if (run_id != run_.run_id) others_.Add(run_id);
       return;
     }
-    if (other_types_ && runtime::ReadInt64(data, 0) != runtime::FingerprintOf(channel)) {
+    if (runtime::ReadInt64(data, 0) != runtime::FingerprintOf(channel) &&
+        (other_types_ || VersionOf(file_).other_types)) {
       RefuseVersion();
     }
     const std::int64_t step = runtime::ReadInt64(data, runtime::kStepOffset);

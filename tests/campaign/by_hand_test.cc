@@ -1,5 +1,5 @@
 // Every role that was started by hand is killed and started again in one run.
-#include "tests/integration/network/by_hand.h"
+#include "tests/integration/hosts/by_hand.h"
 
 #include <gtest/gtest.h>
 

@@ -14,7 +14,7 @@
 
 #include "services/graph.h"
 #include "tests/campaign/ssh_lab.h"
-#include "tests/integration/network/hosts_fixture.h"
+#include "tests/integration/hosts/hosts_fixture.h"
 
 namespace fogline::test {
 namespace {

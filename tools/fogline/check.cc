@@ -104,8 +104,7 @@ void AddCheck(CLI::App& app, cli::Action& action) {
   verb->add_flag("--schema", options->schema, "Print the JSON schema of scenarios");
   verb->add_option("--explain", options->explain, "Print a field's meaning, range, default")
       ->type_name("/POINTER");
-  verb->add_flag("--lab", options->lab,
-                 "The files, or the schema, are of laboratories (run --lab)");
+  verb->add_flag("--lab", options->lab, "Check files of laboratories (run --lab)");
   verb->add_flag("--json", options->json, "Print mistakes as a JSON list");
   cli::ShowExitCodes(*verb, {.done = "every file is good"});
   verb->footer(

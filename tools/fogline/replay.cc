@@ -151,8 +151,7 @@ void AddReplay(CLI::App& app, cli::Action& action) {
       verb->add_option("--role", arguments->role, "Role to replay, such as fusion or arbitrator");
   verb->add_flag("--all", arguments->all, "Replay every role, each by itself")->excludes(role);
   verb->add_flag("--json", arguments->json, "Print as JSON");
-  cli::ShowExitCodes(
-      *verb, {.check_failed = "outputs differ or the log is incomplete", .interruptible = true});
+  cli::ShowExitCodes(*verb, {.check_failed = "differs or is incomplete", .interruptible = true});
   verb->footer(
       "Each step takes its inputs from the log, so a difference in one role does not affect\n"
       "another role. Scenario and seed are those of the log, too. Outputs are compared bit by\n"

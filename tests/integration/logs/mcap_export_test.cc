@@ -55,7 +55,7 @@ TEST_F(McapExportTest, ReplacesAnExportIfForcedAndNoOtherFile) {
 TEST_F(McapExportTest, WantsOneKindOfExport) {
   const Outcome both = Export({"--mcap", mcap_, "--out", out_});
   EXPECT_EQ(both.code, 2);
-  EXPECT_EQ(both.err, "fogline export: error: --mcap excludes --out (see fogline export --help)\n");
+  EXPECT_EQ(both.err, "fogline export: error: --out excludes --mcap (see fogline export --help)\n");
   const Outcome neither = Export({});
   EXPECT_EQ(neither.code, 2);
   EXPECT_EQ(neither.err,

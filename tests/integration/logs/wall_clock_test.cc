@@ -80,6 +80,7 @@ TEST_F(WallClockTest, InLockstepIsInTheLogOnRequestAndNotInTheDigest) {
 
 TEST_F(WallClockTest, InLockstepIsThereAfterARunWasResumed) {
   const std::string digest = Digest({});
+  std::filesystem::remove(log_);  // so that the next run is the one whose log grows
   // GIVEN a run that was interrupted
   Background run({Program("fogline"), "run", "scenario/paper.json", "--quiet", "--force", "--log",
                   log_, "--set", "/steps=200", "--pace", "20", "--wall-clock"});
@@ -96,6 +97,7 @@ TEST_F(WallClockTest, InLockstepIsThereAfterARunWasResumed) {
 
 TEST_F(WallClockTest, SurvivesTheDeathOfTheRecorderAndOfARoleThatAsksItForOldSteps) {
   const std::string digest = Digest({});
+  std::filesystem::remove(log_);  // so that the next run is the one whose log grows
   Background run({Program("fogline"), "run", "scenario/paper.json", "--force", "--log", log_,
                   "--json", "--set", "/steps=200", "--pace", "20", "--wall-clock"});
   ASSERT_TRUE(run.WaitForErr("processes: "));

@@ -90,7 +90,7 @@ TEST(FieldViewTest, PutsContentsBehindTheirSectionOrList) {
   ASSERT_LT(speeds + 3, all.end());
   EXPECT_THAT(std::vector(speeds, speeds + 4),
               ElementsAre("/lead/recorded/speeds_mps", "/lead/recorded/speeds_mps/0",
-                          "/lead/recorded/speeds_mps/1", "/fog"));
+                          "/lead/recorded/speeds_mps/1", "/lead/sumo"));
   EXPECT_THAT(std::vector(all.end() - 5, all.end()),
               ElementsAre("/published", "/published/0", "/published/0/threshold",
                           "/published/0/si_pct", "/published/0/rhe_pct"));

@@ -105,14 +105,14 @@ class LogTest(unittest.TestCase):
         with self.assertRaisesRegex(fl.LogError, r"paper\.json: not an LCM event log"):
             fl.read_log(PAPER)
         log = fl.read_log(self.log)
-        with self.assertRaisesRegex(fl.LogError, "no channel SONAR; its channels: RUN, TRUTH"):
+        with self.assertRaisesRegex(fl.LogError, "no channel SONAR; its channels: RUN, .*TRUTH"):
             list(log.messages("SONAR"))
-        with self.assertRaisesRegex(AttributeError, "no channel SONAR; its channels: RUN, TRUTH"):
+        with self.assertRaisesRegex(AttributeError, "no channel SONAR; its channels: RUN, .*TRUTH"):
             log.SONAR
 
     def test_messages_of_an_unknown_type_are_refused_by_channel(self):
         altered = bytearray(pathlib.Path(self.log).read_bytes())
-        altered[altered.index(fl.lidar_t.FINGERPRINT)] ^= 1
+        altered[altered.rindex(fl.lidar_t.FINGERPRINT)] ^= 1  # of the last message
         log = fl.read_log(self.write("altered.lcm", [bytes(altered)]))
         with self.assertRaisesRegex(fl.LogError, "LIDAR: unknown message type"):
             list(log.messages("LIDAR"))

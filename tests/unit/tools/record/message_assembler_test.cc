@@ -52,7 +52,8 @@ class MessageAssemblerTest : public testing::Test {
 };
 
 TEST_F(MessageAssemblerTest, AShortMessageIsOnePacket) {
-  const auto message = Add({'L', 'C', '0', '2', 0, 0, 0, 9, 'A', 'B', 0, 1, 2});
+  const Bytes packet{'L', 'C', '0', '2', 0, 0, 0, 9, 'A', 'B', 0, 1, 2};
+  const auto message = Add(packet);
   ASSERT_TRUE(message);
   EXPECT_EQ(message->channel, "AB");
   EXPECT_EQ(message->unix_us, 7);

@@ -11,7 +11,7 @@ constexpr double kReleased_mps2 = -0.5;     // coasting_mps2
 constexpr double kThreshold_mps2 = -2.5;    // with the brake at override_pedal
 constexpr double kHardBraking_mps2 = -4.5;  // with the brake pressed by half
 
-class OverrideTest : public TakeOverTest {
+class BrakeOverrideTest : public TakeOverTest {
  protected:
   static Scenario WithOverride() {
     Scenario scenario = WithPerson();
@@ -23,14 +23,14 @@ class OverrideTest : public TakeOverTest {
     return scenario;
   }
 
-  OverrideTest() {
+  BrakeOverrideTest() {
     inputs_.human_wanted = false;
     inputs_.human_mps2 = kReleased_mps2;
   }
   void Brake(double acceleration_mps2) { inputs_.human_mps2 = acceleration_mps2; }
 };
 
-TEST_F(OverrideTest, TakesOverAtOnceWithoutARequest) {
+TEST_F(BrakeOverrideTest, TakesOverAtOnceWithoutARequest) {
   Begin(WithOverride());
   for (int k = 0; k < 5; ++k) EXPECT_EQ(Step().state, kAutomated);
   Brake(kHardBraking_mps2);
@@ -41,7 +41,7 @@ TEST_F(OverrideTest, TakesOverAtOnceWithoutARequest) {
   EXPECT_FALSE(take_over_->request());
 }
 
-TEST_F(OverrideTest, TakesABrakeAtThePedalsThresholdAndNoLighterOne) {
+TEST_F(BrakeOverrideTest, TakesABrakeAtThePedalsThresholdAndNoLighterOne) {
   Begin(WithOverride());
   Step();
   Brake(kThreshold_mps2 + 1e-9);
@@ -51,7 +51,7 @@ TEST_F(OverrideTest, TakesABrakeAtThePedalsThresholdAndNoLighterOne) {
 }
 
 // UN R157, 6.3: only braking that is harder than that of the system.
-TEST_F(OverrideTest, LeavesTheCarToAnAutomationThatBrakesHarder) {
+TEST_F(BrakeOverrideTest, LeavesTheCarToAnAutomationThatBrakesHarder) {
   Begin(WithOverride());
   brakes_ = false;
   inputs_.automation_mps2 = -6;
@@ -62,7 +62,7 @@ TEST_F(OverrideTest, LeavesTheCarToAnAutomationThatBrakesHarder) {
   EXPECT_EQ(Step().state, kRecovering);
 }
 
-TEST_F(OverrideTest, ListensOnlyToAPersonWhoIsThere) {
+TEST_F(BrakeOverrideTest, ListensOnlyToAPersonWhoIsThere) {
   Begin(WithOverride());
   Step();
   Brake(kHardBraking_mps2);
@@ -70,7 +70,7 @@ TEST_F(OverrideTest, ListensOnlyToAPersonWhoIsThere) {
   for (int k = 0; k < 20; ++k) EXPECT_EQ(Step().state, kAutomated);
 }
 
-TEST_F(OverrideTest, HappensOnlyIfTheScenarioSaysSoAndAPersonDrives) {
+TEST_F(BrakeOverrideTest, HappensOnlyIfTheScenarioSaysSoAndAPersonDrives) {
   Scenario off = WithOverride();
   off.person.override_by = OverrideBy::kNone;
   Scenario modelled = WithOverride();
@@ -84,7 +84,7 @@ TEST_F(OverrideTest, HappensOnlyIfTheScenarioSaysSoAndAPersonDrives) {
   }
 }
 
-TEST_F(OverrideTest, LastsUntilThePersonHasRecoveredAndGivesBack) {
+TEST_F(BrakeOverrideTest, LastsUntilThePersonHasRecoveredAndGivesBack) {
   Begin(WithOverride());
   brakes_ = false;
   Step();
@@ -102,7 +102,7 @@ TEST_F(OverrideTest, LastsUntilThePersonHasRecoveredAndGivesBack) {
   EXPECT_FALSE(take_over_->overridden());
 }
 
-TEST_F(OverrideTest, AnswersARequestThatIsPendingWhateverAnswersARequestOtherwise) {
+TEST_F(BrakeOverrideTest, AnswersARequestThatIsPendingWhateverAnswersARequestOtherwise) {
   Begin(WithOverride());
   inputs_.human_wanted = true;
   EXPECT_EQ(Step().state, kDemand);
@@ -115,7 +115,7 @@ TEST_F(OverrideTest, AnswersARequestThatIsPendingWhateverAnswersARequestOtherwis
   EXPECT_EQ(take_over_->request()->transferred, step_ - 1);
 }
 
-TEST_F(OverrideTest, EndsAManoeuvreWhileTheCarMovesAndNotWhenItStands) {
+TEST_F(BrakeOverrideTest, EndsAManoeuvreWhileTheCarMovesAndNotWhenItStands) {
   Begin(WithOverride());
   inputs_.human_wanted = true;
   while (state() != kMrmComfort) Step();
@@ -132,7 +132,7 @@ TEST_F(OverrideTest, EndsAManoeuvreWhileTheCarMovesAndNotWhenItStands) {
   for (int k = 0; k < 20; ++k) EXPECT_EQ(Step().state, kMrmDone);
 }
 
-TEST_F(OverrideTest, LeavesNoRequestBehindFromBefore) {
+TEST_F(BrakeOverrideTest, LeavesNoRequestBehindFromBefore) {
   Begin(WithOverride());
   brakes_ = false;
   inputs_.human_wanted = true;
@@ -151,7 +151,7 @@ TEST_F(OverrideTest, LeavesNoRequestBehindFromBefore) {
   EXPECT_FALSE(take_over_->request());
 }
 
-TEST_F(OverrideTest, IsRefusedIfReleasedPedalsAlreadyBrakeAsHard) {
+TEST_F(BrakeOverrideTest, IsRefusedIfReleasedPedalsAlreadyBrakeAsHard) {
   Scenario scenario = WithOverride();
   scenario.person.full_brake_mps2 = 1;
   scenario.person.coasting_mps2 = 3;

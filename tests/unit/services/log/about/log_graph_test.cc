@@ -83,7 +83,7 @@ TEST_F(LogGraphTest, WithAChannelThatThisProgramLacksIsRefusedByName) {
   graph.producer.back() = "sonar";
   EXPECT_EQ(test::ErrorOf([&] { Read({.graph = graph}); }),
             file_ +
-                ": error: the log has the channel SON\\nAR (sonar_t from sonar), which this "
+                ": error: the log has the channel SON\\u000aAR (sonar_t from sonar), which this "
                 "program does not have: read the log with the version of Fogline that wrote it");
 }
 

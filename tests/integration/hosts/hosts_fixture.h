@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/integration/hosts/machine_processes.h"
 #include "tests/support/children.h"
-#include "tests/support/machine_processes.h"
 #include "tests/support/network_test.h"
 
 namespace fogline::test {

@@ -1,5 +1,5 @@
 // All roles but the recorder are started by hand, in different orders.
-#include "tests/integration/network/by_hand.h"
+#include "tests/integration/hosts/by_hand.h"
 
 #include <gtest/gtest.h>
 

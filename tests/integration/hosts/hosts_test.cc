@@ -1,6 +1,6 @@
 // Runs that start roles on other machines. A script in place of ssh enters a simulated machine, so
 // no server is needed. tests/campaign/ssh_hosts_test.cc has the same tests with OpenSSH, and more.
-#include "tests/integration/network/hosts_fixture.h"
+#include "tests/integration/hosts/hosts_fixture.h"
 
 #include <gmock/gmock-more-matchers.h>
 #include <gtest/gtest.h>

@@ -171,8 +171,7 @@ class Spy {
  private:
   /// Compiles SpyProbe. @return the path of its jar
   std::string BuildProbe() const {
-    const std::string source =
-        (SourceDirectory() / "tests/integration/verbs/SpyProbe.java").string();
+    const std::string source = (SourceDirectory() / "tests/integration/lcm/SpyProbe.java").string();
     const std::string classes = folder_.File("classes");
     const std::string jar = folder_.File("probe.jar");
     std::ofstream(folder_.File("manifest")) << "Premain-Class: SpyProbe\n";
