@@ -143,7 +143,7 @@ TEST_F(TopScreenTest, OpensAChannelToItsFieldsAndARoleToItsStatus) {
   Press(Key::kOpen);
   EXPECT_THAT(Text(), HasSubstr("world of run "));
   EXPECT_THAT(Text(), HasSubstr("refused 1 of other runs"));
-  Press(Key::kPageDown);
+  Press(Key::kEnd);
   EXPECT_THAT(Text(), HasSubstr("build_id"));
   // WHEN the run is gone
   screen_.Show({});
