@@ -245,9 +245,10 @@ class Service {
     Say(fmt::format("{}; waiting for a run on {} again", why, bus_->url()));
   }
 
-  /// A role that a runner has started waits only for moments.
+  /// A role that a runner has started waits only for moments. The runner names its run, and the
+  /// role ends with the runner.
   void SayThatItWaits(TimePoint now) {
-    if (!waiting_.Due(now) || EndsWithItsParent()) return;
+    if (!waiting_.Due(now) || (arguments_.run_id && EndsWithItsParent())) return;
     waiting_.Send(own().message(), *bus_, began_, now);
   }
 

@@ -81,6 +81,7 @@ class PythonDriverTest : public testing::Test {
                   "--json",
                   "--lcm-url",
                   url_,
+                  "--force",
                   "--log",
                   folder_.File("run.lcm")};
     command.insert(command.end(), more.begin(), more.end());

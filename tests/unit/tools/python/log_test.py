@@ -112,7 +112,8 @@ class LogTest(unittest.TestCase):
 
     def test_messages_of_an_unknown_type_are_refused_by_channel(self):
         altered = bytearray(pathlib.Path(self.log).read_bytes())
-        altered[altered.rindex(fl.lidar_t.FINGERPRINT)] ^= 1  # of the last message
+        in_graph = altered.index(fl.lidar_t.FINGERPRINT)
+        altered[altered.index(fl.lidar_t.FINGERPRINT, in_graph + 8)] ^= 1  # the first message
         log = fl.read_log(self.write("altered.lcm", [bytes(altered)]))
         with self.assertRaisesRegex(fl.LogError, "LIDAR: unknown message type"):
             list(log.messages("LIDAR"))
