@@ -245,10 +245,13 @@ class Service {
     Say(fmt::format("{}; waiting for a run on {} again", why, bus_->url()));
   }
 
-  /// A role that a runner has started waits only for moments. The runner names its run, and the
-  /// role ends with the runner.
+  /// Whether a runner has started this process: the runner names its run, and the process ends with
+  /// the runner.
+  bool IsOfARunner() const { return arguments_.run_id && EndsWithItsParent(); }
+
+  /// A role that a runner has started waits only for moments.
   void SayThatItWaits(TimePoint now) {
-    if (!waiting_.Due(now) || (arguments_.run_id && EndsWithItsParent())) return;
+    if (!waiting_.Due(now) || IsOfARunner()) return;
     waiting_.Send(own().message(), *bus_, began_, now);
   }
 
@@ -262,7 +265,7 @@ class Service {
   void PreferIfRealtime() {
     if (!news().realtime || std::exchange(preferred_, true)) return;
     const int priority = arguments_.role == Role::kWorld ? kWorldPriority : kPriority;
-    if (RunBeforeOthers(priority) || EndsWithItsParent()) return;  // a runner says it for its roles
+    if (RunBeforeOthers(priority) || IsOfARunner()) return;  // a runner says it for its roles
     Say("the kernel grants no real-time priority, or locks no memory: on a busy machine steps "
         "begin "
         "late; `fogline doctor` says how to grant it");
