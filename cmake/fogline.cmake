@@ -50,6 +50,30 @@ function(fogline_add_role name)
   target_link_libraries(fogline-${name} PRIVATE fogline_${name} fogline_runtime)
 endfunction()
 
+# fogline_add_campaign(NAME TIMEOUT_S COMMAND ARGUMENT... [PROGRAMS TARGET...] [PROPERTIES ...]): adds a
+# test with the label campaign. The default build leaves PROGRAMS out. The test campaign.Programs
+# builds them, and runs before a campaign that needs them.
+function(fogline_add_campaign name timeout_s)
+  cmake_parse_arguments(PARSE_ARGV 2 campaign "" "" "COMMAND;PROGRAMS;PROPERTIES")
+  add_test(NAME ${name} COMMAND ${campaign_COMMAND})
+  set_tests_properties(${name} PROPERTIES LABELS campaign TIMEOUT ${timeout_s}
+                       ${campaign_PROPERTIES})
+  if(campaign_PROGRAMS)
+    set_property(TEST ${name} APPEND PROPERTY FIXTURES_REQUIRED campaign_programs)
+    set_target_properties(${campaign_PROGRAMS} PROPERTIES EXCLUDE_FROM_ALL ON)
+    set_property(GLOBAL APPEND PROPERTY FOGLINE_CAMPAIGN_PROGRAMS ${campaign_PROGRAMS})
+  endif()
+endfunction()
+
+# fogline_build_campaign_programs(): adds the test campaign.Programs. All campaigns come before.
+function(fogline_build_campaign_programs)
+  get_property(programs GLOBAL PROPERTY FOGLINE_CAMPAIGN_PROGRAMS)
+  list(REMOVE_DUPLICATES programs)
+  fogline_add_campaign(campaign.Programs 1800
+    COMMAND "${CMAKE_COMMAND}" --build "${CMAKE_BINARY_DIR}" --target ${programs}
+    PROPERTIES FIXTURES_SETUP campaign_programs)
+endfunction()
+
 # fogline_add_test_program(NAME LIBS...): builds every NAME/**/*_test.cc into the program NAME_tests.
 # With FOGLINE_UNITY, all files of a folder are compiled as one.
 function(fogline_add_test_program name)
