@@ -41,8 +41,8 @@ int InterfaceIndex(const std::string& interface) {
 
 }  // namespace
 
-LcmSockets::LcmSockets(std::vector<sock_filter> filter, Reach reach)
-    : filter_(std::move(filter)), reach_(reach) {
+LcmSockets::LcmSockets(std::vector<sock_filter> filter, Reach reach, Joins joins)
+    : filter_(std::move(filter)), reach_(reach), joins_(joins) {
   in_charge = this;
 }
 
@@ -61,14 +61,16 @@ int LcmSockets::OnConnect(int socket, const sockaddr* address, socklen_t size) c
 }
 
 int LcmSockets::OnOption(int socket, int level, int name, const void* value, socklen_t size) {
+  const bool join = level == IPPROTO_IP && name == IP_ADD_MEMBERSHIP;
+  if (join && joins_ == Joins::kNothing) return 0;
   const int result = SetOption(socket, level, name, value, size);
-  if (level == IPPROTO_IP && name == IP_ADD_MEMBERSHIP) members_.push_back(socket);
+  if (join) members_.push_back(socket);
   if (reach_ != Reach::kLoopback || level != IPPROTO_IP) return result;
   if (name == IP_MULTICAST_TTL) {  // LCM sets this option on the socket that sends
     const in_addr loopback = Loopback();
     return SetOption(socket, IPPROTO_IP, IP_MULTICAST_IF, &loopback, sizeof(loopback));
   }
-  if (name == IP_ADD_MEMBERSHIP && size >= sizeof(ip_mreq)) {
+  if (join && size >= sizeof(ip_mreq)) {
     ip_mreq membership = *static_cast<const ip_mreq*>(value);
     membership.imr_interface = Loopback();
     // If the route leads over loopback, LCM has already joined the group on loopback.

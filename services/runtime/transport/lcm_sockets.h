@@ -26,8 +26,14 @@ class LcmSockets {
     kRoute,  ///< sends and receives over the route to the group
   };
 
+  enum class Joins {
+    kGroup,  ///< each socket joins the group, as LCM wants
+    /// No socket joins the group. This is enough for messages that are only sent.
+    kNothing,
+  };
+
   /// @param filter for each socket that receives, from its start; empty: no filter
-  LcmSockets(std::vector<sock_filter> filter, Reach reach);
+  LcmSockets(std::vector<sock_filter> filter, Reach reach, Joins joins = Joins::kGroup);
   ~LcmSockets();
   LcmSockets(const LcmSockets&) = delete;
   LcmSockets& operator=(const LcmSockets&) = delete;
@@ -49,6 +55,7 @@ class LcmSockets {
  private:
   std::vector<sock_filter> filter_;
   Reach reach_;
+  Joins joins_;
   std::vector<int> receiving_;
   std::vector<int> members_;
   bool refused_ = false;

@@ -247,9 +247,8 @@ TEST_F(OutageTest, AGroupIsLeftOnTheInterfaceToWhichTheRouteLedBefore) {
   const auto has_group = [&machine](const std::string& interface) {
     return runtime::HasGroup(machine.Do("cat /proc/net/igmp"), interface, "239.255.76.67");
   };
-  // A driver with the id of a run has no second socket, on which it would say that it waits.
-  const Background driver(
-      machine.On({Program("fogline-driver"), "--lcm-url", kUrl, "--run-id", "4711"}));
+  // The driver also says at the meeting address, whose group is the same, that it waits.
+  const Background driver(machine.On({Program("fogline-driver"), "--lcm-url", kUrl}));
   const TimePoint end = Clock::now() + kPatience;
   while (!has_group("eth0") && Clock::now() < end) LastFor(milliseconds(50));
   EXPECT_TRUE(has_group("eth0")) << driver.Err();
