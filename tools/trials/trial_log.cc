@@ -57,7 +57,7 @@ std::string NameOf(TrialState state) {
 TrialStory ReadStory(const std::filesystem::path& log) {
   TrialStory story;
   try {
-    log::RunLogReader reader(log);
+    log::RunLogReader reader(log, log::RunLogReader::Compared::kFile);
     while (reader.Next() != nullptr) {
     }
     const log::RunLog& run = reader.run();

@@ -3,6 +3,7 @@
 #include <gmock/gmock-more-matchers.h>
 #include <gtest/gtest.h>
 
+#include <cstddef>
 #include <filesystem>
 #include <fstream>
 #include <stdexcept>
@@ -77,13 +78,20 @@ TEST_F(TrialLogTest, AFactIsAddedOnce) {
 }
 
 TEST_F(TrialLogTest, ALogThatWasChangedGetsNothing) {
-  std::string bytes = test::Content(log_);
-  bytes[bytes.find("TRUTH") + 60] ^= 1;
-  std::ofstream(log_, std::ios::binary) << bytes;
-  const TrialStory story = ReadStory(log_);
-  if (story.state == TrialState::kBroken) return;  // the changed byte broke an event
-  EXPECT_THROW(AddFacts(log_, story, {Fact(trial_t::END, 0)}, nullptr), std::runtime_error);
-  EXPECT_EQ(test::Content(log_), bytes);
+  const std::string sealed = test::Content(log_);
+  const std::size_t last_truth = sealed.rfind("TRUTH");
+  // A byte of a message, which the digest covers; and the last byte of the event's time, which only
+  // the hash of the file covers.
+  for (const std::size_t place : {last_truth + 60, last_truth - 9}) {
+    std::string bytes = sealed;
+    bytes[place] ^= 1;
+    std::ofstream(log_, std::ios::binary) << bytes;
+    const TrialStory story = ReadStory(log_);
+    EXPECT_TRUE(story.altered) << story.note;
+    EXPECT_THROW(AddFacts(log_, story, {Fact(trial_t::END, 0)}, nullptr), std::runtime_error);
+    EXPECT_EQ(test::Content(log_), bytes);
+    std::ofstream(log_, std::ios::binary) << sealed;
+  }
 }
 
 TEST_F(TrialLogTest, ALogThatEndsEarlyIsThatOfABrokenRun) {
