@@ -87,8 +87,7 @@ TEST_F(SshHostsTest, KillAHangingRoleThereAndStartItAgain) {
 
 TEST_F(SshHostsTest, WaitForACableThatIsCutFor10s) {
   const SshLab lab(2);
-  Background run(RunFrom(lab[0], lab.ssh(), OnLab2({"fusion", "acc"}),
-                         {"--pace", "20", "--stall-timeout", "60"}));
+  Background run(RunFrom(lab[0], lab.ssh(), OnLab2({"fusion", "acc"}), {"--pace", "20"}));
   ASSERT_TRUE(IsUnderWay()) << run.Err();
   lab.lab().Unplug(1);
   std::this_thread::sleep_for(std::chrono::seconds(10));  // the test is about this time
@@ -101,8 +100,8 @@ TEST_F(SshHostsTest, WaitForACableThatIsCutFor10s) {
 
 TEST_F(SshHostsTest, EndOnBothSidesOfACableThatStaysCut) {
   const SshLab lab(2);
-  Background run(RunFrom(lab[0], lab.ssh(), OnLab2({"fusion", "acc"}),
-                         {"--pace", "20", "--stall-timeout", "3"}));
+  stall_timeout_s_ = "3";
+  Background run(RunFrom(lab[0], lab.ssh(), OnLab2({"fusion", "acc"}), {"--pace", "20"}));
   ASSERT_TRUE(IsUnderWay()) << run.Err();
   lab.lab().Unplug(1);
   EXPECT_EQ(run.Wait(), 3);

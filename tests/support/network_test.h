@@ -29,7 +29,7 @@ class NetworkTest : public testing::Test {
                                      "scenario/paper.json",
                                      "--json",
                                      "--stall-timeout",
-                                     "30",
+                                     stall_timeout_s_,
                                      "--log",
                                      Log()};
     command.insert(command.end(), more.begin(), more.end());
@@ -54,6 +54,8 @@ class NetworkTest : public testing::Test {
     more.insert(more.end(), {"--transport", "direct"});
     return Result(RunCommand(Run(more)))["digest"];
   }
+
+  std::string stall_timeout_s_ = "30";
 
  private:
   ScratchFolder folder_;
