@@ -46,7 +46,6 @@ endforeach()
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME fogline)
 set(CPACK_PACKAGE_CONTACT "${FOGLINE_MAINTAINER}")
-set(CPACK_OUTPUT_FILE_PREFIX "${CMAKE_BINARY_DIR}/packages")
 set(CPACK_SET_DESTDIR ON)  # some files are outside of the prefix
 set(CPACK_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
@@ -95,10 +94,10 @@ tables and sweeps, live messages, and roles in Python.")
 include(CPack)
 
 # CPack with Ninja builds nothing itself.
+set(packages "${CMAKE_BINARY_DIR}/packages")
 add_custom_target(fogline_packages
-  COMMAND "${CMAKE_COMMAND}" -E rm -rf "${CPACK_OUTPUT_FILE_PREFIX}"
-  COMMAND "${CMAKE_CPACK_COMMAND}" --config "${CMAKE_BINARY_DIR}/CPackConfig.cmake"
-  WORKING_DIRECTORY "${CMAKE_BINARY_DIR}"
-  COMMENT "Making Debian packages in ${CPACK_OUTPUT_FILE_PREFIX}"
+  COMMAND "${CMAKE_COMMAND}" -E rm -rf "${packages}"
+  COMMAND "${CMAKE_CPACK_COMMAND}" --config "${CMAKE_BINARY_DIR}/CPackConfig.cmake" -B "${packages}"
+  COMMENT "Making Debian packages in ${packages}"
   VERBATIM)
 add_dependencies(fogline_packages fogline_programs)
