@@ -66,6 +66,6 @@ function(lcm_add_types target dir)
     COMMENT "Generating Python message types in ${out}/python")
 
   install(DIRECTORY "${out}/cpp/fogline" DESTINATION include COMPONENT dev)
-  install(FILES "${CMAKE_LIBRARY_OUTPUT_DIRECTORY}/${target}.jar" DESTINATION share/java
+  install(FILES "${CMAKE_LIBRARY_OUTPUT_DIRECTORY}/${target}.jar" DESTINATION share/fogline
     COMPONENT fogline OPTIONAL)
 endfunction()

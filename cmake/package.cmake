@@ -17,9 +17,9 @@ set(dev_package fogline-dev)
 set(python_package python3-fogline-lab)
 
 set(package_files "${CMAKE_CURRENT_LIST_DIR}/package")
-install(FILES "${package_files}/fogline@.service" DESTINATION /lib/systemd/system
+install(FILES "${package_files}/fogline/fogline@.service" DESTINATION /lib/systemd/system
   COMPONENT fogline-system EXCLUDE_FROM_ALL)
-install(FILES "${package_files}/fogline.default" DESTINATION /etc/default RENAME fogline
+install(FILES "${package_files}/fogline/fogline.default" DESTINATION /etc/default RENAME fogline
   COMPONENT fogline-system EXCLUDE_FROM_ALL)
 install(CODE "
   set(PROGRAMS \"${FOGLINE_PROGRAMS}\")
@@ -63,7 +63,10 @@ set(CPACK_DEBIAN_FOGLINE_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_FOGLINE_PACKAGE_RECOMMENDS "liblcm-bin, gnuplot-nox | gnuplot")
 set(CPACK_DEBIAN_FOGLINE_PACKAGE_SUGGESTS
   "default-jre, fogline-dev, libjchart2d-java, liblcm-java, openssh-client")
-set(CPACK_DEBIAN_FOGLINE_PACKAGE_CONTROL_EXTRA "${package_files}/conffiles;${package_files}/prerm")
+# CPack would write a postinst and a postrm that call ldconfig, which knows no file in lib/fogline.
+foreach(file IN ITEMS conffiles postinst prerm postrm)
+  list(APPEND CPACK_DEBIAN_FOGLINE_PACKAGE_CONTROL_EXTRA "${package_files}/fogline/${file}")
+endforeach()
 set(CPACK_DEBIAN_FOGLINE_DESCRIPTION "distributed testbed for traded control in fog
 Who should drive, the automation or the person, when fog makes radar and LiDAR
 disagree? Each part of the car is a process on an LCM network. Each part can be

@@ -1,5 +1,17 @@
 # Turns CHANGELOG.md into Debian's form. Needs the variables `package` and `maintainer`.
-function end_version() { if (date != "") printf "\n -- %s  %s\n\n", maintainer, date }
+# Prints the item in lines of at most 80 characters.
+function end_item(  words, count, line, i) {
+  count = split(item, words)
+  if (count == 0) return
+  line = "  *"
+  for (i = 1; i <= count; ++i) {
+    if (length(line) + 1 + length(words[i]) > 80) { print line; line = "   " }
+    line = line " " words[i]
+  }
+  print line
+  item = ""
+}
+function end_version() { end_item(); if (date != "") printf "\n -- %s  %s\n\n", maintainer, date }
 /^## \[[0-9]/ {
   end_version()
   match($0, /\[[^]]*/)
@@ -9,7 +21,7 @@ function end_version() { if (date != "") printf "\n -- %s  %s\n\n", maintainer, 
   next
 }
 date == "" { next }
-/^### / { printf "\n  [ %s ]\n", substr($0, 5); next }
-/^- / { printf "  * %s\n", substr($0, 3); next }
-/^  / { printf "  %s\n", $0 }
+/^### / { end_item(); printf "\n  [ %s ]\n", substr($0, 5); next }
+/^- / { end_item(); item = substr($0, 3); next }
+/^  / { item = item $0 }
 END { end_version() }

@@ -84,7 +84,7 @@ fs::path InstalledJar(const std::string& name) {
 }
 
 fs::path TypesJar(const fs::path& programs) {
-  for (const char* place : {"../lib", "../share/java"}) {
+  for (const char* place : {"../lib", "../share/fogline"}) {
     const fs::path jar = (programs / place / "fogline_lcmtypes.jar").lexically_normal();
     if (Readable(jar)) return jar;
   }

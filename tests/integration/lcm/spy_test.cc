@@ -78,7 +78,7 @@ TEST(SpyTest, HasTheTypesOfItsInstallationToo) {
   const Outcome spy = RunCommand(
       parts.Command(folder.File("bin/fogline"), {"--lcm-url", runtime::FreshMulticastUrl()}));
   EXPECT_EQ(spy.code, 0) << spy.err;
-  EXPECT_THAT(spy.out, HasSubstr(":" + folder.File("share/java/fogline_lcmtypes.jar") + " "));
+  EXPECT_THAT(spy.out, HasSubstr(":" + folder.File("share/fogline/fogline_lcmtypes.jar") + " "));
 }
 
 TEST(SpyTest, RefusesFilesThatAreNotThere) {
