@@ -17,10 +17,9 @@ if(TARGET fogline_sumo)  # load_sumo.h finds it there
 endif()
 # lib/fogline has what the programs alone use.
 install(TARGETS fogline_hear_loopback LIBRARY DESTINATION lib/fogline COMPONENT fogline)
-install(FILES scenario/paper.json scenario/dense_fog.json scenario/drive.json scenario/recorded_lead.json
-  scenario/sumo_queue.json   scenario/scenario.schema.json DESTINATION share/fogline/scenario COMPONENT fogline)
-install(DIRECTORY scenario/data scenario/ensemble scenario/experiment
-  DESTINATION share/fogline/scenario COMPONENT fogline)
+install(DIRECTORY scenario/ DESTINATION share/fogline/scenario COMPONENT fogline
+  PATTERN "bad" EXCLUDE PATTERN "io" EXCLUDE PATTERN "sections" EXCLUDE
+  REGEX "/scenario/(CMakeLists.txt|README.md)$" EXCLUDE)
 include(package/completion)
 
 # include/fogline has the message types, and beside them the headers in folders such as common/.
