@@ -87,7 +87,12 @@ files for lcm-gen.")
 
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
-set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3, fogline (= ${PROJECT_VERSION})")
+# The extension module is made for one version of Python.
+get_property(python_depends GLOBAL PROPERTY FOGLINE_PYTHON_DEPENDS)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "${python_depends}, fogline (= ${PROJECT_VERSION})")
+foreach(file IN ITEMS postinst prerm)
+  list(APPEND CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA "${package_files}/python/${file}")
+endforeach()
 set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS "python3-pandas")
 set(CPACK_DEBIAN_PYTHON_DESCRIPTION "distributed testbed for traded control in fog (Python)
 Fogline runs each part of a car as a process on an LCM network.
@@ -104,3 +109,6 @@ add_custom_target(fogline_packages
   COMMENT "Making Debian packages in ${packages}"
   VERBATIM)
 add_dependencies(fogline_packages fogline_programs)
+if(TARGET fogline_python)
+  add_dependencies(fogline_packages fogline_python)
+endif()

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # clean_debian.sh BUILD [MIRROR]: makes the packages of a build, installs them in a minimal Debian 12,
-# makes the paper's run there as an ordinary user, reads manual, completion and unit, and removes the
-# packages again. Needs root and debootstrap. Exit codes: 0 all is well, 1 something is not, 4 this
+# makes the paper's run there as an ordinary user, from Python too, reads manual, completion and unit,
+# and removes the packages again. Needs root and debootstrap. Exit codes: 0 all is well, 1 something is not, 4 this
 # machine cannot make a Debian system.
 set -euo pipefail
 cd "$(dirname "$0")/../../.."
@@ -29,9 +29,9 @@ rm -f "$tree"/etc/dpkg/dpkg.cfg.d/*
 install="apt-get install -qq -y --no-install-recommends"
 inside / "set -e; export DEBIAN_FRONTEND=noninteractive; apt-get update -qq
   $install man-db bash-completion systemd python3 >/dev/null 2>&1
-  $install ./packages/fogline_*.deb >/dev/null 2>&1
+  $install ./packages/fogline_*.deb ./packages/python3-fogline-lab_*.deb >/dev/null 2>&1
   useradd --create-home driver"
-inside / "dpkg -L fogline" >"$tree/files"
+inside / "dpkg -L fogline python3-fogline-lab" >"$tree/files"
 
 want=$("$build/bin/fogline" run scenario/paper.json --transport direct --json | sed -n 's/.*"digest": "\(.*\)".*/\1/p')
 [ ${#want} -eq 64 ] || fail "the build has no digest"
@@ -40,6 +40,11 @@ have=$(inside / "runuser -u driver -- unshare --net --map-root-user bash -c '
   sed -n 's/.*"digest": "\(.*\)".*/\1/p')
 [ "$have" = "$want" ] || fail "digest $have of the installed package, $want of the build"
 echo "fogline run: $have"
+have=$(inside / "runuser -u driver -- python3 -c '
+import fogline_lab as fl
+print(fl.run(\"/usr/share/fogline/scenario/paper.json\", transport=\"direct\").digest)'")
+[ "$have" = "$want" ] || fail "digest $have of the run from Python, $want of the build"
+echo "fogline_lab: $have"
 
 inside / "MANWIDTH=80 man fogline-run" >"$tree/manual" || fail "there is no man fogline-run"
 grep -q -- '--transport' "$tree/manual" || fail "man fogline-run does not name --transport"
@@ -59,7 +64,7 @@ inside / "systemd-analyze verify fogline@fusion.service" >"$tree/verified" 2>&1 
 if grep fogline "$tree/verified"; then fail "systemd-analyze has a remark"; fi
 echo "systemd-analyze verify: no remark"
 
-inside / "DEBIAN_FRONTEND=noninteractive apt-get purge -qq -y fogline >/dev/null 2>&1"
+inside / "DEBIAN_FRONTEND=noninteractive apt-get purge -qq -y fogline python3-fogline-lab >/dev/null 2>&1"
 left=""
 while read -r file; do
   [ -e "$tree$file" ] || [ -L "$tree$file" ] || continue
