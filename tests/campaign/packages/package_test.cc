@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -18,11 +19,12 @@ namespace {
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-/// Makes the packages once for all tests.
+/// Makes the packages once for all suites.
 class PackageTest : public testing::Test {
  protected:
   static void SetUpTestSuite() {
-    folder_ = new ScratchFolder;
+    if (folder_ != nullptr) return;
+    folder_ = std::make_unique<ScratchFolder>();
     const Outcome cpack = RunCommand({"cpack", "--config", FOGLINE_BINARY_DIR "/CPackConfig.cmake",
                                       "-B", folder_->path().string()},
                                      std::chrono::seconds(500));
@@ -33,14 +35,13 @@ class PackageTest : public testing::Test {
         packages_[name.substr(0, name.find('_'))] = file.path().string();
       }
     }
-    for (const char* package : {"fogline", "fogline-dev"}) {
+    for (const char* package : {"fogline", "fogline-dev", "python3-fogline-lab"}) {
       ASSERT_TRUE(packages_.contains(package)) << package;
       const Outcome unpack =
           RunCommand({"dpkg-deb", "-x", packages_[package], folder_->File(package)});
       ASSERT_EQ(unpack.code, 0) << unpack.err;
     }
   }
-  static void TearDownTestSuite() { delete folder_; }
 
   static std::string Field(const std::string& package, const std::string& field) {
     return RunCommand({"dpkg-deb", "-f", packages_.at(package), field}).out;
@@ -48,10 +49,10 @@ class PackageTest : public testing::Test {
   /// A file of the unpacked packages.
   static std::string Installed(const std::string& file) { return folder_->File(file); }
 
-  static ScratchFolder* folder_;
+  static std::unique_ptr<ScratchFolder> folder_;
   static std::map<std::string, std::string> packages_;
 };
-ScratchFolder* PackageTest::folder_ = nullptr;
+std::unique_ptr<ScratchFolder> PackageTest::folder_;
 std::map<std::string, std::string> PackageTest::packages_;
 
 TEST_F(PackageTest, LintianFindsNoErrorAndNoWarning) {
@@ -130,6 +131,41 @@ TEST_F(PackageTest, LetsAnotherProjectBuildARoleThatTakesPartInARun) {
                                   "--log", Installed("run.lcm"), "--json"});
   ASSERT_EQ(run.code, 0) << run.err << driver.Err();
   EXPECT_EQ(nlohmann::json::parse(run.out)["steps"], 60);
+  EXPECT_EQ(driver.Wait(), 0) << driver.Err();
+}
+
+TEST_F(PackageTest, HasEveryScenarioExperimentAndLaboratoryOfTheTree) {
+  const std::filesystem::path source = SourceDirectory() / "scenario";
+  const std::filesystem::path installed = Installed("fogline/usr/share/fogline/scenario");
+  int files = 0;
+  for (const auto& file : std::filesystem::recursive_directory_iterator(source)) {
+    const std::filesystem::path name = std::filesystem::relative(file.path(), source);
+    if (name.extension() != ".json" || *name.begin() == "bad") continue;
+    ++files;
+    EXPECT_EQ(Content((installed / name).string()), Content(file.path().string())) << name;
+  }
+  EXPECT_GE(files, 15);
+}
+
+TEST_F(PackageTest, LetsPythonStartARunAndBeItsDriver) {
+  const std::vector<std::string> python{
+      "env",
+      "PYTHONPATH=" + Installed("python3-fogline-lab/usr/lib/python3/dist-packages"),
+      "PATH=" + Installed("fogline/usr/bin") + ":/usr/bin:/bin",
+      "LCM_DEFAULT_URL=" + runtime::FreshMulticastUrl(),
+      "/usr/bin/python3",
+      "-B"};
+  const auto with = [&python](std::vector<std::string> more) {
+    more.insert(more.begin(), python.begin(), python.end());
+    return more;
+  };
+  Background driver(with({"tools/python/examples/driver.py"}));
+  const Outcome runs = RunCommand(with({"-c", R"(
+import fogline_lab as fl
+paper = "scenario/paper.json"
+print(fl.run(paper, external="driver").digest == fl.run(paper, transport="direct").digest))"}));
+  EXPECT_EQ(runs.code, 0) << runs.err << driver.Err();
+  EXPECT_EQ(runs.out, "True\n");
   EXPECT_EQ(driver.Wait(), 0) << driver.Err();
 }
 
