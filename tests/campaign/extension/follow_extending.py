@@ -81,7 +81,7 @@ def follow(page, tree):
             done = call("bash", "-ec", content, folder=tree)
             printed.append(done.stdout)
         else:
-            assert text.rstrip().endswith(f"Write `{named[-1]}`:"), text
+            assert words(text).endswith(f"Write `{named[-1]}`:"), text
             file.parent.mkdir(parents=True, exist_ok=True)
             file.write_text(content)
             written[file] = content
