@@ -42,7 +42,8 @@ std::string WaitingRole::Text() const {
 void WaitingRoles::Hear(Bytes bytes, TimePoint now) {
   if (LooksSigned(bytes)) bytes = WithoutSignature(bytes);  // the signature is not verified
   status_t status{};
-  if (bytes.size() > kMaxMessageBytes || Examine(bytes, status) != nullptr || status.pid <= 0) {
+  if (bytes.size() > kMaxMessageBytes || Examine(bytes, status) != nullptr || status.pid <= 0 ||
+      status.waiting_ms < 0) {
     ++undecodable_;
     return;
   }

@@ -57,7 +57,10 @@ TEST_F(WaitingRolesTest, NameARoleOfOtherTypesAndCountWhatIsNoStatus) {
               testing::EndsWith(", built with other message types"));
   roles_.Hear(std::vector<std::uint8_t>(500, 0xff), now_);
   roles_.Hear({}, now_);
-  EXPECT_EQ(roles_.undecodable(), 2);
+  status_t negative = Waiting("acc", 2);
+  negative.waiting_ms = -1;
+  Hear(negative, now_);
+  EXPECT_EQ(roles_.undecodable(), 3);
 }
 
 TEST_F(WaitingRolesTest, AreSafeToPrintAndBounded) {
