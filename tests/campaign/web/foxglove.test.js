@@ -1,9 +1,13 @@
-// The client library of Foxglove and Lichtblick reads a live run.
+// The client library of Foxglove and Lichtblick reads a live run at 100 Hz.
 import assert from "node:assert/strict";
+import {execFileSync} from "node:child_process";
 import {createRequire} from "node:module";
 import path from "node:path";
 import {test} from "node:test";
 
+import {makeDecoder} from "../../../tools/web/page/data/lcm.js";
+import {describedTypes, readEvents} from "../../unit/tools/web/page/real_log.js";
+import {freshNetwork} from "./seat.js";
 import {background, scratch, until, view} from "./window.js";
 
 const require = createRequire(import.meta.url);
@@ -11,28 +15,59 @@ const {FoxgloveClient} = require("@foxglove/ws-protocol");
 const WebSocket = require("ws");
 
 const {FOGLINE} = process.env;
+const STEPS = 1000;
+
+/** A client under this subprotocol. @return {client, channels, problems}, which grow as frames come */
+function connect(t, address, name) {
+  const socket = new WebSocket(`ws://${new URL(address).host}/ws`, [name]);
+  t.after(() => socket.terminate());
+  const client = new FoxgloveClient({ws: socket});
+  const channels = [];
+  const problems = [];
+  client.on("error", (problem) => problems.push(String(problem)));
+  client.on("status", ({message}) => problems.push(message));
+  client.on("advertise", (advertised) => channels.push(...advertised));
+  return {client, channels, problems};
+}
+
+/** A message as the protocol's JSON has it: long integers are texts, other numbers than finite ones null. */
+const asJson = (message) => JSON.stringify(message, (key, value) => (
+  typeof value === "bigint" ? String(value) : value));
 
 for (const name of ["foxglove.websocket.v1", "foxglove.sdk.v1"]) {
-  test(`${name}: a client subscribes to a channel and gets its messages`, async (t) => {
-    const network = `udpm://239.255.76.67:${20000 + Math.floor(Math.random() * 20000)}?ttl=0`;
-    const address = new URL(await view(t, ["--lcm-url", network]));
-    const socket = new WebSocket(`ws://${address.host}/ws`, [name]);
-    t.after(() => socket.terminate());
-    const client = new FoxgloveClient({ws: socket});
-    const channels = [];
-    const messages = [];
-    const problems = [];
-    client.on("error", (problem) => problems.push(String(problem)));
-    client.on("advertise", (advertised) => channels.push(...advertised));
-    client.on("message", ({data}) => messages.push(JSON.parse(new TextDecoder().decode(data))));
-    const truth = await until(() => channels.find(({topic}) => topic === "TRUTH"), "the channel TRUTH");
-    assert.equal(truth.encoding, "json");
-    assert.equal(JSON.parse(truth.schema).type, "object");
-    client.subscribe(truth.id);
-    background(t, FOGLINE, ["run", "scenario/dense_fog.json", "--lcm-url", network, "--quiet",
-                            "--pace", "2", "--log", path.join(scratch(t), "run.lcm")]);
-    await until(() => messages.length >= 20, "20 messages");
-    assert.ok(messages.every(({host_gap_m: gap_m}) => gap_m > 30 && gap_m < 36));
+  test(`${name}: a client lists all channels, and gets every message of a run at 100 Hz`, async (t) => {
+    const network = freshNetwork();
+    const {client, channels, problems} = connect(t, await view(t, ["--lcm-url", network]), name);
+    const graph = JSON.parse(execFileSync(FOGLINE, ["graph", "--json"], {encoding: "utf8"}));
+    await until(() => channels.length >= graph.channels.length, "the channels");
+    assert.deepEqual(channels.map(({topic}) => topic), graph.channels.map((channel) => channel.name));
+    const got = new Map(channels.map(({topic}) => [topic, new Set()]));
+    const topics = new Map();  // by the number of the subscription
+    for (const {id, topic, encoding, schema} of channels) {
+      assert.equal(encoding, "json");
+      assert.equal(JSON.parse(schema).type, "object");
+      topics.set(client.subscribe(id), topic);
+    }
+    client.on("message", ({subscriptionId, data}) => {
+      got.get(topics.get(subscriptionId)).add(asJson(JSON.parse(new TextDecoder().decode(data))));
+    });
+    const log = path.join(scratch(t), "run.lcm");
+    const run = background(t, FOGLINE, ["run", "scenario/dense_fog.json", "--lcm-url", network, "--quiet", "--realtime",
+                                        "--set", "/step_s=0.01", "--set", `/steps=${STEPS}`, "--log", log]);
+    assert.equal(await run.ended, 0, run.said);
+
+    // The log has the messages of each step as they were sent.
+    const types = describedTypes();
+    const decoders = new Map(graph.channels.filter((channel) => channel.per_step)
+      .map((channel) => [channel.name, makeDecoder(types, channel.type)]));
+    const logged = readEvents(log).filter(({channel}) => decoders.has(channel));
+    assert.ok(logged.length > 0.9 * decoders.size * STEPS, `the log has ${logged.length} messages`);
+    for (const {channel, bytes} of logged) {
+      const message = asJson(decoders.get(channel)(bytes));
+      await until(() => got.get(channel).has(message), `a message of ${channel}: ${message}`);
+    }
+    for (const channel of ["RUN", "STATUS"]) assert.ok(got.get(channel).size > 0, channel);
+    t.diagnostic(`${logged.length} messages, and the client has each`);
     assert.deepEqual(problems, []);
   });
 }
