@@ -1,0 +1,118 @@
+// How fast the pages are: frames, and the times until a picture shows what has come. The bars are the
+// goals of Fogline for a machine that does nothing else.
+import assert from "node:assert/strict";
+import path from "node:path";
+import {test} from "node:test";
+
+import {meetsBar} from "./load.js";
+import {begin, drives, freshNetwork, seat} from "./seat.js";
+import {background, browser, open, recordedRun, scratch, shows, view} from "./window.js";
+
+const {FOGLINE} = process.env;
+
+const rounded = (value) => Number(value.toFixed(1));
+
+/** The median, the 95th percentile and the longest of some times. */
+function summary(times) {
+  const sorted = [...times].sort((a, b) => a - b);
+  const at = (share) => rounded(sorted[Math.max(0, Math.ceil(share * sorted.length) - 1)]);
+  return {n: sorted.length, median_ms: at(0.5), p95_ms: at(0.95), longest_ms: at(1)};
+}
+
+test("at 100 Hz a page shows 30 frames a second, and a message at most 150 ms after it came", async (t) => {
+  const network = freshNetwork();
+  const page = await open(t, await browser(t), await view(t, ["--lcm-url", network]));
+  background(t, FOGLINE, ["run", "scenario/dense_fog.json", "--lcm-url", network, "--quiet", "--realtime", "--set",
+                          "/step_s=0.01", "--set", "/steps=20000", "--log", path.join(scratch(t), "run.lcm")]);
+  await page.waitForFunction(() => Number(document.body.dataset.step) >= 300);
+  await meetsBar(t, async () => {
+    const {frames_per_s, waits} = await page.evaluate(async () => {
+      const {store} = foglinePage;
+      let oldest_ms = null;  // when the first message came that no picture has shown yet
+      store.add = (message) => {
+        oldest_ms ??= message.arrived_ms;
+        Object.getPrototypeOf(store).add.call(store, message);
+      };
+      const waits = [];
+      const {frames} = foglinePage;
+      const began = performance.now();
+      while (performance.now() - began < 5000) {
+        await new Promise(requestAnimationFrame);
+        const isNewest = document.body.dataset.step === String(store.lastStep);
+        if (oldest_ms === null || !isNewest) continue;
+        waits.push(Date.now() - oldest_ms);
+        oldest_ms = null;
+      }
+      delete store.add;
+      return {waits, frames_per_s: (1000 * (foglinePage.frames - frames)) / (performance.now() - began)};
+    });
+    assert.ok(waits.length > 5, `${waits.length} pictures`);
+    return {frames_per_s: rounded(frames_per_s), ...summary(waits)};
+  }, ({frames_per_s, p95_ms}) => [frames_per_s < 30 && "frames", p95_ms > 150 && "waits"].filter(Boolean));
+});
+
+test("a scrub through 7000 steps answers within 50 ms", async (t) => {
+  const log = recordedRun(scratch(t), ["/steps=7000", "/lead/profile=sinusoid"]);
+  const page = await open(t, await browser(t), await view(t, [log]));
+  await page.waitForFunction(() => foglinePage.why.doc.length > 0);
+  let begin = 0;
+  await meetsBar(t, async () => {
+    begin += 1;
+    return summary(await page.evaluate(async (first) => {
+      const slider = document.getElementById("time");
+      const took = [];
+      for (let i = first; i < first + 60; ++i) {
+        const step = (i * 2741) % 7000;  // far from the one before, and mostly not fetched yet
+        const began = performance.now();
+        slider.value = String(step);
+        slider.dispatchEvent(new Event("input"));
+        while (document.body.dataset.step !== String(step)) await new Promise(requestAnimationFrame);
+        took.push(performance.now() - began);
+        await new Promise((resolve) => { setTimeout(resolve, 30); });
+      }
+      return took;
+    }, 60 * begin));
+  }, ({p95_ms}) => (p95_ms > 50 ? ["p95_ms"] : []));
+});
+
+test("the page of a log of a million messages is there within 3 s", async (t) => {
+  const log = recordedRun(scratch(t), ["/steps=111200", "/lead/profile=sinusoid"]);
+  const started = await browser(t);
+  await meetsBar(t, async () => {
+    const began = performance.now();
+    const page = await open(t, started, await view(t, [log]));
+    await shows(page, 0);
+    await page.waitForFunction(() => foglinePage.curves.charts.length > 0 &&
+      foglinePage.curves.charts.every(({chart}) => chart.data[1].length > 0));
+    const opened_ms = rounded(performance.now() - began);
+    await page.close();
+    return {opened_ms};
+  }, ({opened_ms}) => (opened_ms > 3000 ? ["opened_ms"] : []));
+});
+
+// What the page measures, and sends into the log of the run: see tools/web/page/drive/latency.js.
+test("from an input to the next frame that shows it the seat takes at most 50 ms", async (t) => {
+  const network = freshNetwork();
+  const {drive} = await seat(t, network);
+  const page = await open(t, await browser(t), drive);
+  background(t, FOGLINE, ["run", "scenario/drive.json", "--lcm-url", network, "--quiet", "--realtime", "--set",
+                          "/person/drives=true", "--set", "/steps=20000", "--log", path.join(scratch(t), "run.lcm")]);
+  await begin(page);
+  await drives(page, true);
+  await page.waitForFunction(() => Number(document.body.dataset.step) > 100);
+  await meetsBar(t, async () => {
+    const before = await page.evaluate(() => {
+      foglineDrive.latency.values = [];
+      return foglineDrive.latency.count;
+    });
+    for (let i = 0; i < 60; ++i) {
+      await page.keyboard.down("ArrowDown");
+      await page.waitForTimeout(70);
+      await page.keyboard.up("ArrowDown");
+      await page.waitForTimeout(70);
+    }
+    const {values, count} = await page.evaluate(() => foglineDrive.latency);
+    assert.ok(count - before >= 50, `${count - before} measurements`);
+    return summary(values);
+  }, ({p95_ms}) => (p95_ms > 50 ? ["p95_ms"] : []));
+});
