@@ -77,6 +77,16 @@ function keys(page) {
 const wheel = (page) => (wanted) => setPad(page, {
   axes: [1 - 2 * Math.min(1, Math.max(0, (wanted + 0.5) / 3)), 1 - 2 * Math.min(1, Math.max(0, -wanted / 8))]});
 
+/** Plugs a calibrated wheel in. */
+async function plugIn(page) {
+  await page.evaluate((calibration) => {
+    localStorage.setItem("fogline.drive.calibration.Test Wheel", JSON.stringify(calibration));
+    localStorage.setItem("fogline.drive.device", "Test Wheel");
+  }, WHEEL);
+  await setPad(page);
+  await page.waitForFunction(() => foglineDrive.person.device.id === "Test Wheel");
+}
+
 /** The decoded messages of a channel in a log. */
 function messagesOf(log, channel, type) {
   const decode = makeDecoder(describedTypes(), type);
@@ -98,14 +108,7 @@ for (const [device, make] of [["the keys", keys], ["a wheel", wheel]]) {
   test(`a person takes over on request, brakes behind the leader, and gives back (${device})`, async (t) => {
     const isWheel = make === wheel;
     const {page, log, run} = await drive(t, {}, {prepare: isWheel ? withFakePads : null});
-    if (isWheel) {
-      await page.evaluate((calibration) => {
-        localStorage.setItem("fogline.drive.calibration.Test Wheel", JSON.stringify(calibration));
-        localStorage.setItem("fogline.drive.device", "Test Wheel");
-      }, WHEEL);
-      await setPad(page);
-      await page.waitForFunction(() => foglineDrive.person.device.id === "Test Wheel");
-    }
+    if (isWheel) await plugIn(page);
     await begin(page);
     await drives(page, true);
     await says(page, "The automation drives");
@@ -144,7 +147,7 @@ for (const [device, make] of [["the keys", keys], ["a wheel", wheel]]) {
     t.diagnostic(`${device}: ${latencies.length} latencies, median ${percentile(latencies, 0.5).toFixed(1)} ms, ` +
                  `95th percentile ${late.toFixed(1)} ms`);
     assert.ok(latencies.length >= 10, `${latencies.length} latencies`);
-    // The goal is 50 ms. A machine with other load takes longer, so the test allows 200 ms.
+    // The goal of 50 ms has a test of its own, speed.test.js, which knows what other processes do.
     assert.ok(late < 200, `95th percentile of the latency: ${late} ms`);
     // The inputs in the log give the same commands again.
     execFileSync(FOGLINE, ["replay", log, "--role", "driver"], {stdio: "pipe"});
@@ -152,12 +155,15 @@ for (const [device, make] of [["the keys", keys], ["a wheel", wheel]]) {
 }
 
 /** The person drives; then something happens, and the run notices that no person is there. */
-async function leavesTheCar(t, happens) {
-  const {page, log, run} = await drive(t, {"/arbitrator/threshold": 0, "/steps": 600});
+async function leavesTheCar(t, happens, {isWheel = false} = {}) {
+  const {page, log, run} = await drive(t, {"/arbitrator/threshold": 0, "/steps": 600},
+                                       {prepare: isWheel ? withFakePads : null});
+  if (isWheel) await plugIn(page);
   await begin(page);
   await drives(page, true);  // before that, the page hears no key
   await says(page, "Take over");
-  await page.keyboard.press("t");
+  if (isWheel) await setPad(page, {down: [0]});
+  else await page.keyboard.press("t");
   await says(page, "You drive");
   await happens(page);
   await run.ended;
@@ -179,6 +185,10 @@ test("when the tab is hidden, the fallbacks stop the car", async (t) => {
 
 test("when the page is closed, the fallbacks stop the car", async (t) => {
   await leavesTheCar(t, (page) => page.close());
+});
+
+test("when the wheel is unplugged, the fallbacks stop the car", async (t) => {
+  await leavesTheCar(t, (page) => setPad(page, {connected: false}), {isWheel: true});
 });
 
 test("when the page is silent for 300 ms, the fallbacks stop the car", async (t) => {
