@@ -149,7 +149,9 @@ async function attempt(make) {
 for (const name of process.argv.slice(2)) {
   const file = path.join(root, `docs/${name}.png`);
   await attempt(async (t) => PICTURES[name](t, await browser(t), file));
-  execFileSync("convert", [file, "+dither", "-colors", String(COLOURS), "-define", "png:compression-level=9", file]);
+  // Without the time of writing, so that an equal picture has equal bytes.
+  execFileSync("convert", [file, "-strip", "+dither", "-colors", String(COLOURS), "-define", "png:compression-level=9",
+                           file]);
   const {size} = statSync(file);
   console.log(`docs/${name}.png: ${Math.round(size / 1000)} kB`);
   if (size > MOST_BYTES) throw new Error(`docs/${name}.png has more than ${MOST_BYTES / 1000} kB`);
