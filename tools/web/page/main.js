@@ -305,16 +305,18 @@ class Page {
       this.frame = frame;
       this.frameStep = step;
     }
-    const time = store.timeOf(step);
+    // Until the messages of a step have come, everything but the time bar shows the step before.
+    const shown = this.frame ? this.frameStep : step;
+    const time = store.timeOf(shown);
     const {modes, lambdas} = this.why;
-    const moment = {frame: this.frame, step, time, run, theme, length_m: this.length_m, isLive: this.isLive,
+    const moment = {frame: this.frame, step: shown, time, run, theme, length_m: this.length_m, isLive: this.isLive,
                     ahead_s: frame ? this.aheadOf(step) : 0, moves: clock.state !== "paused"};
     const {rest_ms} = this.budget.now;
     moment.side = this.now.draw(moment, modes, lambdas);
     this.scene.draw(moment, this.budget.now);
     this.why.draw(moment, rest_ms);
     this.curves.draw(moment, 2 * rest_ms);
-    this.timebar.draw({clock, store, step, time, run, isLive: this.isLive}, modes, lambdas,
+    this.timebar.draw({clock, store, step, time: store.timeOf(step), run, isLive: this.isLive}, modes, lambdas,
                       this.events, theme);
     this.timebar.drawEvents(this.events, step, run);
     this.drawHealth();
