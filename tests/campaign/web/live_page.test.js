@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import path from "node:path";
 import {test} from "node:test";
 
-import {background, breaches, browser, median, open, scratch, until, view} from "./window.js";
+import {background, breaches, browser, open, scratch, until, view} from "./window.js";
 
 const {FOGLINE} = process.env;
 const FOGLINE_RELAY = path.join(path.dirname(FOGLINE), "fogline-relay");
@@ -59,50 +59,23 @@ test("a page that opens late has the history of the run", async (t) => {
   assert.ok(await late.evaluate(() => foglinePage.curves.charts[0].chart.data[0].length) > 20);
 });
 
-/** Frames per second that a page gets when it only counts them. */
-function framesPerSecond(page, seconds) {
-  return page.evaluate(async (limit_ms) => {
-    const began = performance.now();
-    let frames = 0;
-    for (; performance.now() - began < limit_ms; ++frames) await new Promise(requestAnimationFrame);
-    return (1000 * frames) / (performance.now() - began);
-  }, 1000 * seconds);
-}
-
-// The goal is 30 frames a second. The rate of a machine depends on its graphics processor and its
-// load. So the test prints the rate beside that of an empty page, and demands only that frames go
-// on, and that each shows the newest step.
 test("at 100 Hz each frame shows the newest step that has come", async (t) => {
   const network = url();
   const started = await browser(t);
   const address = await view(t, ["--lcm-url", network]);
   run(t, network, "--realtime", "--set", "/step_s=0.01", "--set", "/steps=6000");
-  const empty = await started.newPage();
-  const reachable = await framesPerSecond(empty, 3);
-  await empty.close();
   const page = await open(t, started, address);
   await page.waitForFunction(() => Number(document.body.dataset.step) >= 300);
-  const found = await page.evaluate(async () => {
-    const {frames} = foglinePage;
-    const began = performance.now();
-    const ages = [];
-    const behind = [];
-    while (performance.now() - began < 5000) {
+  const behind = await page.evaluate(async () => {
+    const found = [];
+    for (const began = performance.now(); performance.now() - began < 5000;) {
       await new Promise(requestAnimationFrame);
-      ages.push(Date.now() - foglinePage.store.arrived_ms);
-      behind.push(foglinePage.store.lastStep - Number(document.body.dataset.step));
+      found.push(foglinePage.store.lastStep - Number(document.body.dataset.step));
     }
-    return {ages, behind, level: foglinePage.budget.level,
-            perSecond: (1000 * (foglinePage.frames - frames)) / (performance.now() - began)};
+    return found;
   });
-  found.ages.sort((a, b) => a - b);
-  t.diagnostic("figure: " + JSON.stringify({
-    frames_per_s: Number(found.perSecond.toFixed(1)), empty_page_per_s: Number(reachable.toFixed(1)),
-    ratio: Number((found.perSecond / reachable).toFixed(2)), message_age_ms: {
-      p50: median(found.ages), p95: found.ages[Math.floor(0.95 * found.ages.length)]},
-    budget_level: found.level}));
-  assert.ok(found.behind.length > 5, "frames go on");
-  assert.deepEqual(new Set(found.behind), new Set([0]));
+  assert.ok(behind.length > 5, "frames go on");
+  assert.deepEqual(new Set(behind), new Set([0]));
 });
 
 test("over tcpq the page does not say that nothing was lost", async (t) => {

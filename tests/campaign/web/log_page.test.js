@@ -2,8 +2,7 @@
 import assert from "node:assert/strict";
 import {test} from "node:test";
 
-import {breaches, browser, goTo, median, numbersOf, open, PHONE, recordedRun, scratch, shows, view}
-  from "./window.js";
+import {breaches, browser, goTo, numbersOf, open, PHONE, recordedRun, scratch, shows, view} from "./window.js";
 
 const text = (page, selector) => page.locator(selector).innerText();
 
@@ -183,34 +182,22 @@ test("curves: type a field, zoom by a drag, back by a double click, choose a mom
   assert.deepEqual(names, ["TRUTH.host_gap_m", "LIDAR.range_m", "TRUTH.host_speed_mps", "HOST_COMMAND.doc"]);
 });
 
-// A frame takes longer on a busy machine without a graphics processor. So the promise is in frames,
-// and the test prints the times.
-test("a scrub through 7000 steps answers within a few frames", async (t) => {
-  const log = recordedRun(scratch(t), ["/steps=7000", "/lead/profile=sinusoid"]);
+test("until the messages of a step have come, all parts show the step before", async (t) => {
+  const log = recordedRun(scratch(t));
   const page = await open(t, await browser(t), await view(t, [log]));
-  await page.waitForFunction(() => foglinePage.why.doc.length > 0);
-  const answers = await page.evaluate(async () => {
-    const slider = document.getElementById("time");
-    const took = [];
-    for (let i = 1; i <= 60; ++i) {
-      const step = (i * 2741) % 7000;  // far from the one before, and mostly not fetched yet
-      const began = performance.now();
-      slider.value = String(step);
-      slider.dispatchEvent(new Event("input"));
-      let frames = 0;
-      for (; document.body.dataset.step !== String(step); ++frames) await new Promise(requestAnimationFrame);
-      took.push({ms: performance.now() - began, frames});
-      await new Promise((resolve) => { setTimeout(resolve, 30); });
-    }
-    return took;
+  await goTo(page, 300);
+  const meanwhile = await page.evaluate(async () => {
+    const {store, why, curves} = foglinePage;
+    store.frame = () => null;  // they do not come
+    foglinePage.goTo(50);
+    for (let i = 0; i < 3; ++i) await new Promise(requestAnimationFrame);
+    delete store.frame;
+    return {wanted: foglinePage.step, shown: document.body.dataset.step, why_s: why.moment.time,
+            curves_s: curves.moment.time, slider: document.getElementById("time").value};
   });
-  const times = answers.map(({ms}) => ms).sort((a, b) => a - b);
-  const frames = median(answers.map((answer) => answer.frames));
-  t.diagnostic(`scrub of 7000 steps: median ${median(times).toFixed(1)} ms and ${frames} frames, ` +
-               `95th percentile ${times[56].toFixed(1)} ms, longest ${times[59].toFixed(1)} ms; ` +
-               "the goal is 50 ms");
-  // One asks, one or two wait for the answer, one draws it.
-  assert.ok(frames <= 5, `${frames} frames`);
+  assert.deepEqual(meanwhile, {wanted: 50, shown: "300", why_s: 30, curves_s: 30, slider: "50"});
+  await shows(page, 50);
+  assert.equal(await page.evaluate(() => foglinePage.curves.moment.time), 5);
 });
 
 for (const colorScheme of ["light", "dark"]) {

@@ -173,5 +173,3 @@ export async function breaches(page) {
     return violations.map(({id, nodes}) => `${id}: ${nodes.map(({html}) => html).join(" ")}`);
   });
 }
-
-export const median = (values) => [...values].sort((a, b) => a - b)[values.length >> 1];
