@@ -153,17 +153,22 @@ class Log:
     @property
     def metrics(self) -> dict[str, Any]:
         """The measures of the run, as `fogline metrics` computes them from the log."""
-        return program.call_json("metrics", self.path)[0]["metrics"]
+        return self._ask("metrics")["metrics"]
 
     @property
     def events(self) -> list[dict[str, Any]]:
         """The events of the run: step, time_s, event, from, to (`fogline events`)."""
-        return program.call_json("events", self.path)[0]["events"]
+        return self._ask("events")["events"]
 
     @property
     def digest(self) -> str:
         """The digest of the run. Equal digests mean equal runs (`fogline digest`)."""
-        return program.call_json("digest", self.path)[0]["digest"]
+        return self._ask("digest")["digest"]
+
+    def _ask(self, verb: str) -> dict[str, Any]:
+        """What `fogline VERB` says of this run."""
+        chosen = ["--run", str(self.run_id)] if self.run_id else []
+        return program.call_json(verb, self.path, *chosen)[0]
 
     # ---- for fogline_lab.frames ------------------------------------------------------------------
 

@@ -78,7 +78,7 @@ class LogTest(unittest.TestCase):
 
     def test_a_log_of_two_runs_is_read_run_by_run(self):
         other = f"{self.folder.name}/other.lcm"
-        fl.run(PAPER, set={"/steps": 15}, transport="direct", log=other)
+        second_run = fl.run(PAPER, set={"/steps": 15}, transport="direct", log=other)
         both = self.write("both.lcm", [pathlib.Path(self.log).read_bytes(),
                                        pathlib.Path(other).read_bytes()])
         first = fl.read_log(both)
@@ -87,6 +87,10 @@ class LogTest(unittest.TestCase):
         second = fl.read_log(both, run=first.runs[1])
         self.assertEqual(len(list(second.messages("TRACK"))), 15)
         self.assertEqual(second.scenario["steps"], 15)
+        alone = fl.read_log(other)
+        self.assertEqual(second.metrics, second_run.metrics)
+        self.assertEqual(second.events, alone.events)
+        self.assertNotEqual(second.metrics, first.metrics)
         with self.assertRaisesRegex(fl.LogError, "no run 5; its runs: "):
             fl.read_log(both, run=5)
 
