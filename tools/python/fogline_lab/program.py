@@ -81,7 +81,9 @@ def _call_with_terminal(command: list[str], progress: Any) -> tuple[str, str, in
     finally:
         os.close(its)
     pieces: list[str] = []
-    listener = threading.Thread(target=_listen, args=(ours, progress, pieces), daemon=True)
+    failures: list[BaseException] = []
+    listener = threading.Thread(target=_listen, args=(ours, progress, pieces, failures),
+                                daemon=True)
     listener.start()
     try:
         out, _ = process.communicate()
@@ -92,11 +94,14 @@ def _call_with_terminal(command: list[str], progress: Any) -> tuple[str, str, in
     finally:
         listener.join()
         os.close(ours)
+    if failures:
+        raise failures[0]
     return out, "".join(pieces), process.returncode
 
 
-def _listen(terminal: int, progress: Any, lines: list[str]) -> None:
-    """Shows or reports the bars that come from a terminal, and keeps all other text."""
+def _listen(terminal: int, progress: Any, lines: list[str], failures: list[BaseException]) -> None:
+    """Shows or reports the bars that come from a terminal, and keeps all other text. It reads on
+    after an exception of `progress`: the program would wait for ever at a full terminal."""
     shown = False
     while True:
         try:
@@ -111,8 +116,13 @@ def _listen(terminal: int, progress: Any, lines: list[str]) -> None:
                 continue
             if not bar:
                 lines.append(part.replace("\r\n", "\n"))
+            elif failures:
+                continue
             elif callable(progress):
-                progress(int(bar[1]), int(bar[2]))
+                try:
+                    progress(int(bar[1]), int(bar[2]))
+                except BaseException as error:  # raised by the thread that called the program
+                    failures.append(error)
             else:
                 shown = True
                 print(f"\r{part}", end="", file=sys.stderr, flush=True)
@@ -190,7 +200,7 @@ def run(scenario: str | os.PathLike[str], set: Mapping[str, Any] | None = None,
 
     set: fields of the scenario to change: {"/arbitrator/threshold": 0.8}.
     progress: True shows a bar, False shows none, a function is called with done and total steps;
-        default: a bar if a person sees stderr.
+        default: a bar if a person sees stderr. What the function raises is raised after the run.
     options: the options of `fogline run`, with _ for -: seed=7, transport="direct",
         log="run.lcm", external="driver", lcm_url="udpm://...", realtime=True.
 

@@ -53,6 +53,16 @@ class ProgramTest(unittest.TestCase):
         self.assertEqual({total for _, total in told}, {26})
         self.assertEqual([done for done, _ in told], sorted(done for done, _ in told))
 
+    def test_an_exception_of_the_progress_function_is_raised_after_the_run(self):
+        def fail(done, total):
+            raise KeyError("no bar")
+
+        with tempfile.TemporaryDirectory() as folder:
+            log = f"{folder}/run.lcm"
+            with self.assertRaisesRegex(KeyError, "no bar"):
+                fl.run(PAPER, set={"/steps": 26}, transport="memq", pace=1, log=log, progress=fail)
+            self.assertEqual(len(list(fl.read_log(log).messages("TRUTH"))), 26)
+
     def test_seeds_without_an_order_are_refused(self):
         for seeds in ([1, 2], range(1, 10, 2), range(5, 5)):
             with self.assertRaises(ValueError):
