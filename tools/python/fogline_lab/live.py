@@ -91,16 +91,17 @@ class Live:
 
     def __iter__(self) -> Iterator[Heard]:
         last = time.monotonic()
-        while self._base is not None:
-            if self._heard:
-                last = time.monotonic()
+        while True:
             while self._heard:
                 yield self._heard.popleft()
-            left = None if self._timeout_s is None else self._timeout_s + last - time.monotonic()
-            if left is not None and left <= 0:
+                last = time.monotonic()  # the time that the caller takes is no silence
+            if self._base is None:
                 return
-            if self._base is not None:
-                self._wait(left)
+            left = None if self._timeout_s is None else self._timeout_s + last - time.monotonic()
+            self._wait(left if left is None else max(0.0, left))
+            # What has come while this process got no processor time is there, too.
+            if left is not None and left <= 0 and not self._heard:
+                return
 
     # ----------------------------------------------------------------------------------------------
 

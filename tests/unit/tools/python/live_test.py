@@ -1,0 +1,49 @@
+"""Live yields what a network sends."""
+
+import socket
+import struct
+import time
+import unittest
+
+import fogline_lab as fl
+
+GROUP = "239.255.76.68"
+
+
+class LiveTest(unittest.TestCase):
+    def setUp(self):
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as free:
+            free.bind(("127.0.0.1", 0))
+            self.port = free.getsockname()[1]
+        self.sender = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        self.sender.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_TTL, 0)
+        self.sender.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_IF,
+                               socket.inet_aton("127.0.0.1"))
+        self.number = 0
+
+    def tearDown(self):
+        self.sender.close()
+
+    def send(self, range_m):
+        self.number += 1
+        head = struct.pack(">II", 0x4C433032, self.number) + b"LIDAR\0"
+        message = fl.lidar_t(valid=True, range_m=range_m).encode()
+        self.sender.sendto(head + message, (GROUP, self.port))
+
+    def test_the_time_that_the_caller_takes_is_no_silence(self):
+        timeout_s = 0.1
+        heard = []
+        with fl.Live(f"udpm://{GROUP}:{self.port}?ttl=0", timeout_s=timeout_s) as live:
+            self.send(1)
+            for channel, message in live:
+                heard.append((channel, message.range_m))
+                if len(heard) == 3:
+                    break
+                self.send(len(heard) + 1)
+                # The test is about this time: it is longer than the limit of silence.
+                time.sleep(2 * timeout_s)
+        self.assertEqual(heard, [("LIDAR", 1), ("LIDAR", 2), ("LIDAR", 3)])
+
+
+if __name__ == "__main__":
+    unittest.main()
