@@ -1,7 +1,9 @@
 #include "tools/record/log_files.h"
 
 #include <algorithm>
+#include <charconv>
 #include <stdexcept>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
@@ -19,6 +21,25 @@ LogFiles::LogFiles(std::filesystem::path file, const Rotation& rotation, TimePoi
 std::filesystem::path LogFiles::NameOf(const std::filesystem::path& file, std::size_t number) {
   return file.parent_path() /
          fmt::format("{}-{:03}{}", file.stem().string(), number, file.extension().string());
+}
+
+std::vector<std::filesystem::path> LogFiles::InTheWay(const std::filesystem::path& file) {
+  const std::string begin = file.stem().string() + '-';
+  std::vector<std::filesystem::path> found;
+  std::error_code ignored;
+  const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : ".";
+  for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
+    const std::string name = entry.path().stem().string();
+    const std::string_view rest =
+        std::string_view(name).substr(std::min(begin.size(), name.size()));
+    std::size_t number = 0;
+    const auto [end, error] = std::from_chars(rest.data(), rest.data() + rest.size(), number);
+    if (error != std::errc() || end != rest.data() + rest.size()) continue;
+    const std::filesystem::path one = NameOf(file, number);
+    if (one.filename() == entry.path().filename()) found.push_back(one);
+  }
+  std::ranges::sort(found);
+  return found;
 }
 
 void LogFiles::Begin(TimePoint now) {

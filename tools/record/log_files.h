@@ -35,8 +35,10 @@ class LogFiles {
   const std::vector<std::filesystem::path>& files() const { return files_; }
   std::int64_t bytes() const { return earlier_bytes_ + (log_ ? log_->size() : 0); }
 
-  /// The name of a file of a recording.
+  /// The name of a file of a recording with a rotation.
   static std::filesystem::path NameOf(const std::filesystem::path& file, std::size_t number);
+  /// The existing files that a recording with a rotation would replace sooner or later.
+  static std::vector<std::filesystem::path> InTheWay(const std::filesystem::path& file);
 
  private:
   void Begin(TimePoint now);

@@ -10,6 +10,7 @@
 
 #include <gmock/gmock.h>
 
+#include "services/runtime/wire/message_signer.h"
 #include "tests/integration/record/recorder_process.h"
 #include "tests/support/file_size_limit.h"
 #include "tests/support/machine.h"
@@ -154,6 +155,24 @@ TEST_F(RecordTest, BeginsANewFileAtASize) {
   EXPECT_TRUE(recorded == sent);
 }
 
+TEST_F(RecordTest, ReplacesNoFileOfAnEarlierRotationWithoutForce) {
+  const std::string later = folder_.File("all-002.lcm");
+  const std::string other = folder_.File("all-2.lcm");  // no name of a rotation
+  { const RecordProcess record(bus_, later); }
+  std::ofstream(other) << "text";
+  const std::string before = Content(later);
+  std::vector<std::string> command{Program("fogline"), "record", log_,    "--lcm-url", bus_.url(),
+                                   "--rotate-mb",      "0.01",   "--for", "0.1"};
+  const Outcome outcome = RunCommand(command);
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("all-002.lcm: error: LOG: the file exists; --force"));
+  EXPECT_FALSE(std::filesystem::exists(folder_.File("all-000.lcm")));
+  command.emplace_back("--force");
+  EXPECT_EQ(RunCommand(command).code, 0);
+  EXPECT_TRUE(std::filesystem::exists(folder_.File("all-000.lcm")));
+  EXPECT_EQ(Content(other), "text");
+}
+
 TEST_F(RecordTest, EndsWithOneErrorAndAValidLogIfTheDiskIsFull) {
   std::unique_ptr<RecordProcess> record;
   {
@@ -187,6 +206,23 @@ TEST_F(RecordTest, OfARunIsALogOfThisRun) {
   const Outcome digest = RunCommand({Program("fogline"), "digest", log_});
   EXPECT_EQ(digest.code, 0) << digest.err;
   EXPECT_EQ(digest.out.substr(0, digest.out.find(' ')), json::parse(run.out)["digest"]);
+}
+
+TEST_F(RecordTest, OfASignedRunIsExportedLikeAnyOther) {
+  const std::string key = folder_.File("key");
+  runtime::SigningKey::Create(key);
+  RecordProcess record(bus_, log_);
+  const Outcome run =
+      RunCommand({Program("fogline"), "run", "scenario/paper.json", "--quiet", "--set",
+                  "/steps=100", "--log", folder_.File("own.lcm"), "--lcm-url", bus_.url(), "--key",
+                  key});
+  ASSERT_EQ(run.code, 0) << run.err;
+  ASSERT_TRUE(record.CatchUp("END"));
+  record.End();
+  const Outcome mcap = RunCommand(
+      {Program("fogline"), "export", log_, "--json", "--mcap", folder_.File("run.mcap")});
+  ASSERT_EQ(mcap.code, 0) << mcap.err;
+  EXPECT_EQ(json::parse(mcap.out)["steps"], 100);
 }
 
 TEST_F(RecordTest, FollowsTheRunThatIsAnnounced) {

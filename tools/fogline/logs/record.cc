@@ -2,6 +2,7 @@
 #include <memory>
 #include <regex>
 #include <string>
+#include <vector>
 
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
@@ -23,9 +24,10 @@ constexpr const char* kRecordExplanation =
     R"(Writes every message on the network as lcm-logger does, but its queue has no limit. So a burst of
 messages or a slow disk loses nothing. Ctrl-C ends the recording with a whole log and a summary.
 The summary counts, for each sender, the messages that are missing, by LCM's own numbers (udpm
-only). With a rotation the files are LOG-000.lcm, LOG-001.lcm and so on. Without --lcm-url it also
-records the newest run that is announced on this machine. A full disk ends the recording (exit
-code 3); the log then ends with a whole message.
+only). With a rotation the files are LOG-000.lcm, LOG-001.lcm and so on. If one of these files
+exists, the recording does not begin without --force. Without --lcm-url it also records the newest
+run that is announced on this machine. A full disk ends the recording (exit code 3); the log then
+ends with a whole message.
 
 Examples:
   fogline record logs/all.lcm
@@ -102,10 +104,13 @@ record::RecordingOptions OptionsOf(const RecordArguments& arguments) {
 
 int RunRecord(const RecordArguments& arguments) {
   const record::RecordingOptions options = OptionsOf(arguments);
-  const std::filesystem::path first =
-      options.rotation.Any() ? record::LogFiles::NameOf(arguments.log, 0) : arguments.log;
-  RequireFolderOf(first, "LOG");
-  RefuseToReplace(first, "LOG", arguments.force, "event log", log::IsEventLogOrEmpty);
+  RequireFolderOf(arguments.log, "LOG");
+  const std::vector<std::filesystem::path> replaced =
+      options.rotation.Any() ? record::LogFiles::InTheWay(arguments.log)
+                             : std::vector{arguments.log};
+  for (const std::filesystem::path& file : replaced) {
+    RefuseToReplace(file, "LOG", arguments.force, "event log", log::IsEventLogOrEmpty);
+  }
   WatchInterrupts();
   record::Recording recording(options);
   recording.Run();
