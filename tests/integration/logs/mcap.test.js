@@ -49,8 +49,8 @@ async function readable(name) {
   };
 }
 
-async function indexed(t) {
-  const source = await readable(file);
+async function indexed(t, name = file) {
+  const source = await readable(name);
   t.after(() => source.close());
   return McapIndexedReader.Initialize({readable: source, decompressHandlers});
 }
@@ -92,8 +92,8 @@ function isSame(value, text) {
   return Object.is(Number(value), Number(text));
 }
 
-test("every number of every channel is that of the CSV export", async (t) => {
-  const reader = await indexed(t);
+/** Compares an exported log with its tables, which are this many. */
+async function compareWithCsv(reader, csv, count) {
   const decoders = new Map([...reader.schemasById.values()].map((schema) => [schema.id, decoderOf(schema)]));
   const rows = new Map();
   for await (const message of reader.readMessages()) {
@@ -106,11 +106,11 @@ test("every number of every channel is that of the CSV export", async (t) => {
     if (!rows.has(channel.topic)) rows.set(channel.topic, []);
     rows.get(channel.topic).push(columnsOf(decoded));
   }
-  const tables = readdirSync(path.join(folder, "csv")).filter((name) => name.endsWith(".csv"));
+  const tables = readdirSync(csv).filter((name) => name.endsWith(".csv"));
   assert.deepEqual([...rows.keys()].sort(), tables.map((name) => path.basename(name, ".csv")).sort());
-  assert.equal(tables.length, 9);
+  assert.equal(tables.length, count);
   for (const [topic, messages] of rows) {
-    const expected = readCsv(path.join(folder, "csv", `${topic}.csv`));
+    const expected = readCsv(path.join(csv, `${topic}.csv`));
     assert.equal(messages.length, expected.length, topic);
     expected.forEach((row, i) => {
       assert.deepEqual(Object.keys(messages[i]), Object.keys(row));
@@ -119,6 +119,22 @@ test("every number of every channel is that of the CSV export", async (t) => {
       }
     });
   }
+}
+
+test("every number of every channel is that of the CSV export", async (t) => {
+  await compareWithCsv(await indexed(t), path.join(folder, "csv"), 9);
+});
+
+test("the wall clock of a log is a channel of the file", async (t) => {
+  const [log, csv, mcap] = ["clock.lcm", "clock", "clock.mcap"].map((name) => path.join(folder, name));
+  fogline("run", "scenario/paper.json", "--transport", "memq", "--quiet", "--log", log,
+          "--set", "/steps=50", "--wall-clock");
+  fogline("export", log, "--out", csv);
+  fogline("export", log, "--mcap", mcap);
+  const reader = await indexed(t, mcap);
+  await compareWithCsv(reader, csv, 10);
+  const [clock] = [...reader.channelsById.values()].filter(({topic}) => topic === "WALL_CLOCK");
+  assert.equal(clock.metadata.get("from"), "recorder");
 });
 
 test("the summary counts what the file has, and finds one channel at one moment", async (t) => {

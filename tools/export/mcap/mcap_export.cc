@@ -16,6 +16,8 @@
 #include "common/text.h"
 #include "services/log/run_log.h"
 #include "services/log/step_order.h"
+#include "services/log/wall_clock.h"
+#include "services/runtime/wire/message_signer.h"
 #include "tools/export/mcap/descriptor.h"
 #include "tools/export/mcap/translate.h"
 #include "tools/export/mcap/writer.h"
@@ -28,14 +30,32 @@ constexpr std::string_view kLibrary = "fogline";
 constexpr std::string_view kEncoding = "protobuf";
 constexpr std::int64_t kNanosPerMicro = 1000;
 
-/// The message type of a channel. @param channel index in kChannels
+// A channel is an index in kChannels, or the wall clock of the steps, which is not in the graph.
+constexpr std::size_t kWallClock = kNumChannels;
+constexpr std::size_t kNone = kNumChannels + 1;
+
+/// The message type of a channel.
 const web::LcmStruct& TypeOf(std::size_t channel) {
   static const auto kTypes = std::apply(
       []<class... M>(const fogline::Channel<M>&...) {
-        return std::array{web::FoglineTypes().Named(M::getTypeName())...};
+        return std::array{web::FoglineTypes().Named(M::getTypeName())...,
+                          web::FoglineTypes().Named(wall_clock_t::getTypeName())};
       },
       kGraph);
   return *kTypes[channel];
+}
+
+std::string_view NameOfChannel(std::size_t channel) {
+  return channel == kWallClock ? log::kWallClockChannel : kChannels[channel].name;
+}
+
+/// The channel of an event outside of steps; kNone for any other event.
+std::size_t ChannelBesideSteps(const log::Event& event) {
+  if (event.channel == log::kWallClockChannel) return kWallClock;
+  const std::size_t channel = ChannelNamed(event.channel);
+  const bool is_beside = channel < kNumChannels && channel != IndexOf<run_t>() &&
+                         kChannels[channel].pace == Pace::kControl;
+  return is_beside ? channel : kNone;
 }
 
 /// The steps of a run, and between them the messages outside of steps, as channels of a file.
@@ -83,9 +103,8 @@ class Exporter {
     while (true) {
       if (!event_) event_ = events_.Next();
       if (!event_ || (utime && event_->utime > *utime)) return;
-      const std::size_t channel = ChannelNamed(event_->channel);
-      if (channel < kNumChannels && channel != IndexOf<run_t>() &&
-          kChannels[channel].pace == Pace::kControl && log::IsOfRun(*event_, run_id_.value_or(0))) {
+      const std::size_t channel = ChannelBesideSteps(*event_);
+      if (channel != kNone && log::IsOfRun(*event_, run_id_.value_or(0))) {
         AddMessage(channel, event_->data, runtime::ReadInt64(event_->data, runtime::kStepOffset),
                    event_->utime);
       }
@@ -96,12 +115,11 @@ class Exporter {
   void AddMessage(std::size_t channel, runtime::Bytes bytes, std::int64_t step,
                   std::int64_t utime) {
     Add(channel);
-    protobuf_.clear();
-    if (!AppendProtobuf(types_, TypeOf(channel), bytes, protobuf_)) {
+    if (!Translate(channel, bytes)) {
       throw InputError(
           fmt::format("{}: error: message {} of {} does not decode: was it recorded with other "
                       "message types?",
-                      PathText(log_), counts_[channel], kChannels[channel].name));
+                      PathText(log_), counts_[channel], NameOfChannel(channel)));
     }
     ++counts_[channel];
     const auto nanos = static_cast<std::uint64_t>(utime * kNanosPerMicro);
@@ -111,16 +129,30 @@ class Exporter {
                                    .data = protobuf_});
   }
 
+  /// Sets protobuf_ to a message. A logger of signed traffic writes messages with their signatures.
+  /// @return false if the message does not decode
+  bool Translate(std::size_t channel, runtime::Bytes bytes) {
+    const auto translate = [&](runtime::Bytes message) {
+      protobuf_.clear();
+      return AppendProtobuf(types_, TypeOf(channel), message, protobuf_);
+    };
+    return translate(bytes) ||
+           (runtime::LooksSigned(bytes) && translate(runtime::WithoutSignature(bytes)));
+  }
+
   /// Adds a channel and its schema, unless the file has them.
   void Add(std::size_t channel) {
     if (ids_[channel]) return;
     const web::LcmStruct& type = TypeOf(channel);
     const SchemaId schema =
         writer_.AddSchema(type.FullName(), kEncoding, DescriptorSetOf(types_, type));
-    const ChannelInfo& info = kChannels[channel];
-    ids_[channel] = writer_.AddChannel(
-        schema, info.name, kEncoding,
-        {{"from", std::string(NameOf(info.from))}, {"what", std::string(info.what)}});
+    const bool in_graph = channel != kWallClock;
+    const Role from = in_graph ? kChannels[channel].from : Role::kRecorder;
+    const std::string_view what =
+        in_graph ? kChannels[channel].what : "the wall clock at which the TRUTH of a step came";
+    ids_[channel] =
+        writer_.AddChannel(schema, NameOfChannel(channel), kEncoding,
+                           {{"from", std::string(NameOf(from))}, {"what", std::string(what)}});
   }
 
   void AddFacts(const log::RunLog& run) {
@@ -143,8 +175,8 @@ class Exporter {
   std::optional<log::Event> event_;  // read, but not added yet
   std::optional<std::int64_t> run_id_;
   Writer writer_;
-  std::array<std::optional<ChannelId>, kNumChannels> ids_{};
-  std::array<std::int64_t, kNumChannels> counts_{};
+  std::array<std::optional<ChannelId>, kNumChannels + 1> ids_{};
+  std::array<std::int64_t, kNumChannels + 1> counts_{};
   std::string protobuf_;
 };
 
