@@ -196,6 +196,13 @@ TEST_F(UnitTest, IsValidForSystemd) {
   EXPECT_THAT(remarks, IsEmpty());
 }
 
+TEST_F(UnitTest, HasNoLimitThatShortRunsOrRealTimeWouldReach) {
+  const std::string text = Content(unit_);
+  EXPECT_THAT(text, HasSubstr("\nStartLimitIntervalSec=0\n"));
+  EXPECT_THAT(text, HasSubstr("\nLimitRTPRIO=2\n"));
+  EXPECT_THAT(text, HasSubstr("\nLimitMEMLOCK=infinity\n"));
+}
+
 TEST_F(UnitTest, StartsARoleThatTakesPartInARun) {
   // GIVEN the command of the unit, with the variables of /etc/default/fogline
   const std::string text = Content(unit_);
