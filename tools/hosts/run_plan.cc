@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
+#include <set>
 #include <utility>
 
 #include <fmt/core.h>
 
 #include "common/errors.h"
 #include "common/text.h"
+#include "services/runtime/transport/tcpq_url.h"
 #include "tools/hosts/lab_file.h"
 
 namespace fogline::hosts {
@@ -34,8 +36,9 @@ std::size_t PlaceOf(HostPlan host, RunPlan& plan, std::string_view where) {
   return place;
 }
 
-/// Adds "ROLE=HOST". @throws InputError
-void AddPlace(const std::string& text, RunPlan& plan) {
+/// Adds "ROLE=HOST". @param placed the roles of the options before; gets this role
+/// @throws InputError
+void AddPlace(const std::string& text, std::set<Role>& placed, RunPlan& plan) {
   const std::string where = "--on " + text;
   const std::size_t equals = text.find('=');
   if (equals == std::string::npos) {
@@ -44,6 +47,9 @@ void AddPlace(const std::string& text, RunPlan& plan) {
   const std::string role = text.substr(0, equals);
   if (const std::string why = WhyNoRemoteRole(role); !why.empty()) {
     throw InputError(fmt::format("error: {}: {}", where, why));
+  }
+  if (!placed.insert(*RoleNamed(role)).second) {
+    throw InputError(fmt::format("error: {}: another --on has a machine for the {}", where, role));
   }
   plan.places[*RoleNamed(role)] = PlaceOf(ReadHost(text.substr(equals + 1), where), plan, where);
 }
@@ -136,7 +142,8 @@ HostPlan ReadHost(std::string_view text, std::string_view where) {
 RunPlan MakePlan(const PlanWords& words) {
   RunPlan plan;
   if (!words.lab.empty()) plan = FromLab(words.lab);
-  for (const std::string& place : words.on) AddPlace(place, plan);
+  std::set<Role> placed;
+  for (const std::string& place : words.on) AddPlace(place, placed, plan);
   DropIdleHosts(plan);
   if (!words.ssh.empty()) plan.ssh = words.ssh;
   if (plan.ssh.empty()) {
@@ -150,6 +157,10 @@ RunPlan MakePlan(const PlanWords& words) {
                                  !words.lab.empty() ? "--lab " + words.lab
                                  : words.relay      ? "--relay"
                                                     : "--relay-at"));
+  }
+  if (!plan.relay_at.empty()) {
+    const std::string from = words.relay_at.empty() ? words.lab + ": /relay_at" : "--relay-at";
+    runtime::tcpq::Resolve(plan.relay_at, from);
   }
   plan.words = WordsOf(words);
   return plan;

@@ -65,6 +65,10 @@ TEST(RunPlanTest, WrongPlacesAreNamed) {
             "would read it as an option");
   EXPECT_EQ(PlanRefusal({.on = {"fusion=lab2:/a", "acc=lab2:/b"}}),
             "error: --on acc=lab2:/b: the programs of \"lab2\" are in \"/a\" already");
+  EXPECT_EQ(PlanRefusal({.on = {"fusion=lab2", "fusion=lab3"}}),
+            "error: --on fusion=lab3: another --on has a machine for the fusion");
+  EXPECT_EQ(PlanRefusal({.on = {"fusion=lab2"}, .relay_at = "10.0.0.1:99999"}),
+            "error: --relay-at: \"99999\" is no port (0 to 65535)");
   EXPECT_EQ(PlanRefusal({.relay = true}),
             "error: --relay: no role runs on another machine; see --on");
 }
