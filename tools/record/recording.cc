@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <stdexcept>
 #include <utility>
 
 #include <fmt/core.h>
@@ -80,7 +81,14 @@ void Recording::Listen(TimePoint now, Duration longest) {
   }
   poll(waited.data(), waited.size(), static_cast<int>(Milliseconds(longest)));
   const auto use = [this](const Message& message) { Take(message); };
-  for (const auto& source : sources_) source->Drain(now, use);
+  sources_.front()->Drain(now, use);
+  if (sources_.size() < 2) return;
+  try {
+    sources_.back()->Drain(now, use);
+  } catch (const std::runtime_error& error) {  // its relay has ended
+    options_.say(fmt::format("leaves {}: {}", followed_url_, error.what()));
+    LeaveFollowed();
+  }
 }
 
 void Recording::Take(const Message& message) {
@@ -114,10 +122,7 @@ void Recording::Follow(TimePoint now) {
   const std::vector<runtime::Announcement> runs = listener_->Runs();
   if (runs.empty() || runs.front().url == followed_url_) return;
   followed_url_ = runs.front().url;
-  if (sources_.size() > 1) {
-    given_up_ += sources_.back()->given_up();
-    sources_.pop_back();
-  }
+  LeaveFollowed();
   if (runtime::SameNetwork(followed_url_, options_.url)) return;
   try {
     sources_.push_back(TrafficSource::Open(followed_url_, options_.buffer_bytes, senders_));
@@ -125,6 +130,12 @@ void Recording::Follow(TimePoint now) {
   } catch (const std::exception& error) {  // the address came from the network and may be invalid
     options_.say(fmt::format("warning: {}", error.what()));
   }
+}
+
+void Recording::LeaveFollowed() {
+  if (sources_.size() < 2) return;
+  given_up_ += sources_.back()->given_up();
+  sources_.pop_back();
 }
 
 void Recording::WriteAll() {
@@ -172,7 +183,8 @@ nlohmann::ordered_json Recording::Json() {
         {{"channel", channel}, {"messages", counts.messages}, {"bytes", counts.bytes}});
   }
   const watch::SendersView view = senders_.View(Clock::now());
-  json["senders"] = watch::SendersJson(view);
+  json["senders"] =
+      sources_.front()->is_numbered() ? watch::SendersJson(view) : nlohmann::ordered_json(nullptr);
   json["own_overflow"] = view.own_overflow;
   json["incomplete_messages"] = given_up_;
   json["recv_buffer_bytes"] = sources_.front()->buffer_bytes();
@@ -190,9 +202,12 @@ std::string Recording::Text() {
     lost += sender.counts.lost;
     missed += sender.counts.missed_here;
   }
-  std::string text = fmt::format(
-      "{} messages on {} channels in {:.1f} s, {} bytes; lost on the way: {}, lost here: {}\n",
-      all_.messages, channels_.size(), Seconds(ended_ - began_), files_.bytes(), lost, missed);
+  std::string text = fmt::format("{} messages on {} channels in {:.1f} s, {} bytes", all_.messages,
+                                 channels_.size(), Seconds(ended_ - began_), files_.bytes());
+  if (sources_.front()->is_numbered()) {
+    text += fmt::format("; lost on the way: {}, lost here: {}", lost, missed);
+  }
+  text += '\n';
   for (const std::filesystem::path& file : files_.files()) text += PathText(file) + "\n";
   if (lost == 0 && missed == 0) return text;
   for (const watch::Line& line : watch::SenderLines(view)) text += line.text + "\n";

@@ -70,6 +70,8 @@ class Recording {
   void Take(const Message& message);
   bool Wanted(std::string_view channel);
   void Follow(TimePoint now);
+  /// Closes the network of the followed run.
+  void LeaveFollowed();
   /// The work of the thread that writes.
   void WriteAll();
   void WriteMessages();

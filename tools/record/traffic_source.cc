@@ -37,6 +37,7 @@ class MulticastSource final : public TrafficSource {
 
   int fd() const override { return socket_.fd(); }
   int buffer_bytes() const override { return socket_.buffer_bytes(); }
+  bool is_numbered() const override { return true; }
   std::int64_t given_up() const override { return assembler_.given_up(); }
 
  private:
@@ -64,6 +65,7 @@ class BusSource final : public TrafficSource {
 
   int fd() const override { return bus_.fd(); }
   int buffer_bytes() const override { return 0; }
+  bool is_numbered() const override { return false; }
   std::int64_t given_up() const override { return 0; }
 
  private:

@@ -32,6 +32,8 @@ class TrafficSource {
   virtual int fd() const = 0;
   /// The size of the receive buffer that the kernel grants; 0: not known.
   virtual int buffer_bytes() const = 0;
+  /// Whether the messages have numbers, by which a loss is found.
+  virtual bool is_numbered() const = 0;
   /// Messages that were not put together, because fragments did not come.
   virtual std::int64_t given_up() const = 0;
 

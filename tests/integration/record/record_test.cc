@@ -22,6 +22,7 @@ namespace {
 using nlohmann::json;
 using testing::HasSubstr;
 using testing::IsSupersetOf;
+using testing::Not;
 
 std::vector<std::uint8_t> Payload(std::size_t number, std::size_t size) {
   std::vector<std::uint8_t> payload(size);
@@ -212,10 +213,9 @@ TEST_F(RecordTest, OfASignedRunIsExportedLikeAnyOther) {
   const std::string key = folder_.File("key");
   runtime::SigningKey::Create(key);
   RecordProcess record(bus_, log_);
-  const Outcome run =
-      RunCommand({Program("fogline"), "run", "scenario/paper.json", "--quiet", "--set",
-                  "/steps=100", "--log", folder_.File("own.lcm"), "--lcm-url", bus_.url(), "--key",
-                  key});
+  const Outcome run = RunCommand({Program("fogline"), "run", "scenario/paper.json", "--quiet",
+                                  "--set", "/steps=100", "--log", folder_.File("own.lcm"),
+                                  "--lcm-url", bus_.url(), "--key", key});
   ASSERT_EQ(run.code, 0) << run.err;
   ASSERT_TRUE(record.CatchUp("END"));
   record.End();
@@ -243,6 +243,40 @@ TEST_F(RecordTest, FollowsTheRunThatIsAnnounced) {
   const std::vector<Recorded> recorded = MessagesIn(log_);
   EXPECT_TRUE(std::ranges::any_of(
       recorded, [](const Recorded& message) { return message.channel == "TRACK"; }));
+}
+
+TEST_F(RecordTest, GoesOnWhenTheRelayOfAFollowedRunHasEnded) {
+  const std::string meeting = runtime::FreshMulticastUrl();
+  Background record({"env", "LCM_DEFAULT_URL=" + meeting, Program("fogline"), "record", log_,
+                     "--flush-ms", "10"});
+  ASSERT_TRUE(record.WaitForErr("records "));
+  Background run({"env", "LCM_DEFAULT_URL=" + meeting, Program("fogline"), "run",
+                  "scenario/paper.json", "--quiet", "--transport", "tcpq", "--pace", "25", "--set",
+                  "/steps=300", "--log", folder_.File("own.lcm")});
+  EXPECT_TRUE(record.WaitForErr("follows run "));
+  ASSERT_EQ(run.Wait(), 0) << run.Err();
+  // The relay of the run ends with the run. The recording tries for a while to reach it.
+  EXPECT_TRUE(record.WaitForErr("leaves tcpq://")) << record.Err();
+  runtime::Bus(meeting).Publish("AFTERWARDS", Payload(1, 4));
+  record.Signal(SIGINT);
+  ASSERT_EQ(record.Wait(), 0) << record.Err();
+  const std::vector<Recorded> recorded = MessagesIn(log_);
+  ASSERT_FALSE(recorded.empty());
+  EXPECT_EQ(recorded.back().channel, "AFTERWARDS");
+}
+
+TEST_F(RecordTest, CountsNoLossesOnANetworkWithoutNumbers) {
+  Background relay({Program("fogline-relay"), "--listen", "127.0.0.1:0"});
+  ASSERT_TRUE(relay.WaitForOut("\n"));
+  const std::string url = relay.Out().substr(0, relay.Out().find('\n'));
+  const std::vector<std::string> command{Program("fogline"), "record", "--force", log_,
+                                         "--lcm-url",        url,      "--for",   "0.1"};
+  const Outcome text = RunCommand(command);
+  EXPECT_EQ(text.code, 0) << text.err;
+  EXPECT_THAT(text.out, Not(HasSubstr("lost")));
+  std::vector<std::string> with_json = command;
+  with_json.emplace_back("--json");
+  EXPECT_EQ(json::parse(RunCommand(with_json).out)["senders"], nullptr);
 }
 
 TEST_F(RecordTest, SaysWhatIsWrongWithItsArguments) {
