@@ -76,9 +76,8 @@ class Log:
         ids: dict[int, None] = {}
         for name, events in self._events.items():
             if name not in ("RUN", "STATUS", "RESEND"):
-                for begin, end in zip(events.begins, events.ends):
-                    if end - begin >= HEADER_END:
-                        ids[_HEADER.unpack_from(self._data, begin + HEADER_AT)[0]] = None
+                for begin in events.begins:
+                    ids[_HEADER.unpack_from(self._data, begin + HEADER_AT)[0]] = None
         return list(ids)
 
     def messages(self, channel: str) -> Iterator[Message]:
@@ -230,20 +229,20 @@ def _index(data: Any, path: str) -> tuple[dict[str, Events], str]:
         if sync != _SYNC or channel_bytes < 0 or data_bytes < 0 or end > size:
             break
         name = data[at + header : begin]
+        at = end
         events = by_name.get(name)
         if events is None:
             events = by_name[name] = Events([], [], [])
+        # A message has at least a fingerprint and a header. Shorter ones are not of Fogline.
+        if data_bytes < HEADER_END:
+            continue
         events.begins.append(begin)
         events.ends.append(end)
         events.times.append(time)
-        at = end
     if at != size:
         if not by_name:
             raise LogError(f"{path}: not an LCM event log")
         torn = f"{size - at} bytes at the end are no whole event and were ignored"
-    # A message has at least a fingerprint and a header. Shorter ones are not of Fogline.
-    named = {}
-    for name, events in by_name.items():
-        if all(end - begin >= HEADER_END for begin, end in zip(events.begins, events.ends)):
-            named[bytes(name).decode("utf-8", "replace")] = events
+    named = {bytes(name).decode("utf-8", "replace"): events for name, events in by_name.items()
+             if events.begins}
     return named, torn

@@ -100,6 +100,15 @@ class LogTest(unittest.TestCase):
         self.assertEqual(len(list(log.messages("TRACK"))), STEPS)
         self.assertEqual(log.torn, "50 bytes at the end are no whole event and were ignored")
 
+    def test_a_message_that_is_too_short_hides_no_other_one(self):
+        whole = pathlib.Path(self.log).read_bytes()
+        short = struct.pack(">Iqqii", 0xEDA1DA01, 0, 0, 5, 3) + b"TRACK" + b"abc"
+        other = struct.pack(">Iqqii", 0xEDA1DA01, 0, 0, 3, 3) + b"CAN" + b"abc"
+        log = fl.read_log(self.write("short.lcm", [short, whole, other]))
+        self.assertEqual(len(list(log.messages("TRACK"))), STEPS)
+        self.assertEqual(log.torn, "")
+        self.assertNotIn("CAN", log.channels)
+
     def test_an_empty_log_has_no_channels(self):
         self.assertEqual(fl.read_log(self.write("empty.lcm", [])).channels, [])
 
