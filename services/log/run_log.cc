@@ -63,6 +63,8 @@ class RunLogReader::Assembler {
   // A step that is further ahead than this was not sent by the run. A run of a scenario does not
   // lose so many steps.
   static constexpr std::int64_t kLongestGap = 1'000'000;
+  // No run has more steps (scenario/sections/scenario.h).
+  static constexpr std::int64_t kMostSteps = 10'000'000;
 
   struct Pending {
     StepMessages messages{};
@@ -94,7 +96,7 @@ class RunLogReader::Assembler {
     if (step == next_ && next.there == run_.channels) return true;
     if (realtime_) return ended_ || pending_.rbegin()->first > next_ + kLongestOverdue;
     if (!options_.gaps || !(ended_ || pending_.size() > kMostOpen)) return false;
-    if (begun_ && step > next_ + kLongestGap) {
+    if (step >= kMostSteps || (begun_ && step > next_ + kLongestGap)) {
       astray_ += std::ssize(pending_);
       pending_.clear();
       return false;
@@ -142,6 +144,7 @@ class RunLogReader::Assembler {
     if (runtime::Decode(newest.messages[IndexOf<truth_t>()], truth_) && truth_.last) return;
     auto step = pending_.rbegin();
     while (step != pending_.rend() && step->second.there != run_.channels) ++step;
+    if (step == pending_.rbegin()) return;  // all messages of the newest step are there
     const std::int64_t last = step == pending_.rend() ? next_ - 1 : step->first;
     if (pending_.rbegin()->first <= last + runtime::kMaxAhead) tail_ = last + 1;
   }

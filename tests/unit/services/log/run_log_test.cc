@@ -109,14 +109,18 @@ class LogWithGapsTest : public testing::Test {
     }
     return reader.run();
   }
-  /// A copy of the log without its RUN.
-  void RemoveScenario() {
+  /// Replaces the log by a copy in which `edit` changes events (test::Copy()).
+  template <class Edit>
+  void Alter(const Edit& edit) {
     const std::string copy = folder_.File("copy");
-    test::Copy(file_, copy, [](auto&, const log::Event& event, auto& data) {
+    test::Copy(file_, copy, edit);
+    std::filesystem::rename(copy, file_);
+  }
+  void RemoveScenario() {
+    Alter([](auto&, const log::Event& event, auto& data) {
       if (event.channel == ChannelOf<run_t>().name) data.clear();
       return true;
     });
-    std::filesystem::rename(copy, file_);
   }
 
   static constexpr std::size_t kAll = log::kStepChannels;
@@ -162,6 +166,18 @@ TEST_F(LogWithGapsTest, TakesTheIncompleteStepAtTheEndOfARunThatWasCutOffForNoGa
   EXPECT_FALSE(run.gaps.Any());
   EXPECT_NE(run.digest, "");
   EXPECT_THAT(run.note, HasSubstr("ends after step 0 of 3; step 1 lacks HOST_EGO, RADAR"));
+}
+
+TEST_F(LogWithGapsTest, HasNoTailIfItWasCutOffAfterAWholeStep) {
+  const log::RunLog run = Read({.has = [](std::string_view channel, std::int64_t step) {
+    return step < 2 && !(channel == ChannelOf<radar_t>().name && step == 0);
+  }});
+  EXPECT_EQ(steps_, (Steps{{0, kAll - 1}, {1, kAll}}));
+  EXPECT_EQ(tail_, 0);
+  EXPECT_FALSE(run.complete);
+  EXPECT_EQ(run.note,
+            "ends after step 1 of 3; 1 message of 1 step is missing (RADAR 1), first: step 0 lacks "
+            "RADAR");
 }
 
 TEST_F(LogWithGapsTest, BeginsWithTheFirstStepOfALoggerThatCameLate) {
@@ -240,17 +256,26 @@ TEST_F(LogWithGapsTest, OfSeveralRunsIsReadForTheFirstRunOrTheChosenOne) {
   }
 }
 
+TEST_F(LogWithGapsTest, DoesNotBeginWithAnImpossibleStep) {
+  test::WriteShortLog(file_, {});
+  Alter([](log::EventLogWriter& /*writer*/, const log::Event& event, auto& data) {
+    if (event.channel != ChannelOf<run_t>().name) data[runtime::kStepOffset] = 1;
+    return true;
+  });
+  const log::RunLog run = ReadFile();
+  EXPECT_EQ(steps_.size(), 0U);
+  EXPECT_THAT(run.note, HasSubstr("no step of 3 is complete; 3 impossible steps ignored"));
+}
+
 TEST_F(LogWithGapsTest, IsNotFilledUpToAnImpossibleStep) {
   test::WriteShortLog(file_, {});
-  const std::string copy = folder_.File("copy");
-  test::Copy(file_, copy, [](log::EventLogWriter& writer, const log::Event& event, auto& data) {
+  Alter([](log::EventLogWriter& writer, const log::Event& event, auto& data) {
     if (event.channel != ChannelOf<radar_t>().name) return true;
     std::vector<std::uint8_t> far = data;
     far[runtime::kStepOffset] = 1;  // step 2^56 and more
     writer.Write(event.channel, event.utime, far);
     return true;
   });
-  std::filesystem::rename(copy, file_);
   const log::RunLog run = ReadFile();
   EXPECT_EQ(steps_.size(), 3U);
   EXPECT_THAT(run.note, HasSubstr("3 impossible steps ignored"));
