@@ -1,5 +1,6 @@
 // `fogline replay --live`: recorded messages of some roles drive the living rest of the system.
 #include <cmath>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -99,6 +100,21 @@ TEST_F(LiveReplayTest, OfALogWithAGapIsRefusedInLockstep) {
   EXPECT_THAT(outcome.err, HasSubstr("gap.lcm: error: step 100 lacks RADAR: a run in lockstep"));
   // The roles of the other channels have all their messages.
   EXPECT_EQ(Replay(gap, {"--channels", "LIDAR"}).code, 1);
+}
+
+TEST_F(LiveReplayTest, ReplacesTheRecordedLogNotEvenIfForced) {
+  const std::string before = Content(log_);
+  const std::string link = folder_.File("link.lcm");
+  std::filesystem::create_symlink(log_, link);
+  for (const std::string& file : {log_, link}) {
+    const Outcome outcome = RunCommand(
+        {Program("fogline"), "replay", log_, "--live", "--log", file, "--force", "--quiet"});
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_EQ(outcome.err, file +
+                               ": error: --log: this is the recorded log; the new run needs "
+                               "another file\n");
+  }
+  EXPECT_EQ(Content(log_), before);
 }
 
 TEST_F(LiveReplayTest, SaysWhatIsWrongWithItsArguments) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <memory>
 #include <optional>
+#include <system_error>
 #include <utility>
 
 #include <fmt/core.h>
@@ -102,6 +103,13 @@ LiveReplay::LiveReplay(CLI::App& verb) {
 }
 
 int LiveReplay::Run(const std::filesystem::path& recorded, bool json) const {
+  std::error_code missing;
+  if (!log_.empty() && std::filesystem::equivalent(log_, recorded, missing)) {
+    throw InputError(
+        fmt::format("{}: error: --log: this is the recorded log; the new run needs "
+                    "another file",
+                    PathText(log_)));
+  }
   const replay::RecordedMessages messages(recorded, {.gaps = true},
                                           replay::RecordedChannels(channels_));
   const log::RunLog& run = messages.run();
