@@ -20,9 +20,10 @@ enum class Kind {
   kAssignment,  // a field of the scenario and its value, /fog/bias_m=0.3
   kPointer,     // a field or section of the scenario
   kRole,
+  kPlace,  // a role and the machine where it runs, fusion=lab2
   kTransport,
   kVerb,
-  kScenario,
+  kJson,
   kLog,
 };
 
@@ -39,9 +40,11 @@ constexpr std::array kKinds{
     KindOfName{"--explain", Kind::kPointer},
     KindOfName{"--role", Kind::kRole},
     KindOfName{"--external", Kind::kRole},
+    KindOfName{"--on", Kind::kPlace},
+    KindOfName{"--lab", Kind::kJson},
     KindOfName{"--transport", Kind::kTransport},
     KindOfName{"VERB", Kind::kVerb},
-    KindOfName{"SCENARIO", Kind::kScenario},
+    KindOfName{"SCENARIO", Kind::kJson},
     KindOfName{"LOG", Kind::kLog},
     KindOfName{"A", Kind::kLog},
     KindOfName{"B", Kind::kLog},
@@ -133,12 +136,19 @@ void AddOfKind(Kind kind, const CLI::App& app, const std::string& begun, Complet
     case Kind::kRole:
       for (const RoleInfo& info : kRoles) Add(info.name, info.purpose, begun, completion);
       return;
+    case Kind::kPlace:
+      for (const RoleInfo& info : kRoles) {
+        // The recorder runs on the machine of the run.
+        if (info.role == Role::kRecorder) continue;
+        Add(std::string(info.name) + "=", info.purpose, begun, completion);
+      }
+      return;
     case Kind::kTransport:
       for (const auto& [name, meaning] : kTransports) Add(name, meaning, begun, completion);
       return;
     case Kind::kVerb:
       return AddVerbs(app, begun, completion);
-    case Kind::kScenario:
+    case Kind::kJson:
       completion.files = "*.json";
       return;
     case Kind::kLog:

@@ -34,6 +34,8 @@ class CompletionTest : public testing::Test {
     merge->add_option("LOG", texts_);
     merge->add_option("--merge", texts_);
     merge->add_option("--role", text_);
+    merge->add_option("--on", texts_)->allow_extra_args(false);
+    merge->add_option("--lab", text_);
     CLI::App* help = app_.add_subcommand("help", "Explain");
     help->add_option("VERB", text_);
     app_.add_subcommand("experiment", "Make trials")->add_subcommand("status", "Show trials");
@@ -103,9 +105,16 @@ TEST_F(CompletionTest, OfAnOptionWithNamesIsItsNames) {
   EXPECT_THAT(Words({"study", ""}), ElementsAre("delay", "policy", "all"));
 }
 
+TEST_F(CompletionTest, OfAPlaceIsARoleThatMayRunElsewhere) {
+  EXPECT_THAT(Words({"metrics", "--on", "fu"}), ElementsAre("fusion="));
+  EXPECT_THAT(Words({"metrics", "--on", "fusion=lab2", "--on", ""}), SizeIs(kRoles.size() - 1));
+  EXPECT_THAT(Words({"metrics", "--on", "rec"}), IsEmpty());
+}
+
 TEST_F(CompletionTest, OfATextIsAFileAndOfANumberNothing) {
   EXPECT_EQ(At({"run", ""}).files, "*.json");
   EXPECT_EQ(At({"run", "--log", ""}).files, "*");
+  EXPECT_EQ(At({"metrics", "--lab", ""}).files, "*.json");
   EXPECT_EQ(At({"run", "--seed", ""}).files, "");
   EXPECT_EQ(At({"run", "--json", ""}).files, "*.json") << "a flag takes no word";
   EXPECT_EQ(At({"run", "a.json", ""}).files, "") << "SCENARIO is one file";
