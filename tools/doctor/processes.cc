@@ -1,5 +1,5 @@
-// Processes of Fogline on this machine, from /proc (proc(5)): runs, roles that wait for a run, and
-// processes that are left over from ended runs.
+// Processes of Fogline on this machine, from /proc (proc(5)): runs, and roles that run by
+// themselves.
 #include <unistd.h>
 
 #include <algorithm>
@@ -20,6 +20,11 @@ namespace {
 
 using Level = Finding::Level;
 constexpr std::string_view kDeleted = " (deleted)";
+
+/// Whether the program starts the roles of runs.
+bool IsRunner(std::string_view program) {
+  return program == "fogline" || program == "fogline-experiment";
+}
 
 struct Process {
   pid_t pid = 0;
@@ -79,11 +84,12 @@ std::map<pid_t, Process> ReadProcesses() {
 Finding AssessRole(const Process& role, bool has_runner) {
   const std::string url = role.Option("--lcm-url");
   const std::string where = url.empty() ? "" : " on " + url;
-  if (!has_runner && !role.Option("--run-id").empty()) {
-    return {
-        "processes", Level::kWarning,
-        fmt::format("{}{} is left over from a run whose runner has ended", role.Describe(), where),
-        fmt::format("kill {}", role.pid)};
+  const std::string run_id = role.Option("--run-id");
+  if (!has_runner && !run_id.empty()) {
+    return {"processes", Level::kWarning,
+            fmt::format("{}{} takes part in no other run than {}, whose runner has not started it",
+                        role.Describe(), where, run_id),
+            fmt::format("if this run is over: kill {}", role.pid)};
   }
   if (role.state == 'T') {
     return {"processes", Level::kWarning, fmt::format("{}{} is stopped", role.Describe(), where),
@@ -105,10 +111,10 @@ void ExamineProcesses(Findings& findings) {
   std::map<pid_t, std::vector<const Process*>> runs;  // roles by runner
   bool any = false;
   for (const auto& [pid, process] : processes) {
-    if (process.program == "fogline") continue;
+    if (IsRunner(process.program)) continue;
     any = true;
     const auto parent = processes.find(process.parent);
-    const bool has_runner = parent != processes.end() && parent->second.program == "fogline";
+    const bool has_runner = parent != processes.end() && IsRunner(parent->second.program);
     const Finding finding = AssessRole(process, has_runner);
     if (has_runner) runs[process.parent].push_back(&process);
     // Roles of a run without problems get one common line below.

@@ -58,9 +58,30 @@ TEST(DoctorTest, NamesTheRoleThatRunsByItselfAndLeavesItAlone) {
     doctor = RunCommand({Program("fogline"), "doctor"});
   } while (doctor.out.find(name) == std::string::npos && Clock::now() < end);
   EXPECT_THAT(doctor.out, HasSubstr("warning  " + name + " on " + url +
-                                    " is left over from a run whose runner has ended  -> kill " +
+                                    " takes part in no other run than 4711, whose runner has not "
+                                    "started it  -> if this run is over: kill " +
                                     std::to_string(role.pid()) + "\n"));
   EXPECT_TRUE(IsAlive(role.pid()));
+}
+
+TEST(DoctorTest, KnowsThatAnExperimentRunsRoles) {
+  // GIVEN a process with the name of fogline-experiment, which has started a role. The role ends
+  // with it.
+  const ScratchFolder folder;
+  const std::string experiment = folder.File("fogline-experiment");
+  std::filesystem::copy_file("/bin/sh", experiment);
+  const std::string url = runtime::FreshMulticastUrl();
+  const Background runner({experiment, "-c",
+                           "setpriv --pdeathsig KILL " + Program("fogline-radar") + " --lcm-url '" +
+                               url + "' --run-id 4711 & wait"});
+  const TimePoint end = Clock::now() + kPatience;
+  Outcome doctor{};
+  do {  // until exec() has replaced the child by the program
+    doctor = RunCommand({Program("fogline"), "doctor"});
+  } while (doctor.out.find(url) == std::string::npos && Clock::now() < end);
+  EXPECT_THAT(doctor.out,
+              HasSubstr("ok       fogline-experiment (pid " + std::to_string(runner.pid()) +
+                        ") has a run with 1 processes on " + url + "\n"));
 }
 
 TEST(DoctorTest, SaysWhatToWriteInPlaceOfAnAddressThatIsNoGroup) {
