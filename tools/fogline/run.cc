@@ -12,6 +12,7 @@
 
 #include "common/clock.h"
 #include "common/interrupt.h"
+#include "common/parse_number.h"
 #include "common/process/console.h"
 #include "common/text.h"
 #include "services/runtime/wire/build_id.h"
@@ -82,6 +83,11 @@ struct RunArguments {
                     "Id of the run (default: a random number). Roles that are started with this "
                     "--run-id take part in no other run")
         ->check(CLI::Range(std::int64_t{1}, std::numeric_limits<std::int64_t>::max()))
+        ->check([](const std::string& text) {  // CLI11 takes the nearest number that fits
+          return ParseNumber<std::int64_t>(text)
+                     ? std::string()
+                     : text + " is no id: a whole number from 1 to 9223372036854775807";
+        })
         ->type_name("ID");
     CLI::Option* realtime =
         verb.add_flag("--realtime", options.realtime,

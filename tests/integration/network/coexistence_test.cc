@@ -79,7 +79,7 @@ TEST(CoexistenceTest, RunsAndRolesCanAgreeOnAnIdBeforehand) {
 }
 
 TEST(CoexistenceTest, AnIdOfARunIsAPositiveNumber) {
-  for (const char* id : {"0", "-5", "x", "1.5"}) {
+  for (const char* id : {"0", "-5", "x", "1.5", "99999999999999999999"}) {
     const Outcome run =
         RunCommand({Program("fogline"), "run", "scenario/paper.json", "--run-id", id});
     EXPECT_EQ(run.code, 2) << id;
