@@ -25,6 +25,8 @@ _WHOLE_HEAD, _FRAGMENT_HEAD = struct.Struct(">II"), struct.Struct(">IIIIHH")
 _DATAGRAM_BYTES = 1 << 16
 # What is waiting for the rest of its fragments: the most messages, and the most bytes of one.
 _MOST_PARTIAL, _MOST_BYTES = 64, 4 << 20
+# A reader hands on its messages after so many datagrams or pieces, also if more wait.
+_MOST_AT_ONCE = 1000
 # The kernel keeps datagrams in this many bytes until they are read (net.core.rmem_max limits it).
 _RECEIVE_BYTES = 2 << 20
 
@@ -58,12 +60,12 @@ def address_of(url: str) -> Address:
         given = dict(option.split("=", 1) for option in options.split("&") if option)
         if not found or kind not in ("udpm", "tcpq"):
             raise ValueError
-        if kind == "tcpq":
-            return Address(kind, host or "127.0.0.1", int(port or _DEFAULT_RELAY_PORT))
-        socket.inet_pton(socket.AF_INET, host or _DEFAULT_GROUP)
-        number = int(port or _DEFAULT_PORT)
+        number = int(port or (_DEFAULT_RELAY_PORT if kind == "tcpq" else _DEFAULT_PORT))
         if not 0 < number < 1 << 16:
             raise ValueError
+        if kind == "tcpq":
+            return Address(kind, host or "127.0.0.1", number)
+        socket.inet_pton(socket.AF_INET, host or _DEFAULT_GROUP)
         return Address(kind, host or _DEFAULT_GROUP, number, int(given.get("ttl", 0)))
     except (ValueError, OSError):
         raise BadInput(
@@ -154,12 +156,13 @@ class Multicast:
     def read(self, receiver: Receiver) -> int:
         """Hands on the messages that have come. @return the datagrams that are not of LCM"""
         strange = 0
-        while True:
+        for _ in range(_MOST_AT_ONCE):
             try:
                 datagram, sender = self.socket.recvfrom(_DATAGRAM_BYTES)
             except BlockingIOError:
-                return strange
+                break
             strange += not self._fragments.take(datagram, sender, receiver)
+        return strange
 
     def close(self) -> None:
         self.socket.close()
@@ -184,7 +187,7 @@ class Relay:
 
     def read(self, receiver: Receiver) -> int:
         """As Multicast.read(). Raises FoglineError if the relay has ended."""
-        while True:
+        for _ in range(_MOST_AT_ONCE):
             try:
                 piece = self.socket.recv(1 << 16)
             except BlockingIOError:

@@ -76,6 +76,19 @@ class FragmentsTest(unittest.TestCase):
         self.assertEqual(len(self.heard), 1)
 
 
+class FloodTest(unittest.TestCase):
+    def test_a_sender_that_never_pauses_does_not_keep_the_reader(self):
+        class Flood:
+            def recvfrom(self, _):
+                return struct.pack(">II", 0x4C433032, 3) + b"RADAR\0abc", SENDER
+
+        network_ = network.Multicast.__new__(network.Multicast)
+        network_.socket, network_._fragments = Flood(), network.Fragments()
+        heard = []
+        self.assertEqual(network_.read(lambda *message: heard.append(message)), 0)
+        self.assertGreater(len(heard), 100)
+
+
 class UrlTest(unittest.TestCase):
     def test_missing_parts_are_those_of_lcm(self):
         self.assertEqual(network.address_of("udpm://"), ("udpm", "239.255.76.67", 7667, 0))
@@ -86,7 +99,8 @@ class UrlTest(unittest.TestCase):
 
     def test_what_is_no_network_is_refused_by_name(self):
         for url in ("", "lab1", "http://lab1", "udpm://lab1", "udpm://239.1.2.3:0",
-                    "udpm://239.1.2.3:x", "udpm://239.1.2.3:70000", "udpm://239.1.2.3?ttl"):
+                    "udpm://239.1.2.3:x", "udpm://239.1.2.3:70000", "udpm://239.1.2.3?ttl",
+                    "tcpq://lab1:99999"):
             with self.assertRaises(BadInput) as caught:
                 network.address_of(url)
             self.assertIn(f"{url}: not the URL of an LCM network", str(caught.exception))
