@@ -13,6 +13,7 @@
 
 #include "common/file.h"
 #include "common/process/this_process.h"
+#include "common/text.h"
 #include "services/runtime/wire/digest.h"
 
 namespace fogline::log {
@@ -82,6 +83,17 @@ void SealLog(const std::filesystem::path& log, const LogHead& before, log_seal_t
                                        WhyWriteFailed(error),
                                        left ? "the log contains a part of the seal"
                                             : "the log is as the run left it, without a seal"));
+}
+
+std::string WhyNotSealedRun(const LogSeal& seal, const std::string& digest, std::int64_t steps,
+                            const std::string& scenario_hash) {
+  if (!seal.whole) return "its seal was changed";
+  if (seal.says.digest != digest || seal.says.steps != steps) {
+    return fmt::format("the seal names digest {} of {} steps; the log has {} of {}",
+                       EscapeControls(seal.says.digest), seal.says.steps, digest, steps);
+  }
+  if (seal.says.scenario_hash != scenario_hash) return "it was sealed with another scenario";
+  return "";
 }
 
 std::string WhyNotSealedFile(const LogSeal& seal, const EventLogReader& file) {

@@ -43,6 +43,10 @@ LogSeal ReadLogSeal(const Event& event, const LogHead& before);
 void SealLog(const std::filesystem::path& log, const LogHead& before, log_seal_t seal,
              const runtime::SigningKey* key);
 
+/// Why a run is not the sealed run; "" if it is. @param steps the number of steps of the digest
+std::string WhyNotSealedRun(const LogSeal& seal, const std::string& digest, std::int64_t steps,
+                            const std::string& scenario_hash);
+
 /// Why a file is not the sealed file; "" if it is the sealed file. A copy (LogSeal::copied) has
 /// other event times, so its bytes differ from the sealed bytes, and the result is "". If the bytes
 /// of a copy are equal to the sealed bytes, the time of the seal was changed. The result then says

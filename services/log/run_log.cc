@@ -10,6 +10,7 @@
 #include "common/text.h"
 #include "scenario/io/loader.h"
 #include "services/log/about/log_graph.h"
+#include "services/log/about/log_note.h"
 #include "services/log/about/log_version.h"
 #include "services/log/step_order.h"
 #include "services/runtime/wire/digest.h"
@@ -168,7 +169,7 @@ class RunLogReader::Assembler {
     }
     if (runtime::ReadInt64(data, 0) != runtime::FingerprintOf(channel) &&
         (other_types_ || VersionOf(file_).other_types)) {
-      RefuseVersion();
+      RefuseVersion(file_);
     }
     const std::int64_t step = runtime::ReadInt64(data, runtime::kStepOffset);
     if (step < next_) return;  // a repeated message
@@ -203,31 +204,20 @@ class RunLogReader::Assembler {
                  reader_.torn().empty() && !run_.altered;
     const std::int64_t unlogged = run_.realtime ? run_.realtime->unlogged_messages : 0;
     run_.complete = run_.ended && unlogged == 0;
-    run_.note = reader_.torn();
-    AddNotes(alteration, unlogged);
-  }
-
-  void AddNotes(const std::string& alteration, std::int64_t unlogged) {
-    const auto note = [this](const std::string& text) {
-      run_.note += run_.note.empty() || text.empty() ? text : "; " + text;
-    };
-    if (!run_.has_scenario) note("the log has no scenario");
-    if (run_.altered) note("altered: " + alteration);
-    if (run_.gaps.first > 0) note(fmt::format("begins at step {}{}", run_.gaps.first, OfSteps()));
-    if (!last_) note(Shortage());
-    note(run_.gaps.Text());
-    if (run_.realtime && run_.realtime->missed_messages > 0) {
-      note(fmt::format("real time, {} messages missing", run_.realtime->missed_messages));
-      if (unlogged > 0) note(fmt::format("published, but not in the log: {}", unlogged));
-    }
-    if (tail_) note(fmt::format("step {} lacks {}", *tail_, tail_lacks_));
+    LogRemarks remarks{.torn = reader_.torn(),
+                       .alteration = alteration,
+                       .has_last = last_,
+                       .next = tail_.value_or(next_),
+                       .incomplete = tail_,
+                       .lacks = tail_lacks_,
+                       .astray = astray_,
+                       .conflict = conflict_,
+                       .foreign = foreign_};
     if (!pending_.empty()) {
-      const runtime::ChannelSet lacks = LackingIn(pending_.begin()->second.messages, run_.channels);
-      note(fmt::format("step {} lacks {}", run_.steps, NamesOfChannels(lacks)));
+      remarks.incomplete = run_.steps;
+      remarks.lacks = NamesOfChannels(LackingIn(pending_.begin()->second.messages, run_.channels));
     }
-    if (astray_ > 0) note(fmt::format("{} impossible steps ignored", astray_));
-    if (!conflict_.empty()) note(conflict_);
-    if (foreign_ > 0) note(fmt::format("{} messages of other runs ignored", foreign_));
+    run_.note = NoteOf(run_, remarks);
   }
 
   /// Sets the scenario of the run. @throws InputError
@@ -237,7 +227,7 @@ class RunLogReader::Assembler {
     if (!parts_.Complete() && given.empty()) {
       run_.has_scenario = false;
       if (!options_.needs_scenario && begun_) return;
-      if (VersionOf(file_).other_types) RefuseVersion();
+      if (VersionOf(file_).other_types) RefuseVersion(file_);
       throw InputError(fmt::format("{}: error: the log has no complete scenario of a run{}",
                                    PathText(file_),
                                    options_.gaps && begun_ ? "; --scenario FILE gives it" : ""));
@@ -255,7 +245,7 @@ class RunLogReader::Assembler {
     }
     run_.scenario_text = parts_.Complete() ? parts_.Text() : given;
     run_.scenario_hash = parts_.Complete() ? parts_.hash() : runtime::HashOf(given);
-    run_.scenario = LoggedScenario(run_.scenario_text);
+    run_.scenario = ParseLoggedScenario(run_.scenario_text, file_);
   }
 
   [[noreturn]] void RefuseRun() const {
@@ -264,48 +254,12 @@ class RunLogReader::Assembler {
                                  run_.run_id, ids.empty() ? "" : "; it has " + ids));
   }
 
-  /// @throws InputError that names the version that wrote the log
-  [[noreturn]] void RefuseVersion() const {
-    throw InputError(fmt::format("{}: error: {}", PathText(file_), VersionOf(file_).Text()));
-  }
-
-  /// The scenario of the log.
-  /// @throws InputError; for the log of another version, a last line names this version
-  Scenario LoggedScenario(const std::string& text) const {
-    try {
-      return ParseScenario(text, file_.string());
-    } catch (const InputError& error) {
-      const std::string version = VersionOf(file_).Text();
-      if (version.empty()) throw;
-      throw InputError(fmt::format("{}\n{}: {}", error.what(), PathText(file_), version));
-    }
-  }
-
   /// How the log differs from its seal; "" if it does not differ or has no seal.
   std::string Alteration() const {
     if (!run_.seal) return "";
-    const LogSeal& seal = *run_.seal;
-    if (!seal.whole) return "its seal was changed";
-    if (seal.says.digest != digest_.Hex() || seal.says.steps != first_steps_) {
-      return fmt::format("the seal names digest {} of {} steps; the log has {} of {}",
-                         EscapeControls(seal.says.digest), seal.says.steps, digest_.Hex(),
-                         first_steps_);
-    }
-    if (seal.says.scenario_hash != run_.scenario_hash) return "it was sealed with another scenario";
-    if (options_.compared == Compared::kRun && !run_.realtime) return "";
-    return WhyNotSealedFile(seal, reader_);
-  }
-
-  std::string Shortage() const {
-    if (run_.steps == 0 && !run_.gaps.Any()) {
-      return fmt::format("no step{} is complete", OfSteps());
-    }
-    return fmt::format("ends after step {}{}", tail_.value_or(next_) - 1, OfSteps());
-  }
-
-  /// " of 500": the number of steps of the scenario; "" if it is not known.
-  std::string OfSteps() const {
-    return run_.has_scenario ? fmt::format(" of {}", run_.scenario.steps) : "";
+    std::string why = WhyNotSealedRun(*run_.seal, digest_.Hex(), first_steps_, run_.scenario_hash);
+    if (!why.empty() || (options_.compared == Compared::kRun && !run_.realtime)) return why;
+    return WhyNotSealedFile(*run_.seal, reader_);
   }
 
   std::size_t Find(std::string_view name) {
@@ -368,7 +322,7 @@ class RunLogReader::Assembler {
   }
 
   void ExpectRealtime(const run_t& run) {
-    const Scenario scenario = LoggedScenario(parts_.Text());
+    const Scenario scenario = ParseLoggedScenario(parts_.Text(), file_);
     steps_ = scenario.steps;
     // A message that came before the scenario can claim any step.
     pending_.erase(pending_.lower_bound(steps_), pending_.end());

@@ -6,7 +6,9 @@
 
 #include <fmt/core.h>
 
+#include "common/errors.h"
 #include "common/text.h"
+#include "scenario/io/loader.h"
 #include "services/log/log_seal.h"
 #include "services/runtime/process/version.h"
 #include "services/runtime/wire/message_signer.h"
@@ -83,6 +85,20 @@ LogVersion VersionOf(const std::filesystem::path& log) {
     if (seal.whole) version.writer = Named(EscapeControls(seal.says.version));
   }
   return version;
+}
+
+void RefuseVersion(const std::filesystem::path& log) {
+  throw InputError(fmt::format("{}: error: {}", PathText(log), VersionOf(log).Text()));
+}
+
+Scenario ParseLoggedScenario(const std::string& text, const std::filesystem::path& log) {
+  try {
+    return ParseScenario(text, log.string());
+  } catch (const InputError& error) {
+    const std::string version = VersionOf(log).Text();
+    if (version.empty()) throw;
+    throw InputError(fmt::format("{}\n{}: {}", error.what(), PathText(log), version));
+  }
 }
 
 }  // namespace fogline::log

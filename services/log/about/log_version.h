@@ -4,6 +4,8 @@
 #include <filesystem>
 #include <string>
 
+#include "scenario/sections/scenario.h"
+
 namespace fogline::log {
 
 /// The writer of a log.
@@ -22,5 +24,12 @@ struct LogVersion {
 
 /// Reads the whole log. @throws InputError if the file cannot be read or is no event log
 LogVersion VersionOf(const std::filesystem::path& log);
+
+/// Refuses a log of another version. @throws InputError that names the version
+[[noreturn]] void RefuseVersion(const std::filesystem::path& log);
+
+/// Reads the scenario of a log.
+/// @throws InputError; for a log of another version, a last line names this version
+Scenario ParseLoggedScenario(const std::string& text, const std::filesystem::path& log);
 
 }  // namespace fogline::log
