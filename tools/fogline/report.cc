@@ -26,6 +26,7 @@
 #include "common/process/console.h"
 #include "common/text.h"
 #include "scenario/sections/decision.h"
+#include "services/metrics/gaps/holes.h"
 #include "tools/cli/arguments.h"
 #include "tools/cli/help.h"
 #include "tools/cli/logs/log_reading.h"
@@ -200,50 +201,6 @@ std::vector<report::ReportMetric> MetricsOf(const runner::ExperimentResult& resu
   return out;
 }
 
-/// A sample without values, so that a curve has a hole there.
-metrics::Sample Hole(const metrics::Sample& before, double step_s) {
-  metrics::Sample hole{.step = before.step + 1, .time_s = before.time_s + step_s};
-  for (double metrics::Sample::*field : {&metrics::Sample::preceding_speed_mps,
-                                         &metrics::Sample::preceding_acceleration_mps2,
-                                         &metrics::Sample::host_speed_mps,
-                                         &metrics::Sample::host_acceleration_mps2,
-                                         &metrics::Sample::host_gap_m,
-                                         &metrics::Sample::host_safe_distance_m,
-                                         &metrics::Sample::radar_range_m,
-                                         &metrics::Sample::lidar_range_m,
-                                         &metrics::Sample::fused_distance_m,
-                                         &metrics::Sample::follower_speed_mps,
-                                         &metrics::Sample::follower_acceleration_mps2,
-                                         &metrics::Sample::follower_gap_m,
-                                         &metrics::Sample::follower_safe_distance_m,
-                                         &metrics::Sample::acc_acceleration_mps2,
-                                         &metrics::Sample::driver_acceleration_mps2,
-                                         &metrics::Sample::command_mps2,
-                                         &metrics::Sample::lambda_automation,
-                                         &metrics::Sample::lambda_human,
-                                         &metrics::Sample::conflict_m,
-                                         &metrics::Sample::doc,
-                                         &metrics::Sample::threshold,
-                                         &metrics::Sample::fog_level,
-                                         &metrics::Sample::fog_visibility_m}) {
-    hole.*field = std::numeric_limits<double>::quiet_NaN();
-  }
-  return hole;
-}
-
-/// The samples of a run, with a hole at the beginning of each gap.
-std::vector<metrics::Sample> SamplesOf(runner::LoggedRun& run) {
-  if (!run.gaps.Any()) return std::move(run.result.samples);
-  std::vector<metrics::Sample> samples;
-  for (const metrics::Sample& sample : run.result.samples) {
-    if (!samples.empty() && sample.step > samples.back().step + 1) {
-      samples.push_back(Hole(samples.back(), run.scenario.step_s));
-    }
-    samples.push_back(sample);
-  }
-  return samples;
-}
-
 /// The content of a run on the page. PageOf() moves the samples out of `run`.
 report::ReportRun PageOf(runner::LoggedRun& run, const std::string& name,
                          const metrics::PairedMetrics& paired) {
@@ -257,7 +214,8 @@ report::ReportRun PageOf(runner::LoggedRun& run, const std::string& name,
           .seed = run.result.seed,
           .digest = run.gaps.Any() ? "unknown" : run.result.digest,
           .has_gaps = run.gaps.Any(),
-          .samples = SamplesOf(run),
+          .samples = run.gaps.Any() ? metrics::WithHoles(run.result.samples, run.scenario.step_s)
+                                    : std::move(run.result.samples),
           .measures = MetricsOf(run.result),
           .si_pct = paired.si_pct,
           .si_until_recovery_pct = paired.si_until_recovery_pct,
