@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <map>
 #include <optional>
 #include <random>
 #include <string>
@@ -107,7 +108,7 @@ class Conversation {
     status_t heard{};
     if (runtime::Examine(bytes, heard) != nullptr || heard.instance == own_.instance) return;
     const bool is_known = other_ && other_->instance == heard.instance;
-    if (!is_known && heard.host != host_ && !IsThisMachine(heard.waiting_for)) return;
+    if (!is_known && heard.host != host_ && !MeansUs(heard.waiting_for)) return;
     const std::string us = std::to_string(own_.instance);
     hears_us_ = hears_us_ || std::ranges::find(heard.input, us) != heard.input.end();
     if (!heard_) heard_ = Clock::now();
@@ -118,6 +119,15 @@ class Conversation {
     own_.input_rate_hz = {0};
     own_.input_late = {0};
     own_.num_inputs = 1;
+  }
+
+  /// Whether another doctor awaits this machine. The name comes from the network, and resolving a
+  /// name takes time, so only few names are resolved.
+  bool MeansUs(const std::string& name) {
+    constexpr std::size_t kMostNames = 8;
+    const auto known = is_us_.find(name);
+    if (known != is_us_.end()) return known->second;
+    return is_us_.size() < kMostNames && (is_us_[name] = IsThisMachine(name));
   }
 
   void Say(TimePoint now) {
@@ -134,6 +144,7 @@ class Conversation {
   std::optional<status_t> other_;
   std::optional<TimePoint> heard_;  // when the other doctor was first heard
   bool hears_us_ = false;
+  std::map<std::string, bool> is_us_;  // by a name that was resolved
   TimePoint say_at_{};
   std::vector<std::uint8_t> buffer_;
 };
