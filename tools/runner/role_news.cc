@@ -94,7 +94,7 @@ void Warnings::NameTheRefused() {
     if (!member.refused || !member.status || !refused_.insert(member.refused->instance).second) {
       continue;
     }
-    Say(fmt::format("{} is refused: this run has a {}, pid {} on {}", ProcessOf(*member.refused),
+    Say(fmt::format("{} is refused: the {} of this run is pid {} on {}", ProcessOf(*member.refused),
                     info.name, member.status->pid, member.status->host));
   }
 }

@@ -146,7 +146,7 @@ TEST(CrashTest, ASecondProcessOfARoleThatLivesIsRefusedAndToldAndTheRunGoesOn) {
       {Program("fogline-acc"), "--lcm-url", watched.url(), "--run-id", watched.RunId()});
   EXPECT_TRUE(
       watched.run().WaitForErr("warning: acc (pid " + std::to_string(second.pid()) + " on "));
-  EXPECT_TRUE(watched.run().WaitForErr(" is refused: this run has a acc, pid " + ours + " on "));
+  EXPECT_TRUE(watched.run().WaitForErr(" is refused: the acc of this run is pid " + ours + " on "));
   EXPECT_EQ(second.Wait(), 3);
   EXPECT_EQ(second.Err(),
             "fogline-acc: error: another process is the acc of run " + watched.RunId() + "\n");
