@@ -15,6 +15,7 @@
 #include <string_view>
 #include <vector>
 
+#include "services/graph.h"
 #include "services/runtime/wire/wire.h"
 
 namespace fogline::log {
@@ -42,8 +43,8 @@ struct WrittenLog {
 
 /// A killed recorder leaves at most kRingSteps incomplete steps and a torn event after the last
 /// complete step. The recorder has not reported these bytes. All these bytes lie within the last
-/// kTailBytes of the log.
-inline constexpr std::int64_t kTailBytes = 1 << 20;
+/// kTailBytes of the log. 128 KiB for each channel are 87 of its largest messages.
+inline constexpr std::int64_t kTailBytes = static_cast<std::int64_t>(kNumChannels) * (128 << 10);
 
 /// Appends events to a new file, or continues an old file after a given LogHead.
 class EventLogWriter {

@@ -18,8 +18,7 @@ namespace {
 
 // The number of bytes that Look() reads. It is more than twice the size of any step, so a step
 // begins in every piece of this size.
-constexpr std::int64_t kLook = 32 << 10;
-static_assert(kLook > 2 * log::kMostStepBytes);
+constexpr std::int64_t kLook = 2 * log::kMostStepBytes + 1;
 
 }  // namespace
 
