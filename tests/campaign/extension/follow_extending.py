@@ -98,7 +98,7 @@ def check(tree, printed, written):
     assert graph.split("\n\n")[0] in (tree / "README.md").read_text()
     # All transports have one digest, and the program computes the camera again from a log.
     digests = re.findall(r"\b[0-9a-f]{64}\b", printed[-1])
-    assert len(digests) == 4 and len(set(digests)) == 1, printed[-1]
+    assert len(digests) == 4 + 4 and len(set(digests)) == 1, printed[-1]  # of the runs, and of their logs
     assert re.search(r"^thermal +same: 500 steps$", printed[-1], re.MULTILINE), printed[-1]
     # The metrics do not depend on a channel that no other role reads.
     assert "logs/direct.lcm" in printed[-1]
