@@ -162,7 +162,8 @@ TEST_F(HistoryTest, SaysThatItLivesWhileItReadsALogThatDoesNotEndAsItShould) {
   EXPECT_GT(heard.front(), 0);
   EXPECT_LT(heard.front(), heard.back());
   EXPECT_THAT(log::OddEnd(file_, log::ReadFront(file_), remains),
-              testing::EndsWith(" 2097152 bytes do not continue step 19999"));
+              testing::EndsWith(" " + std::to_string(2 * log::kTailBytes) +
+                                " bytes do not continue step 19999"));
 }
 
 TEST_F(HistoryTest, HandsOutEveryStepInWhateverOrderItIsAskedFor) {
