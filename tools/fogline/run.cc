@@ -1,7 +1,6 @@
 // fogline run: makes one run of a scenario.
 #include <cstddef>
 #include <cstdio>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <thread>
@@ -12,9 +11,9 @@
 
 #include "common/clock.h"
 #include "common/interrupt.h"
-#include "common/parse_number.h"
 #include "common/process/console.h"
 #include "common/text.h"
+#include "services/runtime/process/run_id_option.h"
 #include "services/runtime/wire/build_id.h"
 #include "services/runtime/wire/other_build.h"
 #include "services/runtime/wire/scenario_parts.h"
@@ -79,16 +78,9 @@ struct RunArguments {
                     "Limit of the lockstep's speed, in simulated seconds per second (0: no limit)")
         ->check(cli::NumberIn(0, runtime::kMaxSpeed))
         ->capture_default_str();
-    verb.add_option("--run-id", options.run_id,
-                    "Id of the run (default: a random number). Roles that are started with this "
-                    "--run-id take part in no other run")
-        ->check(CLI::Range(std::int64_t{1}, std::numeric_limits<std::int64_t>::max()))
-        ->check([](const std::string& text) {  // CLI11 takes the nearest number that fits
-          return ParseNumber<std::int64_t>(text)
-                     ? std::string()
-                     : text + " is no id: a whole number from 1 to 9223372036854775807";
-        })
-        ->type_name("ID");
+    runtime::AddRunIdOption(verb, "--run-id", options.run_id,
+                            "Id of the run (default: a random number). Roles that are started with "
+                            "this --run-id take part in no other run");
     CLI::Option* realtime =
         verb.add_flag("--realtime", options.realtime,
                       "Run on the wall clock; no role waits for late inputs. If inputs fail, the "

@@ -20,6 +20,7 @@
 #include "common/interrupt.h"
 #include "common/process/console.h"
 #include "common/text.h"
+#include "services/runtime/process/run_id_option.h"
 #include "services/runtime/transport/tcpq_url.h"
 #include "services/runtime/transport/traffic_options.h"
 #include "tools/cli/arguments.h"
@@ -92,7 +93,8 @@ struct ViewArguments {
                     "(repeatable)")
         ->allow_extra_args(false);
     verb.add_flag("--no-browser", no_browser, "Only print the address");
-    verb.add_option("--run", run, "Show only the run with this id, also if the network has others");
+    runtime::AddRunIdOption(verb, "--run", run,
+                            "Show only the run with this id, also if the network has others");
     verb.add_flag("--seat", seat, "One person may drive in the run, at the page /drive");
     verb.add_option("--open-at", open_at, "Step of the log that the page shows first")
         ->check(CLI::Range(0, 1'000'000'000));

@@ -17,6 +17,7 @@
 #include "common/process/this_process.h"
 #include "services/runtime/discovery/run_seeker.h"
 #include "services/runtime/discovery/waiting_roles.h"
+#include "services/runtime/process/run_id_option.h"
 #include "services/runtime/process/version.h"
 #include "services/runtime/transport/lcm_url.h"
 #include "services/runtime/transport/traffic_options.h"
@@ -44,7 +45,7 @@ struct Arguments {
 
   void AddTo(CLI::App& app) {
     app.add_option("--lcm-url", url, "LCM network to join (default: see above)");
-    app.add_option("--run-id", run_id, "Join only the run with this id");
+    AddRunIdOption(app, "--run-id", run_id, "Join only the run with this id");
     app.add_option("--wait", wait_s, "Longest wait for a run, in s (0: for ever)")
         ->check(CLI::Range(0.0, 1e6))
         ->check([](const std::string& text) {  // CLI::Range accepts NaN

@@ -79,11 +79,17 @@ TEST(CoexistenceTest, RunsAndRolesCanAgreeOnAnIdBeforehand) {
 }
 
 TEST(CoexistenceTest, AnIdOfARunIsAPositiveNumber) {
+  const auto refuses = [](const std::vector<std::string>& command, const char* id) {
+    const Outcome outcome = RunCommand(command);
+    EXPECT_EQ(outcome.code, 2) << id;
+    EXPECT_THAT(outcome.err, HasSubstr(id));
+    EXPECT_THAT(outcome.err, HasSubstr("--run")) << id;
+  };
   for (const char* id : {"0", "-5", "x", "1.5", "99999999999999999999"}) {
-    const Outcome run =
-        RunCommand({Program("fogline"), "run", "scenario/paper.json", "--run-id", id});
-    EXPECT_EQ(run.code, 2) << id;
-    EXPECT_THAT(run.err, HasSubstr("--run-id")) << id;
+    refuses({Program("fogline"), "run", "scenario/paper.json", "--run-id", id}, id);
+    refuses({Program("fogline-driver"), "--wait", "1", "--run-id", id}, id);
+    refuses({Program("fogline"), "metrics", "any.lcm", "--run", id}, id);
+    refuses({Program("fogline"), "view", "--no-browser", "--run", id}, id);
   }
 }
 

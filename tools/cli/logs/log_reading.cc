@@ -6,11 +6,13 @@
 #include "common/process/console.h"
 #include "common/text.h"
 #include "scenario/io/loader.h"
+#include "services/runtime/process/run_id_option.h"
 
 namespace fogline::cli {
 
 void AddRunOption(CLI::App& verb, std::optional<std::int64_t>& run_id) {
-  verb.add_option("--run", run_id, "Id of the run to read (default: the first run in the log)");
+  runtime::AddRunIdOption(verb, "--run", run_id,
+                          "Id of the run to read (default: the first run in the log)");
 }
 
 LogReading::LogReading(CLI::App& verb) {
