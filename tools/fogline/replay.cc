@@ -12,6 +12,7 @@
 #include "common/text.h"
 #include "tools/cli/arguments.h"
 #include "tools/cli/help.h"
+#include "tools/cli/logs/log_reading.h"
 #include "tools/fogline/logs/live_replay.h"
 #include "tools/fogline/verbs.h"
 #include "tools/replay/role_check.h"
@@ -22,8 +23,11 @@ namespace {
 struct ReplayArguments {
   explicit ReplayArguments(CLI::App& verb) : live(verb) {}
 
+  log::ReadOptions Options() const { return {.run_id = run_id}; }
+
   LiveReplay live;
   std::filesystem::path log;
+  std::optional<std::int64_t> run_id;
   std::string role;
   bool all = false;
   bool json = false;
@@ -34,8 +38,8 @@ struct ReplayArguments {
 }
 
 /// The run of a log, without its steps.
-log::RunLog ReadRun(const std::filesystem::path& log) {
-  log::RunLogReader reader(log);
+log::RunLog ReadRun(const ReplayArguments& arguments) {
+  log::RunLogReader reader(arguments.log, arguments.Options());
   while (reader.Next() != nullptr) {
   }
   return reader.run();
@@ -109,15 +113,15 @@ int RunReplay(const ReplayArguments& arguments) {
     if (arguments.all || !arguments.role.empty()) {
       throw InputError("error: --live makes a run; --role and --all compute the steps of the log");
     }
-    return arguments.live.Run(arguments.log, arguments.json);
+    return arguments.live.Run(arguments.log, arguments.run_id, arguments.json);
   }
   if (arguments.all == !arguments.role.empty()) {
     throw InputError("error: give one of --role and --all");
   }
-  const log::RunLog run = ReadRun(arguments.log);
+  const log::RunLog run = ReadRun(arguments);
   std::vector<replay::RoleCheck> roles = ChosenRoles(arguments, run);
   RefuseOthers(arguments.log, roles, run);
-  log::RunLogReader reader(arguments.log);
+  log::RunLogReader reader(arguments.log, arguments.Options());
   try {
     replay::CheckRoles(reader, roles);
   } catch (const InputError& error) {
@@ -136,7 +140,7 @@ int RunReplay(const ReplayArguments& arguments) {
   } else {
     for (const replay::RoleCheck& one : roles) PrintText(one, run.steps);
   }
-  if (!run.note.empty()) Complain(fmt::format("{}: {}", PathText(arguments.log), run.note));
+  cli::SayAboutLog(arguments.log, run);
   return same && run.complete ? kDone : kCheckFailed;
 }
 
@@ -150,6 +154,7 @@ void AddReplay(CLI::App& app, cli::Action& action) {
   CLI::Option* role =
       verb->add_option("--role", arguments->role, "Role to replay, such as fusion or arbitrator");
   verb->add_flag("--all", arguments->all, "Replay every role, each by itself")->excludes(role);
+  cli::AddRunOption(*verb, arguments->run_id);
   verb->add_flag("--json", arguments->json, "Print as JSON");
   cli::ShowExitCodes(*verb, {.check_failed = "differs or is incomplete", .interruptible = true});
   verb->footer(

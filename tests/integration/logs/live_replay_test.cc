@@ -1,6 +1,7 @@
 // `fogline replay --live`: recorded messages of some roles drive the living rest of the system.
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "services/log/event_log.h"
+#include "services/log/remains.h"
 #include "services/runtime/wire/wire.h"
 #include "tests/support/command.h"
 
@@ -82,6 +84,21 @@ TEST_F(LiveReplayTest, TellsHowMuchTheTrackOfAnotherFusionDiffers) {
 TEST_F(LiveReplayTest, OfAnyOtherChannelReplacesItsRole) {
   const nlohmann::json live = Live({"--channels", "DRIVER_COMMAND"});
   EXPECT_EQ(live["digest"], digest_);
+}
+
+TEST_F(LiveReplayTest, OfALogOfSeveralRunsTakesTheChosenOne) {
+  const std::string before = folder_.File("before.lcm");
+  const Outcome run = RunCommand({Program("fogline"), "run", "scenario/paper.json", "--transport",
+                                  "direct", "--quiet", "--log", before, "--seed", "2"});
+  ASSERT_EQ(run.code, 0) << run.err;
+  const std::string both = folder_.File("both.lcm");
+  std::ofstream(both, std::ios::binary) << Content(before) << Content(log_);
+  const Outcome outcome = Replay(both, {"--run", std::to_string(log::ReadFront(log_).run_id)});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  const nlohmann::json live = nlohmann::json::parse(outcome.out, nullptr, false);
+  EXPECT_EQ(live["digest"], digest_);
+  EXPECT_EQ(live["track"]["compared_steps"], 250);
+  EXPECT_EQ(live["track"]["distance_m"]["largest"], 0);
 }
 
 TEST_F(LiveReplayTest, OfALogWithAGapIsRefusedInLockstep) {

@@ -1,6 +1,7 @@
 // `fogline replay`: a role computes its outputs again from the inputs in a log, and compares them
 // with the log.
 #include <filesystem>
+#include <fstream>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "services/log/log_seal.h"
+#include "services/log/remains.h"
 #include "services/runtime/wire/wire.h"
 #include "tests/support/command.h"
 
@@ -132,6 +134,29 @@ TEST_F(ReplayTest, TakesALogThatWasCutOffAsFarAsItGoes) {
   EXPECT_EQ(replay.code, 1);
   EXPECT_THAT(replay.out, HasSubstr("same: 2"));
   EXPECT_THAT(replay.err, HasSubstr("ends after step 2"));
+}
+
+TEST_F(ReplayTest, ReadsTheChosenRunOfALogOfSeveralRuns) {
+  const std::string log = Log("scenario/paper.json", {"--transport", "direct"});
+  const std::int64_t first = log::ReadFront(log).run_id;
+  const std::string before = Content(log);
+  Log("scenario/paper.json",
+      {"--transport", "direct", "--force", "--seed", "2", "--set", "/steps=250"});
+  const std::string second = std::to_string(log::ReadFront(log).run_id);
+  const std::string both = folder_.File("both.lcm");
+  std::ofstream(both, std::ios::binary) << before << Content(log);
+  const auto steps = [](const Outcome& replay) {
+    EXPECT_EQ(replay.code, 0) << replay.out << replay.err;
+    return nlohmann::json::parse(replay.out, nullptr, false)["steps"];
+  };
+  const Outcome unsaid = Replay({both, "--all", "--json"});
+  EXPECT_EQ(steps(unsaid), 500);
+  EXPECT_THAT(unsaid.err, HasSubstr("this is run " + std::to_string(first) +
+                                    "; the log also has run " + second));
+  EXPECT_EQ(steps(Replay({both, "--all", "--json", "--run", second})), 250);
+  const Outcome unknown = Replay({both, "--all", "--run", "5"});
+  EXPECT_EQ(unknown.code, 2);
+  EXPECT_THAT(unknown.err, HasSubstr("--run 5: the log has no such run; it has "));
 }
 
 TEST_F(ReplayTest, SaysWhatIsWrongWithItsArguments) {

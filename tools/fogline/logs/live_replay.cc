@@ -10,6 +10,7 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include "common/exit_code.h"
 #include "common/interrupt.h"
 #include "common/process/console.h"
 #include "common/text.h"
@@ -102,7 +103,8 @@ LiveReplay::LiveReplay(CLI::App& verb) {
   verb.add_flag("--quiet", quiet_, "Print only errors on stderr")->needs(live);
 }
 
-int LiveReplay::Run(const std::filesystem::path& recorded, bool json) const {
+int LiveReplay::Run(const std::filesystem::path& recorded, std::optional<std::int64_t> recorded_run,
+                    bool json) const {
   std::error_code missing;
   if (!log_.empty() && std::filesystem::equivalent(log_, recorded, missing)) {
     throw InputError(
@@ -110,8 +112,8 @@ int LiveReplay::Run(const std::filesystem::path& recorded, bool json) const {
                     "another file",
                     PathText(log_)));
   }
-  const replay::RecordedMessages messages(recorded, {.gaps = true},
-                                          replay::RecordedChannels(channels_));
+  const log::ReadOptions read{.gaps = true, .run_id = recorded_run};
+  const replay::RecordedMessages messages(recorded, read, replay::RecordedChannels(channels_));
   const log::RunLog& run = messages.run();
   if (const std::string gap = messages.FirstGap(); !realtime_ && !gap.empty()) {
     RefuseLog(recorded,
@@ -144,8 +146,7 @@ int LiveReplay::Run(const std::filesystem::path& recorded, bool json) const {
     Notice(fmt::format("replays {} of run {} in {} steps", channels_, run.run_id, scenario.steps));
   }
   const runner::ExperimentResult result = runner::RunExperiment(scenario, options);
-  const replay::TrackDifference track =
-      replay::CompareTracks(recorded, {.gaps = true}, options.log);
+  const replay::TrackDifference track = replay::CompareTracks(recorded, read, options.log);
   if (json) {
     nlohmann::ordered_json document{{"log", recorded.string()},
                                     {"live_log", options.log.string()},

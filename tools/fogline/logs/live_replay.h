@@ -1,7 +1,9 @@
 // fogline replay --live: recorded messages of some roles drive the living rest of the system.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,9 +19,12 @@ class LiveReplay {
   explicit LiveReplay(CLI::App& verb);
 
   bool chosen() const { return live_; }
-  /// Makes the run and prints how much its track differs. @return the exit code
+  /// Makes the run and prints how much its track differs.
+  /// @param recorded_run its id; nullopt: the first run in the log
+  /// @return the exit code
   /// @throws InputError, Interrupted, std::runtime_error as RunExperiment()
-  int Run(const std::filesystem::path& recorded, bool json) const;
+  int Run(const std::filesystem::path& recorded, std::optional<std::int64_t> recorded_run,
+          bool json) const;
 
  private:
   bool live_ = false;
