@@ -40,9 +40,11 @@ TransportArguments::TransportArguments(CLI::App& verb, std::string transport)
     : transport_(std::move(transport)) {
   said_ =
       verb.add_option("--transport", transport_,
-                      "direct: one process, no messages; memq: one process, LCM in memory; udpm: "
-                      "one process per role on a multicast port of its own; tcpq: the same over "
-                      "TCP, through a fogline-relay of its own; or an LCM URL")
+                      fmt::format("direct: one process, no messages; memq: one process, LCM in "
+                                  "memory; udpm: one process per role on a multicast port of its "
+                                  "own; tcpq: the same over TCP, through a fogline-relay of its "
+                                  "own; or an LCM URL{}",
+                                  transport_ == "direct" ? " (with --on or --lab: udpm)" : ""))
           ->capture_default_str();
   verb.add_option("--lcm-url", url_,
                   fmt::format("The same as --transport URL. Without either, processes{} use "
@@ -72,8 +74,9 @@ std::string TransportArguments::Unsaid(const hosts::RunPlan& plan) const {
   if (plan.relay) return "tcpq";
   if (!plan.url.empty()) return plan.url;
   const auto url = runtime::UrlOfEnvironment();
-  const bool as_processes = transport_ != "direct" || !external_.empty() || !plan.empty();
-  if (!url || !as_processes) return transport_;
+  const std::string usual = transport_ == "direct" && !plan.empty() ? "udpm" : transport_;
+  const bool as_processes = usual != "direct" || !external_.empty();
+  if (!url || !as_processes) return usual;
   if (!runtime::IsLcmUrl(*url)) {
     throw InputError(fmt::format("error: LCM_DEFAULT_URL is {}, which is no LCM URL such as \"{}\"",
                                  *url, runtime::kLcmDefaultUrl));

@@ -16,8 +16,9 @@ namespace fogline::cli {
 /// and those of roles on other machines.
 class TransportArguments {
  public:
-  /// @param transport default transport. If this transport starts the roles as processes, and
-  ///     $LCM_DEFAULT_URL is set, the URL in $LCM_DEFAULT_URL is the default instead.
+  /// @param transport default transport. If it is direct, but roles are on other machines, the
+  ///     default is udpm. If the default starts the roles as processes, and $LCM_DEFAULT_URL is
+  ///     set, the URL in $LCM_DEFAULT_URL is the default instead.
   TransportArguments(CLI::App& verb, std::string transport);
 
   /// Sets the transport, the options of its traffic, and the roles that are started elsewhere.

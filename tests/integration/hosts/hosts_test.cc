@@ -158,6 +158,21 @@ TEST_F(EnteredHostsTest, DriveInRealtimeToo) {
   EXPECT_EQ(ResultOf(run)["steps"], 50) << run.Err();
 }
 
+TEST_F(EnteredHostsTest, MakeTheRunsOfATable) {
+  const auto table = [](const std::vector<std::string>& more) {
+    std::vector<std::string> command{Program("fogline"), "table",        "scenario/paper.json",
+                                     "--json",           "--thresholds", "0.5"};
+    command.insert(command.end(), more.begin(), more.end());
+    return command;
+  };
+  std::vector<std::string> places = OnLab2({"fusion"});
+  places.insert(places.end(), {"--ssh", Enter()});
+  const auto result = Result(RunCommand(lab()[0].On(table(places))));
+  EXPECT_EQ(result["transport"], "udpm");
+  EXPECT_EQ(result["rows"], Result(RunCommand(table({})))["rows"]);
+  EXPECT_THAT(LeftOn(lab()[1]), IsEmpty());
+}
+
 TEST(HostVerbTest, SaysItsVersionAndEndsWithItsInput) {
   const Outcome host = RunCommand({Program("fogline"), "host"});  // stdin is /dev/null
   EXPECT_EQ(host.code, 0) << host.err;

@@ -109,6 +109,7 @@ TEST(TransportArgumentsTest, PlaceRolesOnOtherMachines) {
   EXPECT_EQ(options.transport, "udpm");
   EXPECT_EQ(options.hosts.hosts.size(), 2U);
   EXPECT_TRUE(options.hosts.places.contains(Role::kAcc));
+  EXPECT_EQ(Read({"--on", "acc=lab2"}, "direct").transport, "udpm");
   EXPECT_EQ(Read({"--on", "acc=lab2", "--relay"}).transport, "tcpq");
   EXPECT_EQ(Read({"--on", "acc=lab2", "--relay-at", "10.0.0.1"}).transport, "tcpq");
   environment.Set("udpm://239.255.76.67:7700?ttl=1");
@@ -119,6 +120,8 @@ TEST(TransportArgumentsTest, RefuseRolesOnOtherMachinesThatCannotJoin) {
   const EnvironmentUrl environment;
   EXPECT_EQ(Refusal({"--on", "acc=lab2", "--transport", "memq"}),
             "error: acc on lab2: a run with --transport memq is one process");
+  EXPECT_EQ(Refusal({"--on", "acc=lab2", "--transport", "direct"}),
+            "error: acc on lab2: a run with --transport direct is one process");
   EXPECT_EQ(Refusal({"--on", "acc=lab2", "--lcm-url", kUrl}),
             "error: acc on lab2: messages to " + kUrl +
                 " stay on this machine; other machines need ttl=1");
