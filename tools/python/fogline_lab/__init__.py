@@ -9,8 +9,8 @@ Reading a log and listening to a network need only the standard library. pandas 
 a table is asked for. docs/python.md is a tutorial.
 """
 
-from fogline_lab.errors import (BadInput, CheckFailed, FoglineError, LogError, ProgramError,
-                                RunFailed)
+from fogline_lab.errors import (BadInput, CheckFailed, FoglineError, IncompleteLog, LogError,
+                                ProgramError, RunFailed)
 from fogline_lab.live import Heard, Live
 from fogline_lab.log import Log, read_log
 from fogline_lab.messages import *  # noqa: F403 - every message type

@@ -12,16 +12,23 @@ class LogError(FoglineError, ValueError):
 
 
 class ProgramError(FoglineError, RuntimeError):
-    """`fogline` has failed. The text is what it printed on stderr."""
+    """`fogline` has failed. The text is what it printed on stderr, `out` what it printed on stdout.
+    """
 
-    def __init__(self, text: str, command: list[str], code: int) -> None:
+    def __init__(self, text: str, command: list[str], code: int, out: str = "") -> None:
         super().__init__(text or f"{' '.join(command)}: exit code {code}")
         self.command = command
         self.code = code
+        self.out = out
 
 
 class CheckFailed(ProgramError):
     """Exit code 1: a check has failed."""
+
+
+class IncompleteLog(UserWarning):
+    """What the program tells of a log is that of a part of the run. The text says what is missing.
+    """
 
 
 class BadInput(ProgramError, ValueError):

@@ -6,11 +6,12 @@ import json
 import mmap
 import os
 import struct
+import warnings
 from typing import TYPE_CHECKING, Any, Iterator, NamedTuple
 
 from fogline_lab import program
 from fogline_lab.codec import Message
-from fogline_lab.errors import LogError
+from fogline_lab.errors import CheckFailed, IncompleteLog, LogError
 from fogline_lab.messages import BY_FINGERPRINT, run_t
 
 if TYPE_CHECKING:
@@ -151,23 +152,44 @@ class Log:
 
     @property
     def metrics(self) -> dict[str, Any]:
-        """The measures of the run, as `fogline metrics` computes them from the log."""
-        return self._ask("metrics")["metrics"]
+        """The measures of the run, as `fogline metrics` computes them from the log.
+
+        If the log is not complete, they are those of the steps that are there, with None for a
+        measure that needs every step. The warning IncompleteLog then says what is missing.
+        """
+        return self._tell("metrics")["metrics"]
 
     @property
     def events(self) -> list[dict[str, Any]]:
-        """The events of the run: step, time_s, event, from, to (`fogline events`)."""
-        return self._ask("events")["events"]
+        """The events of the run: step, time_s, event, from, to (`fogline events`).
+
+        If the log is not complete, they are those of the steps that are there. The warning
+        IncompleteLog then says what is missing.
+        """
+        return self._tell("events")["events"]
 
     @property
     def digest(self) -> str:
-        """The digest of the run. Equal digests mean equal runs (`fogline digest`)."""
+        """The digest of the run. Equal digests mean equal runs (`fogline digest`).
+
+        Raises CheckFailed if the log is not complete.
+        """
         return self._ask("digest")["digest"]
 
     def _ask(self, verb: str) -> dict[str, Any]:
         """What `fogline VERB` says of this run."""
         chosen = ["--run", str(self.run_id)] if self.run_id else []
         return program.call_json(verb, self.path, *chosen)[0]
+
+    def _tell(self, verb: str) -> dict[str, Any]:
+        """The same, with a warning in place of the error for a log that is not complete."""
+        try:
+            return self._ask(verb)
+        except CheckFailed as error:
+            if not error.out:
+                raise
+            warnings.warn(str(error), IncompleteLog, stacklevel=3)
+            return json.loads(error.out)[0]
 
     # ---- for fogline_lab.frames ------------------------------------------------------------------
 

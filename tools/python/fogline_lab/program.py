@@ -58,7 +58,7 @@ def call(*arguments: str, progress: Progress = None) -> str:
         out, err, code = _call_with_terminal(command, progress)
     if code != 0:
         kind = {1: CheckFailed, 2: BadInput}.get(code, RunFailed)
-        raise kind(err.strip(), command, code)
+        raise kind(err.strip(), command, code, out)
     return out
 
 

@@ -68,6 +68,21 @@ class LogTest(unittest.TestCase):
                          [step for step in range(STEPS) if step != 20])
         self.assertEqual(len(list(log.messages("LIDAR"))), STEPS)
 
+    def test_a_log_with_a_gap_tells_its_measures_and_events_and_what_is_missing(self):
+        kept = [event for event, channel, step in events_of(self.log)
+                if not (channel == "HOST_COMMAND" and step == 20)]
+        log = fl.read_log(self.write("gap.lcm", kept))
+        with self.assertWarnsRegex(fl.IncompleteLog, "step 20 lacks HOST_COMMAND") as caught:
+            measures = log.metrics
+        self.assertEqual(caught.filename, __file__)
+        self.assertIsNone(measures["human_time_s"])
+        self.assertEqual(measures["min_follower_gap_m"], self.run_.metrics["min_follower_gap_m"])
+        with self.assertWarns(fl.IncompleteLog):
+            self.assertEqual(log.events[0]["event"], "activation of the automation")
+        with self.assertRaisesRegex(fl.CheckFailed, "step 20 lacks HOST_COMMAND") as failure:
+            log.digest
+        self.assertIn('"complete": false', failure.exception.out)
+
     def test_a_log_that_begins_late_lacks_only_its_scenario(self):
         kept = [event for event, channel, step in events_of(self.log)
                 if channel != "RUN" and step >= 10]
