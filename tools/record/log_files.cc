@@ -10,12 +10,27 @@
 #include <fmt/core.h>
 
 #include "common/errors.h"
+#include "common/text.h"
 
 namespace fogline::record {
 
 LogFiles::LogFiles(std::filesystem::path file, const Rotation& rotation, TimePoint now)
     : file_(std::move(file)), rotation_(rotation) {
   Begin(now);
+  if (rotation_.Any()) RemoveEarlierRecording();
+}
+
+void LogFiles::RemoveEarlierRecording() {
+  for (const std::filesystem::path& earlier : InTheWay(file_)) {
+    std::error_code error;
+    if (earlier == files_.front() || !std::filesystem::is_regular_file(earlier, error)) continue;
+    if (!std::filesystem::remove(earlier, error) && error) {
+      throw InputError(
+          fmt::format("{}: error: LOG: this file of an earlier recording cannot be removed: {}",
+                      PathText(earlier), error.message()));
+    }
+    ++removed_;
+  }
 }
 
 std::filesystem::path LogFiles::NameOf(const std::filesystem::path& file, std::size_t number) {

@@ -20,10 +20,12 @@ struct Rotation {
 };
 
 /// The files of a recording: "day.lcm", or with a rotation "day-000.lcm", "day-001.lcm" and so on.
-/// Every file is an event log of its own, whose events are numbered from 0 on.
+/// Every file is an event log of its own, whose events are numbered from 0 on. With a rotation the
+/// folder has only files of this recording: those of an earlier one are removed.
 class LogFiles {
  public:
-  /// Begins the first file. An existing file is replaced. @throws InputError
+  /// Begins the first file. An existing file is replaced, with a rotation all files InTheWay().
+  /// @throws InputError
   LogFiles(std::filesystem::path file, const Rotation& rotation, TimePoint now);
 
   /// Appends an event. @throws std::runtime_error, for example if the disk is full; the file then
@@ -34,14 +36,17 @@ class LogFiles {
 
   const std::vector<std::filesystem::path>& files() const { return files_; }
   std::int64_t bytes() const { return earlier_bytes_ + (log_ ? log_->size() : 0); }
+  /// Number of the later files of an earlier recording, which were removed.
+  std::int64_t removed() const { return removed_; }
 
   /// The name of a file of a recording with a rotation.
   static std::filesystem::path NameOf(const std::filesystem::path& file, std::size_t number);
-  /// The existing files that a recording with a rotation would replace sooner or later.
+  /// The existing files with a name that a recording with a rotation gives.
   static std::vector<std::filesystem::path> InTheWay(const std::filesystem::path& file);
 
  private:
   void Begin(TimePoint now);
+  void RemoveEarlierRecording();
   /// Removes the part of an event at the end of the file.
   void CutTornEvent();
 
@@ -52,6 +57,7 @@ class LogFiles {
   std::vector<std::int64_t> ends_;  // where the events end that are not flushed yet
   std::int64_t flushed_ = 0;        // the bytes of the file before them
   std::int64_t earlier_bytes_ = 0;
+  std::int64_t removed_ = 0;
   TimePoint begun_{};
 };
 

@@ -49,6 +49,10 @@ Recording::Recording(RecordingOptions options)
         "net.core.rmem_max): a burst may lose messages while this program gets no processor time",
         granted, options_.buffer_bytes));
   }
+  if (files_.removed() > 0) {
+    options_.say(fmt::format("removed {} file{} of an earlier recording", files_.removed(),
+                             files_.removed() == 1 ? "" : "s"));
+  }
   options_.say(fmt::format("records {} in {}", options_.url, PathText(files_.files().front())));
   writer_ = std::thread([this] { WriteAll(); });
 }

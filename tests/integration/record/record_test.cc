@@ -174,6 +174,30 @@ TEST_F(RecordTest, ReplacesNoFileOfAnEarlierRotationWithoutForce) {
   EXPECT_EQ(Content(other), "text");
 }
 
+TEST_F(RecordTest, LeavesNoFileOfALongerEarlierRotationIfForced) {
+  for (const char* name : {"all-000.lcm", "all-001.lcm", "all-002.lcm"}) {
+    const RecordProcess record(bus_, folder_.File(name));
+  }
+  const std::string other = folder_.File("all-003.txt");
+  std::ofstream(other) << "text";
+  std::vector<std::string> command{Program("fogline"), "record", log_,    "--lcm-url", bus_.url(),
+                                   "--rotate-mb",      "1",      "--for", "0.1",       "--json",
+                                   "--force"};
+  const Outcome outcome = RunCommand(command);
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("removed 2 files of an earlier recording\n"));
+  EXPECT_EQ(json::parse(outcome.out)["files"], (json{folder_.File("all-000.lcm")}));
+  EXPECT_FALSE(std::filesystem::exists(folder_.File("all-001.lcm")));
+  EXPECT_FALSE(std::filesystem::exists(folder_.File("all-002.lcm")));
+  EXPECT_EQ(Content(other), "text");
+  // A file that is no log keeps all others.
+  std::ofstream(folder_.File("all-001.lcm")) << "text";
+  std::ofstream(folder_.File("all-002.lcm")).flush();  // an empty log
+  EXPECT_EQ(RunCommand(command).code, 2);
+  EXPECT_EQ(Content(folder_.File("all-001.lcm")), "text");
+  EXPECT_TRUE(std::filesystem::exists(folder_.File("all-002.lcm")));
+}
+
 TEST_F(RecordTest, EndsWithOneErrorAndAValidLogIfTheDiskIsFull) {
   std::unique_ptr<RecordProcess> record;
   {

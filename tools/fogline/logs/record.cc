@@ -25,9 +25,10 @@ constexpr const char* kRecordExplanation =
 messages or a slow disk loses nothing. Ctrl-C ends the recording with a whole log and a summary.
 The summary counts, for each sender, the messages that are missing, by LCM's own numbers (udpm
 only). With a rotation the files are LOG-000.lcm, LOG-001.lcm and so on. If one of these files
-exists, the recording does not begin without --force. Without --lcm-url it also records the newest
-run that is announced on this machine. A full disk ends the recording (exit code 3); the log then
-ends with a whole message.
+exists, the recording does not begin without --force. With --force it first removes all of them,
+so that no file of an earlier recording is left. Without --lcm-url it also records the newest run
+that is announced on this machine. A full disk ends the recording (exit code 3); the log then ends
+with a whole message.
 
 Examples:
   fogline record logs/all.lcm
@@ -59,7 +60,7 @@ struct RecordArguments {
     verb.add_option("--for", limit_s, "End after this time, in s (0: never)")
         ->check(cli::NumberIn(0, 1e9))
         ->capture_default_str();
-    verb.add_flag("--force", force, "Replace an existing log");
+    verb.add_flag("--force", force, "Replace an existing log, with a rotation all its files");
     verb.add_flag("--json", json, "Print the summary as JSON");
     cli::ShowExitCodes(verb);
     verb.footer(kRecordExplanation);
