@@ -172,6 +172,46 @@ TEST_F(SumoTest, AHostThatReachesTheEndOfTheRoadEndsTheRunWithThatReason) {
   EXPECT_THAT(outcome.err, HasSubstr("SUMO: the host reaches the end of its lane, "));
 }
 
+TEST_F(SumoTest, ARoadOnWhichEachLaneLeadsToTwoIsReadAtOnce) {
+  // 2^40 ways lead along the 40 edges of this road.
+  constexpr int kEdges = 40;
+  std::ofstream nodes(folder_.File("mesh.nod.xml"));
+  std::ofstream edges(folder_.File("mesh.edg.xml"));
+  std::ofstream connections(folder_.File("mesh.con.xml"));
+  std::ofstream routes(folder_.File("mesh.rou.xml"));
+  nodes << "<nodes><node id='0' x='0' y='0'/>";
+  edges << "<edges>";
+  connections << "<connections>";
+  routes << "<routes><vType id='car' length='4.5'/><route id='along' edges='";
+  for (int i = 1; i <= kEdges; ++i) {
+    nodes << "<node id='" << i << "' x='" << 100 * i << "' y='0'/>";
+    edges << "<edge id='e" << i << "' from='" << i - 1 << "' to='" << i
+          << "' numLanes='2' speed='20'/>";
+    routes << (i > 1 ? " e" : "e") << i;
+    for (int lane = 0; i < kEdges && lane < 4; ++lane) {
+      connections << "<connection from='e" << i << "' to='e" << i + 1 << "' fromLane='" << lane / 2
+                  << "' toLane='" << lane % 2 << "'/>";
+    }
+  }
+  nodes << "</nodes>" << std::flush;
+  edges << "</edges>" << std::flush;
+  connections << "</connections>" << std::flush;
+  routes << "'/><vehicle id='ahead' type='car' route='along' depart='0' departPos='90' "
+            "departSpeed='20' insertionChecks='none'/></routes>"
+         << std::flush;
+  const std::string net = folder_.File("mesh.net.xml");
+  const Outcome made =
+      RunCommand({"netconvert", "--node-files", folder_.File("mesh.nod.xml"), "--edge-files",
+                  folder_.File("mesh.edg.xml"), "--connection-files", folder_.File("mesh.con.xml"),
+                  "--no-turnarounds", "--output-file", net});
+  ASSERT_EQ(made.code, 0) << made.err;
+  const Outcome check = RunCommand(
+      {"timeout", "60", Program("fogline"), "check", kQueue, "--set", "/lead/sumo/net_file=" + net,
+       "--set", "/lead/sumo/route_file=" + folder_.File("mesh.rou.xml"), "--set",
+       "/lead/sumo/behind=ahead", "--set", "/followers/count=1"});
+  EXPECT_EQ(check.code, 0) << check.err;
+}
+
 TEST_F(SumoTest, NetconvertMakesTheShippedNetwork) {
   const std::filesystem::path data = SourceDirectory() / "scenario/data/sumo_queue";
   const auto file = [&](const char* name) { return (data / name).string(); };

@@ -3,7 +3,9 @@
 #include <libsumo/libsumo.h>
 
 #include <algorithm>
-#include <optional>
+#include <iterator>
+#include <map>
+#include <utility>
 
 namespace fogline::sumo {
 namespace {
@@ -28,6 +30,17 @@ Names Through(const std::string& lane, const std::string& next) {
   return {};
 }
 
+/// The same in the other direction: the lanes inside of the junction, the last one first, and then
+/// `before`.
+Names BackThrough(const std::string& lane, const std::string& before) {
+  Names lanes = Through(before, lane);
+  if (lanes.empty()) return lanes;
+  lanes.pop_back();
+  std::ranges::reverse(lanes);
+  lanes.push_back(before);
+  return lanes;
+}
+
 Names LanesOf(const std::string& edge) {
   Names lanes;
   for (int i = 0; i < libsumo::Edge::getLaneNumber(edge); ++i) {
@@ -36,45 +49,64 @@ Names LanesOf(const std::string& edge) {
   return lanes;
 }
 
-/// The longest way onward from a lane along the edges from `edge` on; of equally long ways, that
-/// on the rightmost lanes.
-Names Onward(const std::string& lane, Names::const_iterator edge, Names::const_iterator end) {
-  Names longest;
-  if (edge == end) return longest;
-  for (const std::string& next : LanesOf(*edge)) {
-    Names way = Through(lane, next);
-    if (way.empty()) continue;
-    std::ranges::move(Onward(next, edge + 1, end), std::back_inserter(way));
-    if (way.size() > longest.size()) longest = std::move(way);
-  }
-  return longest;
-}
+/// The longest way from a lane along edges; of equally long ways, that on the rightmost lanes. Each
+/// lane of an edge is searched once, because the way from it does not depend on the way to it. A
+/// road on which each lane leads to several lanes has very many ways.
+class LongestWay {
+ public:
+  /// The lanes from a lane to one of the next edge, which is the last of them; empty if none lead
+  /// there.
+  using Between = Names (*)(const std::string& lane, const std::string& next);
 
-/// The longest way to a lane along the edges before `edge`, the last of them first.
-Names Backward(const std::string& lane, Names::const_reverse_iterator edge,
-               Names::const_reverse_iterator end) {
-  Names longest;
-  if (edge == end) return longest;
-  for (const std::string& before : LanesOf(*edge)) {
-    Names inside = Through(before, lane);
-    if (inside.empty()) continue;
-    inside.pop_back();
-    Names way = Backward(before, edge + 1, end);
-    way.push_back(before);
-    std::ranges::move(inside, std::back_inserter(way));
-    if (way.size() > longest.size()) longest = std::move(way);
+  LongestWay(Names edges, Between between) : edges_(std::move(edges)), between_(between) {}
+
+  Names From(const std::string& lane) {
+    Names way;
+    const std::string* at = &lane;
+    for (std::size_t edge = 0;; ++edge) {
+      const Names& begin = Find(*at, edge).begin;
+      if (begin.empty()) return way;
+      way.insert(way.end(), begin.begin(), begin.end());
+      at = &begin.back();
+    }
   }
-  return longest;
-}
+
+ private:
+  struct Way {
+    std::size_t lanes = 0;  // number of its lanes
+    Names begin;            // its lanes up to that of the next edge
+  };
+
+  /// The way from a lane along the edges from `edge` on.
+  const Way& Find(const std::string& lane, std::size_t edge) {
+    const auto [found, is_new] = found_.try_emplace({lane, edge});
+    Way& longest = found->second;
+    if (!is_new || edge == edges_.size()) return longest;
+    for (const std::string& next : LanesOf(edges_[edge])) {
+      Names begin = between_(lane, next);
+      if (begin.empty()) continue;
+      const std::size_t lanes = begin.size() + Find(next, edge + 1).lanes;
+      if (lanes > longest.lanes) longest = {.lanes = lanes, .begin = std::move(begin)};
+    }
+    return longest;
+  }
+
+  const Names edges_;
+  const Between between_;
+  std::map<std::pair<std::string, std::size_t>, Way> found_;
+};
 
 }  // namespace
 
 LanePath::LanePath(const Names& route, const std::string& lane) {
   const auto at = std::ranges::find(route, libsumo::Lane::getEdgeID(lane));
-  Names names = Backward(lane, std::make_reverse_iterator(at), route.rend());
+  Names names = LongestWay({std::make_reverse_iterator(at), route.rend()}, BackThrough).From(lane);
+  std::ranges::reverse(names);
   names.push_back(lane);
-  if (at != route.end())
-    std::ranges::move(Onward(lane, at + 1, route.end()), std::back_inserter(names));
+  if (at != route.end()) {
+    std::ranges::move(LongestWay({at + 1, route.end()}, Through).From(lane),
+                      std::back_inserter(names));
+  }
   double begin_m = 0;
   for (const std::string& name : names) {
     const double length_m = libsumo::Lane::getLength(name);
