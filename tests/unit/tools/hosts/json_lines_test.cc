@@ -83,6 +83,32 @@ TEST_F(JsonLinesTest, RefuseALineThatIsTooLong) {
       NotUnderstood);
 }
 
+TEST_F(JsonLinesTest, RefuseALineThatIsTooLongAlsoIfItComesBitByBit) {
+  JsonLines lines(here(), here());
+  const std::string piece(1000, 'x');
+  EXPECT_THROW(
+      {
+        for (std::size_t sent = 0; sent < 2 * JsonLines::kMaxLine; sent += piece.size()) {
+          Write(piece);
+          lines.Wait(Duration::zero());  // reads the piece, so that Take() finds nothing to read
+          lines.Take();
+        }
+      },
+      NotUnderstood);
+}
+
+TEST_F(JsonLinesTest, RefuseALineThatIsTooLongAlsoWithItsEnd) {
+  JsonLines lines(here(), here());
+  const std::string piece(1000, 'x');
+  std::size_t sent = 0;
+  for (; sent + piece.size() <= JsonLines::kMaxLine; sent += piece.size()) {
+    Write(piece);
+    EXPECT_FALSE(lines.Take().has_value());
+  }
+  Write(piece + "\n");
+  EXPECT_THROW(lines.Take(), NotUnderstood);
+}
+
 TEST_F(JsonLinesTest, AreOverWhenTheOtherSideHasClosedAndAllIsTaken) {
   JsonLines lines(here(), here());
   Write("{\"a\": 1}\n");
