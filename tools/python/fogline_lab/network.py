@@ -178,9 +178,13 @@ class Relay:
         except OSError as error:
             raise FoglineError(f"no relay at {where}: {error.strerror or error}") from None
         pattern = b".*"
-        self.socket.sendall(struct.pack(">IIII", _CLIENT_MAGIC, _RELAY_VERSION, _SUBSCRIBE,
-                                        len(pattern)) + pattern)
-        self.socket.setblocking(False)
+        try:
+            self.socket.sendall(struct.pack(">IIII", _CLIENT_MAGIC, _RELAY_VERSION, _SUBSCRIBE,
+                                            len(pattern)) + pattern)
+            self.socket.setblocking(False)
+        except OSError as error:
+            self.socket.close()
+            raise FoglineError(f"the relay at {where} is lost: {error.strerror or error}") from None
         self._where = where
         self._received = bytearray()
         self._greeted = False

@@ -78,6 +78,9 @@ def _call_with_terminal(command: list[str], progress: Any) -> tuple[str, str, in
     try:
         process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=its, text=True,
                                    stdin=subprocess.DEVNULL)
+    except BaseException:
+        os.close(ours)
+        raise
     finally:
         os.close(its)
     pieces: list[str] = []

@@ -1,11 +1,13 @@
 """The datagrams of LCM, and the URLs of its networks."""
 
 import random
+import socket
 import struct
 import unittest
+from unittest import mock
 
 from fogline_lab import network
-from fogline_lab.errors import BadInput
+from fogline_lab.errors import BadInput, FoglineError
 
 SENDER = ("127.0.0.1", 4711)
 
@@ -87,6 +89,16 @@ class FloodTest(unittest.TestCase):
         heard = []
         self.assertEqual(network_.read(lambda *message: heard.append(message)), 0)
         self.assertGreater(len(heard), 100)
+
+
+class RelayTest(unittest.TestCase):
+    def test_a_relay_that_ends_at_once_leaves_no_open_socket(self):
+        ours, its = socket.socketpair()
+        its.close()
+        with mock.patch.object(network.socket, "create_connection", return_value=ours):
+            with self.assertRaisesRegex(FoglineError, "the relay at 127.0.0.1:7700 is lost: "):
+                network.open_network("tcpq://127.0.0.1:7700")
+        self.assertEqual(ours.fileno(), -1)
 
 
 class UrlTest(unittest.TestCase):

@@ -43,6 +43,15 @@ class ProgramTest(unittest.TestCase):
             self.assertEqual(caught.exception.code, 2)
             self.assertIsInstance(caught.exception, ValueError)
 
+    def test_a_program_that_cannot_be_started_leaves_no_open_terminal(self):
+        def count():
+            return len(os.listdir("/proc/self/fd"))
+
+        before = count()
+        with self.assertRaises(FileNotFoundError):
+            program._call_with_terminal(["/none/fogline"], True)
+        self.assertEqual(count(), before)
+
     def test_progress_tells_how_much_is_done(self):
         told = []
         # The program shows a bar after 2 s: this run takes 2.5 s.
