@@ -16,6 +16,7 @@
 #include "services/runtime/wire/digest.h"
 #include "services/runtime/wire/message_signer.h"
 #include "services/runtime/wire/scenario_parts.h"
+#include "services/runtime/wire/step_ring.h"
 
 namespace fogline::log {
 namespace {
