@@ -13,6 +13,7 @@
 
 #include "services/runtime/transport/bus.h"
 #include "tests/support/command.h"
+#include "tests/support/paper_run.h"
 
 namespace fogline::test {
 namespace {
@@ -94,16 +95,7 @@ class SignedTrafficTest : public testing::Test {
   }
 
   std::vector<std::string> Run(const std::vector<std::string>& more) {
-    std::vector<std::string> command{Program("fogline"),
-                                     "run",
-                                     "scenario/paper.json",
-                                     "--json",
-                                     "--lcm-url",
-                                     url_,
-                                     "--log",
-                                     folder_.File(std::to_string(++logs_) + ".lcm")};
-    command.insert(command.end(), more.begin(), more.end());
-    return command;
+    return PaperRun(url_, folder_.File(std::to_string(++logs_) + ".lcm"), more);
   }
   static nlohmann::json ResultOf(Background& run) {
     EXPECT_EQ(run.Wait(), 0) << run.Err();

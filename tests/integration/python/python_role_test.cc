@@ -13,6 +13,7 @@
 #include "tests/integration/faults/watched_run.h"
 #include "tests/integration/python/python.h"
 #include "tests/support/machine.h"
+#include "tests/support/paper_run.h"
 
 namespace fogline::test {
 namespace {
@@ -71,17 +72,9 @@ class PythonRoleTest : public testing::Test {
   /// A run of the paper's scenario with these external roles.
   std::vector<std::string> Run(const std::vector<std::string>& roles,
                                const std::vector<std::string>& more = {}) const {
-    std::vector<std::string> command{Program("fogline"),
-                                     "run",
-                                     "scenario/paper.json",
-                                     "--json",
-                                     "--lcm-url",
-                                     url_,
-                                     "--log",
-                                     Log()};
-    for (const std::string& role : roles) command.insert(command.end(), {"--external", role});
-    command.insert(command.end(), more.begin(), more.end());
-    return command;
+    std::vector<std::string> options = more;
+    for (const std::string& role : roles) options.insert(options.end(), {"--external", role});
+    return PaperRun(url_, Log(), options);
   }
   std::string Log() const { return folder_.File("run.lcm"); }
 

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/unit/services/arbitrator/failsafe_inputs.h"
 #include "tests/unit/services/arbitrator/two_commands.h"
 
 namespace fogline {
@@ -19,7 +20,7 @@ Scenario SomeScenario() {
 }
 
 // The arbitrator and a set of input messages that a test can change.
-class FailsafeArbitratorTest : public testing::Test {
+class FailsafeArbitratorTest : public test::FailsafeInputsTest {
  protected:
   FailsafeArbitratorTest() {
     radar_.valid = lidar_.valid = 1;
@@ -73,14 +74,6 @@ class FailsafeArbitratorTest : public testing::Test {
   }
 
   arbitrator::FailsafeArbitrator arbitrator_{SomeScenario()};
-  ego_t ego_{};
-  radar_t radar_{};
-  lidar_t lidar_{};
-  track_t track_{};
-  accel_command_t automation_{};
-  driver_command_t driver_{};
-  arbitrator::ArbitratorInputs inputs_;
-  std::int64_t step_ = 0;
 };
 
 // The input state that causes this offer.

@@ -5,11 +5,11 @@
 
 #include <gtest/gtest.h>
 
-#include "services/arbitrator/failsafe_arbitrator.h"
+#include "tests/unit/services/arbitrator/failsafe_inputs.h"
 
 namespace fogline::test {
 
-class FailsafeTakeOverTest : public testing::Test {
+class FailsafeTakeOverTest : public FailsafeInputsTest {
  public:
   static Scenario Asking() {
     Scenario scenario;
@@ -61,15 +61,7 @@ class FailsafeTakeOverTest : public testing::Test {
   void Agree() { radar_.range_m = lidar_.range_m; }
 
   arbitrator::FailsafeArbitrator arbitrator_;
-  ego_t ego_{};
-  radar_t radar_{};
-  lidar_t lidar_{};
-  track_t track_{};
-  accel_command_t automation_{};
-  driver_command_t driver_{};
-  arbitrator::ArbitratorInputs inputs_;
   arbitration_t last_{};
-  std::int64_t step_ = 0;
 };
 
 }  // namespace fogline::test
