@@ -1,52 +1,21 @@
 #include "services/fusion/fusion.h"
 
 #include <cmath>
-#include <cstdint>
 
 #include <gtest/gtest.h>
 
-#include "services/decision/policies/policies.h"
 #include "tests/support/find_row.h"
+#include "tests/unit/services/fusion/fusion_messages.h"
 
-namespace fogline {
+namespace fogline::test {
 namespace {
 
 constexpr double kNear = 1e-12;  // some roundings of values up to 100
-
-// The messages for a host of constant speed in one step, without noise.
-struct Messages {
-  ego_t ego{};
-  radar_t radar{};
-  lidar_t lidar{};
-};
-
-Messages At(std::int64_t step, double distance_m = 30, double relative_speed_mps = 0) {
-  Messages m;
-  m.ego.header = {.run_id = 7, .step = step, .utime = step * 100'000};
-  m.radar.valid = 1;
-  m.radar.range_m = distance_m;
-  m.radar.range_rate_mps = relative_speed_mps;
-  m.lidar.valid = 1;
-  m.lidar.range_m = distance_m;
-  return m;
-}
-
-const track_t& Step(fusion::Fusion& fusion, const Messages& m) {
-  return fusion.Step(m.ego, m.radar, m.lidar);
-}
 
 Scenario Gated() {
   Scenario scenario;
   scenario.fusion.gating = true;
   return scenario;
-}
-
-// Compares all fields of a track that readers of the track use.
-void ExpectSameEstimate(const track_t& a, const track_t& b) {
-  for (int i = 0; i < 3; ++i) {
-    EXPECT_EQ(a.state[i], b.state[i]) << i;
-    for (int j = 0; j < 3; ++j) EXPECT_EQ(a.covariance[i][j], b.covariance[i][j]) << i << j;
-  }
 }
 
 TEST(FusionTest, CopiesTheHeader) {
@@ -338,7 +307,7 @@ TEST(FusionTest, AValueThatCorrectsNothingAdaptsNoNoise) {
     gated.fusion.gating = true;
     gated.fusion.gate_reopen_after = 0;
     Scenario isolating = Adapting(rule);
-    isolating.arbitrator.policy = test::FindPolicy("isolate").value();
+    isolating.arbitrator.policy = FindPolicy("isolate").value();
     for (const Scenario& scenario : {gated, isolating}) {
       fusion::Fusion fusion(scenario);
       int k = 0;
@@ -354,69 +323,5 @@ TEST(FusionTest, AValueThatCorrectsNothingAdaptsNoNoise) {
   }
 }
 
-// ---- policies that influence the fusion ---------------------------------------------------------
-
-Scenario WithPolicy(std::string_view name) {
-  Scenario scenario;
-  scenario.arbitrator.policy = test::FindPolicy(name).value();
-  return scenario;
-}
-
-TEST(FusionTest, IsolateLeavesOutALidarThatRangesTheFogAndShowsItsInnovation) {
-  fusion::Fusion believing(WithPolicy("traded"));
-  fusion::Fusion isolating(WithPolicy("isolate"));
-  int k = 0;
-  for (; k < 20; ++k) {
-    Step(believing, At(k));
-    Step(isolating, At(k));
-  }
-  // WHEN the LiDAR sees the fog THEN the track follows the radar's range
-  Messages fog = At(k);
-  fog.lidar.range_m = 4;
-  EXPECT_LT(Step(believing, fog).state[0], 29);
-  const track_t& track = Step(isolating, fog);
-  EXPECT_NEAR(track.state[0], 30, 1e-9);
-  EXPECT_EQ(track.usage[0], track_t::USED);
-  EXPECT_EQ(track.usage[1], track_t::USED);
-  EXPECT_EQ(track.usage[2], track_t::DISTRUSTED);
-  EXPECT_NEAR(track.innovation[2], -26, 1e-9);
-  EXPECT_GT(track.innovation_variance[2], 0);
-  // WHEN the LiDAR sees the car again THEN the track uses the LiDAR again
-  EXPECT_EQ(Step(isolating, At(++k)).usage[2], track_t::USED);
-}
-
-TEST(FusionTest, IsolateDoesWithoutARadarThatIsWrong) {
-  fusion::Fusion fusion(WithPolicy("isolate"));
-  int k = 0;
-  for (; k < 20; ++k) Step(fusion, At(k));
-  Messages ghost = At(k);
-  ghost.radar.range_m = 60;
-  ghost.radar.range_rate_mps = 15;
-  const track_t& track = Step(fusion, ghost);
-  EXPECT_EQ(track.usage[0], track_t::DISTRUSTED);
-  EXPECT_EQ(track.usage[1], track_t::DISTRUSTED) << "the whole radar";
-  EXPECT_EQ(track.usage[2], track_t::USED);
-  EXPECT_NEAR(track.state[0], 30, 1e-9);
-}
-
-TEST(FusionTest, OracleIsToldTheTruthAndStartsAndGoesOnWithTheBestSensor) {
-  for (const policies::PolicyRow& row : policies::Policies()) {
-    EXPECT_EQ(fusion::Fusion::UsesOnDemandInput(WithPolicy(row.name)), row.name == "oracle")
-        << row.name;
-  }
-  fusion::Fusion fusion(WithPolicy("oracle"));
-  truth_t truth{};
-  truth.host_gap_m = 30;
-  for (int k = 0; k < 20; ++k) {
-    Messages m = At(k, 31);
-    m.lidar.range_m = 29.9;
-    fusion.SetOnDemandInput(truth);
-    const track_t& track = Step(fusion, m);
-    EXPECT_EQ(track.state[0], 29.9);
-    EXPECT_EQ(track.usage[2], track_t::USED);
-    EXPECT_NE(track.usage[0], track_t::USED);
-  }
-}
-
 }  // namespace
-}  // namespace fogline
+}  // namespace fogline::test
