@@ -1,6 +1,5 @@
 #include "services/runtime/transport/bus.h"
 
-#include <fcntl.h>
 #include <lcm/lcm.h>
 #include <netinet/in.h>
 #include <sodium.h>
@@ -8,7 +7,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -21,6 +19,7 @@
 #include "common/file.h"
 #include "common/process/console.h"
 #include "common/process/poll.h"
+#include "services/runtime/transport/kernel_limits.h"
 #include "services/runtime/transport/lcm_sockets.h"
 #include "services/runtime/transport/multicast_route.h"
 #include "services/runtime/transport/tcpq_client.h"
@@ -68,30 +67,6 @@ std::string Escaped(std::string_view channel) {
     escaped += c;
   }
   return escaped;
-}
-
-/// LCM's receive buffer cannot exceed net.core.rmem_max. With the kernel's default value, the
-/// buffer holds a hundred datagrams; a flood of 20,000 datagrams a second fills it in 5 ms. A
-/// process with CAP_NET_ADMIN may have a larger buffer. That buffer has room for the messages that
-/// come while a busy machine runs other processes.
-void WidenBuffer(int socket) {
-  constexpr int kBytes = 8 * 1024 * 1024;
-  setsockopt(socket, SOL_SOCKET, SO_RCVBUFFORCE, &kBytes, sizeof(kBytes));
-}
-
-/// errno if this process cannot open the descriptors that LCM needs for a network, otherwise 0.
-int LackOfDescriptors() {
-  // LCM uses ten descriptors at most: sockets, pipes, and the descriptors of its self-test.
-  std::array<int, 16> descriptors{};
-  int error = 0;
-  for (int& descriptor : descriptors) {
-    descriptor = fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, 0);
-    if (descriptor < 0) error = errno;
-  }
-  for (const int descriptor : descriptors) {
-    if (descriptor >= 0) close(descriptor);
-  }
-  return error;
 }
 
 /// @throws NetworkAway if this machine has no route for the multicast of the URL, InputError if the

@@ -1,0 +1,31 @@
+#include "services/runtime/transport/kernel_limits.h"
+
+#include <fcntl.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+
+namespace fogline::runtime {
+
+void WidenBuffer(int socket) {
+  constexpr int kBytes = 8 * 1024 * 1024;
+  setsockopt(socket, SOL_SOCKET, SO_RCVBUFFORCE, &kBytes, sizeof(kBytes));
+}
+
+int LackOfDescriptors() {
+  // LCM uses ten descriptors at most: sockets, pipes, and the descriptors of its self-test.
+  std::array<int, 16> descriptors{};
+  int error = 0;
+  for (int& descriptor : descriptors) {
+    descriptor = fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, 0);
+    if (descriptor < 0) error = errno;
+  }
+  for (const int descriptor : descriptors) {
+    if (descriptor >= 0) close(descriptor);
+  }
+  return error;
+}
+
+}  // namespace fogline::runtime

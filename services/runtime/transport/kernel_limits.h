@@ -1,0 +1,15 @@
+// What the kernel grants to LCM: buffers and descriptors.
+#pragma once
+
+namespace fogline::runtime {
+
+/// Gives a socket a receive buffer above net.core.rmem_max, if this process has CAP_NET_ADMIN.
+/// With the kernel's default limit, the buffer holds a hundred datagrams; a flood of 20,000
+/// datagrams a second fills it in 5 ms. A larger buffer has room for the messages that come while a
+/// busy machine runs other processes.
+void WidenBuffer(int socket);
+
+/// errno if this process cannot open the descriptors that LCM needs for a network, otherwise 0.
+int LackOfDescriptors();
+
+}  // namespace fogline::runtime
