@@ -84,15 +84,19 @@ void Recording::Listen(TimePoint now, Duration longest) {
         .fd = i < sources_.size() ? sources_[i]->fd() : -1, .events = POLLIN, .revents = 0};
   }
   poll(waited.data(), waited.size(), static_cast<int>(Milliseconds(longest)));
-  const auto use = [this](const Message& message) { Take(message); };
-  sources_.front()->Drain(now, use);
+  Drain(*sources_.front(), now);
   if (sources_.size() < 2) return;
   try {
-    sources_.back()->Drain(now, use);
+    Drain(*sources_.back(), now);
   } catch (const std::runtime_error& error) {  // its relay has ended
     options_.say(fmt::format("leaves {}: {}", followed_url_, error.what()));
     LeaveFollowed();
   }
+}
+
+void Recording::Drain(TrafficSource& source, TimePoint now) {
+  source.Drain(now, [this](const Message& message) { Take(message); });
+  if (const std::string news = source.TakeNews(); !news.empty()) options_.say(news);
 }
 
 void Recording::Take(const Message& message) {

@@ -67,6 +67,8 @@ class Recording {
   static constexpr std::size_t kMostChannels = 1000;
 
   void Listen(TimePoint now, Duration longest);
+  /// Takes the messages of a network. @throws as TrafficSource::Drain()
+  void Drain(TrafficSource& source, TimePoint now);
   void Take(const Message& message);
   bool Wanted(std::string_view channel);
   void Follow(TimePoint now);

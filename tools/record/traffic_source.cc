@@ -1,6 +1,9 @@
 #include "tools/record/traffic_source.h"
 
 #include <chrono>
+#include <utility>
+
+#include <fmt/core.h>
 
 #include "common/errors.h"
 #include "services/runtime/transport/bus.h"
@@ -34,6 +37,7 @@ class MulticastSource final : public TrafficSource {
     }
     socket_.Attend(taken > 0, now);
   }
+  std::string TakeNews() override { return ""; }
 
   int fd() const override { return socket_.fd(); }
   int buffer_bytes() const override { return socket_.buffer_bytes(); }
@@ -62,6 +66,13 @@ class BusSource final : public TrafficSource {
     use_ = &use;
     bus_.Drain();
   }
+  std::string TakeNews() override {
+    const std::string why = bus_.WhyCutOff();
+    const bool is_cut_off = !why.empty();
+    if (std::exchange(is_cut_off_, is_cut_off) == is_cut_off) return "";
+    if (!is_cut_off) return fmt::format("records {} again", bus_.url());
+    return fmt::format("warning: {}; until it is reached again, nothing of it is recorded", why);
+  }
 
   int fd() const override { return bus_.fd(); }
   int buffer_bytes() const override { return 0; }
@@ -71,6 +82,7 @@ class BusSource final : public TrafficSource {
  private:
   runtime::Bus bus_;
   const Use* use_ = nullptr;
+  bool is_cut_off_ = false;
 };
 
 }  // namespace

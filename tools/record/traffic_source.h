@@ -28,6 +28,9 @@ class TrafficSource {
   /// Passes the messages that have come, but at most some thousands.
   /// @throws std::runtime_error if the network is lost
   virtual void Drain(TimePoint now, const Use& use) = 0;
+  /// A line for the user when the network is cut off, and when it is there again; "" if neither
+  /// has happened since the last call.
+  virtual std::string TakeNews() = 0;
   /// This descriptor is readable when messages are there.
   virtual int fd() const = 0;
   /// The size of the receive buffer that the kernel grants; 0: not known.

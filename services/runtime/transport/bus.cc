@@ -139,6 +139,8 @@ Bus::~Bus() {
 
 std::int64_t Bus::replaced() const { return tcpq_ ? tcpq_->replaced() : 0; }
 
+std::string Bus::WhyCutOff() const { return tcpq_ && tcpq_->lost() ? tcpq_->trouble() : ""; }
+
 void Bus::Secure(const MessageSigner& signer) {
   if (url_.starts_with("mpudpm://")) {
     throw InputError(

@@ -127,6 +127,8 @@ class Bus {
   /// A caller that has given a copy of fd() to epoll must then copy it again.
   std::int64_t replaced() const;
   const std::string& url() const { return url_; }
+  /// Why the relay of tcpq cannot be reached at present: messages are then lost. "" if it can.
+  std::string WhyCutOff() const;
 
  private:
   bool Readable(Duration timeout);

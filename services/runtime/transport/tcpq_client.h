@@ -76,6 +76,8 @@ class Client {
   /// Grows whenever the descriptor refers to another file. A copy of the descriptor, and epoll,
   /// still refer to the old file, which may be readable for ever.
   std::int64_t replaced() const { return replaced_; }
+  /// Whether the connection is lost at present.
+  bool lost() const { return lost_; }
   /// Why the connection was last lost.
   const std::string& trouble() const { return trouble_; }
   /// The URL with its address in numbers, as LCM's programs need it.

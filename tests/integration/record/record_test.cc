@@ -289,6 +289,26 @@ TEST_F(RecordTest, GoesOnWhenTheRelayOfAFollowedRunHasEnded) {
   EXPECT_EQ(recorded.back().channel, "AFTERWARDS");
 }
 
+TEST_F(RecordTest, SaysWhenTheRelayIsLostAndWhenItIsBack) {
+  const auto start = [](const std::string& address) {
+    return std::make_unique<Background>(
+        std::vector<std::string>{Program("fogline-relay"), "--listen", address});
+  };
+  std::unique_ptr<Background> relay = start("127.0.0.1:0");
+  ASSERT_TRUE(relay->WaitForOut("\n"));
+  const std::string url = relay->Out().substr(0, relay->Out().find('\n'));
+  runtime::Bus bus(url);
+  RecordProcess record(bus, log_);
+  relay->Signal(SIGKILL);
+  relay->Wait();
+  EXPECT_TRUE(record.process().WaitForErr("warning: lost the relay " + url + ": "))
+      << record.process().Err();
+  relay = start(url.substr(std::string("tcpq://").size()));
+  EXPECT_TRUE(record.process().WaitForErr("records " + url + " again\n")) << record.process().Err();
+  EXPECT_TRUE(record.CatchUp("END"));
+  record.End();
+}
+
 TEST_F(RecordTest, CountsNoLossesOnANetworkWithoutNumbers) {
   Background relay({Program("fogline-relay"), "--listen", "127.0.0.1:0"});
   ASSERT_TRUE(relay.WaitForOut("\n"));
