@@ -80,6 +80,9 @@ struct MeasuresSection {
       "our choice, because it is three times the accuracy of a Velodyne VLP-16, 3 cm");
 };
 
+/// No run has more steps.
+inline constexpr std::int64_t kMostRunSteps = 10'000'000;
+
 struct Scenario {
   FOGLINE_FIELD(std::int64_t, version, 1, {1, 1}, "Version of this file format.",
                 "our choice, because formats count from 1");
@@ -89,7 +92,7 @@ struct Scenario {
   FOGLINE_FIELD(std::int64_t, seed, 1, {0, 9'007'199'254'740'991},
                 "Seed of every random number of the run.",
                 "our choice, because seeds count from 1; the paper names none");
-  FOGLINE_FIELD(std::int64_t, steps, 500, {1, 10'000'000, "steps"}, "Length of the run.",
+  FOGLINE_FIELD(std::int64_t, steps, 500, {1, kMostRunSteps, "steps"}, "Length of the run.",
                 "Sourav & Cheng 2024: 500");
   FOGLINE_FIELD(double, step_s, 0.1, {0.001, 1, "s"}, "Length of a step.",
                 "Sourav & Cheng 2024: 0.1 s");

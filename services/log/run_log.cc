@@ -65,8 +65,6 @@ class RunLogReader::Assembler {
   // A step that is further ahead than this was not sent by the run. A run of a scenario does not
   // lose so many steps.
   static constexpr std::int64_t kLongestGap = 1'000'000;
-  // No run has more steps (scenario/sections/scenario.h).
-  static constexpr std::int64_t kMostSteps = 10'000'000;
 
   struct Pending {
     StepMessages messages{};
@@ -98,7 +96,7 @@ class RunLogReader::Assembler {
     if (step == next_ && next.there == run_.channels) return true;
     if (realtime_) return ended_ || pending_.rbegin()->first > next_ + kLongestOverdue;
     if (!options_.gaps || !(ended_ || pending_.size() > kMostOpen)) return false;
-    if (step >= kMostSteps || (begun_ && step > next_ + kLongestGap)) {
+    if (step >= kMostRunSteps || (begun_ && step > next_ + kLongestGap)) {
       astray_ += std::ssize(pending_);
       pending_.clear();
       return false;
