@@ -118,6 +118,25 @@ TEST(AccProgramTest, LeavesOutLimitsThatNoPlanCanReach) {
   EXPECT_EQ((lower.array() > -std::numeric_limits<double>::infinity()).count(), 12);
 }
 
+TEST(AccProgramTest, KeepsALimitOfTheGapThatOnlyThePresentAccelerationReaches) {
+  // GIVEN a car that accelerates harder than the ACC may. Over the horizon of 0.6 s, its gap
+  // shrinks by 0.5 * 0.6^2 m per m/s2.
+  AccSection section = ShortSection();
+  const double shrinks_s2 = 0.5 * 0.6 * 0.6;
+  const double present = section.max_acceleration_mps2 + 3;
+  const acc::AccSituation now{.state = {0, 0, present},
+                              .speed_mps = 21,
+                              .previous_control = -section.max_acceleration_mps2};
+  const double gap_m = acc::SafeDistance(section, now.speed_mps);
+  // WHEN only the present acceleration makes the gap too small
+  section.min_gap_m = gap_m - shrinks_s2 * (section.max_acceleration_mps2 + 1.5);
+  VectorXd lower(30);
+  VectorXd upper(30);
+  acc::AccProgram(section, kStep_s).Limits(now, lower, upper);
+  // THEN the program has the six limits of the gap
+  EXPECT_EQ((lower.array() > -std::numeric_limits<double>::infinity()).count(), 12 + 6);
+}
+
 TEST(AccProgramTest, FallbackPlanApproachesItsDecelerationAtTheFastestChange) {
   AccSection section;
   section.engine_gain = 0.5;

@@ -150,6 +150,21 @@ TEST(QpSolverTest, ForgetsALimitThatHasBecomeInfinite) {
   EXPECT_TRUE(solver.solution().isApprox(Vector({3, 1}), 1e-15));
 }
 
+TEST(QpSolverTest, GoesOnFromTheOtherLimitsWhenOneHasBecomeInfinite) {
+  // GIVEN x <= 1 and y - x <= 1, both active for the point (3, 5)
+  const MatrixXd constraints{{1, 0}, {-1, 1}};
+  acc::QpSolver solver(MatrixXd::Identity(2, 2), constraints, {});
+  const VectorXd linear = Vector({-3, -5});
+  const VectorXd lower = Vector({-kInfinity, -kInfinity});
+  ASSERT_EQ(solver.Solve(linear, lower, Vector({1, 1})).iterations, 2);
+  ASSERT_TRUE(solver.solution().isApprox(Vector({1, 2}), 1e-15));
+  // WHEN the second limit becomes infinite
+  const auto result = solver.Solve(linear, lower, Vector({1, kInfinity}));
+  // THEN the first limit is active from the start
+  EXPECT_EQ(result.iterations, 0);
+  EXPECT_TRUE(solver.solution().isApprox(Vector({1, 5}), 1e-15));
+}
+
 TEST(QpSolverTest, SolvesAFeasibleProblemAfterAnInfeasibleOne) {
   acc::QpSolver solver(MatrixXd::Identity(2, 2), MatrixXd::Identity(2, 2), {});
   const VectorXd linear = Vector({-3, -2});

@@ -57,6 +57,15 @@ TEST_F(SensorPairsTest, HoldsTheLastPairWhileOneIsMissing) {
   ExpectPair(0);
 }
 
+TEST(SensorPairsLimitTest, APairOfExactlyTheStaleAgeIsInTime) {
+  arbitrator::SensorPairs pairs({.stale_periods = 2, .lost_periods = 4, .recover_steps = 3});
+  const radar_t radar = Radar(0);
+  const lidar_t lidar = Lidar(0);
+  EXPECT_EQ(pairs.Update(0, &radar, &lidar), InputState::kOk);
+  EXPECT_EQ(pairs.Update(2, &radar, &lidar), InputState::kOk);
+  EXPECT_EQ(pairs.Update(3, &radar, &lidar), InputState::kStale);
+}
+
 TEST_F(SensorPairsTest, PairsASensorThatIsAlwaysAStepBehindWithItsOwnStep) {
   At(0, 0, -1);
   for (std::int64_t k = 1; k < 10; ++k) {

@@ -108,6 +108,23 @@ TEST(FusionTest, StartsBesideTheLaneWithWhatTheTwoValuesSayOfTheDistance) {
   EXPECT_NE(track.covariance[0][1], 0);  // so the range helps to interpret the range rate
 }
 
+// The range rate depends on the direction to the target, and the range has the better information
+// about this direction.
+TEST(FusionTest, CorrectsByTheRangeBeforeTheRangeRate) {
+  Scenario scenario;
+  scenario.radar.lateral_offset_m = 2.5;
+  const auto second_step = [&](double range_m, double range_rate_mps) {
+    fusion::Fusion fusion(scenario);
+    Step(fusion, At(0, 6.5, -1.2));
+    Messages m = At(1, range_m, range_rate_mps);
+    m.lidar.valid = 0;
+    return Step(fusion, m);
+  };
+  const track_t track = second_step(6.4, -1.2);
+  EXPECT_EQ(second_step(6.4, -1.8).innovation[0], track.innovation[0]);
+  EXPECT_NE(second_step(6.6, -1.2).innovation[1], track.innovation[1]);
+}
+
 TEST(FusionTest, DoesNotStartOnATargetBesideTheSensor) {
   Scenario scenario;
   scenario.radar.lateral_offset_m = 3;

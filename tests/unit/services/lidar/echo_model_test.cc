@@ -90,6 +90,17 @@ TEST(EchoModelTest, TheBeamIsBlindBeforeItsOverlap) {
   }
 }
 
+TEST(EchoModelTest, ATargetInTheMiddleOfTheOverlapHasHalfOfThePower) {
+  const LidarBeamSection beam;
+  const lidar::BeamOptics optics = lidar::OpticsOf(beam);
+  const double middle_m = 0.5 * (optics.overlap_start_m + optics.overlap_end_m);
+  const double far_m = 2.0 * optics.overlap_end_m;
+  const lidar::EchoModel model = Model(beam, 50.0);
+  const double loss = 2.0 * ExtinctionOf(kClear_m) * (far_m - middle_m);
+  const double ratio = model.At(middle_m, kClear_m).target - model.At(far_m, kClear_m).target;
+  EXPECT_NEAR(ratio, std::log(0.5 * far_m * far_m / (middle_m * middle_m)) + loss, 1e-12);
+}
+
 TEST(EchoModelTest, FogEchoesAreUndetectableInClearAirAndDetectableInThickFog) {
   const lidar::EchoModel model = Model(LidarBeamSection{}, 30.0);
   EXPECT_LT(model.At(50.0, kClear_m).fog, -3.0);

@@ -6,6 +6,9 @@
 
 #include <gtest/gtest.h>
 
+#include "services/lidar/echo_model.h"
+#include "services/visibility.h"
+
 namespace fogline {
 namespace {
 
@@ -142,6 +145,21 @@ TEST(LidarTest, StatesMoreJitterForAWeakEcho) {
   EXPECT_LT(near, 0.0202);
   EXPECT_GT(far, near);
   EXPECT_LE(far, 0.02 * std::sqrt(2.0)) << "at the detection threshold";
+}
+
+// The variance of the time of arrival is range_std_m^2 (1 + 1/SNR), and the power of an echo is its
+// SNR relative to the detection threshold.
+TEST(LidarTest, AddsAVarianceInInverseProportionToThePowerOfTheEcho) {
+  Scenario scenario = Exact(FogModel::kBeam);
+  scenario.lidar.range_std_m = 0.02;
+  scenario.lidar.beam.log_std = 0.0;
+  const lidar::EchoModel model(scenario.lidar.beam, ExtinctionOf(20000.0), ExtinctionOf(20000.0));
+  lidar::Lidar lidar(scenario);
+  for (const double gap_m : {10.0, 60.0, 110.0}) {
+    const double power = std::exp(model.At(gap_m, 20000.0).target);
+    EXPECT_NEAR(std::pow(lidar.Step(Target(gap_m)).range_std_m / 0.02, 2), 1.0 + 1.0 / power, 1e-12)
+        << gap_m;
+  }
 }
 
 TEST(LidarTest, ReportsATouchForCarsThatOverlap) {

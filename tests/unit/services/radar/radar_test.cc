@@ -81,6 +81,15 @@ TEST(RadarTest, DropsTheTargetBeyondMaximumRange) {
   EXPECT_EQ(out.range_rate_std_mps, 0.0);
 }
 
+TEST(RadarTest, ComparesItsMaximumRangeWithTheSlantRange) {
+  Scenario scenario = Exact();
+  scenario.radar.max_range_m = 5.0;
+  scenario.radar.lateral_offset_m = 3.0;
+  radar::Radar radar(scenario);
+  EXPECT_TRUE(radar.Step(Target(3.999)).valid);
+  EXPECT_FALSE(radar.Step(Target(4.001)).valid);
+}
+
 TEST(RadarTest, LosesRangeInHeavyRain) {
   // 50 mm/h attenuate by 18.76 dB/km: 6.45 dB to 172 m and back, 6.49 dB to 173 m. A distance below
   // 250 m gains 40 log10(250 / R): 6.50 dB at 172 m, 6.40 dB at 173 m.

@@ -37,6 +37,15 @@ TEST(LeaderTest, GoesLinearlyFromBreakpointToBreakpoint) {
   EXPECT_DOUBLE_EQ(SpeedAt(lead, 1000.0), 14.0) << "the last speed holds on";
 }
 
+TEST(LeaderTest, HasExactlyTheSpeedOfABreakpointAtItsTime) {
+  // 0.1 + 0.2 is rounded up. So the second phase seems to be longer than its 0.2 s, and the share
+  // of it that is left at 0.1 s is above 1. A line beyond its beginning would drive the standing
+  // car backwards.
+  LeadSection lead = Lead(LeadProfile::kBreakpoints, 10.0);
+  lead.breakpoints = {{0.1, 0.0}, {0.2, 20.0}};
+  EXPECT_EQ(SpeedAt(lead, 0.1), 0.0);
+}
+
 TEST(LeaderTest, KeepsItsSpeedWithoutBreakpoints) {
   EXPECT_EQ(SpeedAt(Lead(LeadProfile::kBreakpoints, 20.0), 5.0), 20.0);
 }

@@ -188,6 +188,23 @@ TEST(WorldTest, StartBeginsAgainFromTheStart) {
   EXPECT_EQ(again.last, first.last);
 }
 
+TEST(WorldTest, ResumesWithTheTimeOfACollisionThatHasHappened) {
+  Scenario scenario = CollisionAhead();
+  scenario.world.end_on_collision = false;
+  world::World before(scenario);
+  before.Start(1);
+  truth_t truth;
+  for (int step = 1; step <= 8; ++step) {
+    truth = Truth(before.Step(HostCommand(0.0), FollowerCommand(0.0)));
+  }
+  world::World after(scenario);
+  after.Resume(truth);
+  EXPECT_EQ(after.truth().collision, truth_t::COLLISION_HOST);
+  EXPECT_EQ(after.truth().collision_time_s, truth.collision_time_s);
+  const truth_t& next = Truth(after.Step(HostCommand(0.0), FollowerCommand(0.0)));
+  EXPECT_EQ(next.collision_time_s, truth.collision_time_s);
+}
+
 TEST(WorldTest, CountsTimeInWholeMicroseconds) {
   Scenario scenario;
   scenario.step_s = 0.05;

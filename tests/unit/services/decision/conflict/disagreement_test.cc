@@ -31,6 +31,13 @@ TEST(DisagreementTest, HoldsNothingBeforeTheFirstMeasurement) {
   EXPECT_EQ(source.Next(WithoutRadar(LidarShortBy(9)))->difference_m, 2);
 }
 
+TEST(DisagreementTest, HoldsNothingAfterReset) {
+  conflict::DisagreementSource source(With(MissingLidar::kHold));
+  ASSERT_TRUE(source.Next(LidarShortBy(2)));
+  source.Reset();
+  EXPECT_FALSE(source.Next(WithoutRadar(LidarShortBy(2))));
+}
+
 TEST(DisagreementTest, MissingValueAsConflictHasTheLastStatedPrecision) {
   const conflict::ConflictParameters parameters = With(MissingLidar::kConflict);
   conflict::DisagreementSource source(parameters);

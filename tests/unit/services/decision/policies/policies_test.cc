@@ -213,6 +213,8 @@ TEST(PoliciesTest, BayesWeighsTheExpectedCosts) {
   Situation followed = calm;
   followed.surroundings = {.followed = true, .follower_gap_m = 32, .follower_speed_mps = 24};
   EXPECT_EQ(Decide("bayes", followed).threshold, 1 / 3.5);  // TTC 8 s: C_a = 1 + 3/2
+  followed.surroundings.follower_gap_m = 4;  // TTC 1 s, the factor is limited to 1: C_a = 1 + 3
+  EXPECT_EQ(Decide("bayes", followed).threshold, 1.0 / 5);
 }
 
 // ---- availability -------------------------------------------------------------------------------
@@ -267,6 +269,15 @@ TEST(PoliciesTest, AvailabilityCallsOnlyADriverWhoCanBeThereInTime) {
   EXPECT_EQ(Decide("availability", Situation()).lambda_human, 1) << "no car behind";
 }
 
+TEST(PoliciesTest, AvailabilityDoesNotCountTimeBeyondItsHorizon) {
+  Scenario scenario;
+  scenario.arbitrator.availability.horizon_s = 5;  // shorter than the take-over time
+  Situation followed;
+  followed.surroundings = {.followed = true, .follower_gap_m = 200, .follower_speed_mps = 30};
+  EXPECT_EQ(Decide("availability", followed).lambda_human, 1);
+  EXPECT_EQ(Decide("availability", followed, scenario).lambda_human, 0);
+}
+
 // ---- in the fusion ------------------------------------------------------------------------------
 
 constexpr conflict::Evidence kLidarShort{
@@ -305,7 +316,7 @@ TEST(PoliciesTest, IsolateDropsNoSensorWithoutAWitnessAndNeverBoth) {
   conflict::Evidence both_off = kLidarShort;
   both_off.radar.range_m = 80;
   const policies::SensorSelection selection = SelectSensors("isolate", {both_off, {}});
-  EXPECT_TRUE(selection.radar || selection.lidar);
+  EXPECT_EQ(selection, kBoth) << "both are so far off that their blame is 1";
 }
 
 TEST(PoliciesTest, IsolateTakesTheMeasureOfBlameThatTheScenarioNames) {

@@ -2,9 +2,11 @@
 
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 #include <gtest/gtest.h>
 
+#include "services/models/driver/ornstein_uhlenbeck.h"
 #include "tests/unit/services/models/driver/examples.h"
 
 namespace fogline {
@@ -81,6 +83,35 @@ TEST(HumanDriverTest, NoticesACarThatAppearsALittleLater) {
   EXPECT_GT(driver.Step(1, close), 0);
   EXPECT_GT(driver.Step(2, close), 0);
   EXPECT_LT(driver.Step(3, close), -5);
+}
+
+TEST(HumanDriverTest, TheNearerOfTwoStepsDecidesWhetherThereIsACar) {
+  // WHEN a car has appeared in step 2 THEN at step 3 the driver reacts to what is 0.13 or 0.17 s
+  // old
+  for (const auto& [reaction_time_s, notices] : {std::pair{0.13, true}, {0.17, false}}) {
+    HumanParameters late = kPerfect;
+    late.reaction_time_s = reaction_time_s;
+    late.anticipates = false;
+    models::HumanDriver driver(late, AnyModel(), AnyErrors(), kStep_s);
+    const models::Situation close = AcceleratingBehind(20, 0, 10, 10);
+    for (int k = 0; k < 2; ++k) driver.Step(k, {.speed_mps = 20});
+    driver.Step(2, close);
+    EXPECT_EQ(driver.Step(3, close) < 0, notices) << reaction_time_s;
+  }
+}
+
+// A driver who thinks that the gap is half as long, and a driver who thinks that it is twice as
+// long, make equal errors of opposite sign. No error makes a gap negative.
+TEST(HumanDriverTest, ErrsByAFactorOfTheGap) {
+  HumanParameters human = kPerfect;
+  human.gap_error = 3;
+  models::HumanDriver driver(human, AnyModel(), AnyErrors(), kStep_s);
+  models::OrnsteinUhlenbeck error(human.error_time_s, kStep_s);
+  for (int k = 0; k < 20; ++k) {
+    const double factor = std::exp(3 * error.Step(AnyErrors().Normal2(k, 0)[0]));
+    EXPECT_EQ(driver.Step(k, AcceleratingBehind(20, 0, 32, 20)),
+              AnyModel().Acceleration(AcceleratingBehind(20, 0, 32 * factor, 20)));
+  }
 }
 
 TEST(HumanDriverTest, MakesTheSameErrorsAgain) {

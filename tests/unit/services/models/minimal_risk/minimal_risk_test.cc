@@ -58,6 +58,14 @@ TEST(MinimalRiskTest, HoldsACarThatStands) {
   for (int k = 0; k < 10; ++k) EXPECT_EQ(manoeuvre.Step(0), 0);
 }
 
+TEST(MinimalRiskTest, TakesTheThrottleAwayAtTheJerkLimitFromACarThatStands) {
+  models::MinimalRisk manoeuvre(kLimits, kStep_s);
+  manoeuvre.Begin(0.7);
+  for (const double expected : {0.5, 0.3, 0.1, 0.0, 0.0}) {
+    EXPECT_NEAR(manoeuvre.Step(0), expected, 1e-12);
+  }
+}
+
 TEST(MinimalRiskTest, BrakesACarThatRollsAgain) {
   models::MinimalRisk manoeuvre(kLimits, kStep_s);
   manoeuvre.Begin(0);

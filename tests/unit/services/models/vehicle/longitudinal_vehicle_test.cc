@@ -139,6 +139,16 @@ TEST(LongitudinalVehicleTest, SpinsItsWheelsOnIceAtTheDrivenShareOfFriction) {
               1e-12);
 }
 
+TEST(LongitudinalVehicleTest, BrakesNoHarderThanItsBrakesCan) {
+  models::VehicleParameters weak;  // only the brakes act on this car
+  weak.rotating_mass_factor = 1;
+  weak.drag_coefficient = 0;
+  weak.rolling_coefficient = 0;
+  weak.max_brake_mps2 = 6;
+  Drive drive(weak, 30, -8);
+  EXPECT_NEAR(drive.For(1, -8), -6, 1e-12);
+}
+
 TEST(LongitudinalVehicleTest, BrakesWithDelayAndLag) {
   models::VehicleParameters light = models::kSedan;  // only the brakes act on this car
   light.drag_coefficient = 0;
