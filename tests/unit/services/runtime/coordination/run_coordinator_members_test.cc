@@ -23,6 +23,23 @@ TEST_F(RunCoordinatorTest, IgnoresADeadProcessThatItHadNeverHeardOf) {
   EXPECT_TRUE(coordinator_.member(Role::kFusion).status);
 }
 
+TEST_F(RunCoordinatorTest, RefusesARoleThatHasAnotherScenario) {
+  role(Role::kRadar).scenario_hash = "of another scenario";
+  role(Role::kRadar).state = status_t::WAITING;
+  SayStatus(Role::kRadar);
+  EXPECT_EQ(coordinator_.phase(), runtime::RunCoordinator::Phase::kJoining) << "it has none yet";
+  role(Role::kRadar).state = status_t::READY;
+  SayStatus(Role::kRadar);
+  EXPECT_THAT(coordinator_.error(), testing::MatchesRegex("radar .pid .* has another scenario"));
+}
+
+TEST_F(RunCoordinatorTest, RefusesARoleThatWasBuiltWithOtherMessageTypes) {
+  ++role(Role::kRadar).type_fingerprint;
+  SayStatus(Role::kRadar);
+  EXPECT_THAT(coordinator_.error(),
+              testing::MatchesRegex("radar .pid .* was built with other message types"));
+}
+
 TEST_F(RunCoordinatorTest, TellsProcessesOfTwoMachinesApartThatHaveOneId) {
   const std::int32_t pid = role(Role::kFusion).pid;
   coordinator_.MarkDead(Role::kFusion, pid, Clock::now(), "lab2");
@@ -209,6 +226,26 @@ TEST_F(StrayWordTest, OfADeadProcessLongAfterAnotherIsNotEither) {
   SpeakFor(milliseconds(1300), other);
   Say(dead);
   EXPECT_NE(external_.phase(), runtime::RunCoordinator::Phase::kFailed) << external_.error();
+}
+
+TEST_F(StrayWordTest, OfASuccessorCountsAsOftenAsTheRunAllowsRestarts) {
+  const auto with_restarts = [this](int restarts) {
+    return runtime::RunCoordinatorOptions{.run_id = Script::kRunId,
+                                          .scenario_text = script_.text(),
+                                          .stall_limit = milliseconds(60'000),
+                                          .external = {Role::kDriver},
+                                          .restarts = restarts};
+  };
+  runtime::RunCoordinator once(script_.bus(), with_restarts(1));
+  runtime::RunCoordinator never(script_.bus(), with_restarts(0));
+  BeAtStep(-1);
+  // WHEN the driver sends nothing for a second, and another process takes its place
+  status_t other = OtherDriver();
+  while (external_.member(Role::kDriver).replaced == 0) SpeakFor(milliseconds(100), other);
+  SpeakFor(milliseconds(200), other);
+  EXPECT_EQ(once.member(Role::kDriver).replaced, 1);
+  EXPECT_NE(once.phase(), runtime::RunCoordinator::Phase::kFailed) << once.error();
+  EXPECT_THAT(never.error(), HasSubstr("after 0 restarts (--restarts)"));
 }
 
 TEST_F(RunCoordinatorTest, RefusesARoleOfAnotherBuildIfThatIsWanted) {

@@ -82,6 +82,16 @@ TEST_F(RunCoordinatorTest, CountsTheProgressOfARoleThatCatchesUp) {
   EXPECT_EQ(coordinator_.phase(), runtime::RunCoordinator::Phase::kFailed);
 }
 
+TEST_F(RunCoordinatorTest, TakesNoStatusThatALaterOneHasOvertaken) {
+  BeAtStep(-1);
+  BeAtStep(40);
+  status_t overtaken = role(Role::kFusion);
+  --overtaken.sequence;
+  overtaken.header.step = 30;
+  script_.Say(overtaken);
+  EXPECT_EQ(coordinator_.member(Role::kFusion).status->header.step, 40);
+}
+
 TEST_F(RunCoordinatorTest, BlamesNoRoleForSilenceWhileItWasHeldUpItself) {
   BeAtStep(-1);
   BeAtStep(40);

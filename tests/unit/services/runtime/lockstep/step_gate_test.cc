@@ -60,6 +60,30 @@ TEST_F(StepGateTest, DoesNotBelieveThatAStepIsOnDiskBeforeItHasBegun) {
   EXPECT_TRUE(gate_.Open(runtime::kMaxAhead + 6, now_));
 }
 
+TEST_F(StepGateTest, OpensForNoStepAfterTheFinalOne) {
+  Go(0, -1);
+  gate_.SetFinal(5);
+  EXPECT_TRUE(gate_.Open(5, now_));
+  EXPECT_FALSE(gate_.Open(6, now_));
+  EXPECT_FALSE(gate_.Finished(6)) << "it is not on disk yet";
+  own_.header.step = 5;
+  Recorded(5);
+  EXPECT_TRUE(gate_.Finished(6));
+  EXPECT_FALSE(gate_.Open(6, now_));
+}
+
+TEST_F(StepGateTest, AsksForTheRecordersStepAtIntervalsThatDoubleUpToHalfASecond) {
+  Go(0, -1);
+  std::vector<std::int64_t> asked_ms;
+  for (std::int64_t ms = 0; ms <= 2200; ++ms) {
+    const auto step = gate_.WantsRecorded(runtime::kMaxAhead + 3, now_ + milliseconds(ms));
+    if (!step) continue;
+    EXPECT_EQ(*step, 3);
+    asked_ms.push_back(ms);
+  }
+  EXPECT_EQ(asked_ms, (std::vector<std::int64_t>{20, 60, 140, 300, 620, 1120, 1620, 2120}));
+}
+
 TEST_F(StepGateTest, DoesNotTakeTheWordOfARecorderThatHasFailed) {
   Go(0, -1);
   Recorded(10, status_t::FAILED);

@@ -200,6 +200,36 @@ TEST_F(MembershipOfADriverTest, LeavesALogThatItWasToldToFollowWhenTheLogIsOver)
   EXPECT_EQ(own_.message().error, "");
 }
 
+TEST(MembershipOfASignedRunTest, BelievesInARunThatAnswersARequestOfItsOwn) {
+  Script script;
+  runtime::SigningKey::Secret secret{};
+  secret.fill(1);
+  script.bus().Secure(runtime::MessageSigner(runtime::SigningKey(secret), std::nullopt));
+  const std::vector<resend_t>& requests = script.Listen<resend_t>();
+  runtime::StepNode<driver::Driver> node(script.bus(), Script::kRunId);
+  const runtime::OwnStatus& own = node.node().parts().own;
+  // GIVEN signed messages of a runner, which may be repetitions from an old run
+  script.SayRun(run_t::GO, -1);
+  EXPECT_TRUE(own.Waits());
+  ASSERT_FALSE(requests.empty());
+  EXPECT_EQ(requests.back().channel, "RUN");
+  const std::int64_t instance = requests.back().instance;
+  // WHEN a runner answers another process THEN the role still waits
+  const std::vector<std::string> parts = runtime::SplitScenario(script.text());
+  for (const std::int64_t asker : {instance + 1, instance}) {
+    EXPECT_TRUE(own.Waits());
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      run_t run = Script::WithDriver(runtime::MakeRunPart(Script::kRunId, run_t::GO, 0,
+                                                          runtime::HashOf(script.text()), parts, i),
+                                     0);
+      run.answer_to = asker;
+      script.Say(run);
+    }
+  }
+  // AND joins the run when the runner has answered its own request
+  EXPECT_TRUE(own.Running());
+}
+
 /// A driver that a person has started, in a run that waited for a driver.
 class ExternalRoleTest : public testing::Test {
  protected:

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sodium.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -98,6 +99,30 @@ TEST(MessageSignerTest, RefusesOtherKeysAndOtherChannels) {
   EXPECT_EQ(runtime::MessageSigner(KeyOf(2), Role::kWorld).Open("TRUTH", message).verdict,
             Verdict::kBadlySigned);
   EXPECT_EQ(signer.Open("HOST_EGO", message).verdict, Verdict::kBadlySigned);
+}
+
+TEST(MessageSignerTest, TakesNoSenderForAnother) {
+  // The recorder may send this message, too, but the radar has signed it.
+  runtime::MessageSigner signer(KeyOf(1), Role::kRadar);
+  Message message = Copy(signer.Sign("RADAR", kRadar));
+  constexpr std::size_t kSenderFromTheEnd = 17;  // the second byte of the sender, before the tag
+  message[message.size() - kSenderFromTheEnd] = static_cast<std::uint8_t>(Role::kRecorder);
+  EXPECT_EQ(signer.Open("RADAR", message).verdict, Verdict::kBadlySigned);
+}
+
+TEST(MessageSignerTest, HasTheTagOfTheProtocol) {
+  const std::string_view channel = "RADAR";
+  const Message message =
+      Copy(runtime::MessageSigner(KeyOf(1), Role::kRadar).Sign(channel, kRadar));
+  Message hashed(channel.begin(), channel.end());
+  hashed.insert(hashed.end(), {0, 0, static_cast<std::uint8_t>(Role::kRadar)});
+  hashed.insert(hashed.end(), kRadar.begin(), kRadar.end());
+  const Message key(32, 1);
+  Message tag(16);
+  ASSERT_EQ(crypto_generichash(tag.data(), tag.size(), hashed.data(), hashed.size(), key.data(),
+                               key.size()),
+            0);
+  EXPECT_EQ(Message(message.end() - 16, message.end()), tag);
 }
 
 TEST(MessageSignerTest, TakesAStepFromItsProducerAndTheRecorderAlone) {
