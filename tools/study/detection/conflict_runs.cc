@@ -1,81 +1,14 @@
 #include "tools/study/detection/conflict_runs.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
-#include <fmt/format.h>
-
 #include "tools/study/detection/fog_runs.h"
-#include "tools/study/sensor_noise.h"
 
 namespace fogline::study {
 namespace {
 
 constexpr std::array<std::string_view, 2> kFogModels{"bias", "beam"};
-
-/// Noise of the sensors; the filter has matching parameters.
-struct Noise {
-  std::string_view name;
-  double radar_m;
-  double lidar_m;
-};
-// The first noise is the optimistic noise of paper.json. The other noises are data sheet values of
-// a Continental ARS408 radar with a Velodyne VLP-16 LiDAR: at near range, between near and far
-// range, and at far range.
-constexpr std::array kNoises{Noise{"calibrated", 0.01, 0.01}, Noise{kUsualNoise, 0.1, 0.03},
-                             Noise{"realistic", kRealisticNoise_m, 0.03},
-                             Noise{"far-range", 0.4, 0.03}};
-
-// First seeds in clear air: far from the seeds in fog, and from each other.
-constexpr std::int64_t kCalibrationSeeds = 1'000'000'000;
-constexpr std::int64_t kValidationSeeds = 2'000'000'000;
-constexpr std::int64_t kLongClearAirSeeds = 3'000'000'000;
-
-/// A fog model and a noise, and what else differs from paper.json.
-struct Situation {
-  std::string_view fog;
-  const Noise& noise;
-  std::vector<std::string> other{};
-
-  std::vector<std::string> Overrides() const {
-    std::vector<std::string> overrides = other;
-    overrides.insert(overrides.end(),
-                     {"/arbitrator/policy=traded", "/arbitrator/missing_lidar=conflict",
-                      "/arbitrator/threshold=0",  // the human drives throughout
-                      fmt::format("/fog/model={}", fog), fmt::format("/fog/start_s={}", kWarmUp_s),
-                      fmt::format("/radar/range_std_m={}", noise.radar_m),
-                      fmt::format("/lidar/range_std_m={}", noise.lidar_m),
-                      fmt::format("/fusion/radar_range_std_m={}", std::max(noise.radar_m, 0.04)),
-                      fmt::format("/fusion/lidar_range_std_m={}", noise.lidar_m)});
-    return overrides;
-  }
-};
-
-/// A scenario with these overrides that lasts for `duration_s` after the warm-up. The measures know
-/// the mounting offset of the sensors.
-Scenario ConflictScenario(const StudyContext& context, const std::vector<std::string>& overrides,
-                          double duration_s) {
-  Scenario scenario = context.Load("paper.json", overrides);
-  scenario.arbitrator.measure_offset_m = scenario.radar.bias_m - scenario.lidar.bias_m;
-  scenario.steps = std::llround((kWarmUp_s + duration_s) / scenario.step_s) + 1;
-  return scenario;
-}
-
-Scenario ClearAir(const StudyContext& context, const Situation& situation) {
-  std::vector<std::string> overrides = situation.Overrides();
-  overrides.emplace_back("/fog/duration_s=0");
-  return ConflictScenario(context, overrides, kClearRun_s);
-}
-
-Scenario InFog(const StudyContext& context, const Situation& situation, double visibility_m) {
-  std::vector<std::string> overrides = situation.Overrides();
-  overrides.push_back(fmt::format("/fog/visibility_m={}", visibility_m));
-  overrides.push_back(fmt::format("/fog/duration_s={}", kFog_s));
-  Scenario scenario = ConflictScenario(context, overrides, kFog_s);
-  scenario.fog.bias_m *= kReferenceVisibility_m / visibility_m;
-  return scenario;
-}
 
 /// Runs in clear air, by detector.
 using ClearRuns = std::vector<std::vector<ClearRun>>;
@@ -132,14 +65,14 @@ void AddRoc(std::span<const Gathered> gathered, ConflictOutcome& outcome) {
 }
 
 /// Makes the runs in fog of every visibility, and adds all results that need no threshold.
-void RunFogs(const StudyContext& context, const Situation& situation, const ShowUnit& show,
+void RunFogs(const StudyContext& context, const ConflictSituation& situation, const ShowUnit& show,
              SetRuns& runs, ConflictSet& set) {
   const std::vector<SortedBatches> clear_scores = SortScores(runs.validation);
   // Means of the AUC over the visibilities, by detector and batch.
   std::vector<std::vector<double>> auc(clear_scores.size(),
                                        std::vector<double>(clear_scores.front().size(), 0.0));
   for (const double visibility_m : kVisibilities_m) {
-    const Traffic traffic = TrafficOf(InFog(context, situation, visibility_m));
+    const Traffic traffic = TrafficOf(ScenarioInFog(context, situation, visibility_m));
     std::vector<Gathered> gathered = RunInFog(context, traffic, clear_scores, show);
     ConflictOutcome& outcome = set.outcomes.emplace_back();
     outcome.condition = {.fog = set.fog, .noise = set.noise, .visibility_m = visibility_m};
@@ -276,12 +209,12 @@ void AddDetection(const StudyContext& context, const SetRuns& runs, ConflictSet&
   }
 }
 
-ConflictSet RunSet(const StudyContext& context, std::string_view fog, const Noise& noise,
+ConflictSet RunSet(const StudyContext& context, std::string_view fog, const ConflictNoise& noise,
                    const ShowUnit& show) {
   ConflictSet set{
       .fog = std::string(fog), .noise = std::string(noise.name), .seeds = context.seeds.count()};
-  const Situation situation{fog, noise};
-  const Traffic clear_air = TrafficOf(ClearAir(context, situation));
+  const ConflictSituation situation{fog, noise};
+  const Traffic clear_air = TrafficOf(ScenarioInClearAir(context, situation));
   SetRuns runs = RunShortClearAir(context, clear_air, show);
   set.runs = 2 * set.seeds;
   RunFogs(context, situation, show, runs, set);
@@ -319,13 +252,15 @@ std::vector<ConflictSet> RunConflictSets(const StudyContext& context) {
   // Units for each seed: two runs in clear air, one run in each fog, and the long runs in clear air
   // for quick and for slow detectors.
   constexpr std::size_t kUnits = 2 + kVisibilities_m.size() + 2;
-  const std::int64_t all = context.seeds.count() *
-                           static_cast<std::int64_t>(kFogModels.size() * kNoises.size() * kUnits);
+  const std::int64_t all =
+      context.seeds.count() *
+      static_cast<std::int64_t>(kFogModels.size() * ConflictNoises().size() * kUnits);
   std::vector<ConflictSet> sets;
   std::int64_t done = 0;
   const auto show = [&] { context.Show(++done, all); };
   for (const std::string_view fog : kFogModels) {
-    for (const Noise& noise : kNoises) sets.push_back(RunSet(context, fog, noise, show));
+    for (const ConflictNoise& noise : ConflictNoises())
+      sets.push_back(RunSet(context, fog, noise, show));
   }
   return sets;
 }
@@ -333,11 +268,12 @@ std::vector<ConflictSet> RunConflictSets(const StudyContext& context) {
 std::vector<DelayOutcome> RunDelays(const StudyContext& context,
                                     std::span<const std::size_t> detectors,
                                     const std::vector<std::string>& overrides) {
-  const Situation situation{kFogModels[0], *std::ranges::find(kNoises, kUsualNoise, &Noise::name),
-                            overrides};
+  const ConflictSituation situation{
+      kFogModels[0], *std::ranges::find(ConflictNoises(), kUsualNoise, &ConflictNoise::name),
+      overrides};
   std::int64_t done = 0;
   const auto show = [&] { context.Show(++done, kDelayUnits * context.seeds.count()); };
-  const Traffic air = TrafficOf(ClearAir(context, situation));
+  const Traffic air = TrafficOf(ScenarioInClearAir(context, situation));
   const ClearRuns clear =
       RunClearAir(context, air,
                   {.detectors = {detectors.begin(), detectors.end()},
@@ -349,7 +285,7 @@ std::vector<DelayOutcome> RunDelays(const StudyContext& context,
   std::vector<std::vector<std::vector<ScoreRecords>>> fog(detectors.size());
   for (const double visibility_m : kVisibilities_m) {
     rule.ranked.push_back(rule.ranked.size());
-    const Traffic traffic = TrafficOf(InFog(context, situation, visibility_m));
+    const Traffic traffic = TrafficOf(ScenarioInFog(context, situation, visibility_m));
     std::vector<std::vector<ScoreRecords>> records =
         RecordsInFog(context, traffic, detectors, show);
     for (std::size_t d = 0; d < fog.size(); ++d) fog[d].push_back(std::move(records[d]));

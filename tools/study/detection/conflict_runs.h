@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "tools/study/detection/conflict_intervals.h"
+#include "tools/study/detection/conflict_scenarios.h"
 #include "tools/study/detection/detector_bank.h"
 #include "tools/study/detection/fog_runs.h"
 #include "tools/study/detection/telling.h"
@@ -21,8 +22,6 @@ namespace fogline::study {
 /// Visibilities from thin to dense fog, m (meteorological optical range). At about 95 m and below,
 /// the LiDAR in fog model beam loses a car 36 m ahead.
 inline constexpr std::array kVisibilities_m{300.0, 150.0, 100.0, 75.0, 50.0};
-/// Visibility at which fog model bias has the bias of paper.json, m.
-inline constexpr double kReferenceVisibility_m = 60;
 /// Mean time to a false alarm for which thresholds are calibrated, s: six false alarms an hour.
 inline constexpr double kArlZero_s = 600;
 /// The mean time to a false alarm at a threshold counts as equal to kArlZero_s up to this ratio.
@@ -31,10 +30,11 @@ inline constexpr double kLoosest = 1.5;
 /// These numbers apply if a condition ranks detectors. Otherwise there is one run for each seed.
 inline constexpr std::int64_t kQuickClearAir = 100;
 inline constexpr std::int64_t kSlowClearAir = 5;
-/// Length of the fog in paper.json, s.
-inline constexpr double kFog_s = 11;
-/// The noise in figures, in most claims and for the ROC.
-inline constexpr std::string_view kUsualNoise = "near-range";
+/// First seeds in clear air: far from the seeds in fog, and from each other. Thresholds are found
+/// in other runs than those in which false alarms are counted again.
+inline constexpr std::int64_t kCalibrationSeeds = 1'000'000'000;
+inline constexpr std::int64_t kValidationSeeds = 2'000'000'000;
+inline constexpr std::int64_t kLongClearAirSeeds = 3'000'000'000;
 
 struct ConflictCondition {
   std::string fog;  // bias or beam

@@ -1,0 +1,49 @@
+// The scenarios of study `conflict`: clear air, or fog of one visibility.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "scenario/sections/scenario.h"
+#include "tools/study/study.h"
+
+namespace fogline::study {
+
+/// Visibility at which fog model bias has the bias of paper.json, m.
+inline constexpr double kReferenceVisibility_m = 60;
+/// Length of the fog in paper.json, s.
+inline constexpr double kFog_s = 11;
+/// The noise in figures, in most claims and for the ROC.
+inline constexpr std::string_view kUsualNoise = "near-range";
+
+/// Noise of the sensors; the filter has matching parameters.
+struct ConflictNoise {
+  std::string_view name;
+  double radar_m;
+  double lidar_m;
+};
+/// All noises of the study.
+std::span<const ConflictNoise> ConflictNoises();
+
+/// A fog model and a noise, and what else differs from paper.json.
+struct ConflictSituation {
+  std::string_view fog;  // bias or beam
+  ConflictNoise noise;
+  std::vector<std::string> other{};  // in the form of --set
+};
+
+/// A scenario without fog, of kClearRun_s after the warm-up. The measures know the mounting offset
+/// of the sensors: measure_offset_m is the range of the radar minus that of the LiDAR. The human
+/// always drives.
+/// @throws InputError
+Scenario ScenarioInClearAir(const StudyContext& context, const ConflictSituation& situation);
+
+/// The same, but with fog of kFog_s after the warm-up until the end. The bias of fog
+/// model bias is in inverse proportion to the visibility.
+/// @throws InputError
+Scenario ScenarioInFog(const StudyContext& context, const ConflictSituation& situation,
+                       double visibility_m);
+
+}  // namespace fogline::study
