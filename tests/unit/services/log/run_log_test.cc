@@ -11,6 +11,7 @@
 
 #include "common/errors.h"
 #include "services/log/step_order.h"
+#include "services/runtime/wire/message_signer.h"
 #include "tests/support/command.h"
 #include "tests/support/copied_log.h"
 #include "tests/unit/services/log/short_log.h"
@@ -25,11 +26,16 @@ class RunLogTest : public testing::Test {
  protected:
   /// The run in a log that has these messages only.
   log::RunLog Read(const test::ShortLog& contents) const { return test::RunOf(file_, contents); }
+  static log::RunLog ReadFile(const std::string& file) {
+    log::RunLogReader reader(file);
+    while (reader.Next() != nullptr) {
+    }
+    return reader.run();
+  }
   static test::ShortLog InRealTime(bool (*has)(std::string_view channel, std::int64_t step)) {
     return {.realtime = true, .has = has};
   }
 
- private:
   test::ScratchFolder folder_;
   const std::string file_ = folder_.File("log");
 };
@@ -86,6 +92,51 @@ TEST_F(RunLogTest, InLockstepIsIncompleteWithoutTheLastStateOfTheWorld) {
   EXPECT_EQ(run.steps, kSteps - 1);
   EXPECT_FALSE(run.complete);
   EXPECT_THAT(run.note, HasSubstr("ends after step 1 of 3"));
+}
+
+TEST_F(RunLogTest, IsIncompleteIfAStepHasTwoDifferentMessagesOfOneChannel) {
+  test::WriteShortLog(file_);
+  const std::string copy = folder_.File("copy");
+  test::Copy(file_, copy, [](log::EventLogWriter& writer, const log::Event& event, auto& data) {
+    if (event.channel != ChannelOf<radar_t>().name) return true;
+    writer.Write(event.channel, event.utime, data);  // an equal message may come twice
+    if (log::StepOf(event, test::kRunId) != 1) return true;
+    std::vector<std::uint8_t> other = data;
+    other.back() ^= 1;
+    writer.Write(event.channel, event.utime, other);
+    return true;
+  });
+  const log::RunLog run = ReadFile(copy);
+  EXPECT_EQ(run.steps, kSteps);
+  EXPECT_FALSE(run.complete);
+  EXPECT_THAT(run.note, HasSubstr("step 1 has two different RADAR"));
+}
+
+TEST_F(RunLogTest, OfASignedRunHasNoMessageWithoutASignature) {
+  test::WriteShortLog(file_);
+  const std::string whole = folder_.File("signed");
+  const std::string attacked = folder_.File("attacked");
+  runtime::SigningKey::Secret secret{};
+  secret.fill(1);
+  runtime::MessageSigner signer(runtime::SigningKey(secret), std::nullopt);
+  for (const std::string& copy : {whole, attacked}) {
+    test::Copy(file_, copy, [&](log::EventLogWriter& writer, const log::Event& event, auto& data) {
+      if (copy == attacked && event.channel == ChannelOf<radar_t>().name) {
+        std::vector<std::uint8_t> forged = data;
+        forged.back() ^= 1;
+        writer.Write(event.channel, event.utime, forged);
+      }
+      const runtime::Bytes bytes = signer.Sign(event.channel, data);
+      data.assign(bytes.begin(), bytes.end());
+      return true;
+    });
+  }
+  const log::RunLog expected = ReadFile(whole);
+  EXPECT_TRUE(expected.complete) << expected.note;
+  const log::RunLog run = ReadFile(attacked);
+  EXPECT_EQ(run.digest, expected.digest);
+  EXPECT_EQ(run.steps, kSteps);
+  EXPECT_THAT(run.note, HasSubstr("3 messages of other runs ignored"));
 }
 
 /// The steps of a log with gaps: the number of each step, and how many messages it has.

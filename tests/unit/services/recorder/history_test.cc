@@ -118,6 +118,32 @@ TEST_F(HistoryTest, InRealTimePassesOverTheStatusOfARoleThatHasComputedNoStep) {
   EXPECT_EQ(ReadFromFront().steps, kSteps);
 }
 
+TEST_F(HistoryTest, EndsBeforeAStepThatDoesNotFollowTheOneBefore) {
+  {
+    log::EventLogWriter log(file_);
+    WriteFront(log);
+    for (const std::int64_t step : {0, 1, 3}) WriteStep(log, step);
+  }
+  EXPECT_EQ(ReadFromFront().steps, 2);
+}
+
+TEST(StepOrderTest, AStepBeginsOnlyWithTheEventOfItsNumber) {
+  constexpr std::int64_t kFront = 2;
+  constexpr auto kEvents = static_cast<std::int64_t>(log::kStepChannels);
+  const std::vector<std::uint8_t> truth = Encoded<truth_t>(5);
+  log::Event event{};
+  event.channel = log::kStepNames.front();
+  event.data = truth;
+  for (std::int64_t number = 0; number < kFront + 10 * kEvents; ++number) {
+    event.number = number;
+    const auto begun = log::StepBegunBy(event, kFront, kEvents, kRunId);
+    EXPECT_EQ(begun.has_value(), number == kFront + 5 * kEvents) << number;
+  }
+  event.number = kFront + 5 * kEvents;
+  EXPECT_EQ(log::StepBegunBy(event, kFront, kEvents, kRunId), 5);
+  EXPECT_FALSE(log::StepBegunBy(event, kFront, kEvents, kRunId + 1)) << "another run";
+}
+
 TEST_F(HistoryTest, ReadsOfALongLogOnlyItsEndAndWhatItIsAskedFor) {
   // GIVEN a log of a hundred gigabytes that has only its front and its last steps. The part between
   // them contains no event; a reader would need minutes for this part.

@@ -189,5 +189,18 @@ TEST(SensitivityTest, LooksToOneSideAtABoundAndAWholeStepForAnInteger) {
               (*next.rows[0].si_pct.mean() - *here.rows[0].si_pct.mean()) / 12.5, 1e-9);
 }
 
+TEST(SensitivityTest, DoesNotLeaveTheRangeOfAnIntegerAtItsHigherBound) {
+  calibrate::CalibrationProblem problem = ShortProblem();
+  problem.fields = calibrate::ParseFreeFields({"/arbitrator/window_steps=8:16"});
+  const calibrate::Evaluation before = Evaluate(problem, 15);
+  const calibrate::Evaluation here = Evaluate(problem, 16);
+  const double difference = *here.rows[0].si_pct.mean() - *before.rows[0].si_pct.mean();
+  EXPECT_NE(difference, 0);
+  EXPECT_NE(*Evaluate(problem, 17).rows[0].si_pct.mean(), *here.rows[0].si_pct.mean());
+  const auto changes = calibrate::Sensitivities(calibrate::Objective(problem), {16}, Always);
+  ASSERT_TRUE(changes);
+  EXPECT_NEAR(*(*changes)[0][0].si_pct, difference / 12.5, 1e-9);
+}
+
 }  // namespace
 }  // namespace fogline

@@ -2,16 +2,20 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <span>
 #include <sstream>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include "tests/unit/tools/study/examples.h"
+#include "tests/unit/tools/study/few_seeds.h"
 
 namespace fogline {
 namespace {
@@ -98,6 +102,49 @@ TEST(ComparisonTest, ARunThatCollidesIsLessSafeThanOneThatDoesNot) {
                                      values);
   EXPECT_EQ(comparison.LessSafe({0, 0}, {0, 1}), (std::vector<double>{0, 0, 0, 1}));
   EXPECT_EQ(comparison.LessSafe({0, 1}, {0, 0}), (std::vector<double>{0, 1, 0, 0}));
+}
+
+TEST(ComparisonTest, CountsAPairOfDifferentlyLongRunsAsCutShort) {
+  const std::size_t measures = study::ComparedMetrics().size();
+  std::vector<double> values(2 * measures * kSeeds, 0.0);
+  const auto steps_of = [&](std::size_t variant) {
+    const std::size_t row = variant * measures + study::PlaceOfMetric("steps");
+    return std::span(values).subspan(row * kSeeds, kSeeds);
+  };
+  std::ranges::fill(steps_of(0), 500.0);
+  std::ranges::fill(steps_of(1), 500.0);
+  steps_of(1)[3] = 499;
+  const study::Comparison comparison({{"fog", "paper.json", {}}}, {{"none", {}}, {"traded", {}}},
+                                     kSeeds, values);
+  EXPECT_EQ(comparison.PairsCutShort({0, 0}, {0, 1}), 1);
+  EXPECT_EQ(comparison.PairsCutShort({0, 0}, {0, 0}), 0);
+}
+
+// The runs of a case are paired with the run without traded control of this case.
+TEST(ComparisonTest, HasInEachCaseTheRunsOfThisCaseAlone) {
+  const std::vector<std::string> early{"/fog/start_s=5", "/steps=200"};
+  const std::vector<std::string> denser{"/fog/start_s=5", "/steps=200", "/fog/bias_m=0.4"};
+  const std::vector<study::StudyCase> cases{{"early", "paper.json", early},
+                                            {"denser", "paper.json", denser}};
+  const std::vector<study::StudyVariant> variants{{"none", {"/arbitrator/policy=none"}},
+                                                  {"traded", {"/arbitrator/policy=traded"}}};
+  const study::StudyContext context = test::FewSeeds(4, 6);
+  const study::Comparison both(context, cases, variants);
+  for (std::size_t c = 0; c < cases.size(); ++c) {
+    const study::Comparison alone(context, {cases[c]}, variants);
+    for (std::size_t v = 0; v < variants.size(); ++v) {
+      for (const std::string_view measure :
+           {"si_pct", "mean_compromised_safety_fog_m", "max_doc"}) {
+        const auto expected = alone.Values({0, v}, measure);
+        const auto values = both.Values({c, v}, measure);
+        for (std::size_t seed = 0; seed < 3; ++seed) {
+          const bool both_missing = std::isnan(values[seed]) && std::isnan(expected[seed]);
+          EXPECT_TRUE(both_missing || values[seed] == expected[seed]) << c << v << measure << seed;
+        }
+      }
+    }
+  }
+  EXPECT_NE(both.Values({0, 1}, "max_doc")[0], both.Values({1, 1}, "max_doc")[0]);
 }
 
 }  // namespace

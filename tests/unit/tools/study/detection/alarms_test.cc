@@ -51,6 +51,16 @@ TEST(ThresholdFinderTest, IsTheLeastThatIsQuietEnough) {
   EXPECT_LT(study::CountAlarms(runs, std::nextafter(7.0, 0.0)).ArlZero_s(), 280);
 }
 
+TEST(ThresholdFinderTest, TakesAMeanTimeThatIsExactlyLongEnough) {
+  std::vector<study::ClearRun> runs;
+  for (int i = 1; i <= 10; ++i) runs.push_back(RunOf({{0, 0}, {static_cast<double>(i), 50}}));
+  // With a threshold above 5, ARL0 is 50 + 100 * 5/5 = 150 s.
+  const double threshold = study::ThresholdFinder(runs).Threshold(150);
+  EXPECT_GT(threshold, 5);
+  EXPECT_LE(threshold, 6);
+  EXPECT_EQ(study::CountAlarms(runs, threshold).ArlZero_s(), 150);
+}
+
 TEST(ThresholdFinderTest, IsAboveAllScoresWhereTheGreatestComesTooOften) {
   const std::vector runs(5, RunOf({{0, 0}, {1, 2}}));
   const double threshold = study::ThresholdFinder(runs).Threshold(600);
