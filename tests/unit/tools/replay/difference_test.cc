@@ -97,6 +97,13 @@ TEST(DifferenceTest, MayBeAMessageThatCannotBeRead) {
             OfTruth("(does not decode)", "", ""));
 }
 
+TEST(DifferenceTest, MayBeAMessageOfAnotherType) {
+  std::vector<std::uint8_t> other = Bytes(Truth());
+  other[0] ^= 1;  // the fingerprint of the type
+  EXPECT_EQ(FirstDifference(IndexOf<truth_t>(), kStep, Bytes(Truth()), other),
+            OfTruth("(does not decode)", "", ""));
+}
+
 TEST(DifferenceTest, OfAStepIsOnTheFirstChannelInTheOrderOfTheGraph) {
   // GIVEN two steps whose RADAR and DRIVER_COMMAND differ
   const std::vector<std::uint8_t> radar_a = Bytes(radar_t{});

@@ -6,11 +6,13 @@
 #include <iterator>
 #include <limits>
 #include <map>
+#include <set>
 #include <span>
 #include <sstream>
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -100,6 +102,52 @@ TEST_F(PlotsTest, WritesThemAsSvgAndPdfTooWithTextThatStaysText) {
     EXPECT_THAT(pdf, StartsWith("%PDF-")) << name;
     EXPECT_THAT(pdf, HasSubstr("/MediaBox [ 0 0 576 360 ]")) << name << ": 8 by 5 inches";
   }
+}
+
+/// The points of each curve of an SVG picture, without marks and lines of few points. In SVG, y
+/// grows downwards.
+std::vector<std::vector<std::pair<double, double>>> CurvesIn(const std::string& svg) {
+  constexpr std::size_t kFewest = 30;
+  std::vector<std::vector<std::pair<double, double>>> curves;
+  for (std::size_t at = svg.find(" d='"); at != svg.npos; at = svg.find(" d='", at + 1)) {
+    std::string path = svg.substr(at + 4, svg.find('\'', at + 4) - at - 4);
+    for (char& c : path) c = c == 'M' || c == 'L' || c == ',' ? ' ' : c;
+    std::istringstream numbers(path);
+    std::vector<std::pair<double, double>> points;
+    for (double x = 0, y = 0; numbers >> x >> y;) points.emplace_back(x, y);
+    if (points.size() >= kFewest) curves.push_back(std::move(points));
+  }
+  return curves;
+}
+
+TEST_F(PlotsTest, DrawEachCurveOfEachRun) {
+  // GIVEN two runs whose distances differ from each other. In the first run they grow, in the
+  // second they shrink
+  std::vector<report::ReportRun> runs{ExampleRun({.steps = 60}), ExampleRun({.steps = 60})};
+  double sign = 1;
+  for (report::ReportRun& run : runs) {
+    double grown_m = 0;
+    for (metrics::Sample& sample : run.samples) {
+      grown_m += sign * 0.01;
+      sample.radar_range_m = 36 + grown_m;
+      sample.lidar_range_m = 34 + grown_m;
+      sample.fused_distance_m = 32 + grown_m;
+      sample.host_gap_m = 30 + grown_m;
+      sample.host_safe_distance_m = 28 + grown_m;
+    }
+    sign = -1;
+  }
+  WriteFigures(dir_, report::FigureFormat::kSvg, runs);
+  // THEN the picture has five different curves in each panel
+  const auto curves = CurvesIn(Read(dir_ / "figure-2-host-gap.svg"));
+  std::set<double> rising;
+  std::set<double> falling;
+  for (const auto& points : curves) {
+    const double begin = points.front().second;
+    (points.back().second < begin ? rising : falling).insert(begin);
+  }
+  EXPECT_EQ(rising.size(), 5U);
+  EXPECT_EQ(falling.size(), 5U);
 }
 
 TEST_F(PlotsTest, SaysAboveEveryPanelIfTheAxisSpansLessThanAHundredthOfTheValue) {
