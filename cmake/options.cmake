@@ -18,7 +18,12 @@ set(FOGLINE_COLD_CODE $<$<CONFIG:Release>:-O1>)
 # Compiles several source files as one, because the headers take most of the compiler's time. If the
 # option is OFF, a change of one file compiles only that file.
 option(FOGLINE_UNITY "Compile several source files at once" ON)
+# tools/mutate changes one file of a library at a time, and no file of a test.
+option(FOGLINE_UNITY_TESTS_ONLY "Compile only tests in this way" OFF)
 set(CMAKE_UNITY_BUILD ${FOGLINE_UNITY})
+if(FOGLINE_UNITY_TESTS_ONLY)
+  set(CMAKE_UNITY_BUILD OFF)
+endif()
 set(CMAKE_UNITY_BUILD_BATCH_SIZE 16)
 
 find_program(CCACHE_PROGRAM ccache)

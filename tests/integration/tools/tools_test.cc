@@ -47,13 +47,14 @@ TEST_P(ToolTest, PrintsItsHelpAndDoesNothingElse) {
 
 INSTANTIATE_TEST_SUITE_P(Scripts, ToolTest,
                          testing::Values("demo", "test", "bench", "build", "progress", "fresh",
-                                         "format", "soak", "pictures"),
+                                         "format", "soak", "pictures", "mutate"),
                          [](const auto& script) { return std::string(script.param); });
 
 TEST(ToolsTest, RefuseAnArgumentThatTheyDoNotKnowBeforeTheyDoAnything) {
   const BareShell shell;
-  for (const std::string script : {"tools/demo", "tools/test", "tools/build", "tools/progress",
-                                   "tools/fresh", "tools/format", "tools/soak", "tools/pictures"}) {
+  for (const std::string script :
+       {"tools/demo", "tools/test", "tools/build", "tools/progress", "tools/fresh", "tools/format",
+        "tools/soak", "tools/pictures", "tools/mutate"}) {
     const Outcome outcome = shell.Run(script, "--fast");
     EXPECT_EQ(outcome.code, 2);
     EXPECT_EQ(outcome.out, "");
