@@ -27,7 +27,9 @@ def say(text):
 
 def pattern_of(tests):
     """A regular expression of ctest for tests with these beginnings."""
-    return "^(" + "|".join(re.escape(test) for test in sorted(set(tests))) + ")"
+    # A suite with parameters has a name before its own, as in unit.Of/EveryBlameTest.
+    words = [re.escape(test).replace(r"\.", r"\.([A-Za-z0-9_]+/)?", 1) for test in sorted(set(tests))]
+    return "^(" + "|".join(words) + ")"
 
 
 def key_of(sources, files):

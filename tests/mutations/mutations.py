@@ -115,7 +115,7 @@ def _errors_of(one, sources, suites):
     if not one.tests:
         errors.append(f"{one.place}: {one.name}: names no tests")
     for test in one.tests:
-        match = re.match(r"(\w+)\.(?:\w+/)?(\w+)\.", test + ".")
+        match = re.match(r"(\w+)\.(\w+)\.", test + ".")
         if not match or match[1] not in PROGRAMS:
             errors.append(f"{one.place}: {one.name}: {test} does not begin with PROGRAM.SUITE")
         elif match[2] not in suites[match[1]]:

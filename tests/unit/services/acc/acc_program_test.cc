@@ -137,6 +137,18 @@ TEST(AccProgramTest, KeepsALimitOfTheGapThatOnlyThePresentAccelerationReaches) {
   EXPECT_EQ((lower.array() > -std::numeric_limits<double>::infinity()).count(), 12 + 6);
 }
 
+TEST(AccProgramTest, KeepsTheLimitsOfAGapThatIsTooSmallAndOpens) {
+  // GIVEN a gap below the smallest gap, behind a car that drives away at 10 m/s
+  AccSection section = ShortSection();
+  const acc::AccSituation now{.state = {0, 10, 0}, .speed_mps = 21, .previous_control = 0};
+  section.min_gap_m = acc::SafeDistance(section, now.speed_mps) + 0.5;
+  VectorXd lower(30);
+  VectorXd upper(30);
+  acc::AccProgram(section, kStep_s).Limits(now, lower, upper);
+  // THEN the program has the six limits of the gap, although at the end the gap is large enough
+  EXPECT_EQ((lower.array() > -std::numeric_limits<double>::infinity()).count(), 12 + 6);
+}
+
 TEST(AccProgramTest, FallbackPlanApproachesItsDecelerationAtTheFastestChange) {
   AccSection section;
   section.engine_gain = 0.5;

@@ -125,6 +125,23 @@ TEST(FusionTest, CorrectsByTheRangeBeforeTheRangeRate) {
   EXPECT_NE(second_step(6.6, -1.2).innovation[1], track.innovation[1]);
 }
 
+TEST(FusionTest, CorrectsByEachSensorAlongItsOwnLineOfSight) {
+  // GIVEN a target 4 m ahead of the radar, and a LiDAR 3 m beside the lane
+  Scenario scenario;
+  scenario.lidar.lateral_offset_m = 3;
+  fusion::Fusion fusion(scenario);
+  for (int k = 0; k < 2; ++k) {
+    // WHEN the LiDAR measures the slant range of this target, 5 m
+    Messages m = At(k, 4);
+    m.lidar.range_m = 5;
+    const track_t& track = Step(fusion, m);
+    // THEN the two sensors agree
+    EXPECT_NEAR(track.state[0], 4, kNear);
+    EXPECT_NEAR(track.innovation[0], 0, kNear);
+    EXPECT_NEAR(track.innovation[2], 0, kNear);
+  }
+}
+
 TEST(FusionTest, DoesNotStartOnATargetBesideTheSensor) {
   Scenario scenario;
   scenario.radar.lateral_offset_m = 3;
@@ -294,6 +311,36 @@ TEST(FusionTest, UsesAnAdaptedNoiseFromTheNextStepOn) {
     EXPECT_GT(Step(adapting, m).innovation_variance[2], 100) << "0.7 times 26 m squared";
     EXPECT_LT(first.innovation_variance[2], 0.1);
   }
+}
+
+// The residual is what remains of an innovation after the correction.
+TEST(FusionTest, LearnsTheNoiseFromTheResidualAfterTheCorrection) {
+  const Scenario scenario = Adapting(NoiseAdaptation::kResidual);
+  const double assumed = scenario.fusion.lidar_range_std_m * scenario.fusion.lidar_range_std_m;
+  fusion::Fusion plain{Scenario()};
+  fusion::Fusion adapting(scenario);
+  for (int k = 0; k < 20; ++k) {
+    Step(plain, At(k));
+    Step(adapting, At(k));
+  }
+  // GIVEN an innovation d of variance S = P + R
+  Messages m = At(20);
+  m.lidar.range_m = 31;
+  Step(plain, m);
+  const track_t& before = Step(adapting, m);
+  const double variance = before.innovation_variance[2];
+  // WHEN the noise is learned from the residual d R / S, whose prediction has the variance P R / S
+  const double share = assumed / variance;
+  const double residual = before.innovation[2] * share;
+  const double seen = residual * residual + (variance - assumed) * share;
+  const double forgetting = scenario.fusion.noise_forgetting;
+  const double learned = forgetting * assumed + (1 - forgetting) * seen;
+  // THEN the next innovation has this noise
+  m = At(21);
+  const double added =
+      Step(adapting, m).innovation_variance[2] - Step(plain, m).innovation_variance[2];
+  EXPECT_GT(learned, 2 * assumed);
+  EXPECT_NEAR(added, learned - assumed, 1e-9);
 }
 
 TEST(FusionTest, SoonDisbelievesADeceivedLidarIfItsNoiseAdapts) {

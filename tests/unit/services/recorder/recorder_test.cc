@@ -315,6 +315,8 @@ TEST_F(RecorderTest, TellsInStatusWhatItHasWritten) {
   const std::string content = Content(folder_.File("log"));
   EXPECT_EQ(acknowledged.log_bytes, std::ssize(content)) << "no step behind it is on disk";
   EXPECT_EQ(acknowledged.log_checksum, ChecksumOf(content, acknowledged.log_bytes));
+  const std::filesystem::path file = folder_.File("log");
+  EXPECT_EQ(log::ReadRemains(file, log::ReadFront(file)).steps, acknowledged.header.step + 1);
   // WHEN the recorder leaves in an incomplete step, THEN its last STATUS covers this step, too
   truth_t truth = Script::Of<truth_t>(100);
   script_.Say(truth);

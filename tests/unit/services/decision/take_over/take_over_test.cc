@@ -261,6 +261,14 @@ TEST_F(TakeOverTest, StopsForAPersonWhoDoesNotAnswerAndLetsALateOneDrive) {
   EXPECT_EQ(Step().state, kRecovering);
 }
 
+TEST_F(TakeOverTest, TakesTheAnswerOfAPersonInTheStepOfTheDeadline) {
+  Begin(WithPerson());
+  while (step_ < 100) Step();
+  ASSERT_EQ(state(), kUrgentDemand);
+  inputs_.acknowledged = true;
+  EXPECT_EQ(Step().state, kHandover) << "10 s after the request in step 0";
+}
+
 TEST_F(TakeOverTest, DoesNotHandOverToAPersonWhoHasGone) {
   Begin(WithPerson());
   StepWhile(kAutomated);

@@ -114,6 +114,21 @@ TEST(HumanDriverTest, ErrsByAFactorOfTheGap) {
   }
 }
 
+// The farther away the car ahead is, the larger is the error of its speed.
+TEST(HumanDriverTest, ErrsInTheSpeedOfTheCarAheadInProportionToTheGap) {
+  HumanParameters human = kPerfect;
+  human.approach_error_ps = 0.05;
+  for (const double gap_m : {16.0, 64.0}) {
+    models::HumanDriver driver(human, AnyModel(), AnyErrors(), kStep_s);
+    models::OrnsteinUhlenbeck error(human.error_time_s, kStep_s);
+    for (int k = 0; k < 20; ++k) {
+      const double seen_mps = 20 - gap_m * 0.05 * error.Step(AnyErrors().Normal2(k, 0)[1]);
+      EXPECT_NEAR(driver.Step(k, AcceleratingBehind(20, 0, gap_m, 20)),
+                  AnyModel().Acceleration(AcceleratingBehind(20, 0, gap_m, seen_mps)), 1e-12);
+    }
+  }
+}
+
 TEST(HumanDriverTest, MakesTheSameErrorsAgain) {
   models::HumanDriver one(HumanParameters{}, AnyModel(), AnyErrors(), kStep_s);
   models::HumanDriver other(HumanParameters{}, AnyModel(), AnyErrors(), kStep_s);

@@ -1,9 +1,14 @@
 // The times at which a role computes in lockstep, and the requests that the role sends.
 #include "services/runtime/lockstep/lockstep_rule.h"
 
-#include <gmock/gmock-more-matchers.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <map>
+#include <string>
+#include <vector>
+
+#include "services/acc/acc.h"
 #include "services/world/world.h"
 #include "tests/unit/services/runtime/driver_in_run.h"
 
@@ -87,6 +92,24 @@ TEST_F(LockstepRuleTest, AsksAgainForWhatIsLostOnTheWay) {
   ASSERT_EQ(requests_.size(), 2U);
   EXPECT_EQ(requests_[1].header.step, 5);
   EXPECT_EQ(requests_[1].count, 5) << "5 to 9";
+}
+
+// A role with two inputs. While it catches up, one of the inputs may come sooner than the other.
+TEST(LockstepRuleOfTheAccTest, AsksForNoStepThatIsThere) {
+  Script script;
+  std::vector<resend_t>& requests = script.Listen<resend_t>();
+  runtime::StepNode<acc::Acc> acc(script.bus(), Script::kRunId);
+  script.SayRun(run_t::GO, 200);
+  script.Poll(acc);
+  // GIVEN a role that has the first four steps of TRACK, and no step of EGO
+  for (std::int64_t k = 0; k < 4; ++k) script.Say(Script::Of<track_t>(k));
+  requests.clear();
+  // WHEN the role asks again
+  script.Poll(acc, Clock::now() + milliseconds(1000));
+  // THEN it asks for all steps of EGO, and for the other steps of TRACK
+  std::map<std::string, std::int64_t> first;
+  for (const resend_t& request : requests) first[request.channel] = request.header.step;
+  EXPECT_THAT(first, testing::ElementsAre(testing::Pair("EGO", 0), testing::Pair("TRACK", 4)));
 }
 
 // ---- the world, which begins the steps ---------------------------------------------------------

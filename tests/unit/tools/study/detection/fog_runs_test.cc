@@ -44,6 +44,7 @@ TEST(ClearAirTest, BeginsAfterTheWarmUp) {
     EXPECT_NEAR(run.records.front().time_s, 0, 1e-9) << "the first score is a record";
     EXPECT_EQ(run.scores.size(), 5U) << "every tenth of 41 steps";
   }
+  EXPECT_NE(runs[0][0].scores, runs[0][1].scores) << "two runs of a seed differ";
 }
 
 TEST(RecordsInFogTest, CountTimeFromTheBeginningOfTheFog) {

@@ -46,6 +46,10 @@ TEST_P(EveryBlameTest, FallsOnNoSensorWithoutAWitness) {
   conflict::Evidence evidence = LidarShortBy(5);
   evidence.prediction = {};
   EXPECT_EQ(Make(GetParam())->Step(evidence), conflict::Blame{});
+  // not even if there was one in the steps before
+  const auto measure = Make(GetParam());
+  for (int i = 0; i < 3; ++i) EXPECT_GT(measure->Step(LidarShortBy(5)).lidar, 0.8);
+  EXPECT_EQ(measure->Step(evidence), conflict::Blame{});
 }
 
 TEST_P(EveryBlameTest, GrowsWithTheErrorOfTheLidar) {
