@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "tools/study/detection/fog_runs.h"
+#include "tools/study/detection/runs/fog_runs.h"
 
 namespace fogline::study {
 namespace {

@@ -12,7 +12,7 @@
 #include "tools/study/detection/conflict_intervals.h"
 #include "tools/study/detection/conflict_scenarios.h"
 #include "tools/study/detection/detector_bank.h"
-#include "tools/study/detection/fog_runs.h"
+#include "tools/study/detection/runs/fog_runs.h"
 #include "tools/study/detection/telling.h"
 #include "tools/study/estimate.h"
 #include "tools/study/study.h"

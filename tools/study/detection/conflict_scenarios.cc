@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "tools/study/detection/clear_air.h"
+#include "tools/study/detection/runs/clear_air.h"
 #include "tools/study/sensor_noise.h"
 
 namespace fogline::study {

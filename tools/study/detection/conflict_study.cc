@@ -7,8 +7,8 @@
 #include "tools/study/bootstrap.h"
 #include "tools/study/claims.h"
 #include "tools/study/delays/delay_claims.h"
-#include "tools/study/detection/clear_air.h"
 #include "tools/study/detection/conflict_tables.h"
+#include "tools/study/detection/runs/clear_air.h"
 #include "tools/study/sensor_noise.h"
 #include "tools/study/study.h"
 

@@ -21,7 +21,7 @@ using test::ErrorOf;
 using ::testing::EndsWith;
 
 /// Two rows in each of four units.
-sweep::SweepPlan ShortPlan() {
+sweep::SweepPlan PlanOfFourUnits() {
   Scenario scenario;
   scenario.steps = 20;
   return {scenario, {sweep::ParseAxis("/arbitrator/threshold=0.2,0.8")}, {.first = 1, .last = 4}};
@@ -49,7 +49,7 @@ class SweepFileTest : public testing::Test {
     return static_cast<std::size_t>(std::ranges::count(text, '\n'));
   }
 
-  const sweep::SweepPlan plan_ = ShortPlan();
+  const sweep::SweepPlan plan_ = PlanOfFourUnits();
   const test::ScratchFolder folder_;
   const std::string file_ = folder_.File("sweep.csv");
 };

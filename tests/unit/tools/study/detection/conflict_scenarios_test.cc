@@ -10,8 +10,8 @@
 #include <gtest/gtest.h>
 
 #include "tests/unit/tools/study/few_seeds.h"
-#include "tools/study/detection/clear_air.h"
 #include "tools/study/detection/conflict_runs.h"
+#include "tools/study/detection/runs/clear_air.h"
 
 namespace fogline {
 namespace {

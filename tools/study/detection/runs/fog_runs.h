@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "tools/study/detection/clear_air.h"
+#include "tools/study/detection/runs/clear_air.h"
 
 namespace fogline::study {
 

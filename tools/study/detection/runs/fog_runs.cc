@@ -1,4 +1,4 @@
-#include "tools/study/detection/fog_runs.h"
+#include "tools/study/detection/runs/fog_runs.h"
 
 #include <algorithm>
 #include <utility>

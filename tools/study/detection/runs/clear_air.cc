@@ -1,4 +1,4 @@
-#include "tools/study/detection/clear_air.h"
+#include "tools/study/detection/runs/clear_air.h"
 
 #include <iterator>
 #include <utility>

@@ -1,4 +1,4 @@
-#include "tools/study/detection/sensed_runs.h"
+#include "tools/study/detection/runs/sensed_runs.h"
 
 #include <string>
 #include <vector>

@@ -1,5 +1,5 @@
 // Runs of detectors in clear air and in fog.
-#include "tools/study/detection/fog_runs.h"
+#include "tools/study/detection/runs/fog_runs.h"
 
 #include <algorithm>
 #include <array>

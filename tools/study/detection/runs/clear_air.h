@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "tools/study/detection/alarms.h"
-#include "tools/study/detection/sensed_runs.h"
+#include "tools/study/detection/runs/sensed_runs.h"
 #include "tools/study/study.h"
 
 namespace fogline::study {
