@@ -194,7 +194,7 @@ def report(chosen, results):
 
 
 def run(chosen, options):
-    files = workshop.files_of(mutations.SOURCES)
+    files = workshop.files_of(mutations.SOURCES, options.folder)
     options.folder.mkdir(parents=True, exist_ok=True)
     results = Results(options.folder / "results.json", key_of(mutations.SOURCES, files))
     todo = [one for one in chosen if results.of(one) is None]

@@ -152,12 +152,13 @@ def stop_all():
         end(process)
 
 
-def files_of(sources):
-    """The files of the tree that git knows or could know: no outputs of builds."""
+def files_of(sources, folder):
+    """The files of the tree that git knows or could know, without those in the folder of the copies."""
     command = ["git", "-C", str(sources), "ls-files", "-z", "--cached", "--others", "--exclude-standard"]
     try:
         listed = subprocess.run(command, check=True, capture_output=True).stdout
     except (OSError, subprocess.CalledProcessError) as error:
         raise WorkError(f"{sources}: no git working tree") from error
     names = [os.fsdecode(name) for name in listed.split(b"\0") if name]
-    return {name for name in names if pathlib.Path(sources, name).is_file()}
+    paths = {name: pathlib.Path(sources, name) for name in names}
+    return {name for name, path in paths.items() if path.is_file() and folder not in path.parents}
