@@ -101,15 +101,15 @@ TEST(LockstepRuleOfTheAccTest, AsksForNoStepThatIsThere) {
   runtime::StepNode<acc::Acc> acc(script.bus(), Script::kRunId);
   script.SayRun(run_t::GO, 200);
   script.Poll(acc);
-  // GIVEN a role that has the first four steps of TRACK, and no step of EGO
+  // GIVEN a role that has the first four steps of TRACK, and no step of HOST_EGO
   for (std::int64_t k = 0; k < 4; ++k) script.Say(Script::Of<track_t>(k));
   requests.clear();
   // WHEN the role asks again
   script.Poll(acc, Clock::now() + milliseconds(1000));
-  // THEN it asks for all steps of EGO, and for the other steps of TRACK
+  // THEN it asks for all steps of HOST_EGO, and for the other steps of TRACK
   std::map<std::string, std::int64_t> first;
   for (const resend_t& request : requests) first[request.channel] = request.header.step;
-  EXPECT_THAT(first, testing::ElementsAre(testing::Pair("EGO", 0), testing::Pair("TRACK", 4)));
+  EXPECT_THAT(first, testing::ElementsAre(testing::Pair("HOST_EGO", 0), testing::Pair("TRACK", 4)));
 }
 
 // ---- the world, which begins the steps ---------------------------------------------------------
