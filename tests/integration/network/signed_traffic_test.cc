@@ -12,8 +12,8 @@
 #include <thread>
 
 #include "services/runtime/transport/bus.h"
+#include "tests/integration/runs/paper_run.h"
 #include "tests/support/command.h"
-#include "tests/support/paper_run.h"
 
 namespace fogline::test {
 namespace {

@@ -12,8 +12,8 @@
 #include "services/runtime/wire/message_signer.h"
 #include "tests/integration/faults/watched_run.h"
 #include "tests/integration/python/python.h"
+#include "tests/integration/runs/paper_run.h"
 #include "tests/support/machine.h"
-#include "tests/support/paper_run.h"
 
 namespace fogline::test {
 namespace {
