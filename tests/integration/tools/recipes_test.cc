@@ -82,14 +82,18 @@ TEST_F(RecipesTest, RecordedSensorsDriveFusionAndAccWhichComputeTheSameAgain) {
   lines = Replaced(lines, "lcm-logplayer",
                    "until [ $(grep -c ':" + std::string(port) +
                        " ' /proc/net/udp) -ge 3 ]; do sleep 0.02; done\nlcm-logplayer");
+  // AND the log is whole: lcm-logger writes later than it hears, and drops the rest when it ends
+  lines = Replaced(lines, "kill $(jobs -p)",
+                   "for i in $(seq 1000); do"
+                   " [ $(grep -ao ACC_COMMAND open.lcm | wc -l) -lt 60 ] || break; sleep 0.02;"
+                   " done\nkill $(jobs -p)");
   const Outcome shell = Shell(lines);
   // THEN lcm-logger has logged messages of the living roles, which equal those of the run
   for (const std::string_view channel : {"TRACK", "ACC_COMMAND"}) {
     const auto recorded = MessagesOf(folder_.File("run.lcm"), channel);
     const auto again = MessagesOf(folder_.File("open.lcm"), channel);
     EXPECT_EQ(recorded.size(), 60U);
-    // On a busy machine the roles join some steps late, and lcm-logger loses messages.
-    EXPECT_FALSE(again.empty()) << shell.out << shell.err;
+    EXPECT_GT(again.size(), 50U) << shell.out << shell.err;  // lcm-logger may lose messages
     for (const auto& [step, message] : again) EXPECT_EQ(message, recorded.at(step)) << step;
   }
 }
