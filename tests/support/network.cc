@@ -2,9 +2,14 @@
 
 #include <fcntl.h>
 #include <sched.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cctype>
 #include <cerrno>
+#include <csignal>
+#include <filesystem>
 #include <iomanip>
 #include <sstream>
 #include <stdexcept>
@@ -73,7 +78,10 @@ Machine::Machine(const std::string& name) : name_(name) {
 }
 
 Machine::~Machine() {
-  if (network_ >= 0) close(network_);
+  if (network_ >= 0) {
+    EndAll();
+    close(network_);
+  }
   if (host_name_ >= 0) close(host_name_);
 }
 
@@ -95,6 +103,22 @@ std::string Machine::Do(const std::string& script) const {
   const Outcome outcome = RunCommand(On({"sh", "-ec", script}));
   if (outcome.code != 0) throw std::runtime_error(script + ": " + outcome.err);
   return outcome.out;
+}
+
+void Machine::EndAll() const {
+  struct stat mine {};
+  if (fstat(network_, &mine) != 0) return;
+  std::error_code gone;
+  for (const auto& entry : std::filesystem::directory_iterator("/proc", gone)) {
+    const std::string id = entry.path().filename();
+    if (!std::all_of(id.begin(), id.end(), [](unsigned char c) { return std::isdigit(c) != 0; })) {
+      continue;
+    }
+    struct stat its {};
+    const bool there = stat((entry.path() / "ns/net").c_str(), &its) == 0 &&
+                       its.st_dev == mine.st_dev && its.st_ino == mine.st_ino;
+    if (there) kill(std::stoi(id), SIGKILL);
+  }
 }
 
 void Machine::LoseUdp(int per_cent) const {

@@ -2,7 +2,7 @@
 // and host names, joined by veth pairs and a bridge. The kernel handles their packets like those of
 // real machines, and can lose some packets on request. The namespaces change nothing outside. The
 // namespaces have no names, so the kernel removes them when this process and its children have
-// ended.
+// ended. A machine ends all processes that still run on it when it goes.
 #pragma once
 
 #include <cstdint>
@@ -58,6 +58,10 @@ class Machine {
   void Enter(const std::function<void()>& function) const;
 
  private:
+  /// Ends the processes that still run on this machine, such as those that sshd leaves behind when
+  /// their connection is cut.
+  void EndAll() const;
+
   std::string name_;
   int network_ = -1;
   int host_name_ = -1;

@@ -212,6 +212,20 @@ TEST_F(NetworkTest, OfTwoProcessesOfOneRoleOneTakesPartAndTheOtherWaits) {
   EXPECT_EQ(ended(), 1);
 }
 
+TEST_F(NetworkTest, AMachineThatGoesEndsWhatStillRunsOnIt) {
+  pid_t left = 0;
+  {
+    const Machine machine("left");
+    left = std::stoi(machine.Do("setsid sleep 300 < /dev/null > /dev/null 2>&1 & echo $!"));
+    EXPECT_TRUE(IsAlive(left));
+  }
+  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+  while (IsAlive(left) && std::chrono::steady_clock::now() < end) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  EXPECT_FALSE(IsAlive(left));
+}
+
 TEST_F(NetworkTest, AMachineWithoutAMulticastRouteRunsAsAnyOther) {
   const Machine machine("island");
   const Outcome run = RunCommand(machine.On(Run({})));
