@@ -50,7 +50,7 @@ class ServerLimitsTest : public ::testing::Test {
     ::testing::internal::CaptureStderr();
     server_.emplace(
         context_, ServerOptions{.address = address, .origins = {}, .limits = limits, .seat = seat},
-        kAssets, view_);
+        assets_, view_);
     thread_ = std::thread([this] { context_.run(); });
   }
   void TearDown() override { End(); }
@@ -104,12 +104,12 @@ class ServerLimitsTest : public ::testing::Test {
     EXPECT_EQ(client.Receive().bytes, "still there");
   }
 
-  static inline const std::string kLarge = std::string(16 << 20, 'x');
-  static inline const std::array<Asset, 4> kAssets{
+  const std::string large_ = std::string(16 << 20, 'x');
+  const std::array<Asset, 4> assets_{
       Asset{"/drive.html", "text/html; charset=utf-8", "\"e3\"", "<p>"},
       Asset{"/drive.js", "text/javascript", "\"e4\"", ";"},
       Asset{"/index.html", "text/html; charset=utf-8", "\"e1\"", "<p>"},
-      Asset{"/large", "text/plain", "\"e2\"", kLarge}};
+      Asset{"/large", "text/plain", "\"e2\"", large_}};
 
   boost::asio::io_context own_;
   boost::asio::io_context context_;
