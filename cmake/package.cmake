@@ -60,6 +60,9 @@ set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 
 set(CPACK_DEBIAN_FOGLINE_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_FOGLINE_PACKAGE_SHLIBDEPS ON)
+# dpkg-shlibdeps does not see matio, because the program loads it by itself (matio_library.h).
+get_property(matio_package GLOBAL PROPERTY FOGLINE_MATIO_PACKAGE)
+set(CPACK_DEBIAN_FOGLINE_PACKAGE_DEPENDS "${matio_package}")
 set(CPACK_DEBIAN_FOGLINE_PACKAGE_RECOMMENDS "liblcm-bin, gnuplot-nox | gnuplot")
 set(CPACK_DEBIAN_FOGLINE_PACKAGE_SUGGESTS
   "default-jre, fogline-dev, libjchart2d-java, liblcm-java, openssh-client")

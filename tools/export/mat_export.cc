@@ -1,7 +1,5 @@
 #include "tools/export/mat_export.h"
 
-#include <matio.h>
-
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -21,6 +19,7 @@
 #include "common/errors.h"
 #include "common/interrupt.h"
 #include "common/text.h"
+#include "tools/export/matio_library.h"
 
 namespace fogline::exports {
 namespace {
@@ -34,11 +33,7 @@ constexpr std::string_view kHeaderStruct = "header";
 // Only in the struct of a channel that lacks messages: 1 for a message, 0 for a gap.
 constexpr const char* kHeard = "heard";
 
-struct Free {
-  void operator()(matvar_t* variable) const { Mat_VarFree(variable); }
-  void operator()(mat_t* file) const { Mat_Close(file); }
-};
-using Variable = std::unique_ptr<matvar_t, Free>;
+using Variable = Matio::Variable;
 
 /// matio's two names for one type of numbers.
 struct MatType {
@@ -60,8 +55,8 @@ Variable MatrixOf(const FieldTable& field, std::size_t messages) {
         }
         std::array<std::size_t, 2> size{messages, field.width};
         const auto [class_type, data_type] = TypeOf(T());
-        return Variable(Mat_VarCreate(nullptr, class_type, data_type, size.size(), size.data(),
-                                      columns.data(), 0));
+        return Variable(Matio::Get().create_variable(nullptr, class_type, data_type, size.size(),
+                                                     size.data(), columns.data(), 0));
       },
       field.values);
 }
@@ -72,7 +67,7 @@ Variable StructOf(const char* name, const std::vector<std::string>& names) {
   for (const std::string& one : names) pointers.push_back(one.c_str());
   const std::array<std::size_t, 2> size{1, 1};
   pointers.push_back(nullptr);  // marks the end
-  return Variable(Mat_VarCreateStruct2(name, size.size(), size.data(), pointers.data()));
+  return Variable(Matio::Get().create_struct(name, size.size(), size.data(), pointers.data()));
 }
 
 /// 1 for each message of a channel, 0 for each gap.
@@ -100,15 +95,14 @@ Variable StructOf(const ChannelTable& table) {
     const std::string name = field.name.substr(in_header ? prefix.size() : 0);
     Variable matrix = MatrixOf(field, table.messages);
     if (matrix == nullptr) throw std::bad_alloc();
-    Mat_VarSetStructFieldByName((in_header ? header : all).get(), name.c_str(), 0,
-                                matrix.release());
+    Matio::Get().set_field((in_header ? header : all).get(), name.c_str(), 0, matrix.release());
   }
   if (!table.gaps.empty()) {
     Variable heard = MatrixOf(HeardOf(table), table.messages);
     if (heard == nullptr) throw std::bad_alloc();
-    Mat_VarSetStructFieldByName(all.get(), kHeard, 0, heard.release());
+    Matio::Get().set_field(all.get(), kHeard, 0, heard.release());
   }
-  Mat_VarSetStructFieldByName(all.get(), kHeaderStruct.data(), 0, header.release());
+  Matio::Get().set_field(all.get(), kHeaderStruct.data(), 0, header.release());
   return all;
 }
 
@@ -139,8 +133,8 @@ std::size_t BytesOf(const ChannelTable& table) {
 
 Variable TextVariable(const char* name, std::string text) {
   std::array<std::size_t, 2> size{1, text.size()};
-  return Variable(
-      Mat_VarCreate(name, MAT_C_CHAR, MAT_T_UINT8, size.size(), size.data(), text.data(), 0));
+  return Variable(Matio::Get().create_variable(name, MAT_C_CHAR, MAT_T_UINT8, size.size(),
+                                               size.data(), text.data(), 0));
 }
 
 /// Whether the file has this number of variables, and all of them are complete. The sizes of the
@@ -180,11 +174,11 @@ void WriteMat(const RunTables& tables, const std::filesystem::path& path) {
         PathText(path), table.name));
   }
   AtomicFile file(path);
-  std::unique_ptr<mat_t, Free> mat(Mat_CreateVer(file.part().c_str(), kHeader, MAT_FT_MAT5));
+  Matio::File mat(Matio::Get().create(file.part().c_str(), kHeader, MAT_FT_MAT5));
   if (mat == nullptr) Fail(tables, path, file);
   const auto write = [&](const Variable& variable) {
     if (variable == nullptr) throw std::bad_alloc();
-    if (Mat_VarWrite(mat.get(), variable.get(), MAT_COMPRESSION_NONE) == 0) return;
+    if (Matio::Get().write(mat.get(), variable.get(), MAT_COMPRESSION_NONE) == 0) return;
     mat.reset();
     Fail(tables, path, file);
   };
@@ -195,7 +189,7 @@ void WriteMat(const RunTables& tables, const std::filesystem::path& path) {
   const bool has_scenario = !tables.scenario.empty();
   if (has_scenario) write(TextVariable("scenario", tables.scenario));
   const std::size_t variables = tables.channels.size() + (has_scenario ? 1 : 0);
-  if (Mat_Close(mat.release()) != 0 || !IsWhole(file.part(), variables)) {
+  if (Matio::Get().close(mat.release()) != 0 || !IsWhole(file.part(), variables)) {
     Fail(tables, path, file);
   }
   file.Finish();

@@ -65,7 +65,7 @@ TEST_F(PackageTest, LintianFindsNoErrorAndNoWarning) {
 
 TEST_F(PackageTest, DependsOnTheLibrariesThatItsProgramsLoad) {
   const std::string depends = Field("fogline", "Depends");
-  for (const char* library : {"libc6 (>= ", "liblcm1", "libfmt9", "libsodium23"}) {
+  for (const char* library : {"libc6 (>= ", "liblcm1", "libfmt9", "libmatio11", "libsodium23"}) {
     EXPECT_THAT(depends, HasSubstr(library));
   }
   EXPECT_THAT(Field("fogline-dev", "Depends"), HasSubstr("liblcm-dev"));

@@ -1,5 +1,4 @@
 // `fogline export` gives other programs every number of a log, exact to the last bit.
-#include <matio.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -9,7 +8,6 @@
 #include <fstream>
 #include <iterator>
 #include <map>
-#include <memory>
 #include <sstream>
 #include <string>
 #include <string_view>
@@ -25,6 +23,7 @@
 #include "tests/integration/logs/export_fixture.h"
 #include "tests/support/command.h"
 #include "tests/support/machine.h"
+#include "tools/export/matio_library.h"
 
 namespace fogline::test {
 namespace {
@@ -36,30 +35,26 @@ using Words = std::vector<std::string>;
 /// A MAT-file as matio reads it.
 class MatFile {
  public:
-  explicit MatFile(const std::string& file) : file_(Mat_Open(file.c_str(), MAT_ACC_RDONLY)) {}
+  explicit MatFile(const std::string& file)
+      : file_(exports::Matio::Get().open(file.c_str(), MAT_ACC_RDONLY)) {}
 
   /// The variable with a name such as "TRUTH.header.step", nullptr if there is none.
   const matvar_t* Find(const std::string& name) {
     std::istringstream parts(name);
     std::string part;
     std::getline(parts, part, '.');
-    Variable& variable = variables_[part];
-    if (variable == nullptr) variable.reset(Mat_VarRead(file_.get(), part.c_str()));
+    exports::Matio::Variable& variable = variables_[part];
+    if (variable == nullptr) variable.reset(exports::Matio::Get().read(file_.get(), part.c_str()));
     matvar_t* found = variable.get();
     while (found != nullptr && std::getline(parts, part, '.')) {
-      found = Mat_VarGetStructFieldByName(found, part.c_str(), 0);
+      found = exports::Matio::Get().get_field(found, part.c_str(), 0);
     }
     return found;
   }
 
  private:
-  struct Free {
-    void operator()(matvar_t* variable) const { Mat_VarFree(variable); }
-    void operator()(mat_t* file) const { Mat_Close(file); }
-  };
-  using Variable = std::unique_ptr<matvar_t, Free>;
-  std::unique_ptr<mat_t, Free> file_;
-  std::map<std::string, Variable> variables_;
+  exports::Matio::File file_;
+  std::map<std::string, exports::Matio::Variable> variables_;
 };
 
 const char* TypeOf(const matvar_t& variable) {

@@ -1,11 +1,8 @@
 #include "tools/export/mat_export.h"
 
-#include <matio.h>
-
 #include <array>
 #include <cstdint>
 #include <filesystem>
-#include <memory>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -15,14 +12,12 @@
 #include "tests/support/command.h"
 #include "tests/support/file_size_limit.h"
 #include "tests/unit/tools/export/example_tables.h"
+#include "tools/export/matio_library.h"
 
 namespace fogline {
 namespace {
 
-struct Free {
-  void operator()(matvar_t* variable) const { Mat_VarFree(variable); }
-  void operator()(mat_t* file) const { Mat_Close(file); }
-};
+using exports::Matio;
 
 class MatExportTest : public testing::Test {
  protected:
@@ -32,11 +27,11 @@ class MatExportTest : public testing::Test {
 
 TEST_F(MatExportTest, HasAMatrixWithOneRowForEachMessage) {
   exports::WriteMat(ExampleTables(3), file_);
-  const std::unique_ptr<mat_t, Free> mat(Mat_Open(file_.c_str(), MAT_ACC_RDONLY));
+  const Matio::File mat(Matio::Get().open(file_.c_str(), MAT_ACC_RDONLY));
   ASSERT_NE(mat, nullptr);
-  const std::unique_ptr<matvar_t, Free> truth(Mat_VarRead(mat.get(), "TRUTH"));
+  const Matio::Variable truth(Matio::Get().read(mat.get(), "TRUTH"));
   ASSERT_NE(truth, nullptr);
-  const matvar_t* list = Mat_VarGetStructFieldByName(truth.get(), "follower_gap_m", 0);
+  const matvar_t* list = Matio::Get().get_field(truth.get(), "follower_gap_m", 0);
   ASSERT_NE(list, nullptr);
   ASSERT_EQ(list->rank, 2);
   EXPECT_EQ(list->dims[0], 3U);
@@ -44,9 +39,9 @@ TEST_F(MatExportTest, HasAMatrixWithOneRowForEachMessage) {
   const auto* values = static_cast<const double*>(list->data);
   // MAT-files have the columns one after another.
   EXPECT_EQ(std::vector(values, values + 6), (std::vector<double>{10, 11, 12, 20, 21, 22}));
-  const matvar_t* header = Mat_VarGetStructFieldByName(truth.get(), "header", 0);
+  const matvar_t* header = Matio::Get().get_field(truth.get(), "header", 0);
   ASSERT_NE(header, nullptr);
-  const matvar_t* step = Mat_VarGetStructFieldByName(const_cast<matvar_t*>(header), "step", 0);
+  const matvar_t* step = Matio::Get().get_field(const_cast<matvar_t*>(header), "step", 0);
   ASSERT_NE(step, nullptr);
   const auto* steps = static_cast<const std::int64_t*>(step->data);
   EXPECT_EQ(std::vector(steps, steps + 3), (std::vector<std::int64_t>{0, 1, 2}));
