@@ -24,7 +24,7 @@ Function* Find(const std::filesystem::path& module, const char* name) {
   if (!std::filesystem::exists(module, ignored)) {
     throw InputError(
         "/lead/profile: \"sumo\" needs SUMO, and this build of Fogline has none: install Debian's "
-        "package sumo, and build again");
+        "package sumo, and build again (tools/build fogline_programs)");
   }
   void* loaded = dlopen(module.c_str(), RTLD_NOW | RTLD_LOCAL);
   void* found = loaded == nullptr ? nullptr : dlsym(loaded, name);

@@ -21,7 +21,8 @@ class WithoutSumoTest : public testing::Test {
   const std::string fogline_ = folder_.File("bin/fogline");
   const std::string error_ =
       "scenario/sumo_queue.json: error: /lead/profile: \"sumo\" needs SUMO, and this build of "
-      "Fogline has none: install Debian's package sumo, and build again\n";
+      "Fogline has none: install Debian's package sumo, and build again "
+      "(tools/build fogline_programs)\n";
 };
 
 TEST_F(WithoutSumoTest, AScenarioWithCarsFromSumoIsRefusedByThePackagesName) {

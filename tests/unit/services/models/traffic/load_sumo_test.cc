@@ -36,7 +36,8 @@ TEST(LoadSumoTest, NamesThePackageIfThisBuildHasNoModule) {
   const test::ScratchFolder folder;
   EXPECT_EQ(ErrorOf(WithSumo(), folder.File("sumo.so")),
             "/lead/profile: \"sumo\" needs SUMO, and this build of Fogline has none: install "
-            "Debian's package sumo, and build again");
+            "Debian's package sumo, and build again "
+            "(tools/build fogline_programs)");
 }
 
 TEST(LoadSumoTest, NamesThePackageAndTheReasonIfTheModuleCannotBeLoaded) {
