@@ -14,6 +14,8 @@ endif()
 # The option for code whose speed does not matter, such as that of command lines and JSON: it takes
 # long to compile.
 set(FOGLINE_COLD_CODE $<$<CONFIG:Release>:-O1>)
+# The option for code that mostly waits for the network or the disk.
+set(FOGLINE_IO_CODE $<$<CONFIG:Release>:-O2>)
 
 # Compiles several source files as one, because the headers take most of the compiler's time. If the
 # option is OFF, a change of one file compiles only that file.
