@@ -24,9 +24,11 @@ struct Arguments {
   bool markdown = false;
   int rounds = 0;
   std::vector<std::string> only;
+  std::string against;
 };
 
-std::vector<Comparison> AllComparisons(Effort effort) {
+std::vector<Comparison> AllComparisons(Effort effort, const std::string& against) {
+  if (!against.empty()) return AgainstComparisons(effort, against);
   std::vector<Comparison> all;
   for (const auto& family : {PeerComparisons, LockstepComparisons, DataComparisons}) {
     std::ranges::move(family(effort), std::back_inserter(all));
@@ -34,34 +36,36 @@ std::vector<Comparison> AllComparisons(Effort effort) {
   return all;
 }
 
-/// The error text for a name that no comparison has; "" if a comparison has this name.
-std::string WhyNoComparison(const std::string& name) {
-  const std::vector<Comparison> all = AllComparisons(Effort::kQuick);
-  if (std::ranges::find(all, name, &Comparison::name) != all.end()) return "";
+/// Refuses a name that no comparison has. @throws CLI::ValidationError
+void Check(const std::string& name, const std::vector<Comparison>& all) {
+  if (std::ranges::find(all, name, &Comparison::name) != all.end()) return;
   std::string names;
   for (const Comparison& comparison : all) {
     names += (names.empty() ? "" : ", ") + comparison.name;
   }
-  return fmt::format("there is no comparison \"{}\"; the comparisons are {}", name, names);
+  throw CLI::ValidationError(
+      "--only", fmt::format("there is no comparison \"{}\"; the comparisons are {}", name, names));
 }
 
+/// @throws CLI::ValidationError for a name in --only that no comparison has
 std::vector<Comparison> Wanted(const Arguments& arguments) {
-  std::vector<Comparison> wanted = AllComparisons(arguments.quick ? Effort::kQuick : Effort::kFull);
+  std::vector<Comparison> wanted =
+      AllComparisons(arguments.quick ? Effort::kQuick : Effort::kFull, arguments.against);
   const auto& only = arguments.only;
   if (only.empty()) return wanted;
+  for (const std::string& name : only) Check(name, wanted);
   std::erase_if(wanted, [&](const Comparison& comparison) {
     return std::ranges::find(only, comparison.name) == only.end();
   });
   return wanted;
 }
 
-int Run(const Arguments& arguments) {
+int Run(const Arguments& arguments, const std::vector<Comparison>& wanted) {
   constexpr int kFullRounds = 7;
   constexpr int kQuickRounds = 3;
   const int rounds = arguments.rounds > 0 ? arguments.rounds
                      : arguments.quick    ? kQuickRounds
                                           : kFullRounds;
-  const std::vector<Comparison> wanted = Wanted(arguments);
   std::vector<Finding> findings;
   for (const Comparison& comparison : wanted) {
     Complain(fmt::format("{} of {}: {}", findings.size() + 1, wanted.size(), comparison.name));
@@ -82,21 +86,26 @@ int Main(int argc, char** argv) {
       ->check(CLI::Range(1, 1000));
   app.add_option("--only", arguments.only,
                  "octave, sumo, udpm, udpm-messages, udpm-graph, key, python, memq, log, cores, "
-                 "memory (repeatable)")
-      ->check(WhyNoComparison)
+                 "memory; with --against: against-sweep, against-udpm, against-start (repeatable)")
       ->allow_extra_args(false);
+  app.add_option("--against", arguments.against,
+                 "Compare with the build of another commit: a folder with source and build "
+                 "(tools/bench --against COMMIT makes it)")
+      ->check(CLI::ExistingDirectory);
   app.add_flag("--json", arguments.json, "Print as JSON");
   app.add_flag("--markdown", arguments.markdown, "Print a Markdown table");
   app.footer(
       "Run it in the folder of the sources. Exit codes: 0 every goal met, 1 one missed or "
       "not measured,\n2 bad usage, 3 failed.\n\nExamples:\n  fogline-bench --quick\n"
       "  fogline-bench --only udpm --only memq --rounds 11");
+  std::vector<Comparison> wanted;
   try {
     app.parse(argc, argv);
+    wanted = Wanted(arguments);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? kDone : kBadInput;
   }
-  return Run(arguments);
+  return Run(arguments, wanted);
 }
 
 }  // namespace

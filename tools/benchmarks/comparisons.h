@@ -1,6 +1,7 @@
 // All comparisons. Each family of comparisons has its own file.
 #pragma once
 
+#include <filesystem>
 #include <vector>
 
 #include "tools/benchmarks/comparison.h"
@@ -18,5 +19,9 @@ std::vector<Comparison> PeerComparisons(Effort effort);
 
 /// Sweeps and logs: cores, memory, reading speed.
 std::vector<Comparison> DataComparisons(Effort effort);
+
+/// This build, compared with that of another commit.
+/// @param folder the other commit's sources in folder/source, its build in folder/build
+std::vector<Comparison> AgainstComparisons(Effort effort, const std::filesystem::path& folder);
 
 }  // namespace fogline::benchmarks

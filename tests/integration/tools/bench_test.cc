@@ -6,6 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include <cctype>
+#include <cmath>
+#include <filesystem>
 #include <string>
 
 #include "services/graph.h"
@@ -47,6 +49,30 @@ TEST(BenchTest, RefusesAComparisonThatItDoesNotKnow) {
   EXPECT_EQ(outcome.code, 2);
   EXPECT_EQ(outcome.out, "");
   EXPECT_THAT(outcome.err, HasSubstr("carrier-pigeon"));
+}
+
+/// The build of another commit: here a link to this build, so the ratio is about 1.
+TEST(BenchTest, ComparesThisBuildWithThatOfAnotherCommit) {
+  const ScratchFolder folder;
+  std::filesystem::create_directory_symlink(FOGLINE_SOURCE_DIR, folder.File("source"));
+  std::filesystem::create_directory_symlink(FOGLINE_BINARY_DIR, folder.File("build"));
+  const Outcome outcome =
+      RunCommand({Program("fogline-bench"), "--quick", "--rounds", "1", "--json", "--against",
+                  folder.path(), "--only", "against-sweep", "--only", "against-start"});
+  EXPECT_LE(outcome.code, 1) << outcome.err;  // 1: one of two equal programs was slower
+  const auto comparisons = nlohmann::json::parse(outcome.out)["comparisons"];
+  ASSERT_EQ(comparisons.size(), 2U) << outcome.out;
+  for (const auto& comparison : comparisons) {
+    EXPECT_GT(comparison["ours_measured"]["median"].get<double>(), 0) << outcome.out;
+    EXPECT_NEAR(std::log10(comparison["ratio"]["median"].get<double>()), 0, 1) << outcome.out;
+  }
+}
+
+TEST(BenchTest, RefusesACommitThatDoesNotExist) {
+  const Outcome outcome =
+      RunCommand({FOGLINE_SOURCE_DIR "/tools/bench", "--against", "no-such-commit"});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_EQ(outcome.err, "tools/bench: error: --against: no commit \"no-such-commit\"\n");
 }
 
 }  // namespace
