@@ -75,6 +75,10 @@ function(fogline_build_campaign_programs)
     PROPERTIES FIXTURES_SETUP campaign_programs)
 endfunction()
 
+# The time limit of a test of the plain set, in seconds. It is some times kPatience
+# (tests/support/command.h), because it only ends a test that hangs on a busy machine.
+set(FOGLINE_TEST_LIMIT_S 900)
+
 # fogline_add_test_program(NAME LIBS...): builds every NAME/**/*_test.cc into the program NAME_tests.
 # With FOGLINE_UNITY, all files of a folder are compiled as one.
 function(fogline_add_test_program name)
@@ -114,8 +118,8 @@ function(fogline_add_tests name)
   set(alone "*InRealtime*:*RealtimeTest.*:*UnderLoad*:DeafRoleTest.*:RealtimeHorizonTest.*")
   gtest_discover_tests(${name}_tests TEST_PREFIX "${name}." DISCOVERY_MODE PRE_TEST
     TEST_FILTER "-${alone}"
-    DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 300 LABELS ${name})
+    DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT ${FOGLINE_TEST_LIMIT_S} LABELS ${name})
   gtest_discover_tests(${name}_tests TEST_PREFIX "${name}." DISCOVERY_MODE PRE_TEST
     TEST_LIST ${name}_alone TEST_FILTER "${alone}"
-    DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 300 LABELS ${name} RUN_SERIAL ON)
+    DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT ${FOGLINE_TEST_LIMIT_S} LABELS ${name} RUN_SERIAL ON)
 endfunction()

@@ -14,8 +14,9 @@ namespace fogline::test {
 /// The interval at which a test checks a condition outside of its process.
 inline constexpr std::chrono::milliseconds kLookEvery(5);
 /// A time limit that only ends a test that hangs. It is many times the time that a busy machine
-/// needs to start a program, a Java virtual machine or a browser, or to deliver a message.
-inline constexpr std::chrono::seconds kPatience(100);
+/// needs to start a program, a Java virtual machine or a browser, to deliver a message, or to
+/// compute a small study.
+inline constexpr std::chrono::seconds kPatience(280);
 
 /// The folder of the built programs, and the folder of the sources.
 std::filesystem::path ProgramDirectory();
@@ -73,8 +74,7 @@ bool ComesToHave(const std::string& text, const std::filesystem::path& file,
 std::string Content(const std::filesystem::path& file);
 
 /// Runs a program to its end.
-Outcome RunCommand(const std::vector<std::string>& command,
-                   std::chrono::seconds limit = std::chrono::seconds(120));
+Outcome RunCommand(const std::vector<std::string>& command, std::chrono::seconds limit = kPatience);
 
 /// Whether a process with this id exists (a zombie does not count).
 bool IsAlive(pid_t pid);

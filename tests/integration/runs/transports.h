@@ -22,7 +22,7 @@ inline nlohmann::json RunOn(const std::string& transport, const std::string& sce
                                    "--transport",      transport, "--log",  log,      "--force"};
   for (const std::string& field : fields) command.insert(command.end(), {"--set", field});
   command.insert(command.end(), more.begin(), more.end());
-  const Outcome outcome = RunCommand(command, std::chrono::seconds(120));
+  const Outcome outcome = RunCommand(command);
   EXPECT_EQ(outcome.code, 0) << transport << ": " << outcome.err;
   return nlohmann::json::parse(outcome.out, nullptr, false);
 }

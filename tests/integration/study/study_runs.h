@@ -13,7 +13,7 @@ namespace fogline::test {
 
 inline Outcome Study(std::vector<std::string> arguments) {
   arguments.insert(arguments.begin(), {Program("fogline"), "study"});
-  return RunCommand(arguments);
+  return RunCommand(arguments, 2 * kPatience);
 }
 
 inline std::string ReadText(const std::filesystem::path& file) {

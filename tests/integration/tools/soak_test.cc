@@ -22,7 +22,7 @@ using ::testing::Not;
 /// run for an hour. The time limit ends such a run.
 Outcome Soak(std::vector<std::string> options) {
   options.insert(options.begin(), Program("soak"));
-  return RunCommand(options, std::chrono::seconds(20));
+  return RunCommand(options);
 }
 
 /// The options at the beginnings of the lines of a help text.
