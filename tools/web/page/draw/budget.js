@@ -1,6 +1,7 @@
 // How much the page may draw, so that it shows at least 30 frames a second on slow machines, too.
 // It looks at the time between frames, because that contains the work of the graphics processor. A
-// level that was too slow before is tried again after a longer time.
+// page may also say that something else is late. A level that was too slow before is tried again
+// after a longer time.
 
 const SLOW_MS = 30;         // mean time between frames
 const FAST_MS = 20;
@@ -16,12 +17,17 @@ const LEVELS = [
   {rest_ms: 120, ratio: 0.6, every: 1},
   {rest_ms: 200, ratio: 0.5, every: 2},
   {rest_ms: 330, ratio: 0.4, every: 3},
+  {rest_ms: 500, ratio: 0.25, every: 4},
 ];
 
 export class Budget {
-  /** @param slow_ms mean time between frames from which on it draws less */
-  constructor({slow_ms = SLOW_MS} = {}) {
+  /**
+   * @param slow_ms mean time between frames from which on it draws less
+   * @param isLate says every LOOK_EVERY_MS whether something else is late, because too much is drawn
+   */
+  constructor({slow_ms = SLOW_MS, isLate = () => false} = {}) {
     this.slow_ms = slow_ms;
+    this.isLate = isLate;
     this.patience = CALM_LOOKS;
     this.level = 0;
     this.began = null;
@@ -50,8 +56,9 @@ export class Budget {
   }
 
   judge(mean_ms) {
-    this.calm = mean_ms < FAST_MS ? this.calm + 1 : 0;
-    if (mean_ms > this.slow_ms) {
+    const isLate = this.isLate();
+    this.calm = mean_ms < FAST_MS && !isLate ? this.calm + 1 : 0;
+    if (mean_ms > this.slow_ms || isLate) {
       if (this.raised) this.patience = Math.min(2 * this.patience, MOST_PATIENCE);
       this.level = Math.min(this.level + 1, LEVELS.length - 1);
       this.raised = false;

@@ -18,7 +18,7 @@ import {Setup} from "./setup.js";
 import {Countdown, told, whyAwayInWords} from "./told.js";
 
 // A person waits for the next frame after each input. So this page draws less as soon as it misses
-// one frame of 60 Hz in three.
+// one frame of 60 Hz in three, and as soon as inputs are late.
 const SLOW_MS = 22;
 const GONE_MS = 5000;  // if the server is away for so long, it does not come back to this page
 
@@ -29,7 +29,7 @@ class Drive {
     this.latency = new Latency();
     this.alarm = new Alarm();
     this.countdown = new Countdown();
-    this.budget = new Budget({slow_ms: SLOW_MS});
+    this.budget = new Budget({slow_ms: SLOW_MS, isLate: () => this.latency.takeLate()});
     this.newest = null;
     this.view = null;
     this.instance = "";

@@ -9,6 +9,8 @@
 // times of keyboard and screen.
 
 export const WARN_ABOVE_MS = 100;
+export const LATE_ABOVE_MS = 45;  // the page then draws less: the goal of the 95th percentile is 50 ms
+const LATE_OF = 10;               // one measurement in so many may be late
 const FORGET_AFTER_MS = 2000;  // no step of the run has used the input
 const KEPT = 512;              // measurements, for the percentiles
 const WARN_OF = 10;            // newest measurements
@@ -18,6 +20,7 @@ export class Latency {
     this.probe = null;     // {sequence, began_ms, input: number of DRIVER_INPUT or null, applied}
     this.values = [];
     this.count = 0;
+    this.unjudged = [];    // measurements since takeLate() has judged
   }
 
   /** The newest measurement in ms; null if there is none. */
@@ -25,6 +28,14 @@ export class Latency {
 
   /** Whether one of the last measurements was too long. */
   get isHigh() { return this.values.slice(-WARN_OF).some((value) => value > WARN_ABOVE_MS); }
+
+  /** Whether more than one measurement in LATE_OF was late. Each measurement is judged once. */
+  takeLate() {
+    if (this.unjudged.length < LATE_OF) return false;
+    const judged = this.unjudged.splice(0);
+    const late = judged.filter((value) => value > LATE_ABOVE_MS).length;
+    return late > judged.length / LATE_OF;
+  }
 
   /** The value below which a share of the kept measurements lies (nearest rank); null without any. */
   percentile(share) {
@@ -56,6 +67,7 @@ export class Latency {
     this.probe = null;
     ++this.count;
     this.values.push(value);
+    this.unjudged.push(value);
     if (this.values.length > KEPT) this.values.shift();
     return value;
   }

@@ -33,6 +33,17 @@ test("a level that was too slow is tried again, but later and later", () => {
   tries.forEach((time_ms, i) => assert.ok(i === 0 || time_ms > 1.5 * tries[i - 1], `${tries}`));
 });
 
+test("a page draws less while something else is late, though its frames are fast", () => {
+  let late = true;
+  const budget = new Budget({isLate: () => late});
+  const whole = budget.now;
+  const now = run(budget, 16, 5000);
+  assert.ok(budget.now.ratio < 0.5 * whole.ratio, `${budget.now.ratio}`);
+  late = false;
+  run(budget, 16, 120000, now);
+  assert.deepEqual(budget.now, whole);
+});
+
 test("frames within the budget change nothing", () => {
   const budget = new Budget();
   const {level} = budget;

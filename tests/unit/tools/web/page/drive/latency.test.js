@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import {test} from "node:test";
 
-import {Latency} from "../../../../../../tools/web/page/drive/latency.js";
+import {LATE_ABOVE_MS, Latency} from "../../../../../../tools/web/page/drive/latency.js";
 
 /** One measurement of so many ms. */
 function measure(latency, began_ms, value_ms) {
@@ -63,4 +63,19 @@ test("a measurement above 100 ms warns until ten good ones have come", () => {
   assert.equal(latency.isHigh, true);
   measure(latency, 90000, 20);
   assert.equal(latency.isHigh, false);
+});
+
+test("it is late if more than one measurement in ten is, and judges each once", () => {
+  const latency = new Latency();
+  const measureAll = (values) => values.forEach((value) => measure(latency, 1000 * latency.count, value));
+  const late = LATE_ABOVE_MS + 1;
+  measureAll(Array(9).fill(late));
+  assert.equal(latency.takeLate(), false, "nine are too few");
+  measureAll([LATE_ABOVE_MS]);
+  assert.equal(latency.takeLate(), true);
+  assert.equal(latency.takeLate(), false);
+  measureAll([late, ...Array(9).fill(LATE_ABOVE_MS)]);
+  assert.equal(latency.takeLate(), false);
+  measureAll([late, late, ...Array(8).fill(20)]);
+  assert.equal(latency.takeLate(), true);
 });
