@@ -100,17 +100,21 @@ test("from an input to the next frame that shows it the seat takes at most 50 ms
   await begin(page);
   await drives(page, true);
   await page.waitForFunction(() => Number(document.body.dataset.step) > 100);
-  await meetsBar(t, async () => {
-    const before = await page.evaluate(() => {
-      foglineDrive.latency.values = [];
-      return foglineDrive.latency.count;
-    });
-    for (let i = 0; i < 60; ++i) {
+  const press = async (times) => {
+    for (let i = 0; i < times; ++i) {
       await page.keyboard.down("ArrowDown");
       await page.waitForTimeout(70);
       await page.keyboard.up("ArrowDown");
       await page.waitForTimeout(70);
     }
+  };
+  await press(100);  // in these seconds the page finds out how much it may draw here
+  await meetsBar(t, async () => {
+    const before = await page.evaluate(() => {
+      foglineDrive.latency.values = [];
+      return foglineDrive.latency.count;
+    });
+    await press(60);
     const {values, count} = await page.evaluate(() => foglineDrive.latency);
     assert.ok(count - before >= 50, `${count - before} measurements`);
     return summary(values);
