@@ -28,6 +28,11 @@ void TopScreen::Show(TopView view) {
 
 void TopScreen::Build() {
   rows_ = TopRows(view_, orders_);
+  if (!used_) {
+    // The first rows may come above the row that was first before.
+    cursor_ = 0;
+    return Move(0);
+  }
   const auto same = std::ranges::find_if(
       rows_, [this](const TopRow& row) { return !key_.empty() && row.key == key_; });
   if (same != rows_.end()) {
@@ -78,6 +83,7 @@ void TopScreen::Reverse() {
 }
 
 bool TopScreen::OnKey(Key key) {
+  used_ = true;
   const auto page = static_cast<std::ptrdiff_t>(page_);
   const auto scroll = [this](std::ptrdiff_t by) {
     if (opened_.empty()) return Move(by);

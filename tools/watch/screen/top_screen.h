@@ -39,6 +39,7 @@ class TopScreen {
   std::vector<TopRow> rows_;
   std::size_t cursor_ = 0;    // index in rows_
   std::string key_;           // key of the row at the cursor
+  bool used_ = false;         // a key was pressed; before, the cursor stays at the first row
   std::size_t first_ = 0;     // the first row that is visible
   std::string opened_;        // key of the opened row; "" if none is open
   std::size_t scrolled_ = 0;  // lines of the details that are above the window

@@ -108,6 +108,21 @@ TEST_F(TopScreenTest, ScrollsToTheLastRowAndBack) {
   EXPECT_THAT(AtCursor(), HasSubstr("world"));
 }
 
+TEST_F(TopScreenTest, StaysAtTheFirstRowUntilAKeyIsPressed) {
+  // GIVEN a screen that has seen the channels of a run before its roles
+  TopScreen screen;
+  TopView view = View();
+  view.traffic.runs[0].roles.clear();
+  screen.Show(view);
+  // WHEN the roles come
+  screen.Show(View());
+  // THEN the heading of the run and the first role are visible
+  const std::vector<Line> lines = screen.Lines(kColumns, kRows);
+  EXPECT_THAT(lines[1].text, HasSubstr("run 1234567890123456789"));
+  EXPECT_EQ(std::ranges::find(lines, Line::Style::kSelected, &Line::style)->text.find(" world"),
+            0U);
+}
+
 TEST_F(TopScreenTest, SortsTheTableOfTheCursorAndStaysOnItsRow) {
   Press(Key::kDown, 3);
   EXPECT_THAT(AtCursor(), HasSubstr("fusion"));
