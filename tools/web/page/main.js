@@ -327,7 +327,9 @@ class Page {
   drawHealth() {
     if (this.isLive && this.healthIsNew) {
       this.healthIsNew = false;
-      this.health.drawLive(this.lastHealth, this.store.run, this.store.statuses);
+      const {store} = this;
+      const isOver = Boolean(store.frame(store.lastStep)?.TRUTH?.last);
+      this.health.drawLive(this.lastHealth, store.run, store.statuses, isOver);
     }
     if (!this.isLive && this.log && this.healthLog !== this.log) {
       this.healthLog = this.log;

@@ -82,6 +82,7 @@ class Drive {
   begin() {
     this.alarm.allow();
     this.set("begun", !this.person.begun);
+    if (this.person.begun) byId("begin").blur();  // the space bar would press the button again
   }
 
   /** Sets a condition of driving, such as "focused", and sends the new input at once. */
@@ -208,7 +209,7 @@ class Drive {
 
   draw() {
     const {frame = {}, run} = this.newest ?? {};
-    const state = told(frame.HOST_COMMAND);
+    const state = told(frame.HOST_COMMAND, Boolean(frame.TRUTH?.last));
     const time_s = Number(frame.HOST_COMMAND?.header.utime ?? 0) / 1e6;
     const left = this.countdown.see(state.asks, time_s, run?.scenario?.arbitrator?.take_over?.lead_s ?? 10);
     this.alarm.sound(state);
@@ -240,10 +241,10 @@ class Drive {
     const words = this.state === "" ? "" : whyAwayInWords(this.state === "taken" ? seat : why);
     say(byId("away"), words);
     byId("away").hidden = words === "";
-    say(byId("begin"), this.person.begun ? "Pause" : "Begin");
+    say(byId("begin"), this.person.begun ? "Leave the seat" : "Begin");
     setAttribute(byId("begin"), "data-begun", String(this.person.begun));
     setAttribute(document.body, "data-present", String(why === ""));
-    byId("take-over").disabled = why !== "" || side === "human";
+    byId("take-over").disabled = why !== "" || side === "human" || Boolean(this.newest?.frame.TRUTH?.last);
     byId("give-back").disabled = why !== "" || side !== "human";
     const {throttle = 0, brake = 0} = this.input ?? {};
     byId("throttle").value = throttle;
@@ -266,8 +267,9 @@ class Drive {
   }
 
   drawLatency() {
-    const {newest, isHigh} = this.latency;
-    say(byId("latency"), newest === null ? "not measured yet" : withUnit(decimal(newest, 0), "ms"));
+    const {newest, highest, isHigh} = this.latency;
+    const words = newest === null ? "not measured yet" : withUnit(decimal(newest, 0), "ms");
+    say(byId("latency"), isHigh ? `${words}, of the last inputs at most ${withUnit(decimal(highest, 0), "ms")}` : words);
     byId("latency-warning").hidden = !isHigh;
   }
 }

@@ -26,8 +26,11 @@ export class Latency {
   /** The newest measurement in ms; null if there is none. */
   get newest() { return this.values.at(-1) ?? null; }
 
+  /** The longest of the last measurements in ms; -Infinity if there is none. */
+  get highest() { return Math.max(...this.values.slice(-WARN_OF)); }
+
   /** Whether one of the last measurements was too long. */
-  get isHigh() { return this.values.slice(-WARN_OF).some((value) => value > WARN_ABOVE_MS); }
+  get isHigh() { return this.highest > WARN_ABOVE_MS; }
 
   /** Whether more than one measurement in LATE_OF was late. Each measurement is judged once. */
   takeLate() {

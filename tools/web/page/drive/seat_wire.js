@@ -24,14 +24,15 @@ export function takeDriverToken() {
 
 /**
  * Keeps a connection. It calls `on.text(object)`, `on.messages(messages)` and
- * `on.state("open", "ended", "lost" or "refused")`: "ended" if the server says that its program ends,
- * "refused" if there never was a connection.
+ * `on.state("open", "ended", "lost" or "refused")`: "ended" if the server has said that its program ends,
+ * until there is a connection again; "refused" if there never was a connection.
  */
 export class SeatWire {
   constructor(url, on) {
     this.url = url;
     this.on = on;
     this.wasOpen = false;
+    this.hasEnded = false;
     this.connect();
   }
 
@@ -43,6 +44,7 @@ export class SeatWire {
     this.socket.binaryType = "arraybuffer";
     this.socket.onopen = () => {
       this.wasOpen = true;
+      this.hasEnded = false;
       this.on.state("open");
     };
     this.socket.onmessage = ({data}) => {
@@ -50,7 +52,8 @@ export class SeatWire {
       else this.on.messages(readFrame(data).messages ?? []);
     };
     this.socket.onclose = ({code}) => {
-      this.on.state(code === GOING_AWAY ? "ended" : this.wasOpen ? "lost" : "refused");
+      this.hasEnded ||= code === GOING_AWAY;
+      this.on.state(this.hasEnded ? "ended" : this.wasOpen ? "lost" : "refused");
       this.retry = setTimeout(() => this.connect(), RETRY_MS);
     };
   }

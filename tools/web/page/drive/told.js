@@ -18,8 +18,12 @@ const TOLD = {
   EMERGENCY_BRAKING: "The car brakes in an emergency",
 };
 
-/** {side, words, asks, urgent} for a HOST_COMMAND; without one the drive has not begun. */
-export function told(command) {
+/**
+ * {side, words, asks, urgent} for a HOST_COMMAND; without one the drive has not begun.
+ * @param isOver whether the last step of the run has come
+ */
+export function told(command, isOver = false) {
+  if (isOver) return {side: "unknown", words: "The drive has ended", asks: false, urgent: false};
   if (!command) return {side: "unknown", words: "The drive has not begun", asks: false, urgent: false};
   const {name, side, asks: waits = false, urgent = false} = modeOf(command.mode, command.lambda_human);
   const asks = waits && name !== "HANDOVER";  // then the person has answered

@@ -21,8 +21,9 @@ function fallbackOf(status) {
   return [status.fallback ? status.fallback + cause : "", ...bad].filter(Boolean).join("; ");
 }
 
-/** The health of a role: "good", "note" or "bad". */
-function grade(role, status) {
+/** The health of a role: "good", "note" or "bad". After the run's end the roles are silent. */
+function grade(role, status, isOver) {
+  if (isOver && !role.error && role.state !== "FAILED") return "good";
   if (role.silent || role.state === "FAILED" || role.error) return "bad";
   return status?.fallback || Object.keys(role.refused ?? {}).length ? "note" : "good";
 }
@@ -39,13 +40,13 @@ function mark(kind) {
   return make("span", attributes, MARKS[kind]);
 }
 
-function roleRow(role, status) {
-  const kind = grade(role, status);
+function roleRow(role, status, isOver) {
+  const kind = grade(role, status, isOver);
   const waits = role.waiting_for && !status?.fallback ? `waits for ${role.waiting_for}` : "";
   const trouble = [fallbackOf(status), waits, role.error].filter(Boolean).join("; ");
   return make("tr", {},
     make("th", {scope: "row"}, mark(kind), role.role),
-    cell(role.silent ? `${role.state}, silent` : role.state ?? "", {class: "text"}),
+    cell(isOver ? "ended" : role.silent ? `${role.state}, silent` : role.state ?? "", {class: "text"}),
     cell(count(role.step)),
     cell(`${decimal(role.age_s, 1)} s`),
     cell(`${count(role.repairs_asked)} / ${count(role.repairs_served)}`),
@@ -92,23 +93,23 @@ export class Health {
     table.querySelector("tbody").replaceChildren(...rows);
   }
 
-  /** Shows a `health` frame of a live run. */
-  drawLive(health, run, statuses) {
+  /** Shows a `health` frame of a live run. @param isOver whether its last step has come */
+  drawLive(health, run, statuses, isOver) {
     const shown = shownRun(health.traffic, run);
     const roles = shown?.roles ?? [];
-    this.fill("roles", roles.map((role) => roleRow(role, statuses.get(role.role))));
+    this.fill("roles", roles.map((role) => roleRow(role, statuses.get(role.role), isOver)));
     this.fill("senders", (health.senders ?? []).map(senderRow));
     const channels = [...(shown?.channels ?? []), ...(health.traffic?.others ?? [])];
     this.fill("channels", channels.map(channelRow));
-    const bad = roles.filter((role) => grade(role, statuses.get(role.role)) === "bad");
-    this.conclude(bad, roles, health);
+    const bad = roles.filter((role) => grade(role, statuses.get(role.role), isOver) === "bad");
+    this.conclude(bad, roles, health, isOver);
   }
 
-  conclude(bad, roles, health) {
+  conclude(bad, roles, health, isOver) {
     const losses = lossesOf(health, count);
     const names = bad.map(({role}) => role).join(", ");
     const first = roles.length === 0 ? "No role has reported yet."
-      : bad.length === 0 ? `All ${roles.length} roles answer.`
+      : bad.length === 0 ? (isOver ? "The run has ended." : `All ${roles.length} roles answer.`)
       : bad.length === 1 ? `One role is in trouble: ${names}.`
       : `${bad.length} roles are in trouble: ${names}.`;
     const overall = bad.length ? "bad" : losses.count ? "note" : "good";

@@ -59,6 +59,7 @@ test("a measurement above 100 ms warns until ten good ones have come", () => {
   assert.equal(latency.isHigh, false);
   measure(latency, 1000, 101);
   assert.equal(latency.isHigh, true);
+  assert.equal(latency.highest, 101);
   for (let i = 1; i <= 9; ++i) measure(latency, 2000 * i, 20);
   assert.equal(latency.isHigh, true);
   measure(latency, 90000, 20);

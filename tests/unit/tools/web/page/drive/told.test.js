@@ -12,6 +12,7 @@ test("each mode of HOST_COMMAND has words that say nothing of conflict or thresh
     assert.doesNotMatch(words, /conflict|threshold|sensor|lidar|radar|undefined|not known/i, name);
   }
   assert.equal(told(null).words, "The drive has not begun");
+  assert.equal(told({mode: 0, lambda_human: 1}, true).words, "The drive has ended");
   assert.equal(told({mode: 99, lambda_human: 0}).words, "It is not known who drives");
 });
 
