@@ -5,7 +5,7 @@ import {execFileSync} from "node:child_process";
 import {statSync} from "node:fs";
 import path from "node:path";
 
-import {begin, drives, freshNetwork} from "../../tests/campaign/web/seat.js";
+import {begin, drives, startDrive} from "../../tests/campaign/web/seat.js";
 import {background, browser, goTo, open, root, scratch, until, view} from "../../tests/campaign/web/window.js";
 
 const {FOGLINE} = process.env;
@@ -63,9 +63,7 @@ async function window(t, started, file) {
 
 /** The seat at a request to take over. The fog comes early, so that the request does, too. */
 async function drive(t, started, file) {
-  const run = background(t, FOGLINE, ["drive", "scenario/drive.json", "--no-browser", "--lcm-url", freshNetwork(),
-                                      "--log", path.join(scratch(t), "drive.lcm"), "--set", "/fog/start_s=3"]);
-  const address = await until(() => run.said.match(/drive: (http:\S+)\s+view:/)?.[1], "the address of the seat");
+  const {address} = await startDrive(t, {"/fog/start_s": 3});
   const page = await open(t, started, address, {size: {width: WIDTH, height: 850}, ...SCHEME});
   await begin(page);
   await drives(page, true);

@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import {test} from "node:test";
 
 import {begin, drives, freshNetwork, listener, seat, setPad, withFakePads} from "./seat.js";
-import {breaches, browser, DESKTOP, open, PHONE, until} from "./window.js";
+import {browser, DESKTOP, open, PHONE, until} from "./window.js";
 
 /** A page that is open and drives, and the messages that the run gets from it. */
 async function seated(t, {pads = false, ...options} = {}) {
@@ -220,15 +220,10 @@ test("with --listen only the driver's token gives the seat", async (t) => {
   await wrong.close();
 });
 
-for (const [name, options] of [["desktop", {size: DESKTOP}], ["phone", {size: PHONE}],
-                               ["dark", {size: DESKTOP, colorScheme: "dark"}]]) {
-  test(`the page breaks no rule of accessibility and fits its window (${name})`, async (t) => {
-    const {page} = await seated(t, {pads: true, ...options});
-    await begin(page);
-    await drives(page, true);
-    assert.deepEqual(await breaches(page), []);
-    const wide = await page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
-    assert.ok(wide <= 0, `the page is ${wide} px too wide`);
+for (const [name, size] of [["desktop", DESKTOP], ["phone", PHONE]]) {
+  test(`the request to take over does not cover the car ahead (${name})`, async (t) => {
+    const {page} = await seated(t, {size});
+    await page.waitForFunction(() => foglineDrive.state === "yours");
     await page.evaluate(() => {
       document.getElementById("request").hidden = false;
       foglineDrive.drawState = () => {};
@@ -239,11 +234,6 @@ for (const [name, options] of [["desktop", {size: DESKTOP}], ["phone", {size: PH
       return (sign.bottom - picture.top) / picture.height;
     });
     assert.ok(covered < 0.335, `the request covers the car ahead: ${covered} of the picture`);
-    assert.deepEqual(await breaches(page), []);
-    await page.click("#setup-open");
-    await setPad(page);
-    await page.selectOption("#device", "Test Wheel");
-    assert.deepEqual(await breaches(page), []);
   });
 }
 

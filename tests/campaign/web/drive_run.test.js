@@ -2,13 +2,12 @@
 // until the automation has the car again. A script plays the person, with the keys or at a wheel.
 import assert from "node:assert/strict";
 import {execFileSync} from "node:child_process";
-import path from "node:path";
 import {test} from "node:test";
 
 import {makeDecoder} from "../../../tools/web/page/data/lcm.js";
 import {describedTypes, readEvents} from "../../unit/tools/web/page/real_log.js";
-import {begin, drives, freshNetwork, setPad, withFakePads} from "./seat.js";
-import {background, browser, DESKTOP, open, root, scratch, until} from "./window.js";
+import {begin, drives, holdTakeOver, setPad, startDrive, withFakePads} from "./seat.js";
+import {browser, DESKTOP, open, PHONE, until} from "./window.js";
 
 const {FOGLINE} = process.env;
 const WHEEL = {throttle: {axis: 0, released: 1, pressed: -1, dead: 0.02},
@@ -23,18 +22,14 @@ const STORY = {
 
 /** Starts the drive, and opens its page. @return {page, log, run} */
 async function drive(t, settings = {}, options = {}) {
-  const log = path.join(scratch(t), "drive.lcm");
-  const set = Object.entries({...STORY, ...settings})
-    .flatMap(([field, value]) => ["--set", `${field}=${JSON.stringify(value)}`]);
-  const run = background(t, FOGLINE, ["drive", path.join(root, "scenario/drive.json"), "--no-browser",
-                                      "--lcm-url", freshNetwork(), "--log", log, "--json", ...set]);
-  run.on("exit", (code) => { run.code = code; });
-  const address = await until(() => {
-    assert.equal(run.code, undefined, run.said);
-    return run.said.match(/drive: (http:\S+)\s+view:/)?.[1];
-  }, "the address of the page");
-  const page = await open(t, await browser(t), address, {size: DESKTOP, ...options});
-  return {page, log, run};
+  const {run, log, address} = await startDrive(t, {...STORY, ...settings});
+  return {page: await open(t, await browser(t), address, {size: DESKTOP, ...options}), log, run};
+}
+
+/** Fails if the run has ended, or if the car stops by itself: what a test then waits for never comes. */
+function assertGoesOn(run, holds, what) {
+  assert.equal(run.code, undefined, `the run has ended: ${run.said}`);
+  assert.ok(holds, `${what}; the run says: ${run.said}`);
 }
 
 /** Waits for words of the page about who drives. */
@@ -45,13 +40,14 @@ const says = (page, words) => page.waitForFunction(
  * Follows the car ahead with a time gap, as long as the human drives. The person sees what a page
  * shows; this script takes it from the page's newest message, and acts every 40 ms.
  */
-async function follow(page, pedals, until_s) {
+async function follow(page, run, pedals, until_s) {
   for (;;) {
     const seen = await page.evaluate(() => {
       const {TRUTH: truth, HOST_COMMAND: command} = foglineDrive.newest.frame;
       return {time_s: truth.header.utime / 1e6, gap_m: truth.host_gap_m, speed_mps: truth.host_speed_mps,
-              lead_mps: truth.preceding_speed_mps, mode: command.mode};
+              lead_mps: truth.preceding_speed_mps, lambda_human: command.lambda_human};
     });
+    assertGoesOn(run, seen.lambda_human > 0.5, `the person does not drive at ${seen.time_s} s`);
     if (seen.time_s >= until_s) return;
     const wanted = 0.25 * (seen.gap_m - 5 - 1.4 * seen.speed_mps) + 0.9 * (seen.lead_mps - seen.speed_mps);
     await pedals(wanted);
@@ -87,21 +83,23 @@ async function plugIn(page) {
   await page.waitForFunction(() => foglineDrive.person.device.id === "Test Wheel");
 }
 
+/** The person answers a request to take over. */
+async function takeOver(page, isWheel) {
+  if (!isWheel) return holdTakeOver(page, "^You drive");
+  await setPad(page, {down: [0]});
+  return says(page, "You drive");
+}
+
 /** The decoded messages of a channel in a log. */
 function messagesOf(log, channel, type) {
   const decode = makeDecoder(describedTypes(), type);
   return readEvents(log).filter((event) => event.channel === channel).map(({bytes}) => decode(bytes));
 }
 
-function percentile(values, share) {
-  const sorted = [...values].sort((a, b) => a - b);
-  return sorted[Math.max(0, Math.ceil(share * sorted.length) - 1)];
-}
-
-/** The measurements of a log, each once. */
+/** The delays in a log, each once, in us. */
 function latenciesOf(inputs) {
   const values = inputs.map(({latency_us}) => Number(latency_us)).filter((value) => value >= 0);
-  return values.filter((value, i) => value !== values[i - 1]).map((value) => value / 1000);
+  return values.filter((value, i) => value !== values[i - 1]);
 }
 
 for (const [device, make] of [["the keys", keys], ["a wheel", wheel]]) {
@@ -117,12 +115,10 @@ for (const [device, make] of [["the keys", keys], ["a wheel", wheel]]) {
     assert.ok(await page.evaluate(() => foglineDrive.alarm.played > 0), "the request is heard");
     const left = await page.locator("#request-left").innerText();
     assert.match(left, /^(10|9|8|7)\s/);
-    if (isWheel) await setPad(page, {down: [0]});
-    else await page.keyboard.press("t");
-    await says(page, "You drive");
+    await takeOver(page, isWheel);
     assert.ok(await page.locator("#request").isHidden());
     const pedals = make(page);
-    await follow(page, pedals, 22);
+    await follow(page, run, pedals, 22);
     await pedals(0);
     // The fog has gone. The automation gets the car only after some time, so the person asks again.
     await until(async () => {
@@ -130,10 +126,14 @@ for (const [device, make] of [["the keys", keys], ["a wheel", wheel]]) {
       else await page.keyboard.press("g");
       await page.waitForTimeout(100);  // this person waits so long before asking again
       if (isWheel) await setPad(page);
-      return (await page.locator("#who").innerText()) === "The automation drives";
+      const who = await page.locator("#who").innerText();
+      assertGoesOn(run, !who.startsWith("The car"), who);
+      return who === "The automation drives";
     }, "the automation to drive again");
     await run.ended;
     assert.equal(run.code, 0, run.said);
+    const measured = await page.evaluate(() => foglineDrive.latency.values.map((ms) => Math.trunc(1000 * ms)));
+    page.trouble = page.trouble.filter((words) => !words.includes("WebSocket"));  // after the end of the run
 
     const truth = messagesOf(log, "TRUTH", "truth_t");
     assert.ok(Math.min(...truth.map(({host_gap_m}) => host_gap_m)) > 2, "no collision");
@@ -142,13 +142,12 @@ for (const [device, make] of [["the keys", keys], ["a wheel", wheel]]) {
     const inputs = messagesOf(log, "DRIVER_INPUT", "driver_input_t");
     assert.ok(inputs.some(({brake}) => brake > 0.1), "the person has braked");
     assert.equal(new Set(inputs.map(({instance}) => String(instance))).size, 1);
+    // How long a delay may be is said by speed.test.js, which knows what other processes do meanwhile.
     const latencies = latenciesOf(inputs);
-    const late = percentile(latencies, 0.95);
-    t.diagnostic(`${device}: ${latencies.length} latencies, median ${percentile(latencies, 0.5).toFixed(1)} ms, ` +
-                 `95th percentile ${late.toFixed(1)} ms`);
-    assert.ok(latencies.length >= 10, `${latencies.length} latencies`);
-    // The goal of 50 ms has a test of its own, speed.test.js, which knows what other processes do.
-    assert.ok(late < 200, `95th percentile of the latency: ${late} ms`);
+    const median = [...latencies].sort((a, b) => a - b)[Math.floor(latencies.length / 2)];
+    t.diagnostic(`${device}: ${latencies.length} delays, median ${median / 1000} ms`);
+    assert.ok(latencies.length >= 10, `${latencies.length} delays`);
+    assert.deepEqual(latencies.filter((one) => !measured.includes(one)), []);
     // The inputs in the log give the same commands again.
     execFileSync(FOGLINE, ["replay", log, "--role", "driver"], {stdio: "pipe"});
   });
@@ -162,9 +161,7 @@ async function leavesTheCar(t, happens, {isWheel = false} = {}) {
   await begin(page);
   await drives(page, true);  // before that, the page hears no key
   await says(page, "Take over");
-  if (isWheel) await setPad(page, {down: [0]});
-  else await page.keyboard.press("t");
-  await says(page, "You drive");
+  await takeOver(page, isWheel);
   await happens(page);
   await run.ended;
   const commands = messagesOf(log, "HOST_COMMAND", "arbitration_t");
@@ -196,4 +193,67 @@ test("when the page is silent for 300 ms, the fallbacks stop the car", async (t)
     const end = performance.now() + 1500;
     while (performance.now() < end) continue;
   }));
+});
+
+test("the first brake lights of the car ahead need no new shader, for which the page would stand still", async (t) => {
+  const {page} = await drive(t, {"/steps": 1000, "/lead/breakpoints": [
+    {duration_s: 2, speed_mps: 20}, {duration_s: 3, speed_mps: 12}, {duration_s: 15, speed_mps: 12}]}, {
+    prepare: (context) => context.addInitScript(() => {
+      window.shaders = 0;
+      const {linkProgram} = WebGL2RenderingContext.prototype;
+      WebGL2RenderingContext.prototype.linkProgram = function (program) {
+        window.shaders += 1;
+        linkProgram.call(this, program);
+      };
+    })});
+  await page.waitForFunction(() => foglineDrive.view);
+  const before = await page.evaluate(() => window.shaders);
+  assert.ok(before > 0);
+  await begin(page);
+  await page.waitForFunction(() => foglineDrive.newest?.frame.TRUTH?.preceding_acceleration_mps2 < -1);
+  const after = await page.evaluate(async () => {
+    for (let i = 0; i < 10; ++i) await new Promise(requestAnimationFrame);  // a slow machine draws each third one
+    return window.shaders;
+  });
+  assert.equal(after, before);
+});
+
+/**
+ * What the page hears from its server comes late, by `window.late_ms`. There is no picture of the road, because a busy
+ * machine would draw it late, too.
+ */
+async function withLateMessages(context) {
+  await context.route("**/driver_view.js", (route) => route.abort());
+  await context.addInitScript(() => {
+    window.late_ms = 0;
+    window.WebSocket = class extends WebSocket {
+      set onmessage(take) {
+        super.onmessage = take && ((event) => {
+          if (window.late_ms > 0) setTimeout(() => take(event), window.late_ms);
+          else take(event);
+        });
+      }
+    };
+  });
+}
+
+test("the page warns while the picture follows the inputs too late, and not longer", async (t) => {
+  const late_ms = 300;
+  const {page} = await drive(t, {"/steps": 15000}, {size: PHONE, prepare: withLateMessages});
+  await begin(page);
+  await drives(page, true);
+  const warning = page.locator("#latency-warning");
+  /** The person presses a key again and again, until the page shows such a delay, with or without the warning. */
+  const shows = (fits, warned) => until(async () => {
+    await page.keyboard.press("ArrowUp");
+    const delay_ms = parseInt(await page.locator("#latency").innerText(), 10);  // NaN before the first measurement
+    return fits(delay_ms) && await warning.isVisible() === warned;
+  }, `a delay ${warned ? "with the" : "without a"} warning`);
+  await shows((delay_ms) => delay_ms <= 100, false);
+  await page.evaluate((late) => { window.late_ms = late; }, late_ms);
+  await shows((delay_ms) => delay_ms >= late_ms, true);
+  assert.match(await warning.innerText(), /more than 100 ms/);
+  await page.evaluate(() => { window.late_ms = 0; });
+  await shows((delay_ms) => delay_ms <= 100, false);
+  page.trouble = page.trouble.filter((words) => !words.includes("ERR_FAILED"));  // the picture
 });

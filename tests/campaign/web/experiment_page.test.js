@@ -11,7 +11,7 @@ import WebSocket from "ws";
 
 import {makeDecoder} from "../../../tools/web/page/data/lcm.js";
 import {describedTypes, readEvents} from "../../unit/tools/web/page/real_log.js";
-import {begin, drives, socketOf} from "./seat.js";
+import {begin, drives, holdTakeOver, socketOf} from "./seat.js";
 import {background, browser, DESKTOP, open, root, scratch, until} from "./window.js";
 
 const {FOGLINE} = process.env;
@@ -61,11 +61,8 @@ async function driveTrial(page, address, during) {
   await begin(page);
   await drives(page, true);
   await page.waitForFunction(() => !document.getElementById("request").hidden);
-  // Held, because a busy machine may send nothing in a short moment. It may also be silent for so long
-  // that the deadman stops the car, which is no matter of this test.
-  await page.keyboard.down("t");
-  await page.waitForFunction(() => /^(You drive|The car)/.test(document.getElementById("who").textContent));
-  await page.keyboard.up("t");
+  // A busy machine may be silent for so long that the deadman stops the car, which is no matter of this test.
+  await holdTakeOver(page, "^(You drive|The car)");
   await page.keyboard.down("ArrowDown");
   await page.waitForFunction(() => document.getElementById("brake").value > 0.2);
   await page.keyboard.up("ArrowDown");

@@ -2,12 +2,13 @@
 // gets from it.
 
 import assert from "node:assert/strict";
+import path from "node:path";
 
 import WebSocket from "ws";
 
 import {Catalogue} from "../../../tools/web/page/data/catalogue.js";
 import {readFrame} from "../../../tools/web/page/data/wire.js";
-import {background, until} from "./window.js";
+import {background, scratch, until} from "./window.js";
 
 const {FOGLINE} = process.env;
 
@@ -27,6 +28,23 @@ export async function seat(t, network, args = []) {
     return found.length >= 2 && found;
   }, "both addresses");
   return {server, drive, view};
+}
+
+/**
+ * Starts a drive. @param settings fields of the scenario and their values
+ * @return {run, log, address}: its process, its log, and the address of the participant's page
+ */
+export async function startDrive(t, settings = {}) {
+  const log = path.join(scratch(t), "drive.lcm");
+  const set = Object.entries(settings).flatMap(([field, value]) => ["--set", `${field}=${JSON.stringify(value)}`]);
+  const run = background(t, FOGLINE, ["drive", "scenario/drive.json", "--no-browser", "--lcm-url", freshNetwork(),
+                                      "--log", log, "--json", ...set]);
+  run.on("exit", (code) => { run.code = code; });
+  const address = await until(() => {
+    assert.equal(run.code, undefined, run.said);
+    return run.said.match(/drive: (http:\S+)\s+view:/)?.[1];
+  }, "the address of the page");
+  return {run, log, address};
 }
 
 /** The target of the WebSocket of an address, with its token. */
@@ -104,4 +122,14 @@ export async function drives(page, whether) {
 export async function begin(page) {
   await page.waitForFunction(() => foglineDrive.state !== "");
   await page.click("#begin");
+}
+
+/**
+ * The person holds the key to take over until the page says who drives, in words of this pattern. A press of a moment
+ * may pass while a busy machine sends nothing.
+ */
+export async function holdTakeOver(page, pattern) {
+  await page.keyboard.down("t");
+  await page.waitForFunction((wanted) => new RegExp(wanted).test(document.getElementById("who").textContent), pattern);
+  await page.keyboard.up("t");
 }

@@ -112,6 +112,20 @@ export class DriverView {
     this.camera.position.set(0, EYE.height_m, 0);
     this.camera.rotation.x = -0.07;
     this.setScheme("light");
+    this.warmUp();
+  }
+
+  /**
+   * Draws everything once, and clears the picture. A browser makes a shader when it first draws with it, and does
+   * nothing else meanwhile. The person's pedals would have no effect when the car ahead brakes for the first time.
+   */
+  warmUp() {
+    this.lead.position.z = -20;  // in sight
+    this.brake(true);
+    this.renderer.render(this.scene, this.camera);
+    this.brake(false);
+    this.renderer.setClearAlpha(0);
+    this.renderer.clear();
   }
 
   setScheme(name) {
