@@ -32,7 +32,13 @@ class Viewed {
  public:
   explicit Viewed(const std::vector<std::string>& more,
                   const std::vector<std::string>& where = {"--port", "0"})
-      : process_(Command(more, where)) {
+      : Viewed(Started{Command(more, where)}) {}
+
+  struct Started {
+    std::vector<std::string> command;
+  };
+  /// Whatever starts `fogline view` and prints its address first.
+  explicit Viewed(const Started& started) : process_(started.command) {
     if (!process_.WaitForOut("\n")) return;
     address_ = process_.Out().substr(0, process_.Out().find('\n'));
     const std::size_t begin = address_.rfind(':') + 1;
