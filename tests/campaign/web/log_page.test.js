@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import {test} from "node:test";
 
-import {breaches, browser, goTo, numbersOf, open, PHONE, recordedRun, scratch, shows, view} from "./window.js";
+import {browser, goTo, numbersOf, open, recordedRun, scratch, shows, view} from "./window.js";
 
 const text = (page, selector) => page.locator(selector).innerText();
 
@@ -128,27 +128,6 @@ test("everything works with the keyboard alone", async (t) => {
   await page.keyboard.press("Escape");
   await page.keyboard.press("Escape");
   assert.ok((await page.locator("#chosen").innerText()).includes("HOST_COMMAND.lambda_human"));
-
-  // Each stop of the Tab key is visible, and every control is a stop.
-  await page.reload();
-  await page.waitForFunction(() => document.body.dataset.step);
-  const stops = new Set();
-  for (let i = 0; i < 80; ++i) {
-    await page.keyboard.press("Tab");
-    const stop = await page.evaluate(() => {
-      const element = document.activeElement;
-      const style = getComputedStyle(element);
-      return {id: element.id || element.textContent.trim(), isBody: element === document.body,
-              marked: style.outlineStyle !== "none" && parseFloat(style.outlineWidth) >= 2};
-    });
-    if (stop.isBody) break;
-    assert.ok(stop.marked, `the focus on ${stop.id} is visible`);
-    stops.add(stop.id);
-  }
-  for (const id of ["help-open", "field-search", "play", "step-back", "step-on", "event-back",
-                    "event-on", "time", "speed", "link", "Last minute", "Whole time", "Why"]) {
-    assert.ok(stops.has(id), `Tab reaches ${id}, besides ${[...stops].join(", ")}`);
-  }
 });
 
 test("curves: type a field, zoom by a drag, back by a double click, choose a moment by a click", async (t) => {
@@ -199,42 +178,6 @@ test("until the messages of a step have come, all parts show the step before", a
   await shows(page, 50);
   assert.equal(await page.evaluate(() => foglinePage.curves.moment.time), 5);
 });
-
-for (const colorScheme of ["light", "dark"]) {
-  test(`a phone shows everything without a horizontal scroll, ${colorScheme}`, async (t) => {
-    const log = recordedRun(scratch(t));
-    const address = await view(t, [log]);
-    const started = await browser(t);
-    for (const width of [PHONE.width, 320]) {
-      const page = await open(t, started, address, {size: {...PHONE, width}, colorScheme, hasTouch: true});
-      await goTo(page, 300);
-      const found = await page.evaluate(() => ({
-        scroll: document.documentElement.scrollWidth, width: innerWidth,
-        wide: [...document.querySelectorAll("canvas, button, input, select, h2, .legend")]
-          .filter((element) => element.checkVisibility() && element.getBoundingClientRect().right > innerWidth + 1)
-          .map((element) => element.id || element.className),
-        background: getComputedStyle(document.body).backgroundColor}));
-      assert.ok(found.scroll <= found.width, JSON.stringify(found));
-      assert.deepEqual(found.wide, []);
-      const [red] = found.background.match(/\d+/g).map(Number);
-      assert.equal(red > 128, colorScheme === "light", found.background);
-      assert.equal(await text(page, "#who"), "The human drives");
-    }
-  });
-
-  test(`no rule of accessibility is broken, ${colorScheme}`, async (t) => {
-    const log = recordedRun(scratch(t), ["/arbitrator/take_over/mode=requested"]);
-    const started = await browser(t);
-    const page = await open(t, started, await view(t, [log]), {colorScheme});
-    for (const step of [0, 290, 400]) {
-      await goTo(page, step);
-      assert.deepEqual(await breaches(page), []);
-    }
-    await page.keyboard.press("/");
-    await page.keyboard.type("gap");
-    assert.deepEqual(await breaches(page), []);
-  });
-}
 
 test("a change of the colour scheme redraws the charts in its colours", async (t) => {
   const log = recordedRun(scratch(t));

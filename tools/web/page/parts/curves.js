@@ -52,6 +52,7 @@ export class Curves {
     this.place = byId("charts");
     this.chips = byId("chosen");
     this.charts = [];
+    this.known = [];  // fields of the run; none before there is a connection
     this.fields = [];
     this.span = "minute";  // "minute", "all", or [from, to] after a zoom
     this.hover = null;

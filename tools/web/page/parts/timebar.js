@@ -88,13 +88,17 @@ export class Timebar {
     for (const {time_s} of events) pen.fillRect(Math.round(x(time_s)) - 0.5, 2, 1.5, height - 4);
   }
 
-  /** The list of events; the last one before the shown step is marked. */
+  /**
+   * The list of events; the last one before the shown step is marked. The events that are in the list
+   * stay, because one of them may have the focus.
+   */
   drawEvents(events, step, run) {
     const list = byId("events");
-    const state = `${events.length} ${events.at(-1)?.step} ${run.run_id}`;
-    if (state !== this.drawnEvents) {
-      this.drawnEvents = state;
-      list.replaceChildren(...events.map((event) => make("li", {}, make("button", {
+    const {drawn = []} = this;
+    const isLonger = this.drawnRun === run.run_id && drawn.at(-1) === events[drawn.length - 1];
+    if (!isLonger) list.replaceChildren();
+    if (!isLonger || events.length > drawn.length) {
+      list.append(...events.slice(isLonger ? drawn.length : 0).map((event) => make("li", {}, make("button", {
         type: "button", "data-step": event.step},
         make("span", {class: "event-mark", "aria-hidden": "true"}, EVENT_MARKS[event.kind] ?? "·"),
         make("span", {class: "event-time"}, seconds(event.time_s, run.step_s)),
@@ -102,6 +106,8 @@ export class Timebar {
       byId("no-events").hidden = events.length > 0;
       this.current = null;
     }
+    this.drawn = events;
+    this.drawnRun = run.run_id;
     const place = events.findLastIndex((event) => event.step <= step);
     if (place === this.current) return;
     this.current = place;
