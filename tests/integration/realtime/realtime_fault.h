@@ -9,6 +9,7 @@
 #include <chrono>
 #include <csignal>
 #include <cstdint>
+#include <optional>
 #include <ostream>
 #include <string>
 #include <vector>
@@ -161,23 +162,57 @@ inline void JudgeFault(const Log& log, const Fault& fault, std::int64_t fault_st
   JudgeWithoutAutomation(log, silence, loss->step);
 }
 
-inline void ExpectFaultLeavesNoCarUndecided(const Fault& fault) {
+/// Whether a role missed the messages of a role that did not fail. A busy machine that executes a
+/// process too late does this, and such a run does not show what the fault does.
+inline bool IsDisturbed(const nlohmann::json& realtime, const std::string& failed) {
+  return std::ranges::any_of(realtime["fallbacks"], [&](const nlohmann::json& fallback) {
+    return fallback["culprit"].is_string() && fallback["culprit"] != failed &&
+           fallback["what"].get<std::string>().find(" lost") != std::string::npos;
+  });
+}
+
+/// A run with a fault, after its end.
+struct FaultRun {
+  nlohmann::json realtime;
+  Log log;
+  std::int64_t step;               // the step of the fault
+  std::optional<Duration> missed;  // see RealtimeRun::WaitForTheWorldToBeMissed
+};
+
+inline FaultRun RunWith(const Fault& fault) {
   const FaultPlan plan = PlanOf(fault);
   RealtimeRun run("scenario/" + fault.scenario + ".json", plan.steps, plan.speed, plan.settings);
   run.WaitForStep(plan.fault_step);
   const std::int64_t step = run.Signal(fault.role, fault.signal);
-  if (fault.role == "world") {
-    // The steps do not show for how long the world sent nothing. The report of the loss may reach
-    // this test one period later.
-    const auto missed = run.WaitForTheWorldToBeMissed();
-    EXPECT_TRUE(missed || fault.signal == SIGKILL) << "no role missed it";
-    if (missed) {
-      EXPECT_LE(std::chrono::duration<double>(*missed).count(), (kDetection + 1) * kPeriodS);
-    }
-  }
+  const auto missed =
+      fault.role == "world" ? run.WaitForTheWorldToBeMissed() : std::optional<Duration>();
   const auto result = run.Finish();
-  SCOPED_TRACE(result["realtime"].dump());
-  JudgeFault(Log(run.log()), fault, step);
+  return {.realtime = result["realtime"], .log = Log(run.log()), .step = step, .missed = missed};
+}
+
+inline void ExpectFaultLeavesNoCarUndecided(const Fault& fault) {
+  constexpr int kTries = 5;
+  std::string disturbances;
+  for (int i = 0; i < kTries; ++i) {
+    const FaultRun run = RunWith(fault);
+    SCOPED_TRACE(run.realtime.dump());
+    if (testing::Test::HasFailure()) return;
+    if (IsDisturbed(run.realtime, fault.role)) {
+      disturbances += run.realtime["fallbacks"].dump() + "\n";
+      continue;
+    }
+    if (fault.role == "world") {
+      // The steps do not show for how long the world sent nothing. The report of the loss may reach
+      // this test one period later.
+      EXPECT_TRUE(run.missed || fault.signal == SIGKILL) << "no role missed it";
+      if (run.missed) {
+        EXPECT_LE(std::chrono::duration<double>(*run.missed).count(), (kDetection + 1) * kPeriodS);
+      }
+    }
+    return JudgeFault(run.log, fault, run.step);
+  }
+  FAIL() << "in none of " << kTries << " runs did only the " << fault.role << " fail:\n"
+         << disturbances;
 }
 
 class FaultInRealtimeTest : public testing::TestWithParam<Fault> {};
