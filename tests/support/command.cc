@@ -54,6 +54,8 @@ Background::Background(const std::vector<std::string>& command) : directory_(Fre
   if (pid_ == 0) {
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     setpgid(0, 0);
+    // A shell lets its background jobs ignore SIGINT, and programs inherit what they ignore.
+    for (const int number : {SIGINT, SIGTERM, SIGHUP}) signal(number, SIG_DFL);
     if (chdir(FOGLINE_SOURCE_DIR) != 0) _exit(127);
     dup2(open("/dev/null", O_RDONLY), STDIN_FILENO);
     dup2(open(out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600), STDOUT_FILENO);
