@@ -22,6 +22,10 @@
 // Only a run in real time has a live input. SetLiveInput gets the newest message, or nullptr if no
 // person is there (services/runtime/seat/seat_gate.h). The output of the algorithm names the
 // message, so a replay can find it in the log.
+//
+// The role that begins the steps (the world) has a function Start(run_id) for step 0. It may have a
+// function Prepare(), too. Prepare() does the slow part of step 0 before the role says that it is
+// ready.
 #pragma once
 
 #include <concepts>

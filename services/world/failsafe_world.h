@@ -23,6 +23,7 @@ class FailsafeWorld {
 
   explicit FailsafeWorld(const Scenario& scenario) : world_(scenario), vehicles_(scenario) {}
 
+  void Prepare() { world_.Prepare(); }
   const Output& Start(std::int64_t run_id) { return world_.Start(run_id); }
   /// Continues after a step that an earlier process published.
   /// @param minimal_risk cars that were in the minimal risk manoeuvre (bits of status_t), and stay

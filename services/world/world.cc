@@ -73,11 +73,22 @@ void World::MakeVehicles(const Scenario& scenario) {
   std::fill(vehicles_.begin() + kFirstFollower, vehicles_.end(), follower);
 }
 
+void World::Prepare() {
+  PlaceAll();
+  prepared_ = true;
+}
+
 const World::Output& World::Start(std::int64_t run_id) {
+  if (!prepared_) PlaceAll();
+  prepared_ = false;
   run_id_ = run_id;
   step_ = 0;
   collision_ = truth_t::COLLISION_NONE;
   collision_time_s_ = 0.0;
+  return Publish();
+}
+
+void World::PlaceAll() {
   const double length_m = world_.vehicle_length_m;
   Place(kPreceding, {world_.host_gap_m + length_m, leader_.SpeedAt(0, 0.0)}, 0.0);
   Place(kHost, {0.0, world_.host_speed_mps}, 0.0);
@@ -86,7 +97,6 @@ const World::Output& World::Start(std::int64_t run_id) {
     Place(i, {position_m, world_.follower_speed_mps}, 0.0);
   }
   if (traffic_) BeginTraffic();
-  return Publish();
 }
 
 void World::BeginTraffic() {
@@ -109,6 +119,7 @@ void World::Resume(const truth_t& truth) {
     throw std::invalid_argument("TRUTH: " + std::to_string(truth.num_followers) +
                                 " following cars instead of " + std::to_string(num_followers()));
   }
+  prepared_ = false;
   run_id_ = truth.header.run_id;
   step_ = truth.header.step;
   collision_ = truth.collision;

@@ -42,8 +42,12 @@ class World {
   ///     allow, or the leader comes from SUMO and this machine has no SUMO
   explicit World(const Scenario& scenario);
 
-  /// Step 0: the state that the scenario describes. Begins a new run.
+  /// Does the part of the next Start() that can take long: SUMO loads its network.
   /// @throw InputError if the leader comes from SUMO, and SUMO refuses its network or routes
+  void Prepare();
+
+  /// Step 0: the state that the scenario describes. Begins a new run.
+  /// @throw InputError as Prepare(), if Prepare() was not called before
   const Output& Start(std::int64_t run_id);
 
   /// Continues after a step that another instance published. With point masses, this instance
@@ -83,6 +87,7 @@ class World {
   double GapOf(std::size_t car) const;
   std::size_t num_followers() const { return cars_.size() - kFirstFollower; }
   void MakeVehicles(const Scenario& scenario);
+  void PlaceAll();
   // Puts a car on the road as if it had kept this acceleration for a long time.
   void Place(std::size_t car, const models::Motion& motion, double acceleration_mps2);
   void Command(const arbitration_t& host, const follower_command_t& followers);
@@ -106,6 +111,7 @@ class World {
   std::vector<models::Motion> in_traffic_;    // the host and its followers at the end of the step
   std::optional<models::LeaderInTraffic> ahead_;  // at the end of the step; nullopt: an empty lane
 
+  bool prepared_ = false;  // whether the cars have their places of step 0
   std::int64_t run_id_ = 0;
   std::int64_t step_ = 0;
   std::vector<Car> cars_;

@@ -39,7 +39,7 @@ namespace fogline::runner {
 namespace {
 
 // Time in which a role has to be ready.
-constexpr Duration kJoinLimit = milliseconds(10'000);
+constexpr Duration kJoinLimit = Supervisor::kPrepareLimit;
 // Interval at which the runner checks its processes while no message arrives.
 constexpr Duration kLookEvery = milliseconds(20);
 // A process without a STATUS for this long counts as hanging. A living process sends ten STATUS

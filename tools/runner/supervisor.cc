@@ -14,9 +14,10 @@ namespace {
 // Time in which the roles must leave after STOP.
 constexpr Duration kLeaveLimit = milliseconds(1500);
 constexpr Duration kLookEvery = milliseconds(20);
-// Number of STOP messages for roles that run elsewhere. The supervisor repeats STOP, because it
-// cannot see these roles leave.
-constexpr int kStopRepeats = 5;
+// Number and interval of the STOP messages for roles that run elsewhere. The supervisor repeats
+// STOP, because it cannot see these roles leave. A network may lose many of the messages.
+constexpr int kStopRepeats = 20;
+constexpr Duration kStopEvery = milliseconds(10);
 // A process counts as hanging if it has sent no STATUS for this long after its start.
 constexpr Duration kStartLimit = milliseconds(5000);
 // A silent process that still runs is killed only if the probability that all its messages were
@@ -167,6 +168,8 @@ void Supervisor::KillIfItHangs(Child& child, TimePoint now) {
                                      "network carries no multicast: --relay",
                                      host));
   }
+  const bool prepares = met && member.status->state == status_t::WAITING;
+  if (runs && prepares && silent < kPrepareLimit) return;
   if (runs && coordinator_.ChanceOfLife(child.role, silent) > kUnlikely) return;
   Kill(child, fmt::format("was silent for {:.1f} s and was killed", Seconds(silent)));
 }
@@ -220,7 +223,7 @@ void Supervisor::End() {
          (said < kStopRepeats && !options_.external.empty())) {
     coordinator_.Stop();
     ++said;
-    const TimePoint pause = Clock::now() + kLookEvery;
+    const TimePoint pause = Clock::now() + kStopEvery;
     // Handles messages until the time `pause`. If messages arrive faster than they are handled, a
     // loop until no message is left would never end.
     while (Clock::now() < pause) bus_.Wait(pause - Clock::now());

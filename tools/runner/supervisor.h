@@ -20,6 +20,10 @@ namespace fogline::runner {
 
 class Supervisor {
  public:
+  /// A process that prepares for the run (SUMO loads its network, for example) sends no STATUS. For
+  /// this long it does not count as hanging while it works.
+  static constexpr Duration kPrepareLimit = milliseconds(60'000);
+
   struct Options {
     std::string url;
     std::int64_t run_id = 0;

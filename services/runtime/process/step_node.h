@@ -84,8 +84,19 @@ class StepNode final : public Work {
     if constexpr (kFailsafe) {
       if (parts_.run.realtime) failsafe_ = std::make_unique<Failsafe>(scenario);
     }
-    if constexpr (Traits::kStarts) gate_->Configure(scenario, *parts_.run.id);
+    if constexpr (Traits::kStarts) {
+      gate_->Configure(scenario, *parts_.run.id);
+      Prepare();
+    }
     return parts_.run.realtime ? RuleInRealtime(scenario) : RuleInLockstep();
+  }
+
+  /// Does the slow part of step 0 before the role says that it is ready.
+  void Prepare() {
+    if constexpr (requires(InRealtime failsafe) { failsafe.Prepare(); }) {
+      if (failsafe_) return failsafe_->Prepare();
+    }
+    if constexpr (requires { algorithm_->Prepare(); }) algorithm_->Prepare();
   }
 
   std::unique_ptr<FireRule> RuleInLockstep() {

@@ -42,7 +42,7 @@ class HostileTrafficTest : public NetworkTest {
     Background hostile(machine.On(more));
     Background run(machine.On(Run({"--lcm-url", "udpm://239.255.76.67:7700?ttl=0", "--pace",
                                    std::to_string(kScenarioS / hostility.seconds)})));
-    EXPECT_EQ(run.Wait(std::chrono::seconds(200)), 0) << run.Err();
+    EXPECT_EQ(run.Wait(2 * kPatience), 0) << run.Err();
     hostile.Signal(SIGTERM);
     EXPECT_EQ(hostile.Wait(), 0) << hostile.Err();
     return {ResultOf(run), nlohmann::json::parse(hostile.Out(), nullptr, false)};

@@ -47,7 +47,7 @@ class Clone {
                                        "; export HOME=" + home_.path().string() + " PATH=" +
                                        ProgramDirectory().string() + ":$PATH LCM_DEFAULT_URL='" +
                                        runtime::FreshMulticastUrl() + "'\n" + script});
-    return RunCommand(command, std::chrono::seconds(250));
+    return RunCommand(command, 2 * kPatience);
   }
 
   /// Executes a command that must succeed. @return its output
