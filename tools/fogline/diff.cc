@@ -1,12 +1,16 @@
 // fogline diff: names the first step and field in which two runs differ.
+#include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <optional>
+#include <string>
 
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
 #include "common/process/console.h"
 #include "common/text.h"
+#include "services/runtime/process/run_id_option.h"
 #include "tools/cli/arguments.h"
 #include "tools/cli/help.h"
 #include "tools/fogline/verbs.h"
@@ -18,12 +22,21 @@ namespace {
 struct DiffArguments {
   std::filesystem::path a;
   std::filesystem::path b;
+  std::optional<std::int64_t> run_a;
+  std::optional<std::int64_t> run_b;
   bool json = false;
 };
 
+/// "log.lcm", or "run 4711 of log.lcm" if the user has chosen a run.
+std::string NameOf(const std::filesystem::path& log, std::optional<std::int64_t> run_id) {
+  return run_id ? fmt::format("run {} of {}", *run_id, PathText(log)) : PathText(log);
+}
+
 int RunDiff(const DiffArguments& arguments) {
-  log::RunLogReader reader_a(arguments.a);
-  log::RunLogReader reader_b(arguments.b);
+  log::RunLogReader reader_a(arguments.a, {.run_id = arguments.run_a});
+  log::RunLogReader reader_b(arguments.b, {.run_id = arguments.run_b});
+  const std::string name_a = NameOf(arguments.a, arguments.run_a);
+  const std::string name_b = NameOf(arguments.b, arguments.run_b);
   std::optional<replay::Difference> difference;
   std::int64_t step = 0;
   while (true) {
@@ -55,15 +68,13 @@ int RunDiff(const DiffArguments& arguments) {
     cli::PrintJson(json);
   } else if (difference) {
     fmt::print("step {}: {} {}: {} in {}, {} in {}\n", difference->step, difference->channel,
-               difference->field, difference->a, PathText(arguments.a), difference->b,
-               PathText(arguments.b));
+               difference->field, difference->a, name_a, difference->b, name_b);
   } else {
     fmt::print("equal: {} steps\n", step);
   }
   for (const log::RunLogReader* reader : {&reader_a, &reader_b}) {
     if (!difference && !reader->run().note.empty()) {
-      Complain(fmt::format("{}: {}", PathText(reader == &reader_a ? arguments.a : arguments.b),
-                           reader->run().note));
+      Complain(fmt::format("{}: {}", reader == &reader_a ? name_a : name_b, reader->run().note));
     }
   }
   const bool complete = difference || (reader_a.run().complete && reader_b.run().complete);
@@ -78,10 +89,17 @@ void AddDiff(CLI::App& app, cli::Action& action) {
   const auto arguments = std::make_shared<DiffArguments>();
   verb->add_option("A", arguments->a, "Event log")->required();
   verb->add_option("B", arguments->b, "Event log")->required();
+  runtime::AddRunIdOption(*verb, "--run-a", arguments->run_a,
+                          "Id of the run of A (default: the first run in the log)");
+  runtime::AddRunIdOption(*verb, "--run-b", arguments->run_b,
+                          "Id of the run of B (default: the first run in the log)");
   verb->add_flag("--json", arguments->json, "Print as JSON");
   cli::ShowExitCodes(*verb,
                      {.done = "equal runs", .check_failed = "they differ or are not complete"});
-  verb->footer("Example:\n  fogline diff logs/paper-1.lcm logs/paper-2.lcm");
+  verb->footer(
+      "Examples:\n"
+      "  fogline diff logs/paper-1.lcm logs/paper-2.lcm\n"
+      "  fogline diff both.lcm both.lcm --run-b 4711         two runs of one log");
   verb->callback([&action, arguments] { action = [arguments] { return RunDiff(*arguments); }; });
 }
 

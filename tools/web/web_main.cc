@@ -94,7 +94,8 @@ struct ViewArguments {
         ->allow_extra_args(false);
     verb.add_flag("--no-browser", no_browser, "Only print the address");
     runtime::AddRunIdOption(verb, "--run", run,
-                            "Show only the run with this id, also if the network has others");
+                            "Id of the run to show (default: the first run in the log, or the "
+                            "newest run on the network)");
     verb.add_flag("--seat", seat, "One person may drive in the run, at the page /drive");
     verb.add_option("--open-at", open_at, "Step of the log that the page shows first")
         ->check(CLI::Range(0, 1'000'000'000));
@@ -131,9 +132,6 @@ void CheckTogether(const ViewArguments& arguments) {
   }
   if (!live && arguments.seat) {
     throw InputError("error: --seat: no person can drive in a log; leave out LOG");
-  }
-  if (!live && arguments.run) {
-    throw InputError("error: --run: a log has one run; leave out LOG or --run");
   }
   for (const std::string& origin : arguments.origins) {
     if (IsOrigin(origin)) continue;
@@ -257,7 +255,7 @@ int RunView(const ViewArguments& arguments) {
     });
     return kDone;
   }
-  LogView view(arguments.log);
+  LogView view(arguments.log, arguments.run);
   const std::string& note = view.index().run().note;
   if (!note.empty()) Notice(fmt::format("{}: {}", PathText(arguments.log), note));
   const auto server = Listen(context, arguments, view);

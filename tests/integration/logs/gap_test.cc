@@ -213,6 +213,13 @@ TEST_F(GapTest, ALogOfSeveralRunsNamesThemAndIsReadForTheChosenOne) {
   EXPECT_THAT(of_second.out, StartsWith(chosen.substr(0, chosen.find(' '))));
   const nlohmann::json metrics = Json({"metrics", both, "--run", std::to_string(second)}, 0)[0];
   EXPECT_EQ(metrics["metrics"], Json({"metrics", other}, 0)[0]["metrics"]);
+  const Outcome equal = Fogline({"diff", both, other, "--run-a", std::to_string(second)});
+  EXPECT_EQ(equal.code, 0) << equal.out << equal.err;
+  const Outcome differ = Fogline({"diff", both, both, "--run-b", std::to_string(second)});
+  EXPECT_EQ(differ.code, 1);
+  EXPECT_THAT(differ.out, HasSubstr(" in " + both + ", "));
+  EXPECT_THAT(differ.out, HasSubstr(" in run " + std::to_string(second) + " of " + both + "\n"));
+  EXPECT_EQ(Fogline({"diff", both, both, "--run-b", "5"}).code, 2);
   const Outcome unknown = Fogline({"metrics", both, "--run", "5"});
   EXPECT_EQ(unknown.code, 2);
   EXPECT_THAT(unknown.err, HasSubstr("--run 5: the log has no such run; it has "));

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <map>
 
+#include "services/log/remains.h"
 #include "services/log/run_log.h"
 #include "tests/integration/web/viewed.h"
 
@@ -22,6 +23,25 @@ void MakeLog(const std::string& log, int steps) {
       RunCommand({Program("fogline"), "run", "scenario/paper.json", "--transport", "direct",
                   "--set", "/steps=" + std::to_string(steps), "--log", log, "--quiet"});
   ASSERT_EQ(run.code, 0) << run.err;
+}
+
+TEST(LogViewTest, ShowsTheChosenRunOfALogOfTwo) {
+  const ScratchFolder folder;
+  MakeLog(folder.File("first.lcm"), 20);
+  MakeLog(folder.File("second.lcm"), 30);
+  const std::string both = folder.File("both.lcm");
+  std::ofstream(both, std::ios::binary)
+      << Content(folder.File("first.lcm")) << Content(folder.File("second.lcm"));
+  const std::string second = std::to_string(log::ReadFront(folder.File("second.lcm")).run_id);
+  Viewed viewed({both, "--run", second});
+  ASSERT_NE(viewed.port(), 0) << viewed.process().Err();
+  WebClient client(viewed.port());
+  EXPECT_EQ(ReceiveOp(client, "run")["run_id"], second);
+  EXPECT_EQ(ReceiveOp(client, "log")["last_step"], 29);
+  const Outcome unknown =
+      RunCommand({Program("fogline"), "view", both, "--no-browser", "--run", "5"});
+  EXPECT_EQ(unknown.code, 2);
+  EXPECT_THAT(unknown.err, HasSubstr("--run 5: the log has no such run; it has "));
 }
 
 TEST(LogViewTest, DescribesTheRunOfTheLog) {

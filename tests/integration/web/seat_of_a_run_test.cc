@@ -58,11 +58,5 @@ TEST_F(SeatOfARunTest, ItsPersonDrivesInNoOtherRunAlsoIfThatRunBeginsFirst) {
   });
 }
 
-TEST(SeatAccessTest, ALogHasNoOtherRun) {
-  const Outcome outcome = RunCommand({Program("fogline"), "view", "any.lcm", "--run", "5"});
-  EXPECT_EQ(outcome.code, 2);
-  EXPECT_EQ(outcome.err, "fogline view: error: --run: a log has one run; leave out LOG or --run\n");
-}
-
 }  // namespace
 }  // namespace fogline::test

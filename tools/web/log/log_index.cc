@@ -33,14 +33,15 @@ constexpr std::uint64_t kMostSize = (1ULL << 20) - 1;
 
 }  // namespace
 
-LogIndex::LogIndex(const std::filesystem::path& file) : reader_(file) {
-  ReadRun(file);
+LogIndex::LogIndex(const std::filesystem::path& file, std::optional<std::int64_t> run_id)
+    : reader_(file) {
+  ReadRun(file, run_id);
   ReadPlaces();
   FindEvents();
 }
 
-void LogIndex::ReadRun(const std::filesystem::path& file) {
-  log::RunLogReader reader(file);
+void LogIndex::ReadRun(const std::filesystem::path& file, std::optional<std::int64_t> run_id) {
+  log::RunLogReader reader(file, {.run_id = run_id});
   while (reader.Next() != nullptr) {
   }
   run_ = reader.run();

@@ -22,8 +22,11 @@ namespace fogline::web {
 /// it may have more steps than RunLogReader, which stops at a step that is not complete.
 class LogIndex {
  public:
-  /// @throws InputError if the file cannot be read, is no event log, or has no scenario of a run
-  explicit LogIndex(const std::filesystem::path& file);
+  /// @param run_id the run to read; nullopt: the first run in the log
+  /// @throws InputError if the file cannot be read, is no event log, has no scenario of a run, or
+  ///     lacks the chosen run
+  explicit LogIndex(const std::filesystem::path& file,
+                    std::optional<std::int64_t> run_id = std::nullopt);
 
   const log::RunLog& run() const { return run_; }
   /// The first and the last step of which there is a message; 0 and -1 if there is none.
@@ -47,7 +50,7 @@ class LogIndex {
   };
   using Row = std::array<Place, log::kStepChannels>;
 
-  void ReadRun(const std::filesystem::path& file);
+  void ReadRun(const std::filesystem::path& file, std::optional<std::int64_t> run_id);
   void ReadPlaces();
   void Take(const log::Event& event);
   void TakeStep(std::size_t row, runtime::Bytes data);

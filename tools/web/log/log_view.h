@@ -1,8 +1,11 @@
 // A recorded run, for the clients of a server. Clients ask for what they show.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
+#include <utility>
 
 #include "tools/web/log/log_index.h"
 #include "tools/web/server/server.h"
@@ -12,8 +15,10 @@ namespace fogline::web {
 
 class LogView final : public View {
  public:
+  /// @param run_id the run to show; nullopt: the first run in the log
   /// @throws InputError if the log cannot be shown
-  explicit LogView(std::filesystem::path file) : file_(std::move(file)), index_(file_) {}
+  LogView(std::filesystem::path file, std::optional<std::int64_t> run_id)
+      : file_(std::move(file)), index_(file_, run_id) {}
 
   const LogIndex& index() const { return index_; }
 
