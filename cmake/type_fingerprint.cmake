@@ -7,7 +7,7 @@ foreach(file IN LISTS LCM_FILES)
   get_filename_component(type "${file}" NAME_WE)
   # No role sends or receives these types. A role that was built without them can take part in a
   # run.
-  if(type MATCHES "^(beacon|log_graph|log_seal|wall_clock)_t$")
+  if(type MATCHES "^(beacon|log_graph|log_priority|log_seal|wall_clock)_t$")
     continue()
   endif()
   string(APPEND includes "#include \"fogline/${type}.hpp\"\n")

@@ -106,6 +106,26 @@ void AppendEvent(std::int64_t number, std::string_view channel, std::int64_t uti
   std::ranges::copy(data, event + kEventHeader + channel.size());
 }
 
+LogHead AppendToLog(const std::filesystem::path& log, const LogHead& before,
+                    std::string_view channel, std::int64_t utime, runtime::Bytes data) {
+  std::vector<std::uint8_t> event;
+  AppendEvent(before.events, channel, utime, data, event);
+  const int fd = open(log.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
+  const int error =
+      fd < 0 ? errno : WriteAll(fd, {reinterpret_cast<const char*>(event.data()), event.size()});
+  // If only a part of the event is written, this part is removed. Otherwise the log would look like
+  // a log that was cut off.
+  const bool left = error != 0 && fd >= 0 && ftruncate(fd, before.bytes) != 0;
+  if (fd >= 0) close(fd);
+  if (error == 0) {
+    return {.bytes = before.bytes + static_cast<std::int64_t>(event.size()),
+            .events = before.events + 1};
+  }
+  throw std::runtime_error(
+      fmt::format("cannot append {} to {}: {}; {}", channel, log.string(), WhyWriteFailed(error),
+                  left ? "the log contains a part of this event" : "the log is as before"));
+}
+
 void EventLogWriter::Write(std::string_view channel, std::int64_t utime, runtime::Bytes data) {
   const std::size_t before = pending_.size();
   AppendEvent(events_++, channel, utime, data, pending_);

@@ -94,6 +94,14 @@ class EventLogWriter {
 void AppendEvent(std::int64_t number, std::string_view channel, std::int64_t utime,
                  runtime::Bytes data, std::vector<std::uint8_t>& bytes);
 
+/// Appends an event behind the last event of a log.
+/// @param before all events that the log is known to have
+/// @return `before` and the new event
+/// @throws std::runtime_error if the event cannot be written; the error says whether the log is as
+///     before, or contains a part of the event
+LogHead AppendToLog(const std::filesystem::path& log, const LogHead& before,
+                    std::string_view channel, std::int64_t utime, runtime::Bytes data);
+
 /// Whether the file begins like an event log or is empty, so that a log may replace it.
 bool IsEventLogOrEmpty(const std::filesystem::path& file);
 

@@ -1,18 +1,12 @@
 #include "services/log/log_seal.h"
 
-#include <fcntl.h>
 #include <libdeflate.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <stdexcept>
 #include <utility>
 
 #include <fmt/core.h>
 
-#include "common/file.h"
-#include "common/process/this_process.h"
 #include "common/text.h"
 #include "services/runtime/wire/digest.h"
 
@@ -69,20 +63,7 @@ void SealLog(const std::filesystem::path& log, const LogHead& before, log_seal_t
     const runtime::Bytes with_signature = signer.Sign(kLogSealChannel, data);
     data = std::vector<std::uint8_t>(with_signature.begin(), with_signature.end());
   }
-  std::vector<std::uint8_t> event;
-  AppendEvent(before.events, kLogSealChannel, seal.header.utime, data, event);
-  const int fd = open(log.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
-  const int error =
-      fd < 0 ? errno : WriteAll(fd, {reinterpret_cast<const char*>(event.data()), event.size()});
-  // If only a part of the seal is written, this part is removed. Otherwise the log would look like
-  // a log that was cut off.
-  const bool left = error != 0 && fd >= 0 && ftruncate(fd, before.bytes) != 0;
-  if (fd >= 0) close(fd);
-  if (error == 0) return;
-  throw std::runtime_error(fmt::format("cannot seal {}: {}; {}", log.string(),
-                                       WhyWriteFailed(error),
-                                       left ? "the log contains a part of the seal"
-                                            : "the log is as the run left it, without a seal"));
+  AppendToLog(log, before, kLogSealChannel, seal.header.utime, data);
 }
 
 std::string WhyNotSealedRun(const LogSeal& seal, const std::string& digest, std::int64_t steps,

@@ -38,8 +38,7 @@ LogSeal ReadLogSeal(const Event& event, const LogHead& before);
 /// Fills in `seal.check`, and appends the seal to a log.
 /// @param before all events that the log is known to have
 /// @param key signs the seal; nullptr: no signature
-/// @throws std::runtime_error if the seal cannot be written; the error says whether the log is as
-///     before, or contains a part of the seal
+/// @throws std::runtime_error as AppendToLog()
 void SealLog(const std::filesystem::path& log, const LogHead& before, log_seal_t seal,
              const runtime::SigningKey* key);
 

@@ -43,8 +43,10 @@ std::int64_t RealtimeAccumulator::Unlogged(std::size_t channel) const {
 }
 
 RealtimeFigures RealtimeAccumulator::Result() const {
-  RealtimeFigures figures{
-      .speed = speed_, .fallbacks = fallbacks_.all(), .fallbacks_left_out = fallbacks_.left_out()};
+  RealtimeFigures figures{.speed = speed_,
+                          .fallbacks = fallbacks_.all(),
+                          .fallbacks_left_out = fallbacks_.left_out(),
+                          .priority = priority_};
   for (std::size_t i = 0; i < kNumChannels; ++i) {
     if (kChannels[i].pace != Pace::kStep) continue;
     figures.missed_messages += steps_ - logged_[i];

@@ -4,11 +4,13 @@
 #include <array>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "services/graph.h"
+#include "services/log/about/log_priority.h"
 #include "services/runtime/realtime/fallback_log.h"
 
 namespace fogline::log {
@@ -34,6 +36,8 @@ struct RealtimeFigures {
   // The first fallbacks (FallbackLog::kMaxKept at most), and the number of later fallbacks.
   std::vector<runtime::Fallback> fallbacks;
   std::int64_t fallbacks_left_out = 0;
+  // nullopt in a log of lcm-logger, of an older version, or of a run that ended too early.
+  std::optional<RealtimePriority> priority;
 };
 
 /// Calls `visit(name, value, unit, description)` for every figure that is a number, in order.
@@ -60,6 +64,7 @@ class RealtimeAccumulator {
 
   /// Adds the next STATUS of the log.
   void Add(const status_t& status);
+  void Add(RealtimePriority priority) { priority_ = std::move(priority); }
   /// Adds the next step of the log. `there` has the channels of its messages.
   void AddStep(const runtime::ChannelSet& there);
 
@@ -72,6 +77,7 @@ class RealtimeAccumulator {
 
   double speed_;
   runtime::FallbackLog fallbacks_;
+  std::optional<RealtimePriority> priority_;
   std::int64_t steps_ = 0;                           // number of steps in the log
   std::array<std::int64_t, kNumChannels> logged_{};  // number of logged messages of each channel
   // The last STATUS of each process, by role and instance. The counters of a STATUS begin at the

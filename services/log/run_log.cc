@@ -11,6 +11,7 @@
 #include "scenario/io/loader.h"
 #include "services/log/about/log_graph.h"
 #include "services/log/about/log_note.h"
+#include "services/log/about/log_priority.h"
 #include "services/log/about/log_version.h"
 #include "services/log/step_order.h"
 #include "services/runtime/wire/digest.h"
@@ -151,9 +152,8 @@ class RunLogReader::Assembler {
 
   void Take(const Event& event) {
     const std::size_t channel = Find(event.channel);
-    if (channel == kNumChannels && IsLogSeal(event)) return TakeSeal(event);
-    if (channel == kNumChannels && event.channel == kLogGraphChannel) return TakeGraph(event);
-    if (channel == kNumChannels || event.data.size() < runtime::kHeaderEnd) return;
+    if (channel == kNumChannels) return TakeAbout(event);
+    if (event.data.size() < runtime::kHeaderEnd) return;
     if (channel == IndexOf<run_t>()) return TakeRun(event.data);
     if (channel == IndexOf<status_t>()) return TakeStatus(event.data);
     if (kChannels[channel].pace != Pace::kStep) return;
@@ -171,8 +171,7 @@ class RunLogReader::Assembler {
       RefuseVersion(file_);
     }
     const std::int64_t step = runtime::ReadInt64(data, runtime::kStepOffset);
-    if (step < next_) return;  // a repeated message
-    if (realtime_ && step >= steps_) return;
+    if (step < next_ || (realtime_ && step >= steps_)) return;  // repeated, or not of the run
     Pending& pending = pending_[step];
     if (!pending.messages[channel].empty()) {
       if (conflict_.empty() && !std::ranges::equal(pending.messages[channel], data)) {
@@ -201,8 +200,7 @@ class RunLogReader::Assembler {
     const bool whole = pending_.empty() && !run_.gaps.Any() && !tail_;
     run_.ended = last_ && whole && run_.has_scenario && conflict_.empty() &&
                  reader_.torn().empty() && !run_.altered;
-    const std::int64_t unlogged = run_.realtime ? run_.realtime->unlogged_messages : 0;
-    run_.complete = run_.ended && unlogged == 0;
+    run_.complete = run_.ended && (!run_.realtime || run_.realtime->unlogged_messages == 0);
     LogRemarks remarks{.torn = reader_.torn(),
                        .alteration = alteration,
                        .has_last = last_,
@@ -248,9 +246,9 @@ class RunLogReader::Assembler {
   }
 
   [[noreturn]] void RefuseRun() const {
-    const std::string ids = IdsOf(others_.all());
+    const std::string ids = others_.all().empty() ? "" : "; it has " + IdsOf(others_.all());
     throw InputError(fmt::format("{}: error: --run {}: the log has no such run{}", PathText(file_),
-                                 run_.run_id, ids.empty() ? "" : "; it has " + ids));
+                                 run_.run_id, ids));
   }
 
   /// How the log differs from its seal; "" if it does not differ or has no seal.
@@ -298,10 +296,18 @@ class RunLogReader::Assembler {
     }
   }
 
-  /// The recorder writes the graph before all steps. Signed traffic has no graph, because no
-  /// process sends one.
+  /// Takes an event that no process sends. Signed traffic has no such events except the seal.
+  void TakeAbout(const Event& event) {
+    if (IsLogSeal(event)) return TakeSeal(event);
+    if (is_signed_) return;
+    if (event.channel == kLogGraphChannel) return TakeGraph(event);
+    if (event.channel != kLogPriorityChannel || !realtime_) return;
+    if (const auto priority = ReadPriority(event, run_.run_id)) realtime_->Add(*priority);
+  }
+
+  /// The recorder writes the graph before all steps.
   void TakeGraph(const Event& event) {
-    if (parts_.empty() || is_signed_ || run_.steps > 0 || !pending_.empty()) return;
+    if (parts_.empty() || run_.steps > 0 || !pending_.empty()) return;
     try {
       const runtime::ChannelSet channels = ReadLogGraph(event, run_.run_id);
       if (channels.any()) run_.channels = channels;
@@ -359,10 +365,9 @@ class RunLogReader::Assembler {
   runtime::ScenarioParts parts_;
   std::map<std::int64_t, Pending> pending_;
   StepMessages current_{};
-  std::int64_t next_ = 0;  // the step after current_
-  bool begun_ = false;     // whether a step was given
-  std::int64_t first_steps_ =
-      0;  // the complete steps before the first gap, which the digest covers
+  std::int64_t next_ = 0;             // the step after current_
+  bool begun_ = false;                // whether a step was given
+  std::int64_t first_steps_ = 0;      // complete steps before the first gap: those of the digest
   std::optional<std::int64_t> tail_;  // the first step of the tail, if there is one
   std::string tail_lacks_;            // the channels that it lacks
   std::size_t guess_ = 0;

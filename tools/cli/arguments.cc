@@ -11,6 +11,7 @@
 #include <utility>
 
 #include <fmt/core.h>
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "common/atomic_file.h"
@@ -228,7 +229,23 @@ nlohmann::ordered_json RealtimeJson(const log::RealtimeFigures& figures) {
     json["fallbacks"].push_back(std::move(entry));
   }
   json["fallbacks_left_out"] = figures.fallbacks_left_out;
+  if (figures.priority) {
+    json["priority"] = {{"granted", figures.priority->granted},
+                        {"refused", figures.priority->refused},
+                        {"unknown", figures.priority->unknown}};
+  }
   return json;
+}
+
+std::string PriorityText(const log::RealtimePriority& priority) {
+  std::string text;
+  const auto add = [&text](const char* what, const std::vector<std::string>& roles) {
+    if (!roles.empty()) text += fmt::format("  {}: {}\n", what, fmt::join(roles, ", "));
+  };
+  add("with real-time priority", priority.granted);
+  add("without real-time priority", priority.refused);
+  add("on other machines, real-time priority unknown", priority.unknown);
+  return text;
 }
 
 std::string RealtimeText(const log::RealtimeFigures& figures) {
@@ -237,6 +254,7 @@ std::string RealtimeText(const log::RealtimeFigures& figures) {
                                      std::string_view unit, std::string_view) {
     text += fmt::format("  {:<32}{:>12} {}\n", name, value, unit);
   });
+  if (figures.priority) text += PriorityText(*figures.priority);
   for (const runtime::Fallback& fallback : figures.fallbacks) {
     text += fmt::format("  {}\n", fallback.Text());
   }

@@ -137,5 +137,7 @@ std::string MetricsText(const runner::ExperimentResult& result);
 /// The figures of a run in real time, and its fallbacks, as JSON and as text.
 nlohmann::ordered_json RealtimeJson(const log::RealtimeFigures& figures);
 std::string RealtimeText(const log::RealtimeFigures& figures);
+/// "  with real-time priority: world, radar", a line for each list that is not empty.
+std::string PriorityText(const log::RealtimePriority& priority);
 
 }  // namespace fogline::cli

@@ -124,11 +124,6 @@ nlohmann::ordered_json ToJson(const RunOutcome& outcome) {
   json["verified"] = nullptr;
   if (result.verification) json["verified"] = VerificationJson(*result.verification);
   if (result.realtime) json["realtime"] = RealtimeJson(*result.realtime);
-  if (result.realtime && result.priority) {
-    json["realtime"]["priority"] = {{"granted", result.priority->granted},
-                                    {"refused", result.priority->refused},
-                                    {"unknown", result.priority->unknown}};
-  }
   AddTakeOvers(result, json);
   json["metrics"] = nlohmann::ordered_json::parse(MetricsJson(result));
   return json;

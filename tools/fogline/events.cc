@@ -161,6 +161,9 @@ void PrintText(const std::filesystem::path& file, const RunEvents& events) {
     const double time_s = static_cast<double>(step) * events.run.scenario.step_s;
     fmt::print("{:>8}{:>10.2f} s  {}\n", step, time_s, text);
   }
+  if (events.run.realtime && events.run.realtime->priority) {
+    fmt::print("{}", cli::PriorityText(*events.run.realtime->priority));
+  }
   int number = 0;
   for (const take_over::TakeOverRequest& request : events.log.requests()) {
     fmt::print("  request {}:", ++number);
@@ -195,7 +198,9 @@ nlohmann::ordered_json ToJson(const std::filesystem::path& file, const RunEvents
   if (events.run.gaps.Any()) json["gaps"] = cli::GapsJson(events.run.gaps);
   if (events.run.realtime) {
     const nlohmann::ordered_json figures = cli::RealtimeJson(*events.run.realtime);
-    for (const char* key : {"fallbacks", "fallbacks_left_out"}) json[key] = figures[key];
+    for (const char* key : {"fallbacks", "fallbacks_left_out", "priority"}) {
+      if (figures.contains(key)) json[key] = figures[key];
+    }
   }
   return json;
 }

@@ -217,7 +217,7 @@ int Resume(RunArguments& arguments) {
     verification = replay::VerifyRun(options.log, run, replay::OtherBuildsIn(run));
   }
   if (to_seal && verification && verification->Holds()) {
-    keeper.Seal(run, {}, BuildsOf(*verification), key ? &*key : nullptr);
+    keeper.Seal(run, {}, {.builds = BuildsOf(*verification)}, key ? &*key : nullptr);
   }
   return Print(arguments, outcome);
 }

@@ -143,7 +143,7 @@ void AnnounceProcesses(const runtime::Bus& bus, std::int64_t run_id, const std::
 /// What RunAsProcesses() learns about the processes.
 struct ProcessNews {
   std::vector<Restarts> restarts;
-  std::optional<RealtimePriority> priority;
+  std::optional<log::RealtimePriority> priority;
 };
 
 ProcessNews RunAsProcesses(runtime::Bus& bus, runtime::RunCoordinator& coordinator,
@@ -296,7 +296,8 @@ BusRun RunOnBus(const Scenario& scenario, const ExperimentOptions& options,
   run.written = WrittenBy(coordinator, options.realtime);
   if (coordinator.phase() != runtime::RunCoordinator::Phase::kDone && !options.log.empty()) {
     const auto key = runtime::KeyOf(options.traffic);
-    keeper.SealCutOff(run.written, run.builds, key ? &*key : nullptr);
+    keeper.SealCutOff(run.written, {.builds = run.builds, .priority = run.priority},
+                      key ? &*key : nullptr);
   }
   const std::string kept = KeptLog(conducting.run_id, options);
   // These peers are printed for every outcome, because a missing role may take part in another run.

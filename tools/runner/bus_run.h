@@ -21,7 +21,7 @@ struct BusRun {
   std::vector<runtime::SendTrouble> send_troubles;
   std::vector<runtime::ForeignPeer> foreign_peers;
   std::vector<Restarts> restarts;
-  std::optional<RealtimePriority> priority;       // only in real time, if the run has begun
+  std::optional<log::RealtimePriority> priority;  // only in real time, if the run has begun
   runtime::RoleBuilds builds{};                   // as each role has reported it
   std::vector<runtime::OtherBuild> other_builds;  // the builds that differ from the runner's build
   std::vector<log::WrittenLog> written;           // the last report of each recorder about the log

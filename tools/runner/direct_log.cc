@@ -79,13 +79,13 @@ void DirectLog::End(const ExperimentResult& result) {
   run_.ended = true;
   run_.complete = true;
   run_.events = log_->head();
-  keeper_->Seal(run_, {log_->written()}, builds_, key());
+  keeper_->Seal(run_, {log_->written()}, {.builds = builds_}, key());
 }
 
 void DirectLog::CutOff() {
   if (!log_) return;
   log_->Flush();
-  keeper_->SealCutOff({log_->written()}, builds_, key());
+  keeper_->SealCutOff({log_->written()}, {.builds = builds_}, key());
 }
 
 }  // namespace fogline::runner

@@ -248,7 +248,8 @@ ExperimentResult ReadResult(const LogKeeper& keeper, const std::filesystem::path
     result.verification = replay::VerifyRun(log, logged, run.other_builds);
   }
   if (checked && !options.log.empty()) {
-    keeper.Seal(logged, run.written, run.builds, key ? &*key : nullptr);
+    keeper.Seal(logged, run.written, {.builds = run.builds, .priority = run.priority},
+                key ? &*key : nullptr);
   }
   result.checked = checked;
   result.wall_s = run.wall_s;
@@ -257,7 +258,7 @@ ExperimentResult ReadResult(const LogKeeper& keeper, const std::filesystem::path
   result.send_troubles = std::move(run.send_troubles);
   result.foreign_peers = run.foreign_peers;
   result.restarts = std::move(run.restarts);
-  result.priority = std::move(run.priority);
+  if (result.realtime) result.realtime->priority = std::move(run.priority);
   result.other_builds = std::move(run.other_builds);
   result.log = options.log;
   return result;

@@ -82,14 +82,6 @@ struct Restarts {
   std::string last;  // how the previous process ended
 };
 
-/// Which roles of a run in real time the kernel runs before ordinary processes (SCHED_FIFO), when
-/// the run has begun. Roles on other machines are unknown.
-struct RealtimePriority {
-  std::vector<std::string> granted;
-  std::vector<std::string> refused;
-  std::vector<std::string> unknown;
-};
-
 struct ExperimentResult {
   std::int64_t seed = 0;
   std::string transport;
@@ -111,7 +103,6 @@ struct ExperimentResult {
   std::vector<metrics::TakeOverMeasures> take_overs;  // one for each request to take over
   std::optional<log::InputLatency> input_latency;     // only for a run in which a person drove
   std::vector<metrics::Sample> samples;               // if requested
-  std::optional<RealtimePriority> priority;           // only for a run in real time
   std::optional<log::RealtimeFigures> realtime;       // only for a run in real time
 };
 

@@ -81,18 +81,22 @@ bool LogKeeper::HasAllTold(const std::vector<log::WrittenLog>& written) const {
 }
 
 void LogKeeper::Seal(const log::RunLog& run, const std::vector<log::WrittenLog>& written,
-                     const runtime::RoleBuilds& builds, const runtime::SigningKey* key) const {
+                     const LoggedRoles& roles, const runtime::SigningKey* key) const {
+  Check(written);
+  log::LogHead events = run.events;
+  if (roles.priority && run.realtime && !run.realtime->priority) {
+    events = log::AppendToLog(log_, events, log::kLogPriorityChannel, 0,
+                              log::EncodePriority(*roles.priority, run.run_id));
+  }
+  log_seal_t seal = SealOf(run, roles.builds);
   const log::EventLogReader file = Open();
-  Check(file, written);
-  log_seal_t seal = SealOf(run, builds);
   runtime::Hash hash;
   file.ReadThrough(0, file.content().size(), [&hash](runtime::Bytes piece) { hash.Add(piece); });
   seal.file_hash = hash.Hex();
-  log::SealLog(log_, run.events, std::move(seal), key);
+  log::SealLog(log_, events, std::move(seal), key);
 }
 
-void LogKeeper::SealCutOff(const std::vector<log::WrittenLog>& written,
-                           const runtime::RoleBuilds& builds,
+void LogKeeper::SealCutOff(const std::vector<log::WrittenLog>& written, const LoggedRoles& roles,
                            const runtime::SigningKey* key) const noexcept {
   try {
     if (!HasAllTold(written)) return;
@@ -102,7 +106,7 @@ void LogKeeper::SealCutOff(const std::vector<log::WrittenLog>& written,
     }
     // If a log ends with a torn event, a reader would mistake a seal for the rest of this event.
     if (!std::cmp_equal(reader.run().events.bytes, std::filesystem::file_size(log_))) return;
-    Seal(reader.run(), written, builds, key);
+    Seal(reader.run(), written, roles, key);
   } catch (const std::exception&) {  // the reason why the run ended matters more
   }
 }

@@ -9,10 +9,17 @@
 #include <optional>
 #include <vector>
 
+#include "services/log/about/log_priority.h"
 #include "services/log/run_log.h"
 #include "services/runtime/wire/other_build.h"
 
 namespace fogline::runner {
+
+/// What the runner knows about the roles of a run, for the log.
+struct LoggedRoles {
+  runtime::RoleBuilds builds{};                     // the build that each role has reported
+  std::optional<log::RealtimePriority> priority{};  // only in real time, if it was examined
+};
 
 class LogKeeper {
  public:
@@ -26,16 +33,15 @@ class LogKeeper {
   /// Whether the file has exactly the number of bytes that the recorders have reported.
   bool HasAllTold(const std::vector<log::WrittenLog>& written) const;
 
-  /// Checks the file again and seals it.
+  /// Checks the file again, appends the priority of the roles and seals it.
   /// @param run the run as read from the whole file
-  /// @param builds the build that each role has reported
   /// @param key signs the seal; nullptr: no signature
   /// @throws std::runtime_error as Check(), or if the seal cannot be written
   void Seal(const log::RunLog& run, const std::vector<log::WrittenLog>& written,
-            const runtime::RoleBuilds& builds, const runtime::SigningKey* key) const;
+            const LoggedRoles& roles, const runtime::SigningKey* key) const;
   /// Reads and seals the log of a run that ended early. If the log cannot be sealed, the file stays
   /// as it is.
-  void SealCutOff(const std::vector<log::WrittenLog>& written, const runtime::RoleBuilds& builds,
+  void SealCutOff(const std::vector<log::WrittenLog>& written, const LoggedRoles& roles,
                   const runtime::SigningKey* key) const noexcept;
 
  private:

@@ -103,7 +103,7 @@ bool PriorityWatch::Look(const runtime::RunCoordinator& coordinator, TimePoint n
   if (done_ || coordinator.phase() != Phase::kRunning) return false;
   if (since_ == TimePoint{}) since_ = now;
   const std::string host = HostName();
-  RealtimePriority found;
+  log::RealtimePriority found;
   bool all_run = true;
   for (const RoleInfo& info : kRoles) {
     const auto& status = coordinator.member(info.role).status;
@@ -119,7 +119,7 @@ bool PriorityWatch::Look(const runtime::RunCoordinator& coordinator, TimePoint n
 }
 
 std::string PriorityWatch::Text() const {
-  const RealtimePriority& found = *found_;
+  const log::RealtimePriority& found = *found_;
   std::string text;
   if (!found.refused.empty()) {
     text = fmt::format(

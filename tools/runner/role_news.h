@@ -65,14 +65,14 @@ class PriorityWatch {
   /// @return true at the call that has made the examination
   bool Look(const runtime::RunCoordinator& coordinator, TimePoint now);
   /// nullopt before the examination.
-  const std::optional<RealtimePriority>& found() const { return found_; }
+  const std::optional<log::RealtimePriority>& found() const { return found_; }
   /// @pre found()
   std::string Text() const;
 
  private:
   bool done_;
   TimePoint since_{};  // when the run was first seen to go on
-  std::optional<RealtimePriority> found_;
+  std::optional<log::RealtimePriority> found_;
 };
 
 }  // namespace fogline::runner

@@ -59,6 +59,14 @@ TEST(PriorityInRealtimeTest, IsSaidToBeMissingAtTheStartAndInTheResult) {
   const json priority = json::parse(run.out)["realtime"]["priority"];
   EXPECT_EQ(priority["refused"].size(), kRoles.size());
   EXPECT_TRUE(priority["granted"].empty());
+  // AND the log says so later, too
+  const std::string log = folder.File("run.lcm");
+  const json metrics = json::parse(RunCommand({Program("fogline"), "metrics", log, "--json"}).out);
+  EXPECT_EQ(metrics[0]["realtime"]["priority"], priority);
+  const json events = json::parse(RunCommand({Program("fogline"), "events", log, "--json"}).out);
+  EXPECT_EQ(events[0]["priority"], priority);
+  EXPECT_THAT(RunCommand({Program("fogline"), "events", log}).out,
+              HasSubstr("  without real-time priority: world, radar, "));
   // AND doctor says so, with a recipe
   std::vector<std::string> examine = WithoutPriority();
   examine.insert(examine.end(), {Program("fogline"), "doctor", "--json"});

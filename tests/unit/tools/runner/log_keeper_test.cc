@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -16,6 +17,7 @@
 namespace fogline::test {
 namespace {
 
+using runner::LoggedRoles;
 using runner::LogKeeper;
 using testing::HasSubstr;
 
@@ -35,7 +37,7 @@ class LogKeeperTest : public testing::Test {
     }
     writer.Flush();
     written_ = {writer.written()};
-    builds_.fill(4711);
+    roles_.builds.fill(4711);
   }
 
   void Append(const std::string& bytes) const {
@@ -54,7 +56,7 @@ class LogKeeperTest : public testing::Test {
   const ScratchFolder folder_;
   const std::string log_ = folder_.File("run.lcm");
   std::vector<log::WrittenLog> written_;
-  runtime::RoleBuilds builds_{};
+  LoggedRoles roles_;
 };
 
 TEST_F(LogKeeperTest, FindsTheBytesThatTheRecorderHasReported) {
@@ -88,7 +90,7 @@ TEST_F(LogKeeperTest, SealsAWholeRun) {
   const LogKeeper keeper(log_);
   const log::RunLog run = ReadToTheEnd(log_);
   const runtime::SigningKey key({1, 2, 3});
-  keeper.Seal(run, written_, builds_, &key);
+  keeper.Seal(run, written_, roles_, &key);
   const log::RunLog sealed = ReadToTheEnd(log_);
   ASSERT_TRUE(sealed.seal && sealed.seal->whole);
   EXPECT_TRUE(sealed.complete);
@@ -104,12 +106,35 @@ TEST_F(LogKeeperTest, SealsAWholeRun) {
   EXPECT_EQ(log::VerifySeal(*sealed.seal, runtime::SigningKey({4, 5})), log::SealSignature::kWrong);
 }
 
+TEST_F(LogKeeperTest, WritesThePriorityOfARunInRealTimeUnderTheSeal) {
+  roles_.priority = {.granted = {"world", "radar"}, .refused = {"lidar"}, .unknown = {"acc"}};
+  log::RunLog run = ReadToTheEnd(log_);
+  run.realtime.emplace();
+  LogKeeper(log_).Seal(run, written_, roles_, nullptr);
+  log::EventLogReader reader(log_);
+  std::optional<log::RealtimePriority> found;
+  std::string last;
+  while (const auto event = reader.Next()) {
+    last = event->channel;
+    if (event->channel == log::kLogPriorityChannel) found = log::ReadPriority(*event, run.run_id);
+  }
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->granted, roles_.priority->granted);
+  EXPECT_EQ(found->refused, roles_.priority->refused);
+  EXPECT_EQ(found->unknown, roles_.priority->unknown);
+  EXPECT_EQ(last, log::kLogSealChannel);
+  const log::RunLog sealed = ReadToTheEnd(log_);
+  EXPECT_TRUE(sealed.complete);
+  EXPECT_EQ(sealed.digest, run.digest);
+  EXPECT_EQ(log::WhyNotSealedFile(*sealed.seal, log::EventLogReader(log_)), "");
+}
+
 TEST_F(LogKeeperTest, SealsNoLogThatWasChanged) {
   const LogKeeper keeper(log_);
   const log::RunLog run = ReadToTheEnd(log_);
   std::filesystem::resize_file(log_, std::filesystem::file_size(log_) - 1);
   const std::string before = Content(log_);
-  EXPECT_THROW(keeper.Seal(run, written_, builds_, nullptr), std::runtime_error);
+  EXPECT_THROW(keeper.Seal(run, written_, roles_, nullptr), std::runtime_error);
   EXPECT_TRUE(Content(log_) == before);
 }
 
@@ -123,7 +148,7 @@ TEST_F(LogKeeperTest, SealsARunThatEndedEarlyAsFarAsItGoes) {
     writer.Write(event->channel, event->utime, event->data);
   }
   writer.Flush();
-  LogKeeper(part).SealCutOff({writer.written()}, builds_, nullptr);
+  LogKeeper(part).SealCutOff({writer.written()}, roles_, nullptr);
   const log::RunLog sealed = ReadToTheEnd(part);
   ASSERT_TRUE(sealed.seal && sealed.seal->whole);
   EXPECT_EQ(sealed.seal->says.steps, kKeptSteps - 1);
@@ -137,13 +162,13 @@ TEST_F(LogKeeperTest, LeavesALogAsItIsIfItHasMoreThanWasReported) {
     writer.Write("TRUTH", 0, std::vector<std::uint8_t>{1, 2, 3});
   }
   const std::string before = Content(log_);
-  LogKeeper(log_).SealCutOff(written_, builds_, nullptr);
+  LogKeeper(log_).SealCutOff(written_, roles_, nullptr);
   EXPECT_TRUE(Content(log_) == before);
 }
 
 TEST_F(LogKeeperTest, MakesNoLogWhereThereIsNone) {
   std::filesystem::remove(log_);
-  LogKeeper(log_).SealCutOff(written_, builds_, nullptr);
+  LogKeeper(log_).SealCutOff(written_, roles_, nullptr);
   EXPECT_FALSE(std::filesystem::exists(log_));
 }
 
