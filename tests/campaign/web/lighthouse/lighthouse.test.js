@@ -6,8 +6,8 @@ import {test} from "node:test";
 
 import lighthouse, {desktopConfig} from "lighthouse";
 
-import {freshNetwork, seat} from "./seat.js";
-import {background, recordedRun, root, scratch, until, view} from "./window.js";
+import {freshNetwork, seat} from "../seat.js";
+import {background, recordedRun, root, scratch, until, view} from "../window.js";
 
 const {CHROMIUM, FOGLINE} = process.env;
 const LEAST_SCORE = 0.95;
