@@ -7,6 +7,7 @@
 #include <map>
 #include <sstream>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <gmock/gmock-more-matchers.h>
@@ -68,6 +69,11 @@ class SumoTest : public testing::Test {
 
   const ScratchFolder folder_;
   const std::string log_ = folder_.File("run.lcm");
+  const std::vector<std::string> behind_a_queue_{
+      "--set", "/lead/profile=sumo",
+      "--set", "/lead/sumo/net_file=data/sumo_queue/road.net.xml",
+      "--set", "/lead/sumo/route_file=data/sumo_queue/cars.rou.xml",
+      "--set", "/lead/sumo/behind=queue.20"};
 };
 
 TEST_F(SumoTest, ARunBehindAQueueHasOneDigestOnEveryTransport) {
@@ -80,17 +86,30 @@ TEST_F(SumoTest, ARunBehindAQueueHasOneDigestOnEveryTransport) {
 }
 
 TEST_F(SumoTest, AWorldThatIsKilledTwiceComputesTheSameRun) {
-  const std::vector<std::string> sumo{"--set", "/lead/profile=sumo",
-                                      "--set", "/lead/sumo/net_file=data/sumo_queue/road.net.xml",
-                                      "--set", "/lead/sumo/route_file=data/sumo_queue/cars.rou.xml",
-                                      "--set", "/lead/sumo/behind=queue.20"};
-  WatchedRun watched({}, 600, kPace, sumo);
+  WatchedRun watched({}, 600, kPace, behind_a_queue_);
   for (const int step : {200, 500}) {
     watched.WaitForStep(step);
     watched.Signal("world", SIGKILL);
   }
   const nlohmann::json result = watched.ExpectSameResult();
   EXPECT_EQ(WatchedRun::RestartsOf(result, "world"), 2);
+}
+
+// On a busy machine the world gets so little of a processor that SUMO needs seconds to load.
+TEST_F(SumoTest, AWorldThatLoadsSumoForLongIsNotTakenForHung) {
+  WatchedRun watched({}, 60, kPace, behind_a_queue_);
+  const pid_t world = watched.PidOf("world");
+  const TimePoint began = Clock::now();
+  while (watched.StateOf("world", world) == status_t::WAITING) {
+    kill(world, SIGSTOP);
+    std::this_thread::sleep_for(milliseconds(99));
+    kill(world, SIGCONT);
+    watched.Listen(milliseconds(1));
+    ASSERT_LT(Clock::now() - began, kPatience);
+  }
+  // A silent process that does not work is killed after 2 s.
+  EXPECT_GT(Clock::now() - began, milliseconds(4000)) << "the world was not slow";
+  EXPECT_EQ(WatchedRun::RestartsOf(watched.ExpectSameResult(), "world"), 0);
 }
 
 TEST_F(SumoTest, TheSeedChangesTheQueue) {

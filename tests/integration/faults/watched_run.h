@@ -78,6 +78,11 @@ class WatchedRun {
     WaitUntil([&] { return step_ >= step; }, "step " + std::to_string(step));
   }
 
+  /// Waits this long for a message, and handles all messages that have come.
+  void Listen(Duration time) {
+    if (bus_.Wait(time)) bus_.Drain();
+  }
+
   /// The process that has a role at present. Processes that this test has killed do not count.
   pid_t PidOf(const std::string& role) {
     pid_t pid = 0;
