@@ -62,7 +62,10 @@ test("the curves have the log's values over the whole time", async (t) => {
     (channel) => numbers(channel, step)));
   assert.deepEqual(columns[0][0], [0, 27, 69.9]);
   assert.deepEqual(columns[0][1], [first, deceived, last].map(([truth]) => truth.host_gap_m));
-  assert.deepEqual(columns[0][3], [first, deceived, last].map(([, , lidar]) => lidar.range_m));
+  assert.deepEqual(columns[0][3], [first, deceived, last].map(([, , lidar]) => lidar.valid ? lidar.range_m : null));
+  const lost = await page.evaluate(() => [...foglinePage.curves.charts[0].chart.data[3]].indexOf(null));
+  assert.ok(lost > 0, "the LiDAR has no echo in some steps");
+  assert.deepEqual([lost - 1, lost].map((step) => numbers("LIDAR", step).valid), [1, 0]);
   assert.deepEqual(columns[1][1], [first, deceived, last].map(([truth]) => truth.host_speed_mps));
 });
 

@@ -2,6 +2,11 @@
 
 import {upTo} from "./modes.js";
 
+/** Columns of values, with NaN where the series `valid` is 0: a sensor has no value there. */
+export function whereValid({times, values}, valid) {
+  return {times, values: values.map((value, i) => valid.at(times[i]) ? value : NaN)};
+}
+
 export class Series {
   constructor(times = new Float64Array(256), values = new Float64Array(256), n = 0) {
     this.allTimes = times;

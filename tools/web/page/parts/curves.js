@@ -8,6 +8,7 @@ import {searchFields} from "../data/catalogue.js";
 import {digits, seconds, withUnit} from "../draw/format.js";
 import {numberAt, parsePath} from "../data/lcm.js";
 import {spansOf} from "../data/modes.js";
+import {whereValid} from "../data/series.js";
 
 const FIRST_FIELDS = ["TRUTH.host_gap_m", "RADAR.range_m", "LIDAR.range_m", "TRUTH.host_speed_mps"];
 const MOST_FIELDS = 8;         // as many as there are colours
@@ -192,6 +193,19 @@ export class Curves {
     return this.store.detail(channel, path, from, to);
   }
 
+  /** Whether a sensor has a value: its field `valid`. null for fields that always have one. */
+  validOf({channel, path}, from, to) {
+    const depends = path !== "valid" && !path.startsWith("header.") && this.fieldNamed(`${channel}.valid`);
+    return depends ? this.seriesOf({channel, path: "valid"}, from, to) : null;
+  }
+
+  /** The values of a field in this time, with a gap where a sensor has none. */
+  columnsOf(field, from, to) {
+    const columns = this.seriesOf(field, from, to).within(from, to);
+    const valid = this.validOf(field, from, to);
+    return valid?.length ? whereValid(columns, valid) : columns;
+  }
+
   drawFog(chart) {
     const {min, max} = chart.scales.x;
     if (min == null) return;
@@ -209,8 +223,8 @@ export class Curves {
     const rest_ms = Math.min(REST.most_ms, Math.max(least_ms, REST.factor * this.cost_ms));
     if (now - this.drawnAt < rest_ms) return;
     const [from, to] = this.range(moment.time);
-    const series = this.fields.map((field) => this.seriesOf(field, from, to));
-    const drawn = `${from} ${to} ${moment.time} ${series.map(({version}) => version)}`;
+    const series = this.fields.flatMap((field) => [this.seriesOf(field, from, to), this.validOf(field, from, to)]);
+    const drawn = `${from} ${to} ${moment.time} ${series.map((one) => one?.version)}`;
     if (drawn === this.drawn) return;
     this.drawn = drawn;
     for (const panel of this.charts) this.drawPanel(panel, from, to);
@@ -219,7 +233,7 @@ export class Curves {
   }
 
   drawPanel({chart, fields, range}, from, to) {
-    const columns = fields.map((field) => this.seriesOf(field, from, to).within(from, to));
+    const columns = fields.map((field) => this.columnsOf(field, from, to));
     const [low, high] = extremes(columns, from, to);
     const size = Math.max(1e-6, Math.abs(low) || 0, Math.abs(high) || 0);
     [range[0], range[1]] = widened(low, high, LEAST_SPAN * size);

@@ -6,7 +6,7 @@ import {drawNow, extremes, fillSpan, joined, makeChart, stepped, TOP, widened}
 import {byId, hatch, say} from "../draw/dom.js";
 import {decimal} from "../draw/format.js";
 import {modeOf, spansOf} from "../data/modes.js";
-import {Series} from "../data/series.js";
+import {Series, whereValid} from "../data/series.js";
 import {withAlpha} from "../draw/theme.js";
 
 export const WINDOW_S = 20;
@@ -39,12 +39,8 @@ export function drawBand(chart, spans, theme, top, height) {
 
 /** Value minus truth of a source, where the source has a value. */
 function errorColumns(value, valid, truth) {
-  const {times} = value;
-  const values = new Float64Array(times.length);
-  for (let i = 0; i < times.length; ++i) {
-    values[i] = valid.at(times[i]) ? value.values[i] - truth.at(times[i]) : NaN;
-  }
-  return {times, values};
+  const {times, values} = whereValid(value, valid);
+  return {times, values: values.map((one, i) => one - truth.at(times[i]))};
 }
 
 export class Why {

@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import {test} from "node:test";
 
-import {Series} from "../../../../../../tools/web/page/data/series.js";
+import {Series, whereValid} from "../../../../../../tools/web/page/data/series.js";
 
 function counted(n) {
   const series = new Series();
@@ -30,6 +30,14 @@ test("a part of a series has one value before and one after", () => {
   const {times, values} = counted(100).within(10.5, 20.5);
   assert.deepEqual([times[0], times.at(-1), values[0]], [10, 21, 100]);
   assert.equal(counted(0).within(0, 1).times.length, 0);
+});
+
+test("a column has a gap where a sensor has no value", () => {
+  const valid = new Series();
+  for (const [time, value] of [[0, 1], [2, 0], [4, 1]]) valid.push(time, value);
+  const {times, values} = whereValid(counted(6), valid);
+  assert.deepEqual([...times], [0, 1, 2, 3, 4, 5]);
+  assert.deepEqual([...values], [0, 10, NaN, NaN, 40, 50]);
 });
 
 test("the value at a time is the last one up to it", () => {
