@@ -21,10 +21,19 @@ function drivingSince(times, modes, lambdas) {
   return place > 0 ? times[place] : null;
 }
 
-function reason({doc, threshold}) {
+// Where the Degree of Conflict is not the reason for a mode, the page says the reason first.
+const REASONS = {
+  COLLISION_WARNING: "The car ahead is too near. ",
+  EMERGENCY_BRAKING: "A collision is near. ",
+};
+const NOBODY = "Neither the automation nor the human goes on driving. ";
+
+/** Why the side of this HOST_COMMAND drives. */
+export function reason({mode, lambda_human, doc, threshold}) {
+  const {name, side} = modeOf(mode, lambda_human);
   const compared = doc >= threshold ? "at or above" : "below";
-  return `The Degree of Conflict ${decimal(doc, 2)} is ${compared} ` +
-    `the threshold ${decimal(threshold, 2)}.`;
+  return (REASONS[name] ?? (side === "risk" ? NOBODY : "")) +
+    `The Degree of Conflict ${decimal(doc, 2)} is ${compared} the threshold ${decimal(threshold, 2)}.`;
 }
 
 export class Now {
