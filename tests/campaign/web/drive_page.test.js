@@ -220,7 +220,7 @@ test("with --listen only the driver's token gives the seat", async (t) => {
   await wrong.close();
 });
 
-for (const [name, size] of [["desktop", DESKTOP], ["phone", PHONE]]) {
+for (const [name, size] of [["desktop", DESKTOP], ["phone", PHONE], ["low", {width: 1000, height: 760}]]) {
   test(`the request to take over does not cover the car ahead (${name})`, async (t) => {
     const {page} = await seated(t, {size});
     await page.waitForFunction(() => foglineDrive.state === "yours");
@@ -236,6 +236,28 @@ for (const [name, size] of [["desktop", DESKTOP], ["phone", PHONE]]) {
     assert.ok(covered < 0.335, `the request covers the car ahead: ${covered} of the picture`);
   });
 }
+
+test("a finger holds the pedals of the page", async (t) => {
+  const {run, page} = await seated(t, {size: PHONE, hasTouch: true, isMobile: true});
+  await begin(page);
+  await drives(page, true);
+  const finger = (id, type) => page.locator(id).dispatchEvent(type, {pointerId: 1, pointerType: "touch"});
+  await page.evaluate(() => { Element.prototype.setPointerCapture = () => {}; });  // of a pointer that does not exist
+  assert.ok(await page.locator("#touch-brake").isVisible());
+  await finger("#touch-brake", "pointerdown");
+  await run.next(({brake}) => brake === 1, "the brake");
+  await finger("#touch-brake", "pointerup");
+  await run.next(({brake}) => brake === 0, "the released brake");
+  await finger("#touch-throttle", "pointerdown");
+  await run.next(({throttle}) => throttle > 0.5, "the throttle");
+  await finger("#touch-throttle", "pointercancel");
+  await run.next(({throttle}) => throttle === 0, "the released throttle");
+});
+
+test("with a mouse the page has no pedals to hold", async (t) => {
+  const {page} = await seated(t);
+  assert.equal(await page.locator("#touch-brake").isVisible(), false);
+});
 
 test("everything works with the keyboard alone", async (t) => {
   const {page} = await seated(t);

@@ -10,15 +10,13 @@ export function setScheme(view) {
 }
 
 /**
- * Loads the view into its canvas.
+ * Loads the view into its canvas, in light colours.
  * @return the view; null if it cannot be shown, and the page then says why
  */
 export async function loadView() {
   try {
     const {DriverView} = await import(VIEW_FILE);
-    const view = new DriverView(byId("driver-view"));
-    setScheme(view);
-    return view;
+    return new DriverView(byId("driver-view"));
   } catch (problem) {
     byId("picture").append(make("p", {class: "no-view"},
       `The driver’s view needs WebGL, which this browser does not offer. (${problem.message})`));

@@ -4,9 +4,9 @@
 import {socketUrl} from "../data/wire.js";
 import {Catalogue} from "../data/catalogue.js";
 import {Budget} from "../draw/budget.js";
-import {byId, darkScheme, reducedMotion, say, setAttribute} from "../draw/dom.js";
+import {byId, reducedMotion, say, setAttribute} from "../draw/dom.js";
 import {decimal, kmh, withUnit} from "../draw/format.js";
-import {loadView, setScheme} from "../draw/view_file.js";
+import {loadView} from "../draw/view_file.js";
 import {Alarm} from "./alarm.js";
 import {Latency} from "./latency.js";
 import {backOf, Newest} from "./newest.js";
@@ -15,7 +15,7 @@ import {ratesOf} from "./ramps.js";
 import {SeatWire, takeDriverToken} from "./seat_wire.js";
 import {LEAST_GAP_MS, LOOK_EVERY_MS, Sender} from "./sender.js";
 import {Setup} from "./setup.js";
-import {Countdown, told, whyAwayInWords} from "./told.js";
+import {Answer, Countdown, told, whyAwayInWords} from "./told.js";
 
 // A person waits for the next frame after each input. So this page draws less as soon as it misses
 // one frame of 60 Hz in three, and as soon as inputs are late.
@@ -29,11 +29,14 @@ class Drive {
     this.latency = new Latency();
     this.alarm = new Alarm();
     this.countdown = new Countdown();
+    this.answer = new Answer();
+    this.told = told(null);
     this.budget = new Budget({slow_ms: SLOW_MS, isLate: () => this.latency.takeLate()});
     this.newest = null;
     this.view = null;
     this.instance = "";
     this.state = "";         // of the seat: yours, taken, lost; "": not known
+    this.hasLeft = false;    // the person had begun, and has left the seat
     this.refused = false;    // this page has asked for the seat in vain
     this.back = backOf(location.hash, location.hostname);
     this.setup = new Setup(this.person, (open) => this.set("busy", open));
@@ -51,7 +54,6 @@ class Drive {
   // ---- inputs of the person ---------------------------------------------------------------------
 
   listen() {
-    darkScheme.addEventListener("change", () => { if (this.view) setScheme(this.view); });
     addEventListener("keydown", (event) => this.key(event, true));
     addEventListener("keyup", (event) => this.key(event, false));
     addEventListener("blur", () => this.set("focused", false));
@@ -75,12 +77,26 @@ class Drive {
         this.pump();
       });
     }
+    for (const [id, key] of [["touch-throttle", "ArrowUp"], ["touch-brake", "ArrowDown"]]) this.touch(byId(id), key);
     this.person.set("focused", document.hasFocus());
     this.person.set("visible", !document.hidden);
   }
 
+  /** A finger on a button of the page holds a key. */
+  touch(button, key) {
+    const hold = (down) => ({timeStamp, pointerId}) => {
+      if (down) button.setPointerCapture(pointerId);
+      this.person.key(key, down, timeStamp);
+      this.pump();
+    };
+    button.addEventListener("pointerdown", hold(true));
+    for (const name of ["pointerup", "pointercancel"]) button.addEventListener(name, hold(false));
+    button.addEventListener("contextmenu", (event) => event.preventDefault());  // of a finger that rests
+  }
+
   begin() {
     this.alarm.allow();
+    this.hasLeft = this.person.begun;
     this.set("begun", !this.person.begun);
     if (this.person.begun) byId("begin").blur();  // the space bar would press the button again
   }
@@ -112,6 +128,9 @@ class Drive {
     const input = this.person.input(now);
     // An input with a person asks for the seat of another page.
     if (this.state === "taken") input.present = this.person.whyNotReady() === "";
+    for (const button of input.buttons) {
+      if (!this.input?.buttons.includes(button)) this.answer.press(button, this.told, now);
+    }
     this.input = input;
     if (!this.wire?.isOpen) return;
     if (!this.sender.isDue(input, now)) {
@@ -209,7 +228,8 @@ class Drive {
 
   draw() {
     const {frame = {}, run} = this.newest ?? {};
-    const state = told(frame.HOST_COMMAND, Boolean(frame.TRUTH?.last));
+    const state = told(frame.HOST_COMMAND, frame.TRUTH);
+    this.told = state;
     const time_s = Number(frame.HOST_COMMAND?.header.utime ?? 0) / 1e6;
     const left = this.countdown.see(state.asks, time_s, run?.scenario?.arbitrator?.take_over?.lead_s ?? 10);
     this.alarm.sound(state);
@@ -235,12 +255,17 @@ class Drive {
     byId("request-bar").value = left.share;
   }
 
-  drawPerson({side}) {
+  drawPerson(state) {
+    const {side} = state;
     const why = this.person.whyAway();
     const seat = this.refused ? "refused" : "no seat";
-    const words = this.state === "" ? "" : whyAwayInWords(this.state === "taken" ? seat : why);
+    const words = this.state === "" ? ""
+      : whyAwayInWords(this.state === "taken" ? seat : why, {hasLeft: this.hasLeft, side});
     say(byId("away"), words);
     byId("away").hidden = words === "";
+    const answer = words === "" ? this.answer.words(state, performance.now()) : "";
+    say(byId("answer"), answer);
+    byId("answer").hidden = answer === "";
     say(byId("begin"), this.person.begun ? "Leave the seat" : "Begin");
     setAttribute(byId("begin"), "data-begun", String(this.person.begun));
     setAttribute(document.body, "data-present", String(why === ""));

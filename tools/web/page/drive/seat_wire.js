@@ -1,12 +1,11 @@
 // The connection to the seat: the protocol fogline.drive.v1 (docs/view.md).
 
 import {fragmentWithoutToken, readFragment} from "../data/address.js";
-import {readFrame} from "../data/wire.js";
+import {GOING_AWAY, readFrame} from "../data/wire.js";
 
 const PROTOCOL = "fogline.drive.v1";
 const TOKEN = "fogline.drive.token";
 const RETRY_MS = 1000;  // after the connection was lost
-const GOING_AWAY = 1001;  // the code with which the server closes when its program ends
 
 /**
  * Takes the driver's token out of the address, where other people could read it, and keeps it for

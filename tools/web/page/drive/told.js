@@ -18,19 +18,28 @@ const TOLD = {
   EMERGENCY_BRAKING: "The car brakes in an emergency",
 };
 
+// By TRUTH.collision (lcmtypes/truth_t.lcm).
+const ENDED = [
+  "The drive has ended",
+  "The drive has ended: your car has hit the car ahead",
+  "The drive has ended: the car behind has hit yours",
+];
+
+const noSide = (words) => ({side: "unknown", words, asks: false, urgent: false, answered: false});
+
 /**
- * {side, words, asks, urgent} for a HOST_COMMAND; without one the drive has not begun.
- * @param isOver whether the last step of the run has come
+ * {side, words, asks, urgent, answered} for a HOST_COMMAND; without one the drive has not begun.
+ * @param truth the newest TRUTH, which says whether the run has ended
  */
-export function told(command, isOver = false) {
-  if (isOver) return {side: "unknown", words: "The drive has ended", asks: false, urgent: false};
-  if (!command) return {side: "unknown", words: "The drive has not begun", asks: false, urgent: false};
+export function told(command, truth = null) {
+  if (truth?.last) return noSide(ENDED[truth.collision] ?? ENDED[0]);
+  if (!command) return noSide("The drive has not begun");
   const {name, side, asks: waits = false, urgent = false} = modeOf(command.mode, command.lambda_human);
   const asks = waits && name !== "HANDOVER";  // then the person has answered
   const drives = side === "human" ? TOLD.HUMAN : TOLD.AUTOMATION;
   const words = name === "COLLISION_WARNING" ? `Collision warning. ${drives}`
     : TOLD[name] ?? "It is not known who drives";
-  return {side, words, asks, urgent};
+  return {side, words, asks, urgent, answered: waits && !asks};
 }
 
 /** Counts down a request to take over. */
@@ -52,6 +61,36 @@ export class Countdown {
   }
 }
 
+// An answer of the run to a button comes in a few steps. Afterwards the words stay so long that a
+// person can read them.
+const ANSWER_MS = {after: 1000, until: 6000};
+
+const NO_EFFECT = {
+  take_over: "The automation goes on driving: it has not asked you to take over.",
+  give_back: "You still drive: the automation does not take the car yet. Press again later.",
+};
+
+/** Tells a person that a button has had no effect. */
+export class Answer {
+  constructor() {
+    this.pressed = null;
+  }
+
+  /** @param state what told() says at this time */
+  press(button, {side, asks, answered}, now_ms) {
+    const canDo = button === "take_over" ? side === "automation" && !asks && !answered : side === "human";
+    this.pressed = canDo ? {button, side, at_ms: now_ms} : null;
+  }
+
+  /** The words at a time; "" if there is nothing to say. */
+  words({side, asks}, now_ms) {
+    if (this.pressed?.side !== side || asks) this.pressed = null;
+    if (!this.pressed) return "";
+    const passed_ms = now_ms - this.pressed.at_ms;
+    return passed_ms < ANSWER_MS.after || passed_ms > ANSWER_MS.until ? "" : NO_EFFECT[this.pressed.button];
+  }
+}
+
 const WHY_AWAY = {
   "not begun": "Press “Begin” when you are ready.",
   "no seat": "Another page has the seat. Press “Begin” to ask for it.",
@@ -63,5 +102,13 @@ const WHY_AWAY = {
   "not calibrated": "Calibrate the device first (button “Device”).",
 };
 
-/** The text for a reason of Person.whyAway(); "" if the person drives. */
-export const whyAwayInWords = (why) => WHY_AWAY[why] ?? "";
+const LEFT = "You have left the seat. Press “Begin” to come back.";
+
+/**
+ * The text for a reason of Person.whyAway(); "" if the person drives.
+ * @param hasLeft whether the person had begun before; side: the side that drives
+ */
+export function whyAwayInWords(why, {hasLeft = false, side = "unknown"} = {}) {
+  const words = why === "not begun" && hasLeft ? LEFT : WHY_AWAY[why] ?? "";
+  return words !== "" && side === "human" ? `${words} Nobody presses the pedals now.` : words;
+}

@@ -15,7 +15,7 @@ export class Scene {
     this.wordsAt = 0;
     loadView().then((view) => {
       this.view = view;
-      this.drawn = "";
+      this.setScheme();
     });
   }
 

@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import {test} from "node:test";
 
-import {Countdown, told, whyAwayInWords} from "../../../../../../tools/web/page/drive/told.js";
+import {Answer, Countdown, told, whyAwayInWords} from "../../../../../../tools/web/page/drive/told.js";
 import {describedTypes} from "../real_log.js";
 
 test("each mode of HOST_COMMAND has words that say nothing of conflict or threshold", () => {
@@ -12,7 +12,6 @@ test("each mode of HOST_COMMAND has words that say nothing of conflict or thresh
     assert.doesNotMatch(words, /conflict|threshold|sensor|lidar|radar|undefined|not known/i, name);
   }
   assert.equal(told(null).words, "The drive has not begun");
-  assert.equal(told({mode: 0, lambda_human: 1}, true).words, "The drive has ended");
   assert.equal(told({mode: 99, lambda_human: 0}).words, "It is not known who drives");
 });
 
@@ -39,9 +38,44 @@ test("a request counts down from its first step, and a new one begins again", ()
   assert.equal(countdown.see(true, 1, 10).left_s, 10);  // another run
 });
 
+test("the end of a drive is told, and a collision", () => {
+  const {COLLISION_NONE, COLLISION_HOST, COLLISION_FOLLOWER} = describedTypes().truth_t.constants;
+  const at = (truth) => told({mode: 1, lambda_human: 1}, truth).words;
+  assert.equal(at({last: 0, collision: COLLISION_NONE}), "You drive");
+  assert.equal(at({last: 1, collision: COLLISION_NONE}), "The drive has ended");
+  assert.match(at({last: 1, collision: COLLISION_HOST}), /ended: your car has hit the car ahead/);
+  assert.match(at({last: 1, collision: COLLISION_FOLLOWER}), /ended: the car behind has hit yours/);
+});
+
+test("a button without effect gets an answer, one with an effect gets none", () => {
+  const {AUTOMATION, HUMAN, REQUEST, HANDOVER} = describedTypes().arbitration_t.constants;
+  const state = (mode, lambda_human = 0) => told({mode, lambda_human});
+  const answer = new Answer();
+  answer.press("take_over", state(AUTOMATION), 0);
+  assert.equal(answer.words(state(AUTOMATION), 500), "", "the run may still react");
+  assert.match(answer.words(state(AUTOMATION), 1500), /has not asked you/);
+  assert.equal(answer.words(state(AUTOMATION), 7000), "");
+  answer.press("take_over", state(AUTOMATION), 0);
+  assert.equal(answer.words(state(HUMAN, 1), 1500), "", "the person drives now");
+  answer.press("take_over", state(AUTOMATION), 0);
+  assert.equal(answer.words(state(REQUEST), 1500), "", "the automation asks now");
+  for (const mode of [REQUEST, HANDOVER]) {
+    answer.press("take_over", state(mode), 0);
+    assert.equal(answer.words(state(mode), 1500), "", "the person has answered");
+  }
+  answer.press("give_back", state(HUMAN, 1), 0);
+  assert.match(answer.words(state(HUMAN, 1), 1500), /Press again later/);
+  answer.press("give_back", state(HUMAN, 1), 0);
+  assert.equal(answer.words(state(AUTOMATION), 1500), "");
+});
+
 test("why a person does not drive is said in words", () => {
   for (const why of ["not begun", "no seat", "refused", "hidden", "blurred", "busy", "unplugged", "not calibrated"]) {
     assert.ok(whyAwayInWords(why).length > 10, why);
   }
   assert.equal(whyAwayInWords(""), "");
+  assert.match(whyAwayInWords("not begun", {hasLeft: true}), /left the seat/);
+  assert.match(whyAwayInWords("hidden", {side: "human"}), /Nobody presses the pedals/);
+  assert.doesNotMatch(whyAwayInWords("hidden", {side: "automation"}), /Nobody/);
+  assert.equal(whyAwayInWords("", {side: "human"}), "");
 });
