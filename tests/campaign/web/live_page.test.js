@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import path from "node:path";
 import {test} from "node:test";
 
-import {background, browser, open, scratch, until, view} from "./window.js";
+import {background, browser, open, scratch, serve, until, view} from "./window.js";
 
 const {FOGLINE} = process.env;
 const FOGLINE_RELAY = path.join(path.dirname(FOGLINE), "fogline-relay");
@@ -38,10 +38,16 @@ test("a live run is shown as it goes: the newest step, all roles, no loss", asyn
   assert.ok(steps > 10 && steps < 30, `about 20 steps in 2 s: ${steps}`);
 
   // The reader stops, looks back, and follows the run again.
+  const says = (words) => page.waitForFunction(
+    (wanted) => document.getElementById("origin-words").textContent === wanted, words);
   await page.keyboard.press("Space");
+  await says("Paused; the run goes on");
   await page.keyboard.press("Home");
   await page.waitForFunction(() => document.body.dataset.step === "0");
+  await page.keyboard.press("Space");
+  await says("Behind the run");
   await page.keyboard.press("l");
+  await says("Live");
   await page.waitForFunction(() => Number(document.body.dataset.step) > 40);
 });
 
@@ -96,6 +102,20 @@ test("over tcpq the page does not say that nothing was lost", async (t) => {
   run(t, network, "--pace", "1");
   await page.waitForFunction(() => /^All 9 roles answer\. Lost packets: not known over tcpq\.$/.test(
     document.getElementById("health-summary").textContent));
+});
+
+test("the page says when the run has ended, and when the program has", async (t) => {
+  const network = url();
+  const {server, address} = await serve(t, ["--lcm-url", network]);
+  const page = await open(t, await browser(t), address);
+  await page.waitForFunction(() => foglinePage.hello);
+  run(t, network, "--pace", "10");
+  const says = (words) => page.waitForFunction(
+    (wanted) => document.getElementById("origin-words").textContent === wanted, words);
+  await says("The run has ended");
+  server.kill("SIGTERM");
+  await says("The program has ended");
+  page.trouble = page.trouble.filter((words) => !words.includes("WebSocket"));  // no server answers
 });
 
 test("the page finds the server again after it was away", async (t) => {

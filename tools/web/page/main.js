@@ -174,6 +174,7 @@ class Page {
     document.title = `${run.title || "Run"} – Fogline`;
     this.length_m = run.scenario?.world?.vehicle_length_m ?? 4.5;
     if (!isNew) return;
+    this.isOver = false;
     this.events = [];
     this.frame = null;
     if (this.isLive) {
@@ -256,18 +257,31 @@ class Page {
   }
 
   showConnection(state) {
-    const origin = byId("origin");
-    const isOpen = state === "open";
-    const words = !isOpen ? "No connection, trying again"
-      : this.isLive ? "Live" : this.log ? this.log.file : "Connecting";
-    setAttribute(origin, "data-state", isOpen ? this.hello?.mode ?? "none" : "lost");
-    say(byId("origin-words"), words);
+    this.connection = state;
+    this.sayOrigin();
     if (state === "refused") {
       this.complain("The server does not answer. If it listens for other machines, open exactly " +
                     "the address that it has printed: the address contains a key.");
     } else {
       byId("problem").hidden = true;
     }
+  }
+
+  /** Says where that what is shown comes from, and how it relates to the run. */
+  sayOrigin() {
+    const isOpen = this.connection === "open";
+    const isBehind = isOpen && this.isLive && (this.isOver || this.clock.state !== "live");
+    setAttribute(byId("origin"), "data-state",
+                 !isOpen ? "lost" : isBehind ? "behind" : this.hello?.mode ?? "none");
+    say(byId("origin-words"), this.originInWords());
+  }
+
+  originInWords() {
+    if (this.connection === "ended") return "The program has ended";
+    if (this.connection !== "open") return "No connection, trying again";
+    if (!this.isLive) return this.log ? this.log.file : "Connecting";
+    if (this.isOver) return "The run has ended";
+    return {live: "Live", paused: "Paused; the run goes on", playing: "Behind the run"}[this.clock.state];
   }
 
   loop(now) {
@@ -311,6 +325,7 @@ class Page {
     const {modes, lambdas} = this.why;
     const moment = {frame: this.frame, step: shown, time, run, theme, length_m: this.length_m, isLive: this.isLive,
                     ahead_s: frame ? this.aheadOf(step) : 0, moves: clock.state !== "paused"};
+    this.sayOrigin();
     const {rest_ms} = this.budget.now;
     moment.side = this.now.draw(moment, modes, lambdas);
     this.scene.draw(moment, this.budget.now);
@@ -328,8 +343,8 @@ class Page {
     if (this.isLive && this.healthIsNew) {
       this.healthIsNew = false;
       const {store} = this;
-      const isOver = Boolean(store.frame(store.lastStep)?.TRUTH?.last);
-      this.health.drawLive(this.lastHealth, store.run, store.statuses, isOver);
+      this.isOver = Boolean(store.frame(store.lastStep)?.TRUTH?.last);
+      this.health.drawLive(this.lastHealth, store.run, store.statuses, this.isOver);
     }
     if (!this.isLive && this.log && this.healthLog !== this.log) {
       this.healthLog = this.log;

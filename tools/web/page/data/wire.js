@@ -3,6 +3,7 @@
 
 const PROTOCOL = "fogline.view.v1";
 const RETRY_MS = {first: 1000, then: 2000};  // after the connection was lost
+export const GOING_AWAY = 1001;  // the code with which the server closes when its program ends
 
 const KIND = {messages: 1, steps: 2, series: 3};
 
@@ -60,9 +61,10 @@ export function socketUrl(location, token) {
 
 /**
  * Keeps a connection to the server. It calls `on.text(object)`, `on.messages(messages)` and
- * `on.state("open", "lost" or "refused")`: "refused" if there never was a connection. Questions
- * have answers: ask() returns a promise, which is rejected if the server answers with an error or
- * the connection is lost.
+ * `on.state("open", "ended", "lost" or "refused")`: "ended" if the server has said that its program
+ * ends, until there is a connection again; "refused" if there never was a connection. Questions have
+ * answers: ask() returns a promise, which is rejected if the server answers with an error or the
+ * connection is lost.
  */
 export class Wire {
   constructor(url, on) {
@@ -72,6 +74,7 @@ export class Wire {
     this.next = 1;
     this.retry_ms = RETRY_MS.first;
     this.wasOpen = false;
+    this.hasEnded = false;
     this.connect();
   }
 
@@ -81,10 +84,11 @@ export class Wire {
     this.socket.onopen = () => {
       this.retry_ms = RETRY_MS.first;
       this.wasOpen = true;
+      this.hasEnded = false;
       this.on.state("open");
     };
     this.socket.onmessage = ({data}) => this.receive(data);
-    this.socket.onclose = () => this.lose();
+    this.socket.onclose = ({code}) => this.lose(code);
   }
 
   /** Connects to another address, such as one with a new key. */
@@ -105,9 +109,10 @@ export class Wire {
     this.waiting.clear();
   }
 
-  lose() {
+  lose(code) {
     this.rejectAll();
-    this.on.state(this.wasOpen ? "lost" : "refused");
+    this.hasEnded ||= code === GOING_AWAY;
+    this.on.state(this.hasEnded ? "ended" : this.wasOpen ? "lost" : "refused");
     this.retrying = setTimeout(() => this.connect(), this.retry_ms);
     this.retry_ms = RETRY_MS.then;
   }
