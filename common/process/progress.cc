@@ -20,10 +20,10 @@ constexpr const char* kErase = "\r\033[K";
 
 }  // namespace
 
-Progress::Progress(std::string what, std::int64_t total)
+Progress::Progress(std::string what, std::int64_t total, bool shown)
     : what_(std::move(what)),
       total_(std::max<std::int64_t>(1, total)),
-      terminal_(isatty(STDERR_FILENO) == 1),
+      terminal_(shown && isatty(STDERR_FILENO) == 1),
       began_(Clock::now()),
       next_(began_ + kShowAfter) {}
 

@@ -13,7 +13,8 @@ namespace fogline {
 class Progress {
  public:
   /// @param what unit of the count, such as "step"; @param total full count
-  Progress(std::string what, std::int64_t total);
+  /// @param shown false: there is never a bar
+  Progress(std::string what, std::int64_t total, bool shown = true);
   /// Erases the bar.
   ~Progress();
   Progress(const Progress&) = delete;

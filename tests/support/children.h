@@ -5,8 +5,10 @@
 #include <sys/types.h>
 
 #include <csignal>
+#include <filesystem>
 #include <fstream>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "tests/support/command.h"
@@ -14,13 +16,28 @@
 namespace fogline::test {
 
 /// The children of `parent` that have not ended, and that the main thread of `parent` has started.
-/// In Fogline the main thread starts all children.
+/// In Fogline the main thread starts all children, except those of several runs at once.
 inline std::vector<pid_t> ChildrenOf(pid_t parent) {
   const std::string id = std::to_string(parent);
   std::ifstream in("/proc/" + id + "/task/" + id + "/children");
   std::vector<pid_t> children;
   for (pid_t child = 0; in >> child;) {
     if (IsAlive(child)) children.push_back(child);
+  }
+  return children;
+}
+
+/// The same for children that any thread of `parent` has started.
+inline std::vector<pid_t> ChildrenOfAnyThread(pid_t parent) {
+  std::vector<pid_t> children;
+  std::error_code ended;
+  const std::string tasks = "/proc/" + std::to_string(parent) + "/task";
+  for (std::filesystem::directory_iterator task(tasks, ended), none; !ended && task != none;
+       task.increment(ended)) {
+    std::ifstream in(task->path() / "children");
+    for (pid_t child = 0; in >> child;) {
+      if (IsAlive(child)) children.push_back(child);
+    }
   }
   return children;
 }

@@ -1,22 +1,114 @@
 #include "tools/cli/threshold_rows.h"
 
+#include <algorithm>
+#include <map>
+#include <mutex>
+#include <utility>
+
+#include <fmt/core.h>
+
 #include "common/interrupt.h"
 #include "common/process/progress.h"
-#include "tools/sweep/engine.h"
+#include "services/log/log_of_run.h"
+#include "tools/cli/pairing.h"
+#include "tools/runner/side_by_side.h"
 
 namespace fogline::cli {
+namespace {
 
-std::vector<sweep::ThresholdRow> RowsOnAllCores(const Scenario& scenario,
-                                                std::span<const double> thresholds,
-                                                const sweep::SeedRange& seeds) {
+/// Adds the runs of a table to its rows, in the order of their seeds. The runs may come in any
+/// order.
+class TableRows {
+ public:
+  TableRows(const Scenario& scenario, std::span<const double> thresholds) : scenario_(scenario) {
+    for (const double threshold : thresholds) rows_.emplace_back().threshold = threshold;
+  }
+
+  /// @param seed its place in the range of seeds
+  /// @param row the run without traded control has row 0, that of the first threshold has row 1
+  void Add(std::int64_t seed, std::size_t row, runner::ExperimentResult result) {
+    runs_[seed].emplace(row, std::move(result));
+    while (!runs_.empty() && runs_.begin()->first == next_ &&
+           runs_.begin()->second.size() == rows_.size() + 1) {
+      AddSeed(runs_.begin()->second);
+      runs_.erase(runs_.begin());
+      ++next_;
+    }
+  }
+
+  std::vector<sweep::ThresholdRow> Take() { return std::move(rows_); }
+
+ private:
+  void AddSeed(const std::map<std::size_t, runner::ExperimentResult>& runs) {
+    const runner::ExperimentResult& baseline = runs.at(0);
+    const metrics::FogEffect without = metrics::FogEffectOf(baseline.measures);
+    for (std::size_t row = 0; row < rows_.size(); ++row) {
+      const runner::ExperimentResult& result = runs.at(row + 1);
+      rows_[row].Add(result.measures,
+                     metrics::MeasurePair(baseline.samples, result.samples, scenario_), without);
+    }
+  }
+
+  const Scenario& scenario_;
+  std::vector<sweep::ThresholdRow> rows_;
+  std::map<std::int64_t, std::map<std::size_t, runner::ExperimentResult>> runs_;  // by seed and row
+  std::int64_t next_ = 0;
+};
+
+/// @param name "none", or the threshold, for the name of the log
+runner::ExperimentResult RunOne(const TableRuns& runs, const Scenario& scenario,
+                                const std::string& name) {
+  runner::ExperimentOptions options = runs.options;
+  if (!runs.logs.empty()) {
+    options.log =
+        runs.logs / fmt::format("{}-seed{}-threshold-{}.lcm", runs.name, scenario.seed, name);
+  }
+  const log::LogOfRun log = options.log.empty() ? log::LogOfRun() : log::LogOfRun(options.log);
+  runner::ExperimentResult result = runner::RunExperiment(scenario, options);
+  if (result.verification && !result.verification->Holds()) {
+    throw CheckFailed(
+        fmt::format("seed {}, {}: {}", scenario.seed, name, result.verification->Trouble()));
+  }
+  return result;
+}
+
+}  // namespace
+
+std::vector<sweep::ThresholdRow> RowsInMemory(const Scenario& scenario,
+                                              std::span<const double> thresholds,
+                                              const sweep::SeedRange& seeds, int jobs) {
   Progress progress("seed", seeds.count());
-  std::vector<sweep::ThresholdRow> rows = sweep::SweepThresholds(
-      scenario, thresholds, seeds, sweep::AllCores(), [&](std::int64_t done) {
+  std::vector<sweep::ThresholdRow> rows =
+      sweep::SweepThresholds(scenario, thresholds, seeds, jobs, [&](std::int64_t done) {
         progress.Show(done);
         return !WasInterrupted();
       });
   if (WasInterrupted()) throw Interrupted("interrupted");
   return rows;
+}
+
+std::vector<sweep::ThresholdRow> RowsByRuns(const TableRuns& runs, const Scenario& scenario,
+                                            std::span<const double> thresholds,
+                                            const sweep::SeedRange& seeds) {
+  TableRows rows(scenario, thresholds);
+  const auto of_a_seed = static_cast<std::int64_t>(thresholds.size()) + 1;
+  Progress progress("run", seeds.count() * of_a_seed);
+  std::int64_t done = 0;
+  std::mutex mutex;  // of rows, progress and done
+  runner::SideBySide(seeds.count() * of_a_seed, runs.jobs, [&](std::int64_t i) {
+    const std::int64_t seed = i / of_a_seed;
+    const auto row = static_cast<std::size_t>(i % of_a_seed);
+    Scenario its = scenario;
+    its.seed = seeds.first + seed;
+    if (row > 0) its.arbitrator.threshold = thresholds[row - 1];
+    runner::ExperimentResult result =
+        row == 0 ? RunOne(runs, WithoutTradedControl(its), "none")
+                 : RunOne(runs, its, fmt::format("{:g}", its.arbitrator.threshold));
+    const std::lock_guard lock(mutex);
+    rows.Add(seed, row, std::move(result));
+    progress.Show(++done);
+  });
+  return rows.Take();
 }
 
 }  // namespace fogline::cli

@@ -1,17 +1,38 @@
 // The rows of `fogline table` and the curves of `fogline report`, computed with a progress bar.
 #pragma once
 
+#include <filesystem>
 #include <span>
+#include <string>
 #include <vector>
 
+#include "tools/runner/experiment.h"
+#include "tools/sweep/engine.h"
 #include "tools/sweep/threshold_curve.h"
 
 namespace fogline::cli {
 
-/// SweepThresholds() on all cores with a progress bar. Call WatchInterrupts() before it.
+/// SweepThresholds() with a progress bar. Call WatchInterrupts() before it.
+/// @param jobs threads
 /// @throws Interrupted after Ctrl-C
-std::vector<sweep::ThresholdRow> RowsOnAllCores(const Scenario& scenario,
-                                                std::span<const double> thresholds,
-                                                const sweep::SeedRange& seeds);
+std::vector<sweep::ThresholdRow> RowsInMemory(const Scenario& scenario,
+                                              std::span<const double> thresholds,
+                                              const sweep::SeedRange& seeds,
+                                              int jobs = sweep::AllCores());
+
+/// How the runs of a table are made.
+struct TableRuns {
+  runner::ExperimentOptions options;  // of each run, without its log
+  std::filesystem::path logs;         // folder for a log of each run; empty: no logs
+  std::string name;                   // with which the name of each log begins
+  int jobs = 1;                       // runs at once
+};
+
+/// Makes each run of a table by itself. Every number of jobs gives the same rows, bit for bit. Call
+/// WatchInterrupts() before it.
+/// @throws CheckFailed if a run fails its verification; all exceptions of RunExperiment()
+std::vector<sweep::ThresholdRow> RowsByRuns(const TableRuns& runs, const Scenario& scenario,
+                                            std::span<const double> thresholds,
+                                            const sweep::SeedRange& seeds);
 
 }  // namespace fogline::cli

@@ -235,7 +235,7 @@ report::ReportCurves ComputeCurves(const ReportArguments& arguments) {
                               .last_seed = seeds.last,
                               .points = {},
                               .published = scenario.published};
-  for (const sweep::ThresholdRow& row : cli::RowsOnAllCores(scenario, thresholds, seeds)) {
+  for (const sweep::ThresholdRow& row : cli::RowsInMemory(scenario, thresholds, seeds)) {
     curves.points.push_back({row.threshold, row.si_pct.Result(), row.rhe_pct.Result()});
   }
   return curves;

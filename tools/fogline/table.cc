@@ -13,7 +13,6 @@
 #include "common/interrupt.h"
 #include "common/json.h"
 #include "common/process/console.h"
-#include "common/process/progress.h"
 #include "common/text.h"
 #include "tools/cli/arguments.h"
 #include "tools/cli/help.h"
@@ -22,6 +21,7 @@
 #include "tools/cli/transport_arguments.h"
 #include "tools/fogline/verbs.h"
 #include "tools/processes/external_roles.h"
+#include "tools/sweep/engine.h"
 
 namespace fogline {
 namespace {
@@ -35,6 +35,10 @@ struct TableArguments {
                     "Seeds A:B, both included; prints mean and standard deviation")
         ->excludes("--seed");
     verb.add_option("--logs", logs, "Folder for a log of every run; existing logs are replaced");
+    verb.add_option("--jobs", jobs,
+                    "Runs at once (default: one; with --transport direct as many as there are "
+                    "cores)")
+        ->check(CLI::Range(1, 1024));
     verb.add_flag("--json", json, "Print as JSON");
     cli::ShowExitCodes(verb, {.check_failed = "--verify failed", .interruptible = true});
     verb.footer(
@@ -44,6 +48,7 @@ struct TableArguments {
         "  fogline table scenario/paper.json\n"
         "  fogline table scenario/paper.json --seeds 1:40\n"
         "  fogline table scenario/paper.json --transport udpm --logs logs/paper-table\n"
+        "  fogline table scenario/paper.json --transport udpm --seeds 1:40 --jobs 4\n"
         "  fogline table scenario/paper.json --thresholds 0.01:0.99:99 --seeds 1:200 --json\n"
         "  while my_driver --lcm-url \"$URL\"; do :; done &\n"
         "  fogline table scenario/paper.json --external driver --lcm-url \"$URL\"\n\n"
@@ -55,6 +60,7 @@ struct TableArguments {
   std::string thresholds;
   std::string seeds;
   std::filesystem::path logs;
+  std::optional<int> jobs;
   bool json = false;
 };
 
@@ -62,7 +68,15 @@ struct TableArguments {
 runner::ExperimentOptions OptionsOf(const TableArguments& arguments) {
   runner::ExperimentOptions options;
   options.samples = true;
+  options.progress = false;  // there is one bar for all runs
   arguments.transport.Apply(options);
+  const bool elsewhere = !options.external.empty() || !options.hosts.empty();
+  if (elsewhere && arguments.jobs.value_or(1) > 1) {
+    throw InputError(
+        fmt::format("error: --jobs {}: roles that are started elsewhere take part in one run at a "
+                    "time",
+                    *arguments.jobs));
+  }
   const bool own_port = options.transport == "udpm" || options.transport == "tcpq";
   if (!options.external.empty() && own_port) {
     throw InputError(
@@ -72,51 +86,13 @@ runner::ExperimentOptions OptionsOf(const TableArguments& arguments) {
   return options;
 }
 
-runner::ExperimentResult RunOne(const TableArguments& arguments, runner::ExperimentOptions options,
-                                const Scenario& scenario, const std::string& name) {
-  if (!arguments.logs.empty()) {
-    options.log = arguments.logs / fmt::format("{}-seed{}-threshold-{}.lcm",
-                                               arguments.scenario.file().stem().string(),
-                                               scenario.seed, name);
-  }
-  const log::LogOfRun log = options.log.empty() ? log::LogOfRun() : log::LogOfRun(options.log);
-  runner::ExperimentResult result = runner::RunExperiment(scenario, options);
-  if (result.verification && !result.verification->Holds()) {
-    throw cli::CheckFailed(
-        fmt::format("seed {}, {}: {}", scenario.seed, name, result.verification->Trouble()));
-  }
-  return result;
-}
-
-/// Runs every pair of runs on a transport, with logs if requested.
-std::vector<sweep::ThresholdRow> RowsByRuns(const TableArguments& arguments,
-                                            const runner::ExperimentOptions& options,
-                                            Scenario scenario, std::span<const double> thresholds,
-                                            const sweep::SeedRange& seeds) {
+/// Tells the user to start the roles that the runs wait for.
+void AskForRoles(const runner::ExperimentOptions& options, std::int64_t runs) {
   const processes::ExternalRoles external(options.transport, options.traffic, options.wait);
   for (const Role role : options.external) {
     Notice(fmt::format("each of {} runs waits for the {} ({}); start it for each run with: {}",
-                       seeds.count() * (std::ssize(thresholds) + 1), NameOf(role), external.Limit(),
-                       external.Command(role)));
+                       runs, NameOf(role), external.Limit(), external.Command(role)));
   }
-  std::vector<sweep::ThresholdRow> rows;
-  for (const double threshold : thresholds) rows.emplace_back().threshold = threshold;
-  Progress progress("seed", seeds.count());
-  for (std::int64_t seed = seeds.first; seed <= seeds.last; ++seed) {
-    scenario.seed = seed;
-    const runner::ExperimentResult baseline =
-        RunOne(arguments, options, cli::WithoutTradedControl(scenario), "none");
-    const metrics::FogEffect without = metrics::FogEffectOf(baseline.measures);
-    for (sweep::ThresholdRow& row : rows) {
-      scenario.arbitrator.threshold = row.threshold;
-      const runner::ExperimentResult result =
-          RunOne(arguments, options, scenario, fmt::format("{:g}", row.threshold));
-      row.Add(result.measures, metrics::MeasurePair(baseline.samples, result.samples, scenario),
-              without);
-    }
-    progress.Show(seed - seeds.first + 1);
-  }
-  return rows;
 }
 
 std::vector<double> ThresholdsOf(const TableArguments& arguments, const Scenario& scenario) {
@@ -275,10 +251,17 @@ int RunTable(const TableArguments& arguments) {
     lock.emplace(arguments.logs, FileLock::Kind::kOwn, "--logs", "table");
   }
   WatchInterrupts();
+  const bool direct = options.transport == "direct";
+  const int jobs = arguments.jobs.value_or(direct ? sweep::AllCores() : 1);
+  AskForRoles(options, seeds.count() * (std::ssize(thresholds) + 1));
   const std::vector<sweep::ThresholdRow> rows =
-      options.transport == "direct" && arguments.logs.empty()
-          ? cli::RowsOnAllCores(scenario, thresholds, seeds)
-          : RowsByRuns(arguments, options, scenario, thresholds, seeds);
+      direct && arguments.logs.empty()
+          ? cli::RowsInMemory(scenario, thresholds, seeds, jobs)
+          : cli::RowsByRuns({.options = options,
+                             .logs = arguments.logs,
+                             .name = arguments.scenario.file().stem().string(),
+                             .jobs = jobs},
+                            scenario, thresholds, seeds);
   if (arguments.json) {
     cli::PrintJson(ToJson(arguments.scenario.file(), options.transport, scenario, seeds, rows));
   } else {

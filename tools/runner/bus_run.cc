@@ -115,7 +115,7 @@ void RunInMemory(runtime::Bus& bus, runtime::RunCoordinator& coordinator, std::i
                      : recorder::Recorder::Existing::kReplace,
       options.wall_clock ? recorder::Recorder::WallClock::kYes
                          : recorder::Recorder::WallClock::kNo));
-  Progress progress("step", scenario.steps);
+  Progress progress("step", scenario.steps, options.progress);
   while (coordinator.phase() == runtime::RunCoordinator::Phase::kJoining ||
          coordinator.phase() == runtime::RunCoordinator::Phase::kRunning) {
     const TimePoint now = Clock::now();
@@ -150,7 +150,7 @@ ProcessNews RunAsProcesses(runtime::Bus& bus, runtime::RunCoordinator& coordinat
                            processes::RelayProcess* relay, const hosts::HostGroup* hosts,
                            std::int64_t run_id, const Scenario& scenario,
                            const ExperimentOptions& options, const std::filesystem::path& log) {
-  Progress progress("step", scenario.steps);
+  Progress progress("step", scenario.steps, options.progress);
   runtime::Beacon beacon({.run_id = run_id, .url = bus.url(), .scenario = scenario.title});
   processes::ExternalRoles external(bus.url(), options.traffic, options.wait);
   const auto say = [&](const std::string& line) {

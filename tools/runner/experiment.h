@@ -60,6 +60,7 @@ struct ExperimentOptions {
   std::optional<bool> verify;
   bool same_build = false;  // end the run if a role's build differs from the runner's build
   runtime::TrafficOptions traffic;
+  bool progress = true;          // show a bar of the steps if the run takes long
   bool announce = false;         // print on stderr the network of the run and its processes
   bool wall_clock = false;       // in lockstep: the log has the wall clock of each step
   bool samples = false;          // keep the samples of every step in the result

@@ -3,7 +3,12 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include <csignal>
+#include <string>
+#include <vector>
+
 #include "services/runtime/transport/bus.h"
+#include "tests/support/children.h"
 #include "tests/support/command.h"
 #include "tests/support/verbs.h"
 
@@ -84,6 +89,40 @@ TEST(TableOverSeedsTest, IsTheSameOnEveryTransportToTheLastDigit) {
   EXPECT_EQ(TableRows({"--seeds", "3:4", "--transport", "memq"}), direct);
 }
 
+TEST(TableOverSeedsTest, IsTheSameForAnyNumberOfRunsAtOnce) {
+  const nlohmann::json direct = TableRows({"--seeds", "3:5", "--thresholds", "0.5"});
+  for (const char* transport : {"memq", "udpm", "tcpq"}) {
+    EXPECT_EQ(TableRows({"--seeds", "3:5", "--thresholds", "0.5", "--transport", transport,
+                         "--jobs", "3"}),
+              direct)
+        << transport;
+  }
+}
+
+/// The worlds of all runs of a table that go on at this time.
+std::vector<pid_t> WorldsOf(const Background& table) {
+  std::vector<pid_t> worlds = ChildrenOfAnyThread(table.pid());
+  std::erase_if(worlds, [](pid_t child) {
+    return Content("/proc/" + std::to_string(child) + "/comm") != "fogline-world\n";
+  });
+  return worlds;
+}
+
+TEST(TableOverSeedsTest, HasAsManyRunsAtOnceAsItIsTold) {
+  Background table({Program("fogline"), "table", "scenario/paper.json", "--seeds", "1:2",
+                    "--thresholds", "0.5", "--set", "/steps=50000", "--transport", "udpm", "--jobs",
+                    "4"});
+  std::vector<pid_t> worlds;
+  while (worlds.size() < 4) {
+    ASSERT_TRUE(IsAlive(table.pid())) << "there were never four runs at once";
+    worlds = WorldsOf(table);
+  }
+  // WHEN Ctrl-C ends the table, THEN no process is left
+  table.Signal(SIGINT);
+  EXPECT_EQ(table.Wait(), 130) << table.Err();
+  for (const pid_t world : worlds) EXPECT_FALSE(IsAlive(world));
+}
+
 TEST(TableOverSeedsTest, HasMeansNearThePublishedOne) {
   const nlohmann::json rows = TableRows({"--seeds", "1:40"});
   EXPECT_NEAR(rows[0]["si_pct"], 100, 5);
@@ -131,6 +170,13 @@ std::string TableErrorOf(const std::vector<std::string>& more) {
   std::vector<std::string> arguments{"table", "scenario/paper.json"};
   arguments.insert(arguments.end(), more.begin(), more.end());
   return ErrorOf(arguments);
+}
+
+TEST(TableArgumentsTest, RefuseSeveralRunsAtOnceForRolesThatAreStartedElsewhere) {
+  EXPECT_EQ(TableErrorOf({"--external", "driver", "--lcm-url", "udpm://239.255.76.67:7667?ttl=0",
+                          "--jobs", "2"}),
+            "fogline table: error: --jobs 2: roles that are started elsewhere take part in one run "
+            "at a time\n");
 }
 
 TEST(TableArgumentsTest, RefuseToSetWhatTheTableVariesItself) {

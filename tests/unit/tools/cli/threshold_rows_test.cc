@@ -14,7 +14,7 @@ TEST(ThresholdRowsTest, AreThoseOfOneCore) {
   const Scenario scenario = Paper(200);
   const std::vector<double> thresholds{0.3, 0.9};
   const sweep::SeedRange seeds{.first = 3, .last = 6};
-  const auto rows = cli::RowsOnAllCores(scenario, thresholds, seeds);
+  const auto rows = cli::RowsInMemory(scenario, thresholds, seeds);
   const auto expected =
       sweep::SweepThresholds(scenario, thresholds, seeds, 1, [](std::int64_t) { return true; });
   ASSERT_EQ(rows.size(), 2U);
@@ -30,7 +30,7 @@ TEST(ThresholdRowsTest, AreThoseOfOneCore) {
 
 TEST(ThresholdRowsTest, AreGivenUpAfterAnInterrupt) {
   internal::interrupts = 1;
-  EXPECT_THROW(cli::RowsOnAllCores(Paper(10), std::vector{0.5}, {.first = 1, .last = 1}),
+  EXPECT_THROW(cli::RowsInMemory(Paper(10), std::vector{0.5}, {.first = 1, .last = 1}),
                Interrupted);
   internal::interrupts = 0;
 }

@@ -1,0 +1,14 @@
+// Runs side by side, on several threads.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+
+namespace fogline::runner {
+
+/// Calls work(0) to work(count - 1), at most `jobs` of them at once. They begin in this order. One
+/// job works in the calling thread. After an exception no further call begins.
+/// @throws the first exception of `work`, when all calls have ended
+void SideBySide(std::int64_t count, int jobs, const std::function<void(std::int64_t)>& work);
+
+}  // namespace fogline::runner
