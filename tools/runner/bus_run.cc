@@ -39,7 +39,7 @@ namespace fogline::runner {
 namespace {
 
 // Time in which a role has to be ready.
-constexpr Duration kJoinLimit = Supervisor::kPrepareLimit;
+constexpr Duration kJoinLimit = milliseconds(10'000);
 // Interval at which the runner checks its processes while no message arrives.
 constexpr Duration kLookEvery = milliseconds(20);
 // A process without a STATUS for this long counts as hanging. A living process sends ten STATUS
@@ -86,6 +86,7 @@ runtime::RunCoordinatorOptions MakeCoordinatorOptions(const Scenario& scenario,
           .realtime = options.realtime,
           .period = duration_cast<Duration>(step),
           .join_limit = options.external.empty() ? kJoinLimit : Duration::zero(),
+          .prepare_limit = Supervisor::kPrepareLimit,
           .stall_limit = options.stall_limit + duration_cast<Duration>(step),
           .external = options.external,
           .restarts = options.restarts,

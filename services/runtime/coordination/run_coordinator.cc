@@ -70,9 +70,10 @@ TimePoint RunCoordinator::Poll(TimePoint now) {
   }
   // A recorder that reads a long log reports its progress. So the join limit counts from the last
   // progress.
-  if (phase_ == Phase::kJoining && options_.join_limit > Duration::zero() &&
-      HeldAgainst(std::max(began_, progressed_), now) > options_.join_limit) {
-    Fail(fmt::format("not ready after {:.1f} s: {}", Seconds(options_.join_limit), NotReady()));
+  if (const Duration joining = HeldAgainst(std::max(began_, progressed_), now);
+      phase_ == Phase::kJoining && options_.join_limit > Duration::zero() &&
+      joining > (AllPrepare(now) ? options_.prepare_limit : options_.join_limit)) {
+    Fail(fmt::format("not ready after {:.1f} s: {}", Seconds(joining), NotReady()));
   }
   if (const Bus::FailedSends& failed = bus_.failed_sends(); failed.count != own_.sends_failed) {
     own_.sends_failed = failed.count;

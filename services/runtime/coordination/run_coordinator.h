@@ -38,6 +38,7 @@ struct RunCoordinatorOptions {
   bool realtime = false;                      // whether the run does not wait for slow roles
   Duration period{};                          // duration of a step in real time, on the wall clock
   Duration join_limit{};                      // longest wait until all roles are ready; 0: no limit
+  Duration prepare_limit{};                   // the same while roles only prepare (AllPrepare())
   Duration stall_limit = milliseconds(4000);  // longest time without a completed step of any role
   std::vector<Role> external;                 // roles that are started elsewhere
   int restarts = 0;                           // largest number of restarts of each external role
@@ -162,6 +163,9 @@ class RunCoordinator {
   // A role without a STATUS for this long (five heartbeats) counts as silent.
   static constexpr Duration kSilent = milliseconds(1000);
 
+  /// Whether each role that is not ready prepares for the run: it has waited for the scenario, and
+  /// has sent nothing since. SUMO, for example, loads its network.
+  bool AllPrepare(TimePoint now) const;
   void Refuse(RefusalCounter kind) { ++(own_.*kind); }
   void OnStatus(const status_t& heard);
   /// The newest step that a role can have computed by now.

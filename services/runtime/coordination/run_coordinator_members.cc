@@ -155,6 +155,13 @@ void RunCoordinator::MarkDead(Role role, std::int32_t pid, TimePoint now, const 
   progressed_ = now;  // the restart is under way, so the stall limit counts from now
 }
 
+bool RunCoordinator::AllPrepare(TimePoint now) const {
+  return std::ranges::all_of(members_, [&](const Member& member) {
+    return member.status &&
+           (member.status->state != status_t::WAITING || HeldAgainst(member.heard, now) > kSilent);
+  });
+}
+
 void RunCoordinator::Hinder(Role role, std::string why) {
   members_[static_cast<std::size_t>(role)].hindrance = std::move(why);
 }

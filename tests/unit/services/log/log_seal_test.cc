@@ -133,7 +133,7 @@ TEST_F(LogSealTest, ThatDoesNotFitLeavesTheLogAsItWas) {
   setrlimit(RLIMIT_FSIZE, &limit);
   std::signal(SIGXFSZ, handler);
   EXPECT_THAT(error, HasSubstr("cannot append FOGLINE_SEAL to " + log_ + ": "));
-  EXPECT_THAT(error, HasSubstr("the log is as the run left it, without a seal"));
+  EXPECT_THAT(error, HasSubstr("the log is as before"));
   EXPECT_EQ(Content(log_), before);
 }
 

@@ -54,6 +54,54 @@ TEST_F(RunCoordinatorTest, PreparesARoleThatIsStartedAgainAndSaysGoWhenItIsReady
   EXPECT_EQ(coordinator_.phase(), runtime::RunCoordinator::Phase::kRunning);
 }
 
+class JoinLimitTest : public RunCoordinatorTest {
+ protected:
+  using Phase = runtime::RunCoordinator::Phase;
+
+  /// Says WAITING for one role, and READY for all others.
+  void AllAreReadyExcept(Role waiting) {
+    role(waiting).state = status_t::WAITING;
+    for (const RoleInfo& info : kRoles) SayStatus(info.role);
+    limited_.Poll(began_);
+    script_.bus().Drain();
+  }
+
+  const TimePoint began_ = Clock::now();
+  runtime::RunCoordinator limited_{script_.bus(),
+                                   {.run_id = Script::kRunId,
+                                    .scenario_text = script_.text(),
+                                    .join_limit = milliseconds(10'000),
+                                    .prepare_limit = milliseconds(60'000)}};
+};
+
+TEST_F(JoinLimitTest, EndsTheRunIfARoleIsNeverHeard) {
+  PollUntil(limited_, began_ + milliseconds(9'500));
+  EXPECT_EQ(limited_.phase(), Phase::kJoining);
+  PollUntil(limited_, began_ + milliseconds(11'000));
+  EXPECT_EQ(limited_.phase(), Phase::kFailed);
+  EXPECT_THAT(limited_.error(), HasSubstr("not ready after 10.0 s: world (never heard), radar"));
+}
+
+TEST_F(JoinLimitTest, IsLongerForARoleThatHasWaitedAndThenPreparesInSilence) {
+  AllAreReadyExcept(Role::kWorld);
+  PollUntil(limited_, began_ + milliseconds(59'000));
+  EXPECT_EQ(limited_.phase(), Phase::kJoining) << limited_.error();
+  PollUntil(limited_, began_ + milliseconds(62'000));
+  EXPECT_EQ(limited_.phase(), Phase::kFailed);
+  EXPECT_THAT(limited_.error(), testing::EndsWith(" s: world"));
+}
+
+TEST_F(JoinLimitTest, CountsForARoleThatHasJustSaidThatItWaits) {
+  runtime::RunCoordinator short_of_time(script_.bus(), {.run_id = Script::kRunId,
+                                                        .scenario_text = script_.text(),
+                                                        .join_limit = milliseconds(300),
+                                                        .prepare_limit = milliseconds(60'000)});
+  AllAreReadyExcept(Role::kWorld);
+  PollUntil(short_of_time, began_ + milliseconds(600));
+  EXPECT_EQ(short_of_time.phase(), Phase::kFailed);
+  EXPECT_THAT(short_of_time.error(), testing::EndsWith(" s: world"));
+}
+
 TEST_F(RunCoordinatorTest, AddsUpTheCountersOfTheDeadAndTheLiving) {
   role(Role::kFusion).repairs_asked = 3;
   BeAtStep(-1);
