@@ -52,6 +52,14 @@ if(FOGLINE_WERROR)
   add_compile_options(-Werror)
 endif()
 
+# Every thread counts, and each line counts where it stands: an inlined function has no lines of its
+# own.
+option(FOGLINE_COVERAGE "Count the lines that are executed (tools/test --coverage)" OFF)
+if(FOGLINE_COVERAGE)
+  add_compile_options(--coverage -fprofile-update=atomic -fno-inline)
+  add_link_options(--coverage)
+endif()
+
 set(FOGLINE_SANITIZE "" CACHE STRING "Sanitizers for everything, such as address,undefined")
 if(FOGLINE_SANITIZE)
   add_compile_options(-fsanitize=${FOGLINE_SANITIZE} -fno-omit-frame-pointer
