@@ -13,6 +13,7 @@
 #include "common/exit_code.h"
 #include "common/process/console.h"
 #include "tools/benchmarks/comparisons.h"
+#include "tools/benchmarks/growth.h"
 #include "tools/benchmarks/present.h"
 
 namespace fogline::benchmarks {
@@ -22,6 +23,8 @@ struct Arguments {
   bool quick = false;
   bool json = false;
   bool markdown = false;
+  bool growth = false;
+  std::string chart;
   int rounds = 0;
   std::vector<std::string> only;
   std::string against;
@@ -60,12 +63,27 @@ std::vector<Comparison> Wanted(const Arguments& arguments) {
   return wanted;
 }
 
-int Run(const Arguments& arguments, const std::vector<Comparison>& wanted) {
+int RoundsOf(const Arguments& arguments) {
   constexpr int kFullRounds = 7;
   constexpr int kQuickRounds = 3;
-  const int rounds = arguments.rounds > 0 ? arguments.rounds
-                     : arguments.quick    ? kQuickRounds
-                                          : kFullRounds;
+  if (arguments.rounds > 0) return arguments.rounds;
+  return arguments.quick ? kQuickRounds : kFullRounds;
+}
+
+int RunGrowth(const Arguments& arguments) {
+  const int rounds = RoundsOf(arguments);
+  const std::vector<Growth> all =
+      MeasureGrowth(arguments.quick ? Effort::kQuick : Effort::kFull, rounds);
+  if (!arguments.chart.empty()) DrawGrowth(all, arguments.chart);
+  const auto present = arguments.json       ? GrowthJson
+                       : arguments.markdown ? GrowthMarkdown
+                                            : GrowthText;
+  fmt::print("{}", present(all, ThisOccasion(rounds)));
+  return kDone;
+}
+
+int Run(const Arguments& arguments, const std::vector<Comparison>& wanted) {
+  const int rounds = RoundsOf(arguments);
   std::vector<Finding> findings;
   for (const Comparison& comparison : wanted) {
     Complain(fmt::format("{} of {}: {}", findings.size() + 1, wanted.size(), comparison.name));
@@ -92,6 +110,11 @@ int Main(int argc, char** argv) {
                  "Compare with the build of another commit: a folder with source and build "
                  "(tools/bench --against COMMIT makes it)")
       ->check(CLI::ExistingDirectory);
+  CLI::Option* growth =
+      app.add_flag("--growth", arguments.growth,
+                   "Measure how the cost grows with followers, steps and runs instead");
+  app.add_option("--chart", arguments.chart, "With --growth: draw the chart into this SVG file")
+      ->needs(growth);
   app.add_flag("--json", arguments.json, "Print as JSON");
   app.add_flag("--markdown", arguments.markdown, "Print a Markdown table");
   app.footer(
@@ -105,7 +128,7 @@ int Main(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? kDone : kBadInput;
   }
-  return Run(arguments, wanted);
+  return arguments.growth ? RunGrowth(arguments) : Run(arguments, wanted);
 }
 
 }  // namespace

@@ -25,10 +25,7 @@ std::string Rounded(double value) {
   constexpr double kWhole = 100;
   if (std::abs(value) < kWhole) return fmt::format("{:#.3g}", value);
   const double digit = std::pow(10, std::floor(std::log10(std::abs(value))) - 2);
-  std::string text = fmt::format("{:.0f}", std::round(value / digit) * digit);
-  constexpr std::size_t kGroup = 3;
-  for (std::size_t i = text.size(); i > kGroup; i -= kGroup) text.insert(i - kGroup, 1, ',');
-  return text;
+  return WithThousands(fmt::format("{:.0f}", std::round(value / digit) * digit));
 }
 
 std::string WithUnit(const Spread& spread, const std::string& unit) {
@@ -51,6 +48,12 @@ std::string Caption(const Occasion& occasion) {
 }
 
 }  // namespace
+
+std::string WithThousands(std::string digits) {
+  constexpr std::size_t kGroup = 3;
+  for (std::size_t i = digits.size(); i > kGroup; i -= kGroup) digits.insert(i - kGroup, 1, ',');
+  return digits;
+}
 
 Occasion ThisOccasion(int rounds) {
   const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());

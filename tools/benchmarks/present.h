@@ -18,6 +18,9 @@ struct Occasion {
 
 Occasion ThisOccasion(int rounds);
 
+/// Puts commas between the thousands of a whole number: "12,300".
+std::string WithThousands(std::string digits);
+
 std::string ToText(const std::vector<Finding>& findings, const Occasion& occasion);
 std::string ToMarkdown(const std::vector<Finding>& findings, const Occasion& occasion);
 std::string ToJson(const std::vector<Finding>& findings, const Occasion& occasion);

@@ -68,6 +68,28 @@ TEST(BenchTest, ComparesThisBuildWithThatOfAnotherCommit) {
   }
 }
 
+TEST(BenchTest, MeasuresGrowthAndDrawsIt) {
+  const ScratchFolder folder;
+  const std::string chart = folder.File("growth.svg");
+  const Outcome outcome = RunCommand({Program("fogline-bench"), "--growth", "--quick", "--rounds",
+                                      "1", "--json", "--chart", chart});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const auto growth = nlohmann::json::parse(outcome.out)["growth"];
+  ASSERT_EQ(growth.size(), 3U) << outcome.out;
+  for (const auto& quantity : growth) {
+    ASSERT_GE(quantity["points"].size(), 3U) << quantity;
+    const auto& first = quantity["points"].front();
+    const auto& last = quantity["points"].back();
+    EXPECT_GT(last["size"], first["size"]);
+    EXPECT_GT(last["wall_s"].get<double>(), first["wall_s"].get<double>()) << quantity;
+    EXPECT_GT(last["memory_mb"].get<double>(), 0);
+    EXPECT_GT(quantity["beyond_linear"].get<double>(), 0);
+  }
+  EXPECT_THAT(Content(chart), HasSubstr("following cars"));
+  EXPECT_THAT(RunCommand({Program("fogline-bench"), "--chart", chart}).err,
+              HasSubstr("--chart requires --growth"));
+}
+
 TEST(BenchTest, RefusesACommitThatDoesNotExist) {
   const Outcome outcome =
       RunCommand({FOGLINE_SOURCE_DIR "/tools/bench", "--against", "no-such-commit"});

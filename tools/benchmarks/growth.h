@@ -1,0 +1,47 @@
+// How the cost of a run grows with the number of cars and steps, and the cost of a sweep with the
+// number of its runs.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "tools/benchmarks/comparison.h"
+#include "tools/benchmarks/comparisons.h"
+#include "tools/benchmarks/present.h"
+
+namespace fogline::benchmarks {
+
+/// A size, and what it costs.
+struct GrowthPoint {
+  std::int64_t size = 0;
+  Spread wall_s;         // of the whole work, in seconds
+  double per_piece = 0;  // median of wall_s for each piece of work (Growth::piece), in us
+  double memory_mb = 0;  // peak memory, in MB of 10^6 bytes; median
+};
+
+/// One quantity that grows, while everything else stays as it is.
+struct Growth {
+  std::string name;   // "followers"
+  std::string what;   // "following cars"
+  std::string piece;  // of which `per_piece` is the time: "step"
+  std::vector<GrowthPoint> points;
+  /// The measured time for the largest size, divided by that of a straight line through the smaller
+  /// sizes (a least-squares fit). 1: the growth is linear.
+  double beyond_linear = 0;
+};
+
+/// Measures all sizes once in each round, so that a disturbance does not affect one size alone.
+/// @throws std::runtime_error if a program fails
+std::vector<Growth> MeasureGrowth(Effort effort, int rounds);
+
+std::string GrowthText(const std::vector<Growth>& all, const Occasion& occasion);
+std::string GrowthMarkdown(const std::vector<Growth>& all, const Occasion& occasion);
+std::string GrowthJson(const std::vector<Growth>& all, const Occasion& occasion);
+
+/// Draws the time for each piece against the size, one plot for each quantity, as an SVG file.
+/// @throws std::runtime_error if gnuplot fails
+void DrawGrowth(const std::vector<Growth>& all, const std::filesystem::path& chart);
+
+}  // namespace fogline::benchmarks
