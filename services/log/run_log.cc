@@ -63,8 +63,7 @@ class RunLogReader::Assembler {
   // If gaps are read, at most this many steps wait for their missing messages. A logger may get a
   // message late, after it was sent again, and far later steps by then.
   static constexpr std::size_t kMostOpen = 4096;
-  // A step that is further ahead than this was not sent by the run. A run of a scenario does not
-  // lose so many steps.
+  // A step that is further ahead than this was not sent by the run.
   static constexpr std::int64_t kLongestGap = 1'000'000;
 
   struct Pending {
@@ -185,12 +184,10 @@ class RunLogReader::Assembler {
 
   void Finish() {
     if (realtime_) run_.realtime = realtime_->Result();  // also if the log is refused below
-    if (reader_.empty()) {
-      throw InputError(fmt::format("{}: error: the log is empty: no run has begun to write it",
-                                   PathText(file_)));
-    }
+    if (reader_.empty()) Refuse("the log is empty: no run has begun to write it");
     FinishScenario();
     run_.digest = run_.gaps.Any() ? "" : digest_.Hex();
+    foreign_ -= others_.Forget(run_.run_id);  // messages before the log named its run
     run_.other_runs = others_.all();
     run_.events = reader_.head();
     const std::string alteration = Alteration();
@@ -211,8 +208,11 @@ class RunLogReader::Assembler {
                        .conflict = conflict_,
                        .foreign = foreign_};
     if (!pending_.empty()) {
+      const auto& [next, there] = *pending_.begin();
       remarks.incomplete = run_.steps;
-      remarks.lacks = NamesOfChannels(LackingIn(pending_.begin()->second.messages, run_.channels));
+      remarks.lacks = next == run_.steps
+                          ? NamesOfChannels(LackingIn(there.messages, run_.channels))
+                          : fmt::format("every message; the next step in the log is {}", next);
     }
     run_.note = NoteOf(run_, remarks);
   }
@@ -225,20 +225,18 @@ class RunLogReader::Assembler {
       run_.has_scenario = false;
       if (!options_.needs_scenario && begun_) return;
       if (VersionOf(file_).other_types) RefuseVersion(file_);
-      throw InputError(fmt::format("{}: error: the log has no complete scenario of a run{}",
-                                   PathText(file_),
-                                   options_.gaps && begun_ ? "; --scenario FILE gives it" : ""));
+      Refuse(fmt::format("the log has no complete scenario of a run{}",
+                         options_.gaps && begun_ ? "; --scenario FILE gives it" : ""));
     }
     if (parts_.Complete() && !parts_.HashHolds()) {
-      throw InputError(fmt::format("{}: error: the scenario in the log does not match its hash",
-                                   PathText(file_)));
+      Refuse("the scenario in the log does not match its hash");
     }
     const std::string known = parts_.empty() ? status_hash_ : parts_.hash();
     if (!given.empty() && !known.empty() && known != runtime::HashOf(given)) {
-      throw InputError(fmt::format(
-          "{}: error: --scenario: the log is of another scenario: its hash is {}, that of the file "
-          "is {}; `fogline check --print` with the seed and the --set of the run prints it",
-          PathText(file_), EscapeControls(known), runtime::HashOf(given)));
+      Refuse(fmt::format(
+          "--scenario: the log is of another scenario: its hash is {}, that of the file is {}; "
+          "`fogline check --print` with the seed and the --set of the run prints it",
+          EscapeControls(known), runtime::HashOf(given)));
     }
     run_.scenario_text = parts_.Complete() ? parts_.Text() : given;
     run_.scenario_hash = parts_.Complete() ? parts_.hash() : runtime::HashOf(given);
@@ -247,8 +245,11 @@ class RunLogReader::Assembler {
 
   [[noreturn]] void RefuseRun() const {
     const std::string ids = others_.all().empty() ? "" : "; it has " + IdsOf(others_.all());
-    throw InputError(fmt::format("{}: error: --run {}: the log has no such run{}", PathText(file_),
-                                 run_.run_id, ids));
+    Refuse(fmt::format("--run {}: the log has no such run{}", run_.run_id, ids));
+  }
+
+  [[noreturn]] void Refuse(const std::string& why) const {
+    throw InputError(fmt::format("{}: error: {}", PathText(file_), why));
   }
 
   /// How the log differs from its seal; "" if it does not differ or has no seal.
@@ -312,7 +313,7 @@ class RunLogReader::Assembler {
       const runtime::ChannelSet channels = ReadLogGraph(event, run_.run_id);
       if (channels.any()) run_.channels = channels;
     } catch (const InputError& error) {
-      throw InputError(fmt::format("{}: error: {}", PathText(file_), error.what()));
+      Refuse(error.what());
     }
   }
 
@@ -346,9 +347,8 @@ class RunLogReader::Assembler {
     if (is_done) end_ = status.header.step + 1;
   }
 
-  /// The payload of a message. lcm-logger writes signed messages with their signatures. This reader
-  /// cannot verify the signatures. In a signed run a message without a signature does not belong to
-  /// the run, so its payload is empty here.
+  /// The payload of a message, without the signature that lcm-logger also writes. This reader
+  /// cannot verify signatures. In a signed run the payload of a message without one is empty here.
   runtime::Bytes Payload(runtime::Bytes data) const {
     if (!is_signed_) return data;
     return runtime::LooksSigned(data) &&

@@ -32,6 +32,15 @@ class OtherRuns {
     }
     if (runs_.size() < kMost) runs_.push_back({.run_id = run_id, .messages = 1});
   }
+  /// Forgets a run, which is no other run. @return its messages
+  std::int64_t Forget(std::int64_t run_id) {
+    std::int64_t messages = 0;
+    std::erase_if(runs_, [&](const RunInLog& run) {
+      if (run.run_id == run_id) messages = run.messages;
+      return run.run_id == run_id;
+    });
+    return messages;
+  }
   /// In the order of their first messages.
   const std::vector<RunInLog>& all() const { return runs_; }
 

@@ -225,6 +225,31 @@ TEST_F(GapTest, ALogOfSeveralRunsNamesThemAndIsReadForTheChosenOne) {
   EXPECT_THAT(unknown.err, HasSubstr("--run 5: the log has no such run; it has "));
 }
 
+TEST_F(GapTest, ALogThatBeginsLateSaysWithItsDigestWithWhichStep) {
+  // GIVEN a log without its first steps, in which RUN comes behind some messages of its run
+  const std::string late = folder_.File("late.lcm");
+  {
+    log::EventLogReader reader(whole_);
+    log::EventLogWriter writer(late);
+    std::vector<log::Event> runs;
+    while (const auto event = reader.Next()) {
+      const std::int64_t step = runtime::ReadInt64(event->data, runtime::kStepOffset);
+      if (event->channel == ChannelOf<run_t>().name) runs.push_back(*event);
+      if (step < 196 || event->channel == "FOGLINE_SEAL") continue;
+      if (step == 199) {
+        for (const log::Event& run : runs) writer.Write(run.channel, run.utime, run.data);
+        runs.clear();
+      }
+      writer.Write(event->channel, event->utime, event->data);
+    }
+  }
+  const Outcome digest = Fogline({"digest", late});
+  EXPECT_EQ(digest.code, 1);
+  EXPECT_EQ(digest.err, late +
+                            ": no step of 500 is complete; step 0 lacks every message; the next "
+                            "step in the log is 199\n");
+}
+
 TEST_F(GapTest, TheReportOfALogWithAGapLeavesOutWhatIsUnknown) {
   const std::string log = WithoutOne("HOST_COMMAND");
   const std::string page = folder_.File("report.html");
