@@ -74,7 +74,10 @@ void Membership::OnRun(Bytes bytes) {
   // The RUN of a log has no number. It invites no role.
   if (!run_.id && run.sequence < 1) return own_.Refuse(&status_t::foreign);
   const status_t& own = own_.message();
-  if (!run_.id && SeatIn(run, own.role, own.instance) != Seat::kFree) return;
+  if (!run_.id && SeatIn(run, own.role, own.instance) != Seat::kFree) {
+    run_.full = run.header.run_id;
+    return;
+  }
   if (run.progress > run_.steps) return own_.Refuse(&status_t::out_of_window);
   if (run.realtime && !IsSpeed(run.pace)) return own_.Refuse(&status_t::malformed);
   if (!IsFresh(run, now)) return;

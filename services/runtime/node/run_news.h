@@ -11,9 +11,11 @@ namespace fogline::runtime {
 
 struct RunNews {
   std::optional<std::int64_t> id;  // nullopt: no run is known yet
-  std::int64_t sequence = 0;       // sequence number of the newest RUN
-  std::int64_t progress = -1;      // last step that is known to have begun; -1: none
-  std::int8_t minimal_risk = 0;    // cars in a minimal risk manoeuvre, as in status_t
+  // A run on this network that has no place for this role; heard while the role has no run.
+  std::optional<std::int64_t> full;
+  std::int64_t sequence = 0;     // sequence number of the newest RUN
+  std::int64_t progress = -1;    // last step that is known to have begun; -1: none
+  std::int8_t minimal_risk = 0;  // cars in a minimal risk manoeuvre, as in status_t
   ScenarioParts parts;
   // Known once the scenario is complete:
   std::int64_t steps = kMaxStep;

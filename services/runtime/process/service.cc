@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
+#include <optional>
 #include <thread>
 #include <utility>
 
@@ -82,6 +83,7 @@ class Service {
         StartOver(now);
       } else if (own().Waits()) {
         WarnOfSignatures();
+        NameTheFullRun();
         SayThatItWaits(now);
         Seek(now);
       } else if (work_->node().membership().RunnerSilent(now)) {
@@ -263,6 +265,13 @@ class Service {
     if (warned_) Say(trouble);
   }
 
+  /// Says once of a run on this network why the process does not take part in it.
+  void NameTheFullRun() {
+    if (!news().full || std::exchange(full_, news().full) == news().full) return;
+    Say(fmt::format("run {} on {} has its {} already; waiting for another run", *full_, bus_->url(),
+                    NameOf(arguments_.role)));
+  }
+
   void PreferIfRealtime() {
     if (!news().realtime || std::exchange(preferred_, true)) return;
     const int priority = arguments_.role == Role::kWorld ? kWorldPriority : kPriority;
@@ -282,6 +291,7 @@ class Service {
   WaitingNotice waiting_;
   TimePoint try_at_{};  // when to try again to join a network
   bool starts_over_ = false;
+  std::optional<std::int64_t> full_;  // the last run that NameTheFullRun() has named
   bool warned_ = false;
   bool preferred_ = false;
 };

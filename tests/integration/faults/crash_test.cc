@@ -154,11 +154,13 @@ TEST(CrashTest, ASecondProcessOfARoleThatLivesIsRefusedAndToldAndTheRunGoesOn) {
 }
 
 TEST(CrashTest, AProcessOfARoleThatTheRunHasItselfWaitsForAnotherRun) {
-  WatchedRun watched;
+  WatchedRun watched({}, 6000);
   watched.WaitForStep(100);
-  const Background stray({Program("fogline-acc"), "--lcm-url", watched.url()});
+  Background stray({Program("fogline-acc"), "--lcm-url", watched.url()});
+  EXPECT_TRUE(stray.WaitForErr("fogline-acc: run " + watched.RunId() + " on " + watched.url()));
   EXPECT_TRUE(watched.ExpectSameResult()["restarts"].empty());
   EXPECT_TRUE(IsAlive(stray.pid()));
+  EXPECT_THAT(stray.Err(), HasSubstr(" has its acc already; waiting for another run\n"));
 }
 
 TEST(CrashTest, ARoleFromElsewhereThatGoesOnAfterItWasReplacedLeavesTheRun) {
