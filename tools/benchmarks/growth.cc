@@ -189,9 +189,16 @@ void DrawGrowth(const std::vector<Growth>& all, const std::filesystem::path& cha
   out << "set terminal svg size 1080,330 font 'sans-serif,14' background '#ffffff'\n"
       << "set output '" << chart.string() << "'\n"
       << "set multiplot layout 1," << all.size() << "\n"
-      << "set logscale x\nset format x '10^{%L}'\nset grid\nset border 3\nset tics nomirror\n"
+      << "set grid\nset border 3\nset tics nomirror\n"
       << "set yrange [0:*]\nset key off\n";
   for (std::size_t i = 0; i < all.size(); ++i) {
+    // Sizes that differ by decades need a logarithmic axis; only on a linear one is linear growth a
+    // straight line.
+    constexpr std::int64_t kDecades = 100;
+    const bool wide = all[i].points.back().size >= kDecades * all[i].points.front().size;
+    out << (wide ? "set logscale x\nset format x '10^{%L}'\n"
+                 : "unset logscale x\nset format x '%g'\nset xrange [0:*]\n");
+    if (wide) out << "set autoscale x\n";
     out << "$data" << i << " << EOD\n";
     for (const GrowthPoint& point : all[i].points) {
       out << point.size << " " << point.per_piece << "\n";
