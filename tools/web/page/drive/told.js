@@ -110,5 +110,5 @@ const LEFT = "You have left the seat. Press “Begin” to come back.";
  */
 export function whyAwayInWords(why, {hasLeft = false, side = "unknown"} = {}) {
   const words = why === "not begun" && hasLeft ? LEFT : WHY_AWAY[why] ?? "";
-  return words !== "" && side === "human" ? `${words} Nobody presses the pedals now.` : words;
+  return words !== "" && side === "human" ? `${words} No person presses the pedals now.` : words;
 }

@@ -26,13 +26,13 @@ const REASONS = {
   COLLISION_WARNING: "The car ahead is too near. ",
   EMERGENCY_BRAKING: "A collision is near. ",
 };
-const NOBODY = "Neither the automation nor the human goes on driving. ";
+const NO_DRIVER = "Neither the automation nor the human goes on driving. ";
 
 /** Why the side of this HOST_COMMAND drives. */
 export function reason({mode, lambda_human, doc, threshold}) {
   const {name, side} = modeOf(mode, lambda_human);
   const compared = doc >= threshold ? "at or above" : "below";
-  return (REASONS[name] ?? (side === "risk" ? NOBODY : "")) +
+  return (REASONS[name] ?? (side === "risk" ? NO_DRIVER : "")) +
     `The Degree of Conflict ${decimal(doc, 2)} is ${compared} the threshold ${decimal(threshold, 2)}.`;
 }
 

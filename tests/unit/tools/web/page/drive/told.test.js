@@ -75,7 +75,7 @@ test("why a person does not drive is said in words", () => {
   }
   assert.equal(whyAwayInWords(""), "");
   assert.match(whyAwayInWords("not begun", {hasLeft: true}), /left the seat/);
-  assert.match(whyAwayInWords("hidden", {side: "human"}), /Nobody presses the pedals/);
-  assert.doesNotMatch(whyAwayInWords("hidden", {side: "automation"}), /Nobody/);
+  assert.match(whyAwayInWords("hidden", {side: "human"}), /No person presses the pedals/);
+  assert.doesNotMatch(whyAwayInWords("hidden", {side: "automation"}), /No person/);
   assert.equal(whyAwayInWords("", {side: "human"}), "");
 });
