@@ -47,7 +47,7 @@ function(fogline_add_role name)
   fogline_add_library(${name})
   target_link_libraries(fogline_${name} PUBLIC fogline_lcmtypes fogline_scenario)
   add_executable(fogline-${name} ${name}_main.cc)
-  target_compile_options(fogline-${name} PRIVATE ${FOGLINE_IO_CODE})
+  target_compile_options(fogline-${name} PRIVATE ${FOGLINE_COLD_CODE})
   target_link_libraries(fogline-${name} PRIVATE fogline_${name} fogline_runtime)
 endfunction()
 

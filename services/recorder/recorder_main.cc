@@ -5,8 +5,6 @@
 #include <memory>
 #include <optional>
 
-#include <CLI/CLI.hpp>
-
 #include "common/file_lock.h"
 #include "services/log/log_of_run.h"
 #include "services/runtime/process/service.h"
@@ -45,15 +43,14 @@ int main(int argc, char** argv) {
             bus, run_id, file, resume ? Recorder::Existing::kResume : Recorder::Existing::kReplace,
             wall_clock ? Recorder::WallClock::kYes : Recorder::WallClock::kNo);
       },
-      [&](CLI::App& app) {
-        app.add_option("--log", file, "Event log to write; an existing file is replaced")
-            ->required();
-        app.add_flag("--resume", resume,
+      [&](fogline::runtime::ProgramOptions& options) {
+        options.RequiredText("--log", file, "Event log to write; an existing file is replaced");
+        options.Flag("--resume", resume,
                      "Go on with the log of a recorder that was killed in the same run");
-        app.add_flag("--shared-log", shared,
+        options.Flag("--shared-log", shared,
                      "The log is locked by the runner, which has started this recorder");
-        app.add_flag("--wall-clock", wall_clock,
+        options.Flag("--wall-clock", wall_clock,
                      "Also write the wall clock of each step (always on in real time)");
-        app.footer(kHelpFooter);  // replaces the footer of the other roles
+        options.Footer(kHelpFooter);  // replaces the footer of the other roles
       });
 }

@@ -7,9 +7,10 @@
 
 #include "common/errors.h"
 #include "services/graph.h"
+#include "services/runtime/process/program_options.h"
 #include "services/runtime/transport/lcm_url.h"
 #include "tools/cli/help.h"
-#include "tools/hosts/plan_options.h"
+#include "tools/cli/plan_options.h"
 
 namespace fogline::cli {
 namespace {
@@ -55,7 +56,7 @@ TransportArguments::TransportArguments(CLI::App& verb, std::string transport)
       ->allow_extra_args(false)
       ->check(RefuseRecorder)
       ->check(CLI::IsMember(ExternalRoleNames()));
-  hosts::AddPlanOptions(verb, hosts_);
+  AddPlanOptions(verb, hosts_);
   verb.add_option("--wait", wait_s_, "Longest wait for roles started elsewhere, in s (0: for ever)")
       ->check(NumberIn(0, 1e6))
       ->capture_default_str();

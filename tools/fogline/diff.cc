@@ -10,7 +10,7 @@
 
 #include "common/process/console.h"
 #include "common/text.h"
-#include "services/runtime/process/run_id_option.h"
+#include "services/runtime/process/program_options.h"
 #include "tools/cli/arguments.h"
 #include "tools/cli/help.h"
 #include "tools/fogline/verbs.h"

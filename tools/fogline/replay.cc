@@ -33,10 +33,6 @@ struct ReplayArguments {
   bool json = false;
 };
 
-[[noreturn]] void RefuseLog(const std::filesystem::path& log, std::string_view why) {
-  throw InputError(fmt::format("{}: error: {}", PathText(log), why));
-}
-
 /// The run of a log, without its steps.
 log::RunLog ReadRun(const ReplayArguments& arguments) {
   log::RunLogReader reader(arguments.log, arguments.Options());
@@ -51,7 +47,7 @@ void RefuseOthers(const std::filesystem::path& log, const std::vector<replay::Ro
   const bool all = std::ranges::all_of(
       roles, [&](const replay::RoleCheck& one) { return replay::CanReplay(one.role, run); });
   if (all) return;
-  RefuseLog(
+  cli::RefuseLog(
       log,
       "a run in real time: its log does not show which inputs had come by a role's deadline; "
       "replay computes all roles of a run in lockstep, but only the role driver of a run that a "
@@ -71,7 +67,7 @@ std::vector<replay::RoleCheck> ChosenRoles(const ReplayArguments& arguments,
     if (missing.empty()) return false;
     const std::string why =
         fmt::format("the log has no {}, which the role {} needs here", missing, NameOf(one.role));
-    if (NameOf(one.role) == arguments.role) RefuseLog(arguments.log, why);
+    if (NameOf(one.role) == arguments.role) cli::RefuseLog(arguments.log, why);
     if (arguments.all) Notice(fmt::format("{}: {}", PathText(arguments.log), why));
     return true;
   });
@@ -125,7 +121,7 @@ int RunReplay(const ReplayArguments& arguments) {
   try {
     replay::CheckRoles(reader, roles);
   } catch (const InputError& error) {
-    RefuseLog(arguments.log, error.what());
+    cli::RefuseLog(arguments.log, error.what());
   }
   const bool same = std::ranges::all_of(
       roles, [](const replay::RoleCheck& one) { return !one.first.has_value(); });

@@ -13,7 +13,7 @@
 #include "common/interrupt.h"
 #include "common/process/console.h"
 #include "common/text.h"
-#include "services/runtime/process/run_id_option.h"
+#include "services/runtime/process/program_options.h"
 #include "services/runtime/wire/build_id.h"
 #include "services/runtime/wire/other_build.h"
 #include "services/runtime/wire/scenario_parts.h"

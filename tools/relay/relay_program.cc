@@ -3,13 +3,13 @@
 #include <cstdio>
 
 #include <fmt/core.h>
-#include <CLI/CLI.hpp>
 #include <boost/asio/signal_set.hpp>
 
 #include "common/errors.h"
 #include "common/exit_code.h"
 #include "common/interrupt.h"
 #include "common/process/console.h"
+#include "services/runtime/process/program_options.h"
 #include "services/runtime/transport/tcpq_url.h"
 #include "tools/relay/relay.h"
 
@@ -42,24 +42,17 @@ struct Arguments {
   RelayOptions relay;
   bool quiet = false;
 
-  void AddTo(CLI::App& app) {
-    app.add_option("--listen", listen, "ADDRESS:PORT; port 0: any free port")
-        ->capture_default_str();
-    app.add_option("--max-message", message_mib, "Largest message, in MiB")
-        ->check(CLI::Range(1, 256))
-        ->capture_default_str();
-    app.add_option("--max-queue", queue_mib,
-                   "Disconnect a client for which more than this waits, in MiB")
-        ->check(CLI::Range(1, 4096))
-        ->capture_default_str();
-    app.add_option("--max-clients", relay.clients, "Most clients at a time")
-        ->check(CLI::Range(1, 10'000))
-        ->capture_default_str();
-    app.add_option("--max-subscriptions", relay.subscriptions, "Most subscriptions of one client")
-        ->check(CLI::Range(1, 100'000))
-        ->capture_default_str();
-    app.add_flag("--quiet", quiet, "Print no summary at the end");
-    app.footer(kFooter);
+  void AddTo(runtime::ProgramOptions& options) {
+    options.Text("--listen", listen, "ADDRESS:PORT; port 0: any free port",
+                 runtime::ProgramOptions::Help::kWithDefault);
+    options.Count("--max-message", message_mib, "Largest message, in MiB", 1, 256);
+    options.Count("--max-queue", queue_mib,
+                  "Disconnect a client for which more than this waits, in MiB", 1, 4096);
+    options.Count("--max-clients", relay.clients, "Most clients at a time", 1, 10'000);
+    options.Count("--max-subscriptions", relay.subscriptions, "Most subscriptions of one client", 1,
+                  100'000);
+    options.Flag("--quiet", quiet, "Print no summary at the end");
+    options.Footer(kFooter);
   }
 };
 
@@ -93,19 +86,12 @@ int RunRelay(const Arguments& arguments) {
 
 int RunProgram(int argc, char** argv) {
   TakeStandardDescriptors();
-  CLI::App app{"Carries LCM messages over TCP (tcpq://) where multicast is blocked.",
-               "fogline-relay"};
-  app.set_version_flag("--version", FOGLINE_VERSION);
+  runtime::ProgramOptions options(
+      "fogline-relay", "Carries LCM messages over TCP (tcpq://) where multicast is blocked.",
+      FOGLINE_VERSION);
   Arguments arguments;
-  arguments.AddTo(app);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::Success& asked) {  // --help, --version
-    return app.exit(asked);
-  } catch (const CLI::ParseError& error) {
-    Complain(fmt::format("fogline-relay: error: {} (see fogline-relay --help)", error.what()));
-    return kBadInput;
-  }
+  arguments.AddTo(options);
+  if (const std::optional<int> exit_code = options.Parse(argc, argv)) return *exit_code;
   try {
     return RunRelay(arguments);
   } catch (const InputError& error) {

@@ -20,7 +20,7 @@
 #include "common/interrupt.h"
 #include "common/process/console.h"
 #include "common/text.h"
-#include "services/runtime/process/run_id_option.h"
+#include "services/runtime/process/program_options.h"
 #include "services/runtime/transport/tcpq_url.h"
 #include "services/runtime/transport/traffic_options.h"
 #include "tools/cli/arguments.h"

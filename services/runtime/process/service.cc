@@ -1,14 +1,11 @@
 #include "services/runtime/process/service.h"
 
 #include <chrono>
-#include <cmath>
-#include <cstdlib>
 #include <optional>
 #include <thread>
 #include <utility>
 
 #include <fmt/core.h>
-#include <CLI/CLI.hpp>
 
 #include "common/errors.h"
 #include "common/exit_code.h"
@@ -18,10 +15,8 @@
 #include "common/process/this_process.h"
 #include "services/runtime/discovery/run_seeker.h"
 #include "services/runtime/discovery/waiting_roles.h"
-#include "services/runtime/process/run_id_option.h"
 #include "services/runtime/process/version.h"
 #include "services/runtime/transport/lcm_url.h"
-#include "services/runtime/transport/traffic_options.h"
 
 namespace fogline::runtime {
 namespace {
@@ -44,16 +39,11 @@ struct Arguments {
   double wait_s = 60;
   TrafficOptions traffic;
 
-  void AddTo(CLI::App& app) {
-    app.add_option("--lcm-url", url, "LCM network to join (default: see above)");
-    AddRunIdOption(app, "--run-id", run_id, "Join only the run with this id");
-    app.add_option("--wait", wait_s, "Longest wait for a run, in s (0: for ever)")
-        ->check(CLI::Range(0.0, 1e6))
-        ->check([](const std::string& text) {  // CLI::Range accepts NaN
-          return std::isnan(std::strtod(text.c_str(), nullptr)) ? "not a number" : "";
-        })
-        ->capture_default_str();
-    AddTrafficOptions(app, traffic);
+  void AddTo(ProgramOptions& options) {
+    options.Text("--lcm-url", url, "LCM network to join (default: see above)");
+    options.RunId("--run-id", run_id, "Join only the run with this id");
+    options.Seconds("--wait", wait_s, "Longest wait for a run, in s (0: for ever)", 1e6);
+    options.Traffic(traffic);
   }
 };
 
@@ -306,21 +296,21 @@ std::string_view PurposeOf(Role role) {
 }  // namespace
 
 int RunProcess(int argc, char** argv, Role role, const WorkFactory& make,
-               const std::function<void(CLI::App&)>& extend) {
+               const std::function<void(ProgramOptions&)>& extend) {
   TakeStandardDescriptors();
   Arguments arguments{.name = fmt::format("fogline-{}", NameOf(role)), .role = role};
   const std::string& name = arguments.name;
-  CLI::App app{
+  ProgramOptions options(
+      name,
       fmt::format("Fogline's {}: {}.\n"
                   "Joins the next run on the LCM network, takes part in it, and leaves when the\n"
                   "runner says so. Without --lcm-url it uses $LCM_DEFAULT_URL or, if that is not\n"
                   "set, {}. It also joins runs that are\n"
                   "announced there and wait for this role.",
                   NameOf(role), PurposeOf(role), kLcmDefaultUrl),
-      name};
-  app.set_version_flag("--version", VersionText());
-  arguments.AddTo(app);
-  app.footer(
+      VersionText());
+  arguments.AddTo(options);
+  options.Footer(
       fmt::format("Exit codes: 0 stopped by the runner, 2 bad usage, 3 failed, 130 interrupted."
                   "\n\nExamples: in two shells of one machine; with a network of one's own\n"
                   "  {0}\n"
@@ -329,15 +319,8 @@ int RunProcess(int argc, char** argv, Role role, const WorkFactory& make,
                   "  fogline run scenario/paper.json --external {1} \\\n"
                   "    --lcm-url 'udpm://239.255.76.67:7700?ttl=0'",
                   name, NameOf(role)));
-  if (extend) extend(app);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::Success& asked) {  // --help, --version
-    return app.exit(asked);
-  } catch (const CLI::ParseError& error) {
-    Complain(fmt::format("{0}: error: {1} (see {0} --help)", name, error.what()));
-    return kBadInput;
-  }
+  if (extend) extend(options);
+  if (const std::optional<int> exit_code = options.Parse(argc, argv)) return *exit_code;
   WatchInterrupts();
   FailWritesBeyondTheSizeLimit();
   try {

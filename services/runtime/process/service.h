@@ -5,11 +5,8 @@
 #include <memory>
 #include <optional>
 
+#include "services/runtime/process/program_options.h"
 #include "services/runtime/process/step_node.h"
-
-namespace CLI {
-class App;
-}
 
 namespace fogline::runtime {
 
@@ -21,7 +18,7 @@ using WorkFactory =
 /// runner, 2 bad usage, 3 failed, 130 ended by SIGINT, SIGTERM or SIGHUP (interrupt.h).
 /// @param extend adds options of this service, before the command line is read
 int RunProcess(int argc, char** argv, Role role, const WorkFactory& make,
-               const std::function<void(CLI::App&)>& extend = {});
+               const std::function<void(ProgramOptions&)>& extend = {});
 
 /// RunProcess() for an algorithm. Failsafe replaces the algorithm in real time (step_node.h).
 template <class Algorithm, class Failsafe = void>

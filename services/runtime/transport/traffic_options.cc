@@ -3,28 +3,10 @@
 #include <cstdlib>
 
 #include <fmt/core.h>
-#include <CLI/CLI.hpp>
 
 #include "common/errors.h"
 
 namespace fogline::runtime {
-
-namespace {
-
-constexpr const char* kKeyVariable = "FOGLINE_KEY";
-
-}  // namespace
-
-void AddTrafficOptions(CLI::App& app, TrafficOptions& options) {
-  app.add_option("--key", options.key_file,
-                 "Sign messages with the key in this file, and refuse unsigned ones")
-      ->envname(kKeyVariable)
-      ->check([](const std::string& file) {
-        return file.empty() ? "the name of the key's file is empty" : "";
-      });
-  app.add_option("--faults", options.faults,
-                 "Receive as over a bad network, such as loss=0.3,delay_ms=5");
-}
 
 std::optional<SigningKey> KeyOf(const TrafficOptions& options) {
   if (!options.key_file.empty()) return SigningKey::Load(options.key_file);

@@ -1,5 +1,5 @@
 // The options for the messages of a process: a key and faults. These options are the same for
-// `fogline run` and for every service.
+// `fogline run` and for every service (process/program_options.h reads them).
 #pragma once
 
 #include <optional>
@@ -8,10 +8,6 @@
 
 #include "services/runtime/transport/bus.h"
 
-namespace CLI {
-class App;
-}
-
 namespace fogline::runtime {
 
 struct TrafficOptions {
@@ -19,8 +15,8 @@ struct TrafficOptions {
   std::string faults;    // text for ParseFaults(); "": no faults
 };
 
-/// Adds --key and --faults to a command line.
-void AddTrafficOptions(CLI::App& app, TrafficOptions& options);
+/// The environment variable that names the key's file if --key does not.
+inline constexpr const char* kKeyVariable = "FOGLINE_KEY";
 
 /// The key; nullopt if the options name no key.
 /// @throws InputError when the key's file is wrong, or FOGLINE_KEY is set but empty

@@ -3,10 +3,11 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include "common/errors.h"
 #include "common/process/console.h"
 #include "common/text.h"
 #include "scenario/io/loader.h"
-#include "services/runtime/process/run_id_option.h"
+#include "services/runtime/process/program_options.h"
 
 namespace fogline::cli {
 
@@ -26,6 +27,10 @@ log::ReadOptions LogReading::Options() const {
   log::ReadOptions options{.gaps = true, .run_id = run_id_};
   if (!scenario_.empty()) options.scenario_text = PrintScenario(LoadScenario(scenario_));
   return options;
+}
+
+void RefuseLog(const std::filesystem::path& log, const std::string& why) {
+  throw InputError(fmt::format("{}: error: {}", PathText(log), why));
 }
 
 void SayAboutLog(const std::filesystem::path& log, const log::RunLog& run) {

@@ -31,6 +31,9 @@ class LogReading {
 /// The option --run alone.
 void AddRunOption(CLI::App& verb, std::optional<std::int64_t>& run_id);
 
+/// @throws InputError always: it names the log and says why a verb cannot use the log
+[[noreturn]] void RefuseLog(const std::filesystem::path& log, const std::string& why);
+
 /// Prints on stderr why a log is not complete, and which other runs it has.
 void SayAboutLog(const std::filesystem::path& log, const log::RunLog& run);
 

@@ -27,10 +27,6 @@
 namespace fogline {
 namespace {
 
-[[noreturn]] void RefuseLog(const std::filesystem::path& log, const std::string& why) {
-  throw InputError(fmt::format("{}: error: {}", PathText(log), why));
-}
-
 /// The scenario of the recorded run, with the overrides. It ends where the log ends.
 /// @throws InputError
 Scenario LiveScenario(const std::filesystem::path& log, const replay::RecordedMessages& messages,
@@ -41,11 +37,11 @@ Scenario LiveScenario(const std::filesystem::path& log, const replay::RecordedMe
     throw InputError("error: --set /step_s: the recorded messages have the steps of their run");
   }
   scenario.steps = std::min(scenario.steps, messages.steps());
-  if (scenario.steps < 1) RefuseLog(log, "the log has no step");
+  if (scenario.steps < 1) cli::RefuseLog(log, "the log has no step");
   if (scenario.person.drives) {
-    RefuseLog(log,
-              "a person drove in this run: set /person/drives=false, or record the commands "
-              "with --channels DRIVER_COMMAND");
+    cli::RefuseLog(log,
+                   "a person drove in this run: set /person/drives=false, or record the commands "
+                   "with --channels DRIVER_COMMAND");
   }
   runner::CheckPossible(scenario, log);
   return scenario;
@@ -116,8 +112,8 @@ int LiveReplay::Run(const std::filesystem::path& recorded, std::optional<std::in
   const replay::RecordedMessages messages(recorded, read, replay::RecordedChannels(channels_));
   const log::RunLog& run = messages.run();
   if (const std::string gap = messages.FirstGap(); !realtime_ && !gap.empty()) {
-    RefuseLog(recorded,
-              fmt::format("{}: a run in lockstep needs every message; use --realtime", gap));
+    cli::RefuseLog(recorded,
+                   fmt::format("{}: a run in lockstep needs every message; use --realtime", gap));
   }
   const Scenario scenario = LiveScenario(recorded, messages, overrides_);
   runner::ExperimentOptions options;

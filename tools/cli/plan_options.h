@@ -7,9 +7,9 @@ namespace CLI {
 class App;
 }
 
-namespace fogline::hosts {
+namespace fogline::cli {
 
 /// Adds --on, --lab, --ssh, --relay and --relay-at to a command line.
-void AddPlanOptions(CLI::App& app, PlanWords& words);
+void AddPlanOptions(CLI::App& app, hosts::PlanWords& words);
 
-}  // namespace fogline::hosts
+}  // namespace fogline::cli

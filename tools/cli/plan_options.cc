@@ -1,10 +1,10 @@
-#include "tools/hosts/plan_options.h"
+#include "tools/cli/plan_options.h"
 
 #include <CLI/CLI.hpp>
 
-namespace fogline::hosts {
+namespace fogline::cli {
 
-void AddPlanOptions(CLI::App& app, PlanWords& words) {
+void AddPlanOptions(CLI::App& app, hosts::PlanWords& words) {
   app.add_option("--on", words.on,
                  "Start this role on another machine by ssh: fusion=[USER@]HOST, or "
                  "fusion=HOST:/FOLDER of Fogline's programs there (repeatable)")
@@ -23,4 +23,4 @@ void AddPlanOptions(CLI::App& app, PlanWords& words) {
                  "which the other machines see this one)");
 }
 
-}  // namespace fogline::hosts
+}  // namespace fogline::cli

@@ -1,4 +1,4 @@
-#include "services/runtime/process/run_id_option.h"
+#include "services/runtime/process/program_options.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

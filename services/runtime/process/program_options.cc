@@ -1,0 +1,98 @@
+#include "services/runtime/process/program_options.h"
+
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+
+#include <fmt/core.h>
+#include <CLI/CLI.hpp>
+
+#include "common/exit_code.h"
+#include "common/parse_number.h"
+#include "common/process/console.h"
+
+namespace fogline::runtime {
+
+void AddRunIdOption(CLI::App& app, const std::string& name, std::optional<std::int64_t>& run_id,
+                    const std::string& help) {
+  app.add_option(name, run_id, help)
+      ->check(CLI::Range(std::int64_t{1}, std::numeric_limits<std::int64_t>::max()))
+      ->check([](const std::string& text) {  // CLI11 takes the nearest number that fits
+        return ParseNumber<std::int64_t>(text)
+                   ? std::string()
+                   : text + " is no id: a whole number from 1 to 9223372036854775807";
+      })
+      ->type_name("ID");
+}
+
+void AddTrafficOptions(CLI::App& app, TrafficOptions& options) {
+  app.add_option("--key", options.key_file,
+                 "Sign messages with the key in this file, and refuse unsigned ones")
+      ->envname(kKeyVariable)
+      ->check([](const std::string& file) {
+        return file.empty() ? "the name of the key's file is empty" : "";
+      });
+  app.add_option("--faults", options.faults,
+                 "Receive as over a bad network, such as loss=0.3,delay_ms=5");
+}
+
+ProgramOptions::ProgramOptions(const std::string& name, const std::string& purpose,
+                               const std::string& version)
+    : app_(std::make_unique<CLI::App>(purpose, name)) {
+  app_->set_version_flag("--version", version);
+}
+
+ProgramOptions::~ProgramOptions() = default;
+
+void ProgramOptions::Text(const std::string& name, std::string& value, const std::string& help,
+                          Help shown) {
+  CLI::Option* const option = app_->add_option(name, value, help);
+  if (shown == Help::kWithDefault) option->capture_default_str();
+}
+
+void ProgramOptions::RequiredText(const std::string& name, std::string& value,
+                                  const std::string& help) {
+  app_->add_option(name, value, help)->required();
+}
+
+void ProgramOptions::Flag(const std::string& name, bool& value, const std::string& help) {
+  app_->add_flag(name, value, help);
+}
+
+void ProgramOptions::Count(const std::string& name, std::size_t& value, const std::string& help,
+                           int least, int most) {
+  app_->add_option(name, value, help)->check(CLI::Range(least, most))->capture_default_str();
+}
+
+void ProgramOptions::Seconds(const std::string& name, double& value, const std::string& help,
+                             double most) {
+  app_->add_option(name, value, help)
+      ->check(CLI::Range(0.0, most))
+      ->check([](const std::string& text) {  // CLI::Range accepts NaN
+        return std::isnan(std::strtod(text.c_str(), nullptr)) ? "not a number" : "";
+      })
+      ->capture_default_str();
+}
+
+void ProgramOptions::RunId(const std::string& name, std::optional<std::int64_t>& run_id,
+                           const std::string& help) {
+  AddRunIdOption(*app_, name, run_id, help);
+}
+
+void ProgramOptions::Traffic(TrafficOptions& options) { AddTrafficOptions(*app_, options); }
+
+void ProgramOptions::Footer(const std::string& text) { app_->footer(text); }
+
+std::optional<int> ProgramOptions::Parse(int argc, char** argv) {
+  try {
+    app_->parse(argc, argv);
+  } catch (const CLI::Success& asked) {  // --help, --version
+    return app_->exit(asked);
+  } catch (const CLI::ParseError& error) {
+    Complain(fmt::format("{0}: error: {1} (see {0} --help)", app_->get_name(), error.what()));
+    return kBadInput;
+  }
+  return std::nullopt;
+}
+
+}  // namespace fogline::runtime

@@ -1,0 +1,61 @@
+// The command line of a role, and options that several programs share. The program `fogline` and
+// its verbs have a command line of their own (tools/cli).
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "services/runtime/transport/traffic_options.h"
+
+namespace CLI {
+class App;
+}
+
+namespace fogline::runtime {
+
+/// Adds an option that takes a whole number from 1 to the largest 64-bit one, and refuses all else.
+/// @param name such as "--run-id"
+void AddRunIdOption(CLI::App& app, const std::string& name, std::optional<std::int64_t>& run_id,
+                    const std::string& help);
+
+/// Adds --key and --faults to a command line.
+void AddTrafficOptions(CLI::App& app, TrafficOptions& options);
+
+/// The options of a program without verbs. Only the source file of this class includes CLI11,
+/// because its headers take seconds to compile. A variable that is given to a function gets its
+/// value in Parse(); its value before Parse() is the default.
+class ProgramOptions {
+ public:
+  /// @param name of the program, such as "fogline-radar"
+  /// @param version what --version prints
+  ProgramOptions(const std::string& name, const std::string& purpose, const std::string& version);
+  ~ProgramOptions();
+
+  enum class Help { kAlone, kWithDefault };
+  void Text(const std::string& name, std::string& value, const std::string& help,
+            Help shown = Help::kAlone);
+  /// A text that the user must give.
+  void RequiredText(const std::string& name, std::string& value, const std::string& help);
+  void Flag(const std::string& name, bool& value, const std::string& help);
+  /// A whole number from least to most.
+  void Count(const std::string& name, std::size_t& value, const std::string& help, int least,
+             int most);
+  /// A time in s, from 0 to most.
+  void Seconds(const std::string& name, double& value, const std::string& help, double most);
+  void RunId(const std::string& name, std::optional<std::int64_t>& run_id, const std::string& help);
+  void Traffic(TrafficOptions& options);
+  /// What --help prints after the options. A second call replaces the text.
+  void Footer(const std::string& text);
+
+  /// Reads the command line. Prints the help, the version, or what is wrong.
+  /// @return the exit code of a program that has nothing else to do
+  std::optional<int> Parse(int argc, char** argv);
+
+ private:
+  std::unique_ptr<CLI::App> app_;
+};
+
+}  // namespace fogline::runtime
