@@ -9,12 +9,15 @@
 
 #include <CLI/CLI.hpp>
 
+#include "common/exit_code.h"
 #include "tests/support/input_errors.h"
 
 namespace fogline::test {
 namespace {
 
+using ::testing::EndsWith;
 using ::testing::HasSubstr;
+using ::testing::StartsWith;
 
 std::optional<std::int64_t> Read(const std::string& text) {
   CLI::App app;
@@ -22,6 +25,69 @@ std::optional<std::int64_t> Read(const std::string& text) {
   runtime::AddRunIdOption(app, "--run-id", run_id, "the run");
   app.parse(std::vector<std::string>{text, "--run-id"});  // in reverse order
   return run_id;
+}
+
+/// A program with one option of each kind that has limits.
+struct Program {
+  std::string file = "here";
+  std::size_t count = 4;
+  double wait_s = 60;
+  bool quiet = false;
+  std::string out;  // what Read() printed
+  std::string error;
+
+  std::optional<int> Read(std::vector<std::string> words) {
+    runtime::ProgramOptions options("fogline-it", "Does it.", "1.2.3");
+    options.Text("--file", file, "The file", runtime::ProgramOptions::Help::kWithDefault);
+    options.Count("--count", count, "How many", 1, 256);
+    options.Seconds("--wait", wait_s, "How long", 1e6);
+    options.Flag("--quiet", quiet, "Say nothing");
+    options.Footer("Exit codes: 0 done.");
+    words.insert(words.begin(), "fogline-it");
+    std::vector<char*> argv;
+    for (std::string& word : words) argv.push_back(word.data());
+    ::testing::internal::CaptureStdout();
+    ::testing::internal::CaptureStderr();
+    const std::optional<int> exit_code = options.Parse(static_cast<int>(argv.size()), argv.data());
+    out = ::testing::internal::GetCapturedStdout();
+    error = ::testing::internal::GetCapturedStderr();
+    return exit_code;
+  }
+};
+
+TEST(ProgramOptionsTest, ReadsWhatIsSaidAndKeepsTheDefaults) {
+  Program program;
+  EXPECT_EQ(program.Read({"--count", "256", "--quiet"}), std::nullopt);
+  EXPECT_EQ(program.count, 256U);
+  EXPECT_TRUE(program.quiet);
+  EXPECT_EQ(program.file, "here");
+  EXPECT_EQ(program.wait_s, 60);
+  EXPECT_EQ(program.out + program.error, "");
+}
+
+TEST(ProgramOptionsTest, RefusesWhatIsOutOfRange) {
+  const std::vector<std::vector<std::string>> wrong = {
+      {"--count", "0"},  {"--count", "257"}, {"--count", "x"}, {"--wait", "-1"},
+      {"--wait", "nan"}, {"--wait", "1e7"},  {"--unknown"},    {"more"}};
+  for (const std::vector<std::string>& words : wrong) {
+    Program program;
+    EXPECT_EQ(program.Read(words), kBadInput) << words.back();
+    EXPECT_THAT(program.error, StartsWith("fogline-it: error: "));
+    EXPECT_THAT(program.error, HasSubstr(words.front()));
+    EXPECT_THAT(program.error, EndsWith(" (see fogline-it --help)\n"));
+    EXPECT_EQ(program.out, "");
+  }
+}
+
+TEST(ProgramOptionsTest, PrintsHelpAndVersion) {
+  Program program;
+  EXPECT_EQ(program.Read({"--version"}), kDone);
+  EXPECT_EQ(program.out, "1.2.3\n");
+  EXPECT_EQ(program.Read({"--help"}), kDone);
+  for (const char* part : {"Does it.", "=here", "[1 - 256]", "Exit codes: 0 done."}) {
+    EXPECT_THAT(program.out, HasSubstr(part));
+  }
+  EXPECT_EQ(program.error, "");
 }
 
 TEST(RunIdOptionTest, TakesEveryIdThatARunCanHave) {
