@@ -11,7 +11,7 @@ constexpr std::uint32_t kMostMessage = 1U << 28;
 }  // namespace
 
 std::optional<Message> MessageAssembler::Add(const watch::Packet& packet) {
-  const auto head = watch::ParsePacket(packet.bytes);
+  const auto head = runtime::ParsePacket(packet.bytes);
   if (!head) return std::nullopt;
   if (head->size > 0 || !head->Whole()) return AddFragment(packet, *head);
   return Message{.channel = head->channel,
@@ -20,7 +20,7 @@ std::optional<Message> MessageAssembler::Add(const watch::Packet& packet) {
 }
 
 std::optional<Message> MessageAssembler::AddFragment(const watch::Packet& packet,
-                                                     const watch::LcmPacket& head) {
+                                                     const runtime::LcmPacket& head) {
   const runtime::Bytes data = packet.bytes.subspan(head.data_at);
   const std::size_t end = head.offset + data.size();
   const bool is_possible =

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "tools/watch/senders/lcm_packet.h"
+#include "services/runtime/wire/lcm_packet.h"
 #include "tools/watch/senders/packet_socket.h"
 
 namespace fogline::record {
@@ -52,7 +52,7 @@ class MessageAssembler {
     std::int64_t order = 0;  // the number of the message's first packet
   };
 
-  std::optional<Message> AddFragment(const watch::Packet& packet, const watch::LcmPacket& head);
+  std::optional<Message> AddFragment(const watch::Packet& packet, const runtime::LcmPacket& head);
   void MakeRoom(const Key& keep);
 
   std::map<Key, Partial> partial_;

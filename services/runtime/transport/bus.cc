@@ -12,6 +12,7 @@
 #include <cstring>
 #include <iterator>
 #include <stdexcept>
+#include <system_error>
 
 #include <fmt/core.h>
 
@@ -21,6 +22,7 @@
 #include "common/process/poll.h"
 #include "services/runtime/transport/kernel_limits.h"
 #include "services/runtime/transport/lcm_sockets.h"
+#include "services/runtime/transport/lcm_url.h"
 #include "services/runtime/transport/multicast_route.h"
 #include "services/runtime/transport/tcpq_client.h"
 #include "services/runtime/wire/channel_filter.h"
@@ -79,6 +81,13 @@ void RequireMulticast(const std::string& url) {
   throw InputError(error);
 }
 
+/// @throws InputError, NetworkAway, std::runtime_error that tell why LCM cannot open the network
+[[noreturn]] void FailToOpen(const std::string& url) {
+  ThrowIfExhausted(LackOfDescriptors(), url);             // LCM does not say why
+  if (url.starts_with("udpm://")) RequireMulticast(url);  // the route may have vanished meanwhile
+  throw InputError(fmt::format("error: LCM cannot open \"{}\"", url));
+}
+
 // A bus that receives nothing for this long renews its membership of the group. In this time every
 // process of a run sends five messages.
 constexpr Duration kJoinAgainEvery = milliseconds(1000);
@@ -95,35 +104,7 @@ Bus::Bus(const std::string& url) : url_(WithDefaults(url)), in_memory_(url.start
   // If the URL is empty, LCM uses its own default URL, which Fogline has not checked.
   if (url_.empty()) throw InputError("error: the LCM URL is empty");
   RequireMulticast(url_);
-  bool routed = false;
-  {
-    // Until LCM's self-test is over, each socket accepts only the messages of this test. The filter
-    // is attached before the socket can receive its first datagram. mpudpm gets no filter, because
-    // it announces its ports on a channel of its own.
-    std::optional<LcmSockets> sockets;
-    if (url_.starts_with("udpm://")) {
-      const LcmSockets::Reach reach = ReachOf(url_);
-      routed = reach == LcmSockets::Reach::kRoute;
-      sockets.emplace(ChannelFilter({{"LCM_SELF_TEST"}}), reach);
-    }
-    lcm_ = lcm_create(url_.c_str());
-    if (lcm_ != nullptr) fd_ = lcm_get_fileno(lcm_);
-    if (sockets) {
-      sockets_ = sockets->receiving();
-      filtered_ = sockets->filtered();
-      if (routed) membership_.emplace(sockets->members(), url_);
-    }
-  }
-  for (const int socket : sockets_) WidenBuffer(socket);
-  if (fd_ < 0) {
-    if (lcm_ != nullptr) lcm_destroy(lcm_);
-    ThrowIfExhausted(LackOfDescriptors(), url_);  // LCM does not say why
-    RequireMulticast(url_);                       // the route may have vanished meanwhile
-    throw InputError(fmt::format("error: LCM cannot open \"{}\"", url_));
-  }
-  // LCM's self-test is over. From now on the filter drops messages on channels without a
-  // subscription.
-  Filter(ChannelFilter({}));
+  OpenLcm();
   static bool warned = false;
   if (!filtered_ && !std::exchange(warned, true)) {
     Notice(
@@ -133,11 +114,57 @@ Bus::Bus(const std::string& url) : url_(WithDefaults(url)), in_memory_(url.start
   }
 }
 
-Bus::~Bus() {
-  if (lcm_ != nullptr) lcm_destroy(lcm_);
+Bus::~Bus() = default;
+
+void Bus::DestroyLcm::operator()(_lcm_t* lcm) const { lcm_destroy(lcm); }
+
+void Bus::OpenLcm() {
+  if (!ParseMulticastUrl(url_)) {
+    lcm_.reset(lcm_create(url_.c_str()));
+    return ReceiveThroughLcm();
+  }
+  const LcmSockets::Reach reach = ReachOf(url_);
+  const LcmSockets sockets({}, reach);
+  lcm_.reset(lcm_create(url_.c_str()));
+  if (lcm_ == nullptr) FailToOpen(url_);
+  try {
+    inbox_.emplace(url_, ChannelFilter({}));
+  } catch (const std::system_error&) {
+    FailToOpen(url_);
+  }
+  fd_ = inbox_->fd();
+  sockets_ = {fd_};
+  filtered_ = inbox_->filtered();
+  if (reach == LcmSockets::Reach::kLoopback) return;
+  sending_ = sockets.members();
+  FollowTheRoute();
 }
 
-std::int64_t Bus::replaced() const { return tcpq_ ? tcpq_->replaced() : 0; }
+void Bus::FollowTheRoute() {
+  std::vector<int> members = sockets_;
+  members.insert(members.end(), sending_.begin(), sending_.end());
+  membership_.emplace(std::move(members), url_);
+}
+
+void Bus::ReceiveThroughLcm() {
+  // mpudpm gets no filter, because it announces its ports on a channel of its own.
+  const bool udpm = url_.starts_with("udpm://");
+  std::optional<LcmSockets> sockets;
+  // Until LCM's self-test is over, each socket accepts only the messages of this test. The filter
+  // is attached before the socket can receive its first datagram.
+  if (udpm) sockets.emplace(ChannelFilter({{"LCM_SELF_TEST"}}), ReachOf(url_));
+  fd_ = lcm_ == nullptr ? -1 : lcm_get_fileno(lcm_.get());
+  if (fd_ < 0) FailToOpen(url_);
+  if (!udpm) return;
+  sockets_ = sockets->receiving();
+  filtered_ = sockets->filtered();
+  for (const int socket : sockets_) SetReceiveBuffer(socket);
+  inbox_.reset();
+  if (membership_) FollowTheRoute();
+  ++replaced_;
+}
+
+std::int64_t Bus::replaced() const { return tcpq_ ? tcpq_->replaced() : replaced_; }
 
 std::string Bus::WhyCutOff() const { return tcpq_ && tcpq_->lost() ? tcpq_->trouble() : ""; }
 
@@ -172,11 +199,17 @@ void Bus::Subscribe(std::string_view channel, Handler handler, const Contents& c
     return tcpq_->Subscribe(channel, Escaped(channel),
                             [&topic](Bytes bytes) { Deliver(bytes, topic); });
   }
-  lcm_subscription_t* handle =
-      lcm_subscribe(lcm_, Escaped(channel).c_str(), &Bus::OnMessage, &topic);
-  if (handle == nullptr) throw std::runtime_error(fmt::format("cannot subscribe to {}", channel));
-  lcm_subscription_set_queue_capacity(handle, 0);  // 0: no limit (LCM's default: 30)
+  if (!inbox_) SubscribeThroughLcm(topic);
   FilterSockets();
+}
+
+void Bus::SubscribeThroughLcm(Topic& topic) {
+  lcm_subscription_t* handle =
+      lcm_subscribe(lcm_.get(), Escaped(topic.channel).c_str(), &Bus::OnMessage, &topic);
+  if (handle == nullptr) {
+    throw std::runtime_error(fmt::format("cannot subscribe to {}", topic.channel));
+  }
+  lcm_subscription_set_queue_capacity(handle, 0);  // 0: no limit (LCM's default: 30)
 }
 
 void Bus::SetSampleRate(std::string_view channel, double share) {
@@ -208,7 +241,13 @@ void Bus::SubscribeAll(Watcher watcher) {
     return tcpq_->SubscribeAll(
         [this](std::string_view channel, Bytes bytes) { Watch(channel, bytes); });
   }
-  lcm_subscription_t* handle = lcm_subscribe(lcm_, ".*", &Bus::OnAnything, this);
+  if (inbox_) {
+    ReceiveThroughLcm();
+    for (Topic& topic : topics_) {
+      if (!topic.handlers.empty()) SubscribeThroughLcm(topic);
+    }
+  }
+  lcm_subscription_t* handle = lcm_subscribe(lcm_.get(), ".*", &Bus::OnAnything, this);
   if (handle == nullptr) throw std::runtime_error("cannot subscribe to all channels");
   lcm_subscription_set_queue_capacity(handle, 0);
   Filter(AnyChannelFilter());
@@ -222,7 +261,7 @@ void Bus::Publish(const Topic& topic, Bytes bytes) {
   if (signer_) bytes = signer_->Sign(topic.channel, bytes);
   errno = 0;
   const bool sent = tcpq_ ? tcpq_->Publish(topic.channel, bytes)
-                          : lcm_publish(lcm_, topic.channel.c_str(), bytes.data(),
+                          : lcm_publish(lcm_.get(), topic.channel.c_str(), bytes.data(),
                                         static_cast<unsigned>(bytes.size())) == 0;
   if (!sent) return OnFailedSend(errno);
   if (failed_sends_.since) OnSentAgain();
@@ -265,10 +304,20 @@ void Bus::Handle() {
   if (waiting_ > 0) --waiting_;
   if (tcpq_) {
     tcpq_->Handle();
-  } else if (lcm_handle(lcm_) != 0) {
+  } else if (inbox_) {
+    HandlePacket();
+  } else if (lcm_handle(lcm_.get()) != 0) {
     throw std::runtime_error(fmt::format("LCM lost {}", url_));
   }
   if (parked_) std::rethrow_exception(std::exchange(parked_, nullptr));
+}
+
+void Bus::HandlePacket() {
+  const auto message = inbox_->Take();
+  if (!message) return;
+  // If the kernel accepts no filter, messages on other channels come, too.
+  const auto topic = std::ranges::find(topics_, message->channel, &Topic::channel);
+  if (topic != topics_.end() && !topic->handlers.empty()) Deliver(message->data, *topic);
 }
 
 bool Bus::HandleDue() {
@@ -280,6 +329,7 @@ bool Bus::HandleDue() {
 
 bool Bus::Readable(Duration timeout) {
   if (tcpq_) return tcpq_->Readable(timeout);
+  if (inbox_) return inbox_->Wait(timeout);
   const int ready = PollFor(fd_, POLLIN, timeout);
   if (ready < 0 && errno != EINTR) throw std::runtime_error("cannot wait for messages");
   return ready > 0;

@@ -18,6 +18,7 @@
 #include "common/errors.h"
 #include "services/runtime/transport/faults.h"
 #include "services/runtime/transport/lcm_sockets.h"
+#include "services/runtime/transport/udpm/message_socket.h"
 #include "services/runtime/wire/arrival.h"
 #include "services/runtime/wire/channel_filter.h"
 #include "services/runtime/wire/message_signer.h"
@@ -123,7 +124,8 @@ class Bus {
   /// This descriptor is readable when Wait(0) would handle a message. With tcpq this is true only
   /// when all earlier messages have been handled.
   int fd() const { return fd_; }
-  /// Grows whenever fd() refers to another file: with tcpq, when the relay is lost or comes back.
+  /// Grows whenever fd() refers to another file: with tcpq, when the relay is lost or comes back;
+  /// with udpm, in SubscribeAll().
   /// A caller that has given a copy of fd() to epoll must then copy it again.
   std::int64_t replaced() const;
   const std::string& url() const { return url_; }
@@ -131,11 +133,17 @@ class Bus {
   std::string WhyCutOff() const;
 
  private:
+  void OpenLcm();
+  void FollowTheRoute();
+  /// Lets LCM receive in its own thread. @throws InputError if LCM cannot
+  void ReceiveThroughLcm();
+  void SubscribeThroughLcm(Topic& topic);
   bool Readable(Duration timeout);
   void OnFailedSend(int error);
   void OnSentAgain();
   void JoinAgainIfSilent();
   void Handle();
+  void HandlePacket();
   bool HandleDue();
   /// The bytes to decode; nullopt if the message is refused. With a key the bytes are the payload,
   /// without a key the whole message.
@@ -150,11 +158,19 @@ class Bus {
   static void OnAnything(const _lcm_recv_buf_t* buffer, const char* channel, void* bus);
   void Watch(std::string_view channel, Bytes bytes);
 
+  struct DestroyLcm {
+    void operator()(_lcm_t* lcm) const;
+  };
+
   std::string url_;
-  _lcm_t* lcm_ = nullptr;               // nullptr with tcpq
-  std::unique_ptr<tcpq::Client> tcpq_;  // instead of lcm_, with tcpq
+  std::unique_ptr<_lcm_t, DestroyLcm> lcm_;  // sends, and receives if inbox_ does not
+  std::unique_ptr<tcpq::Client> tcpq_;       // instead of lcm_, with tcpq
+  // With udpm: receives the messages until there is a watcher.
+  std::optional<MessageSocket> inbox_;
   int fd_ = -1;
-  std::vector<int> sockets_;  // UDP sockets, which LCM owns
+  std::int64_t replaced_ = 0;
+  std::vector<int> sockets_;  // the UDP sockets that receive: that of inbox_, or those of LCM
+  std::vector<int> sending_;  // LCM's UDP sockets that only send
   bool filtered_ = true;      // false if the kernel has refused a filter
   // Set if messages of the group come over the route, which may change.
   std::optional<GroupMembership> membership_;

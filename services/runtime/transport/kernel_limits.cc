@@ -9,9 +9,9 @@
 
 namespace fogline::runtime {
 
-void WidenBuffer(int socket) {
-  constexpr int kBytes = 8 * 1024 * 1024;
-  setsockopt(socket, SOL_SOCKET, SO_RCVBUFFORCE, &kBytes, sizeof(kBytes));
+void SetReceiveBuffer(int socket, int bytes) {
+  if (setsockopt(socket, SOL_SOCKET, SO_RCVBUFFORCE, &bytes, sizeof(bytes)) == 0) return;
+  setsockopt(socket, SOL_SOCKET, SO_RCVBUF, &bytes, sizeof(bytes));
 }
 
 int LackOfDescriptors() {

@@ -3,11 +3,15 @@
 
 namespace fogline::runtime {
 
-/// Gives a socket a receive buffer above net.core.rmem_max, if this process has CAP_NET_ADMIN.
+/// The receive buffer of a process of a run, in bytes.
+inline constexpr int kWideBuffer = 8 * 1024 * 1024;
+
+/// Gives a socket a receive buffer, above net.core.rmem_max if this process has CAP_NET_ADMIN.
 /// With the kernel's default limit, the buffer holds a hundred datagrams; a flood of 20,000
 /// datagrams a second fills it in 5 ms. A larger buffer has room for the messages that come while a
 /// busy machine runs other processes.
-void WidenBuffer(int socket);
+/// @param bytes without the capability at most net.core.rmem_max
+void SetReceiveBuffer(int socket, int bytes = kWideBuffer);
 
 /// errno if this process cannot open the descriptors that LCM needs for a network, otherwise 0.
 int LackOfDescriptors();

@@ -1,15 +1,14 @@
 #include "tools/watch/senders/packet_socket.h"
 
-#include <arpa/inet.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
-#include <unistd.h>
 
 #include <array>
 #include <cerrno>
 #include <cstring>
 #include <ctime>
 #include <stdexcept>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -23,72 +22,25 @@ namespace {
 // Without packets for this long the socket renews its membership of the group, as a bus does.
 constexpr Duration kJoinAgainEvery = milliseconds(1000);
 
-/// A descriptor that is closed unless it is released.
-class Socket {
- public:
-  Socket() : fd_(socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)) {}
-  ~Socket() {
-    if (fd_ >= 0) close(fd_);
-  }
-  Socket(const Socket&) = delete;
-  Socket& operator=(const Socket&) = delete;
-
-  int fd() const { return fd_; }
-  int Release() { return std::exchange(fd_, -1); }
-
- private:
-  int fd_;
-};
-
-[[noreturn]] void Fail(const std::string& url, int error) {
+/// @throws std::runtime_error with why the socket cannot be opened
+[[noreturn]] void Fail(const std::string& url, const std::error_code& why) {
   throw std::runtime_error(
-      fmt::format("the packets of {} cannot be counted: {}", url, std::strerror(error)));
+      fmt::format("the packets of {} cannot be counted: {}", url, why.message()));
 }
 
-void Set(int fd, int level, int option, int value, const std::string& url) {
-  if (setsockopt(fd, level, option, &value, sizeof(value)) != 0) Fail(url, errno);
-}
-
-/// Asks for a buffer. Without CAP_NET_ADMIN the kernel grants at most net.core.rmem_max.
-void WidenBuffer(int fd, int bytes) {
-  if (setsockopt(fd, SOL_SOCKET, SO_RCVBUFFORCE, &bytes, sizeof(bytes)) == 0) return;
-  setsockopt(fd, SOL_SOCKET, SO_RCVBUF, &bytes, sizeof(bytes));
-}
-
-/// Joins the group where LCM's sockets join it: on the route, and on loopback if the traffic stays
-/// on this machine (lcm_sockets.h).
-void Join(int fd, const in_addr& group, const std::string& url) {
-  ip_mreq membership{.imr_multiaddr = group, .imr_interface = {}};
-  bool joined = setsockopt(fd, IPPROTO_IP, IP_ADD_MEMBERSHIP, &membership, sizeof(membership)) == 0;
-  if (runtime::ReachOf(url) == runtime::LcmSockets::Reach::kLoopback) {
-    membership.imr_interface.s_addr = htonl(INADDR_LOOPBACK);
-    // If the route leads over loopback, the socket is already in the group there.
-    joined = setsockopt(fd, IPPROTO_IP, IP_ADD_MEMBERSHIP, &membership, sizeof(membership)) == 0 ||
-             errno == EADDRINUSE;
+/// @throws std::runtime_error if the network cannot be heard
+std::unique_ptr<runtime::GroupSocket> OpenSocket(const std::string& url, int buffer_bytes) {
+  try {
+    auto socket = std::make_unique<runtime::GroupSocket>(url, buffer_bytes);
+    const int on = 1;
+    for (const int option : {SO_RXQ_OVFL, SO_TIMESTAMPNS}) {
+      if (setsockopt(socket->fd(), SOL_SOCKET, option, &on, sizeof(on)) == 0) continue;
+      Fail(url, std::error_code(errno, std::generic_category()));
+    }
+    return socket;
+  } catch (const std::system_error& error) {
+    Fail(url, error.code());
   }
-  if (!joined) Fail(url, errno);
-}
-
-/// @return a socket in the group of the URL
-int OpenSocket(const std::string& url, int buffer_bytes) {
-  const auto network = runtime::ParseMulticastUrl(url);
-  Socket socket;
-  if (!network || socket.fd() < 0) Fail(url, network ? errno : EINVAL);
-  Set(socket.fd(), SOL_SOCKET, SO_REUSEADDR, 1, url);
-  Set(socket.fd(), SOL_SOCKET, SO_REUSEPORT, 1, url);
-  Set(socket.fd(), SOL_SOCKET, SO_RXQ_OVFL, 1, url);
-  Set(socket.fd(), SOL_SOCKET, SO_TIMESTAMPNS, 1, url);
-  WidenBuffer(socket.fd(), buffer_bytes);
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_port = htons(network->port);
-  inet_pton(AF_INET, network->group.c_str(), &address.sin_addr);
-  // Bound to the group, the socket gets no packets of other groups on the same port.
-  if (bind(socket.fd(), reinterpret_cast<const sockaddr*>(&address), sizeof(address)) != 0) {
-    Fail(url, errno);
-  }
-  Join(socket.fd(), address.sin_addr, url);
-  return socket.Release();
 }
 
 }  // namespace
@@ -126,22 +78,15 @@ struct PacketSocket::Batch {
 };
 
 PacketSocket::PacketSocket(const std::string& url, const Options& options)
-    : fd_(OpenSocket(url, options.buffer_bytes)),
+    : socket_(OpenSocket(url, options.buffer_bytes)),
       batch_(std::make_unique<Batch>(options.packet_bytes)),
       heard_(Clock::now()) {
   if (runtime::ReachOf(url) == runtime::LcmSockets::Reach::kRoute) {
-    membership_.emplace(std::vector<int>{fd_}, url);
+    membership_.emplace(std::vector<int>{fd()}, url);
   }
 }
 
-PacketSocket::~PacketSocket() { close(fd_); }
-
-int PacketSocket::buffer_bytes() const {
-  int bytes = 0;
-  socklen_t size = sizeof(bytes);
-  getsockopt(fd_, SOL_SOCKET, SO_RCVBUF, &bytes, &size);
-  return bytes / 2;  // the kernel doubles the size that was asked for (socket(7))
-}
+PacketSocket::~PacketSocket() = default;
 
 void PacketSocket::Attend(bool heard, TimePoint now) {
   if (!heard && !(membership_ && now - heard_ >= kJoinAgainEvery)) return;
@@ -151,7 +96,7 @@ void PacketSocket::Attend(bool heard, TimePoint now) {
 
 int PacketSocket::Receive(const std::function<void(const Packet&)>& use) {
   // An error, such as an interrupt, means that nothing is there yet: the next call tries again.
-  const int count = recvmmsg(fd_, batch_->Ready(), kBatch, 0, nullptr);
+  const int count = recvmmsg(fd(), batch_->Ready(), kBatch, 0, nullptr);
   for (int i = 0; i < count; ++i) {
     const auto at = static_cast<std::size_t>(i);
     mmsghdr& message = batch_->messages[at];

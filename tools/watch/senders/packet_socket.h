@@ -9,7 +9,9 @@
 #include <string>
 
 #include "common/clock.h"
+#include "services/runtime/transport/kernel_limits.h"
 #include "services/runtime/transport/lcm_sockets.h"
+#include "services/runtime/transport/udpm/group_socket.h"
 #include "services/runtime/wire/wire.h"
 #include "tools/watch/senders/senders.h"
 
@@ -29,8 +31,9 @@ struct Packet {
 class PacketSocket {
  public:
   struct Options {
-    std::size_t packet_bytes;            // each packet is cut off after this many bytes
-    int buffer_bytes = 8 * 1024 * 1024;  // without CAP_NET_ADMIN at most net.core.rmem_max
+    std::size_t packet_bytes;  // each packet is cut off after this many bytes
+    // Without CAP_NET_ADMIN at most net.core.rmem_max.
+    int buffer_bytes = runtime::kWideBuffer;
   };
 
   /// @pre the URL is a udpm:// URL (runtime::ParseMulticastUrl)
@@ -48,14 +51,14 @@ class PacketSocket {
   /// @param heard whether packets have come at `now`
   void Attend(bool heard, TimePoint now);
 
-  int fd() const { return fd_; }
+  int fd() const { return socket_->fd(); }
   /// The size of the buffer that the kernel grants.
-  int buffer_bytes() const;
+  int buffer_bytes() const { return socket_->buffer_bytes(); }
 
  private:
   struct Batch;
 
-  int fd_;
+  std::unique_ptr<runtime::GroupSocket> socket_;
   std::unique_ptr<Batch> batch_;  // buffers for one system call
   std::uint32_t dropped_ = 0;  // packets that found no room, as the kernel counts: it wraps around
   // Set if packets come over the route, which may change.

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "common/clock.h"
+#include "services/runtime/wire/lcm_packet.h"
 #include "tools/watch/senders/packet_socket.h"
 #include "tools/watch/senders/senders.h"
 
@@ -31,7 +32,7 @@ class PacketTap {
 
  private:
   PacketTap(const std::string& url, Senders& senders)
-      : socket_(url, {.packet_bytes = kPacketHead}), senders_(senders) {}
+      : socket_(url, {.packet_bytes = runtime::kPacketHead}), senders_(senders) {}
 
   PacketSocket socket_;
   Senders& senders_;

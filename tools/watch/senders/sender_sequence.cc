@@ -5,7 +5,7 @@
 
 namespace fogline::watch {
 
-void SenderSequence::Add(const LcmPacket& packet, std::int64_t dropped, TimePoint now) {
+void SenderSequence::Add(const runtime::LcmPacket& packet, std::int64_t dropped, TimePoint now) {
   if (!begun_) {
     // The observer may have begun in the middle of a message.
     if (!packet.First()) return;
@@ -24,7 +24,7 @@ std::int64_t SenderSequence::AgeOf(std::uint32_t number) const {
   return -std::int64_t{static_cast<std::int32_t>(number - newest_)};
 }
 
-void SenderSequence::Begin(const LcmPacket& packet, TimePoint now) {
+void SenderSequence::Begin(const runtime::LcmPacket& packet, TimePoint now) {
   newest_ = packet.number;
   length_ = 1;
   whole_.reset();
@@ -38,7 +38,7 @@ void SenderSequence::Begin(const LcmPacket& packet, TimePoint now) {
   ++counts_.received;
 }
 
-void SenderSequence::Take(const LcmPacket& packet, TimePoint now) {
+void SenderSequence::Take(const runtime::LcmPacket& packet, TimePoint now) {
   const std::int64_t age = AgeOf(packet.number);
   if (age < -kMaxJump || age >= kWindow) return Doubt(packet, now);
   if (age >= 0 && IsKnown(age) && now - progressed_ >= kBeginsAgain) return Doubt(packet, now);
@@ -56,7 +56,7 @@ bool SenderSequence::IsKnown(std::int64_t age) const {
   return age >= length_ || whole_[static_cast<std::size_t>(age)];
 }
 
-void SenderSequence::Advance(const LcmPacket& packet, std::int64_t ahead, TimePoint now) {
+void SenderSequence::Advance(const runtime::LcmPacket& packet, std::int64_t ahead, TimePoint now) {
   const bool incomplete = !whole_[0];
   const auto shift = static_cast<std::size_t>(std::min(ahead, kWindow));
   whole_ <<= shift;
@@ -85,7 +85,7 @@ void SenderSequence::Miss(std::int64_t count) {
   }
 }
 
-void SenderSequence::TakeOlder(const LcmPacket& packet, std::int64_t age) {
+void SenderSequence::TakeOlder(const runtime::LcmPacket& packet, std::int64_t age) {
   if (IsKnown(age)) {
     if (age < length_ && packet.First()) ++counts_.duplicates;
     return;
@@ -100,8 +100,8 @@ void SenderSequence::TakeOlder(const LcmPacket& packet, std::int64_t age) {
   missed_[bit] = false;
 }
 
-void SenderSequence::Doubt(const LcmPacket& packet, TimePoint now) {
-  const std::optional<LcmPacket> before = std::exchange(doubtful_, packet);
+void SenderSequence::Doubt(const runtime::LcmPacket& packet, TimePoint now) {
+  const std::optional<runtime::LcmPacket> before = std::exchange(doubtful_, packet);
   doubtful_->channel = "";
   if (!before || before->number == packet.number) return;
   if (packet.number != before->number + 1) {
@@ -120,7 +120,7 @@ void SenderSequence::Doubt(const LcmPacket& packet, TimePoint now) {
   Take(packet, now);
 }
 
-bool SenderSequence::Completes(const LcmPacket& packet) {
+bool SenderSequence::Completes(const runtime::LcmPacket& packet) {
   if (packet.Whole()) return true;
   auto partial = std::ranges::find(partial_, packet.number, &Partial::number);
   if (partial == partial_.end()) {

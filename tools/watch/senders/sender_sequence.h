@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "common/clock.h"
-#include "tools/watch/senders/lcm_packet.h"
+#include "services/runtime/wire/lcm_packet.h"
 
 namespace fogline::watch {
 
@@ -32,7 +32,7 @@ class SenderSequence {
 
   /// @param dropped how many packets this process had dropped for lack of room when this packet
   /// came
-  void Add(const LcmPacket& packet, std::int64_t dropped, TimePoint now);
+  void Add(const runtime::LcmPacket& packet, std::int64_t dropped, TimePoint now);
 
   const Counts& counts() const { return counts_; }
 
@@ -60,15 +60,15 @@ class SenderSequence {
     std::vector<bool> fragments;
   };
 
-  void Begin(const LcmPacket& packet, TimePoint now);
-  void Take(const LcmPacket& packet, TimePoint now);
-  void Advance(const LcmPacket& packet, std::int64_t ahead, TimePoint now);
-  void TakeOlder(const LcmPacket& packet, std::int64_t age);
-  void Doubt(const LcmPacket& packet, TimePoint now);
+  void Begin(const runtime::LcmPacket& packet, TimePoint now);
+  void Take(const runtime::LcmPacket& packet, TimePoint now);
+  void Advance(const runtime::LcmPacket& packet, std::int64_t ahead, TimePoint now);
+  void TakeOlder(const runtime::LcmPacket& packet, std::int64_t age);
+  void Doubt(const runtime::LcmPacket& packet, TimePoint now);
   void Miss(std::int64_t count);
   bool IsKnown(std::int64_t age) const;
   /// Whether the packet completes its message.
-  bool Completes(const LcmPacket& packet);
+  bool Completes(const runtime::LcmPacket& packet);
   std::int64_t AgeOf(std::uint32_t number) const;
 
   Counts counts_;
@@ -78,9 +78,9 @@ class SenderSequence {
   std::bitset<kWindow> whole_;   // bit i: message newest_ - i arrived
   std::bitset<kWindow> missed_;  // bit i: message newest_ - i counts as missed_here
   std::vector<Partial> partial_;
-  std::optional<LcmPacket> doubtful_;  // without its channel
-  TimePoint progressed_{};             // when newest_ grew last
-  std::int64_t dropped_ = 0;           // at the last packet
+  std::optional<runtime::LcmPacket> doubtful_;  // without its channel
+  TimePoint progressed_{};                      // when newest_ grew last
+  std::int64_t dropped_ = 0;                    // at the last packet
   std::int64_t unexplained_ = 0;  // own drops since the last gap: they may explain the next one
 };
 

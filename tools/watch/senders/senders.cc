@@ -14,7 +14,7 @@ std::string SenderAddress::ToString() const {
 }
 
 void Senders::Add(const SenderAddress& from, runtime::Bytes head, TimePoint now) {
-  const auto packet = ParsePacket(head);
+  const auto packet = runtime::ParsePacket(head);
   if (!packet) {
     ++not_lcm_;
     return;

@@ -44,7 +44,7 @@ struct SendersView {
 /// silent longest.
 class Senders {
  public:
-  /// @param head the packet, or its first kPacketHead bytes
+  /// @param head the packet, or its first runtime::kPacketHead bytes
   void Add(const SenderAddress& from, runtime::Bytes head, TimePoint now);
   /// Says that this process has dropped packets before the next one. Their sender is unknown.
   void AddDropped(std::int64_t packets) { own_overflow_ += packets; }

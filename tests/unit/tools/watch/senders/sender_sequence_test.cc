@@ -13,6 +13,7 @@ namespace fogline::watch {
 namespace {
 
 using Counts = SenderSequence::Counts;
+using runtime::LcmPacket;
 
 LcmPacket Short(std::uint32_t number) { return {.number = number}; }
 

@@ -12,7 +12,7 @@
 
 #include "services/runtime/wire/wire.h"
 
-namespace fogline::watch {
+namespace fogline::runtime {
 
 struct LcmPacket {
   std::uint32_t number = 0;  // of the message; its sender counts its messages, beginning with 0
@@ -28,10 +28,10 @@ struct LcmPacket {
 };
 
 /// This many bytes of a packet are enough for ParsePacket().
-inline constexpr std::size_t kPacketHead = 20 + runtime::kLongestChannel + 1;
+inline constexpr std::size_t kPacketHead = 20 + kLongestChannel + 1;
 
 /// @param head the packet, or its first kPacketHead bytes; the channel is valid as long as they are
 /// @return nullopt if LCM would not take the packet
-std::optional<LcmPacket> ParsePacket(runtime::Bytes head);
+std::optional<LcmPacket> ParsePacket(Bytes head);
 
-}  // namespace fogline::watch
+}  // namespace fogline::runtime

@@ -1,10 +1,10 @@
-#include "tools/watch/senders/lcm_packet.h"
+#include "services/runtime/wire/lcm_packet.h"
 
 #include <gtest/gtest.h>
 
 #include <string>
 
-namespace fogline::watch {
+namespace fogline::runtime {
 namespace {
 
 using namespace std::string_literals;
@@ -56,4 +56,4 @@ TEST(LcmPacketTest, RefusesWhatLcmDoesNotTake) {
 }
 
 }  // namespace
-}  // namespace fogline::watch
+}  // namespace fogline::runtime

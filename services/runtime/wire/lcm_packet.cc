@@ -1,6 +1,6 @@
-#include "tools/watch/senders/lcm_packet.h"
+#include "services/runtime/wire/lcm_packet.h"
 
-namespace fogline::watch {
+namespace fogline::runtime {
 namespace {
 
 constexpr std::uint32_t kShort = 0x4c433032;     // "LC02"
@@ -13,23 +13,23 @@ constexpr std::size_t kFragmentOffset = 16;
 constexpr std::size_t kFragmentsOffset = 18;
 
 /// A big-endian number of `size` bytes. The caller has checked that the bytes are there.
-std::uint32_t Number(runtime::Bytes bytes, std::size_t offset, std::size_t size) {
+std::uint32_t Number(Bytes bytes, std::size_t offset, std::size_t size) {
   std::uint32_t value = 0;
   for (const std::uint8_t byte : bytes.subspan(offset, size)) value = value << 8 | byte;
   return value;
 }
 
 /// The channel at the beginning of these bytes; nullopt if it has no end, or is too long for LCM.
-std::optional<std::string_view> ChannelAt(runtime::Bytes bytes) {
+std::optional<std::string_view> ChannelAt(Bytes bytes) {
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  const std::size_t length = text.substr(0, runtime::kLongestChannel + 1).find('\0');
+  const std::size_t length = text.substr(0, kLongestChannel + 1).find('\0');
   if (length == std::string_view::npos) return std::nullopt;
   return text.substr(0, length);
 }
 
 }  // namespace
 
-std::optional<LcmPacket> ParsePacket(runtime::Bytes head) {
+std::optional<LcmPacket> ParsePacket(Bytes head) {
   if (head.size() < kShortHead) return std::nullopt;
   LcmPacket packet{.number = Number(head, 4, 4), .channel = ""};
   const std::uint32_t kind = Number(head, 0, 4);
@@ -54,4 +54,4 @@ std::optional<LcmPacket> ParsePacket(runtime::Bytes head) {
   return packet;
 }
 
-}  // namespace fogline::watch
+}  // namespace fogline::runtime

@@ -1,0 +1,37 @@
+// A UDP socket in the multicast group of a udpm:// network. Beside LCM, it receives the packets of
+// the network. It sends nothing.
+#pragma once
+
+#include <linux/filter.h>
+
+#include <string>
+#include <vector>
+
+namespace fogline::runtime {
+
+class GroupSocket {
+ public:
+  /// Opens a socket that does not block.
+  /// @pre the URL is a udpm:// URL (ParseMulticastUrl)
+  /// @param buffer_bytes without CAP_NET_ADMIN at most net.core.rmem_max
+  /// @param filter from the socket's start; empty: no filter
+  /// @throws std::system_error if the network cannot be heard
+  GroupSocket(const std::string& url, int buffer_bytes, std::vector<sock_filter> filter = {});
+  ~GroupSocket();
+  GroupSocket(const GroupSocket&) = delete;
+  GroupSocket& operator=(const GroupSocket&) = delete;
+
+  int fd() const { return fd_; }
+  /// Whether the kernel has accepted the filter.
+  bool filtered() const { return filtered_; }
+  /// The size of the buffer that the kernel grants.
+  int buffer_bytes() const;
+
+ private:
+  void Open(const std::string& url, int buffer_bytes, std::vector<sock_filter> filter);
+
+  int fd_;
+  bool filtered_ = false;
+};
+
+}  // namespace fogline::runtime

@@ -1,0 +1,55 @@
+// Receives the messages of a udpm:// network in the thread of the caller.
+//
+// LCM receives in a thread of its own. For each message this thread wakes up, writes into a pipe,
+// and the pipe wakes the caller. The lockstep of nine processes on two cores waits for such
+// wake-ups most of the time.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "common/clock.h"
+#include "services/runtime/transport/udpm/group_socket.h"
+#include "services/runtime/wire/lcm_packet.h"
+#include "services/runtime/wire/message_signer.h"
+
+namespace fogline::runtime {
+
+/// For one thread.
+class MessageSocket {
+ public:
+  struct Message {
+    std::string_view channel;
+    Bytes data;
+  };
+
+  /// @pre the URL is a udpm:// URL (ParseMulticastUrl)
+  /// @param filter from the socket's start
+  /// @throws std::system_error if the network cannot be heard
+  MessageSocket(const std::string& url, std::vector<sock_filter> filter);
+
+  /// Waits up to `timeout` for a message. It takes only whole messages with at most
+  /// kMaxMessageBytes and a signature, as ChannelFilter() does.
+  /// @return whether there is a message
+  bool Wait(Duration timeout);
+  /// The message for which Wait() has returned true. It is valid until the next call of Wait().
+  /// @return nullopt if it was taken before
+  std::optional<Message> Take() { return std::exchange(message_, std::nullopt); }
+
+  /// This descriptor is readable when a message may be there.
+  int fd() const { return socket_.fd(); }
+  bool filtered() const { return socket_.filtered(); }
+
+ private:
+  bool Receive();
+
+  static constexpr std::size_t kMostPacket = kPacketHead + kMaxMessageBytes + kSignatureBytes;
+
+  GroupSocket socket_;
+  std::array<std::uint8_t, kMostPacket> packet_;
+  std::optional<Message> message_;
+};
+
+}  // namespace fogline::runtime
