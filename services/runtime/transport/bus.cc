@@ -108,8 +108,8 @@ Bus::Bus(const std::string& url) : url_(WithDefaults(url)), in_memory_(url.start
   static bool warned = false;
   if (!filtered_ && !std::exchange(warned, true)) {
     Notice(
-        fmt::format("warning: the kernel accepts no socket filter, so every message to {} reaches "
-                    "LCM's parser (`fogline doctor` says more)",
+        fmt::format("warning: the kernel accepts no socket filter, so every message to {} wakes "
+                    "this process (`fogline doctor` says more)",
                     url_));
   }
 }
@@ -175,8 +175,8 @@ void Bus::Secure(const MessageSigner& signer) {
   }
   if (!filtered_) {
     throw InputError(
-        "error: --key: the kernel accepts no socket filter, so messages reach LCM's parser before "
-        "their signature is checked; `fogline doctor` says more");
+        "error: --key: the kernel accepts no socket filter, which keeps fragments and floods from "
+        "a process; `fogline doctor` says more");
   }
   signer_ = signer;
 }

@@ -58,8 +58,8 @@ class Bus {
 
   /// From now on, the bus signs the messages that it sends, and refuses messages without a correct
   /// signature.
-  /// @throws InputError with mpudpm, or if the kernel accepts no filter. Unfiltered messages would
-  ///     reach LCM's parser before their signature is checked.
+  /// @throws InputError with mpudpm, or if the kernel accepts no filter: fragments and floods would
+  ///     reach this process before their signature is checked.
   void Secure(const MessageSigner& signer);
   bool secured() const { return signer_.has_value(); }
   /// From now on, the bus receives messages as over a bad network.

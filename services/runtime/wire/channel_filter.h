@@ -1,13 +1,13 @@
 // Lets the kernel drop LCM messages that this process has not subscribed to.
 //
-// Every process of an LCM network receives every message. LCM's receiving thread wakes up for each
-// message, and throws most messages away. With ten processes and nine messages a step, two thirds
-// of a machine's work for a step is spent on waking threads that then have nothing to do. With a
-// socket filter (socket(7)) the kernel reads the channel's name when a datagram arrives, and wakes
-// no thread for an unwanted datagram. Nothing else changes: subscribed messages arrive in the same
-// order.
+// Every process of an LCM network receives every message. Without a filter, a process wakes up for
+// each message, and throws most messages away. With ten processes and nine messages a step, two
+// thirds of a machine's work for a step is spent on waking threads that then have nothing to do.
+// With a socket filter (socket(7)) the kernel reads the channel's name when a datagram arrives, and
+// wakes no thread for an unwanted datagram. Nothing else changes: subscribed messages arrive in the
+// same order.
 //
-// The filter also drops datagrams that no Fogline process sends, before they reach LCM's parser.
+// The filter also drops datagrams that no Fogline process sends, before they reach a parser.
 // These are fragments, whose bounds LCM does not check properly (lcm-proj/lcm#628: a remote heap
 // write), and datagrams that are no LCM message at all.
 #pragma once

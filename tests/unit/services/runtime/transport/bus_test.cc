@@ -8,11 +8,14 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <filesystem>
+#include <iterator>
 #include <set>
 #include <vector>
 
 #include "common/errors.h"
 #include "services/runtime/transport/lcm_url.h"
+#include "tests/support/raw_datagram.h"
 
 namespace fogline {
 namespace {
@@ -47,6 +50,31 @@ TEST(BusTest, TakesChannelNamesLiterally) {
   EXPECT_EQ(other, 2);
 }
 
+std::ptrdiff_t Threads() {
+  return std::distance(std::filesystem::directory_iterator("/proc/self/task"), {});
+}
+
+TEST(BusTest, ReceivesWithoutAThreadUntilItWatchesEveryChannel) {
+  const std::string url = runtime::FreshMulticastUrl();
+  const std::ptrdiff_t before = Threads();
+  runtime::Bus bus(url);
+  int received = 0;
+  bus.Subscribe("C", [&received](runtime::Bytes) { ++received; });
+  bus.Publish("C", Payload(0));
+  EXPECT_TRUE(bus.Wait(std::chrono::seconds(5)));
+  EXPECT_EQ(received, 1);
+  EXPECT_EQ(Threads(), before);
+  // LCM receives for the watcher, through a descriptor of its own.
+  const std::int64_t replaced = bus.replaced();
+  bus.SubscribeAll([](std::string_view, runtime::Bytes) {});
+  EXPECT_EQ(Threads(), before + 1);
+  EXPECT_NE(bus.replaced(), replaced);
+  bus.Publish("C", Payload(0));
+  while (received < 2 && bus.Wait(std::chrono::seconds(5))) {
+  }
+  EXPECT_EQ(received, 2);
+}
+
 TEST(BusTest, WatchesEveryChannelWhateverElseItSubscribesTo) {
   const std::string url = runtime::FreshMulticastUrl();
   runtime::Bus sender(url);
@@ -67,21 +95,6 @@ TEST(BusTest, WatchesEveryChannelWhateverElseItSubscribesTo) {
   EXPECT_EQ(subscribed, 2);
 }
 
-/// Sends bytes, unchanged, to the group and port of a multicast URL.
-void SendRaw(const std::string& url, std::string_view bytes) {
-  const int sender = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-  sockaddr_in group{};
-  group.sin_family = AF_INET;
-  group.sin_addr.s_addr = inet_addr("239.255.76.67");
-  group.sin_port = htons(static_cast<std::uint16_t>(std::stoi(url.substr(url.rfind(':') + 1))));
-  constexpr unsigned char kThisMachine = 0;
-  setsockopt(sender, IPPROTO_IP, IP_MULTICAST_TTL, &kThisMachine, sizeof(kThisMachine));
-  EXPECT_EQ(sendto(sender, bytes.data(), bytes.size(), 0, reinterpret_cast<const sockaddr*>(&group),
-                   sizeof(group)),
-            static_cast<ssize_t>(bytes.size()));
-  close(sender);
-}
-
 TEST(BusTest, KeepsFragmentsFromLcmsParserAlsoWhenItWatchesEveryChannel) {
   using namespace std::string_literals;
   const std::string url = runtime::FreshMulticastUrl();
@@ -90,8 +103,8 @@ TEST(BusTest, KeepsFragmentsFromLcmsParserAlsoWhenItWatchesEveryChannel) {
   bus.SubscribeAll(
       [&watched](std::string_view channel, runtime::Bytes) { watched.emplace_back(channel); });
   // GIVEN a message of 4 bytes as one fragment, which LCM itself would accept
-  SendRaw(url, "LC03\0\0\0\1\0\0\0\4\0\0\0\0\0\0\0\1WHOLE\0abcd"s);
-  SendRaw(url, "LC02\0\0\0\2LAST\0abcd"s);
+  test::SendDatagram(url, "LC03\0\0\0\1\0\0\0\4\0\0\0\0\0\0\0\1WHOLE\0abcd"s);
+  test::SendDatagram(url, "LC02\0\0\0\2LAST\0abcd"s);
   while (std::ranges::find(watched, "LAST") == watched.end() && bus.Wait(std::chrono::seconds(5))) {
   }
   EXPECT_EQ(watched, std::vector<std::string>{"LAST"});
