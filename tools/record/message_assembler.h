@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "services/runtime/wire/lcm_packet.h"
+#include "services/runtime/transport/udpm/lcm_packet.h"
 #include "tools/watch/senders/packet_socket.h"
 
 namespace fogline::record {

@@ -32,6 +32,7 @@ FollowedNetwork::FollowedNetwork(std::string url, bool follows, runtime::Bus::Wa
 FollowedNetwork::Network::Network(const std::string& url, const runtime::Bus::Watcher& watcher)
     : bus(url) {
   bus.SubscribeAll(watcher);
+  replaced = bus.replaced();
 }
 
 bool FollowedNetwork::Network::Drain(TimePoint now) {

@@ -46,9 +46,8 @@ class Bus {
   using Handler = std::function<void(Arrival&)>;
 
   /// @param url in LCM's syntax. If the URL gives no other values, udpm gets ttl=0 (this machine
-  ///     only) and asks for a receive buffer of 2 MiB (the kernel grants at most
-  ///     net.core.rmem_max). The host of tcpq may be a name; url() then contains the host's address
-  ///     in numbers.
+  ///     only), and LCM asks for a receive buffer of 2 MiB. The host of tcpq may be a name; url()
+  ///     then contains the host's address in numbers.
   /// @throws NetworkAway, InputError if LCM cannot open the URL
   /// @throws std::runtime_error if the tcpq relay cannot be reached
   explicit Bus(const std::string& url);

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "common/clock.h"
-#include "services/runtime/wire/lcm_packet.h"
+#include "services/runtime/transport/udpm/lcm_packet.h"
 #include "tools/watch/senders/packet_socket.h"
 #include "tools/watch/senders/senders.h"
 

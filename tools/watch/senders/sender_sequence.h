@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "common/clock.h"
-#include "services/runtime/wire/lcm_packet.h"
+#include "services/runtime/transport/udpm/lcm_packet.h"
 
 namespace fogline::watch {
 

@@ -16,7 +16,7 @@ class GroupSocket {
   /// @param buffer_bytes without CAP_NET_ADMIN at most net.core.rmem_max
   /// @param filter from the socket's start; empty: no filter
   /// @throws std::system_error if the network cannot be heard
-  GroupSocket(const std::string& url, int buffer_bytes, std::vector<sock_filter> filter = {});
+  GroupSocket(const std::string& url, int buffer_bytes, std::vector<sock_filter> filter);
   ~GroupSocket();
   GroupSocket(const GroupSocket&) = delete;
   GroupSocket& operator=(const GroupSocket&) = delete;

@@ -12,7 +12,7 @@
 
 #include "common/clock.h"
 #include "services/runtime/transport/udpm/group_socket.h"
-#include "services/runtime/wire/lcm_packet.h"
+#include "services/runtime/transport/udpm/lcm_packet.h"
 #include "services/runtime/wire/message_signer.h"
 
 namespace fogline::runtime {

@@ -15,7 +15,7 @@
 
 #include "common/errors.h"
 #include "services/runtime/transport/lcm_url.h"
-#include "tests/support/raw_datagram.h"
+#include "tests/unit/services/runtime/transport/raw_datagram.h"
 
 namespace fogline {
 namespace {

@@ -1,4 +1,4 @@
-#include "services/runtime/wire/lcm_packet.h"
+#include "services/runtime/transport/udpm/lcm_packet.h"
 
 namespace fogline::runtime {
 namespace {
