@@ -10,6 +10,7 @@
 #include <fmt/core.h>
 
 #include "common/errors.h"
+#include "common/text.h"
 #include "services/runtime/wire/digest.h"
 
 namespace fogline::runner {

@@ -21,6 +21,9 @@ std::vector<std::string> RunAndView(const std::string& program, const std::strin
   return more;
 }
 
+// The options of a run that takes 15 minutes.
+const std::vector<std::string> kUntilTheTestEndsIt{"--set", "/steps=9000", "--pace", "1"};
+
 std::uint16_t PortIn(const std::string& err) {
   constexpr std::string_view kBefore = "view: http://127.0.0.1:";
   const std::size_t at = err.find(kBefore);
@@ -98,26 +101,27 @@ TEST(RunViewTest, PrintsTheAddressOfAViewerThatIsSlow) {
   std::ofstream(slow) << "#!/bin/sh\nwhile [ ! -e " << go << " ]; do sleep 0.1; done\nexec "
                       << Program("fogline-web") << " \"$@\"\n";
   std::filesystem::permissions(slow, std::filesystem::perms::owner_all);
-  Background run(RunAndView(folder.File("fogline"), folder.File("run.lcm"), {"--pace", "1"}));
+  Background run(RunAndView(folder.File("fogline"), folder.File("run.lcm"), kUntilTheTestEndsIt));
   ASSERT_TRUE(run.WaitForErr("does not listen after 1 s", kPatience)) << run.Err();
   std::ofstream(go) << "now";
   ASSERT_TRUE(run.WaitForErr("view: http://127.0.0.1:", kPatience)) << run.Err();
   ASSERT_TRUE(run.WaitForErr("/\n", kPatience));
   WebClient live(PortIn(run.Err()));
-  EXPECT_EQ(ReceiveOp(live, "run")["steps"], 500);
+  EXPECT_EQ(ReceiveOp(live, "run")["steps"], 9000);
   run.Signal(SIGINT);
   EXPECT_EQ(run.Wait(), 130) << run.Err();
 }
 
 TEST(RunViewTest, ShowsTheLogOfARunThatFails) {
   const ScratchFolder folder;
-  Background run(
-      RunAndView(Program("fogline"), folder.File("run.lcm"), {"--pace", "1", "--restarts", "0"}));
+  std::vector<std::string> options = kUntilTheTestEndsIt;
+  options.insert(options.end(), {"--restarts", "0"});
+  Background run(RunAndView(Program("fogline"), folder.File("run.lcm"), options));
   ASSERT_TRUE(run.WaitForErr("/\n", kPatience)) << run.Err();
   const std::uint16_t port = PortIn(run.Err());
   {
     WebClient live(port);
-    EXPECT_EQ(ReceiveOp(live, "run")["steps"], 500);
+    EXPECT_EQ(ReceiveOp(live, "run")["steps"], 9000);
     ReceiveKind(live, 1);
   }
   ASSERT_TRUE(GrowsTo(20'000, folder.File("run.lcm")));
