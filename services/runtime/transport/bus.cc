@@ -83,8 +83,8 @@ void RequireMulticast(const std::string& url) {
 
 /// @throws InputError, NetworkAway, std::runtime_error that tell why LCM cannot open the network
 [[noreturn]] void FailToOpen(const std::string& url) {
-  ThrowIfExhausted(LackOfDescriptors(), url);             // LCM does not say why
-  if (url.starts_with("udpm://")) RequireMulticast(url);  // the route may have vanished meanwhile
+  ThrowIfExhausted(LackOfDescriptors(), url);  // LCM does not say why
+  RequireMulticast(url);                       // the route may have vanished meanwhile
   throw InputError(fmt::format("error: LCM cannot open \"{}\"", url));
 }
 
@@ -124,8 +124,11 @@ void Bus::OpenLcm() {
     return ReceiveThroughLcm();
   }
   const LcmSockets::Reach reach = ReachOf(url_);
-  const LcmSockets sockets({}, reach);
-  lcm_.reset(lcm_create(url_.c_str()));
+  {
+    const LcmSockets sockets({}, reach);
+    lcm_.reset(lcm_create(url_.c_str()));
+    sending_ = sockets.members();
+  }
   if (lcm_ == nullptr) FailToOpen(url_);
   try {
     inbox_.emplace(url_, ChannelFilter({}));
@@ -135,9 +138,7 @@ void Bus::OpenLcm() {
   fd_ = inbox_->fd();
   sockets_ = {fd_};
   filtered_ = inbox_->filtered();
-  if (reach == LcmSockets::Reach::kLoopback) return;
-  sending_ = sockets.members();
-  FollowTheRoute();
+  if (reach == LcmSockets::Reach::kRoute) FollowTheRoute();
 }
 
 void Bus::FollowTheRoute() {
