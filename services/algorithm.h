@@ -151,9 +151,11 @@ struct AlgorithmTraits {
 
   static_assert(std::constructible_from<A, const Scenario&>);
   static_assert(internal::Reads(kRole, std::type_identity<Inputs>{}),
-                "the inputs of Step are not the channels that kGraph sends to this role");
+                "the inputs of Step are not the channels that kGraph sends to this role; see its "
+                "rows in services/graph.h");
   static_assert(internal::Writes(kRole, std::type_identity<Outputs>{}),
-                "the outputs of Step are not the channels that kGraph expects from this role");
+                "the outputs of Step are not the channels that kGraph expects from this role; see "
+                "its rows in services/graph.h");
   // kGraph may allow the role an input on demand that this algorithm does not have.
   static_assert(internal::MayReadOnDemand(kRole, std::type_identity<OnDemand>{}),
                 "kGraph does not let this role read the message of SetOnDemandInput on demand");

@@ -229,6 +229,34 @@ constexpr std::int64_t LagOf(Role producer, Role reader) {
   return 0;
 }
 
+/// Whether every role except the world, which begins a step, reads only channels of roles above it.
+/// Then no message is older than its readers expect.
+constexpr bool RolesAreInOrder() {
+  for (const ChannelInfo& channel : kChannels) {
+    for (const RoleInfo& reader : kRoles) {
+      const bool reads = channel.pace == Pace::kStep && channel.to.Has(reader.role);
+      if (reads && reader.role != Role::kWorld && LagOf(channel.from, reader.role) != 0)
+        return false;
+    }
+  }
+  return true;
+}
+static_assert(RolesAreInOrder(),
+              "a role reads a channel of a role below it: move its row in FOGLINE_ROLES down");
+
+/// Whether the kStep channels are in the order of their roles.
+constexpr bool ChannelsAreInOrder() {
+  Role last = Role::kWorld;
+  for (const ChannelInfo& channel : kChannels) {
+    if (channel.pace != Pace::kStep) continue;
+    if (channel.from != last && LagOf(last, channel.from) != 0) return false;
+    last = channel.from;
+  }
+  return true;
+}
+static_assert(ChannelsAreInOrder(),
+              "the channels of kGraph are not in the order of their roles in FOGLINE_ROLES");
+
 /// The unit of simulated time in messages (header_t, utime) is the microsecond.
 inline constexpr double kMicrosPerSecond = 1e6;
 

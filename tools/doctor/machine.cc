@@ -141,7 +141,7 @@ void ExamineProcessors(Findings& findings) {
   const int usable = sched_getaffinity(0, sizeof(set), &set) == 0 ? CPU_COUNT(&set) : 1;
   findings.push_back({"cpus", usable > 1 ? Level::kOk : Level::kWarning,
                       fmt::format("{} processor{} usable", usable, usable == 1 ? " is" : "s are"),
-                      usable > 1 ? "" : "nine processes share it: steps take longer"});
+                      usable > 1 ? "" : "the processes of a run share it: steps take longer"});
   std::set<std::string> governors;
   for (int cpu = 0; cpu < CPU_SETSIZE; ++cpu) {
     if (!CPU_ISSET(cpu, &set)) continue;

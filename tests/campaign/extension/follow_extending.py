@@ -110,6 +110,24 @@ def check(tree, printed, written):
     assert in_fog["lidar"] < -2 and abs(in_fog["radar"]) < 1, f"the witness blames the wrong sensor: {in_fog}"
 
 
+def check_order(tree):
+    """The compiler refuses a row above the rows that the role reads, and a channel out of the order."""
+    graph = (tree / "services/graph.h").read_text()
+    row = re.search(r"  ROLE\(thermal,.*\n", graph).group()
+    lidar = graph.index("  ROLE(lidar,")
+    too_high = graph.replace(row, "").replace("  ROLE(lidar,", row + "  ROLE(lidar,", 1)
+    channel = re.search(r"    Channel<thermal_t>\{.*?\},\n(?=    Channel)", graph, re.DOTALL).group()
+    last = graph.index("    Channel<follower_command_t>")
+    too_low = (graph[:last] + channel + graph[last:]).replace(channel, "", 1)
+    assert lidar < graph.index(row) and too_low != graph
+    for wrong, why in ((too_high, "move its row in FOGLINE_ROLES down"), (too_low, "not in the order of their roles")):
+        header = tree / "build" / "wrong_order.h"
+        header.write_text(wrong)
+        refused = call("g++", "-std=c++20", "-fsyntax-only", "-x", "c++", f"-I{tree}", f"-I{tree}/build/lcmtypes/cpp",
+                       str(header), folder=tree, code=1)
+        assert why in refused.stderr, refused.stderr
+
+
 def check_older_logs(tree, older):
     """Logs of each program as the other program reads them."""
     new = str(tree / "build/bin/fogline")
@@ -138,6 +156,7 @@ def main():
         printed, written = follow((source / "docs/extending.md").read_text(), tree)
         assert len(written) >= 6 and len(printed) == 2
         check(tree, printed, written)
+        check_order(tree)
         check_older_logs(tree, fogline)
     print("the role of docs/extending.md runs on every transport")
 

@@ -14,15 +14,14 @@
 namespace fogline {
 namespace {
 
-TEST(GraphTest, GivesEveryRoleWhatItReadsOfTheSameStepAndTheWorldOfTheOneBefore) {
+TEST(GraphTest, GivesTheWorldWhatItReadsOfTheStepBefore) {
+  int channels = 0;
   for (const ChannelInfo& channel : kChannels) {
-    if (channel.pace != Pace::kStep) continue;
-    for (const RoleInfo& reader : kRoles) {
-      if (!channel.to.Has(reader.role)) continue;
-      EXPECT_EQ(LagOf(channel.from, reader.role), reader.role == Role::kWorld ? 1 : 0)
-          << channel.name << " to " << reader.name;
-    }
+    if (channel.pace != Pace::kStep || !channel.to.Has(Role::kWorld)) continue;
+    ++channels;
+    EXPECT_EQ(LagOf(channel.from, Role::kWorld), 1) << channel.name;
   }
+  EXPECT_GT(channels, 0);
 }
 
 TEST(GraphTest, LagsWhereTheProducerComesAfterTheReader) {
