@@ -66,12 +66,22 @@ void ProgramOptions::Count(const std::string& name, std::size_t& value, const st
 
 void ProgramOptions::Seconds(const std::string& name, double& value, const std::string& help,
                              double most) {
+  Number(name, value, help, 0, most);
+}
+
+void ProgramOptions::Number(const std::string& name, double& value, const std::string& help,
+                            double least, double most) {
   app_->add_option(name, value, help)
-      ->check(CLI::Range(0.0, most))
+      ->check(CLI::Range(least, most))
       ->check([](const std::string& text) {  // CLI::Range accepts NaN
         return std::isnan(std::strtod(text.c_str(), nullptr)) ? "not a number" : "";
       })
       ->capture_default_str();
+}
+
+void ProgramOptions::Choice(const std::string& name, std::string& value, const std::string& help,
+                            const std::vector<std::string>& choices) {
+  app_->add_option(name, value, help)->check(CLI::IsMember(choices))->capture_default_str();
 }
 
 void ProgramOptions::RunId(const std::string& name, std::optional<std::int64_t>& run_id,

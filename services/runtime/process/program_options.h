@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "services/runtime/transport/traffic_options.h"
 
@@ -45,6 +46,12 @@ class ProgramOptions {
              int most);
   /// A time in s, from 0 to most.
   void Seconds(const std::string& name, double& value, const std::string& help, double most);
+  /// A finite number from least to most.
+  void Number(const std::string& name, double& value, const std::string& help, double least,
+              double most);
+  /// One of these texts.
+  void Choice(const std::string& name, std::string& value, const std::string& help,
+              const std::vector<std::string>& choices);
   void RunId(const std::string& name, std::optional<std::int64_t>& run_id, const std::string& help);
   void Traffic(TrafficOptions& options);
   /// What --help prints after the options. A second call replaces the text.

@@ -32,6 +32,8 @@ struct Program {
   std::string file = "here";
   std::size_t count = 4;
   double wait_s = 60;
+  double speed = -1;
+  std::string color = "red";
   bool quiet = false;
   std::string out;  // what Read() printed
   std::string error;
@@ -41,6 +43,8 @@ struct Program {
     options.Text("--file", file, "The file", runtime::ProgramOptions::Help::kWithDefault);
     options.Count("--count", count, "How many", 1, 256);
     options.Seconds("--wait", wait_s, "How long", 1e6);
+    options.Number("--speed", speed, "How fast", -2, 2.5);
+    options.Choice("--color", color, "Which", {"red", "green"});
     options.Flag("--quiet", quiet, "Say nothing");
     options.Footer("Exit codes: 0 done.");
     words.insert(words.begin(), "fogline-it");
@@ -57,8 +61,11 @@ struct Program {
 
 TEST(ProgramOptionsTest, ReadsWhatIsSaidAndKeepsTheDefaults) {
   Program program;
-  EXPECT_EQ(program.Read({"--count", "256", "--quiet"}), std::nullopt);
+  EXPECT_EQ(program.Read({"--count", "256", "--speed", "2.5", "--color", "green", "--quiet"}),
+            std::nullopt);
   EXPECT_EQ(program.count, 256U);
+  EXPECT_EQ(program.speed, 2.5);
+  EXPECT_EQ(program.color, "green");
   EXPECT_TRUE(program.quiet);
   EXPECT_EQ(program.file, "here");
   EXPECT_EQ(program.wait_s, 60);
@@ -67,8 +74,9 @@ TEST(ProgramOptionsTest, ReadsWhatIsSaidAndKeepsTheDefaults) {
 
 TEST(ProgramOptionsTest, RefusesWhatIsOutOfRange) {
   const std::vector<std::vector<std::string>> wrong = {
-      {"--count", "0"},  {"--count", "257"}, {"--count", "x"}, {"--wait", "-1"},
-      {"--wait", "nan"}, {"--wait", "1e7"},  {"--unknown"},    {"more"}};
+      {"--count", "0"},  {"--count", "257"}, {"--count", "x"},    {"--wait", "-1"},
+      {"--wait", "nan"}, {"--wait", "1e7"},  {"--unknown"},       {"more"},
+      {"--speed", "-3"}, {"--speed", "nan"}, {"--color", "blue"}, {"--color", "Red"}};
   for (const std::vector<std::string>& words : wrong) {
     Program program;
     EXPECT_EQ(program.Read(words), kBadInput) << words.back();
