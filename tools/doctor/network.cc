@@ -12,6 +12,7 @@
 
 #include "common/errors.h"
 #include "services/runtime/transport/bus.h"
+#include "services/runtime/transport/kernel_limits.h"
 #include "services/runtime/transport/lcm_url.h"
 #include "services/runtime/transport/multicast_route.h"
 #include "services/runtime/transport/tcpq_client.h"
@@ -145,7 +146,10 @@ void ExamineLoopback(const std::string& url, const std::string& group, int ttl,
   std::vector<double> times_us;
   try {
     times_us = RoundTripsUs(fmt::format("udpm://{}:{}?ttl={}", group, port, ttl));
-  } catch (const std::exception&) {  // LCM's own test of the network has failed, too
+  } catch (const runtime::NetworkClosed&) {  // the finding is below
+  } catch (const InputError& error) {
+    findings.push_back({"multicast_loopback", Level::kProblem, error.what(), ""});
+    return;
   }
   if (times_us.empty()) {
     findings.push_back(
@@ -164,12 +168,9 @@ void ExamineLoopback(const std::string& url, const std::string& group, int ttl,
 
 void ExamineReceiveBuffer(int wanted, Findings& findings) {
   const int probe = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-  int granted = 0;
-  socklen_t size = sizeof(granted);
-  setsockopt(probe, SOL_SOCKET, SO_RCVBUF, &wanted, sizeof(wanted));
-  getsockopt(probe, SOL_SOCKET, SO_RCVBUF, &granted, &size);
+  runtime::SetReceiveBuffer(probe, wanted);
+  const int granted = runtime::ReceiveBuffer(probe);
   close(probe);
-  granted /= 2;  // the kernel reports twice the usable size, see socket(7)
   if (granted >= wanted) {
     findings.push_back({"receive_buffer", Level::kOk,
                         fmt::format("the kernel grants receive buffers of {} bytes", granted), ""});
@@ -216,11 +217,11 @@ void ExamineFilter(const std::string& url, Findings& findings) {
                         "use udpm:// instead of mpudpm://"});
   } else if (FilteredFirst() == "LC02") {
     findings.push_back({"socket_filter", Level::kOk,
-                        "the kernel keeps fragments and noise from LCM's parser", ""});
+                        "the kernel keeps fragments and noise from every process", ""});
   } else {
     findings.push_back({"socket_filter", Level::kWarning,
-                        "the kernel accepts no socket filter, so fragments reach LCM's parser, "
-                        "which checks their bounds wrongly; --key is refused",
+                        "the kernel accepts no socket filter, so every message on the network "
+                        "wakes every process; --key is refused",
                         "allow setsockopt(SO_ATTACH_FILTER) in the sandbox or container, or use "
                         "--transport tcpq"});
   }
@@ -241,7 +242,6 @@ void ExamineRelay(const std::string& url, Findings& findings) {
 }  // namespace
 
 void ExamineNetwork(const std::string& url, Findings& findings) {
-  constexpr int kReceiveBuffer = 2 << 20;  // the size that a Bus asks for
   if (url.starts_with("tcpq://")) return ExamineRelay(url, findings);
   const auto group = runtime::GroupOf(url);
   if (group && ExamineGroup(url, *group, findings)) {
@@ -253,7 +253,7 @@ void ExamineNetwork(const std::string& url, Findings& findings) {
     }
   }
   ExamineFilter(url, findings);
-  ExamineReceiveBuffer(UrlOption(url, "recv_buf_size", kReceiveBuffer), findings);
+  ExamineReceiveBuffer(UrlOption(url, "recv_buf_size", runtime::kEnoughBuffer), findings);
 }
 
 }  // namespace fogline::doctor

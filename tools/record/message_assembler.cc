@@ -13,7 +13,7 @@ constexpr std::uint32_t kMostMessage = 1U << 28;
 std::optional<Message> MessageAssembler::Add(const watch::Packet& packet) {
   const auto head = runtime::ParsePacket(packet.bytes);
   if (!head) return std::nullopt;
-  if (head->size > 0 || !head->Whole()) return AddFragment(packet, *head);
+  if (head->is_fragment) return AddFragment(packet, *head);
   return Message{.channel = head->channel,
                  .unix_us = packet.unix_us,
                  .data = packet.bytes.subspan(head->data_at)};

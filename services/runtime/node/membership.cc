@@ -166,6 +166,7 @@ void Membership::Join(const run_t& run) {
   run_.realtime = run.realtime;
   run_.pace = run.pace;
   try {
+    if (run_.realtime) parts_.bus.KeepBacklog();
     const Scenario scenario = ParseScenario(run_.parts.Text());
     run_.steps = scenario.steps;
     run_.progress = std::min(run_.progress, run_.steps);

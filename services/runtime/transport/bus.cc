@@ -10,20 +10,14 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
-#include <iterator>
 #include <stdexcept>
-#include <system_error>
 
 #include <fmt/core.h>
 
 #include "common/errors.h"
-#include "common/file.h"
-#include "common/process/console.h"
 #include "common/process/poll.h"
-#include "services/runtime/transport/kernel_limits.h"
 #include "services/runtime/transport/lcm_sockets.h"
 #include "services/runtime/transport/lcm_url.h"
-#include "services/runtime/transport/multicast_route.h"
 #include "services/runtime/transport/tcpq_client.h"
 #include "services/runtime/wire/channel_filter.h"
 
@@ -48,19 +42,6 @@ bool IsTaken(std::uint16_t port) {
   return taken;
 }
 
-/// Adds options to a udpm URL that does not give them. A larger buffer loses fewer messages: the
-/// default buffer loses 88 % of a burst of 5,000 messages. ttl=0 keeps traffic on this machine.
-std::string WithDefaults(std::string url) {
-  if (!url.starts_with("udpm://")) return url;
-  const auto add = [&url](std::string_view option, std::string_view value) {
-    if (url.find(option) != std::string::npos) return;
-    url += fmt::format("{}{}={}", url.find('?') == std::string::npos ? '?' : '&', option, value);
-  };
-  add("ttl", "0");
-  add("recv_buf_size", "2097152");
-  return url;
-}
-
 /// Escapes a channel name, because LCM treats channel names as regular expressions.
 std::string Escaped(std::string_view channel) {
   std::string escaped;
@@ -71,22 +52,17 @@ std::string Escaped(std::string_view channel) {
   return escaped;
 }
 
-/// @throws NetworkAway if this machine has no route for the multicast of the URL, InputError if the
-///     URL has the address of one machine
-void RequireMulticast(const std::string& url) {
-  const std::string why = WhyNoMulticast(url);
-  if (why.empty()) return;
-  const std::string error = fmt::format("error: {}", why);
-  if (IsMulticast(GroupOf(url).value())) throw NetworkAway(error);
-  throw InputError(error);
-}
+/// Sets a flag while an object lives.
+class FlagSet {
+ public:
+  explicit FlagSet(bool& flag) : flag_(flag) { flag_ = true; }
+  ~FlagSet() { flag_ = false; }
+  FlagSet(const FlagSet&) = delete;
+  FlagSet& operator=(const FlagSet&) = delete;
 
-/// @throws InputError, NetworkAway, std::runtime_error that tell why LCM cannot open the network
-[[noreturn]] void FailToOpen(const std::string& url) {
-  ThrowIfExhausted(LackOfDescriptors(), url);  // LCM does not say why
-  RequireMulticast(url);                       // the route may have vanished meanwhile
-  throw InputError(fmt::format("error: LCM cannot open \"{}\"", url));
-}
+ private:
+  bool& flag_;
+};
 
 // A bus that receives nothing for this long renews its membership of the group. In this time every
 // process of a run sends five messages.
@@ -94,74 +70,10 @@ constexpr Duration kJoinAgainEvery = milliseconds(1000);
 
 }  // namespace
 
-Bus::Bus(const std::string& url) : url_(WithDefaults(url)), in_memory_(url.starts_with("memq:")) {
-  if (url_.starts_with("tcpq://")) {
-    tcpq_ = std::make_unique<tcpq::Client>(url_);
-    url_ = tcpq_->url();
-    fd_ = tcpq_->fd();
-    return;
-  }
-  // If the URL is empty, LCM uses its own default URL, which Fogline has not checked.
-  if (url_.empty()) throw InputError("error: the LCM URL is empty");
-  RequireMulticast(url_);
-  OpenLcm();
-  static bool warned = false;
-  if (!filtered_ && !std::exchange(warned, true)) {
-    Notice(
-        fmt::format("warning: the kernel accepts no socket filter, so every message to {} wakes "
-                    "this process (`fogline doctor` says more)",
-                    url_));
-  }
-}
-
-Bus::~Bus() = default;
-
-void Bus::DestroyLcm::operator()(_lcm_t* lcm) const { lcm_destroy(lcm); }
-
-void Bus::OpenLcm() {
-  if (!ParseMulticastUrl(url_)) {
-    lcm_.reset(lcm_create(url_.c_str()));
-    return ReceiveThroughLcm();
-  }
-  const LcmSockets::Reach reach = ReachOf(url_);
-  {
-    const LcmSockets sockets({}, reach);
-    lcm_.reset(lcm_create(url_.c_str()));
-    sending_ = sockets.members();
-  }
-  if (lcm_ == nullptr) FailToOpen(url_);
-  try {
-    inbox_.emplace(url_, ChannelFilter({}));
-  } catch (const std::system_error&) {
-    FailToOpen(url_);
-  }
+void Bus::KeepBacklog() {
+  if (!inbox_ || inbox_->keeps_backlog()) return;
+  inbox_->KeepBacklog();
   fd_ = inbox_->fd();
-  sockets_ = {fd_};
-  filtered_ = inbox_->filtered();
-  if (reach == LcmSockets::Reach::kRoute) FollowTheRoute();
-}
-
-void Bus::FollowTheRoute() {
-  std::vector<int> members = sockets_;
-  members.insert(members.end(), sending_.begin(), sending_.end());
-  membership_.emplace(std::move(members), url_);
-}
-
-void Bus::ReceiveThroughLcm() {
-  // mpudpm gets no filter, because it announces its ports on a channel of its own.
-  const bool udpm = url_.starts_with("udpm://");
-  std::optional<LcmSockets> sockets;
-  // Until LCM's self-test is over, each socket accepts only the messages of this test. The filter
-  // is attached before the socket can receive its first datagram.
-  if (udpm) sockets.emplace(ChannelFilter({{"LCM_SELF_TEST"}}), ReachOf(url_));
-  fd_ = lcm_ == nullptr ? -1 : lcm_get_fileno(lcm_.get());
-  if (fd_ < 0) FailToOpen(url_);
-  if (!udpm) return;
-  sockets_ = sockets->receiving();
-  filtered_ = sockets->filtered();
-  for (const int socket : sockets_) SetReceiveBuffer(socket);
-  inbox_.reset();
-  if (membership_) FollowTheRoute();
   ++replaced_;
 }
 
@@ -243,14 +155,12 @@ void Bus::SubscribeAll(Watcher watcher) {
         [this](std::string_view channel, Bytes bytes) { Watch(channel, bytes); });
   }
   if (inbox_) {
-    ReceiveThroughLcm();
-    for (Topic& topic : topics_) {
-      if (!topic.handlers.empty()) SubscribeThroughLcm(topic);
-    }
+    KeepBacklog();
+  } else {
+    lcm_subscription_t* handle = lcm_subscribe(lcm_.get(), ".*", &Bus::OnAnything, this);
+    if (handle == nullptr) throw std::runtime_error("cannot subscribe to all channels");
+    lcm_subscription_set_queue_capacity(handle, 0);
   }
-  lcm_subscription_t* handle = lcm_subscribe(lcm_.get(), ".*", &Bus::OnAnything, this);
-  if (handle == nullptr) throw std::runtime_error("cannot subscribe to all channels");
-  lcm_subscription_set_queue_capacity(handle, 0);
   Filter(AnyChannelFilter());
 }
 
@@ -302,6 +212,8 @@ bool Bus::Wait(Duration timeout) {
 }
 
 void Bus::Handle() {
+  if (handling_) throw std::logic_error("a handler of a bus waits for a message of the same bus");
+  const FlagSet handling(handling_);
   if (waiting_ > 0) --waiting_;
   if (tcpq_) {
     tcpq_->Handle();
@@ -314,11 +226,27 @@ void Bus::Handle() {
 }
 
 void Bus::HandlePacket() {
-  const auto message = inbox_->Take();
-  if (!message) return;
-  // If the kernel accepts no filter, messages on other channels come, too.
-  const auto topic = std::ranges::find(topics_, message->channel, &Topic::channel);
-  if (topic != topics_.end() && !topic->handlers.empty()) Deliver(message->data, *topic);
+  const MessageSocket::Message message = inbox_->Take().value();
+  if (watcher_) Watch(message.channel, message.data);
+  if (Topic* topic = SubscribedTopic(message.channel)) Deliver(message.data, *topic);
+}
+
+Bus::Topic* Bus::SubscribedTopic(std::string_view channel) {
+  const auto topic = std::ranges::find(topics_, channel, &Topic::channel);
+  return topic == topics_.end() || topic->handlers.empty() ? nullptr : &*topic;
+}
+
+bool Bus::HasPacket(Duration timeout) {
+  if (filtered_ || watcher_) return inbox_->Wait(timeout);
+  // Without a filter, messages come that have no reader. After so many of them the caller does its
+  // other work.
+  constexpr int kMostOthers = 100;
+  const TimePoint end = Clock::now() + timeout;
+  for (int i = 0; i < kMostOthers && inbox_->Wait(end - Clock::now()); ++i) {
+    if (SubscribedTopic(inbox_->message()->channel) != nullptr) return true;
+    inbox_->Take();
+  }
+  return false;
 }
 
 bool Bus::HandleDue() {
@@ -330,7 +258,7 @@ bool Bus::HandleDue() {
 
 bool Bus::Readable(Duration timeout) {
   if (tcpq_) return tcpq_->Readable(timeout);
-  if (inbox_) return inbox_->Wait(timeout);
+  if (inbox_) return HasPacket(timeout);
   const int ready = PollFor(fd_, POLLIN, timeout);
   if (ready < 0 && errno != EINTR) throw std::runtime_error("cannot wait for messages");
   return ready > 0;

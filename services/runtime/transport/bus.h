@@ -1,6 +1,11 @@
 // LCM behind one small class: the URL gets safe options, channel names are taken literally, receive
-// queues do not have LCM's limit of 30, and handlers may throw. On request the class signs messages
-// or simulates a bad network.
+// queues do not have LCM's limit of 30 messages, and handlers may throw. On request the class signs
+// messages or simulates a bad network.
+//
+// With udpm a bus reads its socket itself, because LCM's thread costs a second wake-up for each
+// message. Messages then wait in the kernel's buffer, or in a backlog without this limit
+// (KeepBacklog()). LCM sends. With mpudpm, memq, and a udpm URL whose options Fogline does not
+// know, LCM also receives.
 #pragma once
 
 #include <cstdint>
@@ -39,6 +44,13 @@ class NetworkAway : public InputError {
   using InputError::InputError;
 };
 
+/// The error that this machine's own messages to the network do not come back to it: a firewall may
+/// drop them.
+class NetworkClosed : public InputError {
+ public:
+  using InputError::InputError;
+};
+
 /// One connection to an LCM network, for one thread. With memq:// a message reaches only the
 /// subscribers of the same object.
 class Bus {
@@ -46,9 +58,9 @@ class Bus {
   using Handler = std::function<void(Arrival&)>;
 
   /// @param url in LCM's syntax. If the URL gives no other values, udpm gets ttl=0 (this machine
-  ///     only), and LCM asks for a receive buffer of 2 MiB. The host of tcpq may be a name; url()
-  ///     then contains the host's address in numbers.
-  /// @throws NetworkAway, InputError if LCM cannot open the URL
+  ///     only) and a receive buffer of kWideBuffer. The host of tcpq may be a name; url() then
+  ///     contains the host's address in numbers.
+  /// @throws NetworkAway, NetworkClosed, InputError if the network cannot be opened
   /// @throws std::runtime_error if the tcpq relay cannot be reached
   explicit Bus(const std::string& url);
   ~Bus();
@@ -61,6 +73,12 @@ class Bus {
   ///     reach this process before their signature is checked.
   void Secure(const MessageSigner& signer);
   bool secured() const { return signer_.has_value(); }
+  /// From now on, a process that is busy for long loses no messages: with udpm a thread takes them
+  /// out of the kernel's buffer. Each message then wakes two threads. So this is for runs in real
+  /// time, whose roles do not wait for a busy process; in lockstep, lost messages are sent again.
+  /// With the other transports the bus always has a backlog. A handler may call this.
+  /// @throws std::system_error if the kernel grants no thread or no descriptor
+  void KeepBacklog();
   /// From now on, the bus receives messages as over a bad network.
   void Impair(const Faults& faults) { faults_ = faults; }
 
@@ -76,7 +94,7 @@ class Bus {
   void SetSampleRate(std::string_view channel, double share);
 
   /// Calls `watcher` from Wait() for every message on any channel, except messages that are too
-  /// large for Fogline. May be called once at most.
+  /// large for Fogline, and keeps a backlog of them. May be called once at most.
   using Watcher = std::function<void(std::string_view channel, Bytes)>;
   void SubscribeAll(Watcher watcher);
 
@@ -99,7 +117,8 @@ class Bus {
   };
   const FailedSends& failed_sends() const { return failed_sends_; }
 
-  /// Handles one message. Waits up to `timeout` for the message. @return whether a message came
+  /// Handles one message. Waits up to `timeout` for the message. A handler must not call this.
+  /// @return whether a message came
   bool Wait(Duration timeout);
 
   /// Handles the messages that have come, but at most kDrained. The limit is for memq, where a
@@ -124,8 +143,8 @@ class Bus {
   /// when all earlier messages have been handled.
   int fd() const { return fd_; }
   /// Grows whenever fd() refers to another file: with tcpq, when the relay is lost or comes back;
-  /// with udpm, in SubscribeAll().
-  /// A caller that has given a copy of fd() to epoll must then copy it again.
+  /// with udpm, in KeepBacklog() and in SubscribeAll(). A caller that has given a copy of fd() to
+  /// epoll must then copy it again.
   std::int64_t replaced() const;
   const std::string& url() const { return url_; }
   /// Why the relay of tcpq cannot be reached at present: messages are then lost. "" if it can.
@@ -133,11 +152,13 @@ class Bus {
 
  private:
   void OpenLcm();
-  void FollowTheRoute();
-  /// Lets LCM receive in its own thread. @throws InputError if LCM cannot
+  void OpenInbox();
+  void TestInbox();
   void ReceiveThroughLcm();
   void SubscribeThroughLcm(Topic& topic);
   bool Readable(Duration timeout);
+  bool HasPacket(Duration timeout);
+  Topic* SubscribedTopic(std::string_view channel);
   void OnFailedSend(int error);
   void OnSentAgain();
   void JoinAgainIfSilent();
@@ -164,12 +185,10 @@ class Bus {
   std::string url_;
   std::unique_ptr<_lcm_t, DestroyLcm> lcm_;  // sends, and receives if inbox_ does not
   std::unique_ptr<tcpq::Client> tcpq_;       // instead of lcm_, with tcpq
-  // With udpm: receives the messages until there is a watcher.
-  std::optional<MessageSocket> inbox_;
+  std::optional<MessageSocket> inbox_;       // receives with udpm
   int fd_ = -1;
   std::int64_t replaced_ = 0;
   std::vector<int> sockets_;  // the UDP sockets that receive: that of inbox_, or those of LCM
-  std::vector<int> sending_;  // LCM's UDP sockets that only send
   bool filtered_ = true;      // false if the kernel has refused a filter
   // Set if messages of the group come over the route, which may change.
   std::optional<GroupMembership> membership_;
@@ -181,6 +200,7 @@ class Bus {
   TimePoint now_{};            // when Wait() last handled a message
   std::deque<Topic> topics_;   // stable addresses: LCM keeps pointers to them
   Watcher watcher_;            // called for messages on all channels; may be empty
+  bool handling_ = false;      // whether a handler is being called from Wait()
   std::exception_ptr parked_;  // an exception of a handler; it must not pass through LCM's C code
   std::optional<MessageSigner> signer_;
   std::optional<Faults> faults_;

@@ -14,6 +14,13 @@ void SetReceiveBuffer(int socket, int bytes) {
   setsockopt(socket, SOL_SOCKET, SO_RCVBUF, &bytes, sizeof(bytes));
 }
 
+int ReceiveBuffer(int socket) {
+  int bytes = 0;
+  socklen_t size = sizeof(bytes);
+  getsockopt(socket, SOL_SOCKET, SO_RCVBUF, &bytes, &size);
+  return bytes / 2;  // the kernel doubles the size that was asked for (socket(7))
+}
+
 int LackOfDescriptors() {
   // LCM uses ten descriptors at most: sockets, pipes, and the descriptors of its self-test.
   std::array<int, 16> descriptors{};

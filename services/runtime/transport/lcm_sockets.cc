@@ -64,22 +64,21 @@ int LcmSockets::OnOption(int socket, int level, int name, const void* value, soc
   const bool join = level == IPPROTO_IP && name == IP_ADD_MEMBERSHIP;
   if (join && joins_ == Joins::kNothing) return 0;
   const int result = SetOption(socket, level, name, value, size);
-  if (join) members_.push_back(socket);
   if (reach_ != Reach::kLoopback || level != IPPROTO_IP) return result;
   if (name == IP_MULTICAST_TTL) {  // LCM sets this option on the socket that sends
     const in_addr loopback = Loopback();
     return SetOption(socket, IPPROTO_IP, IP_MULTICAST_IF, &loopback, sizeof(loopback));
   }
   if (join && size >= sizeof(ip_mreq)) {
-    ip_mreq membership = *static_cast<const ip_mreq*>(value);
-    membership.imr_interface = Loopback();
-    // If the route leads over loopback, LCM has already joined the group on loopback.
-    const bool joined =
-        SetOption(socket, IPPROTO_IP, IP_ADD_MEMBERSHIP, &membership, sizeof(membership)) == 0 ||
-        errno == EADDRINUSE;
-    return joined ? 0 : -1;
+    return JoinOnLoopback(socket, static_cast<const ip_mreq*>(value)->imr_multiaddr) ? 0 : -1;
   }
   return result;
+}
+
+bool JoinOnLoopback(int socket, const in_addr& group) {
+  const ip_mreq membership{.imr_multiaddr = group, .imr_interface = Loopback()};
+  return SetOption(socket, IPPROTO_IP, IP_ADD_MEMBERSHIP, &membership, sizeof(membership)) == 0 ||
+         errno == EADDRINUSE;
 }
 
 bool LoopbackIsUp() { return RouteError("127.0.0.1").empty(); }

@@ -40,8 +40,6 @@ class LcmSockets {
 
   /// The sockets that receive.
   const std::vector<int>& receiving() const { return receiving_; }
-  /// The sockets that have joined a group, including LCM's sending socket.
-  const std::vector<int>& members() const { return members_; }
   /// Whether there are sockets that receive, and the kernel has accepted the filter for each of
   /// them.
   bool filtered() const { return !receiving_.empty() && !refused_; }
@@ -57,9 +55,13 @@ class LcmSockets {
   Reach reach_;
   Joins joins_;
   std::vector<int> receiving_;
-  std::vector<int> members_;
   bool refused_ = false;
 };
+
+/// Joins a group on loopback. If the socket is already in the group there, because the route leads
+/// over loopback, this is no error.
+/// @return whether the socket is in the group; otherwise errno says why not
+bool JoinOnLoopback(int socket, const in_addr& group);
 
 /// Whether loopback is up. In some containers loopback is down.
 bool LoopbackIsUp();
@@ -72,7 +74,7 @@ LcmSockets::Reach ReachOf(const std::string& url);
 /// loses its groups.
 class GroupMembership {
  public:
-  /// @param sockets LCM's sockets, which have just joined the group on the interface of the route
+  /// @param sockets have just joined the group on the interface of the route
   GroupMembership(std::vector<int> sockets, const std::string& url);
   /// Joins the group again, on the interface of the current route, if the route leads to another
   /// interface or the interface has lost the group. The sockets first leave the group on the

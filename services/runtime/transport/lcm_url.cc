@@ -44,7 +44,9 @@ bool ReadOptions(std::string_view options, MulticastAddress& address) {
     if (!number || *number < 0) return false;
     if (name == "ttl") {
       address.ttl = *number;
-    } else if (name != "recv_buf_size") {
+    } else if (name == "recv_buf_size") {
+      address.receive_buffer = *number;
+    } else {
       return false;
     }
   }
@@ -113,7 +115,8 @@ std::optional<MulticastAddress> ParseMulticastUrl(std::string_view url) {
   std::string_view options = url.substr(kUdpm.size());
   std::string_view place = TakeUntil('?', options);
   // The default of ttl is 0, in LCM and in Fogline (bus.h).
-  MulticastAddress address{.group = *GroupOf(url), .port = kLcmPort, .ttl = 0};
+  MulticastAddress address{
+      .group = *GroupOf(url), .port = kLcmPort, .ttl = 0, .receive_buffer = {}};
   TakeUntil(':', place);
   if (!place.empty()) {
     const auto port = ParseNumber<std::uint16_t>(place);

@@ -31,6 +31,7 @@ struct MulticastAddress {
   std::string group;
   std::uint16_t port = 0;
   int ttl = 0;
+  std::optional<int> receive_buffer;  // recv_buf_size, in bytes
 
   bool operator==(const MulticastAddress&) const = default;
 };

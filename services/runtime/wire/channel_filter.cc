@@ -22,7 +22,6 @@ namespace {
 // A filter of a UDP socket sees the datagram from the UDP header on.
 constexpr std::uint32_t kMagicOffset = 8;
 constexpr std::uint32_t kChannelOffset = kMagicOffset + 8;
-constexpr std::uint32_t kSmallMessage = 0x4c433032;  // "LC02", big endian like every number here
 constexpr auto kMaxDatagram = static_cast<std::uint32_t>(kChannelOffset + kLongestChannel + 1 +
                                                          kMaxMessageBytes + kSignatureBytes);
 
@@ -114,7 +113,7 @@ std::vector<sock_filter> WholeMessages() {
       BPF_STMT(BPF_LD | BPF_W | BPF_LEN, 0),
       BPF_JUMP(BPF_JMP | BPF_JGT | BPF_K, kMaxDatagram, 2, 0),  // drops longer datagrams
       Load(4, kMagicOffset),
-      SkipIf(kSmallMessage, 1),  // continues with the channels
+      SkipIf(kLcmMessage, 1),  // continues with the channels
       Take(kNothing),
   };
 }

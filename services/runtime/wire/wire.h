@@ -27,6 +27,11 @@ inline constexpr std::size_t kMaxMessageBytes = 1400;
 /// LCM's longest channel name (LCM_MAX_CHANNEL_NAME_LENGTH), in bytes.
 inline constexpr std::size_t kLongestChannel = 63;
 
+/// The first word of a UDP packet of LCM, big endian: a whole message ("LC02"), or a fragment of a
+/// message ("LC03").
+inline constexpr std::uint32_t kLcmMessage = 0x4c433032;
+inline constexpr std::uint32_t kLcmFragment = 0x4c433033;
+
 /// Every message begins with its type's fingerprint (8 bytes) and header_t: run_id, step, utime.
 inline constexpr std::size_t kRunIdOffset = 8;
 inline constexpr std::size_t kStepOffset = 16;

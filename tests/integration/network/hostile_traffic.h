@@ -98,7 +98,7 @@ class HostileTrafficTest : public NetworkTest {
 };
 
 /// Floods of the most expensive kinds of datagrams: requests that must be answered, fragments that
-/// LCM's parser handles badly, and copies of genuine messages.
+/// the kernel's filter must drop, and copies of genuine messages.
 class FloodTest : public HostileTrafficTest, public testing::WithParamInterface<std::string> {};
 inline const auto kFloods = testing::Values("request", "fragment", "replayed");
 inline std::string NameOfFlood(const testing::TestParamInfo<std::string>& kind) {

@@ -162,6 +162,20 @@ TEST_F(OutageTest, AFirewallThatDropsOneOfAThousandEndsNoRun) {
   EXPECT_FALSE(result["failed_sends"].empty()) << "of 4500 messages and more";
 }
 
+TEST_F(OutageTest, AFirewallThatLetsNothingInIsNamedAtTheStart) {
+  const Lab lab(1);
+  lab[0].Do(
+      "nft 'table inet filter { chain input { type filter hook input priority filter; policy drop; "
+      "ct state established,related accept; }; }'");
+  for (const std::string url : {kUrl, "udpm://239.255.76.67:7700"}) {
+    const Outcome run =
+        RunCommand(lab[0].On({Program("fogline"), "run", "scenario/paper.json", "--lcm-url", url}));
+    EXPECT_EQ(run.code, 2) << run.err;
+    EXPECT_THAT(run.err, HasSubstr("a message to 239.255.76.67:7700 does not come back to this "
+                                   "machine; perhaps a firewall drops it"));
+  }
+}
+
 TEST_F(OutageTest, AFirewallThatDropsWhatIsSentChangesNoResultAndIsTold) {
   const Machine machine("firewall");
   machine.RouteMulticastToItself();

@@ -211,8 +211,7 @@ TEST_F(SignedTrafficTest, UnsoundMessagesHaveNoEffectOnAnUnsignedRunEither) {
       Payload nan;
       runtime::Encode(command, nan);
       intruder.Say(channel, nan);
-      // This message is sent in fragments. The kernel's filter drops them before LCM's parser gets
-      // them.
+      // This message is sent in fragments. The kernel's filter drops them.
       const Payload huge(300'000, 1);
       lcm_publish(lcm, channel.c_str(), huge.data(), static_cast<unsigned>(huge.size()));
     }

@@ -180,10 +180,7 @@ std::vector<Line> TopScreen::Lines(std::size_t columns, std::size_t rows) {
   constexpr std::size_t kFrame = 2;  // summary and footer
   const std::size_t height = rows > kFrame ? rows - kFrame : 1;
   page_ = height;
-  // The size of the buffer is an option that a program adds itself. It would take the room of the
-  // traffic.
-  const std::string url = view_.url.substr(0, view_.url.find("&recv_buf_size="));
-  std::vector<Line> lines{SummaryLine(view_.traffic, url)};
+  std::vector<Line> lines{SummaryLine(view_.traffic, view_.url)};
   std::vector<Line> body = opened_.empty() ? Overview(height) : Details(height);
   std::ranges::move(body, std::back_inserter(lines));
   lines.resize(std::max(lines.size(), height + 1));

@@ -32,7 +32,7 @@ constexpr Duration kJoinAgainEvery = milliseconds(1000);
 std::unique_ptr<runtime::GroupSocket> OpenSocket(const std::string& url, int buffer_bytes) {
   try {
     auto socket =
-        std::make_unique<runtime::GroupSocket>(url, buffer_bytes, std::vector<sock_filter>());
+        std::make_unique<runtime::GroupSocket>(url, std::vector<sock_filter>(), buffer_bytes);
     const int on = 1;
     for (const int option : {SO_RXQ_OVFL, SO_TIMESTAMPNS}) {
       if (setsockopt(socket->fd(), SOL_SOCKET, option, &on, sizeof(on)) == 0) continue;

@@ -53,7 +53,7 @@ class PacketSocket {
 
   int fd() const { return socket_->fd(); }
   /// The size of the buffer that the kernel grants.
-  int buffer_bytes() const { return socket_->buffer_bytes(); }
+  int buffer_bytes() const { return runtime::ReceiveBuffer(socket_->fd()); }
 
  private:
   struct Batch;

@@ -9,7 +9,6 @@
 #include <system_error>
 #include <utility>
 
-#include "services/runtime/transport/kernel_limits.h"
 #include "services/runtime/transport/lcm_sockets.h"
 #include "services/runtime/transport/lcm_url.h"
 #include "services/runtime/wire/channel_filter.h"
@@ -22,27 +21,22 @@ void Require(bool succeeded, const std::string& url) {
   if (!succeeded) throw std::system_error(errno, std::generic_category(), url);
 }
 
-/// Joins the group where LCM's sockets join it: on the route, and on loopback if the traffic stays
-/// on this machine (lcm_sockets.h).
+/// Joins the group where LCM's sockets join it (lcm_sockets.h).
 /// @return whether it has joined; otherwise errno says why not
 bool Join(int fd, const in_addr& group, const std::string& url) {
-  ip_mreq membership{.imr_multiaddr = group, .imr_interface = {}};
+  const ip_mreq membership{.imr_multiaddr = group, .imr_interface = {}};
   const bool joined =
       setsockopt(fd, IPPROTO_IP, IP_ADD_MEMBERSHIP, &membership, sizeof(membership)) == 0;
-  if (ReachOf(url) != LcmSockets::Reach::kLoopback) return joined;
-  membership.imr_interface.s_addr = htonl(INADDR_LOOPBACK);
-  // If the route leads over loopback, the socket is already in the group there.
-  return setsockopt(fd, IPPROTO_IP, IP_ADD_MEMBERSHIP, &membership, sizeof(membership)) == 0 ||
-         errno == EADDRINUSE;
+  return ReachOf(url) == LcmSockets::Reach::kLoopback ? JoinOnLoopback(fd, group) : joined;
 }
 
 }  // namespace
 
-GroupSocket::GroupSocket(const std::string& url, int buffer_bytes, std::vector<sock_filter> filter)
+GroupSocket::GroupSocket(const std::string& url, std::vector<sock_filter> filter, int buffer_bytes)
     : fd_(socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)) {
   Require(fd_ >= 0, url);
   try {
-    Open(url, buffer_bytes, std::move(filter));
+    Open(url, std::move(filter), buffer_bytes);
   } catch (...) {
     close(fd_);
     throw;
@@ -51,7 +45,7 @@ GroupSocket::GroupSocket(const std::string& url, int buffer_bytes, std::vector<s
 
 GroupSocket::~GroupSocket() { close(fd_); }
 
-void GroupSocket::Open(const std::string& url, int buffer_bytes, std::vector<sock_filter> filter) {
+void GroupSocket::Open(const std::string& url, std::vector<sock_filter> filter, int buffer_bytes) {
   const auto network = ParseMulticastUrl(url);
   sockaddr_in address{};
   address.sin_family = AF_INET;
@@ -62,17 +56,10 @@ void GroupSocket::Open(const std::string& url, int buffer_bytes, std::vector<soc
   for (const int option : {SO_REUSEADDR, SO_REUSEPORT}) {
     Require(setsockopt(fd_, SOL_SOCKET, option, &on, sizeof(on)) == 0, url);
   }
-  SetReceiveBuffer(fd_, buffer_bytes);
+  SetReceiveBuffer(fd_, network->receive_buffer.value_or(buffer_bytes));
   // Bound to the group, the socket gets no packets of other groups on the same port.
   Require(bind(fd_, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) == 0, url);
   Require(Join(fd_, address.sin_addr, url), url);
-}
-
-int GroupSocket::buffer_bytes() const {
-  int bytes = 0;
-  socklen_t size = sizeof(bytes);
-  getsockopt(fd_, SOL_SOCKET, SO_RCVBUF, &bytes, &size);
-  return bytes / 2;  // the kernel doubles the size that was asked for (socket(7))
 }
 
 }  // namespace fogline::runtime

@@ -7,16 +7,20 @@
 #include <string>
 #include <vector>
 
+#include "services/runtime/transport/kernel_limits.h"
+
 namespace fogline::runtime {
 
 class GroupSocket {
  public:
   /// Opens a socket that does not block.
   /// @pre the URL is a udpm:// URL (ParseMulticastUrl)
-  /// @param buffer_bytes without CAP_NET_ADMIN at most net.core.rmem_max
   /// @param filter from the socket's start; empty: no filter
+  /// @param buffer_bytes if the URL has no recv_buf_size; without CAP_NET_ADMIN at most
+  ///     net.core.rmem_max
   /// @throws std::system_error if the network cannot be heard
-  GroupSocket(const std::string& url, int buffer_bytes, std::vector<sock_filter> filter);
+  GroupSocket(const std::string& url, std::vector<sock_filter> filter,
+              int buffer_bytes = kWideBuffer);
   ~GroupSocket();
   GroupSocket(const GroupSocket&) = delete;
   GroupSocket& operator=(const GroupSocket&) = delete;
@@ -24,11 +28,9 @@ class GroupSocket {
   int fd() const { return fd_; }
   /// Whether the kernel has accepted the filter.
   bool filtered() const { return filtered_; }
-  /// The size of the buffer that the kernel grants.
-  int buffer_bytes() const;
 
  private:
-  void Open(const std::string& url, int buffer_bytes, std::vector<sock_filter> filter);
+  void Open(const std::string& url, std::vector<sock_filter> filter, int buffer_bytes);
 
   int fd_;
   bool filtered_ = false;

@@ -3,8 +3,6 @@
 namespace fogline::runtime {
 namespace {
 
-constexpr std::uint32_t kShort = 0x4c433032;     // "LC02"
-constexpr std::uint32_t kFragment = 0x4c433033;  // "LC03"
 constexpr std::size_t kShortHead = 8;
 constexpr std::size_t kFragmentHead = 20;
 constexpr std::size_t kSizeOffset = 8;
@@ -34,7 +32,8 @@ std::optional<LcmPacket> ParsePacket(Bytes head) {
   LcmPacket packet{.number = Number(head, 4, 4), .channel = ""};
   const std::uint32_t kind = Number(head, 0, 4);
   std::size_t end = kShortHead;
-  if (kind == kFragment) {
+  if (kind == kLcmFragment) {
+    packet.is_fragment = true;
     end = kFragmentHead;
     if (head.size() < end) return std::nullopt;
     packet.size = Number(head, kSizeOffset, 4);
@@ -42,7 +41,7 @@ std::optional<LcmPacket> ParsePacket(Bytes head) {
     packet.fragment = static_cast<std::uint16_t>(Number(head, kFragmentOffset, 2));
     packet.fragments = static_cast<std::uint16_t>(Number(head, kFragmentsOffset, 2));
     if (packet.fragment >= packet.fragments) return std::nullopt;
-  } else if (kind != kShort) {
+  } else if (kind != kLcmMessage) {
     return std::nullopt;
   }
   packet.data_at = end;

@@ -16,6 +16,7 @@ namespace fogline::runtime {
 
 struct LcmPacket {
   std::uint32_t number = 0;  // of the message; its sender counts its messages, beginning with 0
+  bool is_fragment = false;  // whether it begins with "LC03"
   std::uint16_t fragment = 0;
   std::uint16_t fragments = 1;
   std::string_view channel;  // in the first packet of a message, otherwise ""
@@ -24,6 +25,7 @@ struct LcmPacket {
   std::uint32_t offset = 0;  // of this part of the data, in a fragment
 
   bool First() const { return fragment == 0; }
+  /// Whether this packet has a whole message, perhaps as its only fragment.
   bool Whole() const { return fragments == 1; }
 };
 

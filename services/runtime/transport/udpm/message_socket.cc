@@ -4,47 +4,72 @@
 
 #include <cerrno>
 #include <stdexcept>
-#include <utility>
 
 #include "common/process/poll.h"
-#include "services/runtime/transport/kernel_limits.h"
 
 namespace fogline::runtime {
 namespace {
 
-// Wait() looks at no more than this many packets that are no messages, so that a flood of them does
-// not keep the caller from other work. Only without a filter such packets come.
+// Receive() looks at no more than this many packets that are no messages, so that a flood of them
+// does not hold up Wait() beyond its time limit. Only without a filter such packets come.
 constexpr int kMostOthers = 100;
+
+std::optional<MessageSocket::Message> MessageIn(Bytes packet) {
+  const auto head = ParsePacket(packet);
+  if (!head || head->is_fragment) return std::nullopt;
+  const Bytes data = packet.subspan(head->data_at);
+  if (data.size() > kMaxMessageBytes + kSignatureBytes) return std::nullopt;
+  return MessageSocket::Message{.channel = head->channel, .data = data};
+}
 
 }  // namespace
 
 MessageSocket::MessageSocket(const std::string& url, std::vector<sock_filter> filter)
-    : socket_(url, kWideBuffer, std::move(filter)) {}
+    : socket_(url, std::move(filter)) {}
+
+void MessageSocket::KeepBacklog() {
+  if (backlog_) return;
+  backlog_.emplace(socket(), kMostPacket,
+                   [](Bytes packet) { return MessageIn(packet).has_value(); });
+}
 
 bool MessageSocket::Wait(Duration timeout) {
   if (message_ || Receive()) return true;
-  if (timeout <= Duration::zero()) return false;
-  const int ready = PollFor(fd(), POLLIN, timeout);
-  if (ready < 0 && errno != EINTR) throw std::runtime_error("cannot wait for messages");
-  return ready > 0 && Receive();
+  while (timeout > Duration::zero()) {
+    const TimePoint began = Clock::now();
+    const int ready = PollFor(fd(), POLLIN, timeout);
+    if (ready < 0 && errno != EINTR) throw std::runtime_error("cannot wait for messages");
+    if (ready <= 0) return false;
+    if (Receive()) return true;
+    timeout -= Clock::now() - began;
+  }
+  return false;
 }
 
 bool MessageSocket::Receive() {
   for (int i = 0; i < kMostOthers; ++i) {
-    // MSG_TRUNC: the size is that of the whole packet, even if the packet is too large.
-    const ssize_t size = recv(fd(), packet_.data(), packet_.size(), MSG_TRUNC);
-    if (size < 0) return false;  // nothing is there, or an interrupt or an error of the network
-    const auto bytes = static_cast<std::size_t>(size);
-    if (bytes > packet_.size()) continue;
-    const Bytes packet(packet_.data(), bytes);
-    const auto head = ParsePacket(packet);
-    if (!head || !head->Whole() || head->size > 0) continue;
-    const Bytes data = packet.subspan(head->data_at);
-    if (data.size() > kMaxMessageBytes + kSignatureBytes) continue;
-    message_ = Message{.channel = head->channel, .data = data};
-    return true;
+    const auto packet = NextPacket();
+    if (!packet) return false;
+    message_ = MessageIn(*packet);
+    if (message_) return true;
   }
   return false;
+}
+
+/// @return the packet, which is empty if it is too large; nullopt if none is there
+std::optional<Bytes> MessageSocket::NextPacket() {
+  if (backlog_) {
+    auto packet = backlog_->Take();
+    if (!packet) return std::nullopt;
+    kept_ = std::move(*packet);
+    return kept_;
+  }
+  // MSG_TRUNC: the size is that of the whole packet, even if the packet is too large.
+  const ssize_t size = recv(socket(), buffer_.data(), buffer_.size(), MSG_TRUNC);
+  // Nothing is there, or the network reports an error, which recv() reports once.
+  if (size < 0) return std::nullopt;
+  const auto bytes = static_cast<std::size_t>(size);
+  return Bytes(buffer_.data(), bytes <= buffer_.size() ? bytes : 0);
 }
 
 }  // namespace fogline::runtime

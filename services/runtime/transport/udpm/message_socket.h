@@ -6,11 +6,16 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "common/clock.h"
+#include "services/runtime/transport/udpm/backlog.h"
 #include "services/runtime/transport/udpm/group_socket.h"
 #include "services/runtime/transport/udpm/lcm_packet.h"
 #include "services/runtime/wire/message_signer.h"
@@ -30,25 +35,38 @@ class MessageSocket {
   /// @throws std::system_error if the network cannot be heard
   MessageSocket(const std::string& url, std::vector<sock_filter> filter);
 
+  /// From now on, a thread takes the messages out of the kernel's buffer (backlog.h), and fd() is
+  /// another descriptor.
+  /// @throws std::system_error if the kernel grants no thread or no descriptor
+  void KeepBacklog();
+  bool keeps_backlog() const { return backlog_.has_value(); }
+
   /// Waits up to `timeout` for a message. It takes only whole messages with at most
-  /// kMaxMessageBytes and a signature, as ChannelFilter() does.
+  /// kMaxMessageBytes and a signature, as ChannelFilter() does. A signal ends the wait.
   /// @return whether there is a message
   bool Wait(Duration timeout);
   /// The message for which Wait() has returned true. It is valid until the next call of Wait().
   /// @return nullopt if it was taken before
   std::optional<Message> Take() { return std::exchange(message_, std::nullopt); }
+  /// The message that Take() would return.
+  const std::optional<Message>& message() const { return message_; }
 
   /// This descriptor is readable when a message may be there.
-  int fd() const { return socket_.fd(); }
+  int fd() const { return backlog_ ? backlog_->fd() : socket_.fd(); }
+  /// The UDP socket.
+  int socket() const { return socket_.fd(); }
   bool filtered() const { return socket_.filtered(); }
 
  private:
   bool Receive();
+  std::optional<Bytes> NextPacket();
 
   static constexpr std::size_t kMostPacket = kPacketHead + kMaxMessageBytes + kSignatureBytes;
 
   GroupSocket socket_;
-  std::array<std::uint8_t, kMostPacket> packet_;
+  std::optional<Backlog> backlog_;
+  std::array<std::uint8_t, kMostPacket> buffer_;
+  Backlog::Packet kept_;  // the packet of message_, if the backlog had it
   std::optional<Message> message_;
 };
 

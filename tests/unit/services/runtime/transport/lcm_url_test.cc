@@ -32,13 +32,17 @@ TEST(LcmUrlTest, IsTheOneGivenThenThatOfTheEnvironmentThenLcmsOwn) {
 }
 
 TEST(LcmUrlTest, HasLcmsDefaultsWhereItSaysNothing) {
-  const runtime::MulticastAddress lcms{.group = "239.255.76.67", .port = 7667, .ttl = 0};
+  runtime::MulticastAddress lcms{
+      .group = "239.255.76.67", .port = 7667, .ttl = 0, .receive_buffer = {}};
   EXPECT_EQ(runtime::ParseMulticastUrl("udpm://"), lcms);
+  lcms.receive_buffer = 100;
   EXPECT_EQ(runtime::ParseMulticastUrl("udpm://?recv_buf_size=100"), lcms);
-  EXPECT_EQ(runtime::ParseMulticastUrl("udpm://:7700?ttl=1"),
-            (runtime::MulticastAddress{.group = "239.255.76.67", .port = 7700, .ttl = 1}));
-  EXPECT_EQ(runtime::ParseMulticastUrl("udpm://224.1.1.1?recv_buf_size=1&ttl=3"),
-            (runtime::MulticastAddress{.group = "224.1.1.1", .port = 7667, .ttl = 3}));
+  const runtime::MulticastAddress near{
+      .group = "239.255.76.67", .port = 7700, .ttl = 1, .receive_buffer = {}};
+  EXPECT_EQ(runtime::ParseMulticastUrl("udpm://:7700?ttl=1"), near);
+  const runtime::MulticastAddress far{
+      .group = "224.1.1.1", .port = 7667, .ttl = 3, .receive_buffer = 1};
+  EXPECT_EQ(runtime::ParseMulticastUrl("udpm://224.1.1.1?recv_buf_size=1&ttl=3"), far);
 }
 
 TEST(LcmUrlTest, IsNoneWithAnythingElseInIt) {

@@ -21,6 +21,7 @@ TEST(LcmPacketTest, ReadsAShortMessage) {
   EXPECT_EQ(packet->channel, "TRUTH");
   EXPECT_TRUE(packet->First());
   EXPECT_TRUE(packet->Whole());
+  EXPECT_FALSE(packet->is_fragment);
 }
 
 TEST(LcmPacketTest, ReadsFragmentsOfALongMessage) {
@@ -30,6 +31,7 @@ TEST(LcmPacketTest, ReadsFragmentsOfALongMessage) {
   EXPECT_EQ(first->channel, "CAMERA");
   EXPECT_TRUE(first->First());
   EXPECT_FALSE(first->Whole());
+  EXPECT_TRUE(first->is_fragment);
   EXPECT_EQ(first->fragments, 3);
   const auto second = Parsed("LC03\0\0\0\x07\0\1\0\0\0\0\x80\0\0\1\0\3 no channel"sv);
   ASSERT_TRUE(second);

@@ -4,8 +4,10 @@
 
 #include <sys/resource.h>
 
+#include <cerrno>
 #include <string>
 #include <system_error>
+#include <thread>
 #include <vector>
 
 #include "services/runtime/transport/bus.h"
@@ -51,6 +53,7 @@ TEST(MessageSocketTest, TakesOnlyWholeMessagesOfFoglinesSize) {
   for (const std::string& packet :
        {""s, "LC02"s, "LC01\0\0\0\1A\0data"s, "LC02\0\0\0\1no end"s,
         "LC03\0\0\0\1\0\0\0\4\0\0\0\0\0\0\0\1WHOLE\0abcd"s,
+        "LC03\0\0\0\1\0\0\0\0\0\0\0\0\0\0\0\1NOTHING\0"s,
         "LC03\0\0\0\1\0\0\0\x8\0\0\0\0\0\0\0\2FIRST\0abcd"s,
         "LC02\0\0\0\1LARGE\0"s + std::string(kMost + 1, 'x'), std::string(9000, 'x')}) {
     SendDatagram(url, packet);
@@ -70,6 +73,20 @@ TEST(MessageSocketTest, IsNotHeldUpByPacketsThatAreNoMessages) {
   for (int i = 0; i < 150; ++i) SendDatagram(url, "noise");
   SendDatagram(url, "LC02\0\0\0\1LAST\0"s);
   EXPECT_FALSE(socket.Wait(Duration::zero()));  // it returns to the caller in between
+  ASSERT_TRUE(socket.Wait(kLong));
+  EXPECT_EQ(ChannelOf(socket), "LAST");
+}
+
+TEST(MessageSocketTest, WaitsOnAfterPacketsThatAreNoMessages) {
+  const std::string url = runtime::FreshMulticastUrl();
+  runtime::MessageSocket socket(url, {});
+  const std::jthread other([&url] {
+    for (int i = 0; i < 5; ++i) {
+      std::this_thread::sleep_for(milliseconds(20));
+      SendDatagram(url, "noise");
+    }
+    SendDatagram(url, "LC02\0\0\0\1LAST\0"s);
+  });
   ASSERT_TRUE(socket.Wait(kLong));
   EXPECT_EQ(ChannelOf(socket), "LAST");
 }

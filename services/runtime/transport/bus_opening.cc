@@ -1,0 +1,152 @@
+// How a bus opens its network, and says why it cannot.
+#include <lcm/lcm.h>
+#include <sodium.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <system_error>
+#include <utility>
+
+#include <fmt/core.h>
+
+#include "common/file.h"
+#include "common/process/console.h"
+#include "services/runtime/transport/bus.h"
+#include "services/runtime/transport/kernel_limits.h"
+#include "services/runtime/transport/lcm_url.h"
+#include "services/runtime/transport/multicast_route.h"
+#include "services/runtime/transport/tcpq_client.h"
+
+namespace fogline::runtime {
+namespace {
+
+/// Keeps the traffic of a udpm URL without a ttl on this machine.
+std::string WithDefaults(const std::string& url) {
+  if (!url.starts_with("udpm://") || url.find("ttl") != std::string::npos) return url;
+  return fmt::format("{}{}ttl=0", url, url.find('?') == std::string::npos ? '?' : '&');
+}
+
+/// @throws NetworkAway if this machine has no route for the multicast of the URL, InputError if the
+///     URL has the address of one machine
+void RequireMulticast(const std::string& url) {
+  const std::string why = WhyNoMulticast(url);
+  if (why.empty()) return;
+  const std::string error = fmt::format("error: {}", why);
+  if (IsMulticast(GroupOf(url).value())) throw NetworkAway(error);
+  throw InputError(error);
+}
+
+/// @throws InputError, NetworkAway, std::runtime_error that tell why LCM cannot open the network
+[[noreturn]] void FailToOpen(const std::string& url) {
+  ThrowIfExhausted(LackOfDescriptors(), url);  // LCM does not say why
+  RequireMulticast(url);                       // the route may have vanished meanwhile
+  throw InputError(fmt::format("error: LCM cannot open \"{}\"", url));
+}
+
+/// LCM tests a network on this channel before it receives. A bus does the same.
+constexpr std::string_view kSelfTest = "LCM_SELF_TEST";
+
+}  // namespace
+
+Bus::Bus(const std::string& url) : url_(WithDefaults(url)), in_memory_(url.starts_with("memq:")) {
+  if (url_.starts_with("tcpq://")) {
+    tcpq_ = std::make_unique<tcpq::Client>(url_);
+    url_ = tcpq_->url();
+    fd_ = tcpq_->fd();
+    return;
+  }
+  // If the URL is empty, LCM uses its own default URL, which Fogline has not checked.
+  if (url_.empty()) throw InputError("error: the LCM URL is empty");
+  RequireMulticast(url_);
+  OpenLcm();
+  static bool warned = false;
+  if (!filtered_ && !std::exchange(warned, true)) {
+    Notice(
+        fmt::format("warning: the kernel accepts no socket filter, so every message to {} wakes "
+                    "this process (`fogline doctor` says more)",
+                    url_));
+  }
+}
+
+Bus::~Bus() = default;
+
+void Bus::DestroyLcm::operator()(_lcm_t* lcm) const { lcm_destroy(lcm); }
+
+void Bus::OpenLcm() {
+  const bool udpm = url_.starts_with("udpm://");
+  const LcmSockets::Reach reach = ReachOf(url_);
+  {
+    std::optional<LcmSockets> sockets;
+    if (udpm) sockets.emplace(std::vector<sock_filter>(), reach, LcmSockets::Joins::kNothing);
+    lcm_.reset(lcm_create(url_.c_str()));
+  }
+  if (lcm_ == nullptr) FailToOpen(url_);
+  if (ParseMulticastUrl(url_)) {
+    OpenInbox();
+    TestInbox();
+  } else {
+    ReceiveThroughLcm();
+  }
+  if (udpm && reach == LcmSockets::Reach::kRoute) membership_.emplace(sockets_, url_);
+}
+
+void Bus::OpenInbox() {
+  try {
+    inbox_.emplace(url_, ChannelFilter({{std::string(kSelfTest)}}));
+  } catch (const std::system_error& error) {
+    ThrowIfExhausted(error.code().value(), url_);
+    RequireMulticast(url_);  // the route may have vanished meanwhile
+    throw InputError(
+        fmt::format("error: cannot listen to \"{}\": {}", url_, error.code().message()));
+  }
+  fd_ = inbox_->fd();
+  sockets_ = {inbox_->socket()};
+  filtered_ = inbox_->filtered();
+}
+
+/// Requires that a message of this bus comes back, and then takes no channel.
+/// @throws NetworkClosed
+void Bus::TestInbox() {
+  constexpr int kTries = 10;
+  constexpr Duration kWait = milliseconds(100);
+  std::array<std::uint8_t, 16> own{};
+  randombytes_buf(own.data(), own.size());
+  bool heard = false;
+  for (int i = 0; i < kTries && !heard; ++i) {
+    lcm_publish(lcm_.get(), std::string(kSelfTest).c_str(), own.data(), own.size());
+    const TimePoint end = Clock::now() + kWait;
+    while (!heard && inbox_->Wait(end - Clock::now())) {
+      const auto message = inbox_->Take();
+      heard = message->channel == kSelfTest && std::ranges::equal(message->data, own);
+    }
+  }
+  if (!heard) {
+    const MulticastAddress network = ParseMulticastUrl(url_).value();
+    throw NetworkClosed(
+        fmt::format("error: a message to {}:{} does not come back to this machine; perhaps a "
+                    "firewall drops it (`fogline doctor` says more)",
+                    network.group, network.port));
+  }
+  Filter(ChannelFilter({}));
+  while (inbox_->Wait(Duration::zero())) inbox_->Take();  // tests of other processes
+}
+
+/// Lets LCM receive in its own thread. @throws InputError if LCM cannot
+void Bus::ReceiveThroughLcm() {
+  // mpudpm gets no filter, because it announces its ports on a channel of its own.
+  const bool udpm = url_.starts_with("udpm://");
+  std::optional<LcmSockets> sockets;
+  // Until LCM's self-test is over, each socket accepts only the messages of this test. The filter
+  // is attached before the socket can receive its first datagram.
+  if (udpm) sockets.emplace(ChannelFilter({{std::string(kSelfTest)}}), ReachOf(url_));
+  fd_ = lcm_get_fileno(lcm_.get());
+  if (fd_ < 0) FailToOpen(url_);
+  if (!udpm) return;
+  sockets_ = sockets->receiving();
+  filtered_ = sockets->filtered();
+  for (const int socket : sockets_) SetReceiveBuffer(socket);
+  Filter(ChannelFilter({}));
+}
+
+}  // namespace fogline::runtime

@@ -1,0 +1,115 @@
+#include "services/runtime/transport/udpm/backlog.h"
+
+#include <poll.h>
+#include <sys/eventfd.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <system_error>
+#include <utility>
+
+namespace fogline::runtime {
+namespace {
+
+// What a packet costs beside its bytes: the vector and its place on the heap.
+constexpr std::size_t kPacketCost = 64;
+
+void Raise(int event) {
+  const std::uint64_t one = 1;
+  // The counter is 0 or 1, so it cannot overflow.
+  [[maybe_unused]] const ssize_t written = write(event, &one, sizeof(one));
+}
+
+void Lower(int event) {
+  std::uint64_t count = 0;
+  [[maybe_unused]] const ssize_t read_bytes = read(event, &count, sizeof(count));
+}
+
+/// Blocks the signals of this thread, and of the threads that it starts, while an object lives:
+/// signals are for the main thread, whose waits they end.
+class SignalsBlocked {
+ public:
+  SignalsBlocked() {
+    sigset_t all;
+    sigfillset(&all);
+    pthread_sigmask(SIG_SETMASK, &all, &before_);
+  }
+  ~SignalsBlocked() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
+  SignalsBlocked(const SignalsBlocked&) = delete;
+  SignalsBlocked& operator=(const SignalsBlocked&) = delete;
+
+ private:
+  sigset_t before_{};
+};
+
+}  // namespace
+
+Backlog::Backlog(int socket, std::size_t most, bool (*wanted)(Bytes packet), std::size_t capacity)
+    : socket_(socket),
+      most_(most),
+      wanted_(wanted),
+      capacity_(capacity),
+      ready_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)),
+      end_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
+  try {
+    if (ready_ < 0 || end_ < 0) throw std::system_error(errno, std::generic_category());
+    const SignalsBlocked blocked;
+    thread_ = std::jthread([this](const std::stop_token& stop) { Receive(stop); });
+  } catch (...) {
+    close(ready_);
+    close(end_);
+    throw;
+  }
+}
+
+Backlog::~Backlog() {
+  thread_.request_stop();
+  Raise(end_);
+  thread_.join();
+  close(ready_);
+  close(end_);
+}
+
+std::optional<Backlog::Packet> Backlog::Take() {
+  const std::scoped_lock lock(mutex_);
+  if (packets_.empty()) return std::nullopt;
+  Packet packet = std::move(packets_.front());
+  packets_.pop_front();
+  bytes_ -= packet.size() + kPacketCost;
+  if (packets_.empty()) Lower(ready_);
+  room_.notify_one();
+  return packet;
+}
+
+void Backlog::Receive(const std::stop_token& stop) {
+  Packet buffer(most_);
+  while (!stop.stop_requested()) {
+    // MSG_TRUNC: the size is that of the whole packet, even if the packet is too large.
+    const ssize_t size = recv(socket_, buffer.data(), buffer.size(), MSG_TRUNC);
+    if (size >= 0) {
+      const auto bytes = static_cast<std::size_t>(size);
+      const Bytes packet(buffer.data(), std::min(bytes, most_));
+      if (bytes <= most_ && wanted_(packet)) Keep(packet);
+      std::unique_lock lock(mutex_);
+      room_.wait(lock, stop, [this] { return bytes_ < capacity_; });
+      continue;
+    }
+    // Nothing is there, or the network reports an error, which recv() reports once.
+    std::array<pollfd, 2> waited{pollfd{.fd = socket_, .events = POLLIN, .revents = 0},
+                                 pollfd{.fd = end_, .events = POLLIN, .revents = 0}};
+    poll(waited.data(), waited.size(), -1);
+  }
+}
+
+void Backlog::Keep(Bytes packet) {
+  const std::scoped_lock lock(mutex_);
+  packets_.emplace_back(packet.begin(), packet.end());
+  bytes_ += packet.size() + kPacketCost;
+  if (packets_.size() == 1) Raise(ready_);
+}
+
+}  // namespace fogline::runtime

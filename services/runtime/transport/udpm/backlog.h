@@ -1,0 +1,58 @@
+// Takes packets out of a UDP socket in a thread of its own, and keeps them until the caller takes
+// them. So a caller that is busy, or that the kernel does not run, loses none: without
+// CAP_NET_ADMIN the kernel's own buffer may hold only a few hundred packets (net.core.rmem_max).
+// The thread costs one more wake-up for each packet that the caller waits for.
+#pragma once
+
+#include <condition_variable>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <mutex>
+#include <optional>
+#include <stop_token>
+#include <thread>
+#include <vector>
+
+#include "services/runtime/wire/wire.h"
+
+namespace fogline::runtime {
+
+class Backlog {
+ public:
+  using Packet = std::vector<std::uint8_t>;
+
+  /// @param socket does not block; it must outlive the object
+  /// @param most longer packets are dropped
+  /// @param wanted whether a packet is kept; called in the thread
+  /// @param capacity in bytes; of a longer backlog the rest stays in the kernel's buffer
+  /// @throws std::system_error if the kernel grants no thread or no descriptor
+  Backlog(int socket, std::size_t most, bool (*wanted)(Bytes packet),
+          std::size_t capacity = 64UL << 20);
+  ~Backlog();
+  Backlog(const Backlog&) = delete;
+  Backlog& operator=(const Backlog&) = delete;
+
+  /// The oldest packet; nullopt if there is none.
+  std::optional<Packet> Take();
+  /// This descriptor is readable while a packet is there.
+  int fd() const { return ready_; }
+
+ private:
+  void Receive(const std::stop_token& stop);
+  void Keep(Bytes packet);
+
+  const int socket_;
+  const std::size_t most_;
+  bool (*const wanted_)(Bytes packet);
+  const std::size_t capacity_;
+  int ready_;  // an eventfd
+  int end_;    // an eventfd that ends the thread's wait
+  std::mutex mutex_;
+  std::condition_variable_any room_;
+  std::deque<Packet> packets_;
+  std::size_t bytes_ = 0;  // of packets_
+  std::jthread thread_;    // last: it uses the other members
+};
+
+}  // namespace fogline::runtime
