@@ -241,8 +241,9 @@ constexpr bool RolesAreInOrder() {
   }
   return true;
 }
-static_assert(RolesAreInOrder(),
-              "a role reads a channel of a role below it: move its row in FOGLINE_ROLES down");
+static_assert(
+    RolesAreInOrder(),
+    "a role reads a channel of a role below it: move the reader's row in FOGLINE_ROLES down");
 
 /// Whether the kStep channels are in the order of their roles.
 constexpr bool ChannelsAreInOrder() {

@@ -148,7 +148,10 @@ void ExamineLoopback(const std::string& url, const std::string& group, int ttl,
     times_us = RoundTripsUs(fmt::format("udpm://{}:{}?ttl={}", group, port, ttl));
   } catch (const runtime::NetworkClosed&) {  // the finding is below
   } catch (const InputError& error) {
-    findings.push_back({"multicast_loopback", Level::kProblem, error.what(), ""});
+    std::string_view why = error.what();
+    constexpr std::string_view kPrefix = "error: ";
+    if (why.starts_with(kPrefix)) why.remove_prefix(kPrefix.size());
+    findings.push_back({"multicast_loopback", Level::kProblem, std::string(why), ""});
     return;
   }
   if (times_us.empty()) {
@@ -253,7 +256,10 @@ void ExamineNetwork(const std::string& url, Findings& findings) {
     }
   }
   ExamineFilter(url, findings);
-  ExamineReceiveBuffer(UrlOption(url, "recv_buf_size", runtime::kEnoughBuffer), findings);
+  const auto address = runtime::ParseMulticastUrl(url);
+  ExamineReceiveBuffer(
+      address ? address->receive_buffer.value_or(runtime::kEnoughBuffer) : runtime::kEnoughBuffer,
+      findings);
 }
 
 }  // namespace fogline::doctor

@@ -1,6 +1,5 @@
 #include "tools/processes/run_viewer.h"
 
-#include <csignal>
 #include <exception>
 #include <thread>
 #include <utility>
@@ -9,6 +8,7 @@
 
 #include "common/interrupt.h"
 #include "common/process/console.h"
+#include "common/process/signals_blocked.h"
 
 namespace fogline::processes {
 namespace {
@@ -71,16 +71,12 @@ bool RunViewer::TakeAddress(Duration limit) {
 
 /// Another thread waits for the address, because the thread of the run must not wait for it.
 void RunViewer::TakeAddressLater() {
-  sigset_t all;
-  sigset_t before;
-  sigfillset(&all);
-  pthread_sigmask(SIG_SETMASK, &all, &before);  // signals are for the thread of the run
+  const SignalsBlocked blocked;  // signals are for the thread of the run
   late_ = std::jthread([this](const std::stop_token& stop) {
     while (!stop.stop_requested() && !WasInterrupted() && web_.prints()) {
       if (TakeAddress(kLookEvery)) return;
     }
   });
-  pthread_sigmask(SIG_SETMASK, &before, nullptr);
 }
 
 void RunViewer::Say(const std::string& trouble) {

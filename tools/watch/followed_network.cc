@@ -43,10 +43,9 @@ bool FollowedNetwork::Network::Drain(TimePoint now) {
 }
 
 void FollowedNetwork::Open() {
-  std::unique_ptr<PacketTap> tap = network_ ? std::move(network_->tap) : nullptr;
   network_.reset();
   network_.emplace(url_, watcher_);
-  network_->tap = tap ? std::move(tap) : Tap(network_->bus.url());
+  network_->tap = Tap(network_->bus.url());
   ++generation_;
 }
 
@@ -62,11 +61,8 @@ std::unique_ptr<PacketTap> FollowedNetwork::Tap(const std::string& url) {
 void FollowedNetwork::ForgetNames(std::int64_t unknown) {
   if (unknown - names_ < kMostNames) return;
   names_ = unknown;
-  Open();
-  if (!followed_) return;
-  std::unique_ptr<PacketTap> tap = std::move(followed_->tap);
-  CloseFollowed();
-  OpenFollowed(runs_.front(), std::move(tap));
+  // A run on a network on which LCM receives is not announced (runtime::MayBeAnnounced()).
+  if (network_->bus.LcmReceives()) Open();
 }
 
 void FollowedNetwork::Handle(TimePoint now) {
@@ -89,14 +85,13 @@ void FollowedNetwork::Follow(TimePoint now) {
   if (followed_ && runtime::SameNetwork(followed_->bus.url(), run.url)) return;
   CloseFollowed();
   if (runtime::SameNetwork(network_->bus.url(), run.url)) return;
-  OpenFollowed(run, nullptr);
+  OpenFollowed(run);
 }
 
-void FollowedNetwork::OpenFollowed(const runtime::Announcement& run,
-                                   std::unique_ptr<PacketTap> tap) {
+void FollowedNetwork::OpenFollowed(const runtime::Announcement& run) {
   try {
     followed_.emplace(run.url, watcher_);
-    followed_->tap = tap ? std::move(tap) : Tap(followed_->bus.url());
+    followed_->tap = Tap(followed_->bus.url());
     ++generation_;
   } catch (const std::exception&) {  // the address came from the network and may be invalid
     Leave(run.run_id);

@@ -32,10 +32,8 @@ class FollowedNetwork {
   /// @throws std::runtime_error if the network of the URL is lost
   void Handle(TimePoint now);
 
-  /// LCM keeps every channel name that it hears while a network is open, at about 300 bytes each.
-  /// This function closes the networks and opens them again if there are too many names. The
-  /// watcher misses the messages of these milliseconds. They do not count as lost, because the
-  /// packets are still counted.
+  /// Closes the network of the URL and opens it again, if LCM receives there (Bus::LcmReceives())
+  /// and has too many names. The watcher misses the messages of these milliseconds.
   /// @param unknown messages so far on channels whose names were unknown
   void ForgetNames(std::int64_t unknown);
 
@@ -76,7 +74,7 @@ class FollowedNetwork {
   };
 
   void Open();
-  void OpenFollowed(const runtime::Announcement& run, std::unique_ptr<PacketTap> tap);
+  void OpenFollowed(const runtime::Announcement& run);
   /// @return nullptr if the packets have no numbers, or cannot be counted
   std::unique_ptr<PacketTap> Tap(const std::string& url);
   void Follow(TimePoint now);

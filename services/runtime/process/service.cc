@@ -105,6 +105,7 @@ class Service {
     work_ = make_(*bus, run_id);
     bus_ = std::move(bus);
     starts_over_ = false;
+    preferred_ = false;  // this bus may start a thread of its own
   }
 
   /// Joins the network for the first time. A process with the option --run-id was started by a
@@ -266,6 +267,7 @@ class Service {
     if (!news().realtime || std::exchange(preferred_, true)) return;
     const int priority = arguments_.role == Role::kWorld ? kWorldPriority : kPriority;
     if (RunBeforeOthers(priority) || IsOfARunner()) return;  // a runner says it for its roles
+    if (std::exchange(said_not_preferred_, true)) return;
     Say("the kernel grants no real-time priority, or locks no memory: on a busy machine steps "
         "begin "
         "late; `fogline doctor` says how to grant it");
@@ -283,7 +285,8 @@ class Service {
   bool starts_over_ = false;
   std::optional<std::int64_t> full_;  // the last run that NameTheFullRun() has named
   bool warned_ = false;
-  bool preferred_ = false;
+  bool preferred_ = false;  // whether the threads of this run have asked for priority
+  bool said_not_preferred_ = false;
 };
 
 std::string_view PurposeOf(Role role) {

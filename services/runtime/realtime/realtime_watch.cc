@@ -81,7 +81,7 @@ void RealtimeWatch::Begun(std::int64_t step, TimePoint now) {
 
 TimePoint RealtimeWatch::Poll(TimePoint now, const std::function<TimePoint(TimePoint now)>& fire) {
   NoticeOwnPause(std::max(now, Clock::now()));
-  parts_.bus.Drain();  // handles the whole backlog
+  parts_.bus.Drain();  // handles the backlog, at most kDrained messages
   if (!parts_.own.Running()) return now;
   now = std::max(now, Clock::now());  // handling a backlog takes time
   const TimePoint health_at = UpdateHealth(now);

@@ -11,13 +11,14 @@
 #include <cstdio>
 #include <cstring>
 #include <stdexcept>
+#include <system_error>
 
 #include <fmt/core.h>
 
 #include "common/errors.h"
+#include "common/file.h"
 #include "common/process/poll.h"
 #include "services/runtime/transport/lcm_sockets.h"
-#include "services/runtime/transport/lcm_url.h"
 #include "services/runtime/transport/tcpq_client.h"
 #include "services/runtime/wire/channel_filter.h"
 
@@ -72,7 +73,13 @@ constexpr Duration kJoinAgainEvery = milliseconds(1000);
 
 void Bus::KeepBacklog() {
   if (!inbox_ || inbox_->keeps_backlog()) return;
-  inbox_->KeepBacklog();
+  try {
+    inbox_->KeepBacklog();
+  } catch (const std::system_error& error) {
+    ThrowIfExhausted(error.code().value(), url_);
+    throw std::runtime_error(
+        fmt::format("cannot keep a backlog of {}: {}", url_, error.code().message()));
+  }
   fd_ = inbox_->fd();
   ++replaced_;
 }
@@ -198,6 +205,7 @@ void Bus::JoinAgainIfSilent() {
 }
 
 bool Bus::Wait(Duration timeout) {
+  RequireNoHandler();
   if (faults_) {
     if (HandleDue()) return true;
     timeout = std::min(timeout, faults_->NextDue() - Clock::now());
@@ -211,8 +219,11 @@ bool Bus::Wait(Duration timeout) {
   return true;
 }
 
-void Bus::Handle() {
+void Bus::RequireNoHandler() const {
   if (handling_) throw std::logic_error("a handler of a bus waits for a message of the same bus");
+}
+
+void Bus::Handle() {
   const FlagSet handling(handling_);
   if (waiting_ > 0) --waiting_;
   if (tcpq_) {
@@ -252,6 +263,7 @@ bool Bus::HasPacket(Duration timeout) {
 bool Bus::HandleDue() {
   now_ = Clock::now();
   const auto message = faults_->Due(now_);
+  const FlagSet handling(handling_);
   if (message) CallHandlers(TopicOf(message->channel), message->bytes);
   return message.has_value();
 }
@@ -265,6 +277,7 @@ bool Bus::Readable(Duration timeout) {
 }
 
 void Bus::Drain() {
+  RequireNoHandler();
   for (int i = 0; i < kDrained; ++i) {
     if (waiting_ > 0) {
       Handle();  // needs no system call and no reading of the clock

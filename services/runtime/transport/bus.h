@@ -3,9 +3,9 @@
 // messages or simulates a bad network.
 //
 // With udpm a bus reads its socket itself, because LCM's thread costs a second wake-up for each
-// message. Messages then wait in the kernel's buffer, or in a backlog without this limit
-// (KeepBacklog()). LCM sends. With mpudpm, memq, and a udpm URL whose options Fogline does not
-// know, LCM also receives.
+// message. Messages then wait in the kernel's buffer and, on request, in a backlog (KeepBacklog()).
+// LCM sends. With mpudpm, memq, and a udpm URL whose options Fogline does not know, LCM also
+// receives.
 #pragma once
 
 #include <cstdint>
@@ -73,11 +73,12 @@ class Bus {
   ///     reach this process before their signature is checked.
   void Secure(const MessageSigner& signer);
   bool secured() const { return signer_.has_value(); }
-  /// From now on, a process that is busy for long loses no messages: with udpm a thread takes them
-  /// out of the kernel's buffer. Each message then wakes two threads. So this is for runs in real
-  /// time, whose roles do not wait for a busy process; in lockstep, lost messages are sent again.
-  /// With the other transports the bus always has a backlog. A handler may call this.
-  /// @throws std::system_error if the kernel grants no thread or no descriptor
+  /// From now on, a process that is busy for long loses no messages until its backlog is full: with
+  /// udpm a thread takes them out of the kernel's buffer (udpm/backlog.h). Each message then wakes
+  /// two threads. So this is for runs in real time, whose roles do not wait for a busy process; in
+  /// lockstep, lost messages are sent again. With the other transports the bus always has a
+  /// backlog. A handler may call this.
+  /// @throws std::runtime_error if the kernel grants no thread or no descriptor
   void KeepBacklog();
   /// From now on, the bus receives messages as over a bad network.
   void Impair(const Faults& faults) { faults_ = faults; }
@@ -97,6 +98,9 @@ class Bus {
   /// large for Fogline, and keeps a backlog of them. May be called once at most.
   using Watcher = std::function<void(std::string_view channel, Bytes)>;
   void SubscribeAll(Watcher watcher);
+  /// Whether LCM receives. LCM then keeps every channel name that it hears, at about 300 bytes
+  /// each.
+  bool LcmReceives() const { return lcm_ != nullptr && !inbox_; }
 
   /// Sends bytes, which are copied before the call returns. A message that cannot be sent is lost,
   /// as on a bad network, and counted.
@@ -117,8 +121,8 @@ class Bus {
   };
   const FailedSends& failed_sends() const { return failed_sends_; }
 
-  /// Handles one message. Waits up to `timeout` for the message. A handler must not call this.
-  /// @return whether a message came
+  /// Handles one message. Waits up to `timeout` for the message. @return whether a message came
+  /// @throws std::logic_error if a handler of this bus calls it
   bool Wait(Duration timeout);
 
   /// Handles the messages that have come, but at most kDrained. The limit is for memq, where a
@@ -162,6 +166,7 @@ class Bus {
   void OnFailedSend(int error);
   void OnSentAgain();
   void JoinAgainIfSilent();
+  void RequireNoHandler() const;
   void Handle();
   void HandlePacket();
   bool HandleDue();
@@ -200,7 +205,7 @@ class Bus {
   TimePoint now_{};            // when Wait() last handled a message
   std::deque<Topic> topics_;   // stable addresses: LCM keeps pointers to them
   Watcher watcher_;            // called for messages on all channels; may be empty
-  bool handling_ = false;      // whether a handler is being called from Wait()
+  bool handling_ = false;      // whether handlers are being called
   std::exception_ptr parked_;  // an exception of a handler; it must not pass through LCM's C code
   std::optional<MessageSigner> signer_;
   std::optional<Faults> faults_;

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <cstdint>
+#include <cstring>
 #include <system_error>
 #include <utility>
 
@@ -45,7 +47,7 @@ void RequireMulticast(const std::string& url) {
 }
 
 /// LCM tests a network on this channel before it receives. A bus does the same.
-constexpr std::string_view kSelfTest = "LCM_SELF_TEST";
+constexpr const char* kSelfTest = "LCM_SELF_TEST";
 
 }  // namespace
 
@@ -93,7 +95,7 @@ void Bus::OpenLcm() {
 
 void Bus::OpenInbox() {
   try {
-    inbox_.emplace(url_, ChannelFilter({{std::string(kSelfTest)}}));
+    inbox_.emplace(url_, ChannelFilter({{kSelfTest}}));
   } catch (const std::system_error& error) {
     ThrowIfExhausted(error.code().value(), url_);
     RequireMulticast(url_);  // the route may have vanished meanwhile
@@ -113,23 +115,27 @@ void Bus::TestInbox() {
   std::array<std::uint8_t, 16> own{};
   randombytes_buf(own.data(), own.size());
   bool heard = false;
+  std::string why = "perhaps a firewall drops it";
   for (int i = 0; i < kTries && !heard; ++i) {
-    lcm_publish(lcm_.get(), std::string(kSelfTest).c_str(), own.data(), own.size());
+    errno = 0;
+    if (lcm_publish(lcm_.get(), kSelfTest, own.data(), own.size()) != 0) why = std::strerror(errno);
     const TimePoint end = Clock::now() + kWait;
-    while (!heard && inbox_->Wait(end - Clock::now())) {
+    while (!heard && Clock::now() < end && inbox_->Wait(end - Clock::now())) {
       const auto message = inbox_->Take();
       heard = message->channel == kSelfTest && std::ranges::equal(message->data, own);
     }
   }
   if (!heard) {
+    RequireMulticast(url_);  // the route may have vanished meanwhile
     const MulticastAddress network = ParseMulticastUrl(url_).value();
     throw NetworkClosed(
-        fmt::format("error: a message to {}:{} does not come back to this machine; perhaps a "
-                    "firewall drops it (`fogline doctor` says more)",
-                    network.group, network.port));
+        fmt::format("error: a message to {}:{} does not come back to this machine: {} (`fogline "
+                    "doctor` says more)",
+                    network.group, network.port, why));
   }
   Filter(ChannelFilter({}));
-  while (inbox_->Wait(Duration::zero())) inbox_->Take();  // tests of other processes
+  // Tests of other processes may wait in the buffer. They have no reader.
+  for (int i = 0; i < kDrained && inbox_->Wait(Duration::zero()); ++i) inbox_->Take();
 }
 
 /// Lets LCM receive in its own thread. @throws InputError if LCM cannot
@@ -139,13 +145,15 @@ void Bus::ReceiveThroughLcm() {
   std::optional<LcmSockets> sockets;
   // Until LCM's self-test is over, each socket accepts only the messages of this test. The filter
   // is attached before the socket can receive its first datagram.
-  if (udpm) sockets.emplace(ChannelFilter({{std::string(kSelfTest)}}), ReachOf(url_));
+  if (udpm) sockets.emplace(ChannelFilter({{kSelfTest}}), ReachOf(url_));
   fd_ = lcm_get_fileno(lcm_.get());
   if (fd_ < 0) FailToOpen(url_);
   if (!udpm) return;
   sockets_ = sockets->receiving();
   filtered_ = sockets->filtered();
-  for (const int socket : sockets_) SetReceiveBuffer(socket);
+  if (url_.find("recv_buf_size") == std::string::npos) {
+    for (const int socket : sockets_) SetReceiveBuffer(socket);
+  }
   Filter(ChannelFilter({}));
 }
 

@@ -10,6 +10,7 @@
 #include <cstdlib>
 
 #include "common/parse_number.h"
+#include "services/runtime/transport/kernel_limits.h"
 #include "services/runtime/transport/multicast_route.h"
 #include "services/runtime/transport/tcpq_url.h"
 
@@ -21,6 +22,9 @@ constexpr std::string_view kTcpq = "tcpq://";
 constexpr std::uint16_t kLcmPort = 7667;
 // The longest URL that may be announced. A URL with all options of LCM takes 60 characters.
 constexpr std::size_t kMaxAnnounced = 200;
+// The least receive buffer that may be announced, in bytes: with a smaller one, a program that
+// follows the run would hear little of it.
+constexpr int kLeastAnnouncedBuffer = 100'000;
 
 std::optional<in_addr> ParseAddress(std::string_view text) {
   in_addr address{};
@@ -140,7 +144,9 @@ bool MayBeAnnounced(std::string_view url) {
   if (url.size() > kMaxAnnounced) return false;
   if (url.starts_with(kTcpq)) return url != kTcpq && IsRelayOfThisMachine(url);
   const auto address = ParseMulticastUrl(url);
-  return address && IsMulticast(address->group) && address->port != 0 && address->ttl <= 1;
+  if (!address || !IsMulticast(address->group) || address->port == 0) return false;
+  const int buffer = address->receive_buffer.value_or(kWideBuffer);
+  return address->ttl <= 1 && buffer >= kLeastAnnouncedBuffer && buffer <= kWideBuffer;
 }
 
 }  // namespace fogline::runtime

@@ -45,9 +45,10 @@ std::optional<MulticastAddress> ParseMulticastUrl(std::string_view url);
 bool SameNetwork(std::string_view a, std::string_view b);
 
 /// Whether a program may join this network if the program knows it only from a message. The URL
-/// must name a multicast group whose traffic ends at the next router or before (ttl 0 or 1), or a
-/// relay of this machine with its address in numbers. mpudpm is refused, because nothing filters
-/// the messages that reach LCM's parser.
+/// must name a multicast group whose traffic ends at the next router or before (ttl 0 or 1), with a
+/// receive buffer of 100 kB to kWideBuffer if the URL gives its size, or a relay of this machine
+/// with its address in numbers. mpudpm is refused, because nothing filters the messages that reach
+/// LCM's parser.
 bool MayBeAnnounced(std::string_view url);
 
 }  // namespace fogline::runtime

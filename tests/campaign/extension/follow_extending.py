@@ -120,7 +120,7 @@ def check_order(tree):
     last = graph.index("    Channel<follower_command_t>")
     too_low = (graph[:last] + channel + graph[last:]).replace(channel, "", 1)
     assert lidar < graph.index(row) and too_low != graph
-    for wrong, why in ((too_high, "move its row in FOGLINE_ROLES down"), (too_low, "not in the order of their roles")):
+    for wrong, why in ((too_high, "move the reader's row in FOGLINE_ROLES down"), (too_low, "not in the order of their roles")):
         header = tree / "build" / "wrong_order.h"
         header.write_text(wrong)
         refused = call("g++", "-std=c++20", "-fsyntax-only", "-x", "c++", f"-I{tree}", f"-I{tree}/build/lcmtypes/cpp",

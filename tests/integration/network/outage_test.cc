@@ -172,7 +172,7 @@ TEST_F(OutageTest, AFirewallThatLetsNothingInIsNamedAtTheStart) {
         RunCommand(lab[0].On({Program("fogline"), "run", "scenario/paper.json", "--lcm-url", url}));
     EXPECT_EQ(run.code, 2) << run.err;
     EXPECT_THAT(run.err, HasSubstr("a message to 239.255.76.67:7700 does not come back to this "
-                                   "machine; perhaps a firewall drops it"));
+                                   "machine: perhaps a firewall drops it"));
   }
 }
 

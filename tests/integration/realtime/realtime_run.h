@@ -5,6 +5,9 @@
 #include <nlohmann/json.hpp>
 
 #include <csignal>
+#include <cstddef>
+#include <filesystem>
+#include <iterator>
 #include <map>
 #include <optional>
 #include <stdexcept>
@@ -51,6 +54,11 @@ class RealtimeRun {
   std::int64_t Signal(const std::string& role, int signal) {
     kill(pids_.at(role), signal);
     return step_;
+  }
+  /// The number of threads of a role's process.
+  std::ptrdiff_t Threads(const std::string& role) const {
+    const std::string folder = "/proc/" + std::to_string(pids_.at(role)) + "/task";
+    return std::distance(std::filesystem::directory_iterator(folder), {});
   }
   /// The time between the world's last TRUTH and the first STATUS that calls the world lost, on
   /// this process's clock. The result is nullopt if the world comes back before such a STATUS.

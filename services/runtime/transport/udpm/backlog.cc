@@ -8,9 +8,10 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <csignal>
 #include <system_error>
 #include <utility>
+
+#include "common/process/signals_blocked.h"
 
 namespace fogline::runtime {
 namespace {
@@ -29,23 +30,6 @@ void Lower(int event) {
   [[maybe_unused]] const ssize_t read_bytes = read(event, &count, sizeof(count));
 }
 
-/// Blocks the signals of this thread, and of the threads that it starts, while an object lives:
-/// signals are for the main thread, whose waits they end.
-class SignalsBlocked {
- public:
-  SignalsBlocked() {
-    sigset_t all;
-    sigfillset(&all);
-    pthread_sigmask(SIG_SETMASK, &all, &before_);
-  }
-  ~SignalsBlocked() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
-  SignalsBlocked(const SignalsBlocked&) = delete;
-  SignalsBlocked& operator=(const SignalsBlocked&) = delete;
-
- private:
-  sigset_t before_{};
-};
-
 }  // namespace
 
 Backlog::Backlog(int socket, std::size_t most, bool (*wanted)(Bytes packet), std::size_t capacity)
@@ -57,7 +41,7 @@ Backlog::Backlog(int socket, std::size_t most, bool (*wanted)(Bytes packet), std
       end_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
   try {
     if (ready_ < 0 || end_ < 0) throw std::system_error(errno, std::generic_category());
-    const SignalsBlocked blocked;
+    const SignalsBlocked blocked;  // signals are for the thread of the caller
     thread_ = std::jthread([this](const std::stop_token& stop) { Receive(stop); });
   } catch (...) {
     close(ready_);

@@ -9,6 +9,7 @@
 #include <system_error>
 #include <utility>
 
+#include "services/runtime/transport/kernel_limits.h"
 #include "services/runtime/transport/lcm_sockets.h"
 #include "services/runtime/transport/lcm_url.h"
 #include "services/runtime/wire/channel_filter.h"
@@ -32,7 +33,8 @@ bool Join(int fd, const in_addr& group, const std::string& url) {
 
 }  // namespace
 
-GroupSocket::GroupSocket(const std::string& url, std::vector<sock_filter> filter, int buffer_bytes)
+GroupSocket::GroupSocket(const std::string& url, std::vector<sock_filter> filter,
+                         std::optional<int> buffer_bytes)
     : fd_(socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)) {
   Require(fd_ >= 0, url);
   try {
@@ -45,7 +47,8 @@ GroupSocket::GroupSocket(const std::string& url, std::vector<sock_filter> filter
 
 GroupSocket::~GroupSocket() { close(fd_); }
 
-void GroupSocket::Open(const std::string& url, std::vector<sock_filter> filter, int buffer_bytes) {
+void GroupSocket::Open(const std::string& url, std::vector<sock_filter> filter,
+                       std::optional<int> buffer_bytes) {
   const auto network = ParseMulticastUrl(url);
   sockaddr_in address{};
   address.sin_family = AF_INET;
@@ -56,7 +59,7 @@ void GroupSocket::Open(const std::string& url, std::vector<sock_filter> filter, 
   for (const int option : {SO_REUSEADDR, SO_REUSEPORT}) {
     Require(setsockopt(fd_, SOL_SOCKET, option, &on, sizeof(on)) == 0, url);
   }
-  SetReceiveBuffer(fd_, network->receive_buffer.value_or(buffer_bytes));
+  SetReceiveBuffer(fd_, buffer_bytes.value_or(network->receive_buffer.value_or(kWideBuffer)));
   // Bound to the group, the socket gets no packets of other groups on the same port.
   Require(bind(fd_, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) == 0, url);
   Require(Join(fd_, address.sin_addr, url), url);

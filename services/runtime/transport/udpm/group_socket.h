@@ -4,10 +4,9 @@
 
 #include <linux/filter.h>
 
+#include <optional>
 #include <string>
 #include <vector>
-
-#include "services/runtime/transport/kernel_limits.h"
 
 namespace fogline::runtime {
 
@@ -16,11 +15,11 @@ class GroupSocket {
   /// Opens a socket that does not block.
   /// @pre the URL is a udpm:// URL (ParseMulticastUrl)
   /// @param filter from the socket's start; empty: no filter
-  /// @param buffer_bytes if the URL has no recv_buf_size; without CAP_NET_ADMIN at most
-  ///     net.core.rmem_max
+  /// @param buffer_bytes without CAP_NET_ADMIN at most net.core.rmem_max; nullopt: recv_buf_size of
+  ///     the URL, or else kWideBuffer
   /// @throws std::system_error if the network cannot be heard
   GroupSocket(const std::string& url, std::vector<sock_filter> filter,
-              int buffer_bytes = kWideBuffer);
+              std::optional<int> buffer_bytes = std::nullopt);
   ~GroupSocket();
   GroupSocket(const GroupSocket&) = delete;
   GroupSocket& operator=(const GroupSocket&) = delete;
@@ -30,7 +29,8 @@ class GroupSocket {
   bool filtered() const { return filtered_; }
 
  private:
-  void Open(const std::string& url, std::vector<sock_filter> filter, int buffer_bytes);
+  void Open(const std::string& url, std::vector<sock_filter> filter,
+            std::optional<int> buffer_bytes);
 
   int fd_;
   bool filtered_ = false;

@@ -28,7 +28,6 @@ MessageSocket::MessageSocket(const std::string& url, std::vector<sock_filter> fi
     : socket_(url, std::move(filter)) {}
 
 void MessageSocket::KeepBacklog() {
-  if (backlog_) return;
   backlog_.emplace(socket(), kMostPacket,
                    [](Bytes packet) { return MessageIn(packet).has_value(); });
 }

@@ -37,6 +37,7 @@ class MessageSocket {
 
   /// From now on, a thread takes the messages out of the kernel's buffer (backlog.h), and fd() is
   /// another descriptor.
+  /// @pre keeps_backlog() is false
   /// @throws std::system_error if the kernel grants no thread or no descriptor
   void KeepBacklog();
   bool keeps_backlog() const { return backlog_.has_value(); }

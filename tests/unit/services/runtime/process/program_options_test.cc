@@ -32,7 +32,7 @@ struct Program {
   std::string file = "here";
   std::size_t count = 4;
   double wait_s = 60;
-  double speed = -1;
+  double speed = 1;
   std::string color = "red";
   bool quiet = false;
   std::string out;  // what Read() printed
@@ -61,10 +61,10 @@ struct Program {
 
 TEST(ProgramOptionsTest, ReadsWhatIsSaidAndKeepsTheDefaults) {
   Program program;
-  EXPECT_EQ(program.Read({"--count", "256", "--speed", "2.5", "--color", "green", "--quiet"}),
+  EXPECT_EQ(program.Read({"--count", "256", "--speed", "-1.5", "--color", "green", "--quiet"}),
             std::nullopt);
   EXPECT_EQ(program.count, 256U);
-  EXPECT_EQ(program.speed, 2.5);
+  EXPECT_EQ(program.speed, -1.5);
   EXPECT_EQ(program.color, "green");
   EXPECT_TRUE(program.quiet);
   EXPECT_EQ(program.file, "here");

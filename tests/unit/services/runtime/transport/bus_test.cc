@@ -34,11 +34,11 @@ void SendBurst(runtime::Bus& bus, int count) {
   for (int i = 0; i < count; ++i) bus.Publish("BURST", Payload(i));
 }
 
-/// The numbers of the messages that the bus receives; at most `count`.
-std::vector<int> ReceiveBurst(runtime::Bus& bus, std::vector<int>& received, std::size_t count) {
-  while (received.size() < count && bus.Wait(milliseconds(500))) {
+/// Waits until `count` messages are received, or none comes for `timeout`.
+void ReceiveBurst(runtime::Bus& bus, const std::vector<int>& received, std::size_t count,
+                  Duration timeout = kLong) {
+  while (received.size() < count && bus.Wait(timeout)) {
   }
-  return received;
 }
 
 TEST(BusTest, KeepsABurstFarLongerThanTheQueueOfLcm) {
@@ -58,7 +58,9 @@ TEST(BusTest, HasAReceiveBufferOfTheSizeInItsUrl) {
   std::vector<int> received;
   narrow.Subscribe("BURST", [&received](runtime::Bytes bytes) { received.push_back(bytes[0]); });
   SendBurst(narrow, kBurst);
-  EXPECT_LT(ReceiveBurst(narrow, received, kBurst).size(), 200U);
+  ReceiveBurst(narrow, received, kBurst, Duration::zero());
+  EXPECT_GT(received.size(), 0U);
+  EXPECT_LT(received.size(), 200U);
 }
 
 TEST(BusTest, TakesChannelNamesLiterally) {
@@ -92,7 +94,8 @@ TEST(BusTest, ReceivesWithoutAThreadUntilItKeepsABacklog) {
   const std::int64_t replaced = bus->replaced();
   EXPECT_EQ(Threads(), before);
   for (int i = 1; i <= 3; ++i) bus->Publish("C", Payload(i));
-  EXPECT_EQ(ReceiveBurst(*bus, received, 3), (std::vector<int>{1, 2, 3}));
+  ReceiveBurst(*bus, received, 3);
+  EXPECT_EQ(received, (std::vector<int>{1, 2, 3}));
   EXPECT_EQ(Threads(), before + 1);
   EXPECT_EQ(bus->replaced(), replaced + 1);
   EXPECT_EQ(PollFor(bus->fd(), POLLIN, Duration::zero()), 0);
@@ -107,14 +110,31 @@ TEST(BusTest, ReceivesWithoutAThreadUntilItKeepsABacklog) {
 }
 
 TEST(BusTest, RefusesToWaitInAHandler) {
+  for (const std::string faults : {"", "delay_ms=1"}) {
+    runtime::Bus bus(runtime::FreshMulticastUrl());
+    if (!faults.empty()) bus.Impair(runtime::Faults(runtime::ParseFaults(faults), Role::kRunner));
+    int received = 0;
+    bus.Subscribe("C", [&](runtime::Bytes) {
+      if (++received == 1) bus.Wait(Duration::zero());
+      if (received == 2) bus.Drain();
+    });
+    for (int i = 0; i < 3; ++i) bus.Publish("C", Payload(i));
+    const auto handle_one = [&bus, &received] {
+      const int before = received;
+      for (int i = 0; i < 10 && received == before; ++i) bus.Wait(kLong);
+    };
+    EXPECT_THROW(handle_one(), std::logic_error) << faults;
+    EXPECT_THROW(handle_one(), std::logic_error) << faults;
+    EXPECT_NO_THROW(handle_one()) << faults;
+    EXPECT_EQ(received, 3) << "the bus still works";
+  }
+}
+
+TEST(BusTest, RefusesToWaitInAWatcher) {
   runtime::Bus bus(runtime::FreshMulticastUrl());
-  int received = 0;
-  bus.Subscribe("C", [&](runtime::Bytes) {
-    if (++received == 1) bus.Wait(kLong);
-  });
-  for (int i = 0; i < 3; ++i) bus.Publish("C", Payload(i));
+  bus.SubscribeAll([&bus](std::string_view, runtime::Bytes) { bus.Wait(Duration::zero()); });
+  for (int i = 0; i < 2; ++i) bus.Publish("C", Payload(i));
   EXPECT_THROW(bus.Wait(kLong), std::logic_error);
-  EXPECT_TRUE(bus.Wait(kLong)) << "the bus still works";
 }
 
 TEST(BusTest, WatchesEveryChannelWhateverElseItSubscribesTo) {

@@ -77,8 +77,9 @@ TEST(LcmUrlTest, MayBeAnnouncedIfItIsAGroupOrARelayOfThisMachine) {
   for (const std::string url :
        {"", "memq://", "file://x", "mpudpm://239.255.76.67:7700", "udpm://10.0.0.1:7700",
         "udpm://239.255.76.67:0", "udpm://239.255.76.67:7700?ttl=2", "tcpq://localhost:7700",
-        "tcpq://192.0.2.1:7700", "tcpq://0.0.0.0:7700", "tcpq://127.0.0.1:0", "tcpq://",
-        "tcpq://127.0.0.1:7700?x", "tcpq://127.0.0.1:7700 -x"}) {
+        "udpm://?recv_buf_size=99999", "udpm://?recv_buf_size=2147483647", "tcpq://192.0.2.1:7700",
+        "tcpq://0.0.0.0:7700", "tcpq://127.0.0.1:0", "tcpq://", "tcpq://127.0.0.1:7700?x",
+        "tcpq://127.0.0.1:7700 -x"}) {
     EXPECT_FALSE(runtime::MayBeAnnounced(url)) << url;
   }
   EXPECT_FALSE(runtime::MayBeAnnounced("udpm://?recv_buf_size=" + std::string(200, '0')));
