@@ -45,7 +45,7 @@ TEST(TakeOverMeasuresInRealtimeTest, OfAPersonAreThoseThatTheRawMessagesGive) {
   ASSERT_TRUE(result.is_object());
   const nlohmann::json expected = WorkedOut(run.log());
   const nlohmann::json measured = Measured(run.log());
-  ASSERT_EQ(expected.size(), 1U);
+  ASSERT_EQ(expected.size(), 1U) << result.dump(2);
   ASSERT_EQ(measured["take_overs"].size(), 1U) << measured;
   const nlohmann::json& request = measured["take_overs"][0];
   EXPECT_EQ(request["outcome"], "taken_over");
