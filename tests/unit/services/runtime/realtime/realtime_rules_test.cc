@@ -25,11 +25,15 @@ using testing::ElementsAre;
 
 class RealtimeRulesTest : public testing::Test {
  protected:
-  explicit RealtimeRulesTest(const Scenario& scenario = {}) : script_(scenario) {}
+  explicit RealtimeRulesTest(const Scenario& scenario = {}) : script_(scenario) {
+    // This handler is called just before that of the role, for which the run begins then.
+    script_.bus().Subscribe(ChannelOf<run_t>().name,
+                            [this](runtime::Bytes) { run_at_ = Clock::now(); });
+  }
 
   void Go() {
     script_.SayRun(run_t::GO, -1, kSlowSpeed);
-    go_ = Clock::now();
+    go_ = run_at_;
   }
   /// The time `periods` periods after GO.
   TimePoint At(double periods) const {
@@ -55,6 +59,7 @@ class RealtimeRulesTest : public testing::Test {
   Script script_;
   std::vector<status_t>& status_ = script_.Listen<status_t>();
   std::vector<resend_t>& requests_ = script_.Listen<resend_t>();
+  TimePoint run_at_{};  // when the last RUN came
   TimePoint go_{};
   Duration later_{};
 };
