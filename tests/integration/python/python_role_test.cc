@@ -99,7 +99,7 @@ TEST_F(PythonRoleTest, TheDriverOfThePageIsThatOfTheExamples) {
 
 TEST_F(PythonRoleTest, KilledInTheMiddleAndStartedAgainItCatchesUp) {
   // GIVEN a run that lasts longer than the runner needs to detect a dead role
-  WatchedRun watched({"--external", "driver"}, 1500);
+  WatchedRun watched({"--external", "driver", "--stall-timeout", "60"}, 1500);
   const auto command = Python(DriverOfThePage(), {"--lcm-url", watched.url()});
   const Background first(command);
   watched.WaitForStep(100);
