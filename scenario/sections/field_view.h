@@ -90,7 +90,7 @@ FieldList FieldsOf(Scenario& scenario);
 /// The fields of a published row, with pointers that begin with `pointer`.
 FieldList FieldsOf(PublishedRow& row, const std::string& pointer);
 
-/// The fields of an experiment and of a laboratory, as those of a scenario.
+/// As FieldsOf(Scenario&), for an experiment and for a laboratory.
 FieldList FieldsOf(ExperimentPlan& plan);
 FieldList FieldsOf(LabPlan& plan);
 

@@ -58,7 +58,8 @@ log::LogOfRun PrepareLog(const std::filesystem::path& log, bool force) {
   // For the recorder, /dev/stdout and /proc/self/fd/1 are other files than for this process.
   if (!IsReplaceable(log)) {
     throw InputError(fmt::format(
-        "{}: error: --log: the name of an open file of this process is no log", PathText(log)));
+        "{}: error: --log: this path names an open file of this process; name a file to write",
+        PathText(log)));
   }
   if (const std::string older = log::TakeBackOlder(log, "--log"); !older.empty()) Complain(older);
   // Makes the file if it is missing. If two runs start at once, only one of them gets the lock, no

@@ -42,7 +42,7 @@ void AddPlanOptions(CLI::App& app, hosts::PlanWords& words) {
       ->type_name("ROLE=HOST")
       ->allow_extra_args(false);
   app.add_option("--lab", words.lab,
-                 "File with machines, their roles, network and key; --on comes before it");
+                 "File with machines, their roles, network and key; --on wins if both name a role");
   app.add_option("--ssh", words.ssh,
                  "Command in place of ssh, with its options, such as 'ssh -p 2222' (default: "
                  "$FOGLINE_SSH, or ssh)");

@@ -22,10 +22,11 @@ namespace {
 using Level = doctor::Finding::Level;
 
 constexpr const char* kExplanation =
-    R"(Each finding is a line: its level, what was found, and after -> what to do. The level is ok,
-warning (runs work, but slower or with less convenience) or problem (runs will fail). The doctor
-changes nothing on the machine and ends no process. It takes about two seconds. Below some findings
-are recipes: lines of shell for root that make the remedy last. Choose one that fits the machine.
+    R"(Each finding is a line: its level, the finding, -> and a remedy. The level is ok, warning (runs
+work, but slower or with less convenience) or problem (runs will fail). The doctor changes nothing
+on the machine and ends no process. It takes about two seconds. Some findings have recipes below
+them. A recipe has shell commands for root, and keeps the remedy after a restart of the machine.
+Choose one that fits the machine.
 
 With --with, two machines examine whether they hear each other: call it on both, each with the name
 of the other. Each says which direction fails.

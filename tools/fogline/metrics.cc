@@ -144,8 +144,8 @@ void AddMetrics(CLI::App& app, cli::Action& action) {
   verb->add_flag("--json", arguments->json, "Print as JSON");
   cli::ShowExitCodes(*verb, {.check_failed = "a log is not complete"});
   verb->footer(
-      "The safety improvement SI appears for runs whose pair without traded control (policy\n"
-      "none) is among the logs. The measures of a request to take over (take_overs in JSON)\n"
+      "The safety improvement SI appears if a log of the same run without traded control\n"
+      "(policy none) is also given. The measures of a request to take over (take_overs in JSON)\n"
       "appear for runs with such requests, the latency of inputs for runs in which a person\n"
       "drove. services/metrics/README.md defines them. If a log lacks messages, the measures are\n"
       "those of the steps that are there; measures that need every step are then unknown "

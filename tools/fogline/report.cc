@@ -342,8 +342,8 @@ void AddReport(CLI::App& app, cli::Action& action) {
   verb->footer(
       "Prints the name of the page. The page needs no network. It shows an incomplete log as\n"
       "far as it goes, and marks it; the exit code is then 1. Measures that need every step are\n"
-      "unknown if messages are missing. The table appears for runs whose\n"
-      "pair without traded control is among the logs. Curves are computed on all cores: means\n"
+      "unknown if messages are missing. The table of SI and RHE appears if a log of the same\n"
+      "run without traded control is also given. Curves are computed on all cores: means\n"
       "of the seeds with their 95 % confidence intervals, percentiles, and the Pareto front of\n"
       "SI and RHE.\n\n"
       "Examples:\n"

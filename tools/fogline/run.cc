@@ -37,9 +37,9 @@ constexpr const char* kExamples =
     R"(Every run writes an LCM event log, logs/SCENARIO-N.lcm unless --log names
 another file. With --transport direct a run writes a log only if --log is given.
 Ctrl-C ends a run cleanly, keeps its log, and gives exit code 130. A process that
-is killed or hangs is started again and catches up; the result is the same. A
-process hangs if it is silent for 2 s (1 s with --realtime), or for half of
---stall-timeout if that is less.
+is killed or hangs is started again. In lockstep it catches up, and the result
+is the same. A process hangs if it is silent for 2 s (1 s with --realtime), or
+for half of --stall-timeout if that is less.
 
 --resume LOG goes on with a run that has ended early, for whatever reason. The
 result is the same. Scenario and seed are those of the log. Give transport, pace,
@@ -98,9 +98,10 @@ struct RunArguments {
                     "death ends the run)")
         ->check(CLI::Range(0, 1'000'000))
         ->capture_default_str();
-    verb.add_flag("--wall-clock", options.wall_clock,
-                  "In lockstep: write the wall clock of each step into the log, beside the digest "
-                  "(in real time it is always there)");
+    verb.add_flag(
+        "--wall-clock", options.wall_clock,
+        "In lockstep: write the wall clock of each step into the log; the digest does not "
+        "contain it (in real time it is always there)");
     verb.add_flag("--view", view, "Show the run, and then its log, in a browser");
     verb.add_flag("--json", json, "Print the result as JSON");
     verb.add_flag("--quiet", quiet, "Print only errors on stderr");

@@ -42,7 +42,7 @@ struct TableArguments {
     verb.add_flag("--json", json, "Print as JSON");
     cli::ShowExitCodes(verb, {.check_failed = "--verify failed", .interruptible = true});
     verb.footer(
-        "One run without traded control and one for each threshold, in pairs of equal seeds.\n"
+        "For each seed, makes one run without traded control and one for each threshold.\n"
         "Start the roles of --external again for each run, all with the same --lcm-url.\n\n"
         "Examples:\n"
         "  fogline table scenario/paper.json\n"

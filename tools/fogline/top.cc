@@ -32,12 +32,12 @@ namespace {
 constexpr const char* kTopExplanation =
     R"(Per channel and run: messages since top listens; rate and bandwidth (payload) of the last
 interval; jitter, the standard deviation of the times between messages in it; age of the last
-message; steps that were still missing when a step came that is newer by 64 (lost), came after a
-newer one (late), or came again (twice); undecodable messages, by apparent type. Per role, from its
-STATUS: state, step, repairs asked for and served, processor time, memory, refusals; a role is
-silent after 1 s without STATUS. Per sender of LCM traffic of any kind, by LCM's own numbers of
-messages (udpm only): messages that are missing because they were lost on the way, or because top
-itself was too slow (here). Without --lcm-url top follows the newest run that is announced on
+message; undecodable messages, by apparent type. A step is lost if it has not come when a step
+comes that is newer by 64. It is late if it comes after a newer step, and twice if it comes again.
+Per role, from its STATUS: state, step, repairs asked for and served, processor time, memory,
+refusals; a role is silent after 1 s without STATUS. Per sender of LCM traffic of any kind, by LCM's
+own numbers of messages (udpm only): lost are messages that the network has lost, and here are
+messages that top has lost because it was too slow. Without --lcm-url top follows the newest run that is announced on
 this machine, and names all announced runs. Top sees only messages that reach this machine; a
 message that is lost on the way here may have arrived elsewhere. Roles that wait for a run are
 listed before any run.

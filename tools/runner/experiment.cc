@@ -299,7 +299,7 @@ void CheckPossible(const Scenario& scenario, const std::filesystem::path& file) 
 
 ExperimentResult RunExperiment(const Scenario& scenario, const ExperimentOptions& options) {
   if (scenario.lead.profile == LeadProfile::kSumo && scenario.lead.sumo.version.empty()) {
-    // So the log says with which version it can be computed again.
+    // The log names SUMO's version, because only this version computes the run again.
     Scenario stated = scenario;
     stated.lead.sumo.version = models::SumoVersion();
     return RunExperiment(stated, options);

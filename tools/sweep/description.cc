@@ -59,8 +59,8 @@ Description ReadDescription(const std::filesystem::path& csv) {
             .rows = json.at("shard_rows"),
             .all_rows = sweep.at("rows")};
   } catch (const Json::exception&) {
-    throw InputError(fmt::format("{}: error: no sweep: {} {}", PathText(csv), PathText(file),
-                                 read.error.empty() ? "is damaged" : "is missing"));
+    throw InputError(fmt::format("{}: error: not the result of a sweep: {} {}", PathText(csv),
+                                 PathText(file), read.error.empty() ? "is damaged" : "is missing"));
   }
 }
 

@@ -32,7 +32,8 @@ std::map<std::int64_t, ShardFile> Ordered(const std::vector<std::filesystem::pat
   std::int64_t count = 0;
   for (const std::filesystem::path& path : shards) {
     if (const std::string why = WhyNoRegularFile(path); !why.empty()) {
-      throw InputError(fmt::format("{}: error: no sweep: {}", PathText(path), why));
+      throw InputError(
+          fmt::format("{}: error: not the result of a sweep: {}", PathText(path), why));
     }
     const ShardFile file{path, ReadDescription(path)};
     const Shard& shard = file.description.shard;

@@ -56,7 +56,7 @@ class MessageRing {
 /// Adds a message to a text of messages, as From() gives it.
 void AddRingMessage(const RingMessage& message, std::string& messages);
 
-/// Takes the first message off the text of From(). @pre the text is not empty
+/// Removes the first message from a text that From() has returned. @pre the text is not empty
 RingMessage TakeRingMessage(std::string_view& messages);
 
 }  // namespace fogline::web

@@ -125,7 +125,7 @@ void CheckTogether(const ViewArguments& arguments) {
     throw InputError("error: --open-at: a step of a log; LOG is missing");
   }
   if (!live && !arguments.network.Follows()) {
-    throw InputError("error: --lcm-url: a log is shown without a network; leave out one of them");
+    throw InputError("error: --lcm-url: a log needs no network; leave out --lcm-url or the log");
   }
   if (!live && !arguments.traffic.key_file.empty()) {
     throw InputError("error: --key: for the messages of a network; a log has no signatures");
@@ -136,7 +136,7 @@ void CheckTogether(const ViewArguments& arguments) {
   for (const std::string& origin : arguments.origins) {
     if (IsOrigin(origin)) continue;
     throw InputError(
-        fmt::format("error: --allow-origin {}: no origin such as http://localhost:8080",
+        fmt::format("error: --allow-origin {}: this is not an origin such as http://localhost:8080",
                     EscapeControls(origin)));
   }
 }

@@ -11,9 +11,9 @@
 namespace fogline {
 
 /// Fills lead.sumo.net and lead.sumo.routes from their files, if a file is named and the list is
-/// empty. A relative file name is relative to `folder`. A line that is longer than a text of a
-/// scenario may be is broken at a space, which XML reads in the same way. `root` and `sources` are
-/// the tree and the sources of the scenario's text. The places of mistakes refer to this tree.
+/// empty. A relative file name is relative to `folder`. A text of a scenario has a limit of length.
+/// A longer line is split at a space, which XML reads in the same way. `root` and `sources` are the
+/// tree and the sources of the scenario's text. The places of mistakes refer to this tree.
 /// @throws ScenarioError if a file cannot be read, is no UTF-8, has more lines than the list may
 ///     have, or more characters without a space than a text may have
 void ResolveSumo(const std::filesystem::path& folder, const JsonValue& root,

@@ -112,9 +112,10 @@ class RunHorizon {
   /// The progress that the runner reports is at most this old. In this time a role sends five
   /// STATUS messages, of which some may be lost.
   static constexpr Duration kHearsay = milliseconds(1000);
-  /// How long a proof of the run's progress counts. A message that is sent again comes late, but a
-  /// message that has left its producer's ring is not sent again. The runner reports old progress
-  /// while it receives no STATUS itself. In a run that goes on, this lasts less than a minute.
+  /// A message or a report of the runner limits the newest possible step for this long. A message
+  /// that is sent again comes late, but a message that has left its producer's ring is not sent
+  /// again. The runner reports old progress while it receives no STATUS itself. In a run that goes
+  /// on, this lasts less than a minute.
   static constexpr std::int64_t kHeardPeriods = kRingSteps;
   static constexpr Duration kToldFor = milliseconds(60'000);
   /// After this many periods without a newer step, the runner's progress alone limits the steps.

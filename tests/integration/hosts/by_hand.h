@@ -26,7 +26,8 @@ inline std::vector<std::string> RolesByHand() {
 
 class ByHandTest : public NetworkTest {
  protected:
-  /// Starts a role on one of the machines, in place of its process so far.
+  /// Starts a role on one of the machines. The new process replaces the earlier process of the
+  /// role.
   void Start(const Lab& lab, const std::string& role) {
     const std::size_t machine = roles_.size() % lab.machines().size();
     roles_[role] = std::make_unique<Background>(

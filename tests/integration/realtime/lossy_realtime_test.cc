@@ -142,7 +142,7 @@ TEST_F(LossyNetworkInRealtimeTest, ForLongerThanMessagesAreKeptFailsTheRun) {
   Listener listener(*machine_);
   Background run(RealtimeRun(4 * kLossyRunRate_hz));
   ASSERT_TRUE(listener.WaitForStep(kLossyRunRate_hz)) << run.Err();
-  // A second has 50 steps. The world and the roles can send only the last 32 steps again.
+  // A second has 50 steps. The recorder asks only for the last 32 steps again.
   LoseEverythingFor(milliseconds(1000));
   EXPECT_EQ(run.Wait(), kFailed);
   EXPECT_THAT(run.Err(), HasSubstr(kNotWhole));

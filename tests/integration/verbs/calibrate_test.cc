@@ -278,7 +278,7 @@ TEST_F(EnsembleOfCalibrateTest, SaysWhatIsWrongWithItsArguments) {
             "fogline calibrate: error: --ensemble: needs --out FOLDER\n");
   EXPECT_EQ(ErrorOf({"--target", target_, "--free", "/fog/bias_m=0:1", "--ensemble", "2", "--seeds",
                      "1:4", "--fresh", "3:9", "--out", sets_}),
-            "fogline calibrate: error: --fresh 3:9: has seeds of --seeds 1:4\n");
+            "fogline calibrate: error: --fresh 3:9: overlaps --seeds 1:4\n");
 }
 
 TEST_F(CalibrateTest, SaysWhatIsWrongWithItsArguments) {

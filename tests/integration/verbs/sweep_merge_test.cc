@@ -78,10 +78,13 @@ TEST_F(SweepMergeTest, RefusesAWrongMergeInOneLineAndLeavesNoFile) {
       error({shards[0], shards[1], "quarter.csv"}),
       File("quarter.csv") + ": error: shard 3 of 4, but " + File(shards[0]) + " is a shard of 3\n");
   EXPECT_EQ(error({shards[0], "plain.csv"}),
-            File("plain.csv") + ": error: no sweep: " + File("plain.csv.json") + " is missing\n");
-  EXPECT_EQ(error({shards[0], "damaged.csv"}), File("damaged.csv") + ": error: no sweep: " +
+            File("plain.csv") + ": error: not the result of a sweep: " + File("plain.csv.json") +
+                " is missing\n");
+  EXPECT_EQ(error({shards[0], "damaged.csv"}), File("damaged.csv") +
+                                                   ": error: not the result of a sweep: " +
                                                    File("damaged.csv.json") + " is damaged\n");
-  EXPECT_EQ(error({shards[0], "nowhere.csv"}), File("nowhere.csv") + ": error: no sweep: " +
+  EXPECT_EQ(error({shards[0], "nowhere.csv"}), File("nowhere.csv") +
+                                                   ": error: not the result of a sweep: " +
                                                    File("nowhere.csv.json") + " is missing\n");
 }
 

@@ -231,7 +231,7 @@ TEST(ViewOptionsTest, RefusesContradictions) {
   EXPECT_THAT(refusal({"--open-at", "5"}), HasSubstr("LOG is missing"));
   EXPECT_THAT(refusal({"a.lcm", "--lcm-url", "udpm://239.255.76.67:7667"}), HasSubstr("--lcm-url"));
   EXPECT_THAT(refusal({"a.lcm", "--key", "key"}), HasSubstr("--key"));
-  EXPECT_THAT(refusal({"--allow-origin", "*"}), HasSubstr("no origin such as"));
+  EXPECT_THAT(refusal({"--allow-origin", "*"}), HasSubstr("this is not an origin such as"));
   EXPECT_THAT(refusal({"--listen", "127.0.0.1", "--port", "1"}), HasSubstr("--port"));
   EXPECT_THAT(refusal({"--listen", "no.such.host.invalid"}), HasSubstr("--listen"));
   EXPECT_THAT(refusal({"--lcm-url", "memq://"}), HasSubstr("memory of a process"));

@@ -35,7 +35,7 @@ double LeastDistance(const CalibrationProblem& problem, const std::vector<Parame
 
 CalibrationProblem WithFreshSeeds(CalibrationProblem problem, sweep::SeedRange fresh) {
   if (fresh.first <= problem.seeds.last && problem.seeds.first <= fresh.last) {
-    throw InputError(fmt::format("error: --fresh {}:{}: has seeds of --seeds {}:{}", fresh.first,
+    throw InputError(fmt::format("error: --fresh {}:{}: overlaps --seeds {}:{}", fresh.first,
                                  fresh.last, problem.seeds.first, problem.seeds.last));
   }
   problem.seeds = fresh;

@@ -35,7 +35,8 @@ class Writer {
  public:
   using Sink = std::function<void(std::string_view)>;
 
-  /// Writes magic and Header. @param sink takes the bytes of the file; what it throws is passed on
+  /// Writes magic and Header. @param sink takes the bytes of the file. The writer passes on its
+  /// exceptions.
   /// @param library the program that writes the file
   Writer(Sink sink, std::string_view library);
   ~Writer();

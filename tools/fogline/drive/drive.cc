@@ -46,8 +46,8 @@ a keyboard. The program needs the right to read the device. There is no force fe
 A pedal counts as released until it has moved once.
 
 The seat counts as empty if the device is unplugged, or its messages stop for
-/person/deadman_s. The pedals then count as released, and the fallbacks of real time do
-their work.
+/person/deadman_s. The pedals then count as released, and the fallbacks of real time
+apply (docs/real-time.md).
 
 Examples:
   fogline drive scenario/drive.json

@@ -20,11 +20,11 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kLogplayerExplanation =
-    R"(Opens a window that plays a log of any LCM traffic on a network: with pauses, at any speed, from
-any time, without channels that you choose. It begins at once unless --paused is given. It keeps
+    R"(Opens a window that plays a log of any LCM program on a network. You can pause, choose the speed and
+the start time, and switch channels off. It begins at once unless --paused is given. It keeps
 its settings in a file beside the log, LOG.jlp. Uses JAVA_HOME if it is set.
 
-A program that shows the log live needs the same network: fogline top, spy and view show it.
+fogline top, spy and view show the messages while they are played. Give them the same --lcm-url.
 
 Examples:
   fogline logplayer logs/paper-1.lcm

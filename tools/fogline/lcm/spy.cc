@@ -29,9 +29,9 @@ namespace fs = std::filesystem;
 constexpr const char* kSpyExplanation =
     R"(Opens a window with a table of every channel: type, rate, jitter, undecodable messages. A double
 click shows a channel's fields. A click on a number's sparkline shows its chart. lcm-spy cannot
-change its network: without --lcm-url it waits until a run is announced, or until there is traffic
-where runs are announced. Then it starts on the network of this run (of the newest one if there are
-several) or of this traffic. Uses JAVA_HOME if it is set.
+change its network. Without --lcm-url the verb waits until a run is announced, or until messages
+come at the address where runs are announced. Then lcm-spy starts on the network of this run (of the
+newest one if there are several) or of these messages. Uses JAVA_HOME if it is set.
 
 Examples:
   fogline run scenario/paper.json --pace 1 & fogline spy

@@ -34,7 +34,9 @@ Scenario LiveScenario(const std::filesystem::path& log, const replay::RecordedMe
   const log::RunLog& run = messages.run();
   Scenario scenario = ParseScenario(run.scenario_text, PathText(log), overrides);
   if (std::abs(scenario.step_s - run.scenario.step_s) > 0) {
-    throw InputError("error: --set /step_s: the recorded messages have the steps of their run");
+    throw InputError(
+        "error: --set /step_s: it cannot change, because the recorded messages have the steps of "
+        "their run");
   }
   scenario.steps = std::min(scenario.steps, messages.steps());
   if (scenario.steps < 1) cli::RefuseLog(log, "the log has no step");

@@ -13,7 +13,7 @@ namespace fogline::replay {
 
 class RecordedNode final : public runtime::Work {
  public:
-  /// @param messages they have the channels of the role
+  /// @param messages recorded messages on the channels of the role
   RecordedNode(runtime::Bus& bus, Role role, std::int64_t run_id, const RecordedMessages& messages);
 
   runtime::Node& node() override { return node_; }

@@ -53,8 +53,8 @@ std::string Margins(const Place& place);
 std::string NameOfX(std::string_view name, double height);
 std::string NameOfY(std::string_view name, double middle);
 
-/// gnuplot's numbers of the names of both axes, for "unset label". gnuplot gives lower numbers to
-/// other labels.
+/// The numbers of the two labels that name the axes. "unset label" needs these numbers. gnuplot
+/// gives lower numbers to other labels.
 inline constexpr int kLabelOfX = 1001;
 inline constexpr int kLabelOfY = 1002;
 

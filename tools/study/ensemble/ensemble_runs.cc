@@ -53,7 +53,7 @@ StudyCase CaseWith(const Ensemble& ensemble, const EnsembleSet& set, StudyCase o
   return one;
 }
 
-/// The claim with the names that its cases have with a set.
+/// The claim, with each of its cases renamed for a parameter set.
 PlannedClaim ClaimWith(const EnsembleSet& set, PlannedClaim claim) {
   claim.cell.test_case = NameWith(set, claim.cell.test_case);
   if (claim.other) claim.other->test_case = NameWith(set, claim.other->test_case);

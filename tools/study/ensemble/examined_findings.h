@@ -9,8 +9,9 @@ namespace fogline::study {
 
 /// A large difference needs only one seed of so many.
 inline constexpr std::int64_t kLarge = 8;
-/// The safety improvement varies so much between situations that a mix of them needs so many times
-/// the seeds: about a thousand situations, as in study `threshold`.
+/// A claim on a mix of situations needs this many times the usual number of seeds. The safety
+/// improvement differs much between situations, so about a thousand situations are needed, as in
+/// study `threshold`.
 inline constexpr std::int64_t kManySituations = 8;
 
 /// All findings, in the order of the page. A person writes the exceptions, after the runs.

@@ -17,7 +17,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// The first byte of a binary frame, by its sender.
+// The first byte of a binary frame. Server and client use separate numbers.
 constexpr char kMessageData = 1;
 constexpr unsigned char kClientMessageData = 1;
 constexpr unsigned char kClientServiceCall = 2;

@@ -35,8 +35,8 @@ class LogIndex {
   /// The messages in the index.
   std::int64_t messages() const { return messages_; }
 
-  /// The message of a step without its signature, valid as long as the index; empty if there is
-  /// none.
+  /// The message of a step, without its signature; empty if the log lacks the message. It is valid
+  /// as long as the index.
   /// @param channel its place in kChannels
   runtime::Bytes Message(std::int64_t step, std::size_t channel) const;
 

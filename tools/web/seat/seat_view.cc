@@ -68,7 +68,7 @@ void SeatView::Publish(const driver_input_t& message) {
 
 void SeatView::Hear(const RingMessage& message) {
   if (message.bytes.size() < runtime::kHeaderEnd) return;
-  // Another run on the same network is not the one in which the person drives.
+  // Messages of other runs on this network are ignored.
   const auto followed = live_.tracker().followed();
   if (followed && runtime::ReadInt64(message.bytes, runtime::kRunIdOffset) != *followed) return;
   TellRun();

@@ -1,4 +1,5 @@
-// The claims of the studies with real runs: the opposite of a claim fails.
+// Turns each claim of the studies around, computes the study with real runs, and expects that the
+// turned claim fails.
 #include <array>
 #include <set>
 #include <string>

@@ -94,7 +94,7 @@ TEST(EnsembleTest, IsTheSameForASeedOnAnyNumberOfThreads) {
 TEST(EnsembleTest, ConfirmsNoSetOnSeedsOfTheSearch) {
   for (const sweep::SeedRange fresh : {sweep::SeedRange{4, 9}, {0, 1}, {2, 3}, {0, 9}}) {
     EXPECT_THAT(test::ErrorOf([&] { calibrate::WithFreshSeeds(ShortProblem(), fresh); }),
-                HasSubstr("has seeds of --seeds 1:4"));
+                HasSubstr("overlaps --seeds 1:4"));
   }
   EXPECT_EQ(calibrate::WithFreshSeeds(ShortProblem(), {5, 9}).seeds.first, 5);
 }

@@ -29,7 +29,7 @@ TEST(BestAtTest, TakesTheBestWhereSeveralHaveThisEngagement) {
   ASSERT_TRUE(place);
   EXPECT_EQ(place->below, 4U);
   EXPECT_EQ(place->gain, 30);
-  // Just above an RHE of 0 the only candidate is next to the worse of the two points with RHE 0.
+  // Two points have RHE 0. An RHE just above 0 lies on the line to the worse one of them.
   EXPECT_NEAR(study::BestAt(kCurve, 1e-9)->gain, 22, 1e-6);
 }
 
