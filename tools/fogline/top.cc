@@ -37,10 +37,10 @@ comes that is newer by 64. It is late if it comes after a newer step, and twice 
 Per role, from its STATUS: state, step, repairs asked for and served, processor time, memory,
 refusals; a role is silent after 1 s without STATUS. Per sender of LCM traffic of any kind, by LCM's
 own numbers of messages (udpm only): lost are messages that the network has lost, and here are
-messages that top has lost because it was too slow. Without --lcm-url top follows the newest run that is announced on
-this machine, and names all announced runs. Top sees only messages that reach this machine; a
-message that is lost on the way here may have arrived elsewhere. Roles that wait for a run are
-listed before any run.
+messages that top has lost because it was too slow. Without --lcm-url top follows the newest run
+that is announced on this machine, and names all announced runs. Top sees only messages that reach
+this machine; a message that is lost on the way here may have arrived elsewhere. Roles that wait for
+a run are listed before any run.
 
 On a terminal the tables scroll: arrows move, Tab goes to the next table, Enter opens a row (the
 fields of a channel's newest message, all of a role's STATUS), Esc closes it, s sorts the table by

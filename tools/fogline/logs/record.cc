@@ -22,13 +22,13 @@ namespace {
 
 constexpr const char* kRecordExplanation =
     R"(Writes every message on the network as lcm-logger does, but its queue has no limit. So a slow disk
-loses no message. A message is lost only if the socket's buffer overflows (--recv-buffer-mb). Ctrl-C ends the recording with a whole log and a summary.
-The summary counts, for each sender, the messages that are missing, by LCM's own numbers (udpm
-only). With a rotation the files are LOG-000.lcm, LOG-001.lcm and so on. If one of these files
-exists, the recording does not begin without --force. With --force it first removes all of them,
-so that no file of an earlier recording is left. Without --lcm-url it also records the newest run
-that is announced on this machine. A full disk ends the recording (exit code 3); the log then ends
-with a whole message.
+loses no message. A message is lost only if the socket's buffer overflows (--recv-buffer-mb).
+Ctrl-C ends the recording with a whole log and a summary. The summary counts, for each sender, the
+messages that are missing, by LCM's own numbers (udpm only). With a rotation the files are
+LOG-000.lcm, LOG-001.lcm and so on. If one of these files exists, the recording does not begin
+without --force. With --force it first removes all of them, so that no file of an earlier
+recording is left. Without --lcm-url it also records the newest run that is announced on this
+machine. A full disk ends the recording (exit code 3); the log then ends with a whole message.
 
 Examples:
   fogline record logs/all.lcm

@@ -33,7 +33,9 @@ class RealtimeRulesTest : public testing::Test {
 
   void Go() {
     script_.SayRun(run_t::GO, -1, kSlowSpeed);
-    go_ = run_at_;
+    // A moment later, so that a tick has come at its time. The role takes the time of GO in
+    // between.
+    go_ = run_at_ + std::chrono::microseconds(100);
   }
   /// The time `periods` periods after GO.
   TimePoint At(double periods) const {
