@@ -33,7 +33,7 @@ class Backlog {
   Backlog(const Backlog&) = delete;
   Backlog& operator=(const Backlog&) = delete;
 
-  /// The oldest packet; nullopt if there is none.
+  /// Takes the oldest packet. @return the packet; nullopt if the backlog is empty
   std::optional<Packet> Take();
   /// This descriptor is readable while a packet is there.
   int fd() const { return ready_; }

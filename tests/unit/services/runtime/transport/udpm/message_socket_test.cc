@@ -82,7 +82,7 @@ TEST(MessageSocketTest, WaitsOnAfterPacketsThatAreNoMessages) {
   runtime::MessageSocket socket(url, {});
   const std::jthread other([&url] {
     for (int i = 0; i < 5; ++i) {
-      std::this_thread::sleep_for(milliseconds(20));
+      std::this_thread::sleep_for(milliseconds(20));  // the socket waits meanwhile
       SendDatagram(url, "noise");
     }
     SendDatagram(url, "LC02\0\0\0\1LAST\0"s);
