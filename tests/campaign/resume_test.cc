@@ -1,5 +1,5 @@
-// A hundred runners are killed at random steps. Also, on each of two transports, a hundred runs in
-// one process are killed.
+// A hundred runners are killed at random steps. On each of two transports, a hundred runs in one
+// process are killed, too.
 #include <gtest/gtest.h>
 
 #include "tests/integration/faults/resume_fixture.h"

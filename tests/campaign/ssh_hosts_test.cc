@@ -30,7 +30,7 @@ class SshHostsTest : public HostsTest {
     if (IsSkipped() || HasFatalFailure()) return;
     if (access(SshLab::kServer, X_OK) != 0) return MachineLacks("openssh-server");
   }
-  /// The error text of a run with the acc on another machine, which fails.
+  /// The error text of a run with the role acc on another machine. The run must fail.
   std::string Failure(const SshLab& lab, const std::string& host,
                       const std::vector<std::string>& more = {}) {
     const Outcome outcome = RunCommand(RunFrom(lab[0], lab.ssh(), {"--on", On("acc", host)}, more));
@@ -106,7 +106,8 @@ TEST_F(SshHostsTest, EndOnBothSidesOfACableThatStaysCut) {
   lab.lab().Unplug(1);
   EXPECT_EQ(run.Wait(), 3);
   EXPECT_THAT(run.Err(), HasSubstr("; lab2 has not answered for "));
-  // The other machine hears nothing of the runner, and gives up 15 s after the stall timeout.
+  // The other machine receives nothing from the runner, and ends its roles 15 s after the stall
+  // timeout.
   EXPECT_THAT(LeftOn(lab[1]), IsEmpty());
 }
 
@@ -172,7 +173,7 @@ TEST_F(SshHostsTest, UseTheRelayWhereThereIsNoMulticast) {
 }
 
 TEST_F(SshHostsTest, CarryTheRelayThroughTheirOwnConnection) {
-  // The recipe of docs/laboratory.md for a network that lets only ssh pass.
+  // The recipe of docs/laboratory.md for a network that permits only ssh.
   const SshLab lab(2);
   BlockUdpBetween(lab.lab());
   const Outcome run =

@@ -1,5 +1,5 @@
 // Simulated machines with OpenSSH's server. Host keys, configurations and the key of the user are
-// in a temporary folder. No file outside of it is changed.
+// in a temporary folder. The tests change no file outside of this folder.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ class SshLab {
  public:
   static constexpr const char* kServer = "/usr/sbin/sshd";
 
-  /// Machines lab1, lab2, ...; each but the first has a server.
+  /// Machines lab1, lab2, ... Each of them except lab1 has a server.
   explicit SshLab(int machines) : lab_(machines) {
     for (const std::string name : {"host_key", "user_key"}) {
       const Outcome made = RunCommand(
@@ -30,7 +30,7 @@ class SshLab {
         << "Host lab*\n  User root\n  Port 2222\n  IdentitiesOnly yes\n  IdentityFile '"
         << folder_.File("user_key") << "'\n  UserKnownHostsFile '" << folder_.File("known_hosts")
         << "'\n  GlobalKnownHostsFile none\n  HostKeyAlias lab\n";
-    for (int i = 1; i <= machines + 1; ++i) {  // the last one does not exist
+    for (int i = 1; i <= machines + 1; ++i) {  // the last host does not exist
       std::ofstream(folder_.File("ssh_config"), std::ios::app)
           << "Host lab" << i << "\n  HostName 10.76.67." << i << "\n";
     }
@@ -45,19 +45,19 @@ class SshLab {
                           << "\nPidFile none\nUsePAM no\nStrictModes no\nUseDNS no\n"
                           << "PermitRootLogin yes\nPasswordAuthentication yes\nAuthorizedKeysFile "
                           << folder_.File(keys) << "\n";
-    // The server needs the folder /run/sshd. It gets a /run of its own.
+    // The server needs the folder /run/sshd, so it gets a file system /run of its own.
     servers_.emplace_back(
         machine.On({"unshare", "--mount", "sh", "-ec",
                     "mount -t tmpfs none /run; mkdir -m 755 /run/sshd; exec \"$@\"", "sh", kServer,
                     "-D", "-e", "-f", config}));
     EXPECT_TRUE(servers_.back().WaitForErr("Server listening")) << servers_.back().Err();
   }
-  /// Ends all servers, and starts others into which no key lets the user in.
+  /// Ends all servers, and starts servers that accept no key of the user.
   void ForgetTheUser() {
     servers_.clear();
     for (std::size_t i = 1; i < lab_.machines().size(); ++i) Serve(lab_[i], "none");
   }
-  /// From now on the host keys are unknown.
+  /// Deletes the known host keys.
   void ForgetTheHosts() const { std::ofstream(folder_.File("known_hosts")); }
 
   const Lab& lab() const { return lab_; }

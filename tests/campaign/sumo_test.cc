@@ -44,8 +44,8 @@ class SumoTest : public testing::Test {
     return truths;
   }
 
-  /// The steps at which another car becomes the car ahead: its place does not follow from its
-  /// speed.
+  /// The steps at which another car becomes the car ahead. At such a step the position of the car
+  /// ahead does not follow from its speed.
   static std::vector<std::int64_t> Changes(const std::vector<truth_t>& truths) {
     constexpr double kStep_s = 0.1;
     std::vector<std::int64_t> steps;
@@ -95,7 +95,7 @@ TEST_F(SumoTest, AWorldThatIsKilledTwiceComputesTheSameRun) {
   EXPECT_EQ(WatchedRun::RestartsOf(result, "world"), 2);
 }
 
-// On a busy machine the world gets so little of a processor that SUMO needs seconds to load.
+// On a busy machine the world gets so little processor time that it needs seconds to load SUMO.
 TEST_F(SumoTest, AWorldThatLoadsSumoForLongIsNotTakenForHung) {
   WatchedRun watched({}, 60, kPace, behind_a_queue_);
   const pid_t world = watched.PidOf("world");
@@ -134,7 +134,7 @@ TEST_F(SumoTest, ACarMergesInFrontOfTheHostAndTheQueueBrakesBeforeTheRoadWorks) 
 TEST_F(SumoTest, TheMergingCarSeesTheHost) {
   // GIVEN a host that leaves no room between itself and the queue
   Run("direct", {"/acc/headway_s=0.5", "/driver/headway_s=0.5", "/world/host_gap_m=13"});
-  // THEN no car merges there, as one does in front of a host that leaves more room
+  // THEN no car merges, although a car merges in front of a host that leaves more room
   EXPECT_THAT(Changes(Truths()), testing::IsEmpty());
 }
 
@@ -192,7 +192,7 @@ TEST_F(SumoTest, AHostThatReachesTheEndOfTheRoadEndsTheRunWithThatReason) {
 }
 
 TEST_F(SumoTest, ARoadOnWhichEachLaneLeadsToTwoIsReadAtOnce) {
-  // 2^40 ways lead along the 40 edges of this road.
+  // There are 2^40 routes along the 40 edges of this road.
   constexpr int kEdges = 40;
   std::ofstream nodes(folder_.File("mesh.nod.xml"));
   std::ofstream edges(folder_.File("mesh.edg.xml"));

@@ -1,4 +1,4 @@
-// A run in real time does not notice the people who look at it.
+// Viewers do not disturb a run in real time.
 #include <gtest/gtest.h>
 
 #include <memory>
@@ -12,7 +12,7 @@
 namespace fogline::test {
 namespace {
 
-/// Reads everything that the server sends, until it is stopped.
+/// Reads all frames of the server until End().
 class Reader {
  public:
   explicit Reader(std::uint16_t port)
@@ -21,11 +21,11 @@ class Reader {
             while (!stop.stop_requested()) {
               if (KindOf(client_.Receive()) == 1) ++frames_;
             }
-          } catch (const std::exception&) {  // closed: the frames will be too few
+          } catch (const std::exception&) {  // closed: too few frames are counted
           }
         }) {}
 
-  /// @return the frames with messages that have come
+  /// Stops the reader. @return the number of frames with messages that have come
   std::int64_t End() {
     thread_.request_stop();
     thread_.join();
@@ -38,7 +38,8 @@ class Reader {
   std::jthread thread_;
 };
 
-/// Deadlines that a run of a minute at 100 Hz misses. @param viewers how many look at it
+/// The number of deadlines that a run of one minute at 100 Hz misses.
+/// @param viewers the number of viewers
 std::int64_t MissedWith(int viewers) {
   const ScratchFolder folder;
   const std::string url = runtime::FreshMulticastUrl();
@@ -58,7 +59,7 @@ std::int64_t MissedWith(int viewers) {
 }
 
 TEST(ViewersInRealtimeTest, TwentyViewersCostNoDeadline) {
-  // If a run without viewers misses deadlines, too, the machine has disturbed the attempt.
+  // If a run without viewers also misses deadlines, the machine has disturbed the attempt.
   constexpr int kAttempts = 5;
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
     const std::int64_t before = MissedWith(0);

@@ -1,4 +1,4 @@
-// A program that looks for runs reads beacons from unknown senders. Input: datagrams.
+// A program that looks for runs receives beacons of unknown senders. Input: datagrams.
 #include <nlohmann/json.hpp>
 
 #include "common/text.h"

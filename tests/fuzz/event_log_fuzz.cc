@@ -27,7 +27,7 @@ bool SameBut(std::int64_t number, const log::Event& a, const log::Event& b) {
          std::ranges::equal(a.data, b.data);
 }
 
-/// The reader maps the file, so no sanitizer sees a read beyond the file's end. This function
+/// The reader maps the file, so no sanitizer notices a read beyond the file's end. This function
 /// parses the same bytes in a block of memory that ends where the input ends.
 void DemandSameInMemory(runtime::Bytes bytes, const std::vector<log::Event>& events) {
   std::string_view why;

@@ -40,7 +40,7 @@ class MemoryFile {
   MemoryFile(const MemoryFile&) = delete;
   MemoryFile& operator=(const MemoryFile&) = delete;
 
-  /// The path is valid while this object lives.
+  /// The path is valid during the lifetime of this object.
   std::filesystem::path path() const;
   Input Content() const;
 
@@ -56,8 +56,8 @@ class Cutter {
 
   bool empty() const { return rest_.empty(); }
   std::uint8_t Byte();
-  /// A datagram: its length in two bytes, big endian, then its bytes. The datagram is shorter than
-  /// this length if the input ends, or if the length is above the limit for messages.
+  /// A datagram: its length in two bytes, big endian, and its bytes. The datagram is shorter than
+  /// this length if the input ends, or if the length exceeds the limit for messages.
   runtime::Bytes Datagram();
 
  private:

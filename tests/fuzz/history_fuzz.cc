@@ -12,8 +12,8 @@
 namespace fogline::fuzz {
 namespace {
 
-// The size in bytes of the end of a log, if only the end is read. The sample logs are longer than
-// this size. So the end of a log sometimes suffices, and sometimes does not.
+// The size in bytes of the end of a log, for the tests that read only the end. The sample logs are
+// longer than this size. So the end of a log sometimes has enough messages, and sometimes too few.
 constexpr std::int64_t kShortTail = 2500;
 
 void DemandWhereabouts(const log::LogFront& front, const log::Remains& remains,

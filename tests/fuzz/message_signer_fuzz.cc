@@ -20,7 +20,7 @@ bool IsGood(const runtime::MessageSigner& signer, std::string_view channel,
   return signer.Open(channel, message).verdict == runtime::MessageSigner::Verdict::kGood;
 }
 
-/// Demands that a message with a good verdict was signed with the key, by a role that may publish
+/// Demands: if a message has a good verdict, it was signed with the key, by a role that may publish
 /// it.
 void DemandUnforgeable(const runtime::MessageSigner& signer, const ChannelInfo& channel,
                        runtime::Bytes message) {

@@ -3,7 +3,7 @@
 //   fuzz_NAME_replay COUNT [FILE | FOLDER]...
 //   fuzz_NAME_replay --seeds FOLDER     writes the seeds there, for libFuzzer
 // If an input shows a mistake, the program writes the input into the file fuzz_NAME_replay.finding
-// beside itself.
+// in its own folder.
 #include <sanitizer/common_interface_defs.h>
 
 #include <algorithm>
@@ -29,7 +29,7 @@ constexpr std::size_t kMaxEdits = 4;
 
 using namespace std::string_view_literals;
 
-// Values that readers often handle wrongly: as text, and as big-endian numbers.
+// Values that readers often handle wrongly, as text and as big-endian numbers.
 constexpr std::string_view kValues[] = {"0"sv,
                                         "-0"sv,
                                         "-1"sv,

@@ -1,5 +1,5 @@
-// The checksums of a sweep's rows. Input: FILE.sums as a datagram, then the rows of FILE, a
-// datagram each.
+// The checksums of a sweep's rows. Input: the bytes of FILE.sums as a datagram, and each row of
+// FILE as a datagram.
 #include <unistd.h>
 
 #include <filesystem>
@@ -20,7 +20,7 @@ std::string Text(runtime::Bytes bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-/// The file FILE.sums with this content. It exists while this object lives.
+/// The file FILE.sums with this content. The file exists during the lifetime of this object.
 class SumsOnDisk {
  public:
   explicit SumsOnDisk(const std::string& content)
@@ -39,8 +39,8 @@ class SumsOnDisk {
   std::filesystem::path csv_;
 };
 
-/// Whether this content has only lines of eight hexadecimal digits. The last line may be torn, with
-/// zeros after it.
+/// Whether this content has only lines of eight hexadecimal digits. The last line may be
+/// incomplete, with zeros after it.
 bool LooksLikeSums(std::string content) {
   const std::size_t last_line = content.rfind('\n') + 1;  // npos + 1 is 0
   while (content.size() > last_line && content.back() == '\0') content.pop_back();
@@ -103,7 +103,7 @@ std::vector<Input> Seeds() {
   const std::vector<std::string> rows{"seed,si_pct", "1,62.5", "2,-3"};
   std::string sums;
   for (const std::string& row : rows) sums += sweep::SumLine(row);
-  // FILE.sums is whole, torn by a kill, or torn by a power cut.
+  // FILE.sums is complete, or was cut by a kill, or was cut by a power failure.
   return {Of(sums, rows), Of(sums.substr(0, sums.size() - 4), rows),
           Of(sums.substr(0, sums.size() - 4) + std::string(4, '\0'), rows)};
 }

@@ -102,7 +102,7 @@ void DemandRunOrRefusal(runtime::Bytes bytes) {
   }
 }
 
-/// Adds the graph of a run in which no channel but these has messages.
+/// Adds the graph of a run in which only these channels have messages.
 Input WithLogGraph(const Input& log, const runtime::ChannelSet& channels) {
   const MemoryFile from(log);
   const MemoryFile to;
@@ -149,7 +149,7 @@ std::vector<Input> Seeds() {
   std::vector<log::Event> events;
   while (const auto event = reader.Next()) events.push_back(*event);
 
-  // The log of signed traffic as lcm-logger writes it.
+  // A log of signed traffic, as lcm-logger writes it.
   const MemoryFile signed_log;
   runtime::MessageSigner signer(runtime::SigningKey({}), {});
   {

@@ -16,7 +16,7 @@
 namespace fogline::fuzz {
 
 inline constexpr std::int64_t kRunId = 7;
-/// The shortest scenario of three steps.
+/// The shortest text of a scenario with three steps.
 inline constexpr std::string_view kScenarioText = R"({"version":1,"steps":3})";
 inline constexpr std::int64_t kSteps = 3;
 
@@ -74,7 +74,8 @@ Input Encoded(const M& message) {
   return bytes;
 }
 
-/// Calls `handle`.operator()<M>(i) for each type M of kGraph; i is its place in kChannels.
+/// Calls `handle`.operator()<M>(i) for each type M of kGraph, where i is the index of the type's
+/// channel in kChannels.
 template <class Handle>
 void ForEachType(const Handle& handle) {
   std::apply(
@@ -87,7 +88,7 @@ void ForEachType(const Handle& handle) {
       kGraph);
 }
 
-/// For each type its place in kChannels in one byte, and then a message.
+/// For each type: the index of its channel in kChannels, in one byte, and then a message.
 inline std::vector<Input> SeedOfEachType() {
   std::vector<Input> seeds;
   ForEachType([&seeds]<class M>(std::size_t place) {

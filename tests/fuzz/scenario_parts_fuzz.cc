@@ -1,4 +1,4 @@
-// The assembly of a scenario from its parts. Input: datagrams on RUN.
+// The joining of a scenario's parts. Input: datagrams on RUN.
 #include <map>
 
 #include "tests/fuzz/samples.h"

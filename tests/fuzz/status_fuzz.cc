@@ -1,5 +1,5 @@
-// The runner among arbitrary STATUS and RESEND messages. Input: for each message a byte, odd for
-// RESEND, and a datagram.
+// The runner receives arbitrary STATUS and RESEND messages. Input: for each message a byte, which
+// is odd for RESEND, and a datagram.
 #include <algorithm>
 
 #include "services/runtime/coordination/run_coordinator.h"

@@ -1,4 +1,4 @@
-// The parser of tcpq streams, as the relay and as the client use it. Input: a byte, odd for a
+// The parser of tcpq streams, for the relay and for its clients. Input: a byte, which is odd for a
 // stream from a relay, and the stream.
 #include <algorithm>
 #include <functional>

@@ -1,5 +1,5 @@
-// Runs of real processes under random faults, several at the same time. Every digest must be that
-// of the undisturbed run.
+// Runs of real processes under random faults, several at the same time. Every digest must equal the
+// digest of the undisturbed run.
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -30,10 +30,10 @@ using SteadyClock = std::chrono::steady_clock;
 // Exit code if this process may not make simulated machines.
 constexpr int kNoMachines = 4;
 
-// Limits of the time and of numbers of runs: a year, and more runs than a year allows.
+// Limits of the time and of the number of runs: a year, and more runs than are possible in a year.
 constexpr double kMostMinutes = 525'600;
 constexpr std::int64_t kMostRuns = 1'000'000'000;
-// A time that is over before a run can begin.
+// The least value of --minutes. This time is over before a run can begin.
 constexpr double kLeastMinutes = 1e-9;
 // Limits of the duration of a fault.
 constexpr double kShortestFault_s = 0.1;

@@ -34,15 +34,16 @@ struct Undisturbed {
 Undisturbed RunUndisturbed(const Experiment& experiment);
 
 /// A run in progress, on one machine or with its roles on three machines of one network. A single
-/// machine has a default route to another network, as most machines have. Its messages go over
-/// loopback, which is the default, or over the interface of the default route.
+/// machine has a default route to another network, as most machines have. The messages of a run on
+/// one machine go over loopback, which is the default, or over the interface of the default route.
 class SoakedRun {
  public:
   enum class Place { kLoopback, kInterface, kThreeMachines };
 
   SoakedRun(const Experiment& experiment, Place place, std::vector<std::string> options);
 
-  /// Waits until this share of the log is written. @return whether the run has not ended by then
+  /// Waits until this share of the log is written. @return whether the run is still in progress
+  /// then; false also after the time limit
   bool WaitForShare(double share, const Undisturbed& whole);
   bool Running() const { return IsAlive(run_->pid()); }
 
@@ -57,7 +58,8 @@ class SoakedRun {
   // Each of these functions causes one fault. @return false if there was no such process, or if the
   // process had ended by itself
 
-  /// Ends a role's process, drawn at random, by SIGKILL. Starts it again if the runner does not.
+  /// Ends the process of a role, drawn at random, by SIGKILL. Starts the role again if the runner
+  /// has not started it.
   bool KillARole(std::mt19937_64& random);
   /// Stops a process, drawn at random, of a role that the runner has started.
   bool StopARole(std::mt19937_64& random) const;

@@ -27,7 +27,7 @@ inline std::vector<pid_t> ChildrenOf(pid_t parent) {
   return children;
 }
 
-/// The same for children that any thread of `parent` has started.
+/// The children of `parent` that have not ended, and that any thread of `parent` has started.
 inline std::vector<pid_t> ChildrenOfAnyThread(pid_t parent) {
   std::vector<pid_t> children;
   std::error_code ended;

@@ -1,4 +1,4 @@
-// The requirements of a test on its machine.
+// The requirements of a test for the machine on which it runs.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 namespace fogline::test {
 
 /// Ends a test, or its SetUp(), on a machine that lacks a requirement (root, namespaces, nftables).
-/// The test is skipped. If FOGLINE_TEST_NO_SKIP is set, all tests must run, so the test fails.
+/// The test is skipped, or fails if FOGLINE_TEST_NO_SKIP is set.
 /// Usage: `if (geteuid() != 0) return MachineLacks("root");`
 inline void MachineLacks(const std::string& what) {
   if (std::getenv("FOGLINE_TEST_NO_SKIP") != nullptr) FAIL() << "this machine lacks " << what;

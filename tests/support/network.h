@@ -2,7 +2,7 @@
 // and host names, joined by veth pairs and a bridge. The kernel handles their packets like those of
 // real machines, and can lose some packets on request. The namespaces change nothing outside. The
 // namespaces have no names, so the kernel removes them when this process and its children have
-// ended. A machine ends all processes that still run on it when it goes.
+// ended. The destructor of a machine ends all processes that still run on the machine.
 #pragma once
 
 #include <cstdint>
@@ -58,8 +58,8 @@ class Machine {
   void Enter(const std::function<void()>& function) const;
 
  private:
-  /// Ends the processes that still run on this machine, such as those that sshd leaves behind when
-  /// their connection is cut.
+  /// Ends the processes that still run on this machine. sshd leaves such processes when a
+  /// connection is cut.
   void EndAll() const;
 
   std::string name_;

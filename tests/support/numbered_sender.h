@@ -1,4 +1,4 @@
-// A sender of LCM's packets that chooses their numbers, and so can leave some out.
+// A sender of LCM packets. The test chooses the number of each packet, so it can leave out numbers.
 #pragma once
 
 #include <arpa/inet.h>
@@ -15,7 +15,7 @@
 
 namespace fogline::test {
 
-/// Sends over loopback, to the group of a udpm:// URL with ttl=0.
+/// Sends packets over loopback, with ttl=0, to the multicast group of a udpm:// URL.
 class NumberedSender {
  public:
   explicit NumberedSender(const std::string& url) : fd_(socket(AF_INET, SOCK_DGRAM, 0)) {
@@ -43,7 +43,7 @@ class NumberedSender {
     EXPECT_EQ(send(fd_, packet.data(), packet.size(), 0), static_cast<ssize_t>(packet.size()));
   }
 
-  /// Its address, as `fogline top` writes it.
+  /// The address of this sender, as `fogline top` writes it.
   std::string Address() const {
     sockaddr_in own{};
     socklen_t size = sizeof(own);

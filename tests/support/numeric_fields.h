@@ -1,4 +1,4 @@
-// All numbers of a message type, for tests of what reads them.
+// All numbers of a message type, for tests of code that reads these numbers.
 #pragma once
 
 #include <algorithm>
@@ -13,14 +13,14 @@
 
 namespace fogline::test {
 
-/// How many elements NumericFields() lists at most of each dimension of an array.
+/// The largest number of elements that NumericFields lists for each dimension of an array.
 struct ListedElements {
   std::size_t varying = 4;  // if the length varies: messages may have fewer or more
   std::size_t fixed = 64;
 };
 
-/// The paths of all numbers of a type in their order, those of structs in it too. Booleans and
-/// bytes count as numbers, strings do not.
+/// The paths of all numbers of a type in their order. Numbers of nested structs are included.
+/// Booleans and bytes count as numbers, strings do not.
 class NumericFields {
  public:
   NumericFields(const web::LcmTypes& types, const web::LcmStruct& type,

@@ -55,7 +55,7 @@ inline std::string FenceOf(const std::string& page, const std::string& kind) {
   return page.substr(text, page.find("```\n", text) - text);
 }
 
-/// README.md, and every page docs/*.md.
+/// The paths of README.md and of every page docs/*.md.
 inline std::vector<std::filesystem::path> Pages() {
   std::vector<std::filesystem::path> pages{SourceDirectory() / "README.md"};
   for (const auto& entry : std::filesystem::directory_iterator(SourceDirectory() / "docs")) {

@@ -24,7 +24,7 @@ class WebClosed : public std::runtime_error {
   std::uint16_t code_;
 };
 
-/// The server has answered the request for a WebSocket by another status than 101.
+/// The server has answered the request for a WebSocket with a status other than 101.
 class WebRefused : public std::runtime_error {
  public:
   explicit WebRefused(int status) : std::runtime_error(std::to_string(status)), status_(status) {}
@@ -44,9 +44,9 @@ class WebClient {
   struct Options {
     std::string target = "/ws";
     std::string protocol = "fogline.view.v1";  // "": asks for none
-    std::string host;                          // "": the right one
+    std::string host;                          // "": the address of the server
     std::string origin;                        // "": none
-    int receive_bytes = 0;                     // of the socket; 0: as the system wants
+    int receive_bytes = 0;                     // buffer of the socket; 0: default of the system
   };
 
   /// @throws WebRefused, std::runtime_error
@@ -68,14 +68,14 @@ class WebClient {
 };
 
 /// Sends bytes to a port of this machine, and reads until the other side closes.
-/// @return what it has sent; "" if it closes the connection at once
+/// @return the bytes that the other side has sent; "" if it closes the connection at once
 std::string Exchange(std::uint16_t port, const std::string& bytes,
                      std::chrono::seconds limit = kPatience);
 
 /// A GET request. @param more further header lines, each with "\r\n"
 std::string GetRequest(std::uint16_t port, const std::string& target, const std::string& more = "");
 
-/// The status of an answer; 0 if it is no HTTP.
+/// The status of an answer; 0 if the answer is not HTTP.
 int StatusOf(const std::string& answer);
 
 }  // namespace fogline::test

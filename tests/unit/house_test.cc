@@ -29,11 +29,11 @@ using ::testing::UnorderedElementsAre;
 
 struct Room {
   std::string folder;  // with its subfolders, unless they are rooms of their own; see kAlone
-  std::string space;   // its types lie in fogline::SPACE; "": in fogline, for all rooms
+  std::string space;   // the namespace of its types is fogline::SPACE; "": fogline
   std::string why;     // reason for the position of this room in the order
 };
 
-/// Stands for every folder services/NAME with NAME_main.cc, except the recorder's.
+/// Stands for every folder services/NAME that has NAME_main.cc, except services/recorder.
 constexpr const char* kRoleFolder = "services/NAME";
 
 /// The rooms, with the folders of the roles in place of the room kRoleFolder.

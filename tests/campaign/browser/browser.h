@@ -21,7 +21,7 @@ struct ViewSize {
   int width;
   int height;
 };
-/// The colour scheme that the reader prefers. The values are Chromium's.
+/// The colour scheme that the reader prefers, with Chromium's numbers.
 enum class Scheme { kDark = 0, kLight = 1 };
 
 inline constexpr ViewSize kDesktop{1280, 900};
@@ -35,7 +35,7 @@ inline constexpr std::string_view kFrame = R"(<!DOCTYPE html><body style="margin
 <script>document.getElementById("hold").contentDocument.open();</script>
 <iframe style="border:0;width:{}px;height:{}px" srcdoc="{}"></iframe>)";
 
-/// This script runs before everything else in the page and collects its errors.
+/// This script runs before all other scripts of the page, and collects the page's errors.
 inline constexpr std::string_view kWatch = R"(<script>
 const problems = [];
 addEventListener("error", (event) => problems.push(event.message));
@@ -44,7 +44,7 @@ addEventListener("securitypolicyviolation", (event) => problems.push(event.viola
 console.error = (...what) => problems.push(what.join(" "));
 </script>)";
 
-/// This script runs last. It contains the test's own script.
+/// This script runs after all other scripts of the page. It contains the script of the test.
 inline constexpr std::string_view kProbe = R"(<script>
 const frame = () => new Promise(requestAnimationFrame);
 const settled = async () => {{ for (let i = 0; i < 5; ++i) await frame(); }};
@@ -85,7 +85,8 @@ inline std::string Replaced(std::string text, std::string_view what, std::string
 class BrowserTest : public ::testing::Test {
  protected:
   /// Shows a page in a window and runs `script`. @return the object `found` of the script. Its
-  /// member "problems" has the page's errors, and "loaded" is the number of resources from outside
+  /// member "problems" has the errors of the page. Its member "loaded" is the number of resources
+  /// from outside
   nlohmann::json Show(std::string report, ViewSize window, std::string_view script,
                       Scheme scheme = Scheme::kLight) {
     report.insert(report.find("<meta"), kWatch);

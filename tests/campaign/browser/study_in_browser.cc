@@ -1,4 +1,4 @@
-// The page of studies in a real browser: it has every study, draws its figures, and responds to the
+// The page of studies in a real browser. It has every study, draws its figures, and responds to the
 // reader.
 #include <string>
 #include <vector>
@@ -48,7 +48,7 @@ std::size_t CountFigures() {
   return count;
 }
 
-/// The page draws a figure in a folded section only when the section is unfolded.
+/// Unfolds all folded sections, because the page draws their figures only then.
 constexpr std::string_view kUnfold = R"(
     const chartOf = (name) => charts.find(({figure}) => figure.id === name).chart;
     document.querySelectorAll("details.more-figures").forEach((e) => { e.open = true; });

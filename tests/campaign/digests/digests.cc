@@ -1,4 +1,5 @@
-// Prints the digest of every shipped scenario with every fog model, as lines "paper none 63a1...".
+// Prints the digest of every shipped scenario with every fog model, in lines such as "paper none
+// 63a1...".
 #include <cstdio>
 
 #include "tests/property/services/closed_loop/shipped.h"

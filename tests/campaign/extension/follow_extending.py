@@ -91,7 +91,7 @@ def follow(page, tree):
 def check(tree, printed, written):
     for file, content in written.items():
         assert file.read_text() == content, f"{file} is not formatted"
-    # The tables of the pages have the new role and channel.
+    # The tables of the two pages have the new role and channel.
     graph = call("build/bin/fogline", "graph", "--markdown", folder=tree).stdout
     assert "`fogline-thermal`" in graph and "| THERMAL |" in graph
     assert graph in (tree / "docs/architecture.md").read_text()
@@ -129,7 +129,7 @@ def check_order(tree):
 
 
 def check_older_logs(tree, older):
-    """Logs of each program as the other program reads them."""
+    """Checks how each program reads the logs of the other program."""
     new = str(tree / "build/bin/fogline")
     call(older, "run", "scenario/paper.json", "--transport", "direct", "--log", "logs/older.lcm", folder=tree)
     for verb in ("metrics", "digest", "events"):

@@ -1,4 +1,5 @@
-// bash, zsh and fish complete command lines of an installed Fogline when a person types a tab.
+// bash, zsh and fish complete command lines of an installed Fogline when a person presses the tab
+// key.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -10,8 +11,8 @@
 namespace fogline::test {
 namespace {
 
-/// A shell, and the line that makes it ready. The line also sets a prompt, which the line itself
-/// does not contain.
+/// A shell, and the first line that the test types into it. This line sets a prompt, and the text
+/// of the prompt does not occur in the line.
 struct Shell {
   std::string name;
   std::string command;
@@ -21,7 +22,7 @@ constexpr const char* kPrompt = "ready> ";
 
 void PrintTo(const Shell& shell, std::ostream* out) { *out << shell.name; }
 
-/// A command line before a tab, and its last word after it.
+/// A command line before the tab key, and its last word after it.
 struct Case {
   std::string typed;
   std::string word;
@@ -73,7 +74,8 @@ TEST_P(ShellCompletionTest, CompletesVerbsOptionsFieldsRolesAndFiles) {
   shell.Type(GetParam().first_line + "\r");
   ASSERT_TRUE(shows(kPrompt)) << shell.text();
   for (const Case& line : kCases) {
-    // Ctrl-A goes to the begin of the line. printf shows the words of the completed line.
+    // Ctrl-A moves the cursor to the begin of the line. printf shows the words of the completed
+    // line.
     shell.Type(line.typed + "\t\001printf '<%s>' \r");
     EXPECT_TRUE(shows("<" + line.word + ">")) << line.typed << "\n" << shell.text();
   }

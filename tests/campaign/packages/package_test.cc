@@ -106,7 +106,7 @@ TEST_F(PackageTest, HasTheMessageTypesFromWhichLcmGenMakesThisBuildsTypes) {
   std::vector<std::string> command{"lcm-gen", "-p", "--ppath", Installed("python")};
   command.insert(command.end(), types.begin(), types.end());
   ASSERT_EQ(RunCommand(command).code, 0);
-  // Python has the fingerprint of truth_t, with which every message of TRUTH begins.
+  // Python knows the fingerprint of truth_t. Every TRUTH message begins with this fingerprint.
   const Outcome fingerprint = RunCommand(
       {"python3", "-c",
        "import sys; sys.path.insert(0, '" + Installed("python") +
@@ -169,7 +169,7 @@ print(fl.run(paper, external="driver").digest == fl.run(paper, transport="direct
   EXPECT_EQ(driver.Wait(), 0) << driver.Err();
 }
 
-/// The unit of a role, with the programs of the unpacked package in place of those in /usr/bin.
+/// The unit of a role. It starts the programs of the unpacked package, not those in /usr/bin.
 class UnitTest : public PackageTest {
  protected:
   void SetUp() override {

@@ -28,7 +28,7 @@ class Run:
 
 
 class Differences:
-    """The largest difference of a peer from Fogline, and what fails."""
+    """The largest difference between a peer and Fogline, and the comparisons that failed."""
 
     def __init__(self):
         self.failures = 0

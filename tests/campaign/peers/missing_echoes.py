@@ -33,7 +33,7 @@ def missing_probability(modes, gap, level):
 
 
 class Count:
-    """Events, and the sum and the variance of what is expected of them."""
+    """The number of events, and the mean and the variance that are expected for this number."""
 
     def __init__(self):
         self.steps = self.seen = 0

@@ -23,7 +23,7 @@ class PageTest(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder, contextlib.redirect_stdout(out):
             os.symlink(SOURCES / "scenario", pathlib.Path(folder, "scenario"))
             os.chdir(folder)
-            # No other run of this machine is followed.
+            # The blocks follow no other run of this machine.
             port = 20_000 + os.getpid() % 9_000
             os.environ["LCM_DEFAULT_URL"] = f"udpm://239.255.76.67:{port}?ttl=0"
             for block in blocks:

@@ -1,5 +1,5 @@
-"""The tables of a log have every number of `fogline export`, also if the log has gaps, and are read
-in time. `fl.table` and `fl.sweep` have the numbers of the program."""
+"""The tables of a log have every number of `fogline export`, even if the log has gaps, and they are
+read fast enough. `fl.table` and `fl.sweep` have the numbers of the program."""
 
 import json
 import os
@@ -25,7 +25,7 @@ class TablesTest(unittest.TestCase):
         cls.scratch = tempfile.TemporaryDirectory()
         cls.folder = pathlib.Path(cls.scratch.name)
         cls.path = cls.folder / "run.lcm"
-        # Two following cars: lists with more than one element.
+        # With two following cars, some lists have more than one element.
         cls.changes = {"/followers/count": 2}
         fl.run(SCENARIOS / "dense_fog.json", set={**cls.changes, "/steps": 300},
                transport="direct", log=cls.path)
@@ -110,7 +110,7 @@ class TablesTest(unittest.TestCase):
         print(f"{rows} messages: {tables_s:.2f} s as tables, {objects_s:.2f} s as objects")
         self.assertGreater(rows, 1_000_000)
         self.assertEqual(rows, objects)
-        # Processor time, because other programs may run beside this test.
+        # The test measures processor time, because other programs may run at the same time.
         self.assertLess(tables_s, 3)
         self.assertLess(objects_s, 3)
 

@@ -1,4 +1,4 @@
-// The page of a server that listens for other machines: only the printed address gives access.
+// The page of a server that accepts other machines. Only the printed address gives access.
 import assert from "node:assert/strict";
 import {test} from "node:test";
 
@@ -20,7 +20,7 @@ test("a page without the key says what is missing", async (t) => {
   const address = await view(t, [log, "--listen", "127.0.0.1"]);
   const page = await open(t, await browser(t), address.replace(/#.*/, ""));
   await page.waitForFunction(() => document.getElementById("problem").textContent.includes("contains a key"));
-  page.trouble = page.trouble.filter((words) => !words.includes("WebSocket"));  // the refusal itself
+  page.trouble = page.trouble.filter((words) => !words.includes("WebSocket"));  // of the refusal
 });
 
 test("the new address of a server that was started again works in the same tab", async (t) => {
@@ -43,5 +43,5 @@ test("the new address of a server that was started again works in the same tab",
   assert.ok(!page.url().includes("token"), page.url());
   await page.reload();
   await shows(page, 0);
-  page.trouble = page.trouble.filter((words) => !words.includes("WebSocket"));  // while no server listened
+  page.trouble = page.trouble.filter((words) => !words.includes("WebSocket"));  // without a server
 });

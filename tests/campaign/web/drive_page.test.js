@@ -1,12 +1,12 @@
-// The participant's page: the inputs of a person, and the empty seat when no person is there. The
-// tests play the person, and read DRIVER_INPUT from the network.
+// The participant's page: the inputs of a person, and the empty seat when no person is present. The
+// tests act as the person, and read DRIVER_INPUT from the network.
 import assert from "node:assert/strict";
 import {test} from "node:test";
 
 import {begin, drives, freshNetwork, listener, seat, setPad, withFakePads} from "./seat.js";
 import {browser, DESKTOP, open, PHONE, until} from "./window.js";
 
-/** A page that is open and drives, and the messages that the run gets from it. */
+/** Opens a page that drives. @return the page, and the messages that the run gets from it */
 async function seated(t, {pads = false, ...options} = {}) {
   const network = freshNetwork();
   const {server, drive, view} = await seat(t, network);
@@ -40,7 +40,7 @@ test("the arrows are the pedals, T and G the buttons", async (t) => {
   await page.keyboard.press("g");
   await run.next(({buttons}) => buttons === 2, "the button to give back");
   await run.next(({buttons}) => buttons === 0, "released buttons");
-  // No gap is longer than the rule says, and there are not too many messages.
+  // Each time between two messages is within the limit, and there are not too many messages.
   const times = run.heard.map(({message}) => Number(message.time_us));
   assert.ok(times.length > 20);
   const numbers = run.heard.map(({message}) => message.sequence);
@@ -49,7 +49,7 @@ test("the arrows are the pedals, T and G the buttons", async (t) => {
 
 test("a wheel is calibrated in the page, drives, and is known again", async (t) => {
   const {run, page} = await seated(t, {pads: true});
-  await setPad(page, {axes: [0, 0]});  // a browser says 0 before an axis has moved
+  await setPad(page, {axes: [0, 0]});  // a browser reports 0 before an axis has moved
   await page.click("#setup-open");
   await page.selectOption("#device", "Test Wheel");
   for (const [name, axis] of [["throttle", 0], ["brake", 1]]) {
@@ -82,7 +82,7 @@ test("a wheel is calibrated in the page, drives, and is known again", async (t) 
   assert.ok(close(half.brake, 0.375), `half of the way with a dead zone of 0.2: ${half.brake}`);
   assert.deepEqual([half.buttons, half.device, half.axes], [1, "Test Wheel", [1, 0]]);
   assert.equal(half.device_kind, 2);
-  // The other way round, and after a reload it is still so.
+  // The throttle is inverted, and stays inverted after a reload.
   await page.click("#setup-open");
   await page.click("#invert-throttle");
   await page.click("#setup-close");
@@ -121,7 +121,7 @@ test("a gamepad with the standard mapping drives at once; unplugged, no person d
   assert.match(await page.locator("#away").innerText(), /unplugged/);
 });
 
-/** A person brakes with a key, then something happens, and then no person drives. */
+/** A person brakes with a key. Then `happens` is called, and then no person may drive. */
 async function leaves(t, happens, why) {
   const all = await seated(t);
   const {run, page} = all;
@@ -185,7 +185,7 @@ test("the second driver is told that the seat is taken, and may ask again", asyn
   assert.equal(run.heard.some(({message}) => message.brake > 0), false);
   await second.keyboard.up("ArrowDown");
   await page.close();
-  // The seat is free when the server has seen the end of the first page.
+  // The seat is free when the server has noticed the end of the first page.
   await until(() => second.evaluate(() => {
     if (!foglineDrive.person.begun) document.getElementById("begin").click();
     return document.body.dataset.present === "true";
@@ -216,7 +216,7 @@ test("with --listen only the driver's token gives the seat", async (t) => {
   assert.ok(!page.url().includes("token"), page.url());
   const wrong = await open(t, started, drive.replace(/#.*/, new URL(view).hash));
   await wrong.waitForFunction(() => document.getElementById("problem").textContent.includes("contains a key"));
-  wrong.trouble = wrong.trouble.filter((words) => !words.includes("WebSocket"));  // the refusal itself
+  wrong.trouble = wrong.trouble.filter((words) => !words.includes("WebSocket"));  // of the refusal
   await wrong.close();
 });
 
@@ -228,7 +228,8 @@ for (const [name, size] of [["desktop", DESKTOP], ["phone", PHONE], ["low", {wid
       document.getElementById("request").hidden = false;
       foglineDrive.drawState = () => {};
     });
-    // The camera looks down by 0.07 rad, so its horizon, with the car ahead, lies at a third of the picture.
+    // The camera looks down by 0.07 rad. So the horizon, where the car ahead is, lies at a third of
+    // the picture's height.
     const covered = await page.evaluate(() => {
       const [sign, picture] = ["request", "driver-view"].map((id) => document.getElementById(id).getBoundingClientRect());
       return (sign.bottom - picture.top) / picture.height;

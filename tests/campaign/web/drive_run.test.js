@@ -1,5 +1,6 @@
-// A person drives: `fogline drive` and its page in headless Chromium, from the request to take over
-// until the automation has the car again. A script plays the person, with the keys or at a wheel.
+// A person drives with `fogline drive` and its page in headless Chromium, from the request to take
+// over until the automation drives again. A script acts as the person, with the keys or with a
+// wheel.
 import assert from "node:assert/strict";
 import {execFileSync} from "node:child_process";
 import {test} from "node:test";
@@ -13,32 +14,36 @@ const {FOGLINE} = process.env;
 const WHEEL = {throttle: {axis: 0, released: 1, pressed: -1, dead: 0.02},
                brake: {axis: 1, released: 1, pressed: -1, dead: 0.02}, take_over: 0, give_back: 1};
 
-// The story of scenario/drive.json in 30 s: fog from 3 s to 18 s; the car ahead brakes at 12 s.
+// The story of scenario/drive.json in 30 s. The fog lasts from 3 s to 18 s, and the car ahead
+// brakes at 12 s.
 const STORY = {
   "/steps": 1500, "/fog/start_s": 3, "/fog/duration_s": 15,
   "/lead/breakpoints": [{duration_s: 12, speed_mps: 20}, {duration_s: 3, speed_mps: 12},
                         {duration_s: 3, speed_mps: 12}, {duration_s: 6, speed_mps: 20}],
 };
 
-/** Starts the drive, and opens its page. @return {page, log, run} */
+/** Starts `fogline drive`, and opens its page. @return {page, log, run} */
 async function drive(t, settings = {}, options = {}) {
   const {run, log, address} = await startDrive(t, {...STORY, ...settings});
   return {page: await open(t, await browser(t), address, {size: DESKTOP, ...options}), log, run};
 }
 
-/** Fails if the run has ended, or if the car stops by itself: what a test then waits for never comes. */
+/**
+ * Fails if the run has ended, or if the car stops by itself, because a test would then wait without
+ * an end.
+ */
 function assertGoesOn(run, holds, what) {
   assert.equal(run.code, undefined, `the run has ended: ${run.said}`);
   assert.ok(holds, `${what}; the run says: ${run.said}`);
 }
 
-/** Waits for words of the page about who drives. */
+/** Waits until the page says with these words who drives. */
 const says = (page, words) => page.waitForFunction(
   (wanted) => document.getElementById("who").textContent.startsWith(wanted), words);
 
 /**
- * Follows the car ahead with a time gap, as long as the human drives. The person sees what a page
- * shows; this script takes it from the page's newest message, and acts every 40 ms.
+ * Follows the car ahead with a time gap while the human drives. The script takes the values from
+ * the newest message of the page, which shows them to a person, and acts every 40 ms.
  */
 async function follow(page, run, pedals, until_s) {
   for (;;) {
@@ -51,11 +56,11 @@ async function follow(page, run, pedals, until_s) {
     if (seen.time_s >= until_s) return;
     const wanted = 0.25 * (seen.gap_m - 5 - 1.4 * seen.speed_mps) + 0.9 * (seen.lead_mps - seen.speed_mps);
     await pedals(wanted);
-    await page.waitForTimeout(40);  // this person acts so fast
+    await page.waitForTimeout(40);  // the reaction time of this person
   }
 }
 
-/** Pedals by the keys: each is held or not. */
+/** Pedals by keys. A key is either pressed or not. */
 function keys(page) {
   const down = {ArrowUp: false, ArrowDown: false};
   const hold = async (key, wanted) => {
@@ -96,7 +101,7 @@ function messagesOf(log, channel, type) {
   return readEvents(log).filter((event) => event.channel === channel).map(({bytes}) => decode(bytes));
 }
 
-/** The delays in a log, each once, in us. */
+/** The delays in a log without repeated values, in us. */
 function latenciesOf(inputs) {
   const values = inputs.map(({latency_us}) => Number(latency_us)).filter((value) => value >= 0);
   return values.filter((value, i) => value !== values[i - 1]);
@@ -120,11 +125,12 @@ for (const [device, make] of [["the keys", keys], ["a wheel", wheel]]) {
     const pedals = make(page);
     await follow(page, run, pedals, 22);
     await pedals(0);
-    // The fog has gone. The automation gets the car only after some time, so the person asks again.
+    // The fog has gone. The automation takes over only after some time, so the person gives back
+    // repeatedly.
     await until(async () => {
       if (isWheel) await setPad(page, {down: [1]});
       else await page.keyboard.press("g");
-      await page.waitForTimeout(100);  // this person waits so long before asking again
+      await page.waitForTimeout(100);  // the person's wait before the next try
       if (isWheel) await setPad(page);
       const who = await page.locator("#who").innerText();
       assertGoesOn(run, !who.startsWith("The car"), who);
@@ -142,24 +148,27 @@ for (const [device, make] of [["the keys", keys], ["a wheel", wheel]]) {
     const inputs = messagesOf(log, "DRIVER_INPUT", "driver_input_t");
     assert.ok(inputs.some(({brake}) => brake > 0.1), "the person has braked");
     assert.equal(new Set(inputs.map(({instance}) => String(instance))).size, 1);
-    // How long a delay may be is said by speed.test.js, which knows what other processes do meanwhile.
+    // speed.test.js tests the limit of the delay, because it measures what other processes do at
+    // the same time.
     const latencies = latenciesOf(inputs);
     const median = [...latencies].sort((a, b) => a - b)[Math.floor(latencies.length / 2)];
     t.diagnostic(`${device}: ${latencies.length} delays, median ${median / 1000} ms`);
     assert.ok(latencies.length >= 10, `${latencies.length} delays`);
     assert.deepEqual(latencies.filter((one) => !measured.includes(one)), []);
-    // The inputs in the log give the same commands again.
+    // A replay of the inputs in the log gives the same commands.
     execFileSync(FOGLINE, ["replay", log, "--role", "driver"], {stdio: "pipe"});
   });
 }
 
-/** The person drives; then something happens, and the run notices that no person is there. */
+/**
+ * The person drives. Then `happens` is called, and the run must notice that no person is present.
+ */
 async function leavesTheCar(t, happens, {isWheel = false} = {}) {
   const {page, log, run} = await drive(t, {"/arbitrator/threshold": 0, "/steps": 600},
                                        {prepare: isWheel ? withFakePads : null});
   if (isWheel) await plugIn(page);
   await begin(page);
-  await drives(page, true);  // before that, the page hears no key
+  await drives(page, true);  // before that, the page ignores keys
   await says(page, "Take over");
   await takeOver(page, isWheel);
   await happens(page);
@@ -212,15 +221,15 @@ test("the first brake lights of the car ahead need no new shader, for which the 
   await begin(page);
   await page.waitForFunction(() => foglineDrive.newest?.frame.TRUTH?.preceding_acceleration_mps2 < -1);
   const after = await page.evaluate(async () => {
-    for (let i = 0; i < 10; ++i) await new Promise(requestAnimationFrame);  // a slow machine draws each third one
+    for (let i = 0; i < 10; ++i) await new Promise(requestAnimationFrame);  // a slow machine draws one in three
     return window.shaders;
   });
   assert.equal(after, before);
 });
 
 /**
- * What the page hears from its server comes late, by `window.late_ms`. There is no picture of the road, because a busy
- * machine would draw it late, too.
+ * Delays all messages of the server to the page by `window.late_ms`. There is no picture of the
+ * road, because a busy machine would draw it late, too.
  */
 async function withLateMessages(context) {
   await context.route("**/driver_view.js", (route) => route.abort());
@@ -243,7 +252,10 @@ test("the page warns while the picture follows the inputs too late, and not long
   await begin(page);
   await drives(page, true);
   const warning = page.locator("#latency-warning");
-  /** The person presses a key again and again, until the page shows such a delay, with or without the warning. */
+  /**
+   * Presses a key again and again until the page shows a delay that fits, with or without the
+   * warning.
+   */
   const shows = (fits, warned) => until(async () => {
     await page.keyboard.press("ArrowUp");
     const delay_ms = parseInt(await page.locator("#latency").innerText(), 10);  // NaN before the first measurement
@@ -255,5 +267,5 @@ test("the page warns while the picture follows the inputs too late, and not long
   assert.match(await warning.innerText(), /more than 100 ms/);
   await page.evaluate(() => { window.late_ms = 0; });
   await shows((delay_ms) => delay_ms <= 100, false);
-  page.trouble = page.trouble.filter((words) => !words.includes("ERR_FAILED"));  // the picture
+  page.trouble = page.trouble.filter((words) => !words.includes("ERR_FAILED"));  // of the picture
 });

@@ -1,6 +1,6 @@
 // An experiment with people in headless Chromium: four participants drive three conditions each. A
-// script plays the participants: it begins each run, drives at the seat, and answers the questions.
-// In the middle of one trial fogline-web is killed.
+// script acts as the participants: it begins each run, drives at the seat, and answers the
+// questions. In the middle of one trial the test kills fogline-web.
 import assert from "node:assert/strict";
 import {execFileSync} from "node:child_process";
 import {readdirSync, readFileSync, writeFileSync} from "node:fs";
@@ -19,7 +19,7 @@ const PARTICIPANTS = 4;
 const CONDITIONS = {"secret-short": 10, "secret-middle": 14, "secret-long": 18};  // lead_s
 const KILLED = {participant: 2, trial: 2};
 
-/** The file of the experiment. In each run the person is asked from the first step on. */
+/** Writes the file of the experiment. In each run the person is asked from the first step on. */
 function writePlan(folder) {
   const file = path.join(folder, "experiment.json");
   const conditions = Object.entries(CONDITIONS).map(([name, lead_s]) => ({
@@ -54,14 +54,18 @@ function killWeb({pid}) {
 /** Waits until the page has left the seat for the participant's page. */
 const comesBack = (page, address) => page.waitForURL(({origin}) => origin === new URL(address).origin);
 
-/** The person drives at the seat until the run is over. @param during happens while they drive */
+/**
+ * The person drives at the seat until the run is over. @param during is called while the person
+ * drives
+ */
 async function driveTrial(page, address, during) {
   await page.waitForURL(({pathname}) => pathname === "/drive");
   assert.ok(!page.url().includes("token"), page.url());
   await begin(page);
   await drives(page, true);
   await page.waitForFunction(() => !document.getElementById("request").hidden);
-  // A busy machine may be silent for so long that the deadman stops the car, which is no matter of this test.
+  // A busy machine may send no input for so long that the deadman stops the car. This test also
+  // accepts such a stop.
   await holdTakeOver(page, "^(You drive|The car)");
   await page.keyboard.down("ArrowDown");
   await page.waitForFunction(() => document.getElementById("brake").value > 0.2);
@@ -70,7 +74,9 @@ async function driveTrial(page, address, during) {
   await comesBack(page, address);
 }
 
-/** The states that the session tells the participant's page from now on, the newest last. */
+/**
+ * The states that the session sends to the participant's page from this time on, the newest last.
+ */
 function statesOf(t, address) {
   const states = [];
   const socket = new WebSocket(socketOf(address));
@@ -80,8 +86,8 @@ function statesOf(t, address) {
 }
 
 /**
- * Kills fogline-web while the person drives; they drive on when it is back, and both pages of the
- * session know it.
+ * Kills fogline-web while the person drives. The person drives on when fogline-web runs again, and
+ * both pages of the session show this.
  */
 async function killDuring(t, started, page, {session, participant, experimenter}) {
   const states = statesOf(t, participant);
@@ -97,7 +103,7 @@ async function killDuring(t, started, page, {session, participant, experimenter}
   await desk.waitForFunction(() => document.getElementById("lines").textContent.includes("fogline-web runs again"));
   await desk.close();
   await drives(page, true);
-  // The refused connections of that time are no trouble of the page.
+  // The connections that were refused at that time are not errors of the page.
   page.trouble = page.trouble.filter((words) => !/WebSocket|ERR_CONNECTION/.test(words));
 }
 
@@ -128,7 +134,7 @@ async function takePart(t, started, pages, participant, onFirst) {
   assert.equal(session.code, 0, session.said);
 }
 
-/** The rows of a CSV file without quotes: objects by the names of the columns. */
+/** The rows of a CSV file without quotes, as objects with the names of the columns. */
 function rowsOf(file) {
   const [head, ...rows] = readFileSync(file, "utf8").trim().split("\n").map((line) => line.split(","));
   return rows.map((row) => {
@@ -137,7 +143,10 @@ function rowsOf(file) {
   });
 }
 
-/** Each participant drives each condition once. Of the first three, each place has each condition once. */
+/**
+ * Each participant drives each condition once. In the trials of the first three participants, each
+ * place of the order has each condition once.
+ */
 function assertLatinSquare(rows) {
   const names = Object.keys(CONDITIONS).sort();
   const conditionsOf = (wanted) => rows.filter(wanted).map(({condition}) => condition).sort();
@@ -149,7 +158,7 @@ function assertLatinSquare(rows) {
   }
 }
 
-/** The instances of the seat whose person was present, in a log. */
+/** The instances of the seat in a log, if its person was present. */
 function seatsIn(log) {
   const decode = makeDecoder(describedTypes(), "driver_input_t");
   const inputs = readEvents(log).filter(({channel}) => channel === "DRIVER_INPUT").map(({bytes}) => decode(bytes));

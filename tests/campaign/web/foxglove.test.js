@@ -18,7 +18,10 @@ const WebSocket = require("ws");
 const {FOGLINE} = process.env;
 const STEPS = 1000;
 
-/** A client under this subprotocol. @return {client, channels, problems}, which grow as frames come */
+/**
+ * Opens a client with this subprotocol. @return {client, channels, problems}; the last two grow
+ * with each frame
+ */
 function connect(t, address, name) {
   const socket = new WebSocket(`ws://${new URL(address).host}/ws`, [name]);
   t.after(() => socket.terminate());
@@ -31,7 +34,10 @@ function connect(t, address, name) {
   return {client, channels, problems};
 }
 
-/** A message as the protocol's JSON has it: long integers are texts, other numbers than finite ones null. */
+/**
+ * A message in the form of the protocol's JSON: long integers are texts, and numbers that are not
+ * finite are null.
+ */
 const asJson = (message) => JSON.stringify(message, (key, value) => (
   typeof value === "bigint" ? String(value) : value));
 
@@ -43,7 +49,7 @@ for (const name of ["foxglove.websocket.v1", "foxglove.sdk.v1"]) {
     await until(() => channels.length >= graph.channels.length, "the channels");
     assert.deepEqual(channels.map(({topic}) => topic), graph.channels.map((channel) => channel.name));
     const got = new Map(channels.map(({topic}) => [topic, new Set()]));
-    const topics = new Map();  // by the number of the subscription
+    const topics = new Map();  // by the id of the subscription
     for (const {id, topic, encoding, schema} of channels) {
       assert.equal(encoding, "json");
       assert.equal(JSON.parse(schema).type, "object");
@@ -56,10 +62,10 @@ for (const name of ["foxglove.websocket.v1", "foxglove.sdk.v1"]) {
     const run = background(t, FOGLINE, ["run", "scenario/dense_fog.json", "--lcm-url", network, "--quiet", "--json",
                                         "--realtime", "--set", "/step_s=0.01", "--set", `/steps=${STEPS}`,
                                         "--log", log]);
-    const [code] = await once(run, "close");  // all that it says has come
+    const [code] = await once(run, "close");  // all output of the run has come
     assert.equal(code, 0, run.said);
     const {steps, realtime} = JSON.parse(run.said);
-    // The log has every message that was published in time. A role may have left out a step.
+    // The log has every message that was published in time. A role may have skipped a step.
     assert.deepEqual([steps, realtime.unlogged_messages], [STEPS, 0]);
     const types = describedTypes();
     const decoders = new Map(graph.channels.filter((channel) => channel.per_step)

@@ -9,7 +9,7 @@ const {FOGLINE} = process.env;
 const FOGLINE_RELAY = path.join(path.dirname(FOGLINE), "fogline-relay");
 const SCENARIO = "scenario/dense_fog.json";
 
-/** A multicast port of this test alone. */
+/** The URL of a multicast network of this test alone. */
 const url = () => `udpm://239.255.76.67:${20000 + Math.floor(Math.random() * 20000)}?ttl=0`;
 
 function run(t, network, ...args) {

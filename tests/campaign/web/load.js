@@ -1,9 +1,9 @@
-// What other processes do to a measurement of time.
+// Measures the processor time that other processes use during a measurement of time.
 
 import assert from "node:assert/strict";
 import {readdirSync, readFileSync} from "node:fs";
 
-const CALM = 0.05;     // a share of the processors that others may use in a measurement
+const CALM = 0.05;     // the largest share of the processors that others may use in a measurement
 const ATTEMPTS = 5;
 
 const readText = (file) => {
@@ -14,7 +14,7 @@ const readText = (file) => {
   }
 };
 
-/** Ticks that the processors have worked, and that there were, since the machine started. */
+/** Ticks of work of all processors, and all ticks of all processors, since the machine started. */
 function ticksOfAll() {
   const [user, nice, system, idle, iowait, irq, softirq, steal] =
     readText("/proc/stat").split("\n")[0].trim().split(/\s+/).slice(1).map(Number);
@@ -22,12 +22,13 @@ function ticksOfAll() {
   return {busy, all: busy + idle + iowait};
 }
 
-/** Ticks of this process and all processes that descend from it, with those that have ended. */
+/** Ticks of this process and of all its descendants, also of those that have ended. */
 function ticksOfOurs() {
   const parents = new Map();
   const ticks = new Map();
   for (const pid of readdirSync("/proc").filter((name) => /^\d+$/.test(name))) {
-    // After the name, which may have spaces: state, parent, ..., utime, stime, cutime, cstime.
+    // The fields after the name, which may have spaces: state, parent, ..., utime, stime, cutime,
+    // cstime.
     const fields = readText(`/proc/${pid}/stat`).replace(/^.*\) /, "").split(" ").map(Number);
     if (fields.length < 15) continue;
     parents.set(Number(pid), fields[1]);
@@ -38,9 +39,10 @@ function ticksOfOurs() {
 }
 
 /**
- * Measures until the bar is met. Repeats a measurement that does not meet it only if other processes
- * used the processors meanwhile; at most five times.
- * @param measure gives an object of numbers. @param missed gives what of it misses the bar: names
+ * Measures until the limit is met. A measurement that misses the limit is repeated only if other
+ * processes used the processors at the same time; at most five measurements.
+ * @param measure returns an object of numbers. @param missed returns the names of the numbers that
+ * miss the limit
  */
 export async function meetsBar(t, measure, missed) {
   const tries = [];

@@ -12,7 +12,10 @@ function shownValues(page) {
     item.querySelector(".field-name").textContent, Number(item.querySelector(".value").dataset.value)])));
 }
 
-/** Colours in the picture of the road: in the middle of the host, and of the road before it. */
+/**
+ * Two colours in the picture of the road: at the middle of the host, and on the road in front of
+ * it.
+ */
 function roadColours(page) {
   return page.evaluate(() => {
     const canvas = document.getElementById("road");
@@ -143,7 +146,7 @@ test("curves: type a field, zoom by a drag, back by a double click, choose a mom
   });
   const plot = page.locator("#charts .u-over").first();
   const whole = await span();
-  await plot.hover({position: {x: 100, y: 40}});  // hover() waits until the chart stands still
+  await plot.hover({position: {x: 100, y: 40}});  // hover() waits until the chart does not move
   await page.mouse.down();
   await plot.hover({position: {x: 300, y: 40}});
   await page.mouse.up();
@@ -170,7 +173,7 @@ test("until the messages of a step have come, all parts show the step before", a
   await goTo(page, 300);
   const meanwhile = await page.evaluate(async () => {
     const {store, why, curves} = foglinePage;
-    store.frame = () => null;  // they do not come
+    store.frame = () => null;  // the requested messages never come
     foglinePage.goTo(50);
     for (let i = 0; i < 3; ++i) await new Promise(requestAnimationFrame);
     delete store.frame;

@@ -1,4 +1,5 @@
-// How a page looks at all widths and in both colour schemes, and whether a keyboard alone is enough for it.
+// Checks how a page looks at all widths and in both colour schemes, and that a keyboard alone is
+// enough to use the page.
 
 import assert from "node:assert/strict";
 import {fileURLToPath} from "node:url";
@@ -6,7 +7,8 @@ import {fileURLToPath} from "node:url";
 import {breaches} from "./window.js";
 
 const IN_PAGE = fileURLToPath(new URL("looks_in_page.js", import.meta.url));
-// A desk, a part of a desk, a phone, and the narrowest window in which WCAG 2.2 (1.4.10) forbids to scroll sideways.
+// Sizes of a desk, of a part of a desk, of a phone, and of the narrowest window in which WCAG 2.2
+// (1.4.10) forbids to scroll sideways.
 const SIZES = [[1600, 1000], [1000, 800], [390, 844], [320, 640]];
 const LOOKS = SIZES.flatMap(([width, height]) => ["light", "dark"].map(
   (colorScheme) => ({size: {width, height}, colorScheme})));
@@ -17,7 +19,8 @@ export const prepareLooks = (context) => context.addInitScript({path: IN_PAGE});
 /** The controls that the Tab key does not reach, or does not mark. */
 async function missedStops(page) {
   const count = await page.evaluate(() => looks.beginStops());
-  // The way goes round the page. Boxes that scroll may be stops, too.
+  // After the last stop, the tab key continues with the first stop. Boxes that scroll may be stops,
+  // too.
   for (let i = 0; i < count + 8; ++i) await page.keyboard.press("Tab");
   return page.evaluate(() => {
     document.activeElement.blur();
@@ -26,15 +29,16 @@ async function missedStops(page) {
 }
 
 /**
- * Looks at the page in each window and each colour scheme. @param keys whether to go through the page with Tab, which
- * closes what is open only as long as it has the focus
+ * Checks the page in each window and each colour scheme.
+ * @param keys whether to press Tab to go through the page; this closes elements that are open only
+ * while they have the focus
  */
 export async function looksWell(page, what, {keys = true} = {}) {
   const flaws = [];
   for (const {size, colorScheme} of LOOKS) {
     await page.setViewportSize(size);
     await page.emulateMedia({colorScheme});
-    await page.evaluate(async () => {  // until the page has drawn what depends on both
+    await page.evaluate(async () => {  // until the page has drawn itself with both settings
       for (let i = 0; i < 5; ++i) await new Promise(requestAnimationFrame);
     });
     const found = [...await page.evaluate(() => looks.flaws()), ...await breaches(page),

@@ -1,5 +1,5 @@
-// The looks of every page in its states: what a reader cannot see, read or reach, in each window and in both colour
-// schemes.
+// The looks of every page in its states. The tests find what a reader cannot see, read or reach, in
+// each window and in both colour schemes.
 import assert from "node:assert/strict";
 import {existsSync, renameSync} from "node:fs";
 import path from "node:path";
@@ -37,7 +37,7 @@ test("the view without its key looks well", async (t) => {
   const page = await open(t, await browser(t), address.replace(/#.*/, ""), {prepare: prepareLooks});
   await page.waitForFunction(() => !document.getElementById("problem").hidden);
   await looksWell(page, "no key");
-  page.trouble = page.trouble.filter((words) => !words.includes("WebSocket"));  // the refusal itself
+  page.trouble = page.trouble.filter((words) => !words.includes("WebSocket"));  // of the refusal
 });
 
 test("the view of a live run looks well", async (t) => {
@@ -50,7 +50,7 @@ test("the view of a live run looks well", async (t) => {
   await page.waitForFunction(() => {
     const isThere = document.getElementById("who").textContent === "The human drives" &&
       ["roles", "senders"].every((table) => document.querySelectorAll(`#${table} tbody tr`).length >= 9);
-    if (isThere) foglinePage.take = foglinePage.receive = () => {};  // the page holds this moment
+    if (isThere) foglinePage.take = foglinePage.receive = () => {};  // the page stays in this state
     return isThere;
   });
   await looksWell(page, "a run");
@@ -68,7 +68,7 @@ test("the page of a drive looks well", async (t) => {
   await drives(page, true);
   await page.waitForFunction(() => {
     const asks = !document.getElementById("request").hidden;
-    if (asks) foglineDrive.take = () => {};  // the page holds this moment
+    if (asks) foglineDrive.take = () => {};  // the page stays in this state
     return asks;
   });
   await looksWell(page, "the request to take over");
@@ -89,9 +89,10 @@ test("the page of a drive looks well", async (t) => {
   page.trouble = page.trouble.filter((words) => !/WebSocket|ERR_CONNECTION/.test(words));  // of that time
 });
 
-// ---- both pages of an experiment. The test itself sends the states of a session, so each is there at once.
+// ---- both pages of an experiment. The test sends the states of a session, so it need not wait for
+// a state.
 
-const ADDRESS = "http://127.0.0.1:7681/";  // no program listens there: the test answers
+const ADDRESS = "http://127.0.0.1:7681/";  // there is no server at this address; the test answers
 const TYPES = {".html": "text/html; charset=utf-8", ".js": "text/javascript", ".css": "text/css"};
 
 const scale = (text, min, max, step, low, high) => ({text, kind: "scale", min, max, step, low, high});
@@ -117,7 +118,10 @@ const STATES = {
     {...DESK, stage: "asking", questionnaire: "workload"}],
 };
 
-/** Opens a page of an experiment. @return {page, show}: the page, and a function that shows a state there */
+/**
+ * Opens a page of an experiment. @return {page, show}: the page, and a function that makes it show
+ * a state
+ */
 async function experiment(t, main, options = {}) {
   let state = STATES[main][0];
   const page = await open(t, await browser(t), ADDRESS, {...options, prepare: async (context) => {

@@ -1,16 +1,16 @@
-// What a reader cannot see in this page. looks.js adds this script to a page before the page's own
-// scripts, as `looks`.
+// Finds what a reader cannot see in this page. looks.js adds this script to a page, as `looks`,
+// before the page's own scripts.
 (() => {
   const SLACK_PX = 1;          // boxes have fractions of a pixel
   const LEADING = 0.15;        // share of a line's height above and below its letters
   const LEAST_CONTRAST = 4.5;  // of a text and its background (WCAG 2.2, 1.4.3)
   const CONTROLS = "a[href], button, input, select, summary, textarea, [tabindex='0']";
   const FIELDS = "input:not([type=checkbox], [type=radio], [type=range]), select, textarea";
-  // For screen readers only, and a link that appears when it has the focus.
+  // Texts for screen readers only, and a link that appears when it has the focus.
   const APART = ".unseen, .skip:not(:focus)";
   const PARTS = "header, main, footer, dialog";
 
-  /** All that a reader can use: the open dialog, or the whole page. */
+  /** The part of the page that a reader can use: the open dialog, or the whole page. */
   const top = () => document.querySelector("dialog[open]") ?? document.body;
   const all = (selector) => [...top().querySelectorAll(selector)];
   const isSeen = (element) => !element.closest(APART) &&
@@ -33,7 +33,7 @@
     return {left: left + parseFloat(paddingLeft), right: right - parseFloat(paddingRight)};
   }
 
-  /** The box without the space above and below its letters. */
+  /** The box of a text without the space above and below the letters. */
   function letters({left, top: high, right, bottom}) {
     const leading = LEADING * (bottom - high);
     return {left, top: high + leading, right, bottom: bottom - leading};
@@ -94,7 +94,10 @@
     return found;
   }
 
-  /** What lies over the rest of the page: a bar that stays in sight, a list that was opened. */
+  /**
+   * The element that lies over the rest of the page and contains `element`, such as a bar that
+   * stays in sight or an opened list.
+   */
   function layerOf(element) {
     for (let around = element; around; around = around.parentElement) {
       const {position, zIndex} = getComputedStyle(around);
@@ -106,7 +109,7 @@
   const overlap = (a, b) => Math.min(a.right, b.right) - Math.max(a.left, b.left) > SLACK_PX &&
     Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top) > SLACK_PX;
 
-  /** Calls tell for each two boxes that overlap. */
+  /** Calls `tell` for each pair of boxes that overlap. */
   function tellOverlaps(boxes, tell) {
     boxes.forEach((one, i) => {
       for (const other of boxes.slice(i + 1)) if (overlap(one.box, other.box)) tell(one, other);
@@ -129,11 +132,11 @@
     return colours.get(css);
   }
 
-  /** A colour over another one. */
+  /** The colour that results if a colour lies over another colour. */
   const over = ([r, g, b, opacity], under) =>
     [...[r, g, b].map((value, i) => opacity * value + (1 - opacity) * under[i]), 1];
 
-  /** The relative luminance (WCAG 2.2). */
+  /** The relative luminance of a colour (WCAG 2.2). */
   function luminance([r, g, b]) {
     const [red, green, blue] = [r, g, b].map((v) => (v <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4));
     return 0.2126 * red + 0.7152 * green + 0.0722 * blue;
@@ -144,21 +147,21 @@
     return (high + 0.05) / (low + 0.05);
   }
 
-  /** The colour behind elements, the highest first. Pictures and gradients count as not there. */
+  /** The colour behind elements, the highest element first. Pictures and gradients are left out. */
   function backgroundOf(elements) {
     const under = elements.map((element) => parts(getComputedStyle(element).backgroundColor));
     const opaque = under.findIndex(([, , , opacity]) => opacity === 1);
     return under.slice(0, opaque).reduceRight((colour, one) => over(one, colour), under[opaque] ?? [1, 1, 1, 1]);
   }
 
-  /** How opaque an element is with all that is around it. */
+  /** The opacity of an element, together with the elements around it. */
   function opacityOf(element) {
     let opacity = 1;
     for (let around = element; around; around = around.parentElement) opacity *= getComputedStyle(around).opacity;
     return opacity;
   }
 
-  /** Brings a text into sight, and tells if something covers it, or if its colour is too faint. */
+  /** Scrolls to a text, and tells if something covers the text, or if its colour is too faint. */
   function tellContrast({element, text, colour, box: boxNow}, tell) {
     element.scrollIntoView({block: "center", inline: "nearest", behavior: "instant"});
     const box = shownPart(boxNow(), element, () => {});
@@ -166,7 +169,7 @@
     const stack = document.elementsFromPoint((box.left + box.right) / 2, (box.top + box.bottom) / 2);
     const [first] = stack;
     if (first !== element && !element.contains(first)) {
-      const isUnder = first && layerOf(first) !== layerOf(element);  // such as a list that was opened
+      const isUnder = first && layerOf(first) !== layerOf(element);  // such as an opened list
       if (!isUnder) tell(`${quoted({element, text})} is covered by ${first ? nameOf(first) : "the window's edge"}`);
       return;
     }
@@ -215,7 +218,7 @@
 
   // ---- all --------------------------------------------------------------------------------------
 
-  /** Tells what stands out of the window, or out of its part of the page. */
+  /** Tells if a box is partly outside of the window, or outside of its part of the page. */
   function tellOutside(element, box, what, tell) {
     const part = element.closest(PARTS);
     const bounds = part ? contentBox(part) : {left: 0, right: innerWidth};
@@ -224,7 +227,7 @@
     if (out > SLACK_PX) tell(`${what} stands out by ${Math.round(out)} px`);
   }
 
-  /** What is wrong with the looks of the page: a list of sentences. */
+  /** The faults in the looks of the page, as a list of sentences. */
   function flaws() {
     const found = new Set();
     const tell = (words) => found.add(words);
@@ -268,14 +271,17 @@
   const mustStop = () => all(CONTROLS).filter((element) => !element.disabled && !element.closest(".unseen") &&
     element.tabIndex >= 0 && element.checkVisibility());
 
-  /** Forgets who had the focus. @return how often a reader has to press Tab to reach every control */
+  /**
+   * Forgets which elements had the focus. @return how often a reader must press Tab to reach every
+   * control
+   */
   function beginStops() {
     stops.clear();
     unmarked.clear();
     return mustStop().length;
   }
 
-  /** The controls that have not had the focus since beginStops(), or whose focus was not to be seen. */
+  /** The controls that have not had the focus since beginStops(), or did not show their focus. */
   function missedStops() {
     const groups = new Set([...stops].filter(({type}) => type === "radio").map(({name}) => name));
     const missed = mustStop().filter((element) => !stops.has(element) &&

@@ -1,5 +1,5 @@
-// `fogline view --seat`, its participant's page in headless Chromium, and the messages that the run
-// gets from it.
+// `fogline view --seat`, its participant's page in headless Chromium, and the messages that the
+// page sends to the run.
 
 import assert from "node:assert/strict";
 import path from "node:path";
@@ -12,7 +12,7 @@ import {background, scratch, until} from "./window.js";
 
 const {FOGLINE} = process.env;
 
-/** A multicast network of this test alone. */
+/** The URL of a multicast network of this test alone. */
 export const freshNetwork = () =>
   `udpm://239.255.76.67:${20000 + Math.floor(Math.random() * 20000)}?ttl=0`;
 
@@ -55,8 +55,8 @@ export function socketOf(address) {
 }
 
 /**
- * Hears the network of a seat as a viewer. `heard` has all messages of the wanted channels in the
- * order of their arrival: {name, message, at_ms}.
+ * Receives the messages on the network of a seat as a viewer. `heard` has all messages of the
+ * wanted channels in the order of their arrival: {name, message, at_ms}.
  */
 export async function listener(t, address, names = ["DRIVER_INPUT"]) {
   const socket = new WebSocket(socketOf(address), ["fogline.view.v1"]);
@@ -83,7 +83,7 @@ export async function listener(t, address, names = ["DRIVER_INPUT"]) {
   return {
     heard,
     newest: (name = "DRIVER_INPUT") => heard.findLast((one) => one.name === name)?.message,
-    /** The first message from now on that fits. */
+    /** Waits for the first new message that fits. */
     async next(fits, what, name = "DRIVER_INPUT") {
       const from = heard.length;
       return until(() => heard.slice(from).find((one) => one.name === name && fits(one.message)), what);
@@ -113,20 +113,20 @@ export async function setPad(page, {id = "Test Wheel", axes = [1, 1], down = [],
   }, {id, axes, down, connected, mapping});
 }
 
-/** Waits until the page drives, or does not. */
+/** Waits until the page drives; with `whether` false, until it does not drive. */
 export async function drives(page, whether) {
   await page.waitForFunction((wanted) => document.body.dataset.present === wanted, String(whether));
 }
 
-/** The person is ready. */
+/** Presses the button with which the person says that they are ready. */
 export async function begin(page) {
   await page.waitForFunction(() => foglineDrive.state !== "");
   await page.click("#begin");
 }
 
 /**
- * The person holds the key to take over until the page says who drives, in words of this pattern. A press of a moment
- * may pass while a busy machine sends nothing.
+ * Holds the key to take over until the page says who drives, in words of this pattern. A short
+ * press could have no effect while a busy machine sends nothing.
  */
 export async function holdTakeOver(page, pattern) {
   await page.keyboard.down("t");

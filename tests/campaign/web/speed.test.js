@@ -1,5 +1,5 @@
-// How fast the pages are: frames, and the times until a picture shows what has come. The bars are the
-// goals of Fogline for a machine that does nothing else.
+// The speed of the pages: frames per second, and the times until a picture shows new messages. The
+// limits are the goals of Fogline for a machine that does nothing else.
 import assert from "node:assert/strict";
 import path from "node:path";
 import {test} from "node:test";
@@ -28,7 +28,7 @@ test("at 100 Hz a page shows 30 frames a second, and a message at most 150 ms af
   await meetsBar(t, async () => {
     const {frames_per_s, waits} = await page.evaluate(async () => {
       const {store} = foglinePage;
-      let oldest_ms = null;  // when the first message came that no picture has shown yet
+      let oldest_ms = null;  // arrival of the first message that no picture has shown yet
       store.add = (message) => {
         oldest_ms ??= message.arrived_ms;
         Object.getPrototypeOf(store).add.call(store, message);
@@ -62,7 +62,7 @@ test("a scrub through 7000 steps answers within 50 ms", async (t) => {
       const slider = document.getElementById("time");
       const took = [];
       for (let i = first; i < first + 60; ++i) {
-        const step = (i * 2741) % 7000;  // far from the one before, and mostly not fetched yet
+        const step = (i * 2741) % 7000;  // far from the step before, and mostly not fetched yet
         const began = performance.now();
         slider.value = String(step);
         slider.dispatchEvent(new Event("input"));
@@ -90,7 +90,8 @@ test("the page of a log of a million messages is there within 3 s", async (t) =>
   }, ({opened_ms}) => (opened_ms > 3000 ? ["opened_ms"] : []));
 });
 
-// What the page measures, and sends into the log of the run: see tools/web/page/drive/latency.js.
+// The page measures this delay and sends it into the log of the run
+// (tools/web/page/drive/latency.js).
 test("from an input to the next frame that shows it the seat takes at most 50 ms", async (t) => {
   const network = freshNetwork();
   const {drive} = await seat(t, network);
@@ -108,7 +109,7 @@ test("from an input to the next frame that shows it the seat takes at most 50 ms
       await page.waitForTimeout(70);
     }
   };
-  await press(100);  // in these seconds the page finds out how much it may draw here
+  await press(100);  // in these seconds the page measures how much it can draw on this machine
   await meetsBar(t, async () => {
     const before = await page.evaluate(() => {
       foglineDrive.latency.values = [];

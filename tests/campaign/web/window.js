@@ -19,8 +19,8 @@ export const PHONE = {width: 390, height: 844};
 const endings = new WeakMap();
 
 /**
- * Does something at the end of the test. The last action that was added is done first. If an action
- * fails, the others are done nevertheless, so no process is left.
+ * Adds an action for the end of the test. The action that was added last is done first. If an
+ * action fails, the other actions are done nevertheless, so no process is left.
  */
 function atEnd(t, end) {
   if (!endings.has(t)) {
@@ -51,7 +51,10 @@ export function recordedRun(folder, settings = [], scenario = "dense_fog") {
   return log;
 }
 
-/** The numbers of a log: a function of channel and step, which gives an object of numbers. */
+/**
+ * Reads the numbers of a log. @return a function of channel and step that gives an object of
+ * numbers
+ */
 export function numbersOf(folder, log) {
   const out = path.join(folder, "numbers");
   execFileSync(FOGLINE, ["export", log, "--out", out], {stdio: "pipe"});
@@ -78,7 +81,7 @@ export function background(t, command, args) {
   return process;
 }
 
-/** Waits until `look()` gives something true. @return it */
+/** Waits until `look()` returns a true value. @return this value */
 export async function until(look, what) {
   const end = Date.now() + PATIENCE_MS;
   for (;;) {
@@ -118,9 +121,9 @@ export async function browser(t) {
 
 /**
  * Opens an address. `page.trouble` has the page's errors, its violations of the content security
- * policy, and its requests to other hosts; it must be empty at the end of the test. `prepare` gets
- * the page's context before the page is loaded. With `allPorts` other ports of the same machine are no
- * other hosts.
+ * policy, and its requests to other hosts. It must be empty at the end of the test. `prepare` gets
+ * the page's context before the page is loaded. With `allPorts`, other ports of the same machine do
+ * not count as other hosts.
  */
 export async function open(t, started, address,
                            {size = DESKTOP, prepare = null, allPorts = false, ...options} = {}) {
@@ -154,7 +157,7 @@ export async function shows(page, step) {
   await page.waitForFunction((wanted) => document.body.dataset.step === String(wanted), step);
 }
 
-/** Goes to a step by the slider. */
+/** Moves the slider to a step. */
 export async function goTo(page, step) {
   await page.waitForFunction(() => document.body.dataset.step);
   await page.evaluate((wanted) => {
@@ -165,7 +168,7 @@ export async function goTo(page, step) {
   await shows(page, step);
 }
 
-/** Breaches of the accessibility rules of axe, which Lighthouse uses, too. */
+/** The violations of axe's rules of accessibility. Lighthouse uses the same rules. */
 export async function breaches(page) {
   if (!await page.evaluate(() => "axe" in window)) {
     await page.evaluate(readFileSync(path.join(root, "node_modules/axe-core/axe.min.js"), "utf8"));

@@ -1,6 +1,6 @@
-// The decoder of the page: messages as JSON, and single fields of them. Input: an index into
-// kChannels, then the message. The index kNumChannels means a type that has what Fogline's types do
-// not have; then the fingerprint is put before the input.
+// The decoder of the page: messages as JSON, and single fields of messages. Input: an index into
+// kChannels, and the message. The index kNumChannels means a type with features that Fogline's
+// types do not have; then the target puts the fingerprint before the input.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -62,7 +62,8 @@ std::optional<double> NumberAt(const Json& message, const std::vector<web::PathP
                             : value->get<double>();
 }
 
-/// Whether a reader's number is that of the JSON. In JSON a boolean has lost its exact number.
+/// Whether the number of a reader equals the number in the JSON. JSON shows a boolean as true or
+/// false, so any number except 0 equals true.
 bool Agree(const std::optional<double>& read, const std::optional<double>& shown,
            const Reading& reading, const std::vector<web::PathPart>& path) {
   const web::LcmStruct* type = &reading.type;
@@ -121,7 +122,7 @@ bool Equal(const Json& shown, const Json& expected) {
   return shown == expected;
 }
 
-/// Whether a value is what its JSON schema says, or one of the exceptions that description.h names.
+/// Whether a value obeys its JSON schema, or is one of the exceptions that description.h names.
 bool Fits(const Json& value, const Json& schema) {
   const std::string type = schema.at("type");
   if (type == "object") {
@@ -172,7 +173,8 @@ void DemandBounded(runtime::Bytes rest) {
   const std::optional<Json> json = web::DecodeJson(reading.types, reading.type, bytes);
   DemandReadable(reading, bytes, json);
   if (!json) return;
-  // A byte becomes at most a few characters, and each element of `parts` has its names.
+  // A byte becomes at most a few characters. Each element of `parts` also has the names of its
+  // fields.
   Demand(json->dump().size() <= 1000 + 64 * bytes.size(), "no message becomes a long text");
   Took();
 }

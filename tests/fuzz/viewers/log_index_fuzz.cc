@@ -1,4 +1,4 @@
-// The index of a log that is shown. Input: the log.
+// The index of a log that `fogline view` shows. Input: the log.
 #include <algorithm>
 
 #include "common/errors.h"

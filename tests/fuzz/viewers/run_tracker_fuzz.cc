@@ -1,5 +1,6 @@
-// Which run a live view shows, and its events. Input: messages, each with an index into kChannels,
-// the time since the message before in units of 10 ms, and whether the events are taken then.
+// The choice of the run that a live view shows, and the events of this run. Input: messages. Each
+// message has an index into kChannels, the time since the message before in units of 10 ms, and a
+// flag that tells whether the events are taken after it.
 #include <algorithm>
 
 #include <nlohmann/json.hpp>

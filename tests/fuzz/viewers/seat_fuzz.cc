@@ -1,6 +1,6 @@
 // The seat of `fogline drive`. Input: for each event a byte and a datagram. The low bits of the
-// byte say what happens: a frame of one of two pages (0, 1), a page comes (2, 3), a page leaves (4,
-// 5), or time passes (6, 7); the high bits say how much.
+// byte name the event: a frame of one of two pages (0, 1), a new page (2, 3), the end of a page (4,
+// 5), or a time that passes (6, 7). The high bits tell the amount of time.
 #include <string>
 #include <string_view>
 #include <variant>
@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kMaxEvents = 256;
 
-/// The rules for the messages of a seat. They hold for any frames of its pages.
+/// The rules for the messages of a seat, whatever frames its pages send.
 class Listener {
  public:
   void Hear(const driver_input_t& message, TimePoint now) {

@@ -30,10 +30,10 @@ constexpr std::array<std::string_view, 4> kProtocols{"", web::kViewProtocol, web
                                                      web::kFoxgloveProtocol};
 constexpr std::array kStatuses{"101", "200", "304", "400", "403",
                                "404", "405", "426", "431", "503"};
-// Far longer than the server needs, also on a busy machine.
+// Far longer than the server needs, even on a busy machine.
 constexpr std::chrono::seconds kPatience(20);
 
-/// Takes the frames that the server lets through, as the views do.
+/// Takes the frames that the server passes on, as the views do.
 class Frames final : public web::View {
  public:
   void Opened(web::Client&) override { ++open_; }
@@ -63,18 +63,19 @@ class Frames final : public web::View {
   int open_ = 0;
 };
 
-/// A server that lives as long as the program, so nothing of a client may stay behind.
+/// A server that runs until the program ends. So no data of a client may remain in the server.
 class Served {
  public:
   std::string host() const { return fmt::format("127.0.0.1:{}", server_.access().rules().port); }
 
-  /// Sends the bytes as a client, and ends the sending. @return the answer
-  /// @param opening a request that opens a WebSocket, whose answer the client awaits first; or ""
+  /// Sends the bytes as a client, and then ends the sending direction. @return the answer
+  /// @param opening a request that opens a WebSocket, or ""; the client waits for the answer to
+  /// this request first
   std::string AnswerTo(std::string_view opening, std::string_view bytes) {
     tcp::socket client(context_);
     client.connect({asio::ip::address_v4::loopback(), server_.access().rules().port});
     client.non_blocking(true);
-    // The kernel takes so little at once.
+    // The kernel accepts these few bytes at once.
     if (!opening.empty()) client.write_some(asio::buffer(opening));
     const auto end = std::chrono::steady_clock::now() + kPatience;
     std::string answer;
@@ -96,7 +97,7 @@ class Served {
   }
 
  private:
-  /// Sends what the kernel takes.
+  /// Sends as many bytes as the kernel accepts.
   static void Write(tcp::socket& client, std::string_view& bytes) {
     if (bytes.data() == nullptr) return;
     error_code error;
@@ -107,7 +108,7 @@ class Served {
     bytes = {};
   }
 
-  /// @return success as long as more may come
+  /// @return success while more bytes may come
   static error_code Read(tcp::socket& client, std::string& answer) {
     std::array<char, 4096> buffer;
     error_code error;
@@ -125,7 +126,7 @@ class Served {
 };
 
 void DemandHttp(std::string_view answer) {
-  if (answer.empty()) return;  // the client said nothing that can be answered
+  if (answer.empty()) return;  // the client has sent nothing that needs an answer
   Demand(answer.starts_with("HTTP/1.1 "), "an answer is HTTP");
   const std::string_view status = answer.substr(9, 3);
   bool known = false;

@@ -1,4 +1,4 @@
-// A program that shows the roles that wait for a run. It reads STATUS of unknown senders. Input:
+// A program that shows the roles that wait for a run. It receives STATUS of unknown senders. Input:
 // datagrams.
 #include <nlohmann/json.hpp>
 

@@ -1,6 +1,6 @@
-// `fogline top` among arbitrary traffic. Input: for each message a byte and a datagram. The byte is
-// an index into kChannels. A byte beyond kChannels means a foreign channel, whose name comes before
-// the datagram.
+// `fogline top` with arbitrary traffic. Input: for each message a byte and a datagram. The byte is
+// an index into kChannels. A byte beyond kChannels means another channel, and the name of this
+// channel comes before the datagram.
 #include <nlohmann/json.hpp>
 
 #include <limits>

@@ -1,4 +1,5 @@
-// The fallback when a person who drives suddenly leaves: real processes, on the wall clock.
+// Tests of the fallback when a person who drives leaves suddenly. The processes are real and follow
+// the wall clock.
 #include <csignal>
 #include <string>
 
@@ -11,9 +12,10 @@ namespace {
 
 constexpr int kSteps = 1000;  // 20 s; each test ends its run earlier
 constexpr double kDeadman_s = 0.3;
-// A seat sends every 40 ms, and the driver answers every 20 ms.
+// A seat sends every 40 ms, and the driver answers every 20 ms. So the fallback may come 0.06 s
+// before kDeadman_s has passed.
 constexpr double kInTime_s = kDeadman_s - 0.06;
-// The time for which a busy machine may hold up a process.
+// The longest time for which a busy machine may delay a process.
 constexpr double kSlack_s = 3;
 
 class DeadmanInRealtimeTest : public testing::Test {
@@ -71,7 +73,7 @@ TEST_F(DeadmanInRealtimeTest, AKilledSeatIsNoticedAfterTheDeadmansTime) {
   EXPECT_LT(after_s, kDeadman_s + kSlack_s);
 }
 
-// An unplugged device: the seat still sends messages. They say that no person is there.
+// If the device is unplugged, the seat still sends messages. They say that no person is present.
 TEST_F(DeadmanInRealtimeTest, AnUnpluggedDeviceCountsAtOnce) {
   Background seat(SeatCommand(run_.url(), "0 0.4 0 1 1; 4 0.4 0 1 0"));
   WaitUntilThePersonDrives();

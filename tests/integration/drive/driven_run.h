@@ -1,4 +1,4 @@
-// A run in real time with a person, and the commands in it.
+// Helpers for tests of runs in real time that a person drives.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -13,12 +13,13 @@ namespace fogline::test {
 
 inline constexpr const char* kDriveScenario = "scenario/drive.json";
 
-/// In this run the policy always wants the human, so the person is asked from the first step on.
+/// Settings with which the policy always wants the human. So the person is asked from the first
+/// step on.
 inline std::vector<std::string> AlwaysAsked() {
   return {"/person/drives=true", "/arbitrator/threshold=0", "/arbitrator/take_over/mode=requested"};
 }
 
-/// The newest command of the driver, and that of the host, on a network.
+/// The newest DRIVER_COMMAND and the newest HOST_COMMAND on a network.
 class Commands {
  public:
   explicit Commands(const std::string& url) : bus_(url) {
@@ -30,7 +31,8 @@ class Commands {
     });
   }
 
-  /// Waits for a condition. @return the time until it holds; a negative time after the limit
+  /// Waits until holds() is true. @return the time of the wait, in s; a negative number if the
+  /// limit has passed
   double WaitFor(const std::function<bool()>& holds, Duration limit = kPatience) {
     const TimePoint begin = Clock::now();
     while (!holds()) {
@@ -47,7 +49,7 @@ class Commands {
   runtime::Bus bus_;
 };
 
-/// A seat in a process of its own (scripted_seat.cc).
+/// Returns the command that starts a seat as a process of its own (scripted_seat.cc).
 inline std::vector<std::string> SeatCommand(const std::string& url, const std::string& script) {
   return {Program("scripted_seat"), url, script};
 }

@@ -1,4 +1,4 @@
-// `fogline drive --evdev` with a device of the kernel, which the test makes (uinput).
+// `fogline drive --evdev` with an input device that the test creates in the kernel (uinput).
 #include <fcntl.h>
 #include <libevdev/libevdev-uinput.h>
 #include <libevdev/libevdev.h>
@@ -43,7 +43,7 @@ class Gamepad {
   Gamepad(const Gamepad&) = delete;
   Gamepad& operator=(const Gamepad&) = delete;
 
-  /// Whether this machine can make devices, and show them as files.
+  /// Whether this machine has made the device and shows it as a file that the test may read.
   bool exists() const {
     return uinput_ != nullptr && libevdev_uinput_get_devnode(uinput_) != nullptr &&
            access(file().c_str(), R_OK) == 0;
@@ -64,8 +64,9 @@ class Gamepad {
 
 TEST(EvdevInRealtimeTest, AGamepadDrivesAndItsUnpluggingStopsTheHost) {
   Gamepad gamepad;
-  // The test is skipped also if FOGLINE_TEST_NO_SKIP is set: a container has no uinput, whatever is
-  // installed in it. The unit tests of tools/drive check what a device's values mean.
+  // If the machine has no uinput, the test is skipped even with FOGLINE_TEST_NO_SKIP, because no
+  // package adds uinput to a container. The unit tests of tools/drive check what a device's values
+  // mean.
   if (!gamepad.exists()) GTEST_SKIP() << "this machine has no /dev/uinput: " << strerror(errno);
   const ScratchFolder folder;
   const std::string log = folder.File("run.lcm");

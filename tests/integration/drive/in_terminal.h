@@ -1,4 +1,4 @@
-// A program in a terminal of its own, at which a test types.
+// A program in a terminal of its own. The test types at this terminal.
 #pragma once
 
 #include <gtest/gtest.h>

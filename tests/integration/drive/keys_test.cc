@@ -1,4 +1,5 @@
-// `fogline drive --keys` in a real terminal (a pseudo-terminal whose other end is this test).
+// `fogline drive --keys` in a pseudo-terminal. The test types at the other end of the
+// pseudo-terminal.
 #include <algorithm>
 #include <csignal>
 #include <string>

@@ -32,10 +32,10 @@ Words TextsOf(const nlohmann::json& events) {
   return texts;
 }
 
-/// Runs the person of a script. @return what `fogline events` prints
+/// Runs a scenario that a person drives by a script. @return what `fogline events` prints
 nlohmann::json EventsOf(const std::string& script, Words settings) {
-  // On a busy machine the commands of the ACC may come late. That is not what these tests are
-  // about.
+  // On a busy machine the commands of the ACC may come late. These tests are not about late
+  // commands, so an input counts as LOST only after 100 periods.
   settings.emplace_back("/health/lost_periods=100");
   RealtimeRun run(kDriveScenario, 350, 1, settings);
   const Background seat(SeatCommand(run.url(), script));
@@ -45,7 +45,7 @@ nlohmann::json EventsOf(const std::string& script, Words settings) {
   return VerbOf({"events", run.log(), "--json"})[0];
 }
 
-// The fog of the scenario begins after 15 s, so the automation asks nothing in these runs of 7 s.
+// The fog begins after 15 s, so the arbitrator sends no request in these runs of 7 s.
 constexpr const char* kBrakes = "0 0 0 0 1; 2 0 0.6 0 1; 3 0 0 0 1; 4.5 0 0 2 1";
 
 TEST(OverrideInRealtimeTest, ABrakeTakesOverWithoutARequestUntilThePersonGivesBack) {

@@ -15,8 +15,8 @@
 
 namespace fogline::test {
 
-/// Takes over and brakes a little, until the destructor. Connects again if the program of the page
-/// dies.
+/// Takes over and brakes a little until the destructor is called. Connects again if fogline-web
+/// ends.
 class PagePerson {
  public:
   /// @param target of the WebSocket, with the driver's token if there is one
@@ -36,7 +36,7 @@ class PagePerson {
         WebClient client(port_, {.target = target_, .protocol = "fogline.drive.v1"});
         DriveWith(client);
       } catch (const std::exception&) {
-        // The program has ended, or is started again.
+        // fogline-web has ended, or is being started again.
         std::this_thread::sleep_for(kLookEvery);
       }
     }
@@ -58,8 +58,9 @@ class PagePerson {
           {"device", {{"kind", "keyboard"}, {"name", "Keyboard"}}},
           {"latency_ms",
            12}}.dump());
-      // The page reads nothing: a wait for a message of the run could last longer than the silence
-      // after which a person counts as absent. The server keeps 8 MiB for the page.
+      // This client reads nothing, because a wait for a message of the run could last longer than
+      // the silence after which a person counts as absent. The server keeps up to 8 MiB for a page
+      // that does not read.
       std::this_thread::sleep_for(kEvery);
     }
   }

@@ -1,5 +1,5 @@
-// `fogline drive` at the page: the verb, fogline-web and the whole run. The test is the page: a
-// client of the WebSocket that sends what the page would send.
+// `fogline drive` with the page /drive: the verb, fogline-web and the whole run. In place of the
+// page, the test connects to the WebSocket and sends what the page would send.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
-// A person who drives, in real processes: who may, how the person takes over and gives back, and
-// the replay of what the person did.
+// A person who drives, in real processes: which seat may drive, how the person takes over and gives
+// back, and the replay of the person's inputs.
 #include <cmath>
 #include <set>
 #include <string>
@@ -93,10 +93,10 @@ TEST_F(DrivenRunInRealtimeTest, LogsWhatThePersonDoesAndReplaysItBitByBit) {
   std::set<double> throttles;
   for (const driver_input_t& input : inputs) throttles.insert(input.throttle);
   EXPECT_EQ(throttles, (std::set<double>{0, 0.1, 0.3, 0.6}));
-  // THEN the driver computes the same commands again, from the inputs that they name
+  // THEN the replay computes the same commands again, from the inputs that the commands name
   const nlohmann::json same = ReplayOf(run_.log(), 0);
   EXPECT_EQ(same["same"], true) << same;
-  // THEN a changed pedal is noticed, and so is an input that the log lacks
+  // THEN the replay reports a changed pedal, and an input that the log lacks
   const auto changed = ReplayOf(Altered([](driver_input_t& input) {
                                   if (input.throttle == 0.6) input.throttle = 0.61;
                                   return true;
@@ -128,7 +128,8 @@ TEST_F(DrivenRunInRealtimeTest, SaysThatThePersonHasAcknowledged) {
   EXPECT_THAT(texts, testing::Contains("acknowledgement by the person"));
   EXPECT_THAT(texts, testing::Contains("transfer to the driver"));
   ASSERT_EQ(events["requests"].size(), 1U);
-  // The seat hears the run at its first TRUTH, and presses the button from then on.
+  // The seat's script begins at the first TRUTH that the seat receives. From then on the button is
+  // pressed.
   EXPECT_LT(events["requests"][0]["acknowledged_s"], 2.5);
   const Outcome drawn =
       RunCommand({Program("fogline"), "run", "scenario/paper.json", "--quiet", "--set",

@@ -1,9 +1,11 @@
-// A seat whose person acts by a script, for tests. It joins the first run that it hears.
+// A seat whose person acts by a script, for tests. The seat joins the first run whose TRUTH it
+// receives.
 //
 //     scripted_seat URL "0 0.3 0 1 1; 2.5 0 0.8 0 1"
 //
-// Each part of the script has five numbers: the time in s since the first TRUTH from which on it
-// holds, throttle, brake, buttons (bits of driver_input_t) and 1 if a person is present.
+// Each part of the script has five numbers: the time from which on the part holds, in s since the
+// first TRUTH; the throttle; the brake; the buttons (bits of driver_input_t); 1 if a person is
+// present.
 #include <cstdint>
 #include <memory>
 #include <optional>

@@ -157,7 +157,8 @@ def measures(request, messages, pedal):
             one for one in answers if one["mode"] in (HUMAN, RECOVERING)
             and abs(one["human"] * (offers.get(one["step"], before) - before)) >= 0.01)
 
-    # The fog in which the request is, or else the first one that begins later.
+    # The fog at the time of the request. If there is no fog at this time, the first fog after the
+    # request.
     fog = None
     for k in range(inside[-1] + 1):
         if truths[k]["fog"] and (k == 0 or not truths[k - 1]["fog"]):

@@ -1,5 +1,5 @@
-// The measures of a take-over by a person, in real processes, beside those that a script works out
-// from the raw messages of the log without our code.
+// The measures of a take-over by a person, in real processes. A script without our code computes
+// the same measures from the raw messages of the log.
 #include <set>
 #include <string>
 #include <vector>
@@ -12,8 +12,8 @@
 namespace fogline::test {
 namespace {
 
-/// The story of scenario/drive.json in 15 s: fog from 1 s on, in which the person is asked, and a
-/// car ahead that brakes.
+/// Settings that shorten scenario/drive.json to 15 s: the fog begins at 1 s, the person is asked in
+/// the fog, and the car ahead brakes.
 std::vector<std::string> ShortStory() {
   return {"/person/drives=true", "/fog/start_s=1", "/fog/duration_s=20",
           "/arbitrator/take_over/recovery_s=4",
@@ -55,10 +55,10 @@ TEST(TakeOverMeasuresInRealtimeTest, OfAPersonAreThoseThatTheRawMessagesGive) {
     if (value.is_null()) continue;
     EXPECT_NEAR(request[name], value, 1e-9) << name;
   }
-  // The run of the verb and the log have the same measures.
+  // The result of the run has the same measures as `fogline metrics` has for the log.
   EXPECT_EQ(result["take_overs"], measured["take_overs"]);
-  // THEN the numbers are those of the story: first the pedal moves a little, then the button
-  // answers
+  // THEN the measures agree with kStory: first the pedal moves a little, then the person presses
+  // the button
   const double moved_s = request["first_movement_time_s"];
   const double answered_s = request["reaction_time_s"];
   EXPECT_GT(moved_s, 0);

@@ -1,5 +1,5 @@
-// Trials in which the participant drives at the seat, with the real programs. The test is both
-// pages of the participant: the page of the session, and the page /drive.
+// Trials in which the participant drives at the seat, with the real programs. The test takes the
+// place of both pages of the participant: the page of the session, and the page /drive.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -35,16 +35,17 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-/// Where this name is in a log, the recorder has written an input of the seat.
+/// The name of the channel DRIVER_INPUT. If a log contains this name, the recorder has written an
+/// input of the seat.
 const std::string kInputs(ChannelOf<driver_input_t>().name);
 
-/// The seat of a run, as the participant's page knows it.
+/// Port and token of the seat of a run, as the participant's page gets them.
 struct SeatPlace {
   std::uint16_t port = 0;
   std::string token;
 };
 
-/// @throws std::runtime_error if this is no address of a seat with a token
+/// @throws std::runtime_error if the state has no address of a seat with a token
 SeatPlace SeatIn(const nlohmann::json& state) {
   static const std::regex address("http://127.0.0.1:(\\d+)/drive#token=([0-9a-f]{32})");
   std::smatch parts;
@@ -69,7 +70,8 @@ std::set<std::int64_t> SeatsIn(const std::filesystem::path& log) {
   return seats;
 }
 
-/// The driver has used the inputs of the person, and the person has got authority.
+/// Expects that the driver has used the inputs of the person, and that the person has got
+/// authority.
 void ExpectIsDrivenByThePerson(const std::filesystem::path& log) {
   const std::vector<driver_input_t> inputs = InputsIn(log);
   EXPECT_GT(std::ranges::count_if(inputs, &driver_input_t::present), 40) << log;
@@ -93,7 +95,7 @@ void ExpectIsDrivenByThePerson(const std::filesystem::path& log) {
   EXPECT_GT(by_human, 50) << log;
 }
 
-/// How often a text is in another one.
+/// How often `text` is in `all`.
 std::size_t CountOf(const std::string& text, const std::string& all) {
   std::size_t count = 0;
   for (std::size_t at = 0; (at = all.find(text, at)) != std::string::npos; ++at) ++count;
@@ -130,7 +132,7 @@ class DrivenTrialsInRealtimeTest : public ::testing::Test {
   std::filesystem::path LogOf(const std::string& trial) const {
     return std::filesystem::path(results_) / "participant-01" / (trial + ".lcm");
   }
-  /// The state of the participant's page in which the seat is open.
+  /// Waits for the state of the participant's page in which the seat is open. @return this state
   static nlohmann::json WaitForSeat(PageSession& session) {
     for (nlohmann::json state = session.NextState(-1);; state = session.NextState(state["state"])) {
       if (state["stage"] == "waiting") session.Begin(state);
@@ -189,7 +191,7 @@ TEST_F(DrivenTrialsInRealtimeTest, TheSeatTellsNothingOfTheCondition) {
   const SeatPlace seat = SeatIn(WaitForSeat(session));
   const PagePerson person(seat.port, PageSession::SocketTarget(seat.token));
   while (session.NextState(-1)["stage"] != "driving") continue;
-  // Each client of the seat gets the same of the run, also one that does not drive.
+  // Each client of the seat gets the same messages of the run, even a client that does not drive.
   WebClient reader(
       seat.port, {.target = PageSession::SocketTarget(seat.token), .protocol = "fogline.drive.v1"});
   std::string all;
@@ -208,7 +210,7 @@ TEST_F(DrivenTrialsInRealtimeTest, TheSeatTellsNothingOfTheCondition) {
   EXPECT_GT(messages[IndexOf<arbitration_t>()], 100);
   EXPECT_GT(messages[IndexOf<driver_command_t>()], 100);
   EXPECT_THAT(messages, ::testing::SizeIs(3));
-  std::string encoded(sizeof(kThreshold), '\0');  // as in a message
+  std::string encoded(sizeof(kThreshold), '\0');  // big-endian, as in a message
   const auto bits = std::bit_cast<std::uint64_t>(kThreshold);
   for (int i = 0; i < 8; ++i) encoded[i] = static_cast<char>(bits >> (56 - 8 * i));
   for (const std::string& hidden :
@@ -221,11 +223,11 @@ TEST_F(DrivenTrialsInRealtimeTest, TheSeatTellsNothingOfTheCondition) {
 }
 
 TEST_F(DrivenTrialsInRealtimeTest, AfterAKillOfFoglineWebTheParticipantDrivesOnAtTheSameAddress) {
-  WritePlan(600);  // time enough for a start of fogline-web on a busy machine
+  WritePlan(600);  // long enough for a start of fogline-web on a busy machine
   PageSession session(Run());
   std::optional<PagePerson> person;
   std::set<std::string> seats;
-  std::vector<bool> open;  // whether the participant's page has the seat, in turn
+  std::vector<bool> open;  // whether the participant's page has the seat; each change
   bool killed = false;
   for (std::int64_t known = -1;;) {
     const nlohmann::json state = session.NextState(known);
@@ -272,7 +274,7 @@ TEST_F(DrivenTrialsInRealtimeTest, ASeatThatDoesNotComeBackEndsTheSessionBeforeT
   EXPECT_EQ(session.process().Wait(), 3);
   const std::string err = session.process().Err();
   EXPECT_THAT(err, HasSubstr("fogline-web was started 5 times in vain"));
-  // The end of the one that had the seat, and the first start in vain.
+  // One line for the end of the fogline-web that had the seat, one for the first failed start.
   EXPECT_EQ(CountOf("; it is started again", err), 2U) << err;
   EXPECT_FALSE(std::filesystem::exists(LogOf("trial-1-secret-a")));
 }

@@ -26,8 +26,8 @@ using ::testing::HasSubstr;
 using ::testing::SizeIs;
 
 constexpr int kParticipants = 4;
-// Enter, six scales of workload, one of sleepiness; the answers differ for each participant and
-// run.
+// The answers of one run: Enter, six scales of workload, one scale of sleepiness. They differ for
+// each participant and run.
 std::string AnswersOf(int participant, int run) {
   std::string lines = "\n";
   for (int scale = 0; scale < 6; ++scale) {
@@ -61,7 +61,8 @@ class ExperimentRealtimeTest : public ::testing::Test {
     std::ofstream(file_) << plan.dump(2);
   }
 
-  /// A shell command that makes the trials of a participant from run `first` on, with its answers.
+  /// A shell command that makes the trials of a participant from run `first` on, with the answers
+  /// of AnswersOf().
   std::vector<std::string> Session(int participant, int first = 1) const {
     const std::string input = folder_.File(fmt::format("answers-{}-{}.txt", participant, first));
     std::ofstream answers(input);
@@ -110,7 +111,8 @@ TEST_F(ExperimentRealtimeTest, ASessionThatIsKilledInARunLosesNothing) {
     // Participant 2: the second run is killed while it is under way.
     Background session(Session(2));
     const std::string log = results_ + "/participant-02/trial-2-high.lcm";
-    // The recorder itself has written the begin of the trial: no program adds it to this log later.
+    // The recorder writes the begin of the trial during the run. No program adds it to this log
+    // later.
     ASSERT_TRUE(ComesToHave("TRIAL", log)) << session.Err();
     session.Signal(SIGKILL);
     session.Wait();
@@ -122,7 +124,7 @@ TEST_F(ExperimentRealtimeTest, ASessionThatIsKilledInARunLosesNothing) {
   EXPECT_THAT(status.out, HasSubstr("broken"));
   EXPECT_THAT(status.out, HasSubstr("4 of 12 trials"));
 
-  // The same command goes on at the run that broke off.
+  // The same command continues with the run that was killed.
   const Outcome resumed = RunCommand(Session(2, 2));
   ASSERT_EQ(resumed.code, 0) << resumed.err << resumed.out;
   EXPECT_EQ(Content(results_ + "/participant-02/trial-1-mid.lcm"), first);
@@ -153,8 +155,8 @@ TEST_F(ExperimentRealtimeTest, ASessionThatIsKilledInARunLosesNothing) {
     EXPECT_NEAR(std::stod(row.at("duration_s")), 7.9, 1e-9);
     EXPECT_EQ(row.at("attempt"), participant == 2 && trial == 2 ? "2" : "1");
   }
-  // Each participant drives each condition once. The first three participants are a Latin square:
-  // each condition is once at each place.
+  // Each participant drives each condition once. The first three participants form a Latin square:
+  // each condition is once at each place of the order.
   ASSERT_THAT(by_participant, SizeIs(4));
   for (const auto& [participant, conditions] : by_participant) EXPECT_THAT(conditions, SizeIs(3));
   for (const auto& [place, conditions] : by_place) EXPECT_THAT(conditions, SizeIs(3));
@@ -250,7 +252,7 @@ TEST_F(ExperimentRealtimeTest, AnswersThatAreMissingAreAskedWithoutAnotherRun) {
   EXPECT_THAT(cut.err, HasSubstr("the same command continues from here"));
   const Outcome status = Experiment("status");
   EXPECT_THAT(status.out, HasSubstr("to_ask"));
-  // The sleepiness of run 1 comes first, and then runs 2 and 3.
+  // The new answers begin with the sleepiness of run 1. The answers of runs 2 and 3 follow.
   std::ofstream(input) << "7\n" << AnswersOf(1, 2) << AnswersOf(1, 3);
   const Outcome resumed = RunCommand(
       {"sh", "-c",
@@ -259,7 +261,7 @@ TEST_F(ExperimentRealtimeTest, AnswersThatAreMissingAreAskedWithoutAnotherRun) {
   ASSERT_EQ(resumed.code, 0) << resumed.err << resumed.out;
   EXPECT_THAT(resumed.out, HasSubstr("2 runs now"));
   const Outcome exported = Experiment("export", {"--out", folder_.File("tables")});
-  EXPECT_EQ(exported.code, 1);  // the others have not begun
+  EXPECT_EQ(exported.code, 1);  // the other participants have not begun
   const std::string values = Content(folder_.File("tables") + "/values.csv");
   EXPECT_THAT(values, AllOf(HasSubstr("1,1,0,low,answer,tlx.mental_demand,10,,\n"),
                             HasSubstr("1,1,0,low,answer,kss.sleepiness,7,,\n"),

@@ -20,7 +20,7 @@ namespace fogline::test {
 
 class PageSession {
  public:
-  /// Starts `fogline experiment run` with these words behind it, and opens both pages.
+  /// Starts `command`, which is a `fogline experiment run`, and opens both pages.
   explicit PageSession(const std::vector<std::string>& command) : session_(command) {
     if (!session_.WaitForOut("experimenter: http://127.0.0.1:")) {
       throw std::runtime_error(session_.Err());
@@ -46,7 +46,7 @@ class PageSession {
   /// The target of a WebSocket with a token.
   static std::string SocketTarget(const std::string& token) { return "/ws?token=" + token; }
 
-  /// The next state of the participant's page that is not this one.
+  /// Waits for a state of the participant's page whose number is not `known`. @return this state
   nlohmann::json NextState(std::int64_t known) {
     for (;;) {
       auto state = nlohmann::json::parse(participant_->Receive().bytes);
@@ -57,7 +57,7 @@ class PageSession {
   void Begin(const nlohmann::json& state) {
     participant_->Send(nlohmann::json{{"op", "begin"}, {"state", state["state"]}}.dump());
   }
-  /// Answers each item with `least` and its place; on the scales of workload five times that.
+  /// Answers item i with `least` + i. On the scales of workload the answer is five times as large.
   void Answer(const nlohmann::json& state, int least) {
     nlohmann::json values = nlohmann::json::array();
     const bool is_tlx = state["items"].size() == 6;
@@ -77,8 +77,8 @@ class PageSession {
     }
   }
 
-  /// Waits until the experimenter's page shows this line. @throws std::runtime_error after the
-  /// limit
+  /// Waits until the experimenter's page shows this line. @throws std::runtime_error after
+  /// kPatience
   void WaitForLine(const std::string& line) {
     for (const auto end = std::chrono::steady_clock::now() + kPatience;
          std::chrono::steady_clock::now() < end;) {

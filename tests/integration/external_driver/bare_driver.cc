@@ -74,8 +74,9 @@ class BareDriver {
     stopped_ = run->phase == run_t::STOP || HasAnother(*run);
   }
 
-  // RUN names each role that is started elsewhere, and the process that has this role: 0 while the
-  // run waits for the role. Two processes of one role would contradict each other.
+  // RUN names each role that is started elsewhere, and the instance of the process that has this
+  // role. The instance is 0 while the run waits for the role. Two processes of one role would
+  // contradict each other.
   bool IsFree(const run_t& run) const { return DriverOf(run) == 0; }
   bool HasAnother(const run_t& run) const {
     const int64_t driver = DriverOf(run);

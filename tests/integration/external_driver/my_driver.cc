@@ -1,6 +1,6 @@
 // A driver of your own: the linear car-following model, with the gains of Helly (1959). The
 // argument and the result of Step() make this class the role "driver" (services/graph.h).
-// RunService does the rest.
+// RunService() does everything else that a role must do.
 #include "services/runtime/process/service.h"
 
 class MyDriver {

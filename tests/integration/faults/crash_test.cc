@@ -99,9 +99,9 @@ TEST(CrashTest, ProcessesThatHangAreKilledAndStartedAgain) {
 }
 
 TEST(CrashTest, ARunnerThatWasHeldUpItselfTakesNoRoleForHung) {
-  // GIVEN a runner that is stopped for longer than a role may send no message (3 s, half of the
-  // timeout). The runner continues before the run would end (8 s). Even a busy machine delays a
-  // role by less than 3 s
+  // GIVEN a runner that is stopped for 3.5 s. A role that sends nothing for 3 s (half of the
+  // timeout) counts as hung. The runner continues before the run would end (8 s). Even a busy
+  // machine delays a role by less than 3 s
   WatchedRun watched({"--stall-timeout", "6"}, 8000);
   watched.WaitForStep(100);
   kill(watched.run().pid(), SIGSTOP);
@@ -125,7 +125,7 @@ TEST(CrashTest, EndsTheRunByNameWhenItHappensTooOften) {
 }
 
 TEST(CrashTest, OfARoleFromElsewhereIsOverWhenItIsStartedAgain) {
-  // GIVEN a run that lasts longer than the runner needs to detect a dead role
+  // GIVEN a run that lasts longer than the runner needs to notice the end of a role
   WatchedRun watched({"--external", "driver"}, 1500);
   const std::vector<std::string> command{Program("fogline-driver"), "--lcm-url", watched.url()};
   const Background first(command);

@@ -1,4 +1,4 @@
-// Roles of runs are killed or stopped. The runs have the results of undisturbed runs.
+// Tests that kill or stop roles of runs, and expect the results of undisturbed runs.
 #pragma once
 
 #include <gmock/gmock.h>

@@ -142,8 +142,8 @@ class ResumeAfterKillTest : public ResumeTest {
     }
   }
 
-  /// Kills `kills` runs for each of two transports. Each run is one process, so it dies with its
-  /// runner.
+  /// Kills `kills` runs for each of two transports. Each run is one process, so a signal to the
+  /// runner ends the whole run.
   void ExpectKilledProcessesGoOnToTheSameResult(int kills) const {
     std::mt19937 random(2026);
     // The faster transport takes 0.2 s for these steps. The run is killed in the first half of this

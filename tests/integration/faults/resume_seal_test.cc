@@ -19,14 +19,16 @@ using testing::HasSubstr;
 
 class ResumeOfCompleteLogTest : public ResumeTest {
  protected:
-  /// Copies whole.lcm without its seal, like the log of a runner that died after the last step.
+  /// Copies whole.lcm without its seal, like the log of a runner that was killed after the last
+  /// step.
   void LeaveUnsealed() const {
     Copy(File("whole.lcm"), log_,
          [](log::EventLogWriter&, const log::Event& event, std::vector<std::uint8_t>&) {
            return event.channel != "FOGLINE_SEAL";
          });
   }
-  /// Like LeaveUnsealed(), but the RADAR of step 100 differs from what the radar computed.
+  /// Does the same as LeaveUnsealed(), but the RADAR of step 100 differs from what the radar
+  /// computed.
   void LeaveForgedAndUnsealed() const {
     Copy(File("whole.lcm"), log_,
          [](log::EventLogWriter&, const log::Event& event, std::vector<std::uint8_t>& data) {

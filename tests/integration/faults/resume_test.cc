@@ -1,4 +1,4 @@
-// A run continues from its log after its runner died or was interrupted: `fogline run --resume`.
+// A run continues from its log after its runner was killed or interrupted: `fogline run --resume`.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -64,7 +64,7 @@ TEST_F(ResumeTest, GoesOnWithTheRolesFromElsewhereThatHaveOutlivedTheirRunner) {
     // GIVEN a driver that was started from another shell
     SeenRun seen(Paper(kResumeSteps) + kPaced + Words{"--external", "driver"} + sealed, log_);
     Background driver(Words{Program("fogline-driver"), "--lcm-url", seen.url()} + sealed);
-    // WHEN the runner dies, THEN the same driver continues with the next runner
+    // WHEN the runner is killed, THEN the same driver continues with the next runner
     seen.KillAtStep(150);
     ASSERT_TRUE(IsAlive(driver.pid()));
     const auto result =
@@ -160,7 +160,7 @@ TEST_F(ResumeTest, RefusesTheLogOfARunThatIsUnderWay) {
 
 TEST_F(ResumeTest, CutsNothingOffALogThatSomethingElseHasWritten) {
   Undisturbed();
-  // GIVEN a log with STATUS messages, as lcm-logger writes it
+  // GIVEN a log with STATUS messages, such as lcm-logger writes
   status_t status{};
   status.header.run_id = 1;
   std::vector<std::uint8_t> encoded;

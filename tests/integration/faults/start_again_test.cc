@@ -52,7 +52,7 @@ class StartAgainTest : public testing::Test {
     EXPECT_THAT(run.Err(), HasSubstr(role + " (pid "));
   }
   /// Waits for longer than the first five tries to start the process again. The first try comes 10
-  /// ms after the death of the process. The other tries come after another 20, 40, 80 and 160 ms
+  /// ms after the end of the process. The other tries come after another 20, 40, 80 and 160 ms
   /// (RestartPolicy). The test waits for a fixed time because the runner does not report a failed
   /// try.
   static void StayAway() { std::this_thread::sleep_for(milliseconds(500)); }

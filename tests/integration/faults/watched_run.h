@@ -17,7 +17,7 @@
 
 namespace fogline::test {
 
-// Steps of a watched run, and its pace, at which each step takes a millisecond.
+// Number of steps of a watched run, and its pace. At this pace each step takes a millisecond.
 inline constexpr int kSteps = 300;
 inline constexpr int kPace = 100;
 
@@ -78,7 +78,7 @@ class WatchedRun {
     WaitUntil([&] { return step_ >= step; }, "step " + std::to_string(step));
   }
 
-  /// Waits this long for a message, and handles all messages that have come.
+  /// Waits for a message, at most for this time, and handles all messages that have come.
   void Listen(Duration time) {
     if (bus_.Wait(time)) bus_.Drain();
   }

@@ -1,4 +1,4 @@
-// A run whose roles, all but the recorder, are started by hand on the machines of a laboratory.
+// A run whose roles, except the recorder, are started by hand on the machines of a laboratory.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -43,7 +43,7 @@ class ByHandTest : public NetworkTest {
     more.insert(more.end(), {"--lcm-url", kUrl});
     return lab[0].On(Run(more));
   }
-  /// Every role must leave by itself at the end of the run.
+  /// Expects that every role leaves by itself at the end of the run.
   void ExpectAllLeave() {
     for (const auto& [role, process] : roles_) {
       EXPECT_EQ(process->Wait(), 0) << role << ": " << process->Err();

@@ -1,4 +1,4 @@
-// All roles but the recorder are started by hand, in different orders.
+// All roles except the recorder are started by hand, in different orders.
 #include "tests/integration/hosts/by_hand.h"
 
 #include <gtest/gtest.h>

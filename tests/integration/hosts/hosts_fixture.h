@@ -29,7 +29,8 @@ class HostsTest : public NetworkTest {
     for (const std::string& role : roles) options.insert(options.end(), {"--on", On(role, "lab2")});
     return options;
   }
-  /// A run on the first machine of a laboratory. `ssh` is the command in place of ssh.
+  /// The command of a run on a machine of a laboratory. `ssh` is the command that the run calls in
+  /// place of ssh.
   std::vector<std::string> RunFrom(const Machine& machine, const std::string& ssh,
                                    const std::vector<std::string>& places,
                                    const std::vector<std::string>& more = {}) {
@@ -38,7 +39,7 @@ class HostsTest : public NetworkTest {
     options.insert(options.end(), more.begin(), more.end());
     return machine.On(Run(options));
   }
-  /// From now on no UDP datagram passes between the machines.
+  /// Blocks all UDP datagrams between the machines.
   static void BlockUdpBetween(const Lab& lab) {
     for (std::size_t i = 0; i < lab.machines().size(); ++i) {
       lab[i].Do(
@@ -47,10 +48,11 @@ class HostsTest : public NetworkTest {
           std::to_string(i + 1) + " meta l4proto udp drop; }; }'");
     }
   }
-  /// Waits until the log of a run has a dozen steps. Only a run with a pace is then under way.
+  /// Waits until the log of a run has a dozen steps. Only a run with a pace still continues at this
+  /// time.
   [[nodiscard]] bool IsUnderWay() const { return GrowsTo(20'000, Log()); }
 
-  /// Makes a copy of the program `fogline` that differs from it by its version only.
+  /// Makes a copy of the program `fogline`. The copy differs from the program only by its version.
   /// @return what the copy prints for --version
   static std::string MakeOtherVersion(const std::string& copy) {
     const std::string own = RunCommand({Program("fogline"), "--version"}).out;
@@ -68,7 +70,7 @@ class HostsTest : public NetworkTest {
     return printed.substr(0, printed.find('\n'));
   }
 
-  // The tests that are the same with each kind of connection. ----------------------------------
+  // Tests that are the same for each kind of connection. ---------------------------------------
 
   void ExpectTheDigestOfDirect(const Lab& lab, const std::string& ssh) {
     const auto result =

@@ -19,7 +19,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::StartsWith;
 
-/// Two machines, and a command in place of ssh that starts commands on the second one.
+/// Two machines, and a command in place of ssh that starts commands on the second machine.
 class EnteredHostsTest : public HostsTest {
  protected:
   void SetUp() override {
@@ -27,14 +27,14 @@ class EnteredHostsTest : public HostsTest {
     if (IsSkipped() || HasFatalFailure()) return;
     lab_.emplace(2);
     std::ofstream script(folder_.File("enter"));
-    // The last argument is the command, as ssh gets it. SSH_CONNECTION is what sshd would set.
+    // The last argument is the command that ssh would get. SSH_CONNECTION is what sshd would set.
     script << "for command; do :; done\nexport SSH_CONNECTION='10.76.67.1 1 10.76.67.2 22'\nexec";
     for (const std::string& word : (*lab_)[1].On({"sh", "-c"})) script << " '" << word << "'";
     script << " \"$command\"\n";
   }
   const Lab& lab() const { return *lab_; }
   std::string Enter() const { return "sh '" + folder_.File("enter") + "'"; }
-  /// The error text of a run with this command in place of ssh, which fails.
+  /// The error text of a run with `ssh` in place of ssh. The run must fail.
   std::string Failure(const std::string& ssh, const std::vector<std::string>& places) {
     const Outcome outcome = RunCommand(RunFrom(lab()[0], ssh, places));
     EXPECT_EQ(outcome.code, 3) << outcome.err;
@@ -84,7 +84,8 @@ TEST_F(EnteredHostsTest, EndTheRunWhenTheConnectionEnds) {
 }
 
 TEST_F(EnteredHostsTest, PrintTheLastLinesOfARoleWithTheNameOfItsMachine) {
-  // A program of the other machine that ends by itself, in place of the role's own.
+  // GIVEN that the program of the ACC on the other machine is replaced by a script that ends by
+  // itself
   std::ofstream(folder_.File("fogline-acc")) << "#!/bin/sh\necho 'no sensor' >&2\nexit 3\n";
   std::filesystem::permissions(folder_.File("fogline-acc"), std::filesystem::perms::owner_all);
   std::filesystem::copy(Program("fogline"), folder_.File("fogline"));

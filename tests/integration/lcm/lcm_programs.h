@@ -33,7 +33,7 @@ inline bool Mark(runtime::Bus& bus, const std::string& channel, const std::funct
 }
 
 /// The command, with real-time priority if the system permits this. lcm-logger queues 30 messages
-/// and loses further ones. Without this priority, on a busy machine, lcm-logger would lose the
+/// and loses further messages. Without this priority, on a busy machine, lcm-logger would lose the
 /// messages of some milliseconds.
 inline std::vector<std::string> BeforeOtherWork(std::vector<std::string> command) {
   const std::vector<std::string> first{"chrt", "--rr", "1"};

@@ -101,9 +101,9 @@ std::size_t PlayedAndVerified(const std::string& log, const std::string& key) {
 constexpr std::int64_t kStepsOfSpy = 10;
 
 /// The driver of a run. The driver answers for a step only after lcm-logger has written all earlier
-/// messages. lcm-logger queues 30 messages, and lcm-spy queues those that fit into its socket. On a
-/// busy machine both programs lose further messages. A run that waits for its driver sends fewer
-/// messages at a time.
+/// messages. lcm-logger queues 30 messages, and lcm-spy queues as many as the buffer of its socket
+/// holds. On a busy machine both programs lose further messages. A run that waits for its driver
+/// sends fewer messages at a time.
 class DriverThatWaits {
  public:
   DriverThatWaits(const std::string& url, const std::string& key, Logger& logger, Spy& spy)
@@ -264,7 +264,7 @@ TEST(LcmToolsTest, LogplayerPlaysEveryMessageToASubscriberThatDecodesIt) {
   // THEN every message has arrived, in order, and decodes
   Traffic logged = ReadTraffic(log);
   EXPECT_EQ(logged.erase(std::string(log::kLogSealChannel)), 1U);   // no process sends a seal
-  EXPECT_EQ(logged.erase(std::string(log::kLogGraphChannel)), 1U);  // nor a graph
+  EXPECT_EQ(logged.erase(std::string(log::kLogGraphChannel)), 1U);  // no process sends a graph
   EXPECT_TRUE(received == logged);
   EXPECT_EQ(received["TRUTH"].size(), 500U);
   EXPECT_TRUE(undecodable.empty());

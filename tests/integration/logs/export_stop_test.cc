@@ -25,7 +25,7 @@ using ::testing::StartsWith;
 using Words = std::vector<std::string>;
 using FilesByName = std::map<std::string, std::string>;  // the contents of each file
 
-/// An export into a folder in which one file is a pipe that no process reads. The export waits at
+/// An export into a folder in which one file is a pipe that no process reads. The export blocks at
 /// this pipe after it has written some of its files.
 class HaltedExport {
  public:
@@ -44,7 +44,8 @@ class HaltedExport {
   Background& process() { return *process_; }
   bool WaitUntilItWaits() const {
     const auto end = std::chrono::steady_clock::now() + kPatience;
-    // No event shows how full a pipe is, and reading would empty the pipe.
+    // The test asks the kernel again and again how full the pipe is. No event shows this, and
+    // reading would empty the pipe.
     for (int bytes = 0; bytes < 4096; std::this_thread::sleep_for(kLookEvery)) {
       if (ioctl(pipe_, FIONREAD, &bytes) != 0 || std::chrono::steady_clock::now() > end) {
         return false;

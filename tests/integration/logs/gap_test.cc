@@ -1,5 +1,6 @@
-// Logs that lack messages: what a lossy or late logger leaves, and logs of several runs. The verbs
-// use what there is, name what is missing, and compute nothing from a gap.
+// Logs that lack messages, because the logger lost messages or began late, and logs of several
+// runs. The verbs use the messages in the log, name the missing messages, and compute nothing from
+// a gap.
 #include <algorithm>
 #include <csignal>
 #include <filesystem>
@@ -226,7 +227,7 @@ TEST_F(GapTest, ALogOfSeveralRunsNamesThemAndIsReadForTheChosenOne) {
 }
 
 TEST_F(GapTest, ALogThatBeginsLateSaysWithItsDigestWithWhichStep) {
-  // GIVEN a log without its first steps, in which RUN comes behind some messages of its run
+  // GIVEN a log without its first steps, in which RUN comes after some messages of its run
   const std::string late = folder_.File("late.lcm");
   {
     log::EventLogReader reader(whole_);
@@ -282,7 +283,8 @@ TEST_F(GapTest, AFileOfLcmLoggerThatBeganInTheMiddleOfARunIsUsed) {
   }
   logger.Signal(SIGINT);
   ASSERT_EQ(logger.Wait(), 0);
-  // THEN the verbs show the steps that it has. lcm-logger may lose messages besides.
+  // THEN the verbs show the steps that the log has. lcm-logger may have lost some messages of these
+  // steps.
   const std::string scenario = folder_.File("effective.json");
   std::ofstream(scenario)
       << Fogline({"check", "scenario/paper.json", "--print", "--set", "/steps=300"}).out;

@@ -1,5 +1,5 @@
-// Logs and scenarios of older versions of Fogline, kept in the folder `kept`. Each is read with the
-// results of its time, or refused with the name of the version that wrote it.
+// Logs and scenarios of older versions of Fogline, kept in the folder `kept`. Each file gives the
+// results that its own version computed, or is refused with the name of the version that wrote it.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -26,7 +26,7 @@ const std::string kEarlyLog = kFolder + "early.lcm";
 
 std::string ThisVersion() { return "this is Fogline " + std::string(runtime::Version()); }
 
-/// Whether the messages of the steps and RUN have in a log the types of this build.
+/// Whether, in a log, RUN and the messages of the steps have the types of this build.
 bool HasTypesOfThisBuild(const std::string& log) {
   log::EventLogReader reader(log);
   while (const auto event = reader.Next()) {
@@ -37,8 +37,8 @@ bool HasTypesOfThisBuild(const std::string& log) {
   return true;
 }
 
-/// Copies the log of 0.1.0 as the log of a version with another TRACK: the type of these messages
-/// differs, and RUN tells so. The copy has no seal.
+/// Makes a copy of the log of 0.1.0 that looks like the log of a version with another type of
+/// TRACK: the fingerprints in TRACK and in RUN differ. The copy has no seal.
 void WriteLogOfOtherTypes(const std::string& log) {
   Rewrite(SourceDirectory() / kLog, log, [](std::string_view channel, Payload& payload) {
     if (channel == "TRACK") payload.front() ^= 1U;

@@ -1,4 +1,4 @@
-// `fogline replay --live`: recorded messages of some roles drive the living rest of the system.
+// `fogline replay --live`: recorded messages take the place of some roles, and all other roles run.
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -63,7 +63,7 @@ TEST_F(LiveReplayTest, TellsHowMuchTheTrackOfAnotherFusionDiffers) {
   EXPECT_GT(distance["largest"], 0.01);
   EXPECT_GT(distance["rms"], 0);
   EXPECT_LT(distance["rms"], distance["largest"]);
-  // THEN the new log has the recorded messages, and the difference that the two logs show
+  // THEN the new log has the recorded messages, and its TRACK differs by the reported distance
   const auto track_of = [](const std::string& log, std::int64_t step) {
     log::EventLogReader reader(log);
     track_t track{};
@@ -154,8 +154,8 @@ TEST_F(LiveReplayInRealtimeTest, DrivesTheSystemByTheWallClock) {
   const nlohmann::json live = Live({"--realtime", "--speed", "5"});
   EXPECT_EQ(live["steps"], 250);
   EXPECT_EQ(live["realtime"]["speed"], 5);
-  // A late message changes a step of the fusion, but not the recorded sensors: the tracks agree to
-  // within the largest step of the range.
+  // If a message is late, a step of the fusion differs. The recorded sensors do not differ, so the
+  // tracks agree to within the largest step of the range.
   EXPECT_GT(live["track"]["compared_steps"], 200);
   EXPECT_LT(live["track"]["distance_m"]["rms"], 0.1);
 }

@@ -1,4 +1,5 @@
-// The log of a run was changed, or a role is of another build. The run reports such a log or role.
+// Tests in which the log of a run is changed, or a role has another build. The run reports such a
+// log or role.
 #include <gmock/gmock-more-matchers.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>

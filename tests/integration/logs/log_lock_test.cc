@@ -89,11 +89,11 @@ TEST_F(LogLockTest, ALogStaysLockedWhileItsRunStandsStillAndWhileItsRecorderIsSt
   Background first(With(run_, {"--pace", "5"}));
   ASSERT_TRUE(first.WaitForErr("processes: "));
   ASSERT_TRUE(GrowsTo(1, log_));
-  // WHEN the run is stopped and its recorder is dead, THEN other runs still may not write the log
+  // WHEN the run is stopped and its recorder is killed, THEN other runs still may not write the log
   first.Signal(SIGSTOP);
   kill(PidOf(first.Err(), "recorder"), SIGKILL);
   ExpectRefusalOfASecondRun(first.pid());
-  // AND the recorder that replaces the dead one continues the log to its end
+  // AND the next recorder continues the log to its end
   first.Signal(SIGCONT);
   EXPECT_EQ(first.Wait(), 0);
   EXPECT_THAT(first.Err(), HasSubstr("started again as pid"));

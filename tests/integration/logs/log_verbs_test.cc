@@ -1,4 +1,5 @@
-// What verbs that read logs say of logs that are cut off, and of steps of another length.
+// Outputs of the verbs that read logs, for logs that are cut off, and for logs with another step
+// length.
 #include <cmath>
 #include <string>
 #include <vector>

@@ -1,4 +1,5 @@
-// MCAP's own library reads an exported log: every number of every channel is that of the CSV export.
+// MCAP's own library reads an exported log: every number of every channel equals that of the CSV
+// export.
 import assert from "node:assert/strict";
 import {execFileSync} from "node:child_process";
 import {mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync} from "node:fs";
@@ -55,7 +56,7 @@ async function indexed(t, name = file) {
   return McapIndexedReader.Initialize({readable: source, decompressHandlers});
 }
 
-/** The decoder of a schema, made from nothing but the schema. */
+/** The decoder that a schema alone describes. */
 function decoderOf(schema) {
   assert.equal(schema.encoding, "protobuf");
   const types = protobuf.Root.fromDescriptor(FileDescriptorSet.decode(schema.data));
@@ -86,13 +87,15 @@ function readCsv(name) {
   return lines.map((line) => Object.fromEntries(line.split(",").map((text, i) => [names[i], text])));
 }
 
-/** Whether both have the same bits; a boolean is 0 or 1, a 64-bit integer a Long. */
+/**
+ * Whether a value and a text have the same bits. A boolean is 0 or 1; a 64-bit integer is a Long.
+ */
 function isSame(value, text) {
   if (protobuf.util.Long.isLong(value)) return value.toString() === text;
   return Object.is(Number(value), Number(text));
 }
 
-/** Compares an exported log with its tables, which are this many. */
+/** Compares an exported log with its tables. @param count the number of tables */
 async function compareWithCsv(reader, csv, count) {
   const decoders = new Map([...reader.schemasById.values()].map((schema) => [schema.id, decoderOf(schema)]));
   const rows = new Map();

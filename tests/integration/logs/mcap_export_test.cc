@@ -1,4 +1,4 @@
-// `fogline export --mcap` as its user meets it. mcap.test.js reads the numbers.
+// `fogline export --mcap` on the command line. mcap.test.js compares the numbers.
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -43,7 +43,7 @@ TEST_F(McapExportTest, ReplacesAnExportIfForcedAndNoOtherFile) {
   EXPECT_EQ(Export({"--mcap", mcap_}).err,
             mcap_ + ": error: --mcap: the file exists; --force replaces it\n");
   EXPECT_EQ(Export({"--mcap", mcap_, "--force"}).code, 0);
-  // A file of another program, which has its name in another place of the same record.
+  // An MCAP file that another program has written.
   std::ofstream(mcap_) << "\x89MCAP0\r\n\1\20another program";
   const Outcome outcome = Export({"--mcap", mcap_, "--force"});
   EXPECT_EQ(outcome.code, 2);

@@ -1,4 +1,4 @@
-// The wall clock of each step: in the log, outside of the digest, and in exports.
+// The wall clock of each step is in the log and in exports, but not in the digest.
 #include <chrono>
 #include <csignal>
 #include <sstream>
@@ -87,7 +87,7 @@ TEST_F(WallClockTest, InLockstepIsThereAfterARunWasResumed) {
   ASSERT_TRUE(GrowsTo(60'000, log_));
   run.Signal(SIGINT);
   ASSERT_EQ(run.Wait(), 130) << run.Err();
-  // WHEN it goes on without the option
+  // WHEN the run is resumed without the option
   const Outcome resumed = Fogline({"run", "--resume", log_, "--json", "--quiet"});
   ASSERT_EQ(resumed.code, 0) << resumed.err;
   EXPECT_EQ(nlohmann::json::parse(resumed.out)["digest"], digest);
@@ -121,7 +121,7 @@ TEST_F(WallClockTest, IsExportedAsATableOfItsOwn) {
   int count = 0;
   while (std::getline(rows, row)) ++count;
   EXPECT_EQ(count, 200);
-  // AND an export of a log without it removes the table of the older export
+  // AND an export of a log without wall clock removes the table of the older export
   Digest({});
   ASSERT_EQ(Fogline({"export", log_, "--out", out, "--force"}).code, 0);
   EXPECT_EQ(Content(out + "/WALL_CLOCK.csv"), "");

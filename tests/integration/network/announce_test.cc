@@ -1,6 +1,5 @@
-// top, doctor and roles find a run on its own port, although no user gives them the run's URL. Each
-// test has a meeting address of its own. So announcements on LCM's default address do not reach the
-// test.
+// top, doctor and roles find a run on its own port although they do not get the run's URL. Each
+// test has its own meeting address, so it receives no announcements of other runs.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -310,8 +309,7 @@ TEST(AnnounceTest, WhatIsForgedIsRefusedAndCountedAndDisturbsNoRun) {
   Background driver(meeting.Command("fogline-driver", {}));
   ASSERT_TRUE(driver.WaitForErr("waiting for a run", kPatience));
   Top top(meeting);
-  // GIVEN thousands of beacons that no runner of this machine sends, and messages that are no
-  // beacons
+  // GIVEN thousands of forged beacons, and messages on the beacons' channel that are not beacons
   const auto attack = [&] {
     for (std::int64_t i = 1; i <= 1000; ++i) {
       beacon_t beacon = Beacon(i, "udpm://10.0.0.1:7700");
@@ -337,7 +335,7 @@ TEST(AnnounceTest, WhatIsForgedIsRefusedAndCountedAndDisturbsNoRun) {
   ASSERT_EQ(run.Wait(), 0) << run.Err();
   EXPECT_EQ(json::parse(run.Out())["digest"], DirectDigest());
   EXPECT_EQ(driver.Wait(), 0) << driver.Err();
-  // AND doctor says that it refused announcements
+  // AND doctor reports that it refused announcements
   Background doctor(meeting.Command("fogline", {"doctor"}));
   const TimePoint end = Clock::now() + kPatience;
   while (IsAlive(doctor.pid()) && Clock::now() < end) {
@@ -371,7 +369,7 @@ class AnnounceOnMachineTest : public NetworkTest {};
 
 TEST_F(AnnounceOnMachineTest, ARunThatCannotAnnounceItselfGoesOnAndSaysNothingOfThat) {
   const Machine island("island");
-  // If LCM_DEFAULT_URL names a relay (TCP), no run announces itself.
+  // If LCM_DEFAULT_URL names a relay (TCP), runs do not announce themselves.
   std::vector<std::string> command{"env", "LCM_DEFAULT_URL=tcpq://127.0.0.1:1"};
   const auto rest = Run({"--transport", "udpm", "--set", "/steps=30"});
   command.insert(command.end(), rest.begin(), rest.end());

@@ -1,4 +1,5 @@
-// Processes or a machine of a run are unreachable for longer than other processes wait by default.
+// Tests in which processes or a machine of a run are unreachable for longer than other processes
+// wait by default.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -18,7 +19,7 @@
 namespace fogline::test {
 
 inline constexpr const char* kAwayUrl = "udpm://239.255.76.67:7700?ttl=1";
-// The duration of an absence. It is longer than the time for which a role waits for its runner.
+// The duration of an absence, which is longer than a role waits for its runner.
 inline constexpr auto kAway = runtime::RunnerWatch::kGone + milliseconds(2000);
 
 /// A run with its driver on another machine.
@@ -54,7 +55,7 @@ inline Absence Stopped(std::string name, std::vector<std::string> options,
 
 class AwayTest : public NetworkTest, public testing::WithParamInterface<Absence> {
  protected:
-  /// Executes a run with this absence in the middle. The result must be that of an undisturbed run.
+  /// Makes a run with this absence in the middle. The result must be that of an undisturbed run.
   void ExpectAbsenceCostsNoRun(const Absence& absence) {
     const Lab lab(2);
     Background driver(lab[1].On({Program("fogline-driver"), "--lcm-url", kAwayUrl}));

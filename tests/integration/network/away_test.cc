@@ -1,5 +1,5 @@
 // All processes of a run are stopped for longer than each process waits for another one by default.
-// A run is stopped in this way by Ctrl-Z, or when its container is frozen.
+// Ctrl-Z stops a run in this way, and so does the freezing of its container.
 #include <gtest/gtest.h>
 
 #include <vector>

@@ -1,5 +1,5 @@
 // The lockstep on networks that lose, repeat, reorder, delay and damage messages. The run gets
-// slower; its result stays the same.
+// slower, and its result stays the same.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ namespace fogline::test {
 
 class BadNetworkTest : public testing::Test {
  protected:
-  /// The first steps of the paper's scenario.
+  /// Runs the first `steps` steps of the paper's scenario. @return the JSON result
   nlohmann::json Run(const std::vector<std::string>& more, int steps) {
     std::vector<std::string> command{Program("fogline"),
                                      "run",

@@ -1,5 +1,5 @@
-// The first steps on a bad network, and refused values of --faults. network_test.cc has networks
-// that the kernel simulates.
+// Short runs on a bad network, and refused values of --faults. network_test.cc has networks that
+// the kernel simulates.
 #include <gtest/gtest.h>
 
 #include <string>

@@ -1,4 +1,4 @@
-// Processes that share a network with a run, and with logs that are played.
+// Programs that share a network with a run, or with a log that is played.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -28,7 +28,7 @@ TEST(CoexistenceTest, ALogThatIsPlayedCapturesNoWaitingRole) {
   const std::string log = meeting.Log();
   Background driver(meeting.Command("fogline-driver", {}));
   ASSERT_TRUE(driver.WaitForErr("waiting for a run")) << driver.Err();
-  // WHEN lcm-logplayer plays the log where the driver waits
+  // WHEN lcm-logplayer plays the log at the address at which the driver waits
   const Outcome player =
       RunCommand({"lcm-logplayer", "--speed=20", "--lcm-url=" + meeting.url(), log});
   ASSERT_EQ(player.code, 0) << player.err;
@@ -99,7 +99,8 @@ TEST(SilenceTest, TopAndDoctorListTheRolesThatWaitBeforeAnyRun) {
   const std::string own = runtime::FreshMulticastUrl();
   const Background driver(meeting.Command("fogline-driver", {}));
   const Background acc(meeting.Command("fogline-acc", {"--lcm-url", own}));
-  // WHEN top and doctor look at the meeting address, THEN they list both with place and version
+  // WHEN top and doctor look at the meeting address, THEN they list both roles with place and
+  // version
   json waiting;
   const TimePoint end = Clock::now() + kPatience;
   while (waiting.size() < 2 && Clock::now() < end) waiting = TopOnce(meeting)["waiting"];

@@ -1,5 +1,5 @@
-// Every program obeys LCM_DEFAULT_URL, as LCM's own programs do. A program that waits for a process
-// says which command starts that process. The wait has a limit.
+// Every program uses LCM_DEFAULT_URL, as LCM's own programs do. A program that waits for a process
+// prints the command that starts this process. The wait has a limit.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>

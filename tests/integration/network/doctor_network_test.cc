@@ -1,4 +1,4 @@
-// `fogline doctor` behind firewalls and on two machines, and its recipes.
+// `fogline doctor` behind firewalls and on two machines, and the recipes that it prints.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -40,7 +40,7 @@ class DoctorNetworkTest : public NetworkTest {
     }
     return {};
   }
-  /// The script of a recipe, by the beginning of its title.
+  /// The script of the recipe whose title begins with `title`.
   static std::string Script(const json& finding, const std::string& title) {
     for (const json& recipe : finding["recipes"]) {
       if (recipe["title"].get<std::string>().starts_with(title)) return recipe["script"];
@@ -50,7 +50,7 @@ class DoctorNetworkTest : public NetworkTest {
   }
 };
 
-// A firewall that accepts its own machine's established traffic and nothing else.
+// Commands for a firewall that accepts only established traffic of its own machine.
 constexpr const char* kClosed =
     "nft 'table inet filter { chain input { type filter hook input priority filter; policy drop; "
     "ct state established,related accept; }; }'";
@@ -72,7 +72,7 @@ TEST_F(DoctorNetworkTest, GivesFindingsBehindAFirewallThatPassesNothingAndItsRec
   EXPECT_EQ(finding["level"], "problem") << closed;
   EXPECT_EQ(finding["what"], "a message to 239.255.76.67:7700 does not come back to this machine");
   EXPECT_FALSE(Found(closed, "clock").is_null()) << "the other examinations are made, too";
-  // WHEN the recipe is pasted
+  // WHEN the script of the recipe is executed
   lab[0].Do(Script(finding, "nftables, until the next start"));
   EXPECT_EQ(Found(Doctor(lab[0]), "multicast_loopback")["level"], "ok");
 }
@@ -138,7 +138,8 @@ TEST_F(DoctorNetworkTest, ItsRecipesForARouteHelp) {
   ASSERT_EQ(finding["level"], "problem") << finding;
   lab[0].Do(Script(finding, "until the next start"));
   EXPECT_EQ(Found(Doctor(lab[0]), "multicast_route")["level"], "ok");
-  // AND ifupdown's script, in a folder in place of /etc, adds the route when the interface comes up
+  // AND ifupdown's script adds the route when the interface comes up. The test uses a folder in
+  // place of /etc
   lab[0].Do("ip route del 239.0.0.0/8 dev eth0");
   const ScratchFolder folder;
   std::filesystem::create_directories(folder.path() / "network/if-up.d");

@@ -1,7 +1,7 @@
 // Sends datagrams to a multicast group: noise, and datagrams that resemble the messages of a run.
-// No process should accept these datagrams. The program listens to the genuine messages of this
-// run. It never sends a false message with right type, run and step and with finite values. Only a
-// signature could distinguish such a message from a genuine one.
+// No process should accept these datagrams. The program uses the genuine messages of the run as
+// templates. It never sends a false message that has the right type, run and step and finite
+// values, because only a signature could distinguish such a message from a genuine one.
 #include <arpa/inet.h>
 #include <linux/filter.h>
 #include <netinet/in.h>
@@ -39,7 +39,8 @@ using Buffer = std::vector<std::uint8_t>;
 constexpr std::string_view kWholeMagic = "LC02";
 constexpr std::string_view kFragmentMagic = "LC03";
 constexpr std::size_t kWholeHeader = 8;
-// Most datagrams of noise have the size of messages: each fits into one Ethernet frame.
+// Upper limit of the size of random data, bytes: with this size, a datagram fits into one Ethernet
+// frame.
 constexpr std::size_t kFrame = 1400;
 // The payload of the largest UDP datagram over IPv4, bytes.
 constexpr std::size_t kMaxDatagram = 65507;
@@ -60,8 +61,7 @@ void WriteInt64(Buffer& to, std::size_t offset, std::int64_t value) {
   std::ranges::copy(bytes, to.begin() + static_cast<std::ptrdiff_t>(offset));
 }
 
-/// The multicast group. This class sends to the group and receives the datagrams of other
-/// processes.
+/// The multicast group. An object sends to the group and receives the datagrams of other processes.
 class Group {
  public:
   Group(const std::string& address, int port, int ttl)
@@ -101,8 +101,8 @@ class Group {
   static void Set(int fd, int level, int option, const Value& value) {
     Check(setsockopt(fd, level, option, &value, sizeof(value)), "setsockopt");
   }
-  /// Drops the datagrams of this process. A socket filter sees a datagram from its UDP header on,
-  /// which begins with the sender's port.
+  /// Drops the datagrams of this process. The socket filter gets a datagram without its IP header:
+  /// the first bytes are the UDP header, which begins with the sender's port.
   void IgnoreOwn() const {
     sockaddr_in own{};
     socklen_t size = sizeof(own);

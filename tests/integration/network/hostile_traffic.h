@@ -1,4 +1,4 @@
-// A run on a network with datagrams that are not the run's messages.
+// A run on a network that also has datagrams of a hostile program.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -51,8 +51,8 @@ class HostileTrafficTest : public NetworkTest {
     return {ResultOf(run), nlohmann::json::parse(hostile.Out(), nullptr, false)};
   }
 
-  /// As RunUnder(). On a busy machine the hostile program may get too little of the processor
-  /// during the run. Then a second and a third run are four times as long as the one before.
+  /// Calls RunUnder(). On a busy machine the hostile program may send too few datagrams during the
+  /// run. Then a second and a third run follow, each four times as long as the run before.
   /// @param counted the kind of which enough must be sent, or "sent" for all kinds together
   Ended RunUnderEnough(const std::vector<std::string>& more, const std::string& counted,
                        Hostility hostility) {

@@ -1,4 +1,4 @@
-// A meeting address for the programs of a test that get no URL on their command line.
+// The meeting address of the programs of a test that get no URL on their command line.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -58,7 +58,7 @@ inline Place PlaceOf(Background& run) {
   return place;
 }
 
-/// The document in which `fogline top` describes one interval.
+/// What `fogline top --once --json` prints after 3 s: the document of one interval.
 inline nlohmann::json TopOnce(const Meeting& meeting) {
   const Outcome top =
       RunCommand(meeting.Command("fogline", {"top", "--once", "--json", "--interval", "3"}));

@@ -1,5 +1,5 @@
-// The lockstep on networks that the kernel simulates. The machines of these networks have their own
-// addresses and lose messages.
+// The lockstep on networks that the kernel simulates: the machines have their own addresses, and
+// some of the networks lose messages.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -233,7 +233,7 @@ TEST_F(NetworkTest, AMachineWithoutAMulticastRouteRunsAsAnyOther) {
   EXPECT_EQ(result["transport"], "udpm");
   EXPECT_EQ(result["digest"], Undisturbed());
   EXPECT_EQ(std::ranges::count(run.err, '\n'), 2) << run.err;
-  // AND a table runs there, too
+  // AND a table runs on this machine, too
   const Outcome table = RunCommand(machine.On(
       {Program("fogline"), "table", "scenario/paper.json", "--transport", "udpm", "--json"}));
   EXPECT_EQ(table.code, 0) << table.err;

@@ -1,6 +1,6 @@
-// Messages of a run cannot be sent for some time. An interface, its address or its route is removed
-// and restored, or a firewall drops outgoing messages. Each test has a network that the kernel
-// simulates.
+// For some time, messages of a run cannot be sent: an interface, its address or its route is
+// removed and restored, or a firewall drops outgoing messages. Each test has a network that the
+// kernel simulates.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -42,7 +42,7 @@ class OutageTest : public NetworkTest {
         "ip link add eth0 type veth peer name peer0; ip addr add 192.0.2.1/24 dev eth0;"
         "ip link set eth0 up; ip link set peer0 up; ip route add default via 192.0.2.2");
   }
-  /// A run of 2.5 s. Its time limits are longer than any outage here.
+  /// A run of 2.5 s. Its time limits are longer than any outage of these tests.
   std::vector<std::string> PacedRun(std::vector<std::string> more = {}) {
     more.insert(more.end(), {"--pace", "20"});
     return Run(more);
@@ -191,7 +191,7 @@ TEST_F(OutageTest, AFirewallThatDropsWhatIsSentChangesNoResultAndIsTold) {
     EXPECT_EQ(one["error"], "Operation not permitted");
   }
   EXPECT_GT(failed, 50) << "of 4500 messages and more";
-  // AND the printed text says the same
+  // AND the printed text names these messages, too
   const Outcome text = RunCommand(
       machine.On({Program("fogline"), "run", "scenario/paper.json", "--log", Log() + ".text"}));
   EXPECT_THAT(text.out, ContainsRegex("\nmessages that could not be sent: .*world [0-9]+.* "
@@ -205,7 +205,7 @@ TEST_F(OutageTest, AFirewallThatLetsNothingOutEndsTheRunWithItsReason) {
   ASSERT_TRUE(GrowsTo(20'000, Log()));
   machine.Do(kFirewall);
   EXPECT_EQ(run.Wait(), 3);
-  // The run may first notice that it cannot send messages, or that it receives none.
+  // The run may first notice that it cannot send messages, or that it receives no messages.
   EXPECT_THAT(run.Err(),
               AllOf(ContainsRegex("(nothing could be sent for 1\\.[0-9] s: |messages that "
                                   "could not be sent: .*)\\(?Operation not permitted"),
@@ -261,7 +261,8 @@ TEST_F(OutageTest, AGroupIsLeftOnTheInterfaceToWhichTheRouteLedBefore) {
   const auto has_group = [&machine](const std::string& interface) {
     return runtime::HasGroup(machine.Do("cat /proc/net/igmp"), interface, "239.255.76.67");
   };
-  // The driver also says at the meeting address, whose group is the same, that it waits.
+  // The driver also announces at the meeting address that it waits. The meeting address has the
+  // same group.
   const Background driver(machine.On({Program("fogline-driver"), "--lcm-url", kUrl}));
   const TimePoint end = Clock::now() + kPatience;
   while (!has_group("eth0") && Clock::now() < end) LastFor(milliseconds(50));

@@ -1,4 +1,4 @@
-// The tap on a multicast group, with real LCM instances as senders.
+// The tap on a multicast group. The senders are real LCM instances.
 #include "tools/watch/senders/packet_tap.h"
 
 #include <gtest/gtest.h>
@@ -26,8 +26,8 @@ SenderView SenderOn(const watch::Senders& senders, const std::string& channel) {
   return {};
 }
 
-/// Packets that the kernel has dropped before they reached a socket: it does so when a processor is
-/// too busy (netdev_max_backlog). They are lost on the network.
+/// Number of packets that the kernel has dropped before they reached a socket. The kernel drops
+/// packets if a processor is too busy (netdev_max_backlog). Such packets are lost on the network.
 std::int64_t DroppedByKernel() {
   std::ifstream table("/proc/net/softnet_stat");  // a line for each processor
   std::int64_t sum = 0;
@@ -106,7 +106,7 @@ TEST_F(PacketTapTest, TellsItsOwnOverflowFromLossOnTheNetwork) {
   const std::int64_t dropped_before = DroppedByKernel();
   const NumberedSender sender(url_);
   for (std::uint32_t number = 0; number < kFlood; ++number) sender.Send(number, "FLOOD");
-  // WHEN the tap reads again, and the sender goes on
+  // WHEN the tap reads again, and the sender continues
   std::uint32_t number = kFlood;
   ASSERT_TRUE(DrainUntil(*tap_, [&] {
     sender.Send(number++, "FLOOD");
@@ -116,7 +116,7 @@ TEST_F(PacketTapTest, TellsItsOwnOverflowFromLossOnTheNetwork) {
     const auto counts = SenderOn(senders_, "FLOOD").counts;
     return counts.received + counts.lost + counts.missed_here == number;
   }));
-  // THEN the missing messages are its own fault
+  // THEN the missing messages count as missed by the tap, except those that the kernel dropped
   const auto counts = SenderOn(senders_, "FLOOD").counts;
   EXPECT_EQ(counts.missed_here, senders_.View(Clock::now()).own_overflow);
   EXPECT_LE(counts.lost, DroppedByKernel() - dropped_before);

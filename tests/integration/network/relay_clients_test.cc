@@ -1,4 +1,4 @@
-// fogline-relay with clients that misbehave.
+// fogline-relay with clients that break the rules of the protocol or do not read.
 #include <arpa/inet.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

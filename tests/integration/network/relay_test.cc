@@ -1,5 +1,5 @@
-// fogline-relay with real programs: ours and Debian's. (relay_clients_test.cc has clients that
-// misbehave.)
+// fogline-relay with real programs, both ours and Debian's. (relay_clients_test.cc has clients that
+// break the rules.)
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <lcm/lcm.h>

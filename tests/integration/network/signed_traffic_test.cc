@@ -1,5 +1,5 @@
-// A process without a key, with another key, or with copies of other processes' messages has no
-// effect on a signed run.
+// A process has no effect on a signed run if it has no key or another key, or if it sends copies of
+// other processes' messages.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <lcm/lcm.h>

@@ -11,7 +11,8 @@ namespace {
 
 using testing::HasSubstr;
 
-// Prints the steps of TRUTH that have come, when the last one has come.
+// Prints the number of the received steps of TRUTH, the first step and the last step, after the
+// message of the last step.
 constexpr const char* kListener = R"(
 import fogline_lab as fl
 

@@ -1,5 +1,6 @@
-// A class in Python takes a role of a run. The run has the result of the same role in C++, also on
-// a network with signatures, in real time, and after the process was killed.
+// A class in Python takes a role of a run. The run has the same result as with the role in C++.
+// This also holds with signatures and after the process was killed. In real time, the class takes
+// part in the run, too.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -20,14 +21,14 @@ namespace {
 
 using testing::HasSubstr;
 
-/// The block of a page that contains a text, without its fence.
+/// The text of the Python block of a page in which `text` is.
 std::string BlockWith(const std::string& text, const std::string& page) {
   const std::string fence = "```python\n";
   const std::size_t begin = page.rfind(fence, page.find(text)) + fence.size();
   return page.substr(begin, page.find("```", begin) - begin);
 }
 
-// Answers each step with the message of a log, and expects the inputs of the log.
+// Answers each step with the message in a log, and expects that the inputs equal those in the log.
 constexpr const char* kReplayed = R"(
 import sys
 import fogline_lab as fl
@@ -63,7 +64,7 @@ class PythonRoleTest : public testing::Test {
     if (!PythonRunsRoles()) return MachineLacks("pybind11, so fogline_lab cannot run a role");
   }
 
-  /// The driver of the page, copied out of it. @return its file
+  /// Copies the driver from the page docs/python.md. @return its file
   std::string DriverOfThePage() const {
     const std::string page = Content(SourceDirectory() / "docs/python.md");
     return WriteScript(folder_, BlockWith("fl.serve(MyDriver)", page));
@@ -98,7 +99,7 @@ TEST_F(PythonRoleTest, TheDriverOfThePageIsThatOfTheExamples) {
 }
 
 TEST_F(PythonRoleTest, KilledInTheMiddleAndStartedAgainItCatchesUp) {
-  // GIVEN a run that lasts longer than the runner needs to detect a dead role
+  // GIVEN a run that lasts longer than the runner needs to notice the end of a role
   WatchedRun watched({"--external", "driver", "--stall-timeout", "60"}, 1500);
   const auto command = Python(DriverOfThePage(), {"--lcm-url", watched.url()});
   const Background first(command);
@@ -133,7 +134,7 @@ TEST_F(PythonRoleTest, EveryRoleThatComputesStepsMayBeInPython) {
     processes.emplace_back(Python(script, {roles.back(), recorded, "--lcm-url", url_}));
   }
   const Outcome run = RunCommand(Run(roles, steps));
-  // THEN each has got the inputs of the log, and the run has the digest of the log
+  // THEN each process has received the inputs in the log, and the run has the digest of the log
   ASSERT_EQ(run.code, 0) << run.err;
   EXPECT_EQ(nlohmann::json::parse(run.out)["digest"], nlohmann::json::parse(before.out)["digest"]);
   for (Background& process : processes) EXPECT_EQ(process.Wait(), 0) << process.Err();

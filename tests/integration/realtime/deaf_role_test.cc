@@ -1,6 +1,6 @@
-// Real time on networks that lose all messages of one channel. The run names a role that does not
-// receive this channel. If the runner has started this role, the runner starts it again. A run
-// fails if a role is deaf at the end of the run.
+// Real time on networks that lose all messages of one channel. The run names the roles that do not
+// receive this channel. If the runner has started such a role, the runner starts the role again. A
+// run fails if a role is deaf at the end of the run.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -53,7 +53,7 @@ TEST_F(DeafRoleTest, IsNamedAndStartedAgainAndComputesWhenItHears) {
                              ") has heard no TRUTH for "))
       << run.Err();
   machine.LoseNothing();
-  // THEN the run starts a role again that reads TRUTH, and this role computes until the end
+  // THEN the run starts again a role that reads TRUTH, and this role computes until the end
   EXPECT_EQ(run.Wait(), kFailed);
   const auto result = nlohmann::json::parse(run.Out(), nullptr, false);
   ASSERT_TRUE(result.is_object()) << run.Err();

@@ -1,5 +1,6 @@
-// Real time on networks that lose many messages for a while. When the network is clean again, every
-// role computes again, no matter which messages were lost. A run that succeeds has a complete log.
+// Real time on networks that lose many messages for a while. When the network loses no more
+// messages, every role computes again, no matter which messages were lost. A run that succeeds has
+// a complete log.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -38,9 +39,9 @@ struct BurstPlan {
   double clean_s;  // the time after each burst, without loss
 };
 
-/// The time from the moment at which the network was clean until the role was in time. A role is in
-/// time if it publishes a step within a period after the world began the step. The world is in time
-/// if it begins a step within two periods after the step before.
+/// The time from the end of the losses until the role was in time. A role is in time if it
+/// publishes a step within a period after the world began the step. The world is in time if it
+/// begins a step within two periods after the step before.
 struct BackAfterBurst {
   Role role;
   std::optional<double> after_s;
@@ -134,7 +135,7 @@ class BurstListener {
  private:
   void Heard(Role from, std::int64_t step, TimePoint now) {
     if (from == Role::kWorld) {
-      if (step <= newest_) return;  // sent again
+      if (step <= newest_) return;  // the world has sent the step again
       if (step == newest_ + 1 && now - newest_heard_ <= 2 * period_) back_.try_emplace(from, now);
       newest_ = step;
       newest_heard_ = now;
@@ -188,7 +189,8 @@ class BurstRun {
   // processors.
   static constexpr double kCommands_s = 1;
 
-  /// The run goes on after a collision: the cars can hit each other when each stops by itself.
+  /// The command line of the run. The run continues after a collision, because the cars can hit
+  /// each other when each car stops by itself.
   std::vector<std::string> Command() const {
     double run_s = 2 * kRest_s;
     for (const Burst& burst : plan_.bursts) run_s += burst.length_s + plan_.clean_s + kCommands_s;
@@ -298,7 +300,7 @@ class LossBurstInRealtimeTest : public NetworkTest {
                                std::to_string(result.plan.machines) + " machines";
       EXPECT_EQ(result.trouble, "") << what;
       EXPECT_EQ(result.back.size(), result.plan.bursts.size()) << what;
-      // A burst is no reason to start a role again. No role hangs, and no role is deaf for long.
+      // A burst must not cause the start of a role. No role hangs, and no role is deaf for long.
       EXPECT_EQ(result.restarts, 0) << what;
       restarts_ += result.restarts;
       for (std::size_t i = 0; i < result.back.size(); ++i) {

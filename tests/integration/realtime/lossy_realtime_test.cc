@@ -1,5 +1,5 @@
 // Real time on a network that loses many messages. The tests examine when the recorder ends, which
-// steps its log has, and what the run reports about messages that stay lost.
+// steps its log has, and what the run reports about messages that the log lacks.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -42,7 +42,7 @@ class Listener {
     while (step_ < step && Clock::now() < end) bus_->Wait(milliseconds(20));
     return step_ >= step;
   }
-  /// Whether a process lives until the runner sends STOP.
+  /// Whether a process exists until the runner sends STOP.
   bool LivesUntilStop(pid_t process) {
     const TimePoint end = Clock::now() + kPatience;
     while (!stopped_ && IsAlive(process) && Clock::now() < end) bus_->Wait(milliseconds(5));
@@ -74,7 +74,7 @@ class LossyNetworkInRealtimeTest : public NetworkTest {
         Run({"--realtime", "--set", "/step_s=" + std::to_string(1.0 / kLossyRunRate_hz), "--set",
              "/steps=" + std::to_string(steps), "--lcm-url", kUrl}));
   }
-  /// Makes the network lose everything for this time. The tests are about the length of this pause.
+  /// Makes the network lose everything for this time. Some tests need a certain length of the loss.
   void LoseEverythingFor(Duration time) const {
     machine_->LoseUdp(100);
     std::this_thread::sleep_for(time);
@@ -109,8 +109,8 @@ TEST_F(LossyNetworkInRealtimeTest, ThatLosesAThirdAllTheTimeLeavesNoRoleDeaf) {
     EXPECT_EQ(outcome.code, kFailed);
     EXPECT_THAT(outcome.err, HasSubstr(kNotWhole));
   }
-  // Every role and the recorder receive and send until the end. Only messages near the end may be
-  // lost.
+  // Every role and the recorder receive and send until the end. The log may lack only messages near
+  // the end.
   const auto newest = NewestSteps();
   for (std::size_t i = 0; i < kNumChannels; ++i) {
     if (kChannels[i].pace != Pace::kStep) continue;
@@ -128,7 +128,7 @@ TEST_F(LossyNetworkInRealtimeTest, NearTheEndOfTheRunSendsNoRecorderAwayBeforeSt
   // WHEN the network loses everything for half of the last second
   ASSERT_TRUE(listener.WaitForStep(kSteps - kLossyRunRate_hz)) << run.Err();
   LoseEverythingFor(milliseconds(500));
-  // THEN the recorder lives until the runner sends STOP, and the log has the last step
+  // THEN the recorder exists until the runner sends STOP, and the log has the last step
   EXPECT_TRUE(listener.LivesUntilStop(recorder)) << run.Err();
   const int code = run.Wait();
   EXPECT_EQ(NewestSteps()[IndexOf<truth_t>()], kSteps - 1) << run.Err();

@@ -1,4 +1,4 @@
-// Whether a run in real time says which roles have real-time priority.
+// Whether a run in real time reports which roles have real-time priority.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -19,8 +19,8 @@ namespace {
 using nlohmann::json;
 using testing::HasSubstr;
 
-/// The beginning of a command line for an ordinary user: without the capabilities and limits by
-/// which the kernel grants real-time priority.
+/// The beginning of a command line for an ordinary user. Such a user lacks the capabilities and
+/// limits by which the kernel grants real-time priority.
 std::vector<std::string> WithoutPriority() {
   std::vector<std::string> command{"prlimit", "--rtprio=0", "--memlock=8388608"};
   if (geteuid() == 0) {
@@ -59,7 +59,7 @@ TEST(PriorityInRealtimeTest, IsSaidToBeMissingAtTheStartAndInTheResult) {
   const json priority = json::parse(run.out)["realtime"]["priority"];
   EXPECT_EQ(priority["refused"].size(), kRoles.size());
   EXPECT_TRUE(priority["granted"].empty());
-  // AND the log says so later, too
+  // AND the log shows it later, too
   const std::string log = folder.File("run.lcm");
   const json metrics = json::parse(RunCommand({Program("fogline"), "metrics", log, "--json"}).out);
   EXPECT_EQ(metrics[0]["realtime"]["priority"], priority);
@@ -67,7 +67,7 @@ TEST(PriorityInRealtimeTest, IsSaidToBeMissingAtTheStartAndInTheResult) {
   EXPECT_EQ(events[0]["priority"], priority);
   EXPECT_THAT(RunCommand({Program("fogline"), "events", log}).out,
               HasSubstr("  without real-time priority: world, radar, "));
-  // AND doctor says so, with a recipe
+  // AND doctor reports it, with a recipe
   std::vector<std::string> examine = WithoutPriority();
   examine.insert(examine.end(), {Program("fogline"), "doctor", "--json"});
   const json document = json::parse(RunCommand(examine).out);

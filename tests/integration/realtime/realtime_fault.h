@@ -1,5 +1,5 @@
-// Runs in real time: a role is killed or stopped while the automation drives. The tests judge the
-// motion of the cars from the log.
+// Runs in real time in which a role is killed or stopped while the automation drives. The tests
+// check the motion of the cars in the log.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -21,8 +21,8 @@
 namespace fogline::test {
 
 inline constexpr double kPeriodS = kStepS / kSpeed;
-// kDetection: the periods from a role's last message until a reader reports the loss. kInForce: the
-// periods from this report until the fallback acts.
+// kDetection is the time from a role's last message until a reader reports the loss. kInForce is
+// the time from this report until the fallback acts.
 inline constexpr std::int64_t kDetection = 3;  // periods
 inline constexpr std::int64_t kInForce = 1;
 // A message from the runner reaches a role within 100 ms, which are 5 periods.
@@ -46,7 +46,8 @@ inline std::string NameOfFault(const testing::TestParamInfo<Fault>& info) {
          (info.param.signal == SIGKILL ? "_killed" : "_stopped");
 }
 
-/// The channel that a role publishes in each step. For the world, which has two, this is HOST_EGO.
+/// The channel that a role publishes in each step. The world has two such channels; the result is
+/// then HOST_EGO.
 inline std::string ChannelOfRole(const std::string& role) {
   std::string name;
   for (const ChannelInfo& channel : kChannels) {
@@ -57,7 +58,7 @@ inline std::string ChannelOfRole(const std::string& role) {
 
 /// The step of a fault, and the settings of its run.
 struct FaultPlan {
-  int fault_step = 60;  // the automation drives, and nothing else happens
+  int fault_step = 60;  // at this step the automation drives, and nothing else happens
   int steps = 140;
   double speed = kSpeed;
   std::vector<std::string> settings;
@@ -83,7 +84,7 @@ inline FaultPlan PlanOf(const Fault& fault) {
   return plan;
 }
 
-// The vehicle stops by itself. The restarted arbitrator lets the vehicle finish the stop.
+// The vehicle stops by itself, and the restarted arbitrator does not interrupt the stop.
 inline void JudgeWithoutArbitrator(const Log& log, std::int64_t lost) {
   EXPECT_LT(log.truth.at(lost + 1 + kInForce).host_acceleration_mps2,
             log.truth.at(lost).host_acceleration_mps2);
@@ -95,7 +96,7 @@ inline void JudgeWithoutArbitrator(const Log& log, std::int64_t lost) {
       [](std::int8_t mode) { return mode == arbitration_t::MINIMAL_RISK; }, "the vehicle stops");
 }
 
-// The host drives as without the fault. The following car stops.
+// The host drives as in a run without the fault, and the following car stops.
 inline void JudgeWithoutFollower(const Log& log, std::int64_t lost) {
   ExpectCommandsAreCarriedOut(log, 1, log.last());
   ExpectFollowerObeys(log, 1, lost);
@@ -104,7 +105,7 @@ inline void JudgeWithoutFollower(const Log& log, std::int64_t lost) {
   ExpectStandstillWithinLimits(log, lost, Follower);
 }
 
-// Only the automation can drive, until the human is needed and does not answer.
+// Only the automation can drive. When the human is needed, the human does not answer.
 inline void JudgeWithoutDriver(const Log& log, const Fault& fault, const Log::Silence& silence,
                                std::int64_t lost) {
   ExpectCommandsAreCarriedOut(log, 1, log.last());
@@ -157,13 +158,13 @@ inline void JudgeFault(const Log& log, const Fault& fault, std::int64_t fault_st
   if (fault.role == "arbitrator") return JudgeWithoutArbitrator(log, loss->step);
   if (fault.role == "follower") return JudgeWithoutFollower(log, loss->step);
   if (fault.role == "driver") return JudgeWithoutDriver(log, fault, silence, loss->step);
-  // When the world is lost, simulated time does not advance. Nothing else changes.
+  // When the world is lost, simulated time does not advance. The fault has no other effect.
   if (fault.role == "world") return ExpectCommandsAreCarriedOut(log, 1, log.last());
   JudgeWithoutAutomation(log, silence, loss->step);
 }
 
-/// Whether a role missed the messages of a role that did not fail. A busy machine that executes a
-/// process too late does this, and such a run does not show what the fault does.
+/// Whether a role missed the messages of a role that did not fail. This happens if a busy machine
+/// executes a process too late. The run then does not show the effect of the fault.
 inline bool IsDisturbed(const nlohmann::json& realtime, const std::string& failed) {
   return std::ranges::any_of(realtime["fallbacks"], [&](const nlohmann::json& fallback) {
     return fallback["culprit"].is_string() && fallback["culprit"] != failed &&

@@ -1,4 +1,4 @@
-// The contents of the log of a run in real time, and rules that the motion of the cars must obey.
+// The contents of the log of a run in real time, and checks of the motion of the cars.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -142,9 +142,9 @@ inline Car Follower(const truth_t& truth) {
   return {truth.follower_speed_mps.at(0), truth.follower_acceleration_mps2.at(0)};
 }
 
-/// In each step a process applies the value in the message of this step. If the message is missing
-/// or late, the process keeps the value of the step before. The log shows which messages exist. The
-/// process reports how many messages were late.
+/// Checks that a process applies, in each step, the value in the message of this step. If the
+/// message is missing or late, the process must keep the value of the step before. The log shows
+/// which messages exist. The process reports how many messages were late.
 class Obedience {
  public:
   /// @param role the role that obeys
@@ -207,7 +207,7 @@ inline void ExpectStandstillWithinLimits(const Log& log, std::int64_t step,
     const Car after = car(log.truth.at(k + 1));
     const double jerk = (after.acceleration_mps2 - before.acceleration_mps2) / kStepS;
     EXPECT_LE(std::abs(jerk), kJerkMps3 + kRounding) << "step " << k;
-    // A car that braked harder at the beginning releases the brake gradually.
+    // A car that brakes harder than the limit at the beginning releases the brake gradually.
     EXPECT_GE(after.acceleration_mps2,
               std::min(-kDecelerationMps2, before.acceleration_mps2) - kRounding)
         << "step " << k;

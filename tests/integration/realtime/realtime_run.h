@@ -1,4 +1,4 @@
-// A run in real time whose processes a test can stop.
+// A run in real time whose processes a test can kill or stop.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ namespace fogline::test {
 // Simulated seconds per second of real time.
 inline constexpr double kSpeed = 5;
 
-/// A run in real time. This test can stop its processes.
+/// A run in real time. The test can send signals to its processes.
 class RealtimeRun {
  public:
   RealtimeRun(const std::string& scenario, int steps, double speed = kSpeed,
@@ -50,7 +50,7 @@ class RealtimeRun {
       }
     }
   }
-  /// @return the step of the run at the time of the signal
+  /// Sends a signal to the process of a role. @return the step of the run at this time
   std::int64_t Signal(const std::string& role, int signal) {
     kill(pids_.at(role), signal);
     return step_;

@@ -1,5 +1,5 @@
-// Runs in real time: undisturbed, with a driver who is late, and with some of the faults of the
-// campaign.
+// Runs in real time: undisturbed, with a driver who takes over late, and with some of the faults of
+// the campaign.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -84,7 +84,7 @@ TEST(RealtimeTest, ADriverWhoIsLateEndsTheManoeuvreAndTheLogTellsHisTimes) {
   const auto after_s = [&](const char* what) {
     return requests.at(0)[what].get<double>() - requests.at(0)["requested_s"].get<double>();
   };
-  // A decision comes one step later if its inputs are late.
+  // If the inputs of a decision are late, the decision comes one step later.
   EXPECT_NEAR(after_s("manoeuvre_s"), 10, kStepS + kRounding);
   EXPECT_GE(after_s("manoeuvre_s"), 10 - kRounding);
   EXPECT_NEAR(after_s("acknowledged_s"), 10.6, kStepS + kRounding);
@@ -128,7 +128,7 @@ TEST(RealtimeTest, ARecorderThatIsKilledLosesNoStepThatItHasWritten) {
   std::set<std::int64_t> written = StepsIn(run.log());
   run.Signal("recorder", SIGKILL);
   run.run().Wait();
-  // The new recorder writes the last step, which may have been incomplete, again.
+  // The new recorder writes the last step again, because the log may have an incomplete last step.
   ASSERT_GE(written.size(), 2U);
   written.erase(std::prev(written.end()));
   EXPECT_THAT(StepsIn(run.log()), testing::IsSupersetOf(written)) << run.run().Err();

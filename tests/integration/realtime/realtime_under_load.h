@@ -1,4 +1,5 @@
-// Real time while other programs use all cores: the run misses nothing, and no process grows.
+// Real time while other programs use all cores: no message is missed, and no process needs more and
+// more memory.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -22,7 +23,8 @@
 
 namespace fogline::test {
 
-/// One busy program for each core. The programs end with this object, or after 20 minutes.
+/// One busy program for each core. The programs end with the lifetime of this object, or after 20
+/// minutes.
 class Load {
  public:
   Load() {
@@ -59,6 +61,7 @@ inline std::int64_t StolenMs() {
   return ticks * 1000 / sysconf(_SC_CLK_TCK);
 }
 
+/// Expects that a run in real time under load misses no message.
 /// @param rate_hz steps per second
 inline void ExpectRunUnderLoadMissesNothing(int rate_hz, double seconds) {
   const int steps = static_cast<int>(seconds * rate_hz);

@@ -1,4 +1,4 @@
-// `fogline record` writes all messages of a network, of any LCM programs.
+// `fogline record` writes all messages of a network, whichever LCM programs send them.
 #include <lcm/lcm.h>
 #include <unistd.h>
 
@@ -40,7 +40,7 @@ class RecordTest : public testing::Test {
 };
 
 TEST_F(RecordTest, HasEveryMessageOfABurstOfWhichLcmLoggerLosesSome) {
-  // A process of another user gets a smaller buffer from the kernel.
+  // The kernel gives only root a buffer that is large enough.
   if (geteuid() != 0) return MachineLacks("root, for a large receive buffer");
   // GIVEN lcm-logger and fogline record, both listening
   const std::string theirs = folder_.File("lcm-logger.lcm");
@@ -61,7 +61,7 @@ TEST_F(RecordTest, HasEveryMessageOfABurstOfWhichLcmLoggerLosesSome) {
   const json summary = record.End();
   logger.Signal(SIGINT);
   ASSERT_EQ(logger.Wait(), 0);
-  // THEN the recording has all of them in order, and lcm-logger has not
+  // THEN the recording has all messages in order, and lcm-logger lacks some
   const std::vector<Recorded> recorded = MessagesIn(log_);
   EXPECT_EQ(recorded.size(), kMessages);
   EXPECT_TRUE(recorded == sent);
@@ -143,7 +143,7 @@ TEST_F(RecordTest, BeginsANewFileAtASize) {
     sent.push_back({"CHANNEL", Payload(i, 500)});
     bus_.Publish(sent.back().channel, sent.back().data);
   }
-  // 53.5 kB of events: the mark is in the sixth file.
+  // The events have 53.5 kB, so the mark is in the sixth file.
   ASSERT_TRUE(record.CatchUp("END", folder_.File("all-005.lcm")));
   const json summary = record.End();
   ASSERT_GE(summary["files"].size(), 6U);
@@ -158,7 +158,7 @@ TEST_F(RecordTest, BeginsANewFileAtASize) {
 
 TEST_F(RecordTest, ReplacesNoFileOfAnEarlierRotationWithoutForce) {
   const std::string later = folder_.File("all-002.lcm");
-  const std::string other = folder_.File("all-2.lcm");  // no name of a rotation
+  const std::string other = folder_.File("all-2.lcm");  // not the name of a file of a rotation
   { const RecordProcess record(bus_, later); }
   std::ofstream(other) << "text";
   const std::string before = Content(later);
@@ -190,7 +190,7 @@ TEST_F(RecordTest, LeavesNoFileOfALongerEarlierRotationIfForced) {
   EXPECT_FALSE(std::filesystem::exists(folder_.File("all-001.lcm")));
   EXPECT_FALSE(std::filesystem::exists(folder_.File("all-002.lcm")));
   EXPECT_EQ(Content(other), "text");
-  // A file that is no log keeps all others.
+  // If one of the files is not a log, no file is removed.
   std::ofstream(folder_.File("all-001.lcm")) << "text";
   std::ofstream(folder_.File("all-002.lcm")).flush();  // an empty log
   EXPECT_EQ(RunCommand(command).code, 2);
@@ -213,7 +213,7 @@ TEST_F(RecordTest, EndsWithOneErrorAndAValidLogIfTheDiskIsFull) {
   const std::string err = record->process().Err();
   EXPECT_THAT(err, HasSubstr("fogline record: error: cannot write to " + log_));
   EXPECT_EQ(err.find("error"), err.rfind("error")) << err;
-  // All whole messages that fit are there: an event has 35 bytes besides its data.
+  // The log has as many whole messages as fit: an event has 35 bytes besides its data.
   EXPECT_EQ(MessagesIn(log_).size(), 100'000U / 735);
 }
 
@@ -255,7 +255,7 @@ TEST_F(RecordTest, FollowsTheRunThatIsAnnounced) {
   Background record({"env", "LCM_DEFAULT_URL=" + meeting, Program("fogline"), "record", log_,
                      "--json", "--flush-ms", "10"});
   ASSERT_TRUE(record.WaitForErr("records "));
-  // WHEN a run announces itself there
+  // WHEN a run announces itself at this address
   Background run({"env", "LCM_DEFAULT_URL=" + meeting, Program("fogline"), "run",
                   "scenario/paper.json", "--quiet", "--transport", "udpm", "--pace", "25", "--set",
                   "/steps=300", "--log", folder_.File("own.lcm")});
@@ -263,7 +263,7 @@ TEST_F(RecordTest, FollowsTheRunThatIsAnnounced) {
   ASSERT_EQ(run.Wait(), 0) << run.Err();
   record.Signal(SIGINT);
   ASSERT_EQ(record.Wait(), 0);
-  // THEN its messages are there
+  // THEN the log has messages of this run
   const std::vector<Recorded> recorded = MessagesIn(log_);
   EXPECT_TRUE(std::ranges::any_of(
       recorded, [](const Recorded& message) { return message.channel == "TRACK"; }));
@@ -279,7 +279,7 @@ TEST_F(RecordTest, GoesOnWhenTheRelayOfAFollowedRunHasEnded) {
                   "/steps=300", "--log", folder_.File("own.lcm")});
   EXPECT_TRUE(record.WaitForErr("follows run "));
   ASSERT_EQ(run.Wait(), 0) << run.Err();
-  // The relay of the run ends with the run. The recording tries for a while to reach it.
+  // The relay of the run ends with the run. The recording tries to connect for some time.
   EXPECT_TRUE(record.WaitForErr("leaves tcpq://")) << record.Err();
   runtime::Bus(meeting).Publish("AFTERWARDS", Payload(1, 4));
   record.Signal(SIGINT);

@@ -1,4 +1,4 @@
-// `fogline record` in tests.
+// A process of `fogline record` in tests.
 #pragma once
 
 #include <csignal>
@@ -21,7 +21,7 @@ struct Recorded {
   bool operator==(const Recorded&) const = default;
 };
 
-/// The messages of a log, without those on the channels of CatchUp().
+/// The messages of a log, without the marks of CatchUp().
 inline std::vector<Recorded> MessagesIn(const std::string& log) {
   std::vector<Recorded> messages;
   log::EventLogReader reader(log);
@@ -37,7 +37,7 @@ inline std::vector<Recorded> MessagesIn(const std::string& log) {
 
 class RecordProcess {
  public:
-  /// Starts it, and waits until it listens.
+  /// Starts `fogline record`, and waits until it listens.
   RecordProcess(runtime::Bus& bus, std::string log, const std::vector<std::string>& more = {})
       : bus_(bus), log_(std::move(log)), process_(Command(more)) {
     EXPECT_TRUE(process_.WaitForErr("records ")) << process_.Err();
@@ -55,7 +55,7 @@ class RecordProcess {
   }
   [[nodiscard]] bool CatchUp(const std::string& mark) { return CatchUp(mark, log_); }
 
-  /// Ends it with Ctrl-C. @return the summary
+  /// Ends `fogline record` with Ctrl-C. @return the summary
   nlohmann::json End() {
     process_.Signal(SIGINT);
     EXPECT_EQ(process_.Wait(), 0) << process_.Err();

@@ -1,5 +1,5 @@
-// A driver with human weaknesses. The digest is the same on every transport, even if driver and
-// arbitrator read each other's messages.
+// A driver with human weaknesses. The digest is the same on every transport, even if the driver and
+// the arbitrator read each other's messages.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -13,7 +13,7 @@ namespace {
 
 using Words = std::vector<std::string>;
 
-/// Fog early in a short run, in which the driver takes over.
+/// Settings of a short run with fog at its beginning. The driver takes over in the fog.
 const Words kFogForTheDriver{"/steps=60",      "/fog/model=beam",   "/fog/visibility_m=40",
                              "/fog/start_s=1", "/fog/duration_s=3", "/arbitrator/threshold=0.5"};
 

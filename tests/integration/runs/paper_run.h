@@ -1,4 +1,4 @@
-// The command line of a run of the paper's scenario on a network that the test shares with it.
+// The command line of a run of the paper's scenario. The test uses the network of this run.
 #pragma once
 
 #include <string>

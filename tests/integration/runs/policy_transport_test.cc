@@ -1,5 +1,5 @@
-// Every policy has one digest on all transports. Two processes use the policy, and each process has
-// its own instance.
+// Every policy has one digest on all transports. Two processes, arbitrator and fusion, use the
+// policy. Each process has its own instance of the policy.
 #include <string>
 #include <string_view>
 #include <vector>
@@ -13,7 +13,8 @@
 namespace fogline::test {
 namespace {
 
-/// The LiDAR loses the car at about step 15. Transfers between automation and human are smooth.
+/// Settings: the LiDAR sees no car from about step 15 on, and transfers between automation and
+/// human are smooth.
 const std::vector<std::string> kFogWithSmoothTransfers{"/steps=60",
                                                        "/fog/start_s=1",
                                                        "/fog/duration_s=4",

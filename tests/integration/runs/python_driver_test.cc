@@ -1,4 +1,4 @@
-// The driver in Python of docs/protocol.md, as the page shows it, drives the host.
+// The driver in Python that docs/protocol.md shows drives the host.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@ namespace {
 using testing::HasSubstr;
 using Words = std::vector<std::string>;
 
-// Runs a program whose sockets lose every fifth packet that they receive.
+// Runs a program with sockets that lose every fifth received packet.
 constexpr const char* kLossy = R"(import random, runpy, socket, sys
 class Lossy(socket.socket):
     lost = 0
@@ -61,7 +61,7 @@ class PythonDriverTest : public testing::Test {
     return command;
   }
 
-  /// The driver in C++ with the same arithmetic.
+  /// Compiles the driver in C++ with the same arithmetic. @return the program's path
   std::string BareDriver() const {
     const std::string program = folder_.File("bare");
     const Outcome built =
@@ -114,13 +114,13 @@ TEST_F(PythonDriverTest, HasTheDigestOfTheSameDriverInCppAlsoIfEveryFifthMessage
       RunWith(Python({"lossy.py", "driver.py"}), {"--faults", "loss=0.2", "--stall-timeout", "30"});
   EXPECT_EQ(lossy["digest"], cpp["digest"]);
   EXPECT_GT(lossy["repairs"], 500) << "was anything lost?";
-  // The driver lost messages, too.
+  // The driver, too, has lost messages.
   EXPECT_GT(std::stoi(said_.substr(said_.find("lost ") + 5)), 500) << said_;
 }
 
 TEST_F(PythonDriverTest, ThatIsKilledIsReplacedInTheMiddleOfTheRun) {
   const auto whole = RunWith(Python({"driver.py"}));
-  // GIVEN a run of 500 steps in 5 s at least
+  // GIVEN a run of 500 steps that takes at least 5 s
   Background run(Run({"--pace", "10", "--stall-timeout", "30"}));
   {
     Background first(Python({"driver.py"}));

@@ -1,4 +1,4 @@
-// A leader that was recorded on a road: the shipped scenario with its recording.
+// A leader that was recorded on a road: the shipped scenario and its recording.
 #include <cstdio>
 
 #include <gtest/gtest.h>
@@ -64,7 +64,7 @@ TEST_F(RecordedLeadTest, IsFollowedThroughDenseFogWithoutACollision) {
   more.insert(more.end(), dense_fog_.begin(), dense_fog_.end());
   const nlohmann::json metrics = Run(more);
   EXPECT_EQ(metrics["collision"], 0);
-  // The fog really deceived the LiDAR: the error is far larger than the noise of the sensors.
+  // The fog has deceived the LiDAR, because the error is far larger than the noise of the sensors.
   EXPECT_GT(metrics["rms_fusion_error_m"], 0.5);
 }
 

@@ -1,4 +1,4 @@
-// `fogline run` as a person uses it: real processes, real LCM, real logs.
+// `fogline run` as a person uses it: with real processes, LCM and logs.
 #include <csignal>
 
 #include <gmock/gmock.h>
@@ -15,7 +15,7 @@ namespace {
 
 using ::testing::ContainsRegex;
 
-/// Runs paper.json, with fewer steps if a full run would prove the same. @return the JSON result
+/// Runs paper.json with further options. @return the JSON result
 nlohmann::json RunPaper(const std::string& log, const std::vector<std::string>& more) {
   std::vector<std::string> command{
       Program("fogline"), "run", "scenario/paper.json", "--json", "--quiet", "--log", log};
@@ -45,7 +45,7 @@ TEST(RunTest, NamesTheFirstStepAndFieldInWhichRunsOfTwoSeedsDiffer) {
   const auto one = RunPaper(folder.File("one.lcm"), {"--transport", "memq", "--seed", "1"});
   const auto two = RunPaper(folder.File("two.lcm"), {"--transport", "memq", "--seed", "2"});
   EXPECT_NE(one["digest"], two["digest"]);
-  // The first random number of a run is the radar's at step 0.
+  // The first random number of a run is drawn by the radar at step 0.
   const Outcome diff =
       RunCommand({Program("fogline"), "diff", folder.File("one.lcm"), folder.File("two.lcm")});
   EXPECT_EQ(diff.code, 1);
@@ -76,7 +76,7 @@ TEST(RunTest, PrintsDigitsThatMeanSomethingAndHasAllOfThemInJson) {
   const auto json = RunPaper(folder.File("run.lcm"), more)["metrics"];
   const Outcome text = RunCommand({Program("fogline"), "metrics", folder.File("run.lcm")});
   ASSERT_EQ(text.code, 0) << text.err;
-  // THEN the text shortens a very long time to collision, and a number near 0 with many decimals
+  // THEN the text shortens a very long time to collision, and a number that is nearly 0
   EXPECT_GT(json["min_follower_ttc_s"], 1e6);
   EXPECT_THAT(text.out, ContainsRegex("min_follower_ttc_s +> 1000 s\n"));
   EXPECT_GT(json["max_compromised_safety_m"], 0);
@@ -109,8 +109,8 @@ TEST(RunTest, InMemoryMayTakeLongerThanAStepMay) {
                     {"--transport", "memq", "--set", "/steps=" + std::to_string(steps),
                      "--stall-timeout", "1"})["wall_s"];
   };
-  // WHEN the run gets longer until it takes longer than the timeout, THEN each of these runs
-  // succeeds
+  // WHEN the run gets longer and longer, until it takes longer than the timeout, THEN each of these
+  // runs succeeds
   int steps = 100'000;
   while (seconds(steps) < 1.2) steps *= 2;
 }
@@ -198,7 +198,7 @@ TEST(RunTest, SpeaksOfNoStepBeforeTheFirst) {
                   "driver", "--lcm-url", runtime::FreshMulticastUrl()});
   ASSERT_TRUE(run.WaitForErr("waiting for the driver"));
   ASSERT_TRUE(GrowsTo(1, log));
-  // WHEN a role dies, and then the runner
+  // WHEN a role is killed, and then the runner
   kill(PidOf(run.Err(), "radar"), SIGKILL);
   EXPECT_TRUE(run.WaitForErr("was killed by signal 9 (Killed) before step 0; started again"))
       << run.Err();

@@ -1,4 +1,4 @@
-// A machine without SUMO: only a scenario with cars from SUMO is refused.
+// On a machine without SUMO, only a scenario with cars from SUMO is refused.
 #include <filesystem>
 #include <string>
 
@@ -11,7 +11,7 @@ namespace {
 
 class WithoutSumoTest : public testing::Test {
  protected:
-  /// A copy of the program in a place without the module.
+  /// Copies the program into a folder without the module for SUMO.
   WithoutSumoTest() {
     std::filesystem::create_directory(folder_.path() / "bin");
     std::filesystem::copy_file(Program("fogline"), fogline_);

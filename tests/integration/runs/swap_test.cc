@@ -1,5 +1,5 @@
-// Roles that were built outside of this tree replace ours: a program that knows only the message
-// types (bare_driver.cc), and a class on Fogline's own runtime (my_driver.cc).
+// Roles that are built outside of this tree replace ours: a program that knows only the message
+// types (bare_driver.cc), and a class that uses Fogline's own runtime (my_driver.cc).
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -71,7 +71,8 @@ class Elsewhere {
     return libraries;
   }
 
-  /// Makes C++ message types in which lidar_t has one field more than ours. @return their folder
+  /// Makes C++ message types in which lidar_t has one field more than in this tree. @return their
+  /// folder
   std::string OtherTypes() const {
     std::ifstream in(SourceDirectory() / "lcmtypes/lidar_t.lcm");
     std::ostringstream text;
@@ -215,7 +216,7 @@ TEST(SwapTest, AClassWithAStepFunctionIsARoleByFindPackageAlone) {
   EXPECT_EQ(reader.run().steps, 500);
 }
 
-// The message types have headers only, so no library of them is linked.
+// The message types have headers only, so the program links no library of message types.
 TEST(SwapTest, ARoleFromElsewhereLinksOnlyTheRuntimeAndWhatTheRuntimeUses) {
   const Elsewhere elsewhere;
   EXPECT_THAT(elsewhere.LibrariesOfMyDriver(),
@@ -259,7 +260,7 @@ TEST(SwapTest, TheBareDriverAnswersRepairsAndLeavesAsARoleMust) {
   EXPECT_EQ(ready.state, status_t::READY);
   EXPECT_EQ(ready.scenario_hash, runtime::HashOf("{}"));
   EXPECT_EQ(ready.type_fingerprint, TypeFingerprint());
-  // WHEN a step of another run comes, and a step of run 7 twice, THEN the driver answers once
+  // WHEN a step of another run comes, and a step of run 7 comes twice, THEN the driver answers once
   say_truth(8, 0);
   say_truth(7, 0);
   say_truth(7, 0);
@@ -268,7 +269,7 @@ TEST(SwapTest, TheBareDriverAnswersRepairsAndLeavesAsARoleMust) {
   EXPECT_EQ(first.header.step, 0);
   say_truth(7, 1);
   EXPECT_EQ(commands.WaitForNext().header.step, 1);
-  // WHEN a process asks for an answer again, THEN the driver repeats it
+  // WHEN a process asks for an answer again, THEN the driver repeats the answer
   ask_for_command(0);
   const driver_command_t again = commands.WaitForNext();
   EXPECT_EQ(again.header.step, 0);
@@ -283,7 +284,7 @@ TEST(SwapTest, TheBareDriverAnswersRepairsAndLeavesAsARoleMust) {
   say_run(8, run_t::STOP);
   say_truth(7, 2);
   EXPECT_EQ(commands.WaitForNext().header.step, 2);
-  // WHEN its own run stops, THEN the driver exits
+  // WHEN the driver's own run stops, THEN the driver exits
   say_run(7, run_t::STOP);
   EXPECT_EQ(driver.process().Wait(), 0);
 }

@@ -35,13 +35,14 @@ class TakeOverRunTest : public testing::Test {
 
   nlohmann::json Events() const { return FirstOf("events", Log("direct")); }
   nlohmann::json Metrics() const { return FirstOf("metrics", Log("direct")); }
-  /// The log of a run whose driver need not be asked.
+  /// Makes the log of a run in which the driver is not asked. @return its path
   std::string LogWithoutARequest() const {
     const std::string log = Log("paper");
     RunOn("direct", "scenario/paper.json", log, {"/steps=250"});
     return log;
   }
-  /// The CSV file of these logs.
+  /// Writes the measures of the take-overs in these logs into a CSV file. @return the contents of
+  /// the file
   std::string TakeOvers(const std::vector<std::string>& logs) const {
     const std::string file = folder_.File("take-overs.csv");
     std::vector<std::string> words{Program("fogline"), "metrics", "--take-overs", file};
@@ -144,7 +145,7 @@ TEST_F(TakeOverRunTest, ShowsWhatDroveUntilTheTakeOver) {
   EXPECT_LE(value("sensor_excluded_s"), value("automation_drove_s"));
   EXPECT_NEAR(value("automation_drove_s") + value("driver_drove_s"), value("judged_s"), 1e-9);
   EXPECT_EQ(measures["manoeuvre_drove_s"], 0);
-  // THEN list and page of the run show it
+  // THEN the list and the page of the run show this time
   const Outcome listed = RunCommand({Program("fogline"), "events", Log("direct")});
   EXPECT_THAT(listed.out, HasSubstr("; of this with a sensor excluded 1."));
   const std::string page = folder_.File("page.html");

@@ -37,7 +37,7 @@ class TransportTest : public testing::TestWithParam<std::string> {
     if (recording.empty()) return;
     const auto file = SourceDirectory() / "scenario" / recording;
     if (!std::filesystem::exists(file)) GTEST_SKIP() << "no recorded driving at " << file;
-    // A run of a whole recording takes many minutes. Its first 100 s prove the same.
+    // A run of a whole recording takes many minutes. Its first 100 s are enough for this test.
     more_ = {"--set", "/steps=1000"};
   }
 

@@ -1,4 +1,4 @@
-// One run on every transport must have the same digest.
+// Expectation that one run has the same digest on every transport.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@
 
 namespace fogline::test {
 
-/// Executes `fogline run`, which must succeed, with these fields set. @return its result as JSON
+/// Executes `fogline run`, which must succeed, with these fields set. @return the result as JSON
 /// @param more further arguments
 inline nlohmann::json RunOn(const std::string& transport, const std::string& scenario,
                             const std::string& log, const std::vector<std::string>& fields,

@@ -1,4 +1,5 @@
-// The verdicts of `fogline check` on the repository's scenarios: the shipped ones and scenario/bad.
+// What `fogline check` says about the repository's scenarios: the shipped scenarios and those in
+// scenario/bad.
 #include <algorithm>
 #include <filesystem>
 #include <fstream>

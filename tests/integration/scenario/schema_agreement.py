@@ -181,7 +181,7 @@ def check_defaults(schema):
 
 
 def compare(fogline, validator, what, paths, at_least):
-    """The number of files on which the two disagree. Prints both reasons for each of them on stderr."""
+    """The number of files on which schema and loader disagree. Prints both reasons for each such file on stderr."""
     disagreements = accepted = 0
     for path, loader in zip(paths, loader_verdicts(fogline, paths)):
         schema = schema_verdict(validator, path)

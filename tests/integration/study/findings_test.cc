@@ -1,4 +1,4 @@
-// docs/findings.md against the claims that `fogline study` checks.
+// The claims in docs/findings.md agree with the claims that `fogline study` checks.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -21,14 +21,15 @@
 namespace fogline::test {
 namespace {
 
-/// A claim that docs/findings.md lists below a finding: - policy: "It helps." 12 mm, margin 2 mm
+/// A claim that docs/findings.md lists below a finding. Its line is like: - policy: "It helps." 12
+/// mm, margin 2 mm
 struct ListedClaim {
   std::string finding;  // its number
   std::string part;     // "heading" or "side claims"
   std::string study;
   std::string says;
   std::string difference;
-  std::string margin;  // "" without one
+  std::string margin;  // "" if the claim has no margin
 
   auto Key() const { return std::tuple(finding, part, study, says); }
 };
@@ -36,7 +37,7 @@ struct ListedClaim {
 /// The findings of docs/findings.md.
 struct FindingsPage {
   std::vector<ListedClaim> claims;
-  /// The verdict on a part of a finding, by the beginning of the claim on it: "Finding 3, heading".
+  /// The verdict on a part of a finding. The key names the part, such as "Finding 3, heading".
   std::map<std::string, std::string> verdicts;
 };
 
@@ -68,9 +69,9 @@ FindingsPage ReadFindings() {
   return page;
 }
 
-/// A number of a claim in the unit that the page of findings has for it, such as "12 mm".
-/// @param compared what the claim compares; it ends with the unit of the number
-/// @param like a text with as many decimals
+/// A number of a claim as text, in the unit in which docs/findings.md shows it, such as "12 mm".
+/// @param compared what the claim compares; this text ends with the unit of the number
+/// @param like a text with the wanted number of decimals
 std::string InUnitOfPage(double value, const std::string& compared, const std::string& like) {
   constexpr double kMillimetre = 1000;
   const std::string unit = compared.substr(compared.rfind('(') + 1);
@@ -98,7 +99,7 @@ TEST(FindingsTest, EveryFindingRestsOnClaimsOfItsStudies) {
     parts[listed.finding].insert(listed.part);
     const auto found = claims.find({listed.study, listed.says});
     ASSERT_TRUE(found != claims.end()) << listed.study << ": " << listed.says;
-    // A claim that two things are equal has its margin beside it.
+    // A claim of equality has its margin in the field "expected".
     const std::string expected = found->second["expected"];
     const std::string within = "equal (within ";
     if (!expected.starts_with(within)) {
@@ -168,7 +169,7 @@ TEST(FindingsTest, EveryFindingSaysInWhichParameterSetsItHolds) {
 TEST(FindingsTest, TheComparisonsOnParameterSetsAreThoseOfTheirFinding) {
   const ScratchFolder folder;
   ASSERT_EQ(Study({"ensemble", "--seeds", "1", "--out", folder.path()}).code, 0);
-  // A row begins: 3,heading,policy,"With a false echo ...",set 1,
+  // Such a row begins: 3,heading,policy,"With a false echo ...",set 1,
   static const std::regex kRow("(\\d+),([^,]*),([^,]*),\"(.*)\",set (\\d+),.*");
   std::istringstream csv(ReadText(folder.File("ensemble.csv")));
   std::string line;

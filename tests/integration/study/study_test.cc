@@ -54,7 +54,7 @@ std::map<std::string, int> CountByMeasure(const std::string& csv) {
   return counts;
 }
 
-/// The page of the conflict study tells its delays apart from a measure of a run.
+/// Expects that the page of the conflict study distinguishes its delays from a measure of a run.
 void ExpectDelaysFromFogToAlarm(const std::string& page) {
   EXPECT_THAT(page, HasSubstr("<th scope=\"col\">fog to alarm (s)</th>"));
   EXPECT_THAT(page, HasSubstr("This delay is not deception_to_alarm_s of a run"));
@@ -100,7 +100,8 @@ void ExpectAtMostThreeSentencesWithoutNumbers(const std::string& answer) {
       << answer;
 }
 
-/// The number of claims that a single run leaves open, after checks that no claim holds.
+/// Expects that no claim has the state "holds". @return the number of claims for which a single run
+/// is too little
 std::size_t OpenClaims(const nlohmann::json& claims) {
   for (const auto& claim : claims) EXPECT_NE(claim["state"], "holds") << claim;
   return static_cast<std::size_t>(std::ranges::count_if(
@@ -161,7 +162,7 @@ TEST(StudyVerbTest, TriesItsFolderBeforeItComputes) {
   const ScratchFolder folder;
   const std::string file = folder.File("file");
   std::ofstream(file) << "in the way";
-  // A hundred thousand seeds would take an hour.
+  // This study would take an hour.
   const Outcome refused = Study({"policy", "--seeds", "1:100000", "--out", file + "/studies"});
   EXPECT_EQ(refused.code, 2);
   EXPECT_THAT(refused.err, HasSubstr("/file/studies: error: --out: cannot write: "));

@@ -1,4 +1,4 @@
-// The benchmarks start the programs that they compare, and print figures. The tests do not examine
+// The benchmarks start the programs that they compare, and print figures. The tests do not check
 // whether a goal is met, because the figures depend on the machine.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -51,7 +51,7 @@ TEST(BenchTest, RefusesAComparisonThatItDoesNotKnow) {
   EXPECT_THAT(outcome.err, HasSubstr("carrier-pigeon"));
 }
 
-/// The build of another commit: here a link to this build, so the ratio is about 1.
+/// The build of another commit is here a link to this build. So the ratio is about 1.
 TEST(BenchTest, ComparesThisBuildWithThatOfAnotherCommit) {
   const ScratchFolder folder;
   std::filesystem::create_directory_symlink(FOGLINE_SOURCE_DIR, folder.File("source"));
@@ -59,7 +59,7 @@ TEST(BenchTest, ComparesThisBuildWithThatOfAnotherCommit) {
   const Outcome outcome =
       RunCommand({Program("fogline-bench"), "--quick", "--rounds", "1", "--json", "--against",
                   folder.path(), "--only", "against-sweep", "--only", "against-start"});
-  EXPECT_LE(outcome.code, 1) << outcome.err;  // 1: one of two equal programs was slower
+  EXPECT_LE(outcome.code, 1) << outcome.err;  // code 1: one of two equal programs was slower
   const auto comparisons = nlohmann::json::parse(outcome.out)["comparisons"];
   ASSERT_EQ(comparisons.size(), 2U) << outcome.out;
   for (const auto& comparison : comparisons) {

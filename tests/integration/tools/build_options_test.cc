@@ -1,4 +1,4 @@
-// The options that a person may choose when configuring the build.
+// The options of the configuration of the build.
 #include <fstream>
 #include <sstream>
 #include <string>

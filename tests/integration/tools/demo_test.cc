@@ -1,5 +1,5 @@
-// The last lines of tools/demo name commands and files that exist. The programs of this build are
-// used, so nothing is installed or built.
+// The last lines of tools/demo name commands and files that exist. tools/demo uses the programs of
+// this build, and installs and builds nothing.
 #include <filesystem>
 #include <fstream>
 #include <regex>
@@ -20,7 +20,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-/// A folder in which tools/demo runs. There tools/setup and tools/build do nothing.
+/// A folder in which tools/demo runs. The folder's own tools/setup and tools/build do nothing.
 class DemoFolder {
  public:
   DemoFolder() {
@@ -48,7 +48,7 @@ class DemoFolder {
   ScratchFolder folder_;
 };
 
-/// What the demo names at the end, in "NAME:   WHAT (more words)".
+/// What the demo says at its end about `name`. The line is "NAME:   WHAT (more words)".
 std::string NamedAs(const std::string& name, const std::string& said) {
   const std::regex line("(?:^|\n)" + name + ": +([^(\n]*[^( \n])");
   std::smatch found;

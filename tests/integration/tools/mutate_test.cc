@@ -1,4 +1,4 @@
-// tools/mutate with a small tree of its own.
+// tools/mutate with a small source tree that the test makes.
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -16,12 +16,12 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-constexpr int kMutations = 150;  // the fewest that a list may have
+constexpr int kMutations = 150;  // the smallest number of mutations of a list
 
 class MutateTest : public testing::Test {
  protected:
-  /// Makes a tree whose function V0 has a unit test and V1 a property test. The other functions
-  /// have no tests. Each function has a mutation, which names the unit test.
+  /// Makes a tree whose function V0 has a unit test, and whose function V1 has a property test. The
+  /// other functions have no tests. Each function has a mutation, which names the unit test.
   MutateTest() {
     std::filesystem::create_directories(folder_.path() / "tests");
     std::filesystem::copy(SourceDirectory() / "tests/mutations",
@@ -85,7 +85,7 @@ TEST_F(MutateTest, CountsWhatTestsNoticeAndNamesTheSurvivors) {
             "survivor: services/a.cc: v3: No program asks for it.\n");
   EXPECT_THAT(first.err, HasSubstr("v0: noticed by unit.ATest.Zero\n"));
   EXPECT_EQ(Content(folder_.File("services/a.cc")), code);
-  // WHEN it is called again THEN it only works on what is not known
+  // WHEN tools/mutate is called again THEN it tests only the mutations without a known result
   const Outcome again = Mutate({"--only", " v[0-3]$"});
   EXPECT_EQ(again.out, first.out);
   EXPECT_EQ(again.err, "");

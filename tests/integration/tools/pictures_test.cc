@@ -1,4 +1,4 @@
-// The pictures of README.md and docs/ are there, and tools/pictures makes them.
+// The pictures of README.md and docs/ exist, and tools/pictures makes them.
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -16,8 +16,8 @@ namespace {
 
 using ::testing::HasSubstr;
 
-/// The text for readers who do not see a picture, by the picture: "docs/view.png". Drawings (SVG)
-/// are made by hand.
+/// The alternative text of each picture, by the path of the picture, such as "docs/view.png".
+/// Drawings (SVG) are made by hand and left out.
 std::map<std::string, std::string> PicturesOfPages() {
   static const std::regex kPicture(R"(!\[([^\]]*)\]\(([^)]+\.png)\))");
   std::map<std::string, std::string> pictures;

@@ -20,7 +20,7 @@ namespace {
 std::string ReadSource(const std::string& file) { return Content(SourceDirectory() / file); }
 
 /// A clone in which the commands of a page are executed. It has its own scenarios and build folder,
-/// but the programs and tests of this build. Git knows all files that are there at the beginning.
+/// and the programs and tests of this build. Git has added all files that exist at the beginning.
 class Clone {
  public:
   Clone() {
@@ -77,8 +77,8 @@ std::string ScriptOf(const std::vector<Block>& blocks) {
   return script;
 }
 
-/// The lines of a text without the parts that may differ: the rest of a line after a time, such as
-/// " in 0.62 s", and spaces at its end.
+/// The lines of a text without the parts that may differ. These parts are a time, such as " in 0.62
+/// s", with all that follows in its line, and spaces at the end of a line.
 std::vector<std::string> Comparable(const std::string& text) {
   static const std::regex kTime(" in [0-9.]+ s.*");
   static const std::regex kSpaces(" +$");
@@ -111,8 +111,8 @@ std::string WhyNotShown(const std::string& shown, const std::string& printed) {
   return left_out || next == lines.end() ? "" : "\"" + *next + "\" is not shown";
 }
 
-/// Expects that each block "text" shows the output of the commands above it. @return the number of
-/// lines that were compared
+/// Expects that each block "text" shows the output of the commands before this block. @return the
+/// number of lines that were compared
 std::ptrdiff_t ExpectShows(const std::vector<Block>& blocks, const std::string& out) {
   std::ptrdiff_t compared = 0;
   std::string printed;
@@ -222,10 +222,10 @@ TEST(ReadmeTest, ItsCommandsLeaveNoFileThatGitDoesNotKnow) {
   std::size_t commands = 0;
   for (std::sregex_iterator at(readme.begin(), readme.end(), kCommand), end; at != end; ++at) {
     std::string command = (*at)[1].str();
-    // These commands take long. Few seeds or steps give the same files.
+    // These commands take long. With few seeds or steps they write the same files.
     if ((*at)[2] == "study" || (*at)[2] == "calibrate") command += " --seeds 1:2";
     if (command.find("--pace") != std::string::npos) command += " --set /steps=20";
-    // The page of a run is shown until Ctrl-C. A run of 20 steps takes 2 s.
+    // The run shows its page until Ctrl-C. A run of 20 steps takes 2 s.
     if (command.find("--view") != std::string::npos) {
       command = "timeout --preserve-status --signal=INT 20 " + command;
     }

@@ -1,4 +1,4 @@
-// The recipes of docs/network.md do what the page says, by the lines that it shows.
+// The recipes of docs/network.md, executed as the page shows them, do what the page says.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -47,8 +47,7 @@ class RecipesTest : public testing::Test {
                                               folder_.path() / "scenario");
   }
 
-  /// The recipe with these words. The run has 60 steps and a log, and its port is that of this
-  /// test.
+  /// The recipe in which `with` is. The run has 60 steps and a log, and uses the port of this test.
   std::string Recipe(const std::string& with) const {
     const std::string page = Content(SourceDirectory() / "docs/network.md");
     for (const Block& block : BlocksOf(page.substr(page.find("\n## Recipes\n")))) {
@@ -75,20 +74,21 @@ class RecipesTest : public testing::Test {
 };
 
 TEST_F(RecipesTest, RecordedSensorsDriveFusionAndAccWhichComputeTheSameAgain) {
-  // GIVEN the lines of the page; the player waits until the three programs listen
+  // GIVEN the lines of the page, and a player that waits until the three programs listen
   std::string lines = Recipe("lcm-logplayer");
   char port[8];
   std::snprintf(port, sizeof(port), "%04X", std::stoi(port_));
   lines = Replaced(lines, "lcm-logplayer",
                    "until [ $(grep -c ':" + std::string(port) +
                        " ' /proc/net/udp) -ge 3 ]; do sleep 0.02; done\nlcm-logplayer");
-  // AND the log is whole: lcm-logger writes later than it hears, and drops the rest when it ends
+  // AND a wait for the whole log. lcm-logger writes messages some time after they arrive, and drops
+  // messages that are not written when it ends
   lines = Replaced(lines, "kill $(jobs -p)",
                    "for i in $(seq 1000); do"
                    " [ $(grep -ao ACC_COMMAND open.lcm | wc -l) -lt 60 ] || break; sleep 0.02;"
                    " done\nkill $(jobs -p)");
   const Outcome shell = Shell(lines);
-  // THEN lcm-logger has logged messages of the living roles, which equal those of the run
+  // THEN lcm-logger has logged messages of the running roles, which equal those of the run
   for (const std::string_view channel : {"TRACK", "ACC_COMMAND"}) {
     const auto recorded = MessagesOf(folder_.File("run.lcm"), channel);
     const auto again = MessagesOf(folder_.File("open.lcm"), channel);

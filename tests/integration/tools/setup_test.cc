@@ -23,8 +23,8 @@ using ::testing::Not;
 constexpr const char* kFile = "node_modules/chart/chart.js";
 
 /// A clone on a simulated machine, for a user other than root. The machine has all Debian packages
-/// except npm. Its npm comes from another source, and its only programs are those below. `$user` is
-/// the user who calls a program.
+/// except npm. Its npm comes from another source. Its only programs are those that the constructor
+/// makes. In these programs `$user` is the user who calls the program.
 class SetupTest : public testing::Test {
  protected:
   SetupTest() {
@@ -111,7 +111,7 @@ TEST_F(SetupTest, InstallsPackagesThatOnlyTestsUseOnlyForTests) {
   EXPECT_THAT(Calls("run"), HasSubstr(" --omit=dev"));
   EXPECT_EQ(Calls("bench"), "");
   EXPECT_THAT(Calls("test"), AllOf(HasSubstr("npm ci"), Not(HasSubstr("--omit"))));
-  // A whole installation serves everything.
+  // A whole installation is enough for every purpose.
   for (const char* purpose : {"run", "test", "bench", "all"}) EXPECT_EQ(Calls(purpose), "");
   std::filesystem::remove(File(kFile));
   EXPECT_THAT(Calls("all"), AllOf(HasSubstr("npm ci"), Not(HasSubstr("--omit"))));

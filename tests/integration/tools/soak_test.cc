@@ -1,4 +1,5 @@
-// tools/soak and its program: help, and refusals of wrong options. tests/soak tests its runs.
+// The help of tools/soak and of its program, and the refusal of wrong options. tests/soak tests the
+// runs.
 #include <chrono>
 #include <filesystem>
 #include <regex>
@@ -18,14 +19,14 @@ using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-/// The outcome of the program with these options. If the program accepted a wrong option, it would
-/// run for an hour. The time limit ends such a run.
+/// The outcome of the program soak with these options. If the program accepted a wrong option, it
+/// would run for an hour. The time limit ends such a run.
 Outcome Soak(std::vector<std::string> options) {
   options.insert(options.begin(), Program("soak"));
   return RunCommand(options);
 }
 
-/// The options at the beginnings of the lines of a help text.
+/// The options of a help text. Each option is at the beginning of a line.
 std::set<std::string> OptionsIn(const std::string& help) {
   static const std::regex kOption(R"((^|\n) +(-h,)?(--[a-z]+))");
   std::set<std::string> options;
@@ -65,7 +66,7 @@ TEST(SoakTest, RefusesANumberOutsideItsRangeInOneLine) {
 }
 
 TEST(SoakTest, TakesTheLargestSeedOfAScenario) {
-  // The time is over before the first run.
+  // The limit of time has passed before the first run.
   const Outcome outcome = Soak({"--minutes", "1e-9", "--seed", "9007199254740991"});
   EXPECT_NE(outcome.code, 2) << outcome.err;
   EXPECT_THAT(outcome.err, Not(HasSubstr("--seed")));

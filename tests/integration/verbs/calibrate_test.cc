@@ -42,7 +42,7 @@ class CalibrateTest : public testing::Test {
     return RunCommand(arguments);
   }
 
-  /// Writes the target: the table of the scenario with these fields.
+  /// Writes the table of the scenario with these fields as the target.
   void MakeTarget(const std::vector<std::string>& overrides, const std::string& seeds) const {
     std::vector<std::string> arguments{"table",   scenario_, "--thresholds", "0.3,0.4,0.5,0.6,0.7",
                                        "--seeds", seeds,     "--json"};
@@ -106,7 +106,7 @@ TEST_F(CalibrateTest, RecoversHeadwayAndWeightOfTheFollower) {
   const json found = Calibrate(
       {"/follower/headway_s=1.2:2", "/follower/weight_control=0.1:100:log"}, {"--seeds", "1"});
   EXPECT_NEAR(found["fields"][0]["value"], 1.43, kShareOfRange * 0.8);
-  // The range is three decades on a logarithmic scale, so kShareOfRange means a factor of 1.035.
+  // The range has three decades on a logarithmic scale, so kShareOfRange means a factor of 1.035.
   EXPECT_NEAR(found["fields"][1]["value"], 3, 0.035 * 3);
 }
 
@@ -115,8 +115,7 @@ TEST_F(CalibrateTest, RecoversFogAndOffsetFromMeansOverNoisySeeds) {
   std::vector<std::string> truth = noise;
   truth.insert(truth.end(), {"/fog/bias_m=0.377", "/radar/bias_m=0.9321"});
   MakeTarget(truth, "1:4");
-  // WHEN the search uses the seeds of the table, THEN the search can meet the table to the last
-  // digit
+  // WHEN the search uses the seeds of the target, THEN it can meet the target to the last digit
   const json found =
       Calibrate({"/fog/bias_m=0.2:0.5", "/radar/bias_m=0.9:0.98"},
                 {"--seeds", "1:4", "--spread-weight", "0", "--set", noise[0], "--set", noise[1]});

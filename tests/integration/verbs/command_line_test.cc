@@ -1,4 +1,4 @@
-// The command line as a person sees it: its help, and its errors.
+// The help and the errors of the command line.
 #include <sys/stat.h>
 
 #include <filesystem>
@@ -31,7 +31,8 @@ std::string HelpOf(std::vector<std::string> command) {
   return help.out;
 }
 
-/// Checks a help text: exit codes, at least one example, no line too long for a terminal.
+/// Checks that a help text has exit codes and at least one example, and no line too long for a
+/// terminal.
 void ExpectWholeHelp(const std::vector<std::string>& command) {
   SCOPED_TRACE(command.front() + " " + command.back());
   const std::string help = HelpOf(command);
@@ -122,7 +123,7 @@ TEST(CommandLineTest, SaysHowAFieldIsSetThatIsTakenForAnOption) {
   EXPECT_EQ(ErrorOf({"run", "scenario/paper.json", "--bias", "0.3"}),
             "fogline run: error: no option \"--bias\"" + set +
                 "/fog/bias_m=0.3 or /radar/bias_m or /lidar/bias_m (see fogline run --help)\n");
-  // A verb that sets no fields gives no such hint.
+  // A verb that sets no fields prints no such hint.
   EXPECT_EQ(ErrorOf({"metrics", "x.lcm", "--threshold", "0.8"}),
             "fogline metrics: error: no option \"--threshold\" (see fogline metrics --help)\n");
   for (const char* dashes : {"-", "---", "-x"}) {

@@ -1,5 +1,5 @@
-// Programs that cannot write to stderr, or whose stderr no process reads, and the signals that end
-// a program.
+// Programs that cannot write to stderr, or with a stderr that no process reads. Signals that end a
+// program.
 #include <fcntl.h>
 #include <sys/ioctl.h>
 #include <sys/stat.h>
@@ -182,8 +182,7 @@ TEST(ConsoleTest, ARunGoesOnWhenItsTerminalIsGone) {
   ASSERT_TRUE(GrowsTo(1, log));
   const pid_t radar = WaitForRole(run.pid(), "fogline-radar");
   ASSERT_GT(radar, 0);
-  // WHEN the terminal's window is closed, and a role is killed, so that the run has something to
-  // report
+  // WHEN the terminal's window is closed and a role is killed, so the run has to report a restart
   close(terminal);
   kill(radar, SIGKILL);
   // THEN the run continues

@@ -65,8 +65,8 @@ TEST(DoctorTest, NamesTheRoleThatRunsByItselfAndLeavesItAlone) {
 }
 
 TEST(DoctorTest, KnowsThatAnExperimentRunsRoles) {
-  // GIVEN a process with the name of fogline-experiment, which has started a role. The role ends
-  // with it.
+  // GIVEN a process with the name of fogline-experiment that has started a role. The role ends with
+  // this process
   const ScratchFolder folder;
   const std::string experiment = folder.File("fogline-experiment");
   std::filesystem::copy_file("/bin/sh", experiment);
@@ -76,7 +76,7 @@ TEST(DoctorTest, KnowsThatAnExperimentRunsRoles) {
                                url + "' --run-id 4711 & wait"});
   const TimePoint end = Clock::now() + kPatience;
   Outcome doctor{};
-  do {  // until exec() has replaced the child by the program
+  do {  // until exec() has replaced the shell's child by the role
     doctor = RunCommand({Program("fogline"), "doctor"});
   } while (doctor.out.find(url) == std::string::npos && Clock::now() < end);
   EXPECT_THAT(doctor.out,
@@ -144,7 +144,7 @@ constexpr const char* kEverywhere = "udpm://239.255.76.67:7700?ttl=1";
 
 TEST_F(DoctorOnMachineTest, FindsTheMissingRouteAndItsRemedyHelps) {
   const Machine island("island");
-  // LCM's own programs, and runs on several machines, need a route.
+  // Without a route, only LCM's own programs and runs on several machines fail.
   const Outcome here = Doctor(island, kHere);
   EXPECT_EQ(here.code, 0) << here.err;
   const json own = json::parse(here.out);
@@ -185,7 +185,7 @@ TEST_F(DoctorOnMachineTest, HearsTheRunOfAnotherMachine) {
   const json document = json::parse(doctor.out);
   const std::string heard = Find(document["findings"], "check", "other_runs")["what"];
   EXPECT_THAT(heard, HasSubstr("run " + run.Err().substr(4, run.Err().find(" on ") - 4)));
-  // The doctor names the processes of this computer on all networks.
+  // doctor names the processes of this computer on all networks.
   EXPECT_THAT(doctor.out,
               HasSubstr("fogline (pid " + std::to_string(run.pid()) + ") has a run with " +
                         std::to_string(kRoles.size()) + " processes on " + kEverywhere));

@@ -1,4 +1,4 @@
-// An object in a JSON array, by one of its values.
+// Search for an object in a JSON array by one of its values.
 #pragma once
 
 #include <gtest/gtest.h>

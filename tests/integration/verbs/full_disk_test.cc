@@ -1,4 +1,5 @@
-// A full disk: a verb says which file does not fit, keeps the old files, and leaves no new ones.
+// On a full disk a verb names the file that does not fit, keeps the old files, and leaves no new
+// files.
 #include <unistd.h>
 
 #include <string>
@@ -26,7 +27,7 @@ class FullDiskTest : public testing::Test {
     EXPECT_EQ(run.code, 0) << run.err;
   }
 
-  /// Why the machine cannot mount a file system; "" if it can.
+  /// The reason why the machine cannot mount a file system; "" if it can.
   static std::string Lack() {
     if (geteuid() != 0) return "root, to mount a small file system";
     const Outcome own = RunCommand({"unshare", "--mount", "true"});

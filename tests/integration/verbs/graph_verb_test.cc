@@ -1,4 +1,4 @@
-// fogline graph prints the table of roles and channels, and puts it into pages.
+// `fogline graph` prints the table of roles and channels, and writes it into pages.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -40,7 +40,7 @@ TEST(GraphVerbTest, PrintsTheHashesThatARoleInAnotherLanguageNeeds) {
   const auto radar = graph["channels"][IndexOf<radar_t>()];
   EXPECT_EQ(radar["type"], "radar_t");
   EXPECT_EQ(radar["type_hash"], Hexadecimal(radar_t::getHash()));
-  // A signature names its sender by this place.
+  // In a signed message, this number names the sender.
   for (std::size_t i = 0; i < kRoles.size(); ++i) {
     EXPECT_EQ(graph["roles"][i]["name"], std::string(kRoles[i].name));
     EXPECT_EQ(static_cast<std::size_t>(kRoles[i].role), i);

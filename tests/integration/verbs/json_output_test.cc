@@ -1,5 +1,5 @@
-// Each verb of `fogline` that has the option --json prints one JSON document with this option, and
-// nothing else on stdout.
+// Each verb of `fogline` with the option --json prints one JSON document to stdout, and nothing
+// else.
 #include <map>
 #include <string>
 #include <vector>

@@ -1,4 +1,4 @@
-// Results go into files, links, pipes and devices as a person expects.
+// Results are written to files, links, pipes and devices.
 #include <fcntl.h>
 #include <sys/ioctl.h>
 #include <sys/stat.h>
@@ -120,7 +120,7 @@ TEST_F(OutputFilesTest, AReportGoesThroughAPipeOrIntoNothing) {
   EXPECT_EQ(Bash("fogline report run.lcm -o >(cat > copied) && wait $!").code, 0);
   EXPECT_EQ(Content(folder_.File("copied")), Content(page_));
   // Descriptor 9 keeps the pipe open for reading and writing. So `head` would find no end of the
-  // file, and must know how many bytes to read.
+  // file, and gets the number of bytes to read.
   EXPECT_EQ(Bash("mkfifo pipe; exec 9<>pipe; fogline report run.lcm -o pipe & report=$!;"
                  "head -c $(stat -c %s page.html) <&9 > named; wait $report")
                 .code,
@@ -231,7 +231,7 @@ TEST_F(OutputFilesTest, ASweepIntoAPipeThatIsNotReadEndsOnCtrlC) {
   close(reader);
 }
 
-/// The verbs that write a document into a file, with all arguments except that file.
+/// The verbs that write a document into a file, with all arguments except the name of this file.
 class DocumentTest : public OutputFilesTest {
  protected:
   DocumentTest() {
@@ -247,7 +247,8 @@ class DocumentTest : public OutputFilesTest {
             {"calibrate", paper_, "--free", "/fog/bias_m=0.2:0.3", "--set", "/steps=310", "--seeds",
              "1:1", "--evaluations", "1", "--out"}};
   }
-  /// Runs the verb in the folder: a scenario for stdout has paths that are relative to it.
+  /// Runs the verb in the folder, because a scenario on stdout has paths that are relative to this
+  /// folder.
   Outcome Call(const Words& words, const Words& more) const {
     std::string script = "fogline";
     for (const std::string& word : words) script += " " + word;
@@ -284,7 +285,7 @@ TEST_F(DocumentTest, GoesToStdoutOnlyWithoutTheJsonOfTheVerb) {
                                " /dev/stdout uses stdout already; give " + words.back() +
                                " a file\n");
   }
-  // /dev/null may get both the page and the JSON text, because nothing reads it.
+  // Both the page and the JSON text may go to /dev/null, because no program reads them there.
   EXPECT_EQ(Bash("fogline report run.lcm -o /dev/null --json > /dev/null").code, 0);
 }
 

@@ -1,4 +1,5 @@
-// Words of a command line that no verb accepts: empty texts, and files that look like options.
+// Words of a command line that every verb refuses: empty texts, and file names that look like
+// options.
 #include <string>
 #include <vector>
 

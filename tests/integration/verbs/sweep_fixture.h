@@ -42,7 +42,7 @@ class SweepFixture : public testing::Test {
   Outcome Sweep(const std::string& out, const Words& more) const {
     return RunCommand(Command(out, more));
   }
-  /// Sweeps into a file. @return the bytes of the file
+  /// Executes a sweep into a file. @return the bytes of the file
   std::string Made(const std::string& out, const Words& more) const {
     const Outcome outcome = Sweep(out, more);
     EXPECT_EQ(outcome.code, 0) << outcome.err;
@@ -62,8 +62,8 @@ class SweepFixture : public testing::Test {
     }
     return names;
   }
-  /// Waits until a sweep in the background has written `lines` lines. The test looks at the file,
-  /// because the sweep reports to no other process. @return false after a minute
+  /// Waits until a sweep in the background has written `lines` lines. The test reads the file again
+  /// and again, because the sweep sends no messages. @return false after kPatience
   bool WaitForLines(const std::string& name, std::int64_t lines) const {
     const auto end = std::chrono::steady_clock::now() + kPatience;
     while (CountLines(Content(File(name))) < lines) {

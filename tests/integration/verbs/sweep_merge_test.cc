@@ -139,8 +139,8 @@ TEST_F(SweepMergeTest, NamesEachFileWhoseRowsItCannotCheck) {
     return "fogline sweep: warning: " + File(shard) + ": the rows are not checked, because " +
            File(shard) + ".sums is missing or empty\n";
   };
-  // GIVEN two files that were copied without their checksum files, and a file whose checksum file
-  // is empty. The first file has no rows, so there is nothing to check in it
+  // GIVEN two files that were copied without their checksum files, and a file with an empty
+  // checksum file. The first file has no rows, so it needs no check
   ASSERT_EQ(CountLines(Content(File(shards[0]))), 1);
   std::filesystem::remove(File(shards[0] + ".sums"));
   std::filesystem::remove(File(shards[1] + ".sums"));

@@ -321,7 +321,7 @@ TEST_F(SweepTest, SaysThatTheDiskIsFullAndGoesOnWhenThereIsRoom) {
   const Words sweep = kShort + kThresholds + Words{"--seeds", "1:100"};
   const std::string whole = Made("whole.csv", sweep);
   ASSERT_GT(whole.size(), 32 * 1024U);
-  // GIVEN a limit of 16 KiB for a file. At this limit a write fails as on a full disk
+  // GIVEN a limit of 16 KiB for a file. Beyond this limit a write fails as on a full disk
   const Outcome full =
       RunCommand(Words{"bash", "-c", "trap '' XFSZ; ulimit -f 16; exec \"$@\"", "-"} +
                  Command("full.csv", sweep));
@@ -330,7 +330,7 @@ TEST_F(SweepTest, SaysThatTheDiskIsFullAndGoesOnWhenThereIsRoom) {
                           ": cannot write: File too large; call it again to continue at the end "
                           "of the file\n");
   EXPECT_EQ(Content(File("full.csv")), whole.substr(0, 16 * 1024U));
-  // WHEN there is room again THEN the sweep continues
+  // WHEN the limit is lifted THEN the sweep continues
   EXPECT_EQ(Made("full.csv", sweep), whole);
 }
 
@@ -341,7 +341,7 @@ TEST_F(SweepTest, SaysThatADeviceHasNoSpaceLeft) {
   EXPECT_THAT(full.err, HasSubstr("device.csv: cannot write: No space left on device"));
 }
 
-/// The rows of a CSV file, each as a map from column to text.
+/// The rows of a CSV file. Each row is a map from the name of a column to a text.
 std::vector<std::map<std::string, std::string>> Rows(const std::string& csv) {
   std::istringstream lines(csv);
   std::vector<std::map<std::string, std::string>> rows;
@@ -388,7 +388,7 @@ TEST_F(SweepTest, HasInEachRowWhatTheSameRunMeasuresAndTheTableSays) {
     for (const auto& [name, value] : measures.items()) {
       ExpectSame(row.at(name), value, "threshold " + threshold + " " + name);
     }
-    // AND the safety improvement is that of the table
+    // AND the safety improvement equals that in the table
     const Outcome table = RunCommand(Words{Program("fogline"), "table"} + settings +
                                      Words{"--thresholds", threshold});
     ExpectSame(row.at("si_pct"), nlohmann::json::parse(table.out)["rows"][0]["si_pct"],

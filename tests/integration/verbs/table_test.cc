@@ -1,4 +1,4 @@
-// `fogline table` gives the paper's table.
+// `fogline table` computes the paper's table.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -99,7 +99,7 @@ TEST(TableOverSeedsTest, IsTheSameForAnyNumberOfRunsAtOnce) {
   }
 }
 
-/// The worlds of all runs of a table that go on at this time.
+/// The processes of the role world of all runs of a table that are under way.
 std::vector<pid_t> WorldsOf(const Background& table) {
   std::vector<pid_t> worlds = ChildrenOfAnyThread(table.pid());
   std::erase_if(worlds, [](pid_t child) {

@@ -1,4 +1,4 @@
-// `fogline top` in tests.
+// A process of `fogline top` in tests.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -12,7 +12,7 @@
 
 namespace fogline::test {
 
-// The time for which top watches. It is longer than any test with top.
+// The duration of top, which is longer than any test with top.
 inline constexpr std::chrono::seconds kTopFor(240);
 
 /// `fogline top --json`, which prints a document for each interval until the test ends.

@@ -1,5 +1,5 @@
-// `fogline top` on a real terminal: a pseudo-terminal whose other end is this test. The test reads
-// the screen as a terminal would show it.
+// `fogline top` on a pseudo-terminal. The test is at the other end of the pseudo-terminal, and
+// interprets the output as a terminal does.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <poll.h>
@@ -29,8 +29,8 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-/// The screen of a terminal: it understands the control sequences (ECMA-48) that top uses, and
-/// fails at any other.
+/// The screen of a terminal. It understands the control sequences (ECMA-48) that top uses. With any
+/// other sequence the test fails.
 class EmulatedScreen {
  public:
   EmulatedScreen(std::size_t columns, std::size_t rows) { Resize(columns, rows); }
@@ -52,7 +52,7 @@ class EmulatedScreen {
     for (const std::string& row : cells_) text += row + "\n";
     return text;
   }
-  /// The row with reverse video that is not the last one; "" if there is none.
+  /// The row with reverse video, apart from the last row; "" if no row has it.
   std::string Selected() const {
     for (std::size_t i = 0; i + 1 < cells_.size(); ++i) {
       if (selected_[i]) return cells_[i];
@@ -63,7 +63,7 @@ class EmulatedScreen {
   bool cursor_visible() const { return cursor_visible_; }
 
  private:
-  /// @return whether there was a whole character or sequence
+  /// Interprets the first character or sequence of pending_. @return false if it is not complete
   bool TakeOne() {
     if (pending_[0] != '\033') {
       Put(pending_[0]);
@@ -151,7 +151,7 @@ class TopOnTerminal {
     screen_.Resize(columns, rows);
     ASSERT_EQ(ioctl(terminal_, TIOCSWINSZ, &size), 0);
   }
-  /// Reads until the screen is as expected. @return whether it came to be so
+  /// Reads until the screen is as expected. @return false if this does not happen
   bool WaitUntil(const std::function<bool()>& expected) {
     for (const TimePoint end = Clock::now() + kPatience; Clock::now() < end;) {
       if (expected()) return true;
@@ -164,7 +164,7 @@ class TopOnTerminal {
     EXPECT_TRUE(shown) << "no \"" << text << "\" in\n" << screen_.Text();
     return shown;
   }
-  /// Moves the cursor down to the row whose name is this. @return whether it gets there
+  /// Moves the cursor down to the row with this name. @return false if it finds no such row
   bool MoveDownTo(const std::string& name) {
     const auto selected = [this] { return screen_.Selected().substr(0, kNameColumns); };
     constexpr int kMost = 50;
@@ -185,7 +185,7 @@ class TopOnTerminal {
     pid_ = -1;
     return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   }
-  /// Whether the terminal shows what is typed, line by line, as a shell expects.
+  /// Whether the terminal reads whole lines and shows what is typed, as a shell expects.
   bool IsUsual() const {
     termios now{};
     return tcgetattr(terminal_, &now) == 0 && (now.c_lflag & (ECHO | ICANON)) == (ECHO | ICANON);
@@ -211,7 +211,7 @@ class TopOnTerminal {
 constexpr const char* kEnd = "\033[F";
 constexpr const char* kHome = "\033[H";
 
-/// Whether the row of each role is visible, with its state and its diagnosis in view.
+/// Whether the screen shows the row of each role with its state and its diagnosis.
 bool ShowsEveryRole(const EmulatedScreen& screen) {
   return std::ranges::all_of(kRoles, [&](const RoleInfo& info) {
     return std::ranges::any_of(screen.rows(), [&](const std::string& row) {
@@ -241,7 +241,7 @@ TEST(TopScreenTest, ShowsScrollsSortsAndOpensARunOn80By24AndFollowsTheWindow) {
   EXPECT_THAT(top.screen().rows()[23], HasSubstr("q quit"));
   EXPECT_TRUE(top.Shows("the automation drives"));
   EXPECT_THAT(top.screen().Text(), Not(HasSubstr("senders, by")));
-  // AND the last row can be scrolled to
+  // AND the window can be scrolled to the last row
   top.Press(kEnd);
   EXPECT_TRUE(top.Shows("senders, by LCM's own numbers"));
   top.Press(kHome);
@@ -252,7 +252,7 @@ TEST(TopScreenTest, ShowsScrollsSortsAndOpensARunOn80By24AndFollowsTheWindow) {
   EXPECT_TRUE(top.Shows("s sort: rate"));
   top.Press("sssss");
   EXPECT_TRUE(top.Shows("s sort: channel"));
-  // AND a channel opens to the values of its fields, which change
+  // AND top shows a channel's fields, the values of which change
   ASSERT_TRUE(top.MoveDownTo("TRACK"));
   top.Press("\r");
   ASSERT_TRUE(top.Shows("TRACK of run "));
@@ -264,14 +264,14 @@ TEST(TopScreenTest, ShowsScrollsSortsAndOpensARunOn80By24AndFollowsTheWindow) {
   };
   const int first = step();
   EXPECT_TRUE(top.WaitUntil([&] { return step() > first; })) << top.screen().Text();
-  // AND it follows the size of the window
+  // AND the screen follows the size of the window
   top.Resize(120, 40);
   EXPECT_TRUE(top.WaitUntil([&] {
     return top.screen().rows()[39].find("Esc close") != std::string::npos;
   })) << top.screen().Text();
   top.Press("\033");
   EXPECT_TRUE(top.WaitUntil([&] { return ShowsEveryRole(top.screen()); })) << top.screen().Text();
-  // AND Ctrl-C gives the terminal back
+  // AND after Ctrl-C the terminal has its former settings
   EXPECT_FALSE(top.IsUsual());
   top.Press("\003");
   EXPECT_EQ(top.Wait(), 130);
@@ -295,7 +295,7 @@ TEST(TopScreenTest, SaysInRealtimeWhoDrivesAndWhichInputIsLost) {
       return row.find(" arbitrator ") < 2 && row.find("the automation drives") != std::string::npos;
     });
   })) << top.screen().Text();
-  // THEN the arbitrator does not wait, and STATUS tells what it lacks
+  // THEN the arbitrator does not wait, and STATUS names the missing input
   EXPECT_THAT(top.screen().Text(), Not(HasSubstr("waits for DRIVER_COMMAND")));
   ASSERT_TRUE(top.MoveDownTo("arbitrator"));
   top.Press("\r");

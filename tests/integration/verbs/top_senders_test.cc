@@ -1,4 +1,4 @@
-// The senders in `fogline top`: what of their messages was lost, by LCM's own numbers.
+// The senders in `fogline top`: how many of their messages were lost, by LCM's own numbers.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -40,7 +40,7 @@ TEST(TopSendersTest, TellsTheSenderThatLosesMessagesFromTheOneThatDoesNot) {
   EXPECT_EQ(lossy["received"], 97);
   EXPECT_EQ(lossy["lost"], 3);
   EXPECT_EQ(lossy["channels"], json({"CAMERA"}));
-  // The bus is a real LCM instance.
+  // The sender on the channel AFTER is a real LCM instance, and has lost nothing.
   const json whole = SenderOn(document, "AFTER");
   EXPECT_GE(whole["received"], 2);
   for (const char* count : {"lost", "missed_here", "late", "duplicates", "stray", "restarts"}) {

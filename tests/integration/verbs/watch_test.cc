@@ -29,11 +29,11 @@ using nlohmann::json;
 using std::chrono::seconds;
 using testing::HasSubstr;
 
-// 10 messages a second. The tolerance allows one message more or less at each end of two seconds.
+// 10 messages per second. The tolerance allows one message more or less at each end of two seconds.
 constexpr double kPace_hz = 10;
 constexpr double kPaceTolerance_hz = 1.5;
 
-/// Whether top's document has kPace_hz in every channel with a message in each step.
+/// Whether top's document shows kPace_hz on every channel with a message in each step.
 bool ShowsPace(const std::string& shown) {
   if (shown.empty()) return false;
   const json document = json::parse(shown);
@@ -51,7 +51,7 @@ TEST(TopTest, ShowsEveryRoleAndChannelOfARunAtItsPace) {
   runtime::Bus bus(runtime::FreshMulticastUrl());
   std::int64_t step = -1;
   TimePoint heard{};
-  int uneven = 0;  // steps that came late, or early after a late one
+  int uneven = 0;  // steps that came too late or too early
   bus.Subscribe(ChannelOf<truth_t>().name, [&](runtime::Bytes bytes) {
     step = runtime::ReadInt64(bytes, runtime::kStepOffset);
     const TimePoint now = Clock::now();

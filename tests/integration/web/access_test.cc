@@ -1,4 +1,4 @@
-// The limits of the server of `fogline view`, against real clients.
+// The limits of the server of `fogline view`, tested with real clients.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@ using nlohmann::json;
 using testing::HasSubstr;
 using testing::Not;
 
-/// Shows a network on which no program sends.
+/// A server that shows a network on which no program sends.
 class ViewAccessTest : public testing::Test {
  protected:
   void SetUp() override { ASSERT_NE(viewed_.port(), 0) << viewed_.process().Err(); }
@@ -25,7 +25,7 @@ class ViewAccessTest : public testing::Test {
   std::uint16_t port() const { return viewed_.port(); }
   Background& process() { return viewed_.process(); }
 
-  /// The status with which a WebSocket is refused; 101 if it is opened.
+  /// The status with which the server refuses a WebSocket; 101 if the server opens it.
   int StatusOfSocket(const WebClient::Options& options) const {
     try {
       WebClient client(port(), options);
@@ -38,7 +38,7 @@ class ViewAccessTest : public testing::Test {
   std::string Host(const std::string& name = "127.0.0.1") const {
     return name + ":" + std::to_string(port());
   }
-  /// Whether the server still serves.
+  /// Expects that the server still serves clients.
   void ExpectServes() const { EXPECT_EQ(StatusOfSocket({}), 101); }
 
   Viewed viewed_{{"--lcm-url", runtime::FreshMulticastUrl()}};
@@ -123,14 +123,14 @@ TEST_F(ViewAccessTest, ClosesAClientThatSendsTooManyFrames) {
   WebClient client(port());
   std::uint16_t code = 0;
   try {
-    // On a machine that sends fewer than 200 frames a second, this would take for ever.
+    // If the machine sends fewer than 200 frames per second, the server never cuts this client off.
     for (int i = 0; i < 100'000; ++i) client.Send("{}");
   } catch (const WebClosed& closed) {
     code = closed.code();
   }
   if (code == 0) code = CloseCodeOf(client);
   EXPECT_TRUE(process().WaitForErr("cut off: sends more than 200 frames a second"));
-  // The closing frame is lost if the client's own frames are still under way.
+  // The client gets no closing frame if its own frames are still in transit.
   EXPECT_TRUE(code == 1008 || code == 0) << code;
   ExpectServes();
 }
@@ -145,7 +145,7 @@ TEST_F(ViewAccessTest, TurnsAway65thClient) {
   EXPECT_EQ(StatusOf(Exchange(port(), GetRequest(port(), "/"))), 503);
   EXPECT_TRUE(process().WaitForErr("64 viewers are connected already"));
   clients.pop_back();
-  // The place is free when the server has seen the end of the connection.
+  // The place becomes free when the server has noticed the end of the connection.
   const TimePoint end = Clock::now() + milliseconds(20'000);
   int status = 503;
   while (status != 101 && Clock::now() < end) status = StatusOfSocket({});
@@ -161,7 +161,7 @@ TEST_F(ViewAccessTest, EndsAtOnceWithCtrlC) {
   const TimePoint began = Clock::now();
   process().Signal(SIGINT);
   EXPECT_EQ(CloseCodeOf(clients.front()), 1001);
-  // The others do not answer: the program does not wait for them.
+  // The other clients do not answer the closing frame. The program does not wait for their answers.
   EXPECT_EQ(process().Wait(), 0);
   EXPECT_LT(Clock::now() - began, milliseconds(1000));
 }
@@ -211,7 +211,7 @@ TEST(ViewTokenTest, LetsAViewerWithTheTokenInBesidesIdleConnections) {
   }
   WebClient viewer(viewed.port(), {.target = "/ws?token=" + token});
   EXPECT_EQ(ReceiveOp(viewer, "hello")["mode"], "live");
-  // More of them do not drive the viewer out.
+  // More idle connections do not push the viewer out.
   for (int i = 0; i < 200; ++i) {
     idle.emplace_back(context).connect({boost::asio::ip::address_v4::loopback(), viewed.port()});
   }

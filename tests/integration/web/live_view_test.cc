@@ -1,5 +1,5 @@
-// `fogline view` on a network: its clients get the messages that the log of the run has. The
-// clients do not disturb the run.
+// `fogline view` on a network: its clients get the same messages as the log of the run, and do not
+// disturb the run.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <lcm/lcm.h>
@@ -35,7 +35,7 @@ std::vector<std::string> RunOn(const std::string& url, const std::string& log, i
           "--quiet"};
 }
 
-/// The messages of a run that a client has got, by step and channel.
+/// The messages of a run that a client has received, by step and channel.
 class Got {
  public:
   /// Takes the messages of a frame. Equal messages of one step and channel may come several times.
@@ -61,13 +61,14 @@ class Got {
   double wall_ms_ = 0;
 };
 
-/// Takes frames until there are so many messages, or until kPatience has passed.
+/// Takes frames until `got` has this number of messages, or until kPatience has passed.
 void TakeUntil(std::size_t messages, WebClient& client, Got& got) {
   const TimePoint end = Clock::now() + kPatience;
   while (got.size() < messages && Clock::now() < end) got.Take(client.Receive(kPatience));
 }
 
-/// Compares with the log of the run. @return the number of messages in the log
+/// Compares the received messages with the log of the run. @return the number of messages in the
+/// log
 std::size_t CompareWithLog(Got& got, const std::string& log) {
   log::RunLogReader reader(log);
   std::size_t messages = 0;
@@ -251,12 +252,12 @@ TEST(LiveViewTest, CutsOffAClientThatReadsNothingWhileOthersGoOn) {
       if (KindOf(frame) == 1) received += MessagesOf(frame).size();
     }
   }
-  // The bound, and the bytes that the kernel may hold for a client.
+  // The server keeps 8 MiB for a client. The kernel may keep up to 8 MiB more.
   EXPECT_GT(sent * bytes.size(), 8U << 20);
   EXPECT_LT(sent * bytes.size(), 16U << 20);
   EXPECT_EQ(ReceiveOp(eager, "health")["cut_off"], 1);
   const std::uint16_t code = CloseCodeOf(lazy);
-  EXPECT_TRUE(code == 1013 || code == 0) << code;  // 0: too late to be told
+  EXPECT_TRUE(code == 1013 || code == 0) << code;  // 0: the closing frame is lost
   bus.Publish("AFTERWARDS", bytes);
   EXPECT_EQ(ReceiveOp(eager, "channel")["name"], "AFTERWARDS");
   EXPECT_EQ(viewed.End(), 0);

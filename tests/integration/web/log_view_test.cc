@@ -75,7 +75,7 @@ TEST(LogViewTest, DescribesTheRunOfTheLog) {
   EXPECT_EQ(described["last_step"], 319);
   EXPECT_EQ(described["complete"], true);
   EXPECT_EQ(described["note"], "");
-  // The transfers are those of the verb `events`.
+  // The transfers equal those of the verb `events`.
   std::vector<std::int64_t> transfers;
   for (const json& event : described["events"]) {
     if (event["kind"] == "transfer") transfers.push_back(event["step"]);
@@ -194,7 +194,7 @@ TEST(LogViewTest, AnswersBadRequestsAndGoesOn) {
   }
   client.Send(std::string(100, '\xff'), true);
   EXPECT_EQ(ReceiveOp(client, "error")["id"], nullptr);
-  // Steps that the log does not have give no message.
+  // If the log does not have the requested steps, the answer has no messages for them.
   client.Send(R"({"op":"steps","id":9,"from":15,"to":500})");
   EXPECT_EQ(MessagesOf(ReceiveKind(client, 2)).back().step, 19);
   client.Send(R"({"op":"steps","id":9,"from":100,"to":500})");
@@ -249,9 +249,9 @@ TEST(LogViewTest, OpensAMillionMessagesIn3sAnd300MB) {
   ASSERT_NE(viewed.port(), 0) << viewed.process().Err();
   WebClient client(viewed.port());
   EXPECT_EQ(ReceiveOp(client, "log")["last_step"], kSteps - 1);
-  // Processor time, because other processes of a busy machine do not count.
+  // The limit is for processor time, in which other processes of a busy machine do not count.
   EXPECT_LT(ProcessorTime_s(viewed.process().pid()), 3.0);
-  // Curves of the whole log, and steps in all its parts.
+  // The client asks for curves of the whole log, and for steps in all parts of the log.
   for (const char* field : {"host_gap_m", "follower_gap_m[0]"}) {
     client.Send(json{
         {"op", "series"},

@@ -16,8 +16,8 @@ namespace {
 
 using nlohmann::json;
 
-/// Publishes on a channel until the client is told of this channel.
-/// @return whether it is told within kFrameLimit
+/// Publishes on a channel until the server tells the client of this channel.
+/// @return false if this takes longer than kFrameLimit
 bool Hears(WebClient& client, const std::string& url, const std::string& channel) {
   runtime::Bus bus(url);
   const TimePoint end = Clock::now() + kFrameLimit;
@@ -40,7 +40,7 @@ TEST(RelayViewTest, NeedsHardlyAnyProcessorTimeWhileTheRelayIsAwayAndThenGoesOn)
   relay.process().Signal(SIGKILL);
   relay.process().Wait();
   const double before_s = ProcessorTime_s(viewed.process().pid());
-  // The test is about the length of this pause.
+  // The test needs a pause of this length.
   constexpr double kAway_s = 2;
   std::this_thread::sleep_for(std::chrono::duration<double>(kAway_s));
   const double needed_s = ProcessorTime_s(viewed.process().pid()) - before_s;
@@ -61,7 +61,7 @@ TEST(RelayViewTest, AnswersItsClientsWhileTheRelayDoesNotAnswer) {
   ReceiveOp(client, "hello");
   relay.process().Signal(SIGKILL);
   relay.process().Wait();
-  // In place of the relay: connections are taken, and not answered.
+  // In place of the relay: a socket that accepts connections and never answers.
   asio::io_context context;
   const asio::ip::tcp::acceptor silent(context, {asio::ip::address_v4::loopback(), relay.port()});
   std::vector<double> took_s;
@@ -70,10 +70,11 @@ TEST(RelayViewTest, AnswersItsClientsWhileTheRelayDoesNotAnswer) {
     client.Send("{}");
     ReceiveOp(client, "error");
     took_s.push_back(Seconds(Clock::now() - asked));
-    std::this_thread::sleep_for(milliseconds(70));  // so that the questions meet all moments
+    std::this_thread::sleep_for(milliseconds(70));  // so that the requests meet all phases of a try
   }
   std::ranges::sort(took_s);
-  // If each try to connect blocked the program for 200 ms, most answers would wait for its end.
+  // If each try to connect blocked the program for 200 ms, most answers would come only after the
+  // try.
   EXPECT_LT(took_s[took_s.size() / 2], 0.03);
 }
 

@@ -1,4 +1,4 @@
-// `fogline run --view`: the run, and then its log, at one address.
+// `fogline run --view` shows the run, and then its log, at one address.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@ namespace {
 using nlohmann::json;
 using testing::HasSubstr;
 
-/// Without a screen, so that no browser is opened.
+/// The command line of a run with --view, without a screen, so that no browser is opened.
 std::vector<std::string> RunAndView(const std::string& program, const std::string& log,
                                     std::vector<std::string> more = {}) {
   more.insert(more.begin(), {"env", "-u", "DISPLAY", "-u", "WAYLAND_DISPLAY", program, "run",
@@ -31,15 +31,15 @@ std::uint16_t PortIn(const std::string& err) {
   return static_cast<std::uint16_t>(std::stoi(err.substr(at + kBefore.size())));
 }
 
-/// The frame "log" of the server at a port, as soon as it shows a log; an empty object if it shows
-/// none within kPatience.
+/// Waits until the server at a port shows a log. @return its frame "log"; an empty object if this
+/// takes longer than kPatience
 json LogAt(std::uint16_t port) {
   const TimePoint end = Clock::now() + kPatience;
   while (Clock::now() < end) {
     try {
       WebClient page(port);
       if (ReceiveOp(page, "hello")["mode"] == "log") return ReceiveOp(page, "log");
-    } catch (const std::exception&) {  // no server between the two programs
+    } catch (const std::exception&) {  // the first server has ended, and the second has not started
     }
   }
   return json::object();
@@ -56,7 +56,7 @@ TEST(RunViewTest, ShowsTheRunAndThenItsLogUntilCtrlC) {
     WebClient live(port);
     EXPECT_EQ(ReceiveOp(live, "hello")["mode"], "live");
     EXPECT_EQ(ReceiveOp(live, "run")["steps"], 60);
-    // The program that shows the network ends with the run.
+    // The server that shows the network ends with the run.
     EXPECT_EQ(CloseCodeOf(live), 1001);
   }
   ASSERT_TRUE(run.WaitForOut("\"digest\"", kPatience));
@@ -68,7 +68,7 @@ TEST(RunViewTest, ShowsTheRunAndThenItsLogUntilCtrlC) {
   EXPECT_EQ(json::parse(run.Out())["steps"], 60);
 }
 
-/// Puts the programs into a folder, without fogline-web.
+/// Makes links to all programs except fogline-web in a folder.
 void LinkProgramsTo(const ScratchFolder& folder) {
   for (const auto& entry : std::filesystem::directory_iterator(ProgramDirectory())) {
     const std::string name = entry.path().filename();
@@ -139,10 +139,10 @@ TEST(RunViewTest, RunsWithoutAViewerThatCannotBeStarted) {
   // GIVEN the programs without fogline-web
   const ScratchFolder folder;
   LinkProgramsTo(folder);
-  // WHEN a run shall be shown
+  // WHEN a run gets --view
   const Outcome run = RunCommand(
       RunAndView(folder.File("fogline"), folder.File("run.lcm"), {"--set", "/steps=30"}));
-  // THEN it says once that nothing is shown, and does not wait
+  // THEN it reports once that it cannot show the run, and does not wait
   EXPECT_EQ(run.code, 0) << run.err;
   EXPECT_EQ(json::parse(run.out)["steps"], 30);
   const std::size_t said = run.err.find("--view: cannot start");

@@ -1,5 +1,5 @@
 // A seat of fogline-web, and the network of its run. A test takes the place of the run: it sends
-// TRUTH and hears DRIVER_INPUT, as the driver role does.
+// TRUTH, and receives DRIVER_INPUT as the role driver does.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -38,7 +38,7 @@ inline std::string Braking(std::int64_t sequence, double brake = 0.5) {
       .dump();
 }
 
-/// The network of a run. It sends TRUTH, and keeps the DRIVER_INPUT that come.
+/// The network of a run. An object sends TRUTH, and keeps the DRIVER_INPUT that it receives.
 class SeatNetwork {
  public:
   explicit SeatNetwork(const std::optional<runtime::SigningKey>& key = std::nullopt) : bus_(url_) {
@@ -60,7 +60,7 @@ class SeatNetwork {
     truth.header = {.run_id = run_id, .step = step, .utime = step * 20'000};
     Send(truth);
   }
-  /// Says as a runner that the run goes on.
+  /// Sends RUN with the phase GO, as a runner does.
   void SendRun(std::int64_t run_id) {
     const std::string text = R"({"title": "any"})";
     const auto parts = runtime::SplitScenario(text);
@@ -71,7 +71,7 @@ class SeatNetwork {
     runtime::Encode(message, bytes_);
     bus_.Publish(ChannelOf<Message>().name, bytes_);
   }
-  /// The first message from now on that fits. @throws std::runtime_error after kPatience
+  /// Waits for the first new message that fits. @throws std::runtime_error after kPatience
   template <class Fits>
   driver_input_t Hear(const Fits& fits) {
     const TimePoint end = Clock::now() + kPatience;

@@ -1,4 +1,4 @@
-// The seat of fogline view stays with its run when its network has several.
+// If the network has several runs, the seat of `fogline view` stays with its own run.
 #include <algorithm>
 #include <cstdint>
 #include <string>
@@ -10,7 +10,7 @@
 namespace fogline::test {
 namespace {
 
-/// Waits until the server has heard the TRUTH of another run.
+/// Waits until the server has received the TRUTH of another run.
 void WaitForTruthOf(WebClient& viewer, std::int64_t run_id) {
   const auto is_it = [&](const WebMessage& message) {
     return message.channel == IndexOf<truth_t>() &&

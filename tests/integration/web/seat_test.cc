@@ -16,7 +16,7 @@ using nlohmann::json;
 using testing::HasSubstr;
 using testing::Not;
 
-/// A frame of a page at which no person is.
+/// A frame of a page without a person.
 std::string Away(std::int64_t sequence) {
   json frame = json::parse(Braking(sequence));
   frame["present"] = false;
@@ -45,7 +45,7 @@ TEST_F(SeatPageTest, AnInputIsPublishedWithTheNewestStep) {
   EXPECT_EQ(page.protocol(), "fogline.drive.v1");
   ReceiveOp(page, "hello");
   EXPECT_EQ(ReceiveOp(page, "seat")["state"], "yours");
-  // The seat has heard the step when a message names it.
+  // The seat has received a step when a DRIVER_INPUT names this step.
   network_.SendTruth(7);
   network_.Hear([](const driver_input_t& input) { return input.header.step == 7; });
   page.Send(Braking(40));
@@ -62,7 +62,7 @@ TEST_F(SeatPageTest, AnInputIsPublishedWithTheNewestStep) {
   EXPECT_EQ(published["sequence"], 40);
   EXPECT_EQ(published["input"], input.sequence);
   EXPECT_EQ(published["instance"], std::to_string(input.instance));
-  // The time is CLOCK_MONOTONIC, which this process has, too.
+  // The time comes from CLOCK_MONOTONIC, which is the same clock in this process.
   const double now_us = 1e6 * Seconds(Clock::now().time_since_epoch());
   EXPECT_GT(static_cast<double>(input.time_us), now_us - 60e6);
   EXPECT_LT(static_cast<double>(input.time_us), now_us);
@@ -75,7 +75,7 @@ TEST_F(SeatPageTest, APageSeesTheRunAndNothingElse) {
   for (const json& channel : hello["channels"]) channels.insert(channel["name"]);
   EXPECT_EQ(channels, (std::set<std::string>{"TRUTH", "DRIVER_COMMAND", "HOST_COMMAND"}));
   EXPECT_FALSE(hello.contains("url"));
-  // TRIAL comes first, and the page gets the message after it.
+  // The test sends TRIAL first. The page gets only the message after it.
   trial_t trial{};
   trial.condition = "secret";
   network_.Send(trial);
@@ -92,7 +92,7 @@ TEST_F(SeatPageTest, AClosedSocketReleasesThePedalsAtOnce) {
   const TimePoint closed = Clock::now();
   page.reset();
   const driver_input_t away = network_.Hear(IsAway);
-  // Not by silence: that would take 300 ms.
+  // The seat reports the absence when the page is closed. The time limit of silence is 300 ms.
   EXPECT_LT(Clock::now() - closed, milliseconds(250));
   EXPECT_EQ(away.brake, 0);
   EXPECT_EQ(away.buttons, 0);
@@ -110,7 +110,7 @@ TEST_F(SeatPageTest, ASilentPageDrivesNoMoreAndIsTold) {
   ReceiveOp(page, "seat");  // yours
   EXPECT_EQ(ReceiveOp(page, "seat")["state"], "lost");
   EXPECT_TRUE(viewed_.process().WaitForErr("its page is silent"));
-  // From then on the run hears every 50 ms that no person drives.
+  // From then on the seat tells the run every 50 ms that no person drives.
   const driver_input_t first = network_.Hear(IsAway);
   const driver_input_t second = network_.Hear(
       [&](const driver_input_t& input) { return input.sequence > first.sequence + 5; });
@@ -131,7 +131,7 @@ TEST_F(SeatPageTest, TheSecondPageIsToldThatTheSeatIsTaken) {
     second.Send(Braking(0));
     answer = AnswerTo(second);
     if (answer["op"] == "error") break;
-    // The machine has stopped the first person for 300 ms, so nobody was there.
+    // If the machine has stopped the first person for 300 ms, this person counts as absent.
     second.Send(Away(1));
     AnswerTo(second);
     network_.Hear(IsThere);
@@ -149,7 +149,7 @@ TEST_F(SeatPageTest, APageThatIsOnlyOpenGivesTheSeatToThePersonAtAnother) {
   network_.Hear(IsThere);
   EXPECT_EQ(ReceiveOp(second, "seat")["state"], "yours");
   EXPECT_EQ(ReceiveOp(*first, "seat")["state"], "taken");
-  // The end of a page that does not have the seat changes nothing.
+  // The end of a page without the seat changes nothing.
   first.reset();
   second.Send(Braking(1));
   network_.Hear(IsThere);
@@ -190,7 +190,7 @@ TEST_F(SeatPageTest, RefusesAFloodAndThenClosesThePage) {
   try {
     for (int i = 0; i < 100'000; ++i) page.Send(Braking(i));
   } catch (const WebClosed&) {
-    // As it should.
+    // The server has cut the page off.
   }
   EXPECT_TRUE(viewed_.process().WaitForErr("more than 250 inputs a second"));
   EXPECT_TRUE(viewed_.process().WaitForErr("cut off: sends more than 500 frames a second"));
@@ -237,7 +237,7 @@ TEST(SeatAccessTest, TheDriverHasATokenOfItsOwn) {
   EXPECT_EQ(status("fogline.drive.v1", ""), 403);
   EXPECT_EQ(status("fogline.view.v1", viewer), 101);
   EXPECT_EQ(status("fogline.view.v1", driver), 403);
-  // The tokens are secrets: only stdout has them.
+  // The tokens are secret, so only stdout has them.
   EXPECT_THAT(viewed.process().Err(), Not(HasSubstr(driver)));
 }
 

@@ -37,7 +37,7 @@ class Viewed {
   struct Started {
     std::vector<std::string> command;
   };
-  /// Whatever starts `fogline view` and prints its address first.
+  /// Starts a command that starts `fogline view` and prints its address first.
   explicit Viewed(const Started& started) : process_(started.command) {
     if (!process_.WaitForOut("\n")) return;
     address_ = process_.Out().substr(0, process_.Out().find('\n'));
@@ -45,11 +45,11 @@ class Viewed {
     port_ = static_cast<std::uint16_t>(std::stoi(address_.substr(begin)));
   }
 
-  /// 0 if it does not listen.
+  /// The port of the server; 0 if the server does not listen.
   std::uint16_t port() const { return port_; }
   const std::string& address() const { return address_; }
   Background& process() { return process_; }
-  /// Ends it with Ctrl-C, as a person does. @return its exit code
+  /// Ends the program with Ctrl-C, as a person does. @return its exit code
   int End() {
     process_.Signal(SIGINT);
     return process_.Wait();
@@ -85,8 +85,8 @@ inline double ProcessorTime_s(pid_t pid) {
 /// A message in a binary frame.
 struct WebMessage {
   std::uint16_t channel = 0;
-  double wall_ms = 0;      // of kind 1
-  std::int64_t step = -1;  // of kind 2
+  double wall_ms = 0;      // only in a frame of kind 1
+  std::int64_t step = -1;  // only in a frame of kind 2
   std::string bytes;
 };
 
@@ -97,7 +97,7 @@ inline std::vector<WebMessage> MessagesOf(const WebFrame& frame) {
   if (!frame.binary || rest.empty()) return messages;
   const char kind = rest.front();
   rest.remove_prefix(1);
-  if (kind == 2) web::TakeLittleEndian<std::uint32_t>(rest);  // the request's id
+  if (kind == 2) web::TakeLittleEndian<std::uint32_t>(rest);  // the id of the request
   while (!rest.empty()) {
     WebMessage message;
     message.channel = web::TakeLittleEndian<std::uint16_t>(rest);
@@ -119,12 +119,12 @@ inline runtime::Bytes BytesOf(const std::string& text) {
   return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
 }
 
-// The server sends something several times a second, so a test must not wait for a certain frame
-// without a limit.
+// The server sends several frames per second, so a test needs a limit when it waits for a certain
+// frame.
 inline constexpr Duration kFrameLimit = milliseconds(60'000);
 
-/// The next text frame with this "op". Other frames are dropped. @throws std::runtime_error after
-/// kFrameLimit
+/// Waits for a text frame with this "op", and drops other frames. @return the frame. @throws
+/// std::runtime_error after kFrameLimit
 inline nlohmann::json ReceiveOp(WebClient& client, const std::string& op) {
   const TimePoint end = Clock::now() + kFrameLimit;
   while (true) {
@@ -136,8 +136,8 @@ inline nlohmann::json ReceiveOp(WebClient& client, const std::string& op) {
   }
 }
 
-/// The next binary frame of this kind. Other frames are dropped. @throws std::runtime_error after
-/// kFrameLimit
+/// Waits for a binary frame of this kind, and drops other frames. @return the frame. @throws
+/// std::runtime_error after kFrameLimit
 inline WebFrame ReceiveKind(WebClient& client, char kind) {
   const TimePoint end = Clock::now() + kFrameLimit;
   while (true) {
@@ -147,8 +147,8 @@ inline WebFrame ReceiveKind(WebClient& client, char kind) {
   }
 }
 
-/// The code with which the server closes a client. The function reads the frames before it. 0 if no
-/// closing frame comes.
+/// Reads frames until the server closes the connection. @return the code of the closing frame, 0 if
+/// no such frame comes
 inline std::uint16_t CloseCodeOf(WebClient& client) {
   try {
     while (true) client.Receive();

@@ -1,4 +1,4 @@
-// Tests that a role gets a stream of random numbers of its own by its name.
+// Tests that the name of a role determines a stream of random numbers for this role alone.
 #include "common/random.h"
 
 #include <gtest/gtest.h>

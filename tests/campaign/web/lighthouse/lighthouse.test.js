@@ -1,5 +1,5 @@
-// Lighthouse's audit of accessibility, on a phone and on a desktop. It sees each page as it is after it
-// was loaded; the other tests of the pages look for broken rules in their other states.
+// Lighthouse's audit of accessibility, on a phone and on a desktop. It examines each page only as
+// the page is after loading. The other tests of the pages check the rules in other states.
 import assert from "node:assert/strict";
 import path from "node:path";
 import {test} from "node:test";

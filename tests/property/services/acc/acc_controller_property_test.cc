@@ -64,7 +64,7 @@ TEST(AccControllerPropertyTest, EverySituationHasAnOptimum) {
   EXPECT_LT(on_limits, 1900);
 }
 
-// The controller leaves the exact check out where the bounds of the plan prove its result.
+// The controller omits the exact check if the bounds of the plan already prove its result.
 TEST(AccControllerPropertyTest, BoundsAreNeverBelowThePlanAndProveOnlyWhatTheExactCheckFinds) {
   Draw draw(7);
   int proved = 0;

@@ -17,7 +17,7 @@ class Draw {
 
   double Uniform(double min, double max) { return min + (max - min) * Next(); }
 
-  /// Every order of magnitude is equally likely.
+  /// A number in [min, max]. Every order of magnitude is equally likely.
   double LogUniform(double min, double max) { return min * std::pow(max / min, Next()); }
 
   /// A whole number in [min, max], uniform.

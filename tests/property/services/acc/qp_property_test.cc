@@ -18,8 +18,8 @@ constexpr acc::QpSolver::Options kOptions{.max_iterations = 10'000};
 
 double Largest(const VectorXd& v) { return v.size() > 0 ? v.cwiseAbs().maxCoeff() : 0; }
 
-// Expects the conditions of Karush, Kuhn & Tucker. They are necessary and sufficient for the only
-// minimum of a strictly convex program. @return the number of active limits
+// Expects the conditions of Karush, Kuhn & Tucker. For a strictly convex program, these conditions
+// hold at the minimum and nowhere else. @return the number of active limits
 int ExpectMinimum(const QuadraticProgram& program, const acc::QpSolver& solver) {
   const VectorXd& x = solver.solution();
   const VectorXd& y = solver.multipliers();
@@ -93,8 +93,7 @@ TEST(QpPropertyTest, TheMinimumDoesNotDependOnTheStart) {
   }
 }
 
-// The limit of a row contradicts the limits of two other rows (Farkas' lemma). The row is a
-// combination of these two rows.
+// A row is a combination of two other rows, and its limit contradicts their limits (Farkas' lemma).
 TEST(QpPropertyTest, ContradictionsAreFound) {
   Draw draw(4);
   for (int i = 0; i < 1000; ++i) {

@@ -16,7 +16,7 @@ namespace {
 constexpr auto kAbsolute = ConflictReading::kMeanOfAbsolute;
 constexpr auto kSigned = ConflictReading::kAbsoluteOfMean;
 
-// A difference of about a metre; no value in one of five steps.
+// Draws a difference of about a metre. One of five steps has no value.
 std::optional<double> AnyDifference(const Random& random, std::int64_t step) {
   if (random.Uniform2(step, 0)[0] < 0.2) return std::nullopt;
   return random.Normal2(step, 1)[0];

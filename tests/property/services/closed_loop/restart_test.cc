@@ -28,7 +28,7 @@ void ChangeTraffic(Draw& draw, Scenario& scenario) {
   scenario.road.grade = {{0, draw.Uniform(-0.05, 0.05)}, {500, draw.Uniform(-0.05, 0.05)}};
 }
 
-/// Changes some parts of a scenario, as between two rows of a sweep.
+/// Changes some parts of a scenario, such as those that differ between two rows of a sweep.
 void Change(Draw& draw, Scenario& scenario) {
   scenario.seed = draw.Integer(0, 1000);
   scenario.steps = draw.Integer(1, 300);

@@ -39,7 +39,7 @@ inline std::vector<Shipped> ShippedScenarios(const std::filesystem::path& folder
   return shipped;
 }
 
-/// Runs to the end. @return the digest. @pre `loop` is new or restarted
+/// Runs the loop to the end. @return the digest. @pre `loop` is new or restarted
 inline std::string DigestOf(closed_loop::ClosedLoop& loop) {
   runtime::Digest digest;
   std::vector<std::uint8_t> buffer;

@@ -37,7 +37,7 @@ struct Outcome {
   double si_pct = 0;
 };
 
-/// Over the seeds 1 to `seeds`: the largest jerks and the mean of SI.
+/// The largest jerks, and the mean of SI, over the seeds 1 to `seeds`.
 Outcome OutcomeOf(Scenario scenario, int seeds) {
   Outcome outcome;
   for (scenario.seed = 1; scenario.seed <= seeds; ++scenario.seed) {

@@ -1,4 +1,4 @@
-// Properties of whole runs with several followers (some of them people), and with cars that are
+// Properties of whole runs with several followers, some with human drivers, and with cars that are
 // more than a point mass.
 #include <algorithm>
 #include <cmath>

@@ -17,7 +17,7 @@ struct Commands {
   double follower_mps2;
 };
 
-// Hard driving, with stops and collisions in many runs.
+// Commands for hard driving, with stops and collisions in many runs.
 std::vector<Commands> RandomCommands(std::uint64_t seed, std::int64_t steps) {
   std::mt19937_64 engine(seed);
   std::uniform_real_distribution<double> acceleration(-6.0, 5.0);

@@ -165,7 +165,7 @@ INSTANTIATE_TEST_SUITE_P(To, ConsoleTest, testing::Values(Pipe, Sockets),
 /// @return the status of the process that prints it, as waitpid() gives it
 int StatusInBackground(const char* terminal) {
   setsid();
-  const int own = open(terminal, O_RDWR);  // controls this process and its children: setsid(2)
+  const int own = open(terminal, O_RDWR);  // the controlling terminal, see setsid(2)
   termios settings{};
   tcgetattr(own, &settings);
   settings.c_lflag |= TOSTOP;

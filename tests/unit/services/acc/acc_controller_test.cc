@@ -178,7 +178,7 @@ TEST(AccControllerTest, BrakesAtTheFallbackDecelerationWithoutATarget) {
     EXPECT_GE(output.acceleration_mps2 - cars.acceleration_mps2, -section.max_jerk_mps3 * kStep_s);
     cars.Advance(output.acceleration_mps2);
   }
-  EXPECT_NEAR(cars.acceleration_mps2, -section.fallback_deceleration_mps2, 1e-3);  // e^-7 is left
+  EXPECT_NEAR(cars.acceleration_mps2, -section.fallback_deceleration_mps2, 1e-3);  // e^-7 remains
 }
 
 TEST(AccControllerTest, IgnoresDistanceAndSpeedOfAMissingTarget) {

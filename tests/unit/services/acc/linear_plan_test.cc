@@ -30,8 +30,8 @@ TEST(LinearPlanTest, IsTheGainTimesTheSituation) {
   EXPECT_EQ(plan.First(p), controls(0));
 }
 
-// |K| has the columns' maxima 2, 2, 3 and 0.5. The first change is u_0 - u_{-1}, so its row is
-// (1, 2, -3, -0.5); the second row is (-3, -1, 4, -0.25).
+// The largest elements of the columns of |K| are 2, 2, 3 and 0.5. The first change is u_0 - u_{-1},
+// so its row is (1, 2, -3, -0.5). The second row is (-3, -1, 4, -0.25).
 TEST(LinearPlanTest, BoundsAreTheLargestElementsOfTheColumns) {
   const LinearPlan plan(GainOfTwoSteps());
   const Eigen::Vector4d p(1, -10, 100, -1000);

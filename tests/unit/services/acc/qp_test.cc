@@ -22,8 +22,8 @@ VectorXd Vector(std::initializer_list<double> values) {
   return v;
 }
 
-// The squared distance from the point p = (3, 2) in the plane, 1/2 |x - p|^2. Every optimum is
-// obvious.
+// The solver minimises 1/2 |x - p|^2, half of the squared distance from the point p = (3, 2) in the
+// plane. So every optimum is obvious.
 class PlaneTest : public testing::Test {
  protected:
   acc::QpSolver::Result Solve(const MatrixXd& constraints, const VectorXd& lower,
@@ -54,8 +54,7 @@ TEST_F(PlaneTest, ProjectsOntoABox) {
   const auto result = Solve(MatrixXd::Identity(2, 2), Vector({0, 5}), Vector({1, 9}));
   EXPECT_EQ(result.status, Status::kOptimal);
   EXPECT_TRUE(x_.isApprox(Vector({1, 5}), 1e-15));
-  // Multipliers are the forces of the limits: negative at an upper limit, positive at a lower
-  // limit.
+  // A multiplier is negative at an upper limit, and positive at a lower limit.
   EXPECT_TRUE(y_.isApprox(Vector({-2, 3}), 1e-15));
 }
 

@@ -1,4 +1,5 @@
-// Emergency braking by the arbitrator: of each side, in a manoeuvre, and while it asks the driver.
+// Emergency braking by the arbitrator: while either side drives, during a minimal risk manoeuvre,
+// and while the arbitrator asks the driver.
 #include <cstdint>
 
 #include <gtest/gtest.h>
@@ -106,8 +107,8 @@ TEST(ArbitratorTest, BrakesInAManoeuvreUnderTheManoeuvresMode) {
   EXPECT_EQ(out.lambda_automation + out.lambda_human, 0);
 }
 
-// While the car asks the driver, emergency braking hides the mode REQUEST only while the car
-// brakes.
+// The arbitrator asks the driver. As long as the car brakes in an emergency, the mode is
+// EMERGENCY_BRAKING. Before and after the braking, the mode is REQUEST.
 TEST(ArbitratorTest, BrakesAlsoWhileItAsksTheDriver) {
   Scenario scenario;
   scenario.aeb.enabled = true;

@@ -1,4 +1,4 @@
-// The messages that the arbitrator in real time reads, to be changed by a test.
+// The messages that the arbitrator in real time reads. A test can change them.
 #pragma once
 
 #include <cstdint>

@@ -83,7 +83,7 @@ TEST_F(FailsafeReturnTest, StopsAlsoWhenTheDriversMessagesAreLost) {
   EXPECT_EQ(Step().mode, arbitration_t::RECOVERING);
 }
 
-/// A person who overrides by the brake. The authority otherwise changes within 5 s.
+/// A person who overrides by the brake. A transfer without an override takes 5 s.
 Scenario Overriding(std::string_view policy = "traded") {
   Scenario scenario = FailsafeTakeOverTest::AskingAPerson();
   scenario.arbitrator.policy = FindPolicy(policy).value();

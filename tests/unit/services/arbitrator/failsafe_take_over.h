@@ -22,7 +22,7 @@ class FailsafeTakeOverTest : public FailsafeInputsTest {
     return scenario;
   }
 
-  /// The driver is a person.
+  /// The scenario of Asking(), with a person as the driver.
   static Scenario AskingAPerson() {
     Scenario scenario = Asking();
     scenario.person.drives = true;

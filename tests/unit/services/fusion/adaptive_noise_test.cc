@@ -82,8 +82,9 @@ TEST(AdaptiveNoiseTest, FindsTheNoiseThatIsReallyThere) {
                    .corrected_variance = variance});
       sum += noise.variance();
     }
-    // About 200 independent estimates, each from 100 values. The standard deviation is at least 4
-    // sqrt(2/20000), because the estimate also changes the gain. 5 % is four times that.
+    // The sum has about 200 independent estimates, each from 100 values. So the standard deviation
+    // of the mean is at least 4 sqrt(2/20000) = 0.04. It is larger, because the estimate also
+    // changes the gain. The tolerance is 5 % of the true noise, which is five times 0.04.
     EXPECT_NEAR(sum / kSteps, kTrueNoise, 0.2);
   }
 }

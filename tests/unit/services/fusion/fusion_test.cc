@@ -313,7 +313,7 @@ TEST(FusionTest, UsesAnAdaptedNoiseFromTheNextStepOn) {
   }
 }
 
-// The residual is what remains of an innovation after the correction.
+// The residual is the part of an innovation that remains after the correction.
 TEST(FusionTest, LearnsTheNoiseFromTheResidualAfterTheCorrection) {
   const Scenario scenario = Adapting(NoiseAdaptation::kResidual);
   const double assumed = scenario.fusion.lidar_range_std_m * scenario.fusion.lidar_range_std_m;

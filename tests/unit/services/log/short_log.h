@@ -24,7 +24,7 @@ namespace fogline::test {
 inline constexpr std::int64_t kRunId = 7;
 inline constexpr std::int64_t kSteps = 3;
 inline constexpr std::int64_t kStep_us = 100'000;
-// The shortest scenario with this number of steps.
+// The shortest scenario with kSteps steps.
 inline constexpr std::string_view kScenario = R"({"version":1,"steps":3})";
 
 struct ShortLog {

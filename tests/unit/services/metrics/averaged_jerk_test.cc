@@ -10,7 +10,7 @@
 namespace fogline {
 namespace {
 
-/// The time of a step, from whole microseconds as in a log.
+/// The time of a step, rounded to whole microseconds as in a log.
 double TimeOf(std::int64_t step, double step_s) {
   return static_cast<double>(std::llround(1e6 * step_s * static_cast<double>(step))) * 1e-6;
 }
@@ -47,7 +47,8 @@ TEST(AveragedJerkTest, OfARampIsItsSlopeOrItsHeightWhateverTheStepIs) {
   for (const double step_s : {0.1, 0.05, 0.02}) {
     const auto long_ramp = [](double t) { return 2.5 * std::clamp(t - 3, 0.0, 2.0); };
     EXPECT_NEAR(LargestOf(long_ramp, step_s), 2.5, 1e-9) << step_s;
-    // A ramp of half a second: its jerk is 2.5 m/s3, but averaged over 1 s only half of it.
+    // A ramp of half a second: its jerk is 2.5 m/s3, and the average over 1 s is half of this
+    // value.
     const auto short_ramp = [](double t) { return 2.5 * std::clamp(t - 3, 0.0, 0.5); };
     EXPECT_NEAR(LargestOf(short_ramp, step_s), 1.25, 1e-9) << step_s;
   }

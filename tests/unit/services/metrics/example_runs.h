@@ -11,7 +11,8 @@
 namespace fogline {
 
 inline constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-// A power of two: all times, integrals and jerks of a run are exact.
+// The duration of a step. It is a power of two, so all times, integrals and jerks of a run are
+// exact.
 inline constexpr double kStep_s = 0.5;
 
 // A run of `steps` steps without events. The following car is exactly at its safe distance.
@@ -26,7 +27,8 @@ inline std::vector<metrics::Sample> QuietRun(std::size_t steps) {
   return run;
 }
 
-// The same run with fog in every step. The following car is too near by shortfalls_m[k].
+// The run of QuietRun(), with fog in every step. In step k the following car is too near by
+// shortfalls_m[k].
 inline std::vector<metrics::Sample> FoggyRun(const std::vector<double>& shortfalls_m) {
   std::vector<metrics::Sample> run = QuietRun(shortfalls_m.size());
   for (std::size_t k = 0; k < run.size(); ++k) {

@@ -47,7 +47,7 @@ class RecorderTest : public testing::Test {
     script.SayRun(run_t::GO, progress);
     return recorder;
   }
-  /// Records the whole run, or the rest of it.
+  /// Records the whole run, or the steps of the run that an existing log lacks.
   void RecordAll(const std::string& name, recorder::Recorder::Existing existing) {
     Script script;
     const auto recorder = Record(script, name, existing);
@@ -122,7 +122,7 @@ TEST_F(RecorderTest, AnswersForWhatItsProducersMayHaveForgotten) {
   script_.AskFor("TRUTH", 10, 63);
   AnswerAll(*recorder);
   // The request is for steps 10 to 72. The recorder answers only up to step 67, because newer steps
-  // are less than kMaxAhead old.
+  // are less than kMaxAhead steps old.
   ASSERT_EQ(truths_.size(), 58U);
   for (std::size_t i = 0; i < truths_.size(); ++i) {
     EXPECT_EQ(truths_[i].header.step, static_cast<std::int64_t>(10 + i));

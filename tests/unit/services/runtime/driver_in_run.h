@@ -50,7 +50,7 @@ class DriverInRun : public testing::Test {
     SayBytes("TRUTH", Encoded(nan));
   }
 
-  /// Answers every step of every request, as a network without loss would.
+  /// Answers every RESEND of TRUTH with all requested steps, as if no message were lost.
   void AnswerRequests() {
     while (served_ < requests_.size()) {
       const resend_t request = requests_[served_++];

@@ -14,7 +14,7 @@
 
 namespace fogline::test {
 
-/// All other processes of a run.
+/// Publishes the messages of all other processes of a run, and collects the answers.
 class Script {
  public:
   static constexpr std::int64_t kRunId = 7;
@@ -43,10 +43,10 @@ class Script {
     std::vector<std::uint8_t> bytes;
     runtime::Encode(message, bytes);
     bus_.Publish(ChannelOf<M>().name, bytes);
-    if (bus_.Wait(Duration::zero())) bus_.Drain();  // Wait() looks at the clock
+    if (bus_.Wait(Duration::zero())) bus_.Drain();  // Wait() sets the time of arrival
   }
 
-  /// A message of a step. Everything is zero except the header.
+  /// A message of a step. All fields except the header are zero.
   template <class M>
   static M Of(std::int64_t step) {
     M message{};
@@ -100,7 +100,7 @@ class Script {
   }
 
  private:
-  std::map<runtime::Work*, TimePoint> wakes_;  // when each role wants the next call
+  std::map<runtime::Work*, TimePoint> wakes_;  // the next call that each role has requested
   std::string text_;
   std::int64_t sequence_ = 0;  // of the runner's messages
   std::tuple<std::vector<run_t>, std::vector<resend_t>, std::vector<status_t>, std::vector<truth_t>,

@@ -1,4 +1,4 @@
-// Commands to the world, states of its inputs, and what it says, for tests.
+// Commands to the world, states of the world's inputs, and the TRUTH of an output, for tests.
 #pragma once
 
 #include <cstdint>

@@ -38,9 +38,9 @@ TEST(LeaderTest, GoesLinearlyFromBreakpointToBreakpoint) {
 }
 
 TEST(LeaderTest, HasExactlyTheSpeedOfABreakpointAtItsTime) {
-  // 0.1 + 0.2 is rounded up. So the second phase seems to be longer than its 0.2 s, and the share
-  // of it that is left at 0.1 s is above 1. A line beyond its beginning would drive the standing
-  // car backwards.
+  // 0.1 + 0.2 is rounded up, so the second phase seems to be longer than its 0.2 s. At 0.1 s, the
+  // remaining share of this phase is above 1. An extrapolation to this share would give a negative
+  // speed.
   LeadSection lead = Lead(LeadProfile::kBreakpoints, 10.0);
   lead.breakpoints = {{0.1, 0.0}, {0.2, 20.0}};
   EXPECT_EQ(SpeedAt(lead, 0.1), 0.0);

@@ -107,7 +107,8 @@ TEST_F(VehicleFallbackTest, TakesCommandsForNoCarAsNone) {
   now_.follower_acceleration_mps2 = {-1.5};
   // WHEN messages come in time but contain no command for the car
   const follower_command_t empty{};
-  // THEN the last command stays in force as long as a stale command, and then the car stops
+  // THEN the last command stays in force for the same time as a stale command, and then the car
+  // stops
   EXPECT_EQ(Follower(kOk, &empty), -1.5);
   EXPECT_EQ(fallback_.follower_state(), kStale);
   EXPECT_NEAR(Follower(kOk, &empty), -1.5 - 0.2, 1e-12);

@@ -129,7 +129,7 @@ TEST_F(JsonLinesTest, DoNotWaitForASideThatReadsNothing) {
   int come = 0;
   constexpr int kTurns = 100'000;
   for (int turn = 0; turn < kTurns && come < kMessages; ++turn) {
-    lines.Wait(Duration::zero());  // sends what has waited for room
+    lines.Wait(Duration::zero());  // sends the lines that waited for room
     if (other.Take()) ++come;
   }
   EXPECT_EQ(come, kMessages);

@@ -69,7 +69,7 @@ TEST(ChildTest, ReportsItsEndAlsoToAParentThatIgnoredTheEndsOfChildren) {
 }
 
 TEST(ChildTest, HasAnEmptyInputAndNoFileOfItsParent) {
-  const int file = open("/dev/zero", O_RDONLY);  // without close-on-exec, as LCM's sockets
+  const int file = open("/dev/zero", O_RDONLY);  // without close-on-exec, like LCM's sockets
   ASSERT_GE(file, 3);
   const Ended ended =
       RunScript("readlink /proc/$$/fd/0; [ -e /proc/$$/fd/$1 ] && echo open || echo closed",
@@ -129,8 +129,7 @@ TEST(ChildTest, ThatIgnoresTheRequestToEndIsKilled) {
   EXPECT_EQ(waitpid(pid, nullptr, WNOHANG), -1) << "it has ended, and its status is read";
 }
 
-/// The read end of a pipe with a text in it. Its other end is open, as that of a child that runs
-/// on.
+/// A pipe that contains a text. The write end stays open, as if a child still had it.
 struct FullPipe : processes::Pipe {
   explicit FullPipe(const std::string& text) { Add(text); }
   void Add(const std::string& text) const {

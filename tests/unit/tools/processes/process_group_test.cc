@@ -83,7 +83,7 @@ TEST(ProcessGroupTest, KillsOneOfItsProcesses) {
   EXPECT_EQ(exits[0].pid, killed);
   EXPECT_TRUE(exits[0].killed);
   EXPECT_TRUE(IsAlive(other));
-  group.Kill(getpid());  // is none of them
+  group.Kill(getpid());  // not a process of the group
 }
 
 TEST(ProcessGroupTest, EndsWithItsProcesses) {
@@ -94,7 +94,7 @@ TEST(ProcessGroupTest, EndsWithItsProcesses) {
     pid = StartScript(group, Role::kWorld, "trap '' TERM INT HUP; exec sleep 60");
     const TimePoint end = Clock::now() + kPatience;
     while (Content("/proc/" + std::to_string(pid) + "/comm") != "sleep\n" && Clock::now() < end) {
-      std::this_thread::sleep_for(milliseconds(5));  // exec has no event
+      std::this_thread::sleep_for(milliseconds(5));  // no event reports exec
     }
     ASSERT_TRUE(IsAlive(pid));
   }

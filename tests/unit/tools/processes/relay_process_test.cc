@@ -31,7 +31,7 @@ class RelayProcessTest : public testing::Test {
     EXPECT_EQ(children.size(), 1U);
     return children.empty() ? 0 : children.front();
   }
-  /// Checks the relay again and again until the relay has news.
+  /// Calls Look() until it returns a text, or until kPatience has passed. @return the text
   std::string News(RelayProcess& relay) const {
     std::string news;
     const TimePoint end = Clock::now() + kPatience;

@@ -128,8 +128,8 @@ TEST(SubscriptionsTest, GiveUpExpressionsThatTakeExponentialTime) {
 }
 
 TEST(SubscriptionsTest, GiveUpManySlowExpressionsAsOne) {
-  // GIVEN expressions that are slow, but that Boost alone completes (Boost allows more visits for
-  // long expressions)
+  // GIVEN slow expressions. Boost alone completes each search, because Boost allows more visits for
+  // long expressions
   relay::Subscriptions wanted(1000);
   for (int i = 0; i < 100; ++i) wanted.Add("(a|aa)+b" + std::string(240, 'c'));
   // WHEN a name is matched with all of them, THEN the search ends before the last expression
@@ -156,7 +156,7 @@ int NamesUntilTheEnd(relay::Subscriptions& wanted, int first, TimePoint now) {
 TEST(SubscriptionsTest, SpendABudgetOnNewNamesThatFillsAgain) {
   relay::Subscriptions wanted(kLimit);
   ASSERT_EQ(wanted.Add(kSlow), "");
-  // GIVEN more and more new names, for each of which Boost alone completes the search
+  // GIVEN more and more new names. Boost alone completes the search for each of these names
   const int stood = NamesUntilTheEnd(wanted, 0, TimePoint{});
   EXPECT_GT(stood, 1);
   EXPECT_LT(stood, 1000) << "all of them together are";

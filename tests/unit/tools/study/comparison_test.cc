@@ -87,7 +87,8 @@ TEST(ComparisonTest, TestsEveryMeasureOfWholeRuns) {
 }
 
 TEST(ComparisonTest, ARunThatCollidesIsLessSafeThanOneThatDoesNot) {
-  // GIVEN four seeds: both collide; only one of them; none, with equal and with other safety
+  // GIVEN four seeds. With the first seed both runs collide, with the second seed one run. The runs
+  // of the third seed have equal safety, those of the fourth seed have not
   const std::size_t measures = study::ComparedMetrics().size();
   std::vector<double> values(2 * measures * 4, 0.0);
   const auto set = [&](std::size_t variant, std::string_view measure, std::array<double, 4> of) {
@@ -120,7 +121,7 @@ TEST(ComparisonTest, CountsAPairOfDifferentlyLongRunsAsCutShort) {
   EXPECT_EQ(comparison.PairsCutShort({0, 0}, {0, 0}), 0);
 }
 
-// The runs of a case are paired with the run without traded control of this case.
+// Each run is paired with the run without traded control of the same case.
 TEST(ComparisonTest, HasInEachCaseTheRunsOfThisCaseAlone) {
   const std::vector<std::string> early{"/fog/start_s=5", "/steps=200"};
   const std::vector<std::string> denser{"/fog/start_s=5", "/steps=200", "/fog/bias_m=0.4"};

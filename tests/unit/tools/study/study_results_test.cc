@@ -1,4 +1,4 @@
-// What the figures, files and texts of studies say of their runs.
+// Tests of the figures, files and texts that studies make of their runs.
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -113,7 +113,7 @@ TEST(ThresholdStudyTest, AQuarterOfItsSituationsHasNoFog) {
                     study::MixedHuman::kDrawn, study::MixedRadar::kDrawn, {"/steps=250"});
   const auto clear = std::ranges::count_if(mixed.members.front().shortfall_m,
                                            [](double m) { return std::isnan(m); });
-  // A binomial number with a deviation of 8.7.
+  // The number is binomial, with a standard deviation of 8.7.
   EXPECT_NEAR(static_cast<double>(clear), kSituations / 4.0, 4 * 8.7);
 }
 

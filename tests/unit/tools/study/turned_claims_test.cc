@@ -31,7 +31,7 @@ study::Claim Turned(study::Claim claim) {
   return claim;
 }
 
-// As with all seeds of the study: a claim that does not hold fails.
+// The check of a claim, as in a study with all seeds: a claim that does not hold fails.
 report::StudyClaim Checked(const study::Claim& claim) {
   return study::CheckClaims(std::array{claim}, false).front();
 }

@@ -29,8 +29,8 @@ sweep::SweepPlan PlanOfFourUnits() {
 
 class SweepFileTest : public testing::Test {
  protected:
-  /// Opens a sweep's file and writes the units that it lacks, up to `end`.
-  /// @return the first unit that it lacked
+  /// Opens a sweep's file and writes the units that the file lacks, up to `end`.
+  /// @return the first unit that the file lacked
   std::int64_t Write(const std::string& file, std::int64_t end, const sweep::Shard& shard = {}) {
     sweep::SweepFile csv(file, plan_, shard, /*force=*/false);
     sweep::SweepWorker worker(plan_);

@@ -24,7 +24,7 @@ TEST(QuestionnairesTest, TheTaskLoadIndexHasSixScalesOfTwentyOneMarks) {
     EXPECT_EQ(item.max, 100) << item.name;
     EXPECT_EQ(item.step, 5) << item.name;
   }
-  // A high value is bad on each scale: on that of performance, too.
+  // A high value is bad on each scale, also on the scale of performance.
   EXPECT_EQ(tlx.items[3].name, "performance");
   EXPECT_EQ(tlx.items[3].low, "perfect");
 }

@@ -80,8 +80,8 @@ TEST_F(TrialLogTest, AFactIsAddedOnce) {
 TEST_F(TrialLogTest, ALogThatWasChangedGetsNothing) {
   const std::string sealed = test::Content(log_);
   const std::size_t last_truth = sealed.rfind("TRUTH");
-  // A byte of a message, which the digest covers; and the last byte of the event's time, which only
-  // the hash of the file covers.
+  // The first place is in a message, which the digest covers. The second place is the last byte of
+  // the event's time, which only the hash of the file covers.
   for (const std::size_t place : {last_truth + 60, last_truth - 9}) {
     std::string bytes = sealed;
     bytes[place] ^= 1;

@@ -24,7 +24,8 @@ TEST(WilliamsDesignTest, ThreeConditionsHaveAllSixOrdersInTwoLatinSquares) {
 }
 
 TEST(WilliamsDesignTest, FourConditionsHaveTheFirstOrderOfTheLiterature) {
-  // Williams 1949 gives 1 2 4 3 (here from 0 on) for four treatments, and adds 1 modulo 4.
+  // For four treatments, Williams 1949 gives the order 1 2 4 3. Each further order adds 1 modulo 4.
+  // The numbers here begin with 0.
   const auto orders = WilliamsDesign(4);
   ASSERT_THAT(orders, SizeIs(4));
   EXPECT_THAT(orders[0], ElementsAre(0, 1, 3, 2));

@@ -19,7 +19,8 @@ namespace {
 constexpr Duration kPatience = milliseconds(20'000);
 const std::vector<std::uint8_t> kBytes(100, 1);
 
-/// Handles what comes until `done()` is true. @return whether it is
+/// Handles messages until `done()` is true, or until kPatience has passed. @return whether `done()`
+/// is true
 template <class Done>
 bool HandleUntil(FollowedNetwork& network, const Done& done) {
   const TimePoint end = Clock::now() + kPatience;

@@ -8,7 +8,7 @@
 namespace fogline::web {
 namespace {
 
-/// Speaks like a runner and its world to a tracker.
+/// Sends the messages of a runner and its world to a tracker.
 class Speaker {
  public:
   Speaker(RunTracker& tracker, std::int64_t run_id, std::size_t length = 2500)
@@ -142,7 +142,7 @@ TEST(RunTrackerTest, TellsEachEventOnceAndAllOfARunThatIsPlayedAgain) {
   run.Truth(40, true, kBegin);
   EXPECT_EQ(tracker.TakeEvents().size(), 1U);
   EXPECT_EQ(tracker.TakeEvents().size(), 0U);
-  // The run is played again, and has as many events as the first time, until they are taken.
+  // The run is played again, and its event is reported again.
   run.Truth(0, false, kBegin);
   run.Truth(30, true, kBegin);
   const std::vector<RunEvent> again = tracker.TakeEvents();

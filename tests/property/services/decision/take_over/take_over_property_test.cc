@@ -1,5 +1,5 @@
 // The fallback under random sequences of events. The tests compare its states with its table, and
-// everything else with an independent computation.
+// its commands and its log with an independent computation.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -228,7 +228,7 @@ class Sequence {
   take_over::TakeOver twin_;
   Witness witness_;
   take_over::TakeOverLog log_;
-  std::optional<take_over::TakeOverRequest> request_;  // the last one
+  std::optional<take_over::TakeOverRequest> request_;  // the last request
   double before_driver_mps2_ = 0;
   std::optional<std::int64_t> effective_;
 };

@@ -91,8 +91,8 @@ class Events {
     return inputs_;
   }
 
-  /// Draws other offers. They have no influence on the events. A person's offer may be an override,
-  /// so it stays.
+  /// Draws other offers, which have no influence on the events. A person's offer may be an
+  /// override, so this offer stays.
   void OtherOffers() {
     const bool eager = dice_.Chance(0.5);
     inputs_.automation_mps2 =
@@ -110,7 +110,7 @@ class Events {
   }
 
  private:
-  /// A person usually leaves the brake alone.
+  /// Draws what the person does. A person usually does not press the brake hard.
   void Act() {
     inputs_.human_mps2 = dice_.Chance(liveliness_) ? dice_.Between(-8, 0) : dice_.Between(-0.5, 3);
     inputs_.acknowledged = dice_.Chance(liveliness_);
@@ -127,8 +127,8 @@ class Events {
   take_over::TakeOverInputs inputs_;
 };
 
-/// The independent computation. From the inputs alone it finds the present events and the command
-/// of each source.
+/// The independent computation. It finds the events of a step, and the command of each source, from
+/// the inputs alone.
 class Witness {
  public:
   explicit Witness(const Scenario& scenario)
@@ -275,7 +275,7 @@ class Witness {
             step_s_};
   }
 
-  /// From now on an answer of a person counts.
+  /// Makes the answers of a person count from this step on.
   void Await() {
     awaits_ = person_.drives;
     answered_ = false;

@@ -22,7 +22,7 @@ void ExpectLateWithin(const TakeOverParameters& parameters, double lead_s) {
     ASSERT_GE(drawn_s, 0);
     if (drawn_s > lead_s) ++late;
   }
-  // Clopper & Pearson 1934.
+  // The confidence bounds of Clopper & Pearson (1934).
   const double n = static_cast<double>(kDraws);
   const double k = static_cast<double>(late);
   EXPECT_LE(Binomial::find_lower_bound_on_p(n, k, kAlpha), time.LateProbability()) << lead_s;

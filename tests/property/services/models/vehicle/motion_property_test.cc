@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kCases = 20'000;
 
-// Motions of cars and beyond: 0 to 60 m/s, -12 to 12 m/s2, steps up to 2 s.
+// Random motions, including those of cars: 0 to 60 m/s, -12 to 12 m/s2, steps up to 2 s.
 class Cases {
  public:
   double Speed() { return Between(0.0, 60.0); }
@@ -34,7 +34,7 @@ TEST(MotionProperty, SplittingAStepChangesNothing) {
     const models::Motion whole = models::Advance(from, a, duration_s);
     const models::Motion halves =
         models::Advance(models::Advance(from, a, duration_s / 2), a, duration_s / 2);
-    // A few roundings of numbers up to 1e3, 1e-12 relative.
+    // The tolerance covers a few roundings of numbers up to 1e3, with 1e-12 relative.
     EXPECT_NEAR(halves.position_m, whole.position_m, 1e-12 * 1e3);
     EXPECT_NEAR(halves.speed_mps, whole.speed_mps, 1e-12 * 60.0);
   }
@@ -84,7 +84,7 @@ TEST(ContactProperty, IsTheFirstMomentAtWhichTheGapIsClosed) {
     if (contact_s) {
       ++contacts;
       ASSERT_LE(*contact_s, duration_s);
-      // Distances up to 1e3 m, with a few roundings each.
+      // The tolerance covers a few roundings of distances up to 1e3 m.
       EXPECT_NEAR(gap_at(*contact_s), 0.0, 1e-9);
     }
     constexpr int kProbes = 50;

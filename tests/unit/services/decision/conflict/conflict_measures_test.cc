@@ -23,7 +23,7 @@ enum class Sides { kBoth, kLidarShort };
 // Properties of a measure apart from its range. ClaimsOf() lists the measures that lack one of
 // these properties.
 struct Claims {
-  Sides sides = Sides::kBoth;  // both: d and -d score the same, and 0 scores the least
+  Sides sides = Sides::kBoth;  // kBoth: d and -d have equal scores, and 0 has the least score
   bool zero_for_equal = true;  // equal evidence scores 0
 };
 
@@ -33,7 +33,7 @@ Claims ClaimsOf(std::string_view name) {
       {"nis_signed", {.sides = Sides::kLidarShort}},
       {"dempster_bins", {.zero_for_equal = false}},  // a known defect of k
       {"cusum", {.sides = Sides::kLidarShort}},
-      {"sprt", {.sides = Sides::kLidarShort, .zero_for_equal = false}},  // it is below 0
+      {"sprt", {.sides = Sides::kLidarShort, .zero_for_equal = false}},  // the score is below 0
       {"lidar_modes", {.zero_for_equal = false}},                        // a small probability
   };
   const auto less = kLess.find(name);
@@ -113,8 +113,8 @@ TEST(EveryMeasureTest, TellsALidarThatIsLongAsItClaims) {
       if (ClaimsOf(row.name).sides == Sides::kLidarShort) {
         EXPECT_LE(longer, After(row, kSteps, LidarShortBy(0))) << error_m;
       } else if (row.name == "lidar_modes") {
-        // lidar_modes is suspicious of each error. But the fog return r* is on one side of the car
-        // only, so errors of both signs have different scores.
+        // The score of lidar_modes rises with errors of both signs. But the fog return r* is on one
+        // side of the car only, so the scores for the two signs differ.
         EXPECT_GT(longer, After(row, kSteps, LidarShortBy(0))) << error_m;
       } else {
         EXPECT_NEAR(longer, After(row, kSteps, LidarShortBy(error_m)), kRounding) << error_m;
@@ -173,7 +173,7 @@ TEST(EveryMeasureTest, ScoresASkippedStepNoHigherThanOneThatWasMeasured) {
     conflict::ConflictParameters parameters;
     parameters.missing = MissingLidar::kSkip;
     const auto measure = row.make(parameters);
-    // Only lidar_modes finds a missing echo more suspicious than a LiDAR range that is 0.1 m too
+    // Only lidar_modes gives a missing echo a higher score than a LiDAR range that is 0.1 m too
     // short.
     const double before = measure->Step(LidarShortBy(0.1));
     const double after = measure->Step(WithoutLidar(LidarShortBy(0.1)));

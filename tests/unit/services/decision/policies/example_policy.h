@@ -5,8 +5,8 @@
 
 namespace fogline::policies {
 
-/// As `traded`; and whatever the DoC, the human drives while there is no track, or one whose
-/// distance has a standard deviation above 2 m.
+/// Traded control. In addition, the human drives at any DoC while there is no track, or while the
+/// track's distance has a standard deviation above 2 m.
 class Cautious final : public EngagementPolicy {
  public:
   explicit Cautious(const Scenario&) {}

@@ -245,8 +245,8 @@ TEST(TimeUntilHardBrakingTest, SolvesItsOwnEquation) {
   }
 }
 
-// Take-over time: mean 2.7 s, deviation 1.45 s, 95th percentile 5.44 s. Without readiness, 2 s
-// more.
+// Take-over time: mean 2.7 s, deviation 1.45 s, 95th percentile 5.44 s. If the driver is not ready,
+// the driver needs 2 s more.
 TEST(PoliciesTest, AvailabilityCallsOnlyADriverWhoCanBeThereInTime) {
   const auto followed = [](double time_s) {
     Situation situation;  // closing at 10 m/s

@@ -35,7 +35,7 @@ class TakeOverTest : public testing::Test {
     return scenario;
   }
 
-  /// The modelled driver would answer after 2 s.
+  /// A scenario with a person as the driver. The take-over time of the modelled driver is 2 s.
   static Scenario WithPerson() {
     Scenario scenario = Answering(2);
     scenario.person.drives = true;

@@ -50,7 +50,7 @@ TEST_F(BrakeOverrideTest, TakesABrakeAtThePedalsThresholdAndNoLighterOne) {
   EXPECT_EQ(Step().state, kRecovering);
 }
 
-// UN R157, 6.3: only braking that is harder than that of the system.
+// UN R157, 6.3: a driver overrides only if the driver brakes harder than the system.
 TEST_F(BrakeOverrideTest, LeavesTheCarToAnAutomationThatBrakesHarder) {
   Begin(WithOverride());
   brakes_ = false;

@@ -19,7 +19,7 @@ TEST_F(TakeOverTest, AsksAndHandsOverToADriverWhoAnswers) {
   EXPECT_EQ(out.acceleration_mps2, -0.7);
 }
 
-// TakeOverLog determines the fourth time of a request, which is that of the first effective input.
+// The fourth time of a request, the time of the first effective input, comes from TakeOverLog.
 TEST_F(TakeOverTest, KeepsTheTimesOfARequest) {
   Begin(Answering(2.05));
   inputs_.human_wanted = false;

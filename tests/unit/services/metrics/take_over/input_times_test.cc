@@ -21,7 +21,8 @@ struct Act {
   std::int64_t instance = 7;
 };
 
-/// The requests after these inputs: one at 1 s, judged for 2 s, and one at 5 s, judged for 1 s.
+/// The measures of two requests after these inputs. The first request is at 1 s and is judged for 2
+/// s. The second request is at 5 s and is judged for 1 s.
 std::vector<TakeOverMeasures> After(const std::vector<Act>& acts) {
   std::vector<TakeOverMeasures> requests(2);
   requests[0] = {.requested_s = 1, .judged_s = 2};

@@ -21,7 +21,7 @@ using testing::SizeIs;
 
 constexpr std::int64_t kStep_us = 500'000;  // a power of two of a second: all times are exact
 
-/// A step of the host. By default it drives at 20 m/s, 30 m behind a car of the same speed.
+/// A step of the host. By default the host drives at 20 m/s, 30 m behind a car of the same speed.
 struct HostStep {
   std::int8_t mode = arbitration_t::AUTOMATION;
   double speed_mps = 20;
@@ -97,7 +97,7 @@ TEST(TakeOverAccumulatorTest, MeasuresTheTimesFromTheRequest) {
 }
 
 TEST(TakeOverAccumulatorTest, JudgesTheMotionFromTheRequestToTheRecovery) {
-  // Before the request and after the recovery, all values are worse. They do not count.
+  // All values before the request and after the recovery are worse. These values do not count.
   const auto requests = Measured(
       {{},
        {.gap_m = 1, .lead_mps = 0},
@@ -124,8 +124,8 @@ TEST(TakeOverAccumulatorTest, JudgesTheMotionFromTheRequestToTheRecovery) {
 }
 
 TEST(TakeOverAccumulatorTest, KnowsHowLongEachSideDrove) {
-  // GIVEN a request during which a sensor is excluded for 1 s. It is also excluded before the
-  // request and while the driver drives, which does not count.
+  // GIVEN a request during which a sensor is excluded for 1 s. The sensor is also excluded before
+  // the request and while the driver drives. This time does not count.
   const auto requests = Measured({{.excludes = true},
                                   {.mode = arbitration_t::REQUEST},
                                   {.mode = arbitration_t::REQUEST, .excludes = true},

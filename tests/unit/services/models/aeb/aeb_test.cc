@@ -153,7 +153,7 @@ Approach Approaching(double relative_kmph, double ahead_kmph,
 
 struct Demand {
   double relative_kmph;
-  double impact_kmph;  // at most; M1, mass in running order
+  double impact_kmph;  // highest allowed; category M1, mass in running order
 };
 
 constexpr std::array kDemands{Demand{10, 0},  Demand{15, 0},  Demand{20, 0},  Demand{25, 0},

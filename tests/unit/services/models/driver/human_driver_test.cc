@@ -86,8 +86,8 @@ TEST(HumanDriverTest, NoticesACarThatAppearsALittleLater) {
 }
 
 TEST(HumanDriverTest, TheNearerOfTwoStepsDecidesWhetherThereIsACar) {
-  // WHEN a car has appeared in step 2 THEN at step 3 the driver reacts to what is 0.13 or 0.17 s
-  // old
+  // WHEN a car has appeared in step 2 THEN at step 3 the driver reacts to the situation 0.13 s or
+  // 0.17 s before
   for (const auto& [reaction_time_s, notices] : {std::pair{0.13, true}, {0.17, false}}) {
     HumanParameters late = kPerfect;
     late.reaction_time_s = reaction_time_s;

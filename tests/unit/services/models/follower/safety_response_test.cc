@@ -17,8 +17,8 @@ TEST(SafetyResponseTest, ReferenceHumanPerceivesLiftsOffAndRampsUp) {
   models::SafetyResponse human(models::SafetyModel::kReferenceHuman, kStep_s);
   EXPECT_EQ(human.Step(kSafe), 0);
   EXPECT_FALSE(human.alarmed());
-  // The TTC is 1.5 s. After 0.4 s of perception the throttle is released for 0.75 s: from 0.4 to
-  // 1.1 s.
+  // The TTC is 1.5 s. After 0.4 s of perception the throttle is released for 0.75 s: in the steps
+  // from 0.4 s to 1.1 s.
   for (int k = 0; k < 4; ++k) EXPECT_EQ(human.Step(kCutIn), 0) << k;
   EXPECT_TRUE(human.alarmed());
   for (int k = 4; k < 12; ++k) EXPECT_EQ(human.Step(kCutIn), 0.4) << k;

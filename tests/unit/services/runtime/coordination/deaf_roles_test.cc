@@ -13,7 +13,7 @@ constexpr Duration kPeriod = milliseconds(100);
 
 class DeafRolesTest : public testing::Test {
  protected:
-  /// The radar's input as its STATUS reports it.
+  /// The state of the radar's input, as the radar reports it in STATUS.
   struct Ear {
     std::int64_t age_ms;
     std::int8_t state = status_t::INPUT_LOST;
@@ -79,7 +79,7 @@ TEST_F(DeafRolesTest, TheLossOfTheFewMessagesOfASlowProducerMakesNoRoleDeaf) {
   }
   // WHEN the role has received nothing for 3.6 s, THEN this can be chance
   EXPECT_FALSE(IsDeaf());
-  // WHEN ten messages have not come, THEN it cannot
+  // WHEN ten messages have not come, THEN this cannot be chance
   Pass(2);
   ++*world_ticks_;
   Pass(1);

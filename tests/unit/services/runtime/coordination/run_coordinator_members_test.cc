@@ -1,4 +1,4 @@
-// Which processes take part in a run.
+// The processes that take part in a run.
 #include <gmock/gmock-more-matchers.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -45,7 +45,7 @@ TEST_F(RunCoordinatorTest, TellsProcessesOfTwoMachinesApartThatHaveOneId) {
   coordinator_.MarkDead(Role::kFusion, pid, Clock::now(), "lab2");
   SayStatus(Role::kFusion);
   EXPECT_TRUE(coordinator_.member(Role::kFusion).status) << "it is a process of this machine";
-  // WHEN the process on the other machine is the role's current one
+  // WHEN the process on the other machine is the role's current process
   role(Role::kAcc).host = "lab2";
   SayStatus(Role::kAcc);
   coordinator_.MarkDead(Role::kAcc, role(Role::kAcc).pid, Clock::now());
@@ -76,7 +76,7 @@ TEST_F(RunCoordinatorTest, AwaitsRolesFromElsewhereUntilTheyAreThereAndWhenTheyF
 }
 
 TEST_F(RunCoordinatorTest, TakesARoleThatItHasStartedFromThisProcessAlone) {
-  // GIVEN a process that claims a role before the runner's own process speaks
+  // GIVEN a process that claims a role before the runner's own process sends a message
   status_t& acc = role(Role::kAcc);
   coordinator_.Launched(Role::kAcc, acc.pid, Clock::now());
   status_t stray = acc;
@@ -85,7 +85,8 @@ TEST_F(RunCoordinatorTest, TakesARoleThatItHasStartedFromThisProcessAlone) {
   stray.sequence = 1;
   script_.Say(stray);
   EXPECT_FALSE(coordinator_.member(Role::kAcc).status);
-  // WHEN both speak, THEN the run goes on with the runner's process, and RUN names this process
+  // WHEN both processes send messages, THEN the run goes on with the runner's process, and RUN
+  // names this process
   BeAtStep(-1);
   ++stray.sequence;
   script_.Say(stray);
@@ -97,7 +98,7 @@ TEST_F(RunCoordinatorTest, TakesARoleThatItHasStartedFromThisProcessAlone) {
   EXPECT_EQ(said_.back().external, std::vector<std::string>{"acc"});
   EXPECT_EQ(said_.back().holder.at(0), acc.instance);
   EXPECT_EQ(said_.back().phase, run_t::GO);
-  // AND the failure of the stray process is not one of the run
+  // AND a failure of the stray process does not end the run
   stray.state = status_t::FAILED;
   ++stray.sequence;
   script_.Say(stray);
@@ -170,7 +171,7 @@ TEST_F(ExternalDriverTest, IsFreeAtOnceWhenItLeaves) {
   EXPECT_EQ(Holder(), OtherDriver().instance);
 }
 
-/// The same fixture with the real clock, because the coordinator takes the time of each message
+/// ExternalDriverTest with the real clock, because the coordinator takes the time of each message
 /// from the clock.
 class StrayWordTest : public ExternalDriverTest {
  protected:
@@ -200,7 +201,7 @@ TEST_F(StrayWordTest, OfARivalLongAfterAnotherIsNotTwoProcesses) {
   Say(other);
   EXPECT_NE(external_.phase(), runtime::RunCoordinator::Phase::kFailed) << external_.error();
   EXPECT_FALSE(external_.member(Role::kDriver).refused);
-  // If the rival continues to send, it is refused, and the run goes on.
+  // If the other process continues to send, it is refused, and the run goes on.
   for (int i = 0; i < 12; ++i) {
     Say(other);
     SpeakFor(milliseconds(100), driver);
@@ -209,7 +210,7 @@ TEST_F(StrayWordTest, OfARivalLongAfterAnotherIsNotTwoProcesses) {
   EXPECT_EQ(external_.member(Role::kDriver).status->instance, driver.instance);
   ASSERT_TRUE(external_.member(Role::kDriver).refused);
   EXPECT_EQ(external_.member(Role::kDriver).refused->pid, other.pid);
-  // AND if the run fails for another reason, both are named
+  // AND if the run fails for another reason, the error names both processes
   external_.Fail("step 5: DRIVER_COMMAND came twice with different contents");
   EXPECT_THAT(external_.error(), HasSubstr("\n  two processes have the role driver: pid 105 on "));
   EXPECT_THAT(external_.error(), HasSubstr(", and pid 1105 on "));

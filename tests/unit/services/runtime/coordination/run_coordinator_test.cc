@@ -37,12 +37,12 @@ TEST_F(RunCoordinatorTest, TellsARoleThatJoinsHowFarTheRunIs) {
 TEST_F(RunCoordinatorTest, PreparesARoleThatIsStartedAgainAndSaysGoWhenItIsReady) {
   BeAtStep(-1);
   BeAtStep(40);
-  // WHEN the process of the fusion has died
+  // WHEN the process of the fusion has ended
   coordinator_.MarkDead(Role::kFusion, role(Role::kFusion).pid, Clock::now());
   Poll(Clock::now());
   EXPECT_EQ(said_.back().phase, run_t::PREPARE);
   EXPECT_EQ(said_.back().progress, 40);
-  // AND the last STATUS of the dead process comes late, THEN this STATUS does not count
+  // AND the last STATUS of the ended process comes late, THEN this STATUS does not count
   SayStatus(Role::kFusion);
   Poll(Clock::now());
   EXPECT_FALSE(coordinator_.member(Role::kFusion).status);
@@ -58,7 +58,7 @@ class JoinLimitTest : public RunCoordinatorTest {
  protected:
   using Phase = runtime::RunCoordinator::Phase;
 
-  /// Says WAITING for one role, and READY for all others.
+  /// Publishes a STATUS with WAITING for one role, and with READY for all other roles.
   void AllAreReadyExcept(Role waiting) {
     role(waiting).state = status_t::WAITING;
     for (const RoleInfo& info : kRoles) SayStatus(info.role);
@@ -296,7 +296,7 @@ TEST_F(RunCoordinatorTest, EndsOnlyWhenTheRecorderHasToldWhatItHasWrittenOfTheLa
   role(Role::kWorld).state = status_t::DONE;
   SayStatus(Role::kWorld);
   EXPECT_EQ(coordinator_.phase(), runtime::RunCoordinator::Phase::kRunning);
-  // WHEN the report of the recorder was lost, THEN the runner asks for it
+  // WHEN the report of the recorder was lost, THEN the runner asks for this report
   PollUntil(coordinator_, Clock::now() + milliseconds(40));
   script_.bus().Drain();
   ASSERT_FALSE(requests.empty());

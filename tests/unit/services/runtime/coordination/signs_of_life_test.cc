@@ -13,7 +13,7 @@ TimePoint At(std::int64_t ms) { return TimePoint(std::chrono::hours(5)) + millis
 
 class SignsOfLifeTest : public testing::Test {
  protected:
-  /// All roles except `silent` send signs of life regularly. One of `one_of` signs arrives.
+  /// All roles except `silent` send signs of life regularly. Of every `one_of` signs, one arrives.
   void Speak(Role silent, std::int64_t from_ms, std::int64_t to_ms, std::int64_t one_of = 1) {
     for (std::int64_t ms = from_ms; ms < to_ms; ms += 200) {
       for (const RoleInfo& info : kRoles) {

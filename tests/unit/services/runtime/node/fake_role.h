@@ -18,7 +18,7 @@
 
 namespace fogline::test {
 
-/// The role is the driver's: TRUTH in, DRIVER_COMMAND out.
+/// A role with the channels of the driver: TRUTH is the input, and DRIVER_COMMAND is the output.
 class FakeRole final : public runtime::Work {
  public:
   static constexpr const char* kWaitingFor = "the test";

@@ -25,7 +25,7 @@ class InputsTest : public test::FakeRoleInRun {
     truth.host_gap_m = gap_m;
     script_.Say(truth);
   }
-  /// Passes this step to the inputs, as if from the log of a predecessor.
+  /// Passes a step to the inputs, as if it came from the log of an earlier process.
   void Remember(std::int64_t step) {
     std::vector<std::uint8_t> bytes;
     runtime::Encode(Script::Of<truth_t>(step), bytes);

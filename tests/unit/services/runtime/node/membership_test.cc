@@ -144,7 +144,7 @@ TEST_F(MembershipOfADriverTest,
 }
 
 TEST_F(MembershipOfADriverTest, LeavesARunThatHasAnotherDriverWhenItsRunnerSaysSo) {
-  // GIVEN a driver with --run-id, and a RUN that names another driver. It may come from a log
+  // GIVEN a driver with --run-id, and a RUN that names another driver. This RUN may come from a log
   script_.SayRun(run_t::GO, -1);
   const std::vector<std::string> parts = runtime::SplitScenario(script_.text());
   run_t taken = Script::WithDriver(
@@ -162,7 +162,8 @@ TEST_F(MembershipOfADriverTest, LeavesARunThatHasAnotherDriverWhenItsRunnerSaysS
   EXPECT_EQ(own_.message().error, "another process is the driver of run 7");
 }
 
-/// The RUN messages that a log has: without a number, and without roles that are awaited.
+/// Publishes RUN messages as a log has them: `sequence` is 0, and no process has the role of the
+/// driver.
 void SayLogged(Script& script, std::int64_t run_id) {
   const std::vector<std::string> parts = runtime::SplitScenario(script.text());
   std::vector<std::uint8_t> bytes;
@@ -226,7 +227,7 @@ TEST(MembershipOfASignedRunTest, BelievesInARunThatAnswersARequestOfItsOwn) {
       script.Say(run);
     }
   }
-  // AND joins the run when the runner has answered its own request
+  // AND the role joins the run when the runner has answered the role's own request
   EXPECT_TRUE(own.Running());
 }
 
@@ -310,7 +311,7 @@ TEST_F(ExternalRoleTest, HoldsItsOwnPauseAgainstNoRunner) {
 }
 
 TEST_F(ExternalRoleTest, WaitsAsLongAsTheRunOfARunnerThatHasStartedIt) {
-  // GIVEN a process that dies with its parent
+  // GIVEN a process that the kernel ends when its parent ends
   int before = 0;
   ASSERT_EQ(prctl(PR_GET_PDEATHSIG, &before), 0);
   ASSERT_EQ(prctl(PR_SET_PDEATHSIG, SIGKILL), 0);

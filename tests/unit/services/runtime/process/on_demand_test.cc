@@ -1,4 +1,4 @@
-// Inputs that only some scenarios demand. The example is a driver who reads HOST_COMMAND. In each
+// Inputs that only some scenarios demand. The example is a driver that reads HOST_COMMAND. In each
 // step, the driver publishes DRIVER_COMMAND before HOST_COMMAND is published.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -147,7 +147,7 @@ TEST_F(OnDemandTest, IsAskedForFromTheFirstStepOnByALateRole) {
   }
   EXPECT_EQ(truths, kProgress + 1);
   EXPECT_EQ(hosts, kProgress);
-  // AND the driver's commands are those of a driver that takes part from the first step
+  // AND the driver's commands equal those of a driver that takes part from the first step
   ASSERT_FALSE(commands_.empty());
   EXPECT_EQ(commands_.back().header.step, kProgress);
   EXPECT_EQ(commands_.back().readiness, kProgress + 1);

@@ -26,15 +26,16 @@ using testing::ElementsAre;
 class RealtimeRulesTest : public testing::Test {
  protected:
   explicit RealtimeRulesTest(const Scenario& scenario = {}) : script_(scenario) {
-    // This handler is called just before that of the role, for which the run begins then.
+    // This handler is called just before the role's own handler of RUN, which begins the role's
+    // run.
     script_.bus().Subscribe(ChannelOf<run_t>().name,
                             [this](runtime::Bytes) { run_at_ = Clock::now(); });
   }
 
   void Go() {
     script_.SayRun(run_t::GO, -1, kSlowSpeed);
-    // A moment later, so that a tick has come at its time. The role takes the time of GO in
-    // between.
+    // The role takes the time of GO shortly after `run_at_`. The added 100 us are longer than this
+    // delay, so at the time At(n) tick n has come.
     go_ = run_at_ + std::chrono::microseconds(100);
   }
   /// The time `periods` periods after GO.
@@ -333,7 +334,7 @@ TEST_F(RecordRuleTest, CountsAsLateOnlyWhatItHasNotWrittenAndThatOnce) {
   other.range_m = 17;
   script_.Say(other);
   EXPECT_EQ(late(), 0) << "the one of the log is there";
-  // WHEN a message comes twice after the recorder has given up its step
+  // WHEN a message comes twice after the recorder has given up the message's step
   say_all_but_radar(2);
   say_all_but_radar(3);
   Say<radar_t>(3);

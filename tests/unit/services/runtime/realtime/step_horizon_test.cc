@@ -47,7 +47,8 @@ TEST_F(StepHorizonTest, OpensWithTheFirstMessageThatIsInTimeAfterOneThatWasNot) 
 }
 
 TEST_F(StepHorizonTest, IsNotNarrowedByStepsThatAreABitLateEachTime) {
-  // Each step comes 11 ms later than its period says. The total delay is less than a period.
+  // The interval between two steps is 11 ms longer than the period. The total delay is less than a
+  // period.
   for (std::int64_t k = 0; k < 9; ++k) horizon_.Heard(k, At(111 * k));
   EXPECT_EQ(horizon_.Newest(At(900)), 9 + kSlack);
 }

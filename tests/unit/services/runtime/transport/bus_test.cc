@@ -34,7 +34,7 @@ void SendBurst(runtime::Bus& bus, int count) {
   for (int i = 0; i < count; ++i) bus.Publish("BURST", Payload(i));
 }
 
-/// Waits until `count` messages are received, or none comes for `timeout`.
+/// Waits until `count` messages are received, or until no message comes for `timeout`.
 void ReceiveBurst(runtime::Bus& bus, const std::vector<int>& received, std::size_t count,
                   Duration timeout = kLong) {
   while (received.size() < count && bus.Wait(timeout)) {
@@ -86,7 +86,7 @@ TEST(BusTest, ReceivesWithoutAThreadUntilItKeepsABacklog) {
   const std::ptrdiff_t before = Threads();
   std::optional<runtime::Bus> bus(url);
   std::vector<int> received;
-  // A handler may begin the backlog; the message that it handles stays valid.
+  // A handler may call KeepBacklog(). The message that the handler processes stays valid.
   bus->Subscribe("C", [&](runtime::Bytes bytes) {
     if (bytes[0] == 1) bus->KeepBacklog();
     received.push_back(bytes[0]);

@@ -27,7 +27,7 @@ Message Numbered(int number) {
 int NumberOf(const Message& bytes) { return bytes[0] << 8 | bytes[1]; }
 
 /// Sends `count` messages, one per millisecond. @return the messages that arrive until a second
-/// after the last one
+/// after the last message was sent
 std::vector<Message> Arrivals(runtime::Faults faults, int count) {
   std::vector<Message> arrived;
   const auto collect = [&](TimePoint now) {

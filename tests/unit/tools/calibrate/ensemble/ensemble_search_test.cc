@@ -24,7 +24,8 @@ calibrate::Landscape Plain() {
           .rounded = AsTheyAre};
 }
 
-/// A landscape in which points meet the target within 0.05 of the share 1/2 in the first field.
+/// A landscape in which a point meets the target if its share in the first field differs from 1/2
+/// by at most 0.05.
 calibrate::Landscape Valley() {
   calibrate::Landscape landscape = Plain();
   landscape.searched = [](const Shares& shares) {

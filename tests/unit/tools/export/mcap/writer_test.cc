@@ -32,7 +32,7 @@ Number At(std::string_view file, std::size_t offset) {
   return web::TakeLittleEndian<Number>(rest);
 }
 
-/// A file with so many messages of this size.
+/// A file with `messages` messages of `bytes` bytes.
 std::string FileWith(int messages, std::size_t bytes) {
   std::string file;
   Writer writer([&file](std::string_view piece) { file += piece; }, "test");
@@ -55,7 +55,7 @@ constexpr std::size_t kMagicBytes = 8;
 constexpr std::size_t kRecordHead = 9;    // opcode and length
 constexpr std::size_t kFooterBytes = 20;  // its content
 
-/// How often each kind of record comes, outside of chunks.
+/// The number of records of each kind outside of chunks.
 std::map<int, int> RecordsOf(std::string_view file) {
   std::map<int, int> records;
   for (std::size_t at = kMagicBytes; at < file.size() - kMagicBytes;) {

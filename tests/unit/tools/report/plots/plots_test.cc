@@ -104,8 +104,8 @@ TEST_F(PlotsTest, WritesThemAsSvgAndPdfTooWithTextThatStaysText) {
   }
 }
 
-/// The points of each curve of an SVG picture, without marks and lines of few points. In SVG, y
-/// grows downwards.
+/// The points of each curve of an SVG picture. Marks, and lines of few points, are left out. In
+/// SVG, y grows downwards.
 std::vector<std::vector<std::pair<double, double>>> CurvesIn(const std::string& svg) {
   constexpr std::size_t kFewest = 30;
   std::vector<std::vector<std::pair<double, double>>> curves;
@@ -121,8 +121,8 @@ std::vector<std::vector<std::pair<double, double>>> CurvesIn(const std::string& 
 }
 
 TEST_F(PlotsTest, DrawEachCurveOfEachRun) {
-  // GIVEN two runs whose distances differ from each other. In the first run they grow, in the
-  // second they shrink
+  // GIVEN two runs with different distances. In the first run the distances grow, in the second run
+  // they shrink
   std::vector<report::ReportRun> runs{ExampleRun({.steps = 60}), ExampleRun({.steps = 60})};
   double sign = 1;
   for (report::ReportRun& run : runs) {

@@ -12,7 +12,7 @@
 namespace fogline {
 namespace {
 
-// A run of 100 s. The score first exceeds each of these values at its time.
+// A run of 100 s. Each record has a score, and the time at which the run first reaches this score.
 study::ClearRun RunOf(study::ScoreRecords records) {
   return {.records = std::move(records), .scores = {}, .duration_s = 100};
 }

@@ -37,7 +37,7 @@ study::Claim ClaimWith(double mean, double half, Sign sign = Sign::kLess, double
           .hindrance = {}};
 }
 
-/// A claim with so many sets, in each of which it holds beyond doubt.
+/// A claim that certainly holds in each of `sets` sets.
 study::ClaimInSets InSets(std::size_t sets, std::string_view says = kHelps) {
   return {.quoted = {.study = "policy", .says = says},
           .sets = std::vector<study::Claim>(sets, ClaimWith(-1, 0.1))};
@@ -92,7 +92,8 @@ TEST(RobustnessTest, EqualityHoldsWithinItsMarginOrOnOneSideOfIt) {
   }
   EXPECT_THAT(OutcomesOf(claim),
               ElementsAre(InSet::kOpposite, InSet::kHolds, InSet::kOpposite, InSet::kUndecided));
-  // THEN a rule that costs nothing may save something, and the other way round
+  // THEN a claim with kAbove also holds if the difference is far below the margin, and a claim with
+  // kBelow also holds if the difference is far above the margin
   claim.quoted.bound = study::Bound::kAbove;
   EXPECT_THAT(OutcomesOf(claim),
               ElementsAre(InSet::kHolds, InSet::kHolds, InSet::kOpposite, InSet::kUndecided));
@@ -141,12 +142,13 @@ TEST(RobustnessTest, AHeadingThatFailsInOneSetIsNamedWithTheSet) {
   study::ClaimInSets claim = InSets(8);
   claim.sets[2] = ClaimWith(1, 0.1);
   EXPECT_EQ(VerdictsOf(claim)[2], InSet::kOpposite);
-  // The author does not expect it: the study is red, and names claim, set and outcome.
+  // The finding does not list this exception, so the claim on the finding fails, and names claim,
+  // set and outcome.
   const study::Claim surprise = OnFinding(Finding(), claim);
   EXPECT_EQ(surprise.hindrance, "set 3: \"It helps.\" is opposite");
   EXPECT_EQ(StateOf(surprise), report::ClaimState::kFails);
   EXPECT_EQ(StateOf(surprise, true), report::ClaimState::kOpen) << "with few runs";
-  // The author knows it: the claim says what was found.
+  // The finding lists this exception, so the claim on the finding holds, and states the exception.
   const study::Claim known = OnFinding(Finding({{kHelps, {3}}}, "It does harm there."), claim);
   EXPECT_EQ(known.says,
             "Finding 3, heading: holds in sets 1, 2, 4, 5, 6, 7 and 8; opposite in set 3. It does "
@@ -219,7 +221,8 @@ TEST(RobustnessTest, AClaimThatIsOppositeInAllSetsIsShownTurnedAround) {
             "Finding 3, heading: opposite in all two parameter sets. It does harm.");
   EXPECT_EQ(on_finding.sign, Sign::kMore);
   EXPECT_EQ(StateOf(on_finding), report::ClaimState::kHolds);
-  // An equality that is opposite becomes a claim on the difference from its bound.
+  // If the outcome of an equality is `opposite`, the claim on the finding is about the difference
+  // from the bound.
   claim = InSets(2, kCostsNothing);
   claim.sets[0] = claim.sets[1] = ClaimWith(3, 0.1, Sign::kEqual, 1);
   study::ExaminedFinding finding = Finding({{kCostsNothing, {1, 2}}}, "It costs something.");

@@ -12,7 +12,7 @@
 namespace fogline {
 namespace {
 
-// In order of threshold: RHE falls, then stays at 0 while the gain still rises.
+// Points in the order of the threshold. RHE falls, then stays at 0 while the gain still rises.
 constexpr std::array<study::CurvePoint, 5> kCurve{
     {{.rhe_pct = 100, .gain = -50}, {40, 10}, {20, 20}, {0, 22}, {0, 30}}};
 

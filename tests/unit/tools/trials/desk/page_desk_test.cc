@@ -51,7 +51,7 @@ TEST(PageDeskTest, AMarkerAfterTheEndOfARunIsRefusedAndNotTold) {
   const json refusal = Refusal(experimenter);
   EXPECT_EQ(refusal["refused"], "no run is under way");
   EXPECT_THAT(refusal.dump(), Not(HasSubstr("marker: too late")));
-  // The log has what the page says.
+  // The log has the marker that the page shows.
   EXPECT_EQ(speaker.End().back().text, "yawns");
 }
 

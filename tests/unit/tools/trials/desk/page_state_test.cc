@@ -65,7 +65,7 @@ TEST(PageStateTest, TheParticipantWhoDrivesSeesTheSeatWhileItIsOpen) {
   EXPECT_EQ(seen()["stage"], "driving");
   EXPECT_EQ(seen()["seat"], "http://127.0.0.1:7690/drive#token=a");
   EXPECT_THAT(state.ForParticipant(), Not(HasSubstr("secret")));
-  // Each change has a number of its own, so the page sees it.
+  // Each change gets a new number, so the page notices the change.
   const std::int64_t before = seen()["state"];
   state.MoveRun("http://127.0.0.1:7690/#token=secret", "");
   EXPECT_EQ(seen()["seat"], "");
@@ -81,7 +81,7 @@ TEST(PageStateTest, ARunThatTheModelDrivesHasNoSeat) {
   const json seen = json::parse(state.ForParticipant());
   EXPECT_EQ(seen["stage"], "waiting");
   EXPECT_EQ(seen["drives"], false);
-  // Also not that of another run.
+  // The participant does not get the seat of another run either.
   state.OpenRun("http://127.0.0.1:7690/", "http://127.0.0.1:7690/drive#token=a");
   state.Drive();
   EXPECT_FALSE(json::parse(state.ForParticipant()).contains("seat"));

@@ -31,7 +31,7 @@ class RunPageTest : public ::testing::Test {
     ASSERT_EQ(children.size(), 1U);
     test::SignalOne(children.front(), SIGKILL);
   }
-  /// The next change. @return kNone if there is none in time
+  /// The next change; kNone if no change comes in time.
   static RunPage::Change NextChange(RunPage& page) {
     const TimePoint end = Clock::now() + test::kPatience;
     while (Clock::now() < end && page.WhyHopeless().empty()) {
@@ -89,7 +89,7 @@ TEST_F(RunPageTest, WithoutAPortThereIsNoSeatAndNoAddress) {
   RunPage page({.port = taken.port(), .traffic = {}});
   EXPECT_THROW(page.Show(kRunId, url_, RunPage::Seat::kOpen), std::runtime_error);
   EXPECT_EQ(page.seat_address() + page.view_address(), "");
-  // A run can do without its view, and the view comes when it can.
+  // A run can go on without its view. The view is started as soon as this is possible.
   EXPECT_NO_THROW(page.Show(kRunId, url_, RunPage::Seat::kNone));
 }
 

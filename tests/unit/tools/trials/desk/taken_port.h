@@ -9,14 +9,14 @@
 
 namespace fogline::test {
 
-/// A port that this test takes away from others.
+/// A port that this test occupies.
 class TakenPort {
  public:
   explicit TakenPort(std::uint16_t port) : address_{} {
     address_.sin_family = AF_INET;
     address_.sin_port = htons(port);
     address_.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    const int yes = 1;  // connections of the program before may still be closing
+    const int yes = 1;  // old connections of this port may still be closing
     setsockopt(socket_, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof(yes));
   }
   ~TakenPort() { close(socket_); }
@@ -28,7 +28,7 @@ class TakenPort {
     bound_ = bound_ || bind(socket_, reinterpret_cast<sockaddr*>(&address_), sizeof(address_)) == 0;
     return bound_ && listen(socket_, 1) == 0;
   }
-  /// The port; if it was 0, the one that the system has chosen.
+  /// The number of the port. If the constructor got 0, the system has chosen the number.
   std::uint16_t port() {
     socklen_t size = sizeof(address_);
     getsockname(socket_, reinterpret_cast<sockaddr*>(&address_), &size);
@@ -41,7 +41,7 @@ class TakenPort {
   bool bound_ = false;
 };
 
-/// A port that no program has now.
+/// A port that no program uses at the time of the call.
 inline std::uint16_t FreePort() {
   TakenPort port(0);
   return port.Take() ? port.port() : 0;

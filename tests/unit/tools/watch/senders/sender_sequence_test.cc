@@ -92,7 +92,8 @@ TEST(SenderSequenceTest, LosesNothingWhenASenderBeginsAgain) {
   AddRange(sequence, 5000, 10);
   AddRange(sequence, 0, 10);
   EXPECT_EQ(sequence.counts(), (Counts{.received = 20, .restarts = 1}));
-  // After few messages, the numbers are known. So a time without new ones must pass.
+  // After this beginning, the numbers 0 to 9 are known. So the sequence takes them for another
+  // beginning only after a time without new numbers.
   AddRange(sequence, 0, 10, 0, kNow + SenderSequence::kBeginsAgain);
   EXPECT_EQ(sequence.counts(), (Counts{.received = 30, .restarts = 2}));
 }
@@ -111,7 +112,7 @@ TEST(SenderSequenceTest, TellsWhatThisProcessDroppedFromWhatTheNetworkLost) {
   EXPECT_EQ(sequence.counts(), (Counts{.received = 11, .lost = 1, .missed_here = 2}));
   sequence.Add(Short(15), 2, kNow);  // no further drop
   EXPECT_EQ(sequence.counts(), (Counts{.received = 12, .lost = 2, .missed_here = 2}));
-  sequence.Add(Short(16), 7, kNow);  // those were packets of other senders
+  sequence.Add(Short(16), 7, kNow);  // the drops were packets of other senders
   sequence.Add(Short(18), 7, kNow);
   EXPECT_EQ(sequence.counts(), (Counts{.received = 14, .lost = 3, .missed_here = 2}));
 }

@@ -27,7 +27,8 @@ class LogIndexTest : public testing::Test {
   }
   std::string File(const std::string& name) const { return folder_.File(name); }
 
-  /// The steps that RunLogReader finds. Each message must be the same in the index.
+  /// Expects that the index has each message that RunLogReader finds. @return the number of steps
+  /// that RunLogReader finds
   static std::int64_t CompareAll(const std::string& file, const LogIndex& index) {
     log::RunLogReader reader(file);
     std::int64_t step = 0;
@@ -83,7 +84,7 @@ TEST_F(LogIndexTest, ShowsTheStepsBehindALostMessage) {
       [](log::EventLogWriter& writer, const log::Event& event, std::vector<std::uint8_t>& data) {
         const bool lost =
             event.channel == "LIDAR" && runtime::ReadInt64(data, runtime::kStepOffset) == 10;
-        // An event of an unknown channel stands in for the lost one.
+        // An event of an unknown channel takes the place of the lost event.
         if (lost) writer.Write("OTHER", event.utime, data);
         if (lost) data.assign(4, 0);
         return true;
@@ -136,7 +137,8 @@ TEST_F(LogIndexTest, FindsTheEventsOfThePaper) {
     if (event.kind != "alarm") found.emplace_back(event.step, std::string(event.kind));
     EXPECT_DOUBLE_EQ(event.time_s, 0.1 * static_cast<double>(event.step));
   }
-  // The steps of `fogline events`: 203 and 297. The fog is that of the scenario.
+  // `fogline events` reports transfers at the same steps, 203 and 297. The fog of the scenario
+  // begins at step 190.
   using Pair = std::pair<std::int64_t, std::string>;
   EXPECT_THAT(found, testing::Contains(Pair(190, "fog")));
   EXPECT_THAT(found, testing::Contains(Pair(203, "transfer")));

@@ -11,7 +11,7 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-/// A frame of which one member is another text, or is left out ("").
+/// A frame in which one member has another text, or is left out (text "").
 std::string Frame(const std::string& member = "", const std::string& text = "") {
   std::string frame;
   for (const auto& [name, value] : std::vector<std::pair<std::string, std::string>>{

@@ -89,7 +89,7 @@ TEST_F(SeatTest, APageThatIsOnlyOpenDoesNotKeepTheSeat) {
   away.present = false;
   seat_.Sit(kAnna, At(0));
   seat_.Take(kAnna, away, At(1));
-  // A second page that is only open gets nothing.
+  // The input of a second page on which no person is present has no effect.
   const Seat::Taken nothing = seat_.Take(kBert, away, At(2));
   EXPECT_FALSE(nothing.message);
   EXPECT_EQ(nothing.why, "");
@@ -99,7 +99,7 @@ TEST_F(SeatTest, APageThatIsOnlyOpenDoesNotKeepTheSeat) {
   EXPECT_TRUE(taken.message->present);
   EXPECT_TRUE(taken.sits);
   EXPECT_EQ(taken.before, kAnna);
-  // From now on it is Bert's, as long as he is there.
+  // From now on the seat is Bert's, as long as Bert is there.
   EXPECT_THAT(seat_.Take(kAnna, Brakes(), At(4)).why, HasSubstr("another person"));
   seat_.Take(kBert, away, At(5));
   EXPECT_TRUE(seat_.Take(kAnna, Brakes(), At(6)).sits);
@@ -139,11 +139,11 @@ TEST_F(SeatTest, APageThatIsSilentFor300msDrivesNoMore) {
   EXPECT_FALSE(seat_.lost());
   ExpectEmptySeat(seat_.Look(At(400)));
   EXPECT_TRUE(seat_.lost());
-  // Then every 50 ms.
+  // After that, the seat reports every 50 ms that it is empty.
   EXPECT_EQ(seat_.next_look(), At(450));
   EXPECT_FALSE(seat_.Look(At(449)));
   ExpectEmptySeat(seat_.Look(At(450)));
-  // Its next input counts.
+  // The next input of the page counts.
   EXPECT_TRUE(seat_.Take(kAnna, Brakes(), At(460)).message->present);
   EXPECT_FALSE(seat_.lost());
   EXPECT_FALSE(seat_.Look(At(500)));
@@ -170,7 +170,7 @@ TEST_F(SeatTest, AnInputWithoutAPersonHasReleasedPedals) {
   SeatInput away = Brakes();
   away.present = false;
   ExpectEmptySeat(seat_.Take(kAnna, away, At(1)).message);
-  // It is no silence: the page says that no person drives.
+  // The page is not silent: it reports that no person drives.
   EXPECT_FALSE(seat_.lost());
 }
 
@@ -186,7 +186,7 @@ TEST_F(SeatTest, TakesAtMost250InputsASecond) {
   EXPECT_GE(taken, 2500);
   EXPECT_LE(taken, 2500 + static_cast<int>(runtime::kMostInputsAtOnce));
   EXPECT_THAT(why, HasSubstr("250 inputs a second"));
-  // The message that the person has left is taken all the same.
+  // The limit does not apply to the message that the person has left.
   SeatInput away = Brakes();
   away.present = false;
   while (seat_.Take(kAnna, Brakes(), At(10'000)).message) continue;

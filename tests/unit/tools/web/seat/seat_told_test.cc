@@ -81,7 +81,7 @@ TEST(SeatToldTest, TheFirstFrameDescribesTheChannelsOfTheSeat) {
     EXPECT_TRUE(hello["types"].contains(channel["type"].get<std::string>())) << channel;
     EXPECT_TRUE(hello["fingerprints"].contains(channel["type"].get<std::string>())) << channel;
   }
-  EXPECT_THAT(hello["types"], SizeIs(4));  // and that of their header
+  EXPECT_THAT(hello["types"], SizeIs(4));  // also the type of the header
 }
 
 TEST(SeatToldTest, ARunHasOnlyWhatThePageNeeds) {

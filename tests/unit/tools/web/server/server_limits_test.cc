@@ -1,5 +1,5 @@
-// The limits of docs/view.md, one test for each: who exceeds it is closed, counted and named on
-// stderr, and the server goes on. The times are shorter here.
+// The limits of docs/view.md, one test for each limit. The server closes a connection that exceeds
+// a limit, counts it, names it on stderr, and goes on. The time limits are shorter here.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -30,7 +30,8 @@ using ::testing::HasSubstr;
 constexpr Duration kPatience = milliseconds(20'000);
 constexpr std::chrono::milliseconds kShort(300);
 
-/// Sends each frame back; after "flood" more than may wait for a client.
+/// Sends each frame back. To the frame "flood", the view answers with more bytes than may wait for
+/// a client.
 class EchoView final : public View {
  public:
   void Opened(Client&) override {}
@@ -55,7 +56,7 @@ class ServerLimitsTest : public ::testing::Test {
   }
   void TearDown() override { End(); }
 
-  /// Ends the server. @return what it has said on stderr
+  /// Ends the server. @return the text that the server has printed on stderr
   std::string End() {
     if (!thread_.joinable()) return "";
     boost::asio::post(context_, [this] { server_->Stop(); });
@@ -145,7 +146,7 @@ TEST_F(ServerLimitsTest, ViewersLeaveAPlaceForTheOneWhoDrives) {
   std::optional<WebClient> first(connect("fogline.view.v1"));
   WebClient second = connect("fogline.view.v1");
   ASSERT_TRUE(Waits(&ServerCounts::viewers, 2));
-  // The page and its files come, too; those of the viewers do not.
+  // The server also sends the page of the seat and its files, but not the page of the viewers.
   EXPECT_EQ(StatusOf(Exchange(port(), GetRequest(port(), "/drive"))), 200);
   EXPECT_EQ(StatusOf(Exchange(port(), GetRequest(port(), "/drive.js"))), 200);
   EXPECT_EQ(StatusOf(Exchange(port(), GetRequest(port(), "/"))), 503);
@@ -153,7 +154,7 @@ TEST_F(ServerLimitsTest, ViewersLeaveAPlaceForTheOneWhoDrives) {
     WebClient driver = connect("fogline.drive.v1");
     driver.Send("drives");
     EXPECT_EQ(driver.Receive().bytes, "drives");
-    // There is one such place, and it is no place for a viewer.
+    // There is one place for the driver, and a viewer does not get this place.
     EXPECT_THROW(connect("fogline.drive.v1"), test::WebRefused);
     EXPECT_THROW(connect("fogline.view.v1"), test::WebRefused);
     // The page can be loaded again, before its old connection is closed.
@@ -165,7 +166,8 @@ TEST_F(ServerLimitsTest, ViewersLeaveAPlaceForTheOneWhoDrives) {
   }
   ASSERT_TRUE(Waits(&ServerCounts::drivers, 0));
   ASSERT_TRUE(Waits(&ServerCounts::viewers, 1));
-  // The first of two who ask for the seat takes the kept place, the second one that of a viewer.
+  // Of two pages that ask for the seat, the first takes the reserved place, and the second takes
+  // the place of a viewer.
   WebClient driver = connect("fogline.drive.v1");
   WebClient told = connect("fogline.drive.v1");
   EXPECT_THROW(connect("fogline.view.v1"), test::WebRefused);
@@ -181,7 +183,7 @@ TEST_F(ServerLimitsTest, CallersOfOneAddress) {
   EXPECT_TRUE(IsClosed(oldest));
   EXPECT_EQ(Counts().refused, 1);
   EXPECT_EQ(StatusOf(Exchange(port(), GetRequest(port(), "/"))), 200);
-  EXPECT_EQ(Counts().refused, 2);  // that of `newer`
+  EXPECT_EQ(Counts().refused, 2);  // the connection `newer`
   // The callers of another address keep their places.
   const std::string request = GetRequest(port(), "/");
   boost::asio::write(other, boost::asio::buffer(request));
@@ -255,7 +257,7 @@ TEST_F(ServerLimitsTest, FramesOfAClient) {
   Serve({});
   WebClient client(port());
   try {
-    // On a machine that sends fewer than 200 frames a second, this would take for ever.
+    // A machine that sends fewer than 200 frames a second would not exceed the limit.
     for (int i = 0; i < 100'000; ++i) client.Send("x");
   } catch (const test::WebClosed&) {
   }
@@ -266,7 +268,7 @@ TEST_F(ServerLimitsTest, FramesOfAClient) {
 
 TEST_F(ServerLimitsTest, TimeWithoutAnAnswerToAPing) {
   Serve({.silence = kShort});
-  WebClient deaf(port());  // answers only while it is asked to receive
+  WebClient deaf(port());  // answers a ping only in Receive()
   EXPECT_TRUE(Waits(&ServerCounts::cut_off, 1));
   EXPECT_EQ(Counts().viewers, 0);
   ExpectServes();

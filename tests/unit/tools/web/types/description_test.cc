@@ -37,7 +37,8 @@ TEST(DescriptionTest, DescribesEachMemberWithTypeDimensionsCommentAndUnit) {
 }
 
 TEST(DescriptionTest, CommentsAreInPlainText) {
-  // The comment of a member ends up on a page: no slashes and no line feeds may be left of it.
+  // The page shows the comment of a member. So the text must not contain the slashes of a comment
+  // or a line feed.
   for (const Json& type : TypesJson(FoglineTypes())) {
     for (const Json& member : type["members"]) {
       const std::string comment = member["comment"];

@@ -100,7 +100,8 @@ TEST(FieldReaderTest, HasNoValueInAMessageOfAnotherTypeOrWithoutItsEnd) {
   const FieldReader reader(FoglineTypes(), Type("truth_t"), "follower_gap_m[1]");
   EXPECT_EQ(reader(Encoded(ego_t{})), std::nullopt);
   const std::vector<std::uint8_t> bytes = Encoded(Truth());
-  // Behind the gaps: fog_present, fog_level, fog_visibility_m, collision, its time, last.
+  // These fields follow the gaps: fog_present, fog_level, fog_visibility_m, collision, the time of
+  // the collision, last.
   const std::size_t end = bytes.size() - (1 + 8 + 8 + 1 + 8 + 1);
   EXPECT_EQ(reader(Bytes(bytes).first(end)), 39.0);
   for (std::size_t size = 0; size < end; ++size) {

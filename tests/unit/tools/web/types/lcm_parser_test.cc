@@ -26,7 +26,7 @@ std::string ParserErrorOf(std::string_view text) {
   return "no error";
 }
 
-/// A text that has everything that the language has.
+/// A text with every element of the language.
 constexpr std::string_view kLab = R"(package lab.two;
 struct inner_t { int8_t n; float x[n][3]; }
 struct outer_t
@@ -44,7 +44,7 @@ struct outer_t
 TEST(LcmParserTest, HashesNamesTypesAndDimensionsAsLcmGenDoes) {
   const std::vector<LcmStruct> structs = ParseLcm(kLab, "a.lcm");
   ASSERT_EQ(structs.size(), 2U);
-  // As `lcm-gen -d` of LCM 1.3.1 prints them.
+  // The hashes that `lcm-gen -d` of LCM 1.3.1 prints.
   EXPECT_EQ(OwnHash(structs[0]), -3177966472144266089);
   EXPECT_EQ(OwnHash(structs[1]), -7454815794681965952);
 }

@@ -46,7 +46,7 @@ TEST_P(EveryBlameTest, FallsOnNoSensorWithoutAWitness) {
   conflict::Evidence evidence = LidarShortBy(5);
   evidence.prediction = {};
   EXPECT_EQ(Make(GetParam())->Step(evidence), conflict::Blame{});
-  // not even if there was one in the steps before
+  // also if the steps before had a prediction
   const auto measure = Make(GetParam());
   for (int i = 0; i < 3; ++i) EXPECT_GT(measure->Step(LidarShortBy(5)).lidar, 0.8);
   EXPECT_EQ(measure->Step(evidence), conflict::Blame{});
@@ -79,8 +79,8 @@ INSTANTIATE_TEST_SUITE_P(Of, EveryBlameTest, testing::Values("nis", "deng", "mur
                          [](const auto& name) { return std::string(name.param); });
 
 TEST(NisBlameTest, IsTheChiSquareProbabilityOfTheResidual) {
-  // The residual is 2 standard deviations. Within 2 standard deviations is 0.9545 of the normal
-  // distribution.
+  // The residual is 2 standard deviations. 0.9545 of the normal distribution is within 2 standard
+  // deviations.
   const conflict::Evidence evidence{
       .radar = {true, 10, 0.3}, .lidar = {true, 11, 0.3}, .prediction = {true, 10, 0.4}};
   conflict::NisBlame blame({});

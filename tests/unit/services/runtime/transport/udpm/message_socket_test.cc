@@ -36,7 +36,7 @@ TEST(MessageSocketTest, ReceivesWhatLcmSends) {
   sender.Publish("LIDAR", std::vector<std::uint8_t>{1});
   sender.Publish("RADAR", std::vector<std::uint8_t>{2, 3});
   ASSERT_TRUE(socket.Wait(kLong));
-  EXPECT_TRUE(socket.Wait(Duration::zero()));  // it is still there
+  EXPECT_TRUE(socket.Wait(Duration::zero()));  // the message is still there
   const auto message = socket.Take();
   ASSERT_TRUE(message);
   EXPECT_EQ(message->channel, "RADAR");
@@ -72,7 +72,7 @@ TEST(MessageSocketTest, IsNotHeldUpByPacketsThatAreNoMessages) {
   runtime::MessageSocket socket(url, {});
   for (int i = 0; i < 150; ++i) SendDatagram(url, "noise");
   SendDatagram(url, "LC02\0\0\0\1LAST\0"s);
-  EXPECT_FALSE(socket.Wait(Duration::zero()));  // it returns to the caller in between
+  EXPECT_FALSE(socket.Wait(Duration::zero()));  // Wait() returns before the last packet
   ASSERT_TRUE(socket.Wait(kLong));
   EXPECT_EQ(ChannelOf(socket), "LAST");
 }
