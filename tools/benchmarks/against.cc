@@ -1,5 +1,5 @@
 // Compares this build with the build of another commit. It uses only the command line, which is the
-// same in both.
+// same in both builds.
 #include <nlohmann/json.hpp>
 
 #include "tools/benchmarks/comparisons.h"

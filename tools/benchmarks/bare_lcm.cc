@@ -150,8 +150,8 @@ std::vector<BareRole> BareGraph() {
 }
 
 double BareNetworkStepSeconds(const std::vector<BareRole>& roles, int steps) {
-  // Fogline also opens LCM with such a URL: it has a private port, and a receive buffer that is
-  // large enough for bursts.
+  // The same kind of URL as in a run of Fogline: with a private port, and with a receive buffer
+  // that is large enough for bursts.
   const std::string url = runtime::Bus(runtime::FreshMulticastUrl()).url();
   Children children;
   for (std::size_t i = 1; i < roles.size(); ++i) children.Start(url, roles[i]);

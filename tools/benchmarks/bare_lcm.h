@@ -16,7 +16,7 @@ struct BareRole {
   std::vector<std::string> outputs;
 };
 
-/// The roles of a ring of `hops` processes, this process among them. A message goes round the ring.
+/// The roles of a ring of `hops` processes, including this process. A message goes round the ring.
 std::vector<BareRole> BareRing(int hops);
 
 /// One bare role for each role of Fogline's graph, recorder included, with the channels of the

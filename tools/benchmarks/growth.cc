@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kMicrosPerSecond = 1e6;
 
-/// What a piece of work took.
+/// Time and memory of the work of one size.
 struct Cost {
   double wall_s;
   double memory_mb;
@@ -31,7 +31,8 @@ struct Trial {
   std::function<Cost(std::int64_t size)> work;
 };
 
-/// A run in one process. Its own time leaves out the start of the program.
+/// Makes a run in one process. `wall_s` is the time that the run itself reports, so it does not
+/// include the start of the program.
 Cost Run(std::int64_t followers, std::int64_t steps) {
   const ProgramResult result =
       RunProgram({ProgramPath("fogline"), "run", "scenario/paper.json", "--transport", "direct",
@@ -192,8 +193,8 @@ void DrawGrowth(const std::vector<Growth>& all, const std::filesystem::path& cha
       << "set grid\nset border 3\nset tics nomirror\n"
       << "set yrange [0:*]\nset key off\n";
   for (std::size_t i = 0; i < all.size(); ++i) {
-    // Sizes that differ by decades need a logarithmic axis; only on a linear one is linear growth a
-    // straight line.
+    // Sizes that differ by decades need a logarithmic axis. Other sizes have a linear axis, because
+    // linear growth is a straight line on it.
     constexpr std::int64_t kDecades = 100;
     const bool wide = all[i].points.back().size >= kDecades * all[i].points.front().size;
     out << (wide ? "set logscale x\nset format x '10^{%L}'\n"

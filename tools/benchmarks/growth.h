@@ -1,5 +1,5 @@
-// How the cost of a run grows with the number of cars and steps, and the cost of a sweep with the
-// number of its runs.
+// Measures how the cost of a run grows with the number of cars and of steps, and how the cost of a
+// sweep grows with the number of its runs.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@
 
 namespace fogline::benchmarks {
 
-/// A size, and what it costs.
+/// A size, and the cost of the work of this size.
 struct GrowthPoint {
   std::int64_t size = 0;
   Spread wall_s;         // of the whole work, in seconds
@@ -21,14 +21,14 @@ struct GrowthPoint {
   double memory_mb = 0;  // peak memory, in MB of 10^6 bytes; median
 };
 
-/// One quantity that grows, while everything else stays as it is.
+/// One quantity that grows, while all other quantities are constant.
 struct Growth {
   std::string name;   // "followers"
   std::string what;   // "following cars"
-  std::string piece;  // of which `per_piece` is the time: "step"
+  std::string piece;  // unit of work to which `per_piece` refers: "step"
   std::vector<GrowthPoint> points;
-  /// The measured time for the largest size, divided by that of a straight line through the smaller
-  /// sizes (a least-squares fit). 1: the growth is linear.
+  /// The measured time for the largest size, divided by the time that a straight line through the
+  /// smaller sizes (a least-squares fit) gives for this size. 1: the growth is linear.
   double beyond_linear = 0;
 };
 

@@ -73,7 +73,8 @@ void Replay(benchmark::State& state, const std::vector<Recorded>& steps, Call&& 
   }
 }
 
-// Without commands the cars keep their distances, so the benchmark may take any number of steps.
+// Measures a step of the world. All commands are 0, so the cars keep their distances, and the
+// number of steps may be arbitrarily large.
 void WorldStep(benchmark::State& state) {
   world::World world(Paper());
   world.Start(0);

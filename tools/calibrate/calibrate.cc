@@ -31,7 +31,7 @@ class Search {
   const std::string& refusal() const { return refusal_; }
   Calibration TakeResult() { return std::move(result_); }
 
-  /// Evaluates the first point. Run() starts at this point or at a better point found since.
+  /// Evaluates the first point. The first Run() starts at this point.
   void Begin(std::vector<double> shares) {
     best_shares_ = std::move(shares);
     Try(best_shares_);
@@ -100,8 +100,8 @@ std::optional<Calibration> Calibrate(const Objective& objective, int max_evaluat
 namespace {
 
 /// A value below and a value above `value`. They differ from `value` by half a percent of the
-/// range, or by one for an integer. The limits of the field bound both values, so at a limit one of
-/// them equals `value`.
+/// range, or by one for an integer. Both values are within the limits of the field. So at a limit
+/// one of these values equals `value`.
 std::pair<double, double> Around(const FreeField& field, double value) {
   if (field.is_integer()) {
     return {std::max(field.lowest(), value - 1), std::min(field.highest(), value + 1)};

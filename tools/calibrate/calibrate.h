@@ -17,7 +17,7 @@ using SearchProgress = std::function<void(int evaluations, double best)>;
 struct Calibration {
   std::vector<double> values;  // best values of the free fields so far
   Evaluation best;
-  std::optional<double> objective_at_start;  // at the first point; empty if no run is possible
+  std::optional<double> objective_at_start;  // at the first point; empty if it permits no run
   int evaluations = 0;
   bool interrupted = false;
 };

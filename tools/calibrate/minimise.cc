@@ -19,7 +19,8 @@ nlopt::algorithm AlgorithmFor(Reach reach) {
   return reach == Reach::kWholeRange ? nlopt::GN_DIRECT_L : nlopt::LN_SBPLX;
 }
 
-/// NLopt passes on only its own exceptions. So Guarded stores any other exception.
+/// Calls the function, and stores an exception of the function, because NLopt passes on only its
+/// own exceptions.
 struct Guarded {
   const FunctionOfShares& function;
   std::exception_ptr failure;

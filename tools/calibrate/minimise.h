@@ -18,8 +18,8 @@ enum class Reach {
 
 /// Searches from `start`. The search ends after `most` evaluations, at a value of at most `enough`,
 /// or when its steps are as small as the rounding of values. The search uses no random numbers.
-/// Minimise() returns nothing, because `function` gets each point. Minimise() passes on exceptions
-/// of `function`.
+/// Minimise() returns no point, because the caller's `function` receives each evaluated point. An
+/// exception of `function` reaches the caller.
 /// @param most at least 1
 void Minimise(Reach reach, const FunctionOfShares& function, std::vector<double> start,
               double enough, int most);

@@ -16,8 +16,8 @@
 namespace fogline::calibrate {
 namespace {
 
-// Residual of a seed whose runs do not have the measure. It is the largest magnitude of a published
-// SI, which is in [-1000, 100] %.
+// Residual, in points, of a seed whose runs do not have the measure. The value is the largest
+// magnitude of a published SI, because a published SI is in [-1000, 100] %.
 constexpr double kMissingResidualPts = 1000;
 
 double Square(double x) { return x * x; }

@@ -60,8 +60,8 @@ using GoOn = std::function<bool()>;
 ///
 /// in square points; a star marks the target's values. Every evaluation uses the same seeds (common
 /// random numbers), so J changes only with the fields. A seed without SI counts with a residual of
-/// 1000 points, the largest magnitude of SI. So the search gains nothing from values of fields that
-/// prevent all compromised safety.
+/// 1000 points, the largest magnitude of SI. So values of fields that prevent all compromised
+/// safety do not make J small.
 class Objective {
  public:
   /// @throws InputError if the scenario's policy does not use the threshold, or if a free field is

@@ -27,7 +27,7 @@ namespace fogline::cli {
 
 namespace {
 
-/// Makes an empty file. @return false if a file of this name exists @throws InputError
+/// Makes a new empty file. @return false if a file of this name exists @throws InputError
 bool Reserve(const std::filesystem::path& log) {
   const int file = open(log.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   if (file < 0 && errno == EEXIST) return false;
@@ -62,9 +62,9 @@ log::LogOfRun PrepareLog(const std::filesystem::path& log, bool force) {
         PathText(log)));
   }
   if (const std::string older = log::TakeBackOlder(log, "--log"); !older.empty()) Complain(older);
-  // Makes the file if it is missing. If two runs start at once, only one of them gets the lock, no
-  // matter which of them made the file. Even --force does not replace a file that another run is
-  // writing.
+  // The lock makes the file if the file is missing. If two runs start at once, only one of them
+  // gets the lock, and this need not be the run that made the file. Even --force does not replace a
+  // file that another run is writing.
   auto lock = std::make_unique<FileLock>(log, FileLock::Kind::kOwn, "--log", "run");
   if (std::filesystem::is_empty(log, ignored)) return {log, std::move(lock)};
   if (!force) {

@@ -38,7 +38,7 @@ class ScenarioArguments {
     if (with_seed) verb.add_option("--seed", seed_, "Seed instead of the scenario's own");
   }
 
-  /// @param more overrides of the verb, which count more than those of the user
+  /// @param more overrides of the verb, which prevail over those of the user
   /// @throws InputError
   Scenario Load(const std::vector<std::string>& more = {}) const {
     std::vector<std::string> overrides = overrides_;
@@ -60,17 +60,17 @@ class ScenarioArguments {
   std::string seed_;  // checked together with all other fields
 };
 
-/// Prepares a log file for writing. The function refuses a log that another run is writing. It
-/// refuses a non-empty file if `force` is false. Even with `force`, it refuses a file that is no
-/// event log. RequireFolderOf() checks the folder. If a killed run has left an older log of this
-/// name, the function restores the older log and says so on stderr.
+/// Prepares a log file for writing. The function refuses a log that another run is writing, and a
+/// non-empty file if `force` is false. Even with `force`, it refuses a file that is not an event
+/// log. It also refuses a folder that RequireFolderOf() refuses. If a killed run has left an older
+/// log of this name, the function restores the older log and says so on stderr.
 /// @throws InputError
 log::LogOfRun PrepareLog(const std::filesystem::path& log, bool force);
 
 /// The log "logs/STEM-N.lcm" with the first number N that is free, from 1 on.
 log::LogOfRun FreshLog(const std::filesystem::path& scenario_file);
 
-/// Calls `work(log)` for each log. A log that cannot be read is named on stderr and left out; the
+/// Calls `work(log)` for each log. If a log cannot be read, the error is printed on stderr, and the
 /// work continues with the other logs. @return whether all logs could be read
 template <class Work>
 bool ForEachReadable(const std::vector<std::filesystem::path>& logs, const Work& work) {
@@ -96,8 +96,8 @@ sweep::SeedRange ReadSeeds(const std::string& text);
 void PrintJson(const nlohmann::ordered_json& json, int indent = 2);
 void PrintJson(const std::string& text);
 
-/// Refuses --json if the verb's document goes to stdout: the reader could not separate the two
-/// texts.
+/// Refuses --json if the verb's document goes to stdout, because a reader could not separate the
+/// two texts.
 /// @param document the file of the document; "" if there is no document
 /// @param option the option that names this file, such as "--out"
 /// @throws InputError

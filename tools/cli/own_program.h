@@ -1,5 +1,5 @@
 // Verbs that are separate programs beside `fogline`: they take long to build, and `fogline` itself
-// does not need their libraries. `fogline VERB ...` is the same as `PROGRAM ...`.
+// does not need their libraries. `fogline VERB ...` does the same as `PROGRAM ...`.
 #pragma once
 
 #include <array>

@@ -8,7 +8,7 @@
 
 namespace fogline::cli {
 
-/// "fogline", or "fogline VERB" once the verb is known: the beginning of every message.
+/// The beginning of every message: "fogline VERB" if the verb is known, otherwise "fogline".
 std::string CommandName(const CLI::App& app);
 
 /// The error for a command line that has words but no verb, such as `fogline levitate --help`; ""
@@ -23,8 +23,8 @@ std::string NoSuchVerb(const CLI::App& app, const std::string& word);
 /// would ignore the option.
 void RefuseEmptyTexts(CLI::App& app);
 
-/// The words of a command line with "--log=" as two words, "--log" and "". CLI11 would take the
-/// word after "--log=" for the value.
+/// The words of a command line with "--log=" as two words, "--log" and "". Without this change,
+/// CLI11 would take the next word as the value of --log.
 std::vector<std::string> SeparateEmptyValues(const std::vector<std::string>& words);
 
 /// A refused command line as one line: "fogline VERB: error: ... (see fogline VERB --help)".

@@ -24,7 +24,7 @@ class TableRows {
     for (const double threshold : thresholds) rows_.emplace_back().threshold = threshold;
   }
 
-  /// @param seed its place in the range of seeds
+  /// @param seed index of the seed in the range of seeds
   /// @param row the run without traded control has row 0, that of the first threshold has row 1
   void Add(std::int64_t seed, std::size_t row, runner::ExperimentResult result) {
     runs_[seed].emplace(row, std::move(result));

@@ -24,8 +24,8 @@ std::vector<sweep::ThresholdRow> RowsInMemory(const Scenario& scenario,
 struct TableRuns {
   runner::ExperimentOptions options;  // of each run, without its log
   std::filesystem::path logs;         // folder for a log of each run; empty: no logs
-  std::string name;                   // with which the name of each log begins
-  int jobs = 1;                       // runs at once
+  std::string name;                   // beginning of the name of each log
+  int jobs = 1;                       // number of runs at the same time
 };
 
 /// Makes each run of a table by itself. Every number of jobs gives the same rows, bit for bit. Call

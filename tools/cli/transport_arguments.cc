@@ -18,8 +18,8 @@ namespace {
 // messages of a step. The signs of life of these processes must arrive within 64 steps.
 constexpr double kMinPeriodS = 0.005;
 
-// The recorder is not among the roles that a run can wait for: the runner reads the result from the
-// log, so the log is on its machine.
+// The names of the roles that may be external. The recorder may not: the runner reads the result
+// from the log, so the recorder writes the log on the runner's machine.
 std::vector<std::string> ExternalRoleNames() {
   std::vector<std::string> names;
   for (const RoleInfo& info : kRoles) {
@@ -28,7 +28,7 @@ std::vector<std::string> ExternalRoleNames() {
   return names;
 }
 
-/// Refuses the recorder with the reason. The list of names would only say that it is not possible.
+/// Refuses the recorder, and says why. The check against the list of names would not say why.
 std::string RefuseRecorder(const std::string& role) {
   return role == NameOf(Role::kRecorder) ? "recorder: the run's result is read from its own log"
                                          : "";

@@ -16,9 +16,9 @@ namespace fogline::cli {
 /// and those of roles on other machines.
 class TransportArguments {
  public:
-  /// @param transport default transport. If it is direct, but roles are on other machines, the
-  ///     default is udpm. If the default starts the roles as processes, and $LCM_DEFAULT_URL is
-  ///     set, the URL in $LCM_DEFAULT_URL is the default instead.
+  /// @param transport default transport. If `transport` is direct, but roles are on other machines,
+  ///     the default is udpm. If the default starts the roles as processes, and $LCM_DEFAULT_URL is
+  ///     set, its URL is the default instead.
   TransportArguments(CLI::App& verb, std::string transport);
 
   /// Sets the transport, the options of its traffic, and the roles that are started elsewhere.
@@ -43,7 +43,7 @@ class TransportArguments {
   runtime::TrafficOptions traffic_;
 };
 
-/// Makes the run one in real time.
+/// Sets the options for a run in real time.
 /// @param speed simulated seconds per second
 /// @throws InputError if the other options do not allow real time
 void RunInRealtime(runner::ExperimentOptions& options, double speed);

@@ -37,8 +37,8 @@ int Run(const CLI::App& app, const Action& action) {
     }
     return code;
   } catch (const InputError& error) {
-    // The text of an error in a file begins with the place of the error. The text of an error in
-    // the arguments begins with "error:".
+    // An error in a file has a text that begins with the place of the error. An error in the
+    // arguments has a text that begins with "error:".
     const std::string_view what = error.what();
     Complain(what.starts_with("error:") ? fmt::format("{}: {}", name, EscapeControls(what))
                                         : std::string(what));
@@ -103,7 +103,7 @@ int Main(std::vector<std::string> arguments, std::initializer_list<AddVerb> verb
   return Run(app, action);
 }
 
-/// Whether a command line asks for completion. Then its other words are those to complete.
+/// Whether a command line asks for completion. Then its other words are the words to complete.
 bool AsksForCompletion(int argc, char** argv) {
   return argc > 1 && std::string_view(argv[1]) == kComplete;
 }

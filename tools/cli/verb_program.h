@@ -17,7 +17,7 @@ using AddVerb = void (*)(CLI::App& app, Action& action);
 /// @return the exit code
 int RunVerbs(int argc, char** argv, std::initializer_list<AddVerb> verbs);
 
-/// Does the same for the program of a single verb, whose command line has no VERB.
+/// Does the work of RunVerbs() for the program of a single verb. Its command line has no VERB.
 int RunOneVerb(int argc, char** argv, AddVerb verb);
 
 }  // namespace fogline::cli

@@ -23,7 +23,7 @@ struct Finding {
   Level level = Level::kOk;
   std::string what;
   std::string remedy;           // "" if no remedy is needed
-  std::vector<Recipe> recipes;  // ways to make the remedy last, to choose from
+  std::vector<Recipe> recipes;  // alternatives that make the remedy permanent
 };
 using Findings = std::vector<Finding>;
 
@@ -37,10 +37,10 @@ void ExamineNetwork(const std::string& url, Findings& findings);
 /// wait for a run, within a second.
 void ExamineTraffic(const std::string& url, Findings& findings);
 
-/// Examines whether this machine and another machine hear each other on the network, while
-/// `fogline doctor --with` examines the same there.
+/// Examines whether this machine and another machine hear each other on the network. `fogline
+/// doctor --with` must run on both machines at the same time.
 /// @param host name or address of the other machine
-/// @param limit how long to wait for its messages
+/// @param limit longest wait for messages of the other machine
 /// @throws Interrupted
 void ExamineWith(const std::string& url, const std::string& host, Duration limit,
                  Findings& findings);

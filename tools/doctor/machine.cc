@@ -47,8 +47,8 @@ void ExamineClock(Findings& findings) {
                       fine ? "" : "real time needs a high-resolution clock source"});
 }
 
-/// While an object lives, the kernel runs this thread before ordinary processes, as a role in real
-/// time, if it grants this.
+/// While an object exists, this thread has the priority of a role in real time, so the kernel runs
+/// it before ordinary processes. The kernel may refuse the priority.
 class Priority {
  public:
   Priority() {
@@ -63,7 +63,7 @@ class Priority {
   Priority(const Priority&) = delete;
   Priority& operator=(const Priority&) = delete;
 
-  /// errno; 0 if the kernel has granted it.
+  /// The error number of the refusal; 0 if the kernel has granted the priority.
   int error() const { return error_; }
 
  private:
@@ -75,7 +75,7 @@ std::string UserName() {
   return user != nullptr ? user->pw_name : std::to_string(getuid());
 }
 
-/// Examines what a role in real time asks of the kernel (RunBeforeOthers()).
+/// Examines whether the kernel grants what a role in real time asks for (RunBeforeOthers()).
 void ExaminePriority(const std::filesystem::path& programs, Findings& findings) {
   const auto report = [&](std::string_view what, int error) {
     findings.push_back(
@@ -93,7 +93,7 @@ void ExaminePriority(const std::filesystem::path& programs, Findings& findings) 
   const bool locks = mlockall(MCL_CURRENT | MCL_ONFAULT) == 0;
   const int error = locks ? 0 : errno;
   if (locks) munlockall();
-  // One set of recipes grants both.
+  // The same recipes grant priority and locked memory, so they are shown only once.
   report("locked memory", error);
   if (refused != 0 && error != 0) findings.back().recipes.clear();
 }

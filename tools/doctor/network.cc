@@ -112,7 +112,7 @@ Duration RoundTrip(runtime::Bus& here, runtime::Bus& there, bool& back) {
   return back ? Clock::now() - began : Duration::zero();
 }
 
-/// The times that messages take from one connection on this network to another one and back; none
+/// The times that messages take from one connection on this network to another one and back; empty
 /// if no message comes back.
 std::vector<double> RoundTripsUs(const std::string& url) {
   constexpr int kRounds = 50;
@@ -136,8 +136,8 @@ std::vector<double> RoundTripsUs(const std::string& url) {
   return times_us;
 }
 
-/// Sends real LCM messages to the group and port of the URL, because a firewall may pass this port
-/// and no other.
+/// Sends real LCM messages to the group and port of the URL, because a firewall may pass only this
+/// port.
 void ExamineLoopback(const std::string& url, const std::string& group, int ttl,
                      Findings& findings) {
   constexpr std::uint16_t kLcmPort = 7667;
@@ -249,7 +249,7 @@ void ExamineNetwork(const std::string& url, Findings& findings) {
   const auto group = runtime::GroupOf(url);
   if (group && ExamineGroup(url, *group, findings)) {
     const int ttl = UrlOption(url, "ttl", 0);
-    // mpudpm uses the route with every ttl.
+    // mpudpm needs the route for every value of the ttl.
     const bool here = ttl == 0 && url.starts_with("udpm://");
     if (here ? ExamineOwnMachine(url, *group, findings) : ExamineRoute(*group, ttl, findings)) {
       ExamineLoopback(url, *group, std::min(ttl, 1), findings);

@@ -1,4 +1,5 @@
-// Lines of shell that make a remedy last beyond the next start of the machine.
+// Lines of shell that make a remedy permanent, so that it is still there after a restart of the
+// machine.
 #pragma once
 
 #include <cstdint>
@@ -8,21 +9,22 @@
 namespace fogline::doctor {
 
 struct Recipe {
-  std::string title;   // for whom it is, such as "systemd-networkd"
+  std::string title;   // what it is for, such as "systemd-networkd"
   std::string script;  // lines of sh for root, ready to paste, each with its line feed
 };
 
-/// The multicast route over an interface.
+/// Adds the multicast route over an interface.
 std::vector<Recipe> RouteRecipes(const std::string& interface);
 
 /// Lets a firewall of nftables pass a multicast group and port, and IGMP.
 std::vector<Recipe> FirewallRecipes(const std::string& group, std::uint16_t port);
 
-/// Real-time priority and locked memory for a user. @param programs folder of the roles' programs
+/// Permits real-time priority and locked memory for a user. @param programs folder of the roles'
+/// programs
 std::vector<Recipe> PriorityRecipes(const std::string& user, const std::string& programs);
 
-/// The interface that probably leads to other machines: that of the default route, else the first
-/// one that is up and no loopback; "INTERFACE" if there is none.
+/// The interface that probably leads to other machines. This is the interface of the default route,
+/// or else the first interface that is up and is not a loopback; "INTERFACE" if there is neither.
 std::string InterfaceToOthers();
 
 }  // namespace fogline::doctor

@@ -56,7 +56,8 @@ void ReportWaiting(const runtime::WaitingRoles& waiting, Findings& findings) {
   }
 }
 
-/// With ttl=0 no message leaves this machine. Messages of other machines come nevertheless.
+/// Reports machines whose messages arrive here, although ttl=0. With ttl=0 no message leaves this
+/// machine, so the other machines do not hear it.
 void ExamineReach(const std::string& url, const watch::TrafficView& view,
                   const runtime::WaitingRoles& waiting, Findings& findings) {
   const auto address = runtime::ParseMulticastUrl(url);

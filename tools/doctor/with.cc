@@ -1,4 +1,5 @@
-// Two machines: each hears the other, and says what it hears.
+// Examines whether two machines hear each other. A doctor runs on each machine, and tells the other
+// doctor which doctor it hears.
 #include <ifaddrs.h>
 #include <netdb.h>
 #include <netinet/in.h>
@@ -31,13 +32,14 @@ using Level = Finding::Level;
 
 constexpr std::string_view kChannel = "FOGLINE_DOCTOR";
 constexpr Duration kSayEvery = milliseconds(100);
-// The other doctor hears within this time, even on a network that loses most messages, that it was
-// heard: 30 messages.
+// In this time this doctor sends 30 messages. So even on a network that loses most messages, the
+// other doctor receives one which says that the other doctor was heard.
 constexpr Duration kAnswers = milliseconds(3000);
-// A doctor that knows the result continues to send for this time, so that the other one learns it.
+// A doctor that knows the result continues to send for this time, so that the other doctor learns
+// the result, too.
 constexpr Duration kLinger = milliseconds(1500);
 
-/// The IPv4 addresses of a name; none if it cannot be resolved.
+/// The IPv4 addresses of a name; empty if the name cannot be resolved.
 std::vector<in_addr_t> AddressesOf(const std::string& name) {
   std::vector<in_addr_t> addresses;
   addrinfo hints{};
@@ -68,8 +70,9 @@ bool IsThisMachine(const std::string& name) {
   return found;
 }
 
-/// A doctor's message is a STATUS: waiting_for is the other machine as the user has named it, and
-/// the inputs are the instances of the doctors that were heard.
+/// Exchanges messages with the doctor on the other machine. A message is a STATUS. Its waiting_for
+/// is the name of the other machine, as the user gave it. Its input is the instance of the other
+/// doctor, if the other doctor was heard.
 class Conversation {
  public:
   Conversation(const std::string& url, std::string host) : bus_(url), host_(std::move(host)) {
@@ -79,13 +82,13 @@ class Conversation {
     own_.version = runtime::VersionText();
     own_.type_fingerprint = TypeFingerprint();
     own_.waiting_for = host_;
-    // A number that no other doctor has, also on a machine of the same name.
+    // A random number, so that no other doctor has it, even on a machine of the same name.
     std::random_device random;
     own_.instance = static_cast<std::int64_t>(random()) << 31 | random() >> 1;
     bus_.Subscribe(kChannel, [this](runtime::Bytes bytes) { Hear(bytes); });
   }
 
-  /// Talks until the result is known, or the time is over.
+  /// Sends and receives messages until the result is known, or the time is over.
   void Run(Duration limit) {
     const TimePoint began = Clock::now();
     std::optional<TimePoint> known;
@@ -144,7 +147,7 @@ class Conversation {
   std::optional<status_t> other_;
   std::optional<TimePoint> heard_;  // when the other doctor was first heard
   bool hears_us_ = false;
-  std::map<std::string, bool> is_us_;  // by a name that was resolved
+  std::map<std::string, bool> is_us_;  // by resolved name
   TimePoint say_at_{};
   std::vector<std::uint8_t> buffer_;
 };

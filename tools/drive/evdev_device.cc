@@ -111,7 +111,7 @@ void EvdevDevice::ReadEvents(TimePoint now) {
     input_event event{};
     const int result = libevdev_next_event(device_, flag, &event);
     if (result == -EAGAIN && flag == LIBEVDEV_READ_FLAG_SYNC) {
-      flag = LIBEVDEV_READ_FLAG_NORMAL;  // everything that was dropped has been read
+      flag = LIBEVDEV_READ_FLAG_NORMAL;  // all dropped events have been read
       continue;
     }
     if (result == -EAGAIN || result == -EINTR) return;

@@ -16,7 +16,7 @@ struct input_event;
 
 namespace fogline::drive {
 
-/// Parts of the map that the user gives; "" for the usual ones (UsualMap()).
+/// Axes and buttons that the user names; "": the usual axis or button (UsualMap()).
 struct DeviceNames {
   std::string throttle;
   std::string brake;
@@ -24,9 +24,9 @@ struct DeviceNames {
   std::string give_back;
 };
 
-/// A pedal counts as released until its axis has moved, because wheels report wrong values before.
-/// While the device is unplugged, no person is present. When the device is plugged in again, it is
-/// opened again.
+/// An input device as pedals and buttons. A pedal counts as released until its axis has moved,
+/// because wheels report wrong values before the first movement. While the device is unplugged, no
+/// person is present. When the device is plugged in again, this class opens it again.
 class EvdevDevice final : public PedalSource {
  public:
   /// @throws InputError if the device cannot be read, or has no pedals

@@ -1,4 +1,4 @@
-// Which axes of a device are pedals, and what their values mean.
+// Finds the pedals among the axes of a device, and converts the axes' values.
 #pragma once
 
 #include <algorithm>
@@ -15,8 +15,9 @@ struct AxisRange {
   int most = 0;
 };
 
-/// At each end, this share of an axis counts as released or as full. Our choice: potentiometers of
-/// pedals rest within 1 % or so of their ends, and 3 % of a pedal's travel is not felt.
+/// At each end, this share of an axis counts as released or as full. The value is our choice:
+/// potentiometers of pedals rest within about 1 % of their ends, and a person does not feel 3 % of
+/// a pedal's travel.
 inline constexpr double kDeadZone = 0.03;
 
 /// A pedal: an axis, and its direction.
@@ -49,7 +50,8 @@ struct DeviceFeatures {
   bool arrow_keys = false;     // KEY_UP and KEY_DOWN
 };
 
-/// The use of a device's axes and keys. Without pedals, its keys up and down are the pedals.
+/// The use of a device's axes and keys. If the device has no pedals, its keys up and down are the
+/// pedals.
 struct DeviceMap {
   std::optional<PedalAxis> throttle;
   std::optional<PedalAxis> brake;
@@ -65,8 +67,8 @@ struct DeviceMap {
 ///                                greatest value, as Logitech's wheels have it
 ///     keyboard                   arrow up throttle, arrow down brake
 ///
-/// Buttons: the south (A) and the east (B) button of a gamepad, the first two of a wheel, space and
-/// g of a keyboard.
+/// Buttons to take over and to give back: the south (A) and the east (B) button of a gamepad, the
+/// first two buttons of a wheel, space and g of a keyboard.
 /// @return nullopt if the device has neither pedals nor keys
 std::optional<DeviceMap> UsualMap(const DeviceFeatures& features);
 

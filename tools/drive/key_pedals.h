@@ -1,5 +1,5 @@
-// Two keys as pedals: the pedals move at fixed rates while a key is down, so keys give every travel
-// and not only none and full.
+// Two keys as pedals. While a key is down, its pedal moves at a fixed rate. So a key can give every
+// travel of the pedal, not only none and full.
 #pragma once
 
 #include <algorithm>
@@ -15,25 +15,26 @@ enum class PedalKey : std::uint8_t { kThrottle, kBrake };
 /// While its key is down, a pedal moves down with key_press_ps. Otherwise it moves back with
 /// key_release_ps. Only the newest key counts, because a driver has one foot for both pedals.
 ///
-/// A terminal reports only characters: the first when the key goes down, and more while it stays
-/// down, the first of these after a delay. It does not report that a key goes up. So a character
-/// counts as a key that is down for kPress. Then the pedal keeps its place until it is known
-/// whether the key has stayed down: for kFirstDelay after the first character, and for kPress after
-/// another one. So a tap moves a pedal a little and lets it rest there for a moment, and a pedal
-/// goes back later than the finger.
+/// A terminal reports only characters, and does not report that a key goes up. The first character
+/// comes when the key goes down. Further characters come while the key stays down; the second one
+/// comes after a longer delay. So each character counts as a key that is down for kPress. The pedal
+/// moves back only when no further character can be expected: kFirstDelay after a first character,
+/// and kPress after a later one. So a tap moves a pedal a little, and the pedal rests there for a
+/// moment. After the person has released the key, the pedal begins to move back a little later.
 class KeyPedals {
  public:
-  /// Characters of a key that is down come every 33 to 40 ms (Linux console, X11: 25 to 30 in a
-  /// second). Three times as long, so that a terminal over a network does not interrupt a pedal.
+  /// For this time a character counts as a key that is down. Characters of such a key come every 33
+  /// to 40 ms (Linux console, X11: 25 to 30 in a second). The value is three times as long, so that
+  /// delays of a terminal over a network do not interrupt a pedal.
   static constexpr Duration kPress = milliseconds(120);
-  /// A little longer than the longest usual delay of the second character: X11's 660 ms (Linux
-  /// console: 250 ms).
+  /// For this time the pedal waits for the second character. The value is a little longer than the
+  /// longest usual delay of the second character: X11's 660 ms (Linux console: 250 ms).
   static constexpr Duration kFirstDelay = milliseconds(700);
 
   explicit KeyPedals(const PersonSection& person)
       : press_ps_(person.key_press_ps), release_ps_(person.key_release_ps) {}
 
-  /// A character of this key has come.
+  /// Handles a character of this key.
   void Character(PedalKey key, TimePoint now) {
     Key& one = keys_[static_cast<std::size_t>(key)];
     const bool again = now < one.rests_until;
@@ -44,7 +45,7 @@ class KeyPedals {
     other.pressed_until = other.rests_until = now;
   }
 
-  /// The key goes down or up, on a device that reports both.
+  /// Handles a key that goes down or up, on a device that reports both.
   void Hold(PedalKey key, bool down, TimePoint now) {
     Key& one = keys_[static_cast<std::size_t>(key)];
     one.pressed_until = one.rests_until = down ? TimePoint::max() : now;

@@ -19,7 +19,7 @@ struct PedalState {
   std::int32_t buttons = 0;  // as in driver_input_t
   TimePoint at{};            // the time of the newest input of the device
 
-  /// Whether a person does the same; `at` does not count.
+  /// Whether all members except `at` are equal.
   bool SameAs(const PedalState& other) const {
     return present == other.present && throttle == other.throttle && brake == other.brake &&
            axes == other.axes && buttons == other.buttons;
@@ -32,9 +32,11 @@ class PedalSource {
   PedalSource(const PedalSource&) = delete;
   PedalSource& operator=(const PedalSource&) = delete;
 
-  /// Reads what has come from the device. Does not wait.
+  /// Reads the inputs that have come from the device, without waiting. Returns the state after
+  /// them.
   virtual PedalState Read(TimePoint now) = 0;
-  /// Readable when the device has news; -1 if it has no descriptor now.
+  /// A file descriptor that is readable when the device has new inputs; -1 if the device is not
+  /// open.
   virtual int fd() const = 0;
   virtual std::int8_t kind() const = 0;
   virtual std::string name() const = 0;

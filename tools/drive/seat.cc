@@ -17,7 +17,7 @@
 namespace fogline::drive {
 namespace {
 
-// The thread waits at most so long for its device or a message. Pedals of keys move in this time by
+// Longest wait of the thread for its device or a message. In this time the pedals of keys move by
 // at most a fifth of their travel (key_press_ps at most 20).
 constexpr Duration kTick = milliseconds(10);
 
@@ -100,7 +100,7 @@ Seat::~Seat() {
 void Seat::Run(const std::string& url, std::int64_t run_id,
                const runtime::TrafficOptions& traffic) {
   runtime::Bus bus(url);
-  // The faults of --faults are those of the roles.
+  // --faults applies only to the messages of roles.
   runtime::Apply({.key_file = traffic.key_file, .faults = ""}, Role::kRunner, bus);
   InputMaker maker(run_id, runtime::DrawSeatInstance(), source_->kind(), source_->name());
   bus.Subscribe(ChannelOf<truth_t>().name, [&](runtime::Arrival& arrival) {

@@ -13,7 +13,7 @@
 namespace fogline::drive {
 
 /// Makes the messages of a seat. A message is due at each change, and at least every 40 ms, but at
-/// most 200 messages in a second. Both limits keep a fifth away from the limits of
+/// most 200 messages in a second. Both values keep a margin of a fifth from the limits of
 /// services/runtime/wire/driver_input.h.
 class InputMaker {
  public:
@@ -22,11 +22,12 @@ class InputMaker {
 
   InputMaker(std::int64_t run_id, std::int64_t instance, std::int8_t kind, const std::string& name);
 
-  /// The newest TRUTH that the seat knows. Headers of other runs are ignored.
+  /// Stores the header of the newest TRUTH. Headers of other runs are ignored.
   void SawTruth(const header_t& header);
   /// Whether this state must be sent now.
   bool Due(const PedalState& state, TimePoint now) const;
-  /// The message of this state. It counts as sent. The message is valid until the next call.
+  /// The message of this state, which then counts as sent. The message is valid until the next
+  /// call.
   const driver_input_t& Make(const PedalState& state, TimePoint now);
 
  private:
@@ -35,15 +36,16 @@ class InputMaker {
   TimePoint sent_at_{};
 };
 
-/// The beginning of a text: at most `most` bytes, without a cut character at its end.
+/// The beginning of a text: at most `most` bytes, without an incomplete character at its end.
 std::string FirstBytes(const std::string& text, std::size_t most);
 
-/// A thread with a bus of its own. It tells the person the requests of the car.
+/// A seat: a thread with its own bus. It publishes the inputs of the device, and shows the person
+/// the requests of the car.
 class Seat {
  public:
   Seat(const std::string& url, std::int64_t run_id, const runtime::TrafficOptions& traffic,
        std::unique_ptr<PedalSource> source);
-  /// Says that no person drives any more, and ends the thread.
+  /// Publishes that no person is present, and ends the thread.
   ~Seat();
   Seat(const Seat&) = delete;
   Seat& operator=(const Seat&) = delete;

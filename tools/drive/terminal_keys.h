@@ -17,7 +17,7 @@ enum class TerminalKey : std::uint8_t { kThrottle, kBrake, kTakeOver, kGiveBack 
 /// ignored.
 class KeyParser {
  public:
-  /// Calls `use(TerminalKey)` for each key. A sequence may be cut between two calls.
+  /// Calls `use(TerminalKey)` for each key. A sequence may be split between two calls.
   template <class Use>
   void Parse(std::string_view characters, Use&& use) {
     for (const char c : characters) {
@@ -47,11 +47,11 @@ class KeyParser {
 };
 
 /// A terminal that gives each character at once and does not show it. The destructor restores the
-/// terminal. Ctrl-C and Ctrl-Z stay signals, and the program ends by its usual way after Ctrl-C.
+/// terminal. Ctrl-C and Ctrl-Z still send signals. So after Ctrl-C the program ends in its usual
+/// way.
 class RawTerminal {
  public:
-  /// @throws InputError if standard input is no terminal, or not that of a program in the
-  ///     foreground
+  /// @throws InputError if standard input is not a terminal, or if the program is in the background
   RawTerminal();
   ~RawTerminal();
   RawTerminal(const RawTerminal&) = delete;
@@ -63,8 +63,9 @@ class RawTerminal {
 
 class TerminalKeys final : public PedalSource {
  public:
-  /// A terminal does not report that a key goes up. So a button counts as down for this time: long
-  /// enough for every period that a scenario can have to contain a message of it.
+  /// A terminal does not report that a key goes up. So a button counts as down for this time. With
+  /// steps of at most this length, the driver's newest input then has the button in at least one
+  /// step.
   static constexpr Duration kButton = milliseconds(300);
 
   explicit TerminalKeys(const PersonSection& person) : pedals_(person) {}
@@ -81,7 +82,7 @@ class TerminalKeys final : public PedalSource {
   TimePoint at_{};
   TimePoint take_over_until_{};
   TimePoint give_back_until_{};
-  bool closed_ = false;  // the terminal has gone
+  bool closed_ = false;  // the terminal was closed
 };
 
 }  // namespace fogline::drive

@@ -94,8 +94,8 @@ std::vector<std::filesystem::path> CsvFiles(const std::filesystem::path& folder)
 
 bool IsCsvExport(const std::filesystem::path& file) {
   if (file.filename() != kScenarioFile) return IsChannel(file);
-  // Scenarios that are no exports also begin with this text. So the files beside scenario.json must
-  // be exports, too.
+  // Scenarios that are not exports also begin with this text. So the files beside scenario.json
+  // must be exports, too.
   if (!BeginsWith(file, "{\n  \"version\": ")) return false;
   const std::vector<std::filesystem::path> files = CsvFiles(file.parent_path());
   return std::all_of(files.begin(), files.end() - 1, IsChannel);
@@ -119,7 +119,7 @@ std::vector<std::filesystem::path> WriteCsv(const RunTables& tables,
   const bool has_scenario = !tables.scenario.empty();
   if (has_scenario) add(folder / kScenarioFile).Write(tables.scenario + '\n');
   files.Finish();
-  // A file of an older export that this log does not have belongs to another log.
+  // A file that was not written here is from an older export of another log.
   std::vector<std::filesystem::path> others = CsvFilesOfSomeLogs(folder);
   others.push_back(folder / kScenarioFile);
   for (const std::filesystem::path& file : others) {

@@ -11,7 +11,8 @@ namespace fogline::exports {
 
 /// Files that WriteCsv() writes into a folder: CHANNEL.csv for each channel, and scenario.json.
 std::vector<std::filesystem::path> CsvFiles(const std::filesystem::path& folder);
-/// Further files, which it writes only if the log has their contents: the wall clock of the steps.
+/// Further files, which WriteCsv() writes only if the log has their contents: the file of the wall
+/// clock of the steps.
 std::vector<std::filesystem::path> CsvFilesOfSomeLogs(const std::filesystem::path& folder);
 
 /// Whether WriteCsv() could have written the file, judged by its beginning.

@@ -77,7 +77,7 @@ FieldTable HeardOf(const ChannelTable& table) {
   return {.name = kHeard, .values = std::move(heard)};
 }
 
-/// The struct of a channel. The names of the header's fields lose the prefix "header.".
+/// The struct of a channel. The names of the header's fields have no prefix "header.".
 Variable StructOf(const ChannelTable& table) {
   const std::string prefix = std::string(kHeaderStruct) + '.';
   std::vector<std::string> of_header;

@@ -1,5 +1,5 @@
-// The functions of matio. The first use loads matio, because matio needs 30 other libraries (HDF5
-// and what HDF5 needs). To load them takes longer than most verbs.
+// The functions of matio. The first use loads matio, because matio needs 30 other libraries (HDF5,
+// and the libraries that HDF5 needs). Loading these libraries takes more time than most verbs need.
 #pragma once
 
 #include <matio.h>

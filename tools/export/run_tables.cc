@@ -66,9 +66,9 @@ class Tabulator {
     ++table_.messages;
   }
 
-  /// Adds a row for a message that the log lacks. SetTimesOfGaps() sets its time.
+  /// Adds a row for a message that the log lacks. SetTimesOfGaps() sets the time of this row.
   void AddGap(std::int64_t run_id, std::int64_t step) {
-    // The width of a list is known from a message.
+    // The width of a list is not known before the first message.
     if (table_.fields.empty()) {
       early_gaps_.emplace_back(run_id, step);
     } else {
@@ -76,7 +76,7 @@ class Tabulator {
     }
   }
 
-  /// The table, which has its columns also if it has no message.
+  /// The table. It has its columns even if it has no message.
   ChannelTable& table() {
     if (table_.fields.empty()) DefineFields();
     return table_;
@@ -148,7 +148,8 @@ const std::vector<std::int64_t>& Numbers(const ChannelTable& table, std::size_t 
   return std::get<std::vector<std::int64_t>>(table.fields[field].values);
 }
 
-/// The simulated time of a step, in us, as the log shows it; 0 if it does not show it.
+/// The simulated duration of a step, in us, computed from the log; 0 if the log has no message of a
+/// step after step 0.
 std::int64_t StepTimeIn(const std::vector<ChannelTable>& tables) {
   for (const ChannelTable& table : tables) {
     const std::size_t rows = table.messages;
@@ -160,7 +161,7 @@ std::int64_t StepTimeIn(const std::vector<ChannelTable>& tables) {
   return 0;
 }
 
-/// A message that is missing has the time of its step.
+/// Gives each missing message the simulated time of its step.
 void SetTimesOfGaps(RunTables& tables) {
   const std::int64_t step_us = tables.run.has_scenario
                                    ? std::llround(tables.run.scenario.step_s * kMicrosPerSecond)

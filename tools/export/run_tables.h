@@ -31,7 +31,7 @@ struct FieldTable {
 struct ChannelTable {
   std::string_view name;
   std::vector<FieldTable> fields;
-  std::size_t messages = 0;  // number of rows; a run in real time may lack some messages
+  std::size_t messages = 0;  // number of rows; the log of a run in real time may lack messages
   /// The rows of messages that the log of a run in lockstep lacks. Such a row has the values of the
   /// header. Its other values are NaN or 0, and must not be shown.
   std::vector<std::size_t> gaps;
@@ -48,10 +48,10 @@ struct RunTables {
   log::RunLog run;
 };
 
-/// Reads a whole log into memory: 0.8 kB for each step with one following car. If the options say
-/// that gaps are read, a missing message has a row, too, unless it is before the first step of the
-/// log or in the incomplete steps at its end.
-/// @throws InputError if the file is no log, or has messages that do not fit their channel;
+/// Reads a whole log into memory: 0.8 kB for each step with one following car. If the options
+/// permit gaps, a missing message has a row, too. Only the messages before the first step of the
+/// log, and in the incomplete steps at its end, have no rows.
+/// @throws InputError if the file is not a log, or has messages that do not fit their channel;
 /// Interrupted
 RunTables ReadRunTables(const std::filesystem::path& log, const log::ReadOptions& options = {});
 

@@ -35,7 +35,8 @@ nlohmann::ordered_json ToJson(const Diagnostic& diagnostic) {
           {"rule", diagnostic.rule},     {"message", diagnostic.message}};
 }
 
-/// Checks a file, and prints that it is good. @throws ScenarioError with its mistakes
+/// Checks a file. Prints the scenario with --print, nothing with --json, otherwise "FILE: ok".
+/// @throws ScenarioError with the mistakes of the file
 void CheckFile(const std::string& file, const CheckOptions& options) {
   if (options.lab) {
     hosts::LoadLab(file);

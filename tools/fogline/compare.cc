@@ -135,7 +135,7 @@ void CheckTimes(const std::vector<CsvNumber>& times_s, double begin_s, double en
                            TimeText(begin_s), TimeText(end_s)));
 }
 
-/// @throws InputError if the file has another leader than the run
+/// @throws InputError if the leader of the recording is not the leader of the run
 void CheckLeader(const runner::LoggedRun& run, const Recording& recording,
                  const std::filesystem::path& file) {
   if (recording.leader_mps.empty()) return;
@@ -151,7 +151,7 @@ void CheckLeader(const runner::LoggedRun& run, const Recording& recording,
   }
 }
 
-/// Differences between the run and the recording, of one quantity over all steps.
+/// Differences of one quantity between the run and the recording, over all steps.
 class Differences {
  public:
   void Add(double ours, double recorded) {
@@ -189,7 +189,7 @@ struct Comparison {
   Differences gap_m;
 };
 
-/// @param out gets the values of each step as CSV; nullptr: no such output
+/// @param out stream for the values of each step, as CSV; nullptr: no such output
 Comparison Compare(const runner::LoggedRun& run, const Recording& recording, std::ostream* out) {
   const double start_s = run.scenario.lead.recorded.start_s;
   CsvSeries speed_mps(recording.times_s, recording.speeds_mps);
@@ -261,7 +261,7 @@ int RunCompare(const CompareArguments& arguments) {
   std::ostringstream out;
   const Comparison comparison = Compare(run, recording, has_out ? &out : nullptr);
   if (has_out) {
-    WatchInterrupts();  // an interrupt leaves no partial file
+    WatchInterrupts();  // after this call, an interrupt leaves no partial file
     AtomicFile file(arguments.out);
     file.Write(out.str());
     file.Finish();

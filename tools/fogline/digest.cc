@@ -50,8 +50,8 @@ Signature SignatureOf(const log::RunLog& run, const runtime::SigningKey* key) {
   return {"wrong", "signed with another key, or altered later"};
 }
 
-/// {"world": "0123456789abcdef", ...}, with null for a role that has not reported its build. The
-/// result is null if the log has no complete seal.
+/// The builds of the roles, such as {"world": "0123456789abcdef", ...}; null for a role that has
+/// not reported its build. The result is null if the log has no complete seal.
 nlohmann::ordered_json BuildsJson(const log::RunLog& run) {
   if (!run.seal || !run.seal->whole) return nullptr;
   nlohmann::ordered_json json = nlohmann::ordered_json::object();
@@ -66,9 +66,9 @@ nlohmann::ordered_json BuildsJson(const log::RunLog& run) {
   return json;
 }
 
-/// What the seal says about the bytes of a log. A copy is a log that was played and recorded again:
-/// its events have other times, and STATUS messages may be missing. So the seal covers only the
-/// scenario and the steps of a copy.
+/// State of a log's seal: "none", "holds", "copy", or "broken" if the log was altered. A copy is a
+/// log that was played and recorded again: its events have other times, and STATUS messages may be
+/// missing. So the seal covers only the scenario and the steps of a copy.
 std::string_view SealState(const log::RunLog& run) {
   if (!run.seal) return "none";
   if (run.altered) return "broken";

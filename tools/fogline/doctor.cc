@@ -58,7 +58,7 @@ struct DoctorArguments {
   bool json = false;
 };
 
-/// Runs an examination. An exception (except InputError) becomes a finding, too.
+/// Runs an examination. An exception other than InputError and Interrupted becomes a finding.
 void Attempt(const char* check, doctor::Findings& findings, const std::function<void()>& examine) {
   try {
     examine();
@@ -123,7 +123,7 @@ void PrintAsText(const doctor::Findings& findings) {
 
 int Doctor(const DoctorArguments& arguments) {
   const std::string url = arguments.network.Url();
-  if (!arguments.with.empty()) WatchInterrupts();  // this takes long
+  if (!arguments.with.empty()) WatchInterrupts();  // the examination takes long
   const doctor::Findings findings = Examine(arguments);
   arguments.json ? PrintAsJson(url, findings) : PrintAsText(findings);
   const bool problem = std::ranges::any_of(

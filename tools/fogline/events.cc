@@ -34,7 +34,7 @@ struct EventsArguments {
 struct RunEvents {
   log::RunLog run;
   take_over::TakeOverLog log;
-  std::vector<metrics::TakeOverMeasures> measures;  // of log.requests()
+  std::vector<metrics::TakeOverMeasures> measures;  // one for each of log.requests()
 };
 
 RunEvents ReadEvents(const std::filesystem::path& file, const log::ReadOptions& options) {
@@ -58,7 +58,7 @@ RunEvents ReadEvents(const std::filesystem::path& file, const log::ReadOptions& 
   return events;
 }
 
-// The name of a time of a request, and the time.
+// The name of an event of a request, and the step of this event.
 using RequestTime = std::pair<const char*, std::optional<std::int64_t>>;
 std::array<RequestTime, 7> TimesOf(const take_over::TakeOverRequest& request) {
   return {{{"requested", request.requested},
@@ -116,10 +116,10 @@ std::string ModesText(const take_over::TakeOverEntry& entry) {
   return fmt::format("{} -> {}", from, take_over::NameOfMode(entry.to));
 }
 
-/// A line of the list, and its step.
+/// The step of an event, and its line in the list.
 using EventLine = std::pair<std::int64_t, std::string>;
 
-/// The fallbacks of a run in real time, as RealtimeText() shows them.
+/// Adds a line for each fallback of a run in real time.
 void AddFallbacks(const log::RunLog& run, std::vector<EventLine>& lines) {
   if (!run.realtime) return;
   for (const runtime::Fallback& fallback : run.realtime->fallbacks) {
@@ -132,7 +132,7 @@ void AddFallbacks(const log::RunLog& run, std::vector<EventLine>& lines) {
   }
 }
 
-/// The gaps in the commands of the host: in a gap it is unknown which side drove.
+/// Adds a line for each gap in HOST_COMMAND. In a gap it is unknown which side drove.
 void AddGaps(const log::LogGaps& gaps, std::vector<EventLine>& lines) {
   for (const log::Gap& gap : gaps.gaps) {
     if (!gap.channels[IndexOf<arbitration_t>()]) continue;
@@ -140,7 +140,7 @@ void AddGaps(const log::LogGaps& gaps, std::vector<EventLine>& lines) {
   }
 }
 
-/// The events of the commands, the gaps and the fallbacks, in the order of their steps.
+/// The lines of the events in HOST_COMMAND, of gaps and of fallbacks, in the order of their steps.
 std::vector<EventLine> LinesOf(const RunEvents& events) {
   std::vector<EventLine> lines;
   AddGaps(events.run.gaps, lines);
@@ -178,7 +178,7 @@ void PrintText(const std::filesystem::path& file, const RunEvents& events) {
   }
 }
 
-/// Says on stderr what a log lacks, and what is unknown for this reason.
+/// Prints on stderr what a log lacks, and which results are unknown for this reason.
 void SayAbout(const std::filesystem::path& file, const RunEvents& events) {
   cli::SayAboutLog(file, events.run);
   const bool unknown = events.run.gaps.Any() && events.measures.empty();

@@ -63,7 +63,7 @@ std::vector<std::filesystem::path> Write(const exports::RunTables& tables,
   return {out};
 }
 
-/// What an export has written, and what the log has.
+/// The files that an export has written, and the run in the log.
 struct Exported {
   std::vector<std::filesystem::path> files;
   log::RunLog run;
@@ -71,7 +71,7 @@ struct Exported {
 
 Exported ExportTables(const ExportArguments& arguments, const log::ReadOptions& options) {
   CheckFiles(arguments);
-  // The log is read first, so that no folder is made if the file is no log.
+  // The log is read first, so that no folder is made if the file is not a log.
   exports::RunTables tables = exports::ReadRunTables(arguments.log, options);
   std::vector<std::filesystem::path> files = Write(tables, arguments.out);
   return {.files = std::move(files), .run = std::move(tables.run)};

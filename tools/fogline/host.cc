@@ -26,7 +26,7 @@ Examples:
   fogline run scenario/paper.json --on fusion=user@lab2
   ssh user@lab2 fogline host </dev/null        shows what lab2 would answer)";
 
-/// The problems of this machine's way to a network.
+/// The problems that this machine has with a network, each with its remedy if there is one.
 std::vector<std::string> ProblemsOf(const std::string& url) {
   doctor::Findings findings;
   try {

@@ -36,7 +36,8 @@ struct MetricsArguments {
   bool json = false;
 };
 
-/// Only a table of take-overs may be replaced, so that "--take-overs *.lcm" does not destroy a log.
+/// Refuses to replace a file that is not a table of take-overs: "--take-overs *.lcm" must not
+/// destroy a log.
 /// @throws InputError
 void RequireTakeOverTable(const std::filesystem::path& file) {
   std::error_code ignored;
@@ -60,7 +61,7 @@ void WriteTakeOvers(const std::vector<runner::LoggedRun>& runs, const std::files
   exports::WriteTakeOverCsv(rows, file);
 }
 
-/// Says on stderr what a log lacks, and what is unknown for this reason.
+/// Prints on stderr what a log lacks, and which results are unknown for this reason.
 void SayAbout(const runner::LoggedRun& run, const cli::Pairing& pair) {
   cli::SayAboutLog(run.result.log, run);
   std::string unknown = cli::UnknownMeasures(run.result);

@@ -41,7 +41,7 @@ log::RunLog ReadRun(const ReplayArguments& arguments) {
   return reader.run();
 }
 
-/// @throws InputError for a role whose commands do not follow from the log
+/// @throws InputError if the log does not determine the commands of one of the roles
 void RefuseOthers(const std::filesystem::path& log, const std::vector<replay::RoleCheck>& roles,
                   const log::RunLog& run) {
   const bool all = std::ranges::all_of(
@@ -54,7 +54,7 @@ void RefuseOthers(const std::filesystem::path& log, const std::vector<replay::Ro
       "person drove");
 }
 
-/// @throws InputError for a name that is no role, or a role that computes nothing
+/// @throws InputError if the chosen name is not a role, or if this role cannot be computed
 std::vector<replay::RoleCheck> ChosenRoles(const ReplayArguments& arguments,
                                            const log::RunLog& run) {
   const log::DriverInputs inputs =

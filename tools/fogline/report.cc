@@ -74,7 +74,8 @@ constexpr std::array kFigureOptions{
                  &ReportArguments::pdf},
 };
 
-/// Only an HTML page may be replaced, so that "-o *.lcm" does not destroy a log. @throws InputError
+/// Refuses to replace a file that is not an HTML page: "-o *.lcm" must not destroy a log.
+/// @throws InputError
 void RefuseToReplaceOther(const std::filesystem::path& output) {
   if (!IsReplaceable(output)) return;
   std::ifstream file(output, std::ios::binary);
@@ -300,7 +301,7 @@ int RunReport(const ReportArguments& arguments) {
   }
   std::optional<report::ReportCurves> curves;
   if (!arguments.curves.empty()) curves = ComputeCurves(arguments);
-  WatchInterrupts();  // an interrupt leaves no partial file
+  WatchInterrupts();  // after this call, an interrupt leaves no partial file
   WriteFiles(arguments, pages, table, curves);
   if (arguments.json) {
     cli::PrintJson(ToJson(arguments, runs));

@@ -211,7 +211,8 @@ int Resume(RunArguments& arguments) {
     throw InputError(fmt::format("{}: error: --resume: {}", PathText(options.log), run.note));
   }
   outcome.result = std::move(run.result);
-  // Without a seal, an earlier runner ended after the last step and before it sealed the log.
+  // A log without a seal: an earlier runner ended after the last step, but before it sealed the
+  // log.
   const bool to_seal = !run.seal;
   auto& verification = outcome.result.verification;
   if (options.verify.value_or(to_seal)) {
@@ -223,8 +224,8 @@ int Resume(RunArguments& arguments) {
   return Print(arguments, outcome);
 }
 
-/// Runs. If the run fails while it is shown, the error is printed at once, so that the user can
-/// read it beside the log. @return the exit code
+/// Makes the run. If the run fails while it is shown, the error is printed at once, so that the
+/// user can read it beside the log. @return the exit code
 int RunShown(RunArguments& arguments, processes::RunViewer& viewer) {
   try {
     return arguments.resume.empty() ? RunNew(arguments) : Resume(arguments);
@@ -239,7 +240,7 @@ int RunShown(RunArguments& arguments, processes::RunViewer& viewer) {
   }
 }
 
-/// Runs, and shows the run in a browser. When it is over, shows its log until Ctrl-C.
+/// Makes the run, and shows it in a browser. After the run, the browser shows the log until Ctrl-C.
 int RunAndView(RunArguments& arguments) {
   runner::ExperimentOptions& options = arguments.options;
   processes::RunViewer viewer(runtime::ToArguments({.key_file = options.traffic.key_file}));

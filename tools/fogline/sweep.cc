@@ -87,8 +87,8 @@ void PrintSummary(const std::filesystem::path& out, const std::string& text) {
   fmt::print("{}\n{}\n", text, PathText(out));
 }
 
-/// The default file for the rows. A repeated sweep finds its own file again. The file of another
-/// sweep is not changed.
+/// The default file for the rows: the file of the same sweep if there is one, otherwise a new file.
+/// The file of another sweep is replaced only with --force.
 std::filesystem::path DefaultOut(const SweepArguments& arguments, const sweep::SweepPlan& plan,
                                  const sweep::Shard& shard) {
   const std::string stem = arguments.scenario.stem().native() + "-sweep";
@@ -128,7 +128,7 @@ int RunSweepVerb(const SweepArguments& arguments) {
   if (!arguments.merge.empty()) return Merge(arguments);
   const sweep::SweepPlan plan = MakePlan(arguments);
   const sweep::Shard shard = sweep::ParseShard(arguments.shard);
-  Scenario first = plan.base();  // refuses an impossible scenario before a file is made
+  Scenario first = plan.base();  // throws for an impossible scenario
   plan.Configure(plan.ShardBegin(shard), 0, first);
   runner::CheckPossible(first, arguments.scenario);
   const std::filesystem::path out =

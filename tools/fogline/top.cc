@@ -99,7 +99,7 @@ class Top {
     if (terminal_) ShowOnTerminal();
     for (TimePoint next = began + interval; Clock::now() < end; next += interval) {
       const bool whole = Listen(std::min(next, end));
-      if (!whole && !WasInterrupted()) return kDone;  // q
+      if (!whole && !WasInterrupted()) return kDone;  // the user pressed q
       if (!whole && arguments_.once) throw Interrupted("interrupted before the interval was over");
       if (!whole) return kInterrupted;
       Show();
@@ -110,7 +110,7 @@ class Top {
   }
 
  private:
-  /// Waits until a run is announced, so that the first interval has all of its traffic.
+  /// Waits until a run is announced, so that the first interval has all traffic of the run.
   void Discover() {
     const TimePoint end = Clock::now() + kDiscovery;
     while (network_.follows() && !network_.followed() && Clock::now() < end &&
@@ -138,8 +138,9 @@ class Top {
     }
   }
 
-  /// Handles the keys that were pressed, and draws again if they or the size of the window change
-  /// the screen. @return false if the user quits
+  /// Handles the keys that were pressed. Draws again after a key, or if the window has another
+  /// size.
+  /// @return false if the user quits
   bool HandleKeys() {
     bool changed = watch::Terminal::size() != size_;
     while (const auto key = terminal_->NextKey()) {

@@ -32,10 +32,10 @@
 namespace fogline::hosts {
 namespace {
 
-// How often the processes are looked at while no order comes.
+// Interval at which the agent looks for processes that have ended, while no order comes.
 constexpr Duration kCollectEvery = milliseconds(20);
 
-/// A file in memory that only this user can read. It is gone when this process ends.
+/// A file in memory that only this user can read. The destructor closes the file, which deletes it.
 class SecretFile {
  public:
   /// @throws std::runtime_error
@@ -116,7 +116,7 @@ class HostAgent {
     if (!role) throw NotUnderstood("no role: " + name);
     auto arguments = order.at(kArguments).get<std::vector<std::string>>();
     if (key_) arguments.insert(arguments.end(), {"--key", key_->path()});
-    // The runner may not have heard that an earlier order was obeyed.
+    // If the runner has not received the answer to an earlier order, the role may still run.
     if (const auto before = pids_.find(*role); before != pids_.end()) roles_.Kill(before->second);
     try {
       pids_[*role] = roles_.StartRole(*role, arguments);
@@ -151,7 +151,7 @@ class HostAgent {
   const NetworkCheck& check_;
   JsonLines lines_;
   OwnPauses pauses_;
-  Duration silence_ = std::chrono::seconds(60);  // until the runner says how long
+  Duration silence_ = std::chrono::seconds(60);  // until the runner sends its limit
   std::unique_ptr<SecretFile> key_;
   std::map<Role, pid_t> pids_;
   processes::ProcessGroup roles_;
@@ -161,8 +161,8 @@ class HostAgent {
 
 void ServeRunner(const NetworkCheck& check) {
   WatchInterrupts();
-  // A runner that is gone must not end this process before its roles. Unlike SIG_IGN, the roles do
-  // not inherit a handler.
+  // If the runner has ended, SIGPIPE must not end this process before its roles. The handler does
+  // nothing. SIG_IGN is not used, because the roles would inherit it.
   struct sigaction nothing {};
   nothing.sa_handler = [](int) {};
   sigaction(SIGPIPE, &nothing, nullptr);

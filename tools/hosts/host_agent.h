@@ -8,12 +8,13 @@
 
 namespace fogline::hosts {
 
-/// What is wrong with the way from this machine to a network, and what to do about it.
+/// Returns the problems that this machine has with a network, each with its remedy.
 using NetworkCheck = std::function<std::vector<std::string>(const std::string& url)>;
 
 /// Does what the runner orders until stdin ends, the runner is silent for too long, or a signal
-/// asks this process to end. Kills all roles then. The kernel kills them if this process is killed.
-/// @throws NotUnderstood if stdin has something that is no order; std::runtime_error
+/// asks this process to end. Then kills all roles. If this process itself is killed, the kernel
+/// kills the roles.
+/// @throws NotUnderstood for a line of stdin that is not an order; std::runtime_error
 void ServeRunner(const NetworkCheck& check);
 
 }  // namespace fogline::hosts

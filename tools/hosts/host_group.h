@@ -21,7 +21,7 @@ class HostGroup {
   /// @throws std::runtime_error if the machines see this one at different addresses
   std::string RelayPlace() const;
   /// Gives the key to every machine, and lets it examine its way to the network of the run.
-  /// @param silence a machine ends its roles if it hears nothing of the runner for so long
+  /// @param silence time without a message of the runner after which a machine ends its roles
   /// @throws std::runtime_error with the name of a machine and what is wrong there; InputError if
   ///     the key cannot be read; Interrupted
   void Check(const std::string& url, const runtime::TrafficOptions& traffic, Duration silence);
@@ -36,7 +36,7 @@ class HostGroup {
   std::vector<std::unique_ptr<RemoteHost>> hosts_;
 };
 
-/// The other machines of a run; nullptr if it has none. @throws as HostGroup()
+/// Connects to the other machines of a run; nullptr if the run has none. @throws like HostGroup()
 std::unique_ptr<HostGroup> Connect(const RunPlan& plan);
 
 }  // namespace fogline::hosts

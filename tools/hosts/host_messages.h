@@ -21,18 +21,18 @@ inline constexpr const char* kLines = "lines";         //   the last lines that 
 // From the runner to the machine.
 inline constexpr const char* kCheck = "check";      // URL of the network to examine; with:
 inline constexpr const char* kKey = "key";          //   the key, as in its file; "": none
-inline constexpr const char* kSilence = "silence";  //   end without a message for so long, in s
+inline constexpr const char* kSilence = "silence";  // limit of time without a message, in s
 inline constexpr const char* kStart = "start";      // a role to start; with:
 inline constexpr const char* kArguments = "arguments";
 inline constexpr const char* kKill = "kill";  // process id of a role to kill
 
-// Both ways.
+// In both directions.
 inline constexpr const char* kPid = "pid";
 // A sign of life. The machine answers with a list of [process id, context switches].
 inline constexpr const char* kAlive = "alive";
 
-/// The interval between two signs of life of the runner. A process counts as hanging after a second
-/// or two, and its context switches must be known twice in this time.
+/// The interval between two signs of life of the runner. The runner counts a process as hanging
+/// after a second or two, and must know its context switches twice in this time.
 inline constexpr Duration kAliveEvery = milliseconds(250);
 
 }  // namespace fogline::hosts

@@ -16,7 +16,7 @@
 namespace fogline::hosts {
 namespace {
 
-/// Writes to a socket or a pipe. A socket without a reader sends no signal.
+/// Writes to a socket or a pipe. Writing to a socket that no process reads raises no SIGPIPE.
 ssize_t Write(int file, const std::string& text) {
   const ssize_t sent = send(file, text.data(), text.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
   return sent < 0 && errno == ENOTSOCK ? write(file, text.data(), text.size()) : sent;
@@ -29,7 +29,7 @@ JsonLines::JsonLines(int input, int output) : input_(input), output_(output) {
 }
 
 void JsonLines::Send(const nlohmann::json& message) {
-  // Bytes that are not UTF-8 become U+FFFD: what a program prints need not be text.
+  // Bytes that are not UTF-8 become U+FFFD, because a program may print any bytes.
   to_send_ += message.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
   Flush();
 }
@@ -41,7 +41,7 @@ void JsonLines::Flush() {
       to_send_.erase(0, static_cast<std::size_t>(sent));
     } else if (sent == 0 || errno == EAGAIN || errno == EWOULDBLOCK) {
       return;
-    } else if (errno != EINTR) {  // no one reads it; Read() notices the end, after the last lines
+    } else if (errno != EINTR) {  // no reader; Read() finds the end after the last lines
       to_send_.clear();
     }
   }
@@ -70,7 +70,7 @@ std::optional<std::string> JsonLines::TakeLine() {
     Read();
     end = received_.find('\n');
   }
-  // Wait() has read, too: the limit holds for a sender of few bytes at a time.
+  // Wait() has also read bytes, so a line may be too long without a read in this function.
   if (std::min(end, received_.size()) > kMaxLine) {
     throw NotUnderstood(fmt::format("a line has more than {} bytes", kMaxLine));
   }

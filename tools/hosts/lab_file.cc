@@ -22,7 +22,7 @@ namespace {
 
 constexpr std::string_view kAllowed = "fogline check --lab --schema";
 
-/// Checks what one field alone does not show.
+/// Checks the rules of a laboratory that the schema of its fields does not express.
 class LabCheck {
  public:
   LabCheck(const JsonValue& root, DiagnosticList& mistakes) : root_(root), mistakes_(mistakes) {}

@@ -15,10 +15,10 @@ namespace fogline::hosts {
 namespace {
 
 constexpr Duration kSlice = milliseconds(20);
-// A machine that is there starts a process and answers within this time. The runner waits for the
-// answer, so the time is short.
+// A machine that can be reached starts a process and answers within this time. The runner waits for
+// the answer, so the time is short.
 constexpr Duration kStartLimit = milliseconds(5000);
-// A machine that has left signs of life without an answer for this time is out of sight.
+// A machine that has not answered a sign of life for this time counts as out of sight.
 constexpr Duration kOutOfSight = 3 * kAliveEvery;
 
 /// A text of a message, safe to print.
@@ -75,7 +75,8 @@ void RemoteHost::EndCheck(TimePoint end) {
 }
 
 pid_t RemoteHost::StartRole(Role role, const std::vector<std::string>& arguments) {
-  // A restart must not hold up the runner if the machine is out of sight. The first start may wait.
+  // A restart must not delay the runner while the machine is out of sight. The first start may
+  // wait.
   const bool again = starts_.erase(role) > 0;
   if (const std::string why = WhyOutOfSight(); again && !why.empty()) throw std::runtime_error(why);
   connection_.lines().Send({{kStart, NameOf(role)}, {kArguments, arguments}});
@@ -97,7 +98,7 @@ void RemoteHost::Look() {
   connection_.Look();
   try {
     while (true) {
-      if (version_.empty()) {  // the shell there may print lines of its own first
+      if (version_.empty()) {  // the shell there may first print lines
         const auto line = connection_.lines().TakeLine();
         if (!line) break;
         const auto message = nlohmann::json::parse(*line, nullptr, false);
@@ -182,7 +183,7 @@ void RemoteHost::Lose(const std::string& nonsense) {
   }
   lost_ = why;
   for (std::string& line : lines) {
-    if (line.ends_with('\r')) line.pop_back();  // ssh ends its lines as for a terminal
+    if (line.ends_with('\r')) line.pop_back();  // ssh ends its lines with CR and LF
     line = EscapeControls(line);
     lost_ += fmt::format("\n  {}: {}", plan_.name, line);
   }

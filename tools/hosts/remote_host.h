@@ -35,9 +35,10 @@ class RemoteHost : public processes::RolePlace {
   void Greet(TimePoint end);
   /// Asks the machine to examine the way to the network of the run. Does not wait.
   void BeginCheck(const RunOnHost& run);
-  /// Waits for the result. @throws std::runtime_error with what is wrong there; Interrupted
+  /// Waits for the result. @throws std::runtime_error with the problems of that machine;
+  /// Interrupted
   void EndCheck(TimePoint end);
-  /// The address at which that machine sees this one; "" if unknown.
+  /// The address of this machine, as that machine sees it; "" if unknown.
   const std::string& own_address() const { return own_address_; }
 
   const std::string& host() const override { return host_; }
@@ -57,15 +58,16 @@ class RemoteHost : public processes::RolePlace {
   };
   /// Sends a sign of life when it is due, and reads what has come.
   void Look();
-  /// Takes one message. @throws NotUnderstood, nlohmann::json::exception if it is none of ours
+  /// Takes one message.
+  /// @throws NotUnderstood, nlohmann::json::exception if the message is not from host_messages.h
   void Take(const nlohmann::json& message);
   void OnStarted(const nlohmann::json& message);
   void OnEnded(const nlohmann::json& message);
   void OnAlive(const nlohmann::json& message);
-  /// Waits until `done` holds. @throws as Greet()
+  /// Waits until `done` holds. @throws like Greet()
   template <class Condition>
   void Await(const Condition& done, TimePoint end, const char* what);
-  /// Counts all processes there as ended, because the connection has ended or makes no sense.
+  /// Counts all processes there as ended, because the connection has ended or a message is invalid.
   void Lose(const std::string& nonsense = "");
   [[noreturn]] void Fail(const std::string& why) const;
 
@@ -79,7 +81,7 @@ class RemoteHost : public processes::RolePlace {
   std::map<Role, nlohmann::json> starts_;  // answers to the last order to start a role
   std::vector<Exit> exits_;
   std::string lost_;                      // why the connection has ended; "": it has not
-  std::optional<TimePoint> asked_since_;  // oldest sign of life without an answer
+  std::optional<TimePoint> asked_since_;  // time of the oldest unanswered sign of life
   TimePoint alive_at_{};
 };
 

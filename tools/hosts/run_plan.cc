@@ -18,15 +18,15 @@ namespace {
 
 constexpr const char* kSshVariable = "FOGLINE_SSH";
 
-/// The index of the machine in the plan; it is added if the plan lacks it.
-/// @throws InputError if another machine of the plan has its name
+/// Returns the index of the machine in the plan. Adds the machine if the plan lacks it.
+/// @throws InputError if the plan has the machine with another folder of programs
 std::size_t PlaceOf(HostPlan host, RunPlan& plan, std::string_view where) {
   const auto found = std::ranges::find(plan.hosts, host.name, &HostPlan::name);
   const auto place = static_cast<std::size_t>(found - plan.hosts.begin());
   if (found == plan.hosts.end()) {
     plan.hosts.push_back(std::move(host));
   } else if (host.programs.empty()) {
-    // The folder is that of the laboratory's file, or of another --on.
+    // The folder stays that of the laboratory's file or of another --on.
   } else if (found->programs.empty()) {
     found->programs = host.programs;
   } else if (found->programs != host.programs) {
@@ -36,7 +36,7 @@ std::size_t PlaceOf(HostPlan host, RunPlan& plan, std::string_view where) {
   return place;
 }
 
-/// Adds "ROLE=HOST". @param placed the roles of the options before; gets this role
+/// Adds "ROLE=HOST". @param placed the roles of the earlier options; this role is added
 /// @throws InputError
 void AddPlace(const std::string& text, std::set<Role>& placed, RunPlan& plan) {
   const std::string where = "--on " + text;
@@ -128,7 +128,7 @@ std::string WhyNoDestination(std::string_view destination) {
 HostPlan ReadHost(std::string_view text, std::string_view where) {
   HostPlan host;
   const std::size_t colon = std::min(text.find(":/"), text.find(":~/"));
-  // "ssh://HOST" is a destination of ssh, too.
+  // "ssh://HOST" is also a destination of ssh.
   const bool has_folder = colon != std::string_view::npos && text.substr(colon, 3) != "://";
   host.destination = text.substr(0, has_folder ? colon : std::string_view::npos);
   host.name = host.destination;

@@ -15,7 +15,7 @@ namespace fogline::hosts {
 
 /// Another machine.
 struct HostPlan {
-  std::string name;         // in messages for the user
+  std::string name;         // for messages to the user
   std::string destination;  // for ssh: [USER@]HOST, or a name of ssh's configuration
   std::string programs;     // folder of Fogline's programs there; "": the PATH there
   bool operator==(const HostPlan&) const = default;
@@ -26,8 +26,8 @@ struct RunPlan {
   std::map<Role, std::size_t> places;  // index in `hosts` of each role on another machine
   std::string ssh;                     // command with its options, for a shell
   bool relay = false;                  // whether messages go through a relay on this machine
-  std::string relay_at;                // ADDRESS[:PORT] of the relay; "": the address of this
-                                       // machine at which the others see it
+  std::string relay_at;                // ADDRESS[:PORT] of the relay; "": this machine's address,
+                                       // as the others see it
   std::string url;                     // network of the laboratory; "": the file names none
   std::string key_file;                // key of the laboratory; "": the file names none
   std::vector<std::string> words;      // the options that make this plan, for another command line
@@ -51,15 +51,15 @@ std::optional<Role> RoleNamed(std::string_view name);
 std::string WhyNoRemoteRole(std::string_view name);
 
 /// The machine of "HOST" or "HOST:FOLDER", where FOLDER begins with / or ~/.
-/// @throws InputError if this is no machine
+/// @throws InputError if the text names no machine
 HostPlan ReadHost(std::string_view text, std::string_view where);
 
-/// The destination, if ssh can take it. A destination that begins with - would be an option.
-/// @return what is wrong with it; "" if it is good
+/// Checks a destination for ssh. ssh would take a destination that begins with - for an option.
+/// @return what is wrong with the destination; "" if it is good
 std::string WhyNoDestination(std::string_view destination);
 
-/// Makes the plan of a run. A role of --on goes to the laboratory's machine with this name if there
-/// is one, and leaves its place in the laboratory's file.
+/// Makes the plan of a run. If a machine of the laboratory has the name in --on, the role runs on
+/// this machine. --on takes precedence over the role's place in the laboratory's file.
 /// @throws InputError
 RunPlan MakePlan(const PlanWords& words);
 

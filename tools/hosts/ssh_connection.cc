@@ -34,20 +34,20 @@ constexpr int kNoProgram = 127;
 // The name of the shell that starts ssh. The shell puts its name before its own errors.
 constexpr std::string_view kShell = "--ssh";
 
-/// The options of ssh. It never asks for a password, and gives up soon if the machine is dead.
+/// The options of ssh. It never asks for a password, and gives up soon if the machine is silent.
 const std::vector<std::string> kOptions{"-T", "-o", "BatchMode=yes", "-o", "ConnectTimeout=5",
                                         "--"};
 
 /// The command line of `fogline host` on the other machine.
 std::string Command(const HostPlan& host) {
   if (host.programs.empty()) return "exec fogline host";
-  // ssh starts commands in the home folder, so a folder there needs no name.
+  // ssh starts commands in the home folder, so a folder there can have a relative path.
   std::string folder = host.programs;
   if (folder.starts_with("~/")) folder = "./" + folder.substr(2);
   return fmt::format("exec {} host", ShellWord(folder + "/fogline"));
 }
 
-/// What to do about an error of ssh, by the words of OpenSSH; "" if no remedy is known.
+/// The remedy for an error of ssh, recognized by OpenSSH's words; "" if no remedy is known.
 std::string RemedyFor(const std::vector<std::string>& lines, const HostPlan& host) {
   const auto said = [&lines](std::string_view words) {
     return std::ranges::any_of(

@@ -26,11 +26,12 @@ class SshConnection {
   SshConnection& operator=(const SshConnection&) = delete;
 
   JsonLines& lines() { return *lines_; }
-  /// Reads what ssh and `fogline host` print on stderr, and whether ssh has ended.
+  /// Reads what ssh and `fogline host` print on stderr, and checks whether ssh has ended.
   void Look();
   /// Whether ssh runs.
   bool open() const { return pid_ >= 0; }
-  /// Keeps a line of stdout that is no message, such as what the shell there prints at its start.
+  /// Keeps a line of stdout that is not a message, such as what the shell there prints at its
+  /// start.
   void Keep(const std::string& line) { printed_.Append(line + "\n"); }
 
   /// The last lines that were printed.

@@ -107,7 +107,7 @@ bool LineReader::Has(std::size_t count, Duration limit) {
       const ssize_t size = read(output_, buffer.data(), buffer.size());
       ended_ = size <= 0;
       if (!ended_) Take({buffer.data(), static_cast<std::size_t>(size)});
-    } else if (is_over) {  // what was in the pipe before has been read
+    } else if (is_over) {  // the pipe is empty
       break;
     }
   }
@@ -135,7 +135,7 @@ std::string FirstLineOf(int output, Duration limit) {
 }
 
 void EndChild(pid_t pid, Duration limit) {
-  if (pid <= 0) return;  // kill() would end other processes
+  if (pid <= 0) return;  // kill() would signal other processes
   kill(pid, SIGTERM);
   const TimePoint end = Clock::now() + limit;
   while (waitpid(pid, nullptr, WNOHANG) == 0) {

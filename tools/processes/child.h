@@ -14,7 +14,7 @@
 
 namespace fogline::processes {
 
-/// Starts a program of Fogline as a child. The kernel kills the child when the runner dies. The
+/// Starts a program of Fogline as a child. The kernel kills the child when the runner ends. The
 /// terminal's Ctrl-C does not reach the child; the runner turns Ctrl-C into an orderly end. The
 /// child's stdout is `output`. Of the runner's open files, the child inherits only stderr.
 /// @param error_output the child's stderr; -1: the runner's stderr
@@ -36,18 +36,20 @@ struct Pipe {
   int write = -1;
 };
 
-/// Reads the lines that a child prints, without their line feeds. What has come stays, so a call
-/// that was in vain loses nothing.
+/// Reads the lines that a child prints, without their line feeds. Lines that have come are kept,
+/// also if Has() returns false.
 class LineReader {
  public:
   /// @param output the read end of the pipe that is the child's stdout
   explicit LineReader(int output) : output_(output) {}
 
-  /// Waits until so many lines are there. Reads what the pipe has also if `limit` is 0.
-  /// @return false after the limit, or if the child has closed its stdout before
+  /// Waits until `count` lines have come, at most for `limit`. Reads the content of the pipe even
+  /// if `limit` is 0.
+  /// @return false if fewer lines have come when the limit is over, or when the child closes its
+  ///     stdout
   bool Has(std::size_t count, Duration limit);
   const std::vector<std::string>& lines() const { return lines_; }
-  /// Whether the child has closed its stdout, as it does when it ends.
+  /// Whether the child has closed its stdout; a child does this at its end at the latest.
   bool ended() const { return ended_; }
 
  private:

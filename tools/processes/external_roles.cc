@@ -8,7 +8,7 @@
 namespace fogline::processes {
 namespace {
 
-/// "the acc, the driver"
+/// Names of the roles, such as "the acc, the driver".
 std::string TheRoles(const std::vector<Role>& roles) {
   std::string names;
   for (const Role role : roles) {

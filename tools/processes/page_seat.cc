@@ -16,10 +16,10 @@ namespace {
 
 // fogline-web listens within this time, also on a busy machine.
 constexpr Duration kSeatLimit = milliseconds(10'000);
-// How often a wait looks whether it must end.
+// Interval at which a wait checks whether it must end.
 constexpr Duration kLook = milliseconds(50);
 
-/// The options of those who only hear or send DRIVER_INPUT: --key, and no faults.
+/// The options of a program that only receives or sends DRIVER_INPUT: the key, and no faults.
 runtime::TrafficOptions OnlyKey(const runtime::TrafficOptions& traffic) {
   return {.key_file = traffic.key_file, .faults = {}};
 }

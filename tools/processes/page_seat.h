@@ -13,9 +13,9 @@
 namespace fogline::processes {
 
 /// Waits until a person at a seat of this run is ready to drive.
-/// @param look is called again and again while it waits
+/// @param look is called again and again during the wait
 /// @return false if the user has interrupted this program
-/// @throws what `look` throws
+/// @throws the exceptions of `look`
 bool WaitForPerson(std::int64_t run_id, const std::string& url,
                    const runtime::TrafficOptions& traffic, const std::function<void()>& look);
 
@@ -27,7 +27,7 @@ class PageSeat {
   PageSeat(std::int64_t run_id, const std::string& url, const runtime::TrafficOptions& traffic,
            const std::vector<std::string>& more);
 
-  /// The address of the participant's page, and that of the page for those who look.
+  /// The addresses of the participant's page, and of the page for people who only watch.
   const std::string& drive_address() const { return drive_address_; }
   const std::string& view_address() const { return view_address_; }
 
@@ -35,7 +35,8 @@ class PageSeat {
   /// @return false if the user has interrupted this program
   /// @throws std::runtime_error if fogline-web ends
   bool WaitForPerson();
-  /// Whether fogline-web runs. It ends by itself only if it fails; that is said once.
+  /// Whether fogline-web runs. It ends by itself only if it fails. Prints an error once in this
+  /// case.
   bool Runs();
 
  private:
@@ -43,7 +44,7 @@ class PageSeat {
   std::string url_;
   runtime::TrafficOptions traffic_;
   WebChild web_;
-  bool told_ = false;  // that fogline-web has ended
+  bool told_ = false;  // whether the end of fogline-web was reported
   std::string drive_address_;
   std::string view_address_;
 };

@@ -71,7 +71,7 @@ std::string ProcessGroup::Describe() const {
 }
 
 void ProcessGroup::Kill(pid_t pid) {
-  // The id of a process that was collected may belong to another process.
+  // The system may have given the id of a collected process to another process.
   if (std::ranges::find(processes_, pid, &Process::pid) != processes_.end()) kill(pid, SIGKILL);
 }
 

@@ -1,5 +1,5 @@
 // The processes of a run on this machine: starts them, reads their output, and ends them. The
-// kernel kills them when the runner dies.
+// kernel kills them when the runner ends.
 #pragma once
 
 #include <sys/types.h>
@@ -32,7 +32,7 @@ class ProcessGroup : public RolePlace {
 
   /// Starts the program of a role that is in the folder of the running program.
   pid_t StartRole(Role role, const std::vector<std::string>& arguments) override;
-  /// Reads the output of the processes, too.
+  /// Also reads the output of the processes.
   std::vector<Exit> Collect() override;
 
   bool empty() const override { return processes_.empty(); }
@@ -46,7 +46,7 @@ class ProcessGroup : public RolePlace {
   struct Process {
     Role role;
     pid_t pid;
-    int output;  // read end of a pipe with its stdout and stderr
+    int output;  // read end of a pipe for stdout and stderr
     LastLines printed;
   };
   static void ReadOutput(Process& process);

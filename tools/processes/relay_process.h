@@ -1,5 +1,5 @@
-// A relay for one run: fogline-relay on this machine. A relay that dies is restarted
-// at the same address. The destructor ends the relay.
+// A relay for one run: fogline-relay on this machine. If the relay ends, a new one is started at
+// the same address. The destructor ends the relay.
 #pragma once
 
 #include <sys/types.h>
@@ -25,13 +25,13 @@ class RelayProcess {
 
   const std::string& url() const { return url_; }
 
-  /// Checks whether the relay has died, and restarts it after a delay. Call it every few tens of
+  /// Checks whether the relay has ended, and restarts it after a delay. Call it every few tens of
   /// milliseconds.
-  /// @return a message for the user, "" if there is none
-  /// @throws std::runtime_error if the restarts are used up
+  /// @return a message for the user; "" if there is none
+  /// @throws std::runtime_error if no restart is left
   std::string Look(const runtime::RunCoordinator& run, TimePoint now);
 
-  /// Number of restarts, and how the last dead process ended.
+  /// Number of restarts, and how the last relay ended.
   int restarts() const { return policy_.restarts(); }
   const std::string& death() const { return death_; }
 
@@ -42,7 +42,7 @@ class RelayProcess {
 
   runtime::RestartPolicy policy_;
   pid_t pid_ = -1;
-  pid_t dead_ = -1;  // process id of the last dead relay
+  pid_t dead_ = -1;  // process id of the last relay that ended
   std::string url_;
   std::string death_{};
   std::optional<TimePoint> start_at_{};

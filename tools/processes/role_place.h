@@ -20,14 +20,14 @@ class RolePlace {
   RolePlace(const RolePlace&) = delete;
   RolePlace& operator=(const RolePlace&) = delete;
 
-  /// The name of the machine, as the STATUS of its processes has it.
+  /// The name of the machine, as in the STATUS of its processes.
   virtual const std::string& host() const = 0;
   /// The name of the machine in messages for the user; "" for this machine.
   virtual const std::string& name() const = 0;
 
   /// Starts the program of a role, and keeps its output.
-  /// @return the process id on that machine @throws std::runtime_error if the program cannot be
-  ///     started. The reason may be temporary
+  /// @return the process id on that machine
+  /// @throws std::runtime_error if the program cannot be started; the reason may be temporary
   virtual pid_t StartRole(Role role, const std::vector<std::string>& arguments) = 0;
 
   /// A process that has ended.
@@ -35,14 +35,14 @@ class RolePlace {
     Role role;
     pid_t pid;
     std::string how;                 // such as "exited with code 3" or "was killed by signal 9"
-    bool killed;                     // ended by a signal; the process then printed no reason
+    bool killed;                     // by a signal; the process then printed no reason
     std::vector<std::string> lines;  // the last lines that the process printed
   };
   /// The processes that have ended since the last call. Call it every few tens of milliseconds.
   virtual std::vector<Exit> Collect() = 0;
   /// Whether no process runs there.
   virtual bool empty() const = 0;
-  /// "world 4711, radar 4712, ...", for people who want to inspect or signal a process.
+  /// Roles and process ids for the user, such as "world 4711, radar 4712".
   virtual std::string Describe() const = 0;
 
   /// Kills one of these processes.
@@ -50,11 +50,11 @@ class RolePlace {
   /// Number of context switches of a process, voluntary or not; nullopt if unknown. A live process
   /// has many context switches each second.
   virtual std::optional<std::int64_t> ActivityOf(pid_t pid) = 0;
-  /// Why nothing is known of the processes there at present; "" if they can be watched.
+  /// The reason why the state of the processes is unknown at present; "" if it is known.
   virtual std::string WhyOutOfSight() const { return ""; }
 };
 
-/// ActivityOf() for a process of this machine.
+/// ActivityOf() of a process on this machine.
 std::optional<std::int64_t> OwnActivityOf(pid_t pid);
 
 }  // namespace fogline::processes

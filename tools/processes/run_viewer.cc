@@ -13,16 +13,16 @@
 namespace fogline::processes {
 namespace {
 
-// fogline-web listens after about 50 ms. A run waits so long for it, and no longer if it hangs.
+// fogline-web listens after about 50 ms. A run waits for it no longer than this limit.
 constexpr Duration kPageLimit = milliseconds(1000);
-// fogline-web reads a long log before it listens. The run is over then.
+// fogline-web reads a long log before it listens. The run does not wait: it is over then.
 constexpr Duration kLogLimit = milliseconds(10'000);
-constexpr Duration kLookEvery = milliseconds(50);  // whether to go on waiting
+constexpr Duration kLookEvery = milliseconds(50);  // interval between checks of a wait
 
 }  // namespace
 
 RunViewer::~RunViewer() {
-  late_ = {};  // before fogline-web ends, whose addresses it reads
+  late_ = {};  // its thread reads addresses of fogline-web, so it ends first
 }
 
 void RunViewer::ShowNetwork(const std::string& url) {
@@ -69,7 +69,7 @@ bool RunViewer::TakeAddress(Duration limit) {
   return true;
 }
 
-/// Another thread waits for the address, because the thread of the run must not wait for it.
+/// Starts a thread that waits for the address, because the thread of the run must not wait for it.
 void RunViewer::TakeAddressLater() {
   const SignalsBlocked blocked;  // signals are for the thread of the run
   late_ = std::jthread([this](const std::stop_token& stop) {

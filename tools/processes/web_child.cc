@@ -14,7 +14,7 @@ namespace {
 
 // fogline-web ends within this time after SIGTERM. After that it is killed.
 constexpr Duration kFarewellLimit = milliseconds(2000);
-// A wait looks so often whether it must end.
+// Interval at which a wait checks whether it must end.
 constexpr Duration kSlice = milliseconds(50);
 
 }  // namespace

@@ -13,11 +13,11 @@
 
 namespace fogline::processes {
 
-/// The port in the address of a page, such as "7680" in "http://127.0.0.1:7680/". "0", which means
-/// any free port, without an address.
+/// The port in the address of a page, such as "7680" in "http://127.0.0.1:7680/". Without an
+/// address, "0", which means any free port.
 std::string PortOf(const std::string& address);
 
-/// One fogline-web. The destructor ends it.
+/// A fogline-web process, or none. The destructor ends the process.
 class WebChild {
  public:
   WebChild() = default;
@@ -25,27 +25,26 @@ class WebChild {
   WebChild(const WebChild&) = delete;
   WebChild& operator=(const WebChild&) = delete;
 
-  /// Starts it; one that runs is ended before.
-  /// @param input what it reads from stdin, short enough for a pipe. Other users of this machine
-  /// can
-  ///     read the arguments of a process, but not its input
-  /// @throws std::runtime_error if it cannot be started
+  /// Starts fogline-web. First ends the process that an earlier call has started.
+  /// @param input stdin of fogline-web, short enough for a pipe. Other users of this machine can
+  ///     read the arguments of a process, but not its stdin
+  /// @throws std::runtime_error if fogline-web cannot be started
   void Start(const std::vector<std::string>& arguments, const std::string& input = "");
-  /// Waits until it has printed so many addresses, which it does when it listens.
-  /// @return false after the limit, if it ends, or if a signal asks this program to end
+  /// Waits until fogline-web has printed this number of addresses, which it does when it listens.
+  /// @return false after the limit, if fogline-web ends, or if a signal asks this program to end
   bool Listens(std::size_t addresses, Duration limit);
-  /// The addresses that it has printed since its start, in their order.
+  /// The addresses that fogline-web has printed since its start, in this order.
   std::vector<std::string> addresses() const;
 
-  /// Whether it can still print addresses: its stdout is open.
+  /// Whether fogline-web can still print addresses: its stdout is open.
   bool prints() const { return lines_ && !lines_->ended(); }
-  /// Whether it runs. May be called while another thread waits in Listens().
+  /// Whether fogline-web runs. May be called while another thread waits in Listens().
   bool Runs();
-  /// How it ended by itself; "" if it runs, or was ended.
+  /// How fogline-web ended by itself; "" if it runs, or End() has ended it.
   const std::string& how_it_ended() const { return how_it_ended_; }
-  /// Ends it with SIGTERM, and returns when it has ended. After 2 s it is killed.
+  /// Ends fogline-web with SIGTERM, and returns when it has ended. After 2 s it is killed.
   void End();
-  /// Kills it, and returns at once. Runs() becomes false when it has ended.
+  /// Kills fogline-web, and returns at once. Runs() becomes false when the process has ended.
   void Kill() const;
 
  private:

@@ -1,7 +1,7 @@
-// fogline_lab._runtime: a class in Python as a role of a run. The process is run by the same code
-// as that of every role (services/runtime/process/service.h). Only Step() calls Python. This module
-// knows no role by name: kGraph says which messages a role reads and writes. Python gets and
-// returns the bytes of messages, which fogline_lab.messages decodes and encodes.
+// fogline_lab._runtime: a class in Python as a role of a run. The process runs the same code as the
+// process of every other role (services/runtime/process/service.h). Only PythonRole calls Python.
+// This module contains no role's name: kGraph says which messages a role reads and writes. Python
+// gets and returns the bytes of messages. fogline_lab.messages decodes and encodes them.
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
@@ -27,7 +27,7 @@ namespace py = pybind11;
 
 // ---- the messages of a role -----------------------------------------------------------------
 
-/// The messages of all channels that `Has` accepts, as a tuple type, in the order of kGraph.
+/// The message types of all channels that `Has` accepts, as a tuple type, in the order of kGraph.
 template <class Has, std::size_t... I>
 auto MessagesWhere(std::index_sequence<I...>) {
   const auto one = []<std::size_t i> {
@@ -63,7 +63,7 @@ struct IsReadOnDemand {
 };
 
 struct NoMessage {};
-/// The only message of a tuple; NoMessage if the tuple is empty.
+/// The only type of a tuple; NoMessage if the tuple is empty.
 template <class Tuple>
 struct Only {
   using Type = NoMessage;
@@ -75,11 +75,11 @@ struct Only<std::tuple<M>> {
 
 // ---- calls of Python ------------------------------------------------------------------------
 
-/// The object that makes instances of the role (fogline_lab/role.py, _Factory). Set while Serve()
-/// runs.
+/// The object that makes the instance of the role (fogline_lab/role.py, _Factory). It is set while
+/// Serve() runs.
 py::object* factory = nullptr;
 
-/// Calls Python. The text of an exception there becomes that of the exception here.
+/// Calls Python. An exception in Python becomes a C++ exception with the same text.
 /// @throws std::runtime_error
 template <class Call>
 auto Guarded(Call&& call) {
@@ -116,7 +116,7 @@ template <Role role, class Inputs = Messages<IsRead<role>>,
           class Outputs = Messages<IsWritten<role>>>
 class PythonRole;
 
-/// A role whose class is written in Python. An algorithm as services/algorithm.h describes it.
+/// A role whose class is written in Python: an algorithm in the sense of services/algorithm.h.
 template <Role role, class... In, class... Out>
 class PythonRole<role, std::tuple<In...>, std::tuple<Out...>> {
  public:
@@ -127,7 +127,7 @@ class PythonRole<role, std::tuple<In...>, std::tuple<Out...>> {
   static constexpr bool kReadsOnDemand = !std::is_same_v<OnDemand, NoMessage>;
   static constexpr bool kIsDriven = ChannelOf<driver_input_t>().to.Has(role);
 
-  /// @throws std::runtime_error, also from every other function, if Python raises an exception
+  /// @throws std::runtime_error if Python raises an exception; the other functions do so, too
   explicit PythonRole(const Scenario& scenario)
       : instance_(Guarded([&] { return factory->attr("make")(PrintScenario(scenario)); })) {}
   ~PythonRole() {
@@ -167,7 +167,7 @@ class PythonRole<role, std::tuple<In...>, std::tuple<Out...>> {
         [&] { return factory->attr(question)(PrintScenario(scenario)).template cast<bool>(); });
   }
 
-  /// The messages that a call of Python returns, as a tuple of bytes.
+  /// Calls Python, and decodes the messages that the call returns as a tuple of bytes.
   template <class Call>
   const Output& Take(Call&& call) {
     Guarded([&] {

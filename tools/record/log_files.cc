@@ -100,7 +100,7 @@ void LogFiles::Flush() {
 
 void LogFiles::CutTornEvent() {
   earlier_bytes_ += flushed_;
-  log_.reset();  // tries once more to write the rest
+  log_.reset();  // writes the remaining events, if possible
   std::error_code ignored;
   const auto written =
       static_cast<std::int64_t>(std::filesystem::file_size(files_.back(), ignored));

@@ -11,7 +11,7 @@
 
 namespace fogline::record {
 
-/// When the next file begins. Without a limit there is one file.
+/// Limits of a file, after which the next file begins. Without a limit there is one file.
 struct Rotation {
   std::int64_t most_bytes = 0;  // size of a file; 0: no limit
   Duration longest{};           // time since the file was begun; 0: no limit
@@ -20,28 +20,30 @@ struct Rotation {
 };
 
 /// The files of a recording: "day.lcm", or with a rotation "day-000.lcm", "day-001.lcm" and so on.
-/// Every file is an event log of its own, whose events are numbered from 0 on. With a rotation the
-/// folder has only files of this recording: those of an earlier one are removed.
+/// Every file is a complete event log, whose events are numbered from 0 on. With a rotation, files
+/// of an earlier recording with the same name are removed.
 class LogFiles {
  public:
-  /// Begins the first file. An existing file is replaced, with a rotation all files InTheWay().
+  /// Begins the first file. Replaces an existing file. With a rotation, also removes all files
+  /// InTheWay().
   /// @throws InputError
   LogFiles(std::filesystem::path file, const Rotation& rotation, TimePoint now);
 
-  /// Appends an event. @throws std::runtime_error, for example if the disk is full; the file then
-  /// ends with the last whole event that was written
+  /// Appends an event.
+  /// @throws std::runtime_error, for example if the disk is full; the file then ends with the last
+  ///     complete event that was written
   void Write(const log::Event& event, TimePoint now);
-  /// Hands all events to the operating system. @throws as Write()
+  /// Gives all events to the operating system. @throws like Write()
   void Flush();
 
   const std::vector<std::filesystem::path>& files() const { return files_; }
   std::int64_t bytes() const { return earlier_bytes_ + (log_ ? log_->size() : 0); }
-  /// Number of the later files of an earlier recording, which were removed.
+  /// Number of files of an earlier recording that were removed.
   std::int64_t removed() const { return removed_; }
 
   /// The name of a file of a recording with a rotation.
   static std::filesystem::path NameOf(const std::filesystem::path& file, std::size_t number);
-  /// The existing files with a name that a recording with a rotation gives.
+  /// The existing files whose names a recording with a rotation can have.
   static std::vector<std::filesystem::path> InTheWay(const std::filesystem::path& file);
 
  private:
@@ -54,8 +56,8 @@ class LogFiles {
   Rotation rotation_;
   std::vector<std::filesystem::path> files_;
   std::optional<log::EventLogWriter> log_;
-  std::vector<std::int64_t> ends_;  // where the events end that are not flushed yet
-  std::int64_t flushed_ = 0;        // the bytes of the file before them
+  std::vector<std::int64_t> ends_;  // ends of the events that are not flushed yet
+  std::int64_t flushed_ = 0;        // number of bytes before these events
   std::int64_t earlier_bytes_ = 0;
   std::int64_t removed_ = 0;
   TimePoint begun_{};

@@ -5,7 +5,7 @@
 namespace fogline::record {
 namespace {
 
-// The largest message that LCM takes.
+// The largest message that LCM accepts, in bytes.
 constexpr std::uint32_t kMostMessage = 1U << 28;
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Hands messages from the thread that receives them to the thread that writes them. The queue has
+// Passes messages from the thread that receives them to the thread that writes them. The queue has
 // no limit, so a slow disk loses no message as long as there is memory.
 #pragma once
 
@@ -17,7 +17,7 @@ namespace fogline::record {
 
 class MessageQueue {
  public:
-  /// Successive events in the format of a log, whose numbers are 0.
+  /// Successive events in the format of a log; the number of each event is 0.
   using Chunk = std::vector<std::uint8_t>;
 
   /// For the thread that receives.
@@ -33,7 +33,7 @@ class MessageQueue {
     }
     filled_.notify_one();
   }
-  /// No message follows.
+  /// Called after the last message.
   void Close() {
     {
       const std::lock_guard lock(mutex_);
@@ -42,20 +42,21 @@ class MessageQueue {
     filled_.notify_one();
   }
 
-  /// For the thread that writes. Waits until `until` for messages. @return all that wait
+  /// For the thread that writes. Waits for messages, but no longer than `until`.
+  /// @return all messages that wait
   std::vector<Chunk> Take(TimePoint until) {
     std::unique_lock lock(mutex_);
     filled_.wait_until(lock, until, [this] { return closed_ || !chunks_.empty(); });
     waiting_ = 0;
     return std::exchange(chunks_, {});
   }
-  /// Whether it is closed, and Take() has nothing left to return.
+  /// Whether the queue is closed, and Take() has nothing left to return.
   bool Over() {
     const std::lock_guard lock(mutex_);
     return closed_ && chunks_.empty();
   }
 
-  /// The largest number of bytes that have waited at once.
+  /// The largest number of bytes that have waited at the same time.
   std::int64_t most_waiting() {
     const std::lock_guard lock(mutex_);
     return most_waiting_;

@@ -21,10 +21,11 @@ namespace {
 
 // Interval at which the recording looks for an announced run, an error of the writer or its end.
 constexpr Duration kLookEvery = milliseconds(100);
-// If the channels have more names than this, they are matched again.
+// Number of channel names for which the result of the matching is stored. If there are more names,
+// all stored results are deleted.
 constexpr std::size_t kMostNames = 10'000;
 constexpr std::string_view kOtherChannels = "(other channels)";
-// The thread that writes looks at least so often whether it should end.
+// The thread that writes checks at least this often whether it should end.
 constexpr Duration kIdle = milliseconds(1000);
 
 std::vector<std::unique_ptr<TrafficSource>> Only(std::unique_ptr<TrafficSource> source) {
@@ -70,7 +71,7 @@ void Recording::Run() {
     Listen(now, std::min(kLookEvery, end - now));
     Follow(Clock::now());
   }
-  if (!failed_) Listen(Clock::now(), Duration::zero());  // what has come before the end
+  if (!failed_) Listen(Clock::now(), Duration::zero());  // messages that came before the end
   ended_ = Clock::now();
   for (const auto& source : sources_) given_up_ += source->given_up();
   queue_.Close();
@@ -157,7 +158,7 @@ void Recording::WriteAll() {
 
 void Recording::WriteMessages() {
   constexpr TimePoint kNever = TimePoint::max();
-  TimePoint flush_at = kNever;  // kNever while no message waits to be flushed
+  TimePoint flush_at = kNever;  // kNever if no message waits to be flushed
   while (!queue_.Over()) {
     const std::vector<MessageQueue::Chunk> chunks =
         queue_.Take(flush_at == kNever ? Clock::now() + kIdle : flush_at);

@@ -30,7 +30,7 @@ struct RecordingOptions {
   bool follows = false;  // also record the network of the newest announced run
   std::filesystem::path file;
   std::optional<std::regex> channels;  // record only channels whose whole name matches
-  int buffer_bytes = 8 << 20;          // of the socket
+  int buffer_bytes = 8 << 20;          // size of the socket's receive buffer
   Duration flush_every = milliseconds(100);
   Rotation rotation;
   Duration limit{};  // end after this time; 0: never
@@ -38,9 +38,9 @@ struct RecordingOptions {
   std::function<void(const std::string&)> say = [](const std::string&) {};
 };
 
-/// One thread receives and another one writes, with a queue without a limit between them. So
-/// neither a burst nor a slow disk loses a message; only the socket's buffer may be too small for a
-/// process that gets no processor time, and its losses are counted.
+/// One thread receives and another one writes. The queue between them has no limit, so neither a
+/// burst nor a slow disk loses a message. Messages are lost only if this process gets no processor
+/// time until the socket's buffer is full. These losses are counted.
 class Recording {
  public:
   /// Begins the log and opens the network. @throws InputError, std::runtime_error
@@ -49,12 +49,12 @@ class Recording {
   Recording(const Recording&) = delete;
   Recording& operator=(const Recording&) = delete;
 
-  /// Records until a signal, the time limit or an error.
+  /// Records until a signal comes, the time limit is over, or an error occurs.
   void Run();
 
   /// Why the recording has ended early, such as a full disk; "" if it has not.
   const std::string& error() const { return error_; }
-  /// The recording so far. Call it after Run().
+  /// The recording's results. Call it after Run().
   nlohmann::ordered_json Json();
   std::string Text();
 
@@ -63,18 +63,18 @@ class Recording {
     std::int64_t messages = 0;
     std::int64_t bytes = 0;
   };
-  /// More channels than this are counted together.
+  /// The number of channels that are counted separately. All further channels are counted together.
   static constexpr std::size_t kMostChannels = 1000;
 
   void Listen(TimePoint now, Duration longest);
-  /// Takes the messages of a network. @throws as TrafficSource::Drain()
+  /// Takes the messages that have come on a network. @throws like TrafficSource::Drain()
   void Drain(TrafficSource& source, TimePoint now);
   void Take(const Message& message);
   bool Wanted(std::string_view channel);
   void Follow(TimePoint now);
   /// Closes the network of the followed run.
   void LeaveFollowed();
-  /// The work of the thread that writes.
+  /// The function of the thread that writes.
   void WriteAll();
   void WriteMessages();
 
@@ -86,7 +86,7 @@ class Recording {
   TimePoint follow_at_{};
   TimePoint began_;
   TimePoint ended_;
-  std::unordered_map<std::string, bool> wanted_;  // by channel
+  std::unordered_map<std::string, bool> wanted_;  // whether a channel is recorded
   std::map<std::string, Counts, std::less<>> channels_;
   Counts all_;
   std::int64_t given_up_ = 0;

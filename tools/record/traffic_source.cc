@@ -14,10 +14,11 @@
 namespace fogline::record {
 namespace {
 
-// Packets that are taken before the caller looks at its other work.
+// Number of packets after which Drain() returns, so that the caller can do its other work.
 constexpr int kDrained = 4096;
 
-/// udpm: from the packets themselves, so their numbers tell what the log lacks.
+/// The messages of udpm, assembled from packets. The numbers in the packets show what the log
+/// lacks.
 class MulticastSource final : public TrafficSource {
  public:
   MulticastSource(const std::string& url, int buffer_bytes, watch::Senders& senders)
@@ -50,7 +51,7 @@ class MulticastSource final : public TrafficSource {
   MessageAssembler assembler_;
 };
 
-/// Other networks, such as tcpq: by a bus. Their messages have no numbers.
+/// The messages of other networks, such as tcpq, received by a bus. They have no numbers.
 class BusSource final : public TrafficSource {
  public:
   explicit BusSource(const std::string& url) : bus_(url) {

@@ -16,28 +16,29 @@ class TrafficSource {
  public:
   using Use = std::function<void(const Message&)>;
 
-  /// Begins to listen. @param buffer_bytes size of the receive buffer to ask the kernel for
+  /// Begins to listen.
+  /// @param buffer_bytes size of the receive buffer to ask the kernel for
   /// @param senders counts the messages of udpm, by their numbers; it must outlive the source
-  /// @throws InputError, std::runtime_error if the network cannot be heard
+  /// @throws InputError, std::runtime_error if the network cannot be opened
   static std::unique_ptr<TrafficSource> Open(const std::string& url, int buffer_bytes,
                                              watch::Senders& senders);
   virtual ~TrafficSource() = default;
   TrafficSource(const TrafficSource&) = delete;
   TrafficSource& operator=(const TrafficSource&) = delete;
 
-  /// Passes the messages that have come, but at most some thousands.
+  /// Passes the messages that have come, at most some thousands at a time.
   /// @throws std::runtime_error if the network is lost
   virtual void Drain(TimePoint now, const Use& use) = 0;
-  /// A line for the user when the network is cut off, and when it is there again; "" if neither
+  /// A line for the user when the connection to the network is cut off or comes back; "" if neither
   /// has happened since the last call.
   virtual std::string TakeNews() = 0;
-  /// This descriptor is readable when messages are there.
+  /// A descriptor that is readable when messages have come.
   virtual int fd() const = 0;
-  /// The size of the receive buffer that the kernel grants; 0: not known.
+  /// The size of the receive buffer that the kernel grants; 0: unknown.
   virtual int buffer_bytes() const = 0;
-  /// Whether the messages have numbers, by which a loss is found.
+  /// Whether the messages have numbers by which a loss can be found.
   virtual bool is_numbered() const = 0;
-  /// Messages that were not put together, because fragments did not come.
+  /// Number of messages that were given up, because fragments did not come.
   virtual std::int64_t given_up() const = 0;
 
  protected:

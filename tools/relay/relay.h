@@ -1,6 +1,6 @@
 // The relay takes messages from its clients. It sends each message to the clients that have
-// subscribed to the message's channel, in the order of arrival. A sender that has subscribed gets
-// its own messages, too, as with LCM's own relay.
+// subscribed to the message's channel, in the order of arrival. A sender that has subscribed also
+// gets its own messages, as with LCM's own relay.
 //
 // The relay has one thread, and nothing blocks it. Each client has its own queue for bytes that the
 // client has not accepted yet. A client whose queue is full is disconnected. So no client can delay

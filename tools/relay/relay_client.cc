@@ -137,7 +137,7 @@ void RelayClient::Write() {
   asio::async_write(socket_, asio::buffer(sending_),
                     [self = shared_from_this()](error_code error, std::size_t) {
                       self->sending_.clear();
-                      // Frees the memory of a queue that was long.
+                      // Frees the memory after a long queue.
                       if (self->sending_.capacity() > kWorthACall) self->sending_.shrink_to_fit();
                       if (error) {
                         self->deaf_ = true;

@@ -19,8 +19,8 @@ namespace fogline::relay {
 
 class Relay;
 
-/// A client lives until its last operation has ended. The relay forgets a client as soon as the
-/// client has left.
+/// A client exists until its last operation has ended. The relay removes it from its list as soon
+/// as the client has left.
 class RelayClient : public std::enable_shared_from_this<RelayClient> {
  public:
   using tcp = boost::asio::ip::tcp;

@@ -3,8 +3,8 @@
 
 namespace fogline::relay {
 
-/// Reads the command line, and relays messages until a signal comes. @return the exit code: 0
-/// stopped, 2 bad usage, 3 cannot listen
+/// Reads the command line, and relays messages until a signal comes.
+/// @return the exit code: 0 stopped, 2 bad usage, 3 cannot listen
 int RunProgram(int argc, char** argv);
 
 }  // namespace fogline::relay

@@ -11,22 +11,22 @@
 namespace fogline::relay {
 namespace {
 
-// The largest number of matching results that are stored for each client. A testbed has tens of
-// channels. Without this limit, names that change all the time would fill the memory.
+// Limit for the stored matching results of each client. A testbed has tens of channels. Without
+// this limit, names that change all the time would fill the memory.
 constexpr std::size_t kMaxKnown = 1000;
 // Limit for the bytes of all expressions: kMeanBytes for each allowed expression, and kSpareBytes
 // for a few long expressions. Boost takes up to 320 bytes of memory for each byte of an expression.
 constexpr std::size_t kMeanBytes = 32;
 constexpr std::size_t kSpareBytes = 256;
-// Budget of processor time for new channel names, seconds. The budget is full at first, and an
-// empty budget is full again after ten seconds. Boost gives up a match that takes too many steps. A
-// match below this limit of Boost takes up to a fifth of a second, and a client may have many
+// Budget of processor time for new channel names, in seconds. The budget is full at first. An empty
+// budget is full again after ten seconds. Boost gives up a match that takes too many steps. A match
+// below this limit of Boost takes up to a fifth of a second, and a client may have many
 // expressions.
 constexpr double kBudgetS = 0.1;
 constexpr double kRefillPerS = kBudgetS / 10;
-// For each name, this much processor time is not charged to the budget. Tens of simple expressions
-// take no longer. So a flood of names does not disconnect a client with simple expressions. The
-// relay needs about the same time to receive a name.
+// Processor time for each name that is not charged to the budget. Tens of simple expressions take
+// no longer. So many new names do not disconnect a client with simple expressions. The relay needs
+// about the same time to receive a name.
 constexpr double kFreeS = 50e-6;
 
 double ProcessorTimeS() {

@@ -28,10 +28,10 @@ class Subscriptions {
   void Remove(std::string_view pattern);
 
   /// Whether one of the expressions matches this channel. The time to match a new name is charged
-  /// to a budget of processor time. A short time for each name is free, and a few simple
-  /// expressions take no longer. The budget fills again slowly (a token bucket). Without a budget,
-  /// a client that publishes new names all the time could block the relay by the slow expressions
-  /// of another client.
+  /// to a budget of processor time, except for a short time for each name. A few simple expressions
+  /// take no longer than this short time. The budget fills again slowly (a token bucket). The
+  /// budget protects the relay: a client that publishes new names all the time could otherwise
+  /// block the relay by the slow expressions of another client.
   /// @throws std::runtime_error if the budget is spent
   bool Match(std::string_view channel, TimePoint now);
 

@@ -42,8 +42,8 @@ std::vector<Field> FieldsOf(const M& message) {
   return fields;
 }
 
-/// Whether two messages are equal except for the run id, as in the digest. In real time a message
-/// may be missing.
+/// Whether two messages are equal except for the run id, which the digest also ignores. An empty
+/// message is a message that is missing, which occurs in real time.
 bool SameRunAside(runtime::Bytes a, runtime::Bytes b) {
   if (a.empty() || b.empty()) return a.empty() == b.empty();
   return std::ranges::equal(a.first(runtime::kRunIdOffset), b.first(runtime::kRunIdOffset)) &&

@@ -9,18 +9,17 @@
 
 namespace fogline::replay {
 
-/// A difference, with its values in the shortest form that distinguishes any two values.
+/// A difference. Its values have the shortest form that distinguishes any two values.
 struct Difference {
   std::int64_t step = 0;
   std::string channel;
-  std::string field;  // "name[index]"; text in parentheses is no field
+  std::string field;  // "name[index]"; or a text in parentheses
   std::string a;
   std::string b;
 };
 
-/// The first difference between two messages of a channel (an index in kChannels). The function
-/// ignores the run ids, as the digest does. Empty bytes stand for a missing message, which occurs
-/// in real time.
+/// The first difference between two messages of a channel (an index in kChannels). The run ids are
+/// ignored, as in the digest. Empty bytes stand for a missing message, which occurs in real time.
 std::optional<Difference> FirstDifference(std::size_t channel, std::int64_t step, runtime::Bytes a,
                                           runtime::Bytes b);
 

@@ -1,5 +1,5 @@
 // Checks whether the algorithms of this program compute the same messages as the roles of a run.
-// Each step takes its inputs from the log, so a difference in one role does not affect another
+// The inputs of each step come from the log, so a difference in one role does not affect another
 // role.
 #pragma once
 
@@ -24,11 +24,10 @@ struct RoleCheck {
 };
 
 /// The roles of a run that compute messages, in their initial state.
-/// @param inputs what a person did in the run
+/// @param inputs inputs of the person who drove in the run
 std::vector<RoleCheck> MakeRoleChecks(const log::RunLog& run, const log::DriverInputs& inputs = {});
 /// Computes every step of a log again.
-/// @throws InputError for a step that cannot be computed; the error text does not contain the log's
-///     name
+/// @throws InputError for a step that cannot be computed; the error text lacks the name of the log
 void CheckRoles(log::RunLogReader& reader, std::vector<RoleCheck>& roles);
 
 /// Result of the check of a run's own log.
@@ -52,10 +51,10 @@ struct Verification {
 };
 
 /// The roles whose build is unknown in the seal of a log, or differs from the build of the role's
-/// program in the folder of this program. The list is empty for a log without a seal.
+/// program in the folder of this program. The list is empty for a log without a complete seal.
 std::vector<runtime::OtherBuild> OtherBuildsIn(const log::RunLog& run);
 
-/// @param others roles of another build; their algorithms are not in this program
+/// @param others roles of another build; this program lacks their algorithms
 Verification VerifyRun(const std::filesystem::path& log, const log::RunLog& run,
                        const std::vector<runtime::OtherBuild>& others);
 

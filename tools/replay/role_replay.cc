@@ -64,7 +64,7 @@ class ReplayOf final : public RoleReplay {
     (std::make_index_sequence<N>{});
   }
 
-  /// Reads input I of a step, as the role's process does.
+  /// Reads input I of a step. As in the role's process, it comes from this step or the one before.
   template <std::size_t I>
   void Read(std::int64_t step, const log::StepMessages& messages, const log::StepMessages& before) {
     using M = std::tuple_element_t<I, AllInputs>;
@@ -80,12 +80,13 @@ class ReplayOf final : public RoleReplay {
   void PassOnDemandInput(std::int64_t step, const log::StepMessages& messages,
                          const log::StepMessages& before) {
     using M = std::tuple_element_t<kInputs, AllInputs>;
-    // The message of a step before the run is all zero (services/algorithm.h).
+    // In the first step there is no earlier message: the input is all zero (services/algorithm.h).
     if (step >= LagOf(ChannelOf<M>().from, Traits::kRole)) Read<kInputs>(step, messages, before);
     algorithm_.SetOnDemandInput(std::get<kInputs>(inputs_));
   }
 
-  /// Passes the input that the logged command names. @return the difference if the log lacks it
+  /// Passes the person's input that the logged command names. @return a difference if the log lacks
+  /// it
   std::optional<Difference> PassLiveInput(
       std::int64_t step, const log::StepMessages& messages) requires Traits::kHasLive {
     Output logged{};

@@ -23,7 +23,7 @@ extern const std::string_view kUplotCss;
 extern const std::string_view kUplotLicense;
 extern const std::string_view kUplotVersion;
 
-/// Why this build can make no pages; "" if it can.
+/// The reason why this build can make no pages; "" if it can.
 inline std::string_view WhyNoPages() {
   if (!kUplotJs.empty()) return "";
   return "this build has no charts, because packages of npm were missing when it was configured; "

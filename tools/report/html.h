@@ -26,7 +26,7 @@ std::string FigureElement(std::string_view id, std::string_view heading, std::st
 /// A number with this many decimals and a true minus sign; "–" for NaN and infinity.
 std::string Decimal(double value, int decimals);
 
-/// Decimal() in a data element. The element also has the exact number.
+/// Decimal() in a data element, whose value attribute has the exact number.
 std::string DataElement(double value, int decimals);
 
 /// A data element for a measure, formatted by MetricText().

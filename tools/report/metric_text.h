@@ -20,20 +20,21 @@ inline constexpr double kLongestTtc_s = 1000;
 /// Whether the measure with this name is a time to collision.
 bool IsTimeToCollision(std::string_view name);
 
-/// A finite value with its meaningful digits. The unit limits the decimals: to a millimetre, or to
-/// a hundredth of a second. Except for percentages, a value has at most four significant digits. A
-/// whole number without unit has no decimals. 0 is "0". Any other value that rounds to 0 becomes
-/// "< 0.001" or "> -0.001". A time to collision above kLongestTtc_s is "> 1000".
+/// Formats a finite value with its meaningful digits. The unit limits the decimals: to a
+/// millimetre, or to a hundredth of a second. A value has at most four significant digits, except
+/// for a percentage. A whole number without unit has no decimals. 0 is "0". Any other value that
+/// rounds to 0 becomes "< 0.001" or "> -0.001". "> 1000" stands for any time to collision above
+/// kLongestTtc_s.
 /// @param name as in VisitMetrics()
 std::string MetricText(std::string_view name, double value, std::string_view unit);
 
 /// Names as one text: "a, b and c".
 std::string ListText(const std::vector<std::string>& names);
 
-/// "taken over": the outcome of a request to take over.
+/// The outcome of a request to take over, such as "taken over".
 std::string_view OutcomeText(metrics::TakeOverEnd end);
 
-/// "the host hit the preceding car at 12.3 s"; "" without a collision.
+/// A text such as "the host hit the preceding car at 12.3 s"; "" without a collision.
 std::string CollisionText(const metrics::RunMetrics& measures);
 
 }  // namespace fogline::report

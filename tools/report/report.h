@@ -96,7 +96,7 @@ void DrawFigures(const std::filesystem::path& dir, FigureFormat format,
                  std::span<const ReportRun> runs, AtomicFiles& files);
 
 /// Draws the figures of the curves: figure-a-thresholds.png and figure-b-front.png.
-/// @throws as DrawFigures()
+/// @throws like DrawFigures()
 void DrawCurveFigures(const std::filesystem::path& dir, FigureFormat format,
                       const ReportCurves& curves, AtomicFiles& files);
 

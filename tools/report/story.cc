@@ -34,8 +34,8 @@ struct Told {
 
 using Group = std::vector<Told>;
 
-/// Groups of runs that differ only in their arbitrator, in the order of their first runs. Runs
-/// without a step are left out, and runs with gaps, because their measures are unknown.
+/// Groups of runs that differ only in their arbitrator, in the order of their first runs. Omits
+/// runs without a step, and runs with gaps, because the measures of such runs are unknown.
 std::vector<Group> GroupsOf(std::span<const ReportRun> runs) {
   std::vector<std::pair<std::string, Group>> situations;
   for (std::size_t i = 0; i < runs.size(); ++i) {
@@ -56,7 +56,7 @@ std::vector<Group> GroupsOf(std::span<const ReportRun> runs) {
   return parts;
 }
 
-/// "3.9 cm": a length with a readable number of digits.
+/// A length with a readable number of digits, such as "3.9 cm".
 std::string LengthText(double length_m) {
   constexpr double kMillimetres = 1e3;
   constexpr double kCentimetres = 1e2;
@@ -66,14 +66,14 @@ std::string LengthText(double length_m) {
   return fmt::format("{:.{}f} m", length_m, length_m < 10 ? 2 : 0);
 }
 
-/// "9.4", "11": a time in s.
+/// A time in s, such as "9.4" or "11".
 std::string TimeText(double time_s) {
   std::string text = fmt::format("{:.1f}", time_s);
   if (text.ends_with(".0")) text.resize(text.size() - 2);
   return text;
 }
 
-/// "In fog from 19 s to 30 s"; "" without fog.
+/// The time spans with fog, such as "In fog from 19 s to 30 s"; "" without fog.
 std::string FogText(std::span<const metrics::Sample> samples) {
   constexpr std::size_t kMostNamed = 3;
   const std::vector<Window> windows = FogWindows(samples);
@@ -144,8 +144,8 @@ std::string SpeedText(double speed_mps) {
   return fmt::format("{:.{}f} m/s", speed_mps, speed_mps < 0.1 ? 3 : speed_mps < 10 ? 2 : 0);
 }
 
-/// " (1.5 cm on average in the fog) and the host slowed down by 0.047 m/s": the effect of the fog
-/// in metres and m/s; "" if there is none.
+/// The effect of the fog in metres and m/s, such as " (1.5 cm on average in the fog) and the host
+/// slowed down by 0.047 m/s"; "" without an effect.
 std::string EffectText(const metrics::RunMetrics& measures) {
   constexpr double kLeastSlowDown_mps = 0.0005;
   std::string text;
@@ -199,7 +199,7 @@ std::string OutcomeText(const Told& told, const Told* baseline) {
   return text;
 }
 
-/// "the human drove for 9.4 s".
+/// A text such as "the human drove for 9.4 s".
 std::string DrivingText(const Told& told) {
   const metrics::RunMetrics& measures = told.measures;
   if (measures.human_time_s == 0) return "the human never drove";
@@ -207,14 +207,14 @@ std::string DrivingText(const Told& told) {
   return fmt::format("the human drove for {} s", TimeText(measures.human_time_s));
 }
 
-/// "at threshold 0.5 the human drove for 9.4 s and 81 % of that was avoided".
+/// A text such as "at threshold 0.5 the human drove for 9.4 s and 81 % of that was avoided".
 std::string TradedText(const Told& told, const Told* baseline) {
   const std::string_view comma = told.name.find(',') == std::string::npos ? "" : ",";
   return fmt::format("{} {}{} {} and {}", told.name.starts_with("threshold") ? "at" : "with",
                      told.name, comma, DrivingText(told), OutcomeText(told, baseline));
 }
 
-/// The range of a value over runs: "10 to 100", or "7". `text` formats a number.
+/// The range of a value over runs, such as "10 to 100", or "7". `text` formats a number.
 template <class Value, class Text>
 std::string RangeText(const std::vector<const Told*>& runs, Value value, Text text) {
   double least = std::numeric_limits<double>::infinity();
@@ -233,7 +233,7 @@ std::string HumanTimes(const std::vector<const Told*>& runs) {
   return fmt::format("the human drove for {} s", RangeText(runs, time, TimeText));
 }
 
-/// Summary of runs that are too many to name them all in one sentence.
+/// Summary of runs if there are too many to name each of them in one sentence.
 std::string ManyText(const std::vector<const Told*>& runs, const Told* baseline) {
   std::string text =
       fmt::format("in {} runs with traded control {}", runs.size(), HumanTimes(runs));
@@ -287,7 +287,7 @@ std::string HeadingOf(const Group& group, bool with_title) {
                     : fmt::format("Seed {}: ", run.seed);
 }
 
-/// Summary of situations that are too many to describe each of them.
+/// Summary of situations if there are too many to describe each of them.
 std::string SummedUp(const std::vector<Group>& situations) {
   std::vector<const Told*> runs;
   for (const Group& group : situations) {

@@ -87,7 +87,7 @@ std::string Folded(std::string_view kind, std::string_view summary, std::string_
                      EscapeHtml(summary), content);
 }
 
-/// "9 of 9 claims hold", with the numbers of claims that fail or are open.
+/// A text such as "9 of 9 claims hold", with the numbers of claims that fail or are open.
 std::string ClaimsText(const std::vector<StudyClaim>& claims) {
   const auto count = [&](ClaimState state) {
     return std::ranges::count(claims, state, &StudyClaim::state);

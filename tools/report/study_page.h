@@ -17,7 +17,7 @@ struct StudySeries {
   std::vector<double> y;
   std::vector<double> low;  // lower ends of the intervals around y; empty if there are none
   std::vector<double> high;
-  bool shown = true;  // whether the page shows the series at first; the reader can change this
+  bool shown = true;  // whether the page shows the series at first; the reader can change it
 };
 
 struct StudyFigure {
@@ -57,7 +57,7 @@ struct StudyClaim {
   std::string found;
   ClaimState state = ClaimState::kOpen;
 };
-/// "holds", "fails" or "open".
+/// The state as "holds", "fails" or "open".
 std::string_view Text(ClaimState state);
 
 /// Content of one study. Every text may contain any characters; the library escapes it. A reader
@@ -74,11 +74,11 @@ struct StudySection {
   std::vector<StudyTable> tables;
 };
 
-/// The page. @param command the command that makes the page, such as "fogline study all"
+/// The whole page. @param command the command that makes the page, such as "fogline study all"
 std::string MakeStudyPage(const std::string& command, std::span<const StudySection> sections);
 
-/// The page in Markdown without figures, for programs that do not show HTML. Of each study it has
-/// only the first table.
+/// The page in Markdown without figures, for programs that do not show HTML. It contains only the
+/// first table of each study.
 std::string MakeStudyText(const std::string& command, std::span<const StudySection> sections);
 
 }  // namespace fogline::report

@@ -121,7 +121,7 @@ std::vector<MetricRow> MetricRows(std::span<const ReportRun> runs) {
   return rows;
 }
 
-/// "m/s2" as "m/s²".
+/// A unit with exponents, such as "m/s²" for "m/s2".
 std::string UnitText(std::string unit) {
   boost::replace_all(unit, "2", "²");
   boost::replace_all(unit, "3", "³");
@@ -139,7 +139,7 @@ std::string HeadOf(const ReportMetric& measure) {
   return head;
 }
 
-/// The measures of a request to take over; NaN for a measure without a value.
+/// The values of a request to take over.
 std::vector<ReportMetric> MeasuresOf(const metrics::TakeOverMeasures& request) {
   std::vector<ReportMetric> measures;
   metrics::VisitTakeOver(request, [&](std::string_view name, const std::optional<double>& value,

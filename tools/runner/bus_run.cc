@@ -45,8 +45,8 @@ constexpr Duration kLookEvery = milliseconds(20);
 // A process without a STATUS for this long counts as hanging. A living process sends ten STATUS
 // messages in this time.
 constexpr Duration kHangLimit = milliseconds(2000);
-// In real time the limit is half of kHangLimit, because the roles that read the process's messages
-// continue without them long before. The limit still covers five STATUS messages, because a lost
+// In real time the limit is half of kHangLimit, because other roles continue without the messages
+// of a hanging process long before. The limit still covers five STATUS messages, because a lost
 // STATUS is not sent again.
 constexpr Duration kRealtimeHangLimit = milliseconds(1000);
 
@@ -122,7 +122,7 @@ void RunInMemory(runtime::Bus& bus, runtime::RunCoordinator& coordinator, std::i
     const TimePoint now = Clock::now();
     TimePoint next = coordinator.Poll(now);
     for (const auto& role : roles) next = std::min(next, role->node().Poll(now));
-    // Messages come first: while there are messages, nothing is due by the clock.
+    // All messages that wait are handled before the next actions by the clock.
     if (bus.Wait(next - Clock::now())) bus.Drain();
     progress.Show(coordinator.step());
     TellLoggedStep(coordinator, options);
@@ -168,7 +168,7 @@ ProcessNews RunAsProcesses(runtime::Bus& bus, runtime::RunCoordinator& coordinat
                          .external = options.external,
                          .hosts = hosts,
                          .restarts = options.restarts,
-                         // A hanging process is found before the run counts as stalled.
+                         // A hanging process must be found before the run counts as stalled.
                          .silence = std::min(options.realtime ? kRealtimeHangLimit : kHangLimit,
                                              options.stall_limit / 2),
                          .say = say});
@@ -207,15 +207,15 @@ ProcessNews RunAsProcesses(runtime::Bus& bus, runtime::RunCoordinator& coordinat
       if (WasInterrupted()) break;
     }
   } catch (const std::exception& error) {
-    coordinator.Fail(error.what());  // the code below still ends the processes properly
+    coordinator.Fail(error.what());  // the code below ends the processes
   }
   supervisor.End();
   return {.restarts = supervisor.restarts(), .priority = priority.found()};
 }
 
-/// The reports of a run's recorders about the log. All recorders but the last one are dead. In real
-/// time, a recorder may remove the end of the log that its predecessor wrote. So only the last
-/// report counts.
+/// The reports of a run's recorders about the log. All recorders but the last one have ended. In
+/// real time, a recorder may remove the end of the log that an earlier recorder wrote. So only the
+/// last report counts.
 std::vector<log::WrittenLog> WrittenBy(const runtime::RunCoordinator& coordinator, bool realtime) {
   std::vector<log::WrittenLog> written;
   for (const status_t& status : LastWords(coordinator, Role::kRecorder)) {
@@ -259,7 +259,7 @@ BusRun RunOnBus(const Scenario& scenario, const ExperimentOptions& options,
   }
   runtime::Bus bus(relay ? relay->url() : UrlOf(options.transport, hosts != nullptr));
   const bool in_memory = bus.url().starts_with("memq");
-  // Roles on other machines wait for a silent runner as long as roles that were started by hand.
+  // Roles on other machines wait for a silent runner as long as roles that a person has started.
   if (hosts) {
     hosts->Check(bus.url(), options.traffic, options.stall_limit + runtime::RunnerWatch::kGone);
   }
@@ -301,7 +301,7 @@ BusRun RunOnBus(const Scenario& scenario, const ExperimentOptions& options,
                       key ? &*key : nullptr);
   }
   const std::string kept = KeptLog(conducting.run_id, options);
-  // These peers are printed for every outcome, because a missing role may take part in another run.
+  // These peers are printed for every outcome, because a missing role may be in another run.
   const std::string foreign_peers = coordinator.foreign_peers().Text();
   if (options.announce && !foreign_peers.empty()) Notice(foreign_peers);
   if (coordinator.phase() == runtime::RunCoordinator::Phase::kFailed) {

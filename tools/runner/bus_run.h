@@ -22,21 +22,21 @@ struct BusRun {
   std::vector<runtime::ForeignPeer> foreign_peers;
   std::vector<Restarts> restarts;
   std::optional<log::RealtimePriority> priority;  // only in real time, if the run has begun
-  runtime::RoleBuilds builds{};                   // as each role has reported it
+  runtime::RoleBuilds builds{};                   // the builds that the roles have reported
   std::vector<runtime::OtherBuild> other_builds;  // the builds that differ from the runner's build
   std::vector<log::WrittenLog> written;           // the last report of each recorder about the log
 };
 
 /// A run id that no other run has.
 std::int64_t DrawRunId();
-/// The id of a new run: the one that was agreed on, or a drawn one.
+/// The id of a new run: options.run_id if it is set, otherwise a drawn id.
 inline std::int64_t RunIdOf(const ExperimentOptions& options) {
   return options.run_id ? *options.run_id : DrawRunId();
 }
 
 /// Runs a scenario to its end and leaves the log of the run.
 /// @param keeper seals the log of a run that ends early
-/// @throws InputError, Interrupted, std::runtime_error as RunExperiment()
+/// @throws InputError, Interrupted, std::runtime_error like RunExperiment()
 BusRun RunOnBus(const Scenario& scenario, const ExperimentOptions& options,
                 const std::filesystem::path& log, const LogKeeper& keeper);
 

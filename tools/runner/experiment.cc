@@ -202,7 +202,7 @@ LoggedRun ReadSteps(const std::filesystem::path& log, const log::ReadOptions& op
   return logged;
 }
 
-/// Compares the log with the recorder's reports, and reads it.
+/// Compares the log with the recorder's reports, and reads the log.
 LoggedRun ReadOwnLog(const LogKeeper& keeper, const std::filesystem::path& log, const BusRun& run,
                      const Scenario& scenario, const ExperimentOptions& options) {
   const auto read = [&] {
@@ -216,7 +216,7 @@ LoggedRun ReadOwnLog(const LogKeeper& keeper, const std::filesystem::path& log, 
     keeper.Check(run.written);
   } catch (const std::runtime_error&) {
     try {
-      read();  // if the log is of another run, this error says more
+      read();  // the error for a log of another run is clearer
     } catch (const InputError&) {
     }
     throw;

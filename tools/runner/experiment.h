@@ -51,9 +51,9 @@ struct ExperimentOptions {
                                          // slow roles
   std::vector<Role> external;            // roles that are started elsewhere
   hosts::RunPlan hosts;                  // roles that the run starts on other machines
-  Duration wait = milliseconds(60'000);  // longest wait until these roles are ready; 0: forever
+  Duration wait = milliseconds(60'000);  // longest wait until external roles are ready; 0: forever
   Duration stall_limit = milliseconds(4000);
-  int restarts = 10;  // most restarts of each role that is killed or hangs; 0: its end ends the run
+  int restarts = 10;  // most restarts of each role that is killed or hangs; 0: no restart
   /// Whether to compute the roles' steps again from the log, and compare the results. By default,
   /// the steps are computed again if roles run on other machines, are started elsewhere, or the run
   /// is resumed.
@@ -65,14 +65,14 @@ struct ExperimentOptions {
   bool wall_clock = false;       // in lockstep: the log has the wall clock of each step
   bool samples = false;          // keep the samples of every step in the result
   std::string command_to_go_on;  // resumes the run; shown to the user if the run ends early
-  /// Called with the run's id and the URL of its network, before any role is started. It may wait
-  /// for a person. A run in memory has no network.
+  /// Called with the run's id and the URL of its network, before any role is started. The function
+  /// may wait for a person. It is not called for a run in memory, which has no network.
   std::function<void(std::int64_t run_id, const std::string& url)> on_network =
       [](std::int64_t, const std::string&) {};
-  /// Called with the same values after on_network, when the roles are started at once.
+  /// Called with the same values after on_network, immediately before the roles are started.
   std::function<void(std::int64_t run_id, const std::string& url)> on_run =
       [](std::int64_t, const std::string&) {};
-  /// Called when the operating system has the first step of the log, and perhaps again later.
+  /// Called when the first step of the log is written to the operating system, and perhaps again.
   std::function<void()> on_logged_step = [] {};
 };
 
@@ -99,7 +99,7 @@ struct ExperimentResult {
   bool checked = true;        // every byte of the log agrees with the recorder's reports
   std::filesystem::path log;  // empty if there is no log
   metrics::RunMetrics measures;
-  metrics::Lack lack;  // of a log with gaps: it says which measures are unknown (IsKnown)
+  metrics::Lack lack;  // for a log with gaps: says which measures are unknown (IsKnown)
   std::vector<metrics::FollowerMetrics> followers;    // nearest to the host first
   std::vector<metrics::TakeOverMeasures> take_overs;  // one for each request to take over
   std::optional<log::InputLatency> input_latency;     // only for a run in which a person drove
@@ -107,9 +107,9 @@ struct ExperimentResult {
   std::optional<log::RealtimeFigures> realtime;       // only for a run in real time
 };
 
-/// Constructs every part of a run once, without a step. Fields whose values are valid one by one
-/// may be invalid together. The user should learn this before any process starts. @param file name
-/// of the scenario for the user
+/// Constructs every part of a run once, without a step. It finds fields whose values are valid one
+/// by one, but invalid together, before any process starts.
+/// @param file name of the scenario for the user
 /// @throws ScenarioError with the rule "impossible"
 void CheckPossible(const Scenario& scenario, const std::filesystem::path& file);
 
@@ -122,8 +122,8 @@ ExperimentResult RunExperiment(const Scenario& scenario, const ExperimentOptions
 struct LoggedRun : log::RunLog {
   ExperimentResult result;
 };
-/// Reads a run with the samples of all its steps. If the options say that gaps are read, a step
-/// that lacks TRUTH has no sample, and the measures of take-overs are left out if they are unknown.
+/// Reads a run with the samples of all its steps. If the options allow gaps, a step that lacks
+/// TRUTH has no sample, and take-overs have no measures if these are unknown.
 /// @throws InputError
 LoggedRun ReadLoggedRun(const std::filesystem::path& log, const log::ReadOptions& options = {});
 /// Reads a run without samples, in memory that does not grow with the length of the run.

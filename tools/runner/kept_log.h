@@ -8,8 +8,8 @@
 
 namespace fogline::runner {
 
-/// "the log so far: FILE" and the command that resumes it, or that there is no log; "" for a run
-/// without a log.
+/// A text with the name of the log and the command that resumes it, or a text that no log was
+/// written; "" for a run without a log.
 std::string KeptLog(std::int64_t run_id, const ExperimentOptions& options);
 
 /// The command that resumes the log of a run. The command has the options of the run that the log

@@ -105,10 +105,10 @@ void LogKeeper::SealCutOff(const std::vector<log::WrittenLog>& written, const Lo
     log::RunLogReader reader(log_);
     while (reader.Next() != nullptr) {
     }
-    // If a log ends with a torn event, a reader would mistake a seal for the rest of this event.
+    // A seal behind an incomplete event would look like a part of this event.
     if (!std::cmp_equal(reader.run().events.bytes, std::filesystem::file_size(log_))) return;
     Seal(reader.run(), written, roles, key);
-  } catch (const std::exception&) {  // the reason why the run ended matters more
+  } catch (const std::exception&) {  // the error that ended the run is more important
   }
 }
 

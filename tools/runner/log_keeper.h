@@ -36,7 +36,7 @@ class LogKeeper {
   /// Checks the file again, appends the priority of the roles and seals it.
   /// @param run the run as read from the whole file
   /// @param key signs the seal; nullptr: no signature
-  /// @throws std::runtime_error as Check(), or if the seal cannot be written
+  /// @throws std::runtime_error like Check(), or if the seal cannot be written
   void Seal(const log::RunLog& run, const std::vector<log::WrittenLog>& written,
             const LoggedRoles& roles, const runtime::SigningKey* key) const;
   /// Reads and seals the log of a run that ended early. If the log cannot be sealed, the file stays
@@ -51,9 +51,9 @@ class LogKeeper {
     bool operator==(const Identity&) const = default;
   };
   std::optional<Identity> Find() const;
-  /// @throws std::runtime_error if the log was removed or is no event log
+  /// @throws std::runtime_error if the log was removed, or is not an event log
   log::EventLogReader Open() const;
-  /// Checks the bytes on the disk. @throws std::runtime_error as Check()
+  /// Checks the bytes on the disk. @throws std::runtime_error like Check()
   void Check(const log::EventLogReader& file, const std::vector<log::WrittenLog>& written) const;
 
   std::filesystem::path log_;

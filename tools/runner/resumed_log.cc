@@ -25,8 +25,9 @@ constexpr Duration kEndOfOthers = milliseconds(2000);
   throw InputError(fmt::format("{}: error: --resume: {}", PathText(log), why));
 }
 
-/// Restores an older log that the killed run was to replace, and checks that the file exists and is
-/// an event log. @return the path of the log @throws InputError
+/// Restores an older log that the killed run was to replace. Checks that the file exists and is an
+/// event log.
+/// @return the path of the log @throws InputError
 const std::filesystem::path& Readable(const std::filesystem::path& log) {
   const std::string older = log::TakeBackOlder(log, "--resume", kEndOfOthers);
   if (!older.empty()) Complain(older);
@@ -50,7 +51,7 @@ void CheckSeal(const std::filesystem::path& log, const runtime::SigningKey* key)
   Refuse(log, "the seal of the log is not signed with this key");
 }
 
-/// Refuses a log of other message types. @throws InputError that names the version that wrote it
+/// Refuses a log with other message types. @throws InputError that names the version of the writer
 void CheckVersion(const std::filesystem::path& log) {
   const log::LogVersion version = log::VersionOf(log);
   if (!version.other_types) return;

@@ -1,4 +1,4 @@
-// What the user of a run should know about the processes of its roles. Each fact is said once.
+// Messages for the user of a run about the processes of its roles. Each message is printed once.
 #pragma once
 
 #include <functional>
@@ -18,7 +18,7 @@ namespace fogline::runner {
 /// The last STATUS of each process of a role.
 std::vector<status_t> LastWords(const runtime::RunCoordinator& coordinator, Role role);
 
-/// The processes, including dead processes, whose build differs from the runner's build.
+/// The processes whose build differs from the runner's build, including processes that have ended.
 std::vector<runtime::OtherBuild> OtherBuilds(const runtime::RunCoordinator& coordinator);
 
 /// Reports the processes that have an awaited role but belong to another run, each process once.
@@ -54,7 +54,7 @@ class Warnings {
   Progress& progress_;
   bool compared_ = false;  // whether the builds were compared
   std::string key_trouble_;
-  std::set<std::int64_t> refused_;  // instances
+  std::set<std::int64_t> refused_;  // instances of the processes that were named
 };
 
 /// Examines once, when a run in real time has begun, which roles have real-time priority.
@@ -62,16 +62,16 @@ class PriorityWatch {
  public:
   explicit PriorityWatch(bool realtime) : done_(!realtime) {}
 
-  /// @return true at the call that has made the examination
+  /// @return true if this call has made the examination
   bool Look(const runtime::RunCoordinator& coordinator, TimePoint now);
-  /// nullopt before the examination.
+  /// The result; nullopt before the examination.
   const std::optional<log::RealtimePriority>& found() const { return found_; }
   /// @pre found()
   std::string Text() const;
 
  private:
   bool done_;
-  TimePoint since_{};  // when the run was first seen to go on
+  TimePoint since_{};  // when Look() first found the run in its running phase
   std::optional<log::RealtimePriority> found_;
 };
 

@@ -1,4 +1,4 @@
-// Runs side by side, on several threads.
+// Calls a function several times, on several threads.
 #pragma once
 
 #include <cstdint>
@@ -6,8 +6,8 @@
 
 namespace fogline::runner {
 
-/// Calls work(0) to work(count - 1), at most `jobs` of them at once. They begin in this order. One
-/// job works in the calling thread. After an exception no further call begins.
+/// Calls work(0) to work(count - 1), at most `jobs` of them at the same time. They begin in this
+/// order. One of the threads is the calling thread. After an exception no further call begins.
 /// @throws the first exception of `work`, when all calls have ended
 void SideBySide(std::int64_t count, int jobs, const std::function<void(std::int64_t)>& work);
 

@@ -53,7 +53,7 @@ void Supervisor::Start(Child& child, TimePoint now) {
   std::vector<std::string> arguments{"--lcm-url", options_.url, "--run-id",
                                      std::to_string(options_.run_id)};
   runtime::TrafficOptions traffic = options_.traffic;
-  if (child.place != &group_) traffic.key_file.clear();  // that machine has the key already
+  if (child.place != &group_) traffic.key_file.clear();  // that machine already has the key
   std::ranges::copy(runtime::ToArguments(traffic), std::back_inserter(arguments));
   if (child.role == Role::kRecorder) {
     arguments.insert(arguments.end(), {"--log", options_.log.string(), "--shared-log"});
@@ -111,7 +111,7 @@ void Supervisor::StartAgain(Child& child, TimePoint now) {
   const pid_t before = child.pid;
   try {
     Start(child, now);
-  } catch (const std::runtime_error& error) {  // tries again: the error may be temporary
+  } catch (const std::runtime_error& error) {  // a later call tries again
     child.start_at = now + child.policy.OnFailedStart();
     coordinator_.Hinder(child.role, error.what());
     return;
@@ -123,7 +123,7 @@ void Supervisor::StartAgain(Child& child, TimePoint now) {
 
 void Supervisor::OnExit(const processes::RolePlace::Exit& exit, TimePoint now) {
   const auto child = std::ranges::find(children_, exit.role, &Child::role);
-  if (exit.pid != child->pid) return;  // a process whose start the runner has not heard of in time
+  if (exit.pid != child->pid) return;  // its start was reported too late
   const std::string& host = child->place->name();
   const std::string how = child->killed_for.empty() ? exit.how : child->killed_for;
   child->death = fmt::format("{} {}", how, coordinator_.Where());
@@ -133,7 +133,7 @@ void Supervisor::OnExit(const processes::RolePlace::Exit& exit, TimePoint now) {
     child->start_at = now + *wait;
     return;
   }
-  // One line that names the dead process, then the last lines that it printed.
+  // One line that names the process that has ended, then the last lines that it printed.
   std::string text =
       fmt::format("{} ({}) {}", NameOf(exit.role), PidText(*child->place, exit.pid), child->death);
   if (exit.killed && options_.restarts > 0) {
@@ -243,8 +243,8 @@ std::vector<Restarts> Supervisor::restarts() const {
                           .count = child->policy.restarts(),
                           .last = child->death});
     } else {
-      // The newest process may have come so late that the death of its predecessor was not certain
-      // before the end of the run.
+      // If the newest process has come late, the run may have ended before its predecessor had been
+      // silent long enough to count as ended.
       const bool late = member.rival && member.status && member.heard < member.rival_since;
       const int elsewhere = member.replaced + (late ? 1 : 0);
       if (elsewhere == 0) continue;

@@ -1,6 +1,6 @@
 // The supervisor of a run's processes, on this machine and on others. It starts and watches the
-// processes, and restarts processes that are killed, hang or are deaf. A process that exits by
-// itself has printed the reason, and its exit ends the run.
+// processes. It restarts a process that is killed, hangs or is deaf. A process that exits by itself
+// has printed the reason, and its exit ends the run.
 #pragma once
 
 #include <functional>
@@ -20,8 +20,8 @@ namespace fogline::runner {
 
 class Supervisor {
  public:
-  /// A process that prepares for the run (SUMO loads its network, for example) sends no STATUS. For
-  /// this long it does not count as hanging while it works.
+  /// Time in which a process that sends no STATUS does not count as hanging while it works. A
+  /// process sends none while it prepares for the run, for example while SUMO loads its network.
   static constexpr Duration kPrepareLimit = milliseconds(60'000);
 
   struct Options {
@@ -33,7 +33,7 @@ class Supervisor {
     runtime::TrafficOptions traffic;          // of every process
     std::vector<Role> external;               // roles that are started elsewhere
     const hosts::HostGroup* hosts = nullptr;  // other machines on which it starts roles
-    int restarts = 0;    // limit for each role; 0: the first death ends the run
+    int restarts = 0;    // limit for each role; 0: the first end of a process ends the run
     Duration silence{};  // time without a STATUS after which a process counts as hanging and is
                          // killed
     std::function<void(const std::string&)> say;  // prints a line for the user
@@ -42,7 +42,7 @@ class Supervisor {
   /// Starts every role. @throws std::runtime_error
   Supervisor(runtime::Bus& bus, runtime::RunCoordinator& coordinator, Options options);
 
-  /// Checks for dead and hanging processes, and restarts processes whose delay is over. Call it
+  /// Finds processes that have ended or hang, and restarts processes whose delay is over. Call it
   /// every few tens of milliseconds.
   void Look(TimePoint now);
 
@@ -64,7 +64,7 @@ class Supervisor {
     TimePoint started{};
     std::optional<std::int64_t> activity{};  // measured when half of the silence limit has passed
     std::string killed_for{};                // the reason why the supervisor killed the process
-    bool deaf = false;                       // whether this reason was deafness
+    bool deaf = false;                       // whether it was killed because it was deaf
     std::string death{};                     // how the role's last process ended
     std::optional<TimePoint> start_at{};
     bool gone = false;      // whether the process has ended for good while the run continues

@@ -20,7 +20,7 @@ std::filesystem::path JavaProgram();
 /// Whether a Java can open windows. The Java of the headless package cannot open windows.
 bool OpensWindows(const std::filesystem::path& java);
 
-/// The reason why no window can be opened on a screen; "" if no reason was found. The screen of
+/// The reason why a window cannot be opened on a screen; "" if no reason was found. The screen of
 /// another machine is not tested, because the test can take long.
 /// @param display the value of DISPLAY, such as ":0"
 std::string WhyNoScreen(const std::string& display);

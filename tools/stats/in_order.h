@@ -21,12 +21,12 @@ namespace fogline::stats {
 /// the delivery.
 inline constexpr int kUnitsPerJob = 4;
 
-/// Computes the units from `begin` up to, but not including, `end` on `jobs` threads. It calls
-/// `compute(worker, unit)` with a worker that `make_worker()` made for the thread. `consume(unit,
-/// result)` takes the results, in order of units, and returns false to stop. `consume` sees the
-/// same results for every `jobs`. ComputeInOrder() passes on exceptions of `consume`. It also
-/// passes on the exception of the first unit that cannot be computed, after the units before it
-/// have been delivered.
+/// Computes the units from `begin` up to, but not including, `end` on `jobs` threads.
+/// `compute(worker, unit)` is called with a worker that `make_worker()` made for the thread.
+/// `consume(unit, result)` takes the results, in order of units, and returns false to stop.
+/// `consume` sees the same results for every `jobs`. An exception of `consume` reaches the caller.
+/// If a unit cannot be computed, the units before this unit are delivered first. Then the exception
+/// of this unit reaches the caller.
 template <class MakeWorker, class Compute, class Consume>
 void ComputeInOrder(std::int64_t begin, std::int64_t end, int jobs, const MakeWorker& make_worker,
                     const Compute& compute, const Consume& consume) {

@@ -16,8 +16,8 @@ std::vector<std::size_t> ParetoFront(std::span<const TradeOff> points) {
   };
   std::sort(order.begin(), order.end(),
             [&](std::size_t a, std::size_t b) { return cheapest_first(a) < cheapest_first(b); });
-  // Every point that could dominate a point comes before it in this order. So a comparison with the
-  // last point on the front suffices.
+  // Every point that could dominate a point comes before it in this order. So it is enough to
+  // compare each point with the last point on the front.
   std::vector<std::size_t> front;
   for (const std::size_t i : order) {
     if (!front.empty()) {

@@ -28,8 +28,8 @@ struct Summary {
   std::optional<double> p95;
 };
 
-/// Collects values. It stores all values, 8 bytes each, because percentiles need all of them. A
-/// hundred thresholds over 10,000 seeds need 8 MB for each measure.
+/// Collects values. The object stores all values, 8 bytes each, because percentiles need all of
+/// them. A hundred thresholds over 10,000 seeds need 8 MB for each measure.
 class Statistics {
  public:
   void Add(double value);

@@ -16,7 +16,7 @@ namespace fogline::study {
 inline constexpr std::int64_t kReplicates = 1000;
 
 /// Resamples runs. A replicate draws as many runs as there are, with replacement. The draws are the
-/// same on every machine. Statistics computed with equal weights are paired, run by run.
+/// same on every machine. Two statistics computed with the same weights are paired, run by run.
 class Resampling {
  public:
   Resampling(std::size_t runs, Stream stream) : runs_(runs), stream_(stream) {}
@@ -33,9 +33,9 @@ class Resampling {
 /// Weighted mean of the values that are not NaN; NaN if all values are NaN.
 double WeightedMean(std::span<const double> values, std::span<const double> weights);
 
-/// A value over n runs with the interval from the 2.5th to the 97.5th percentile of its replicates
-/// (Efron & Tibshirani 1993, 13.3). There is no interval for fewer than two runs, or if a replicate
-/// has no value.
+/// Estimate with the value `value` over n runs, and the interval from the 2.5th to the 97.5th
+/// percentile of its replicates (Efron & Tibshirani 1993, 13.3). There is no interval for fewer
+/// than two runs, or if a replicate has no value.
 Estimate FromReplicates(std::int64_t n, double value, std::vector<double> replicates);
 
 }  // namespace fogline::study

@@ -1,4 +1,4 @@
-// Makes claims (claim.h) from comparisons, and checks them against the numbers.
+// Makes claims (claim.h) from comparisons, and checks the claims against the numbers.
 #pragma once
 
 #include <optional>
@@ -31,11 +31,11 @@ struct CellName {
 /// @throws std::out_of_range if there is no such case or variant
 Cell CellOf(const Comparison& comparison, const CellName& name);
 
-/// A claim before its runs: what it says, and of which cells.
+/// A claim before its runs: its text, and the cells and the measure that it compares.
 struct PlannedClaim {
   std::string says;
   CellName cell;
-  std::optional<CellName> other;  // with which the cell is compared; nullopt: with `level`
+  std::optional<CellName> other;  // compared with `cell`; nullopt: `level` is compared with `cell`
   std::string measure;
   Sign sign = Sign::kLess;
   double margin = 0;  // for kEqual, in the unit of the measure
@@ -50,9 +50,9 @@ PlannedClaim LevelClaim(std::string says, CellName cell, std::string_view measur
                         double level);
 
 /// The claim with the numbers of the runs, paired seed by seed. For the measure "collided" the
-/// p-value of the claim comes from McNemar's exact test (1947). A claim on any other measure cannot
-/// hold if pairs of runs end early, because sums and means over time then lack the steps after the
-/// end.
+/// p-value of a claim on two cells comes from McNemar's exact test (1947). A claim on another
+/// measure of two cells cannot hold if pairs of runs end early, because sums and means over time
+/// then lack the steps after the end.
 /// @throws std::out_of_range if there is no such case, variant or measure
 Claim ClaimOf(const Comparison& comparison, const PlannedClaim& planned);
 std::vector<Claim> ClaimsOf(const Comparison& comparison, std::span<const PlannedClaim> planned);
@@ -65,7 +65,7 @@ double PValueOf(const Claim& claim);
 /// `few_runs` is true.
 std::vector<report::StudyClaim> CheckClaims(std::span<const Claim> claims, bool few_runs);
 
-/// "policy: 2 of 9 claims fail"; "" if none does.
+/// "study policy: 2 of 9 claims fail:", then a line for each failed claim; "" if no claim fails.
 std::string FailedText(std::string_view study, std::span<const report::StudyClaim> claims);
 
 }  // namespace fogline::study

@@ -1,6 +1,6 @@
-// Compares variants of the arbitrator in several cases over many seeds. Most studies consist of
-// such comparisons. For each seed, all variants of a case have the same noise, and are paired with
-// the same run without traded control.
+// Compares variants (rules that decide who drives) in several cases over many seeds. Most studies
+// consist of such comparisons. For each seed, all variants of a case have the same noise, and are
+// paired with the same run without traded control.
 #pragma once
 
 #include <cstddef>
@@ -24,11 +24,11 @@ struct StudyCase {
   std::string name;
   std::string file;
   std::vector<std::string> overrides;  // in the form of --set
-  std::string group;  // name of the cases that differ in one respect only, such as cases in one fog
+  std::string group;                   // name of a group of cases, such as all cases in one fog
 };
 
-/// A rule that decides who drives. Its overrides change only the arbitrator, so all variants of a
-/// case share the run without traded control.
+/// A rule that decides who drives. Its overrides change the arbitrator; some also change the
+/// fusion. All variants of a case share one run without traded control and without these overrides.
 struct StudyVariant {
   std::string name;
   std::vector<std::string> overrides;
@@ -43,7 +43,7 @@ inline constexpr std::string_view kShortfall = "mean_compromised_safety_fog_m";
 /// The measure that is 1 if a run ends in a collision, and otherwise 0.
 inline constexpr std::string_view kCollided = "collided";
 
-/// A measure of a run: one of VisitPairedMetrics(), "collided" (1 or 0), or one of
+/// A measure of a run: a measure of VisitPairedMetrics(), "collided" (1 or 0), or a measure of
 /// VisitMetrics().
 struct ComparedMetric {
   std::string name;
@@ -100,7 +100,7 @@ class Comparison {
   double PValueOfCollisions(Cell a, Cell b) const;
   /// For each seed 1 if the run of `a` is less safe than that of `b`, else 0. Collisions come
   /// first: a run that collides is less safe than one that does not. Two runs that do not collide
-  /// are compared by their compromised safety. Two that do are equally safe.
+  /// are compared by their compromised safety. Two runs that collide are equally safe.
   std::vector<double> LessSafe(Cell a, Cell b) const;
   /// Index of the case, or of the variant, with this name. @throws std::out_of_range
   std::size_t CaseNamed(std::string_view name) const;

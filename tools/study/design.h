@@ -1,4 +1,5 @@
-// The runs and claims of the studies, for a study that examines the claims with other parameters.
+// The cases, variants and claims of the studies. Study `ensemble` examines the claims with other
+// parameters.
 #pragma once
 
 #include <vector>
@@ -9,8 +10,8 @@
 
 namespace fogline::study {
 
-/// The cases and variants of a study, and its claims on them. Claims on other runs, such as those
-/// of strings of cars, are not here.
+/// The cases and variants of a study, and its claims on them. Claims on other runs, such as runs of
+/// strings of cars, are not included.
 struct StudyDesign {
   std::vector<StudyCase> cases;
   std::vector<StudyVariant> variants;

@@ -129,7 +129,7 @@ std::vector<PlannedClaim> DriverClaims() {
   return claims;
 }
 
-/// The claims that support the answer, with realistic noise.
+/// Those claims that support the answer, repeated with realistic noise.
 std::vector<PlannedClaim> NoisyDriverClaims() {
   const auto noisy = [](std::string_view name) {
     return fmt::format("{}{}", name, kWithRealisticNoise);

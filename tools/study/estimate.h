@@ -33,9 +33,9 @@ struct Estimate {
 Estimate EstimateOf(std::span<const double> values);
 
 /// Estimate of the differences a[i] - b[i] for which both values exist. Runs of equal seeds have
-/// equal noise, so their difference is known better than each of the two values. If both values are
-/// infinite, the difference is 0. If only one value is infinite, the difference is infinite. @pre
-/// equal sizes
+/// equal noise, so the difference has a smaller error than each of the two values. If both values
+/// are infinite, the difference is 0. If only one value is infinite, the difference is infinite.
+/// @pre equal sizes
 Estimate PairedDifference(std::span<const double> a, std::span<const double> b);
 
 /// Verdict from an estimate of a difference.
@@ -48,8 +48,8 @@ enum class Verdict {
 Verdict VerdictOf(const Estimate& difference);
 
 /// p-value of the hypothesis that a mean is 0, by the two-sided t test. The standard error is
-/// computed from the interval, so that the interval may also come from a bootstrap. The p-value is
-/// 1 without an interval.
+/// computed from the interval, which may also come from a bootstrap. Without an interval the
+/// p-value is 1.
 double PValueOfSign(const Estimate& estimate);
 /// p-value of the hypothesis that a mean is farther from 0 than `margin`, by two one-sided t tests
 /// (Schuirmann 1987).
@@ -57,7 +57,7 @@ double PValueOfEqual(const Estimate& estimate, double margin);
 
 /// "12.3 [12.0, 12.6]"; "–" without a mean; "12.3 [12.0, 12.6], ∞ in 3 of 100 runs".
 std::string Text(const Estimate& estimate, int decimals);
-/// Text() with 2 to 6 decimals, so that the interval has two digits.
+/// Text() with 2 to 6 decimals, so that the width of the interval has two digits.
 std::string Text(const Estimate& estimate);
 /// "2 of 100 runs, 2.0 % [0.2 %, 7.0 %]".
 std::string Text(const metrics::EventShare& share);

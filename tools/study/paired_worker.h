@@ -21,8 +21,8 @@ class PairedWorker {
   /// Runs all `scenarios` with this seed. The first scenario has no traded control. The other runs
   /// are paired with its run. The result does not contain the first run.
   std::vector<RunValues> Compute(std::span<const Scenario> scenarios, std::int64_t seed);
-  /// The measures of the last run without traded control, paired with itself: the same as those of
-  /// another run of this scenario. @param scenario the first one of the last Compute()
+  /// The measures of the last run without traded control, paired with itself. They equal the
+  /// measures of a second run of this scenario. @param scenario the first one of the last Compute()
   RunValues OfBaseline(const Scenario& scenario) const;
 
  private:

@@ -6,7 +6,7 @@
 namespace fogline::study {
 namespace {
 
-// One row for each study.
+// The table of Studies().
 constexpr Study kStudies[] = {
     {"conflict",
      "Conflict measures at equal false-alarm rate",

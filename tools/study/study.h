@@ -37,7 +37,8 @@ struct StudyContext {
   /// A scenario of the folder with `overrides` and then `more` applied. @throws InputError
   Scenario Load(std::string_view file, std::vector<std::string> overrides,
                 const std::vector<std::string>& more = {}) const;
-  /// The context of one part of the study. The part begins after `before` of `all` units.
+  /// The context of one part of the study. The part begins when `before` of the study's `all` units
+  /// are done.
   StudyContext Part(std::int64_t before, std::int64_t all) const;
   /// @throws StudyStopped
   void Show(std::int64_t done, std::int64_t total) const;

@@ -49,7 +49,8 @@ struct Made {
   StudyResult result;
 };
 
-// Limit of the seeds, because every run of a study stays in memory until the study ends.
+// Largest number of seeds. It is limited, because the measures of every run stay in memory until
+// the study ends.
 constexpr std::int64_t kMostSeeds = 100'000;
 
 /// @throws InputError
@@ -128,8 +129,8 @@ void Write(const std::filesystem::path& path, const std::string& content) {
   file.Finish();
 }
 
-/// The command that makes the same files again. It omits the folder and the number of threads,
-/// because the files do not depend on them.
+/// The command that makes the same files again. The command omits the folder and the number of
+/// threads, because the files do not depend on these two.
 std::string CommandOf(const StudyArguments& arguments) {
   std::string command = fmt::format("fogline study {}", arguments.name);
   if (!arguments.seeds.empty()) command += fmt::format(" --seeds {}", arguments.seeds);

@@ -12,8 +12,8 @@
 namespace fogline::study {
 namespace {
 
-/// Limit of ISO 15622 for the jerk averaged over 1 s at speeds above 20 m/s. It is also the limit
-/// of comfort. The unit is m/s3.
+/// Limit of ISO 15622 for the jerk averaged over 1 s at speeds above 20 m/s. It also serves as the
+/// limit of comfort. The unit is m/s3.
 constexpr double kComfortableJerk_mps3 = 2.5;
 /// The measure to which the limit belongs. It is not the jerk of single steps, because that jerk
 /// grows as the step shrinks.

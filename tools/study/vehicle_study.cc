@@ -26,7 +26,8 @@ std::vector<std::string> Uphill(std::vector<std::string> overrides) {
   return overrides;
 }
 
-/// The leader is on the same ice, and brakes less hard than the limit of the ice, 1.47 m/s2.
+/// Overrides for a sedan on ice. The leader is on the same ice, and brakes less hard than the limit
+/// of the ice, 1.47 m/s2.
 std::vector<std::string> SedanOnIce() {
   std::vector<std::string> overrides = Cars("sedan", "ice");
   overrides.emplace_back("/lead/emergency_brake/deceleration_mps2=1.4");
@@ -48,8 +49,8 @@ struct Ground {
   bool brakes;    // whether the cars must brake hard
 };
 
-/// In the hard-braking case, the leader brakes to a third of its speed in the middle of the dense
-/// fog. It brakes as hard as in ASAM OSC-ALKS scenario 4.3_2.
+/// All kinds of fog. In the hard-braking case, the leader brakes to a third of its speed in the
+/// middle of the dense fog. Its deceleration is that of ASAM OSC-ALKS scenario 4.3_2.
 std::vector<Ground> Grounds() {
   return {{"bias fog", "paper.json", {}, false, false},
           {"beam fog", "dense_fog.json", {}, true, false},
@@ -61,8 +62,8 @@ std::vector<Ground> Grounds() {
            true}};
 }
 
-/// The cases of the study. If a kind of car never reaches its limits in a case, the case has the
-/// same runs as another case, and is left out. VehicleMethod() names the omitted cases.
+/// The cases of the study. If a kind of car never reaches its limits in a case, the case would have
+/// the same runs as another case. Such a case is omitted. VehicleMethod() names the omitted cases.
 std::vector<StudyCase> VehicleCases() {
   std::vector<StudyCase> cases;
   for (const Ground& ground : Grounds()) {

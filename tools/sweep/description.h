@@ -1,6 +1,6 @@
-// Description of a sweep file: grid, seeds, scenario, and the shard that the file has. It is in
-// "FILE.json" beside the sweep file. A sweep recognises its own file by the description, and a
-// merge recognises the shards of one sweep.
+// Description of a sweep file: grid, seeds, scenario, and the shard that the file has. The
+// description is in "FILE.json" beside the sweep file. A sweep recognises its own file by the
+// description, and a merge recognises the shards of one sweep.
 #pragma once
 
 #include <cstdint>
@@ -25,7 +25,7 @@ Description Describe(const SweepPlan& plan, const Shard& shard);
 /// The path "FILE.json".
 std::filesystem::path DescriptionFile(const std::filesystem::path& csv);
 
-/// Whether a file belongs to a sweep: there is a description beside it.
+/// Whether a file belongs to a sweep, because a description is beside the file.
 bool IsSweep(const std::filesystem::path& csv);
 
 /// The description beside a sweep's file.

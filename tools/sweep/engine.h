@@ -18,17 +18,17 @@ namespace fogline::sweep {
 /// Result of a row of a sweep.
 struct SweepRow {
   metrics::RunMetrics measures;
-  /// Measures of this run and its paired run together. They are empty for a run that is its own
-  /// pair, and if the paired run has no compromised safety.
+  /// Measures of this run and its paired run together; empty for a run that is its own pair, and if
+  /// the paired run has no compromised safety.
   metrics::PairedMetrics paired;
   /// The effect of the fog in the paired run without traded control; empty for a run that is its
   /// own pair.
   metrics::FogEffect without;
 };
 
-/// Runs a scenario. `baseline` has the samples of the paired run without traded control. It is
-/// empty for a run that is its own pair. If one run of the pair ends early, the measures of the
-/// pair use only the steps that both runs have. @throws as ReusedLoop::Run()
+/// Runs a scenario. `baseline` has the samples of the paired run without traded control; it is
+/// empty if the run has no traded control itself. If one run of the pair ends early, the measures
+/// of the pair use only the steps that both runs have. @throws as ReusedLoop::Run()
 SweepRow RunPaired(closed_loop::ReusedLoop& loop, const Scenario& scenario,
                    std::span<const metrics::Sample> baseline);
 
@@ -58,9 +58,9 @@ class SweepWorker {
 using UnitConsumer = std::function<bool(std::int64_t unit, const std::vector<SweepRow>& rows)>;
 
 /// Computes the units from `begin` up to, but not including, `end` on `jobs` threads. The consumer
-/// gets the same rows for every `jobs`. RunSweep() passes on the consumer's exceptions. If a row
-/// cannot be computed, RunSweep() first delivers the units before this row, and then passes on the
-/// exception of the row.
+/// gets the same rows for every `jobs`. An exception of the consumer reaches the caller. If a row
+/// cannot be computed, the units before this row are delivered first. Then the exception of the row
+/// reaches the caller.
 void RunSweep(const SweepPlan& plan, std::int64_t begin, std::int64_t end, int jobs,
               const UnitConsumer& consume);
 

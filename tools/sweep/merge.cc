@@ -138,7 +138,8 @@ Merged MergeShards(const std::vector<std::filesystem::path>& shards,
     if (!checked) result.unchecked.push_back(shard.path);
   }
   if (replaceable) {
-    // The old file is removed first, so that it is never beside the description of the new file.
+    // The old file is removed first, so that the old file is never beside the description of the
+    // new file.
     out.RemoveOld();
     WriteDescription(merged, whole);
     sums->Finish();

@@ -1,7 +1,7 @@
 // Checksums of the rows in a sweep's file. "FILE.sums" beside the file has one line for each row.
-// With the checksums a continued sweep and a merge detect a row that differs from the written row,
-// for example because a digit was edited or a power cut has damaged the file. Checksums do not
-// protect against deliberate changes.
+// With the checksums, a continued sweep and a merge detect a row that has changed since it was
+// written, for example because a digit was edited or a power cut has damaged the file. Checksums do
+// not protect against deliberate changes.
 #pragma once
 
 #include <cstdint>
@@ -36,7 +36,7 @@ class RowChecker {
 
   explicit RowChecker(const std::filesystem::path& csv);
 
-  /// Whether there are checksums. A file that was copied without "FILE.sums" has no checksums.
+  /// Whether the sweep file has checksums. If it was copied without "FILE.sums", it has none.
   bool has_sums() const { return has_sums_; }
   Verdict Check(std::string_view row);
 

@@ -7,7 +7,8 @@
 namespace fogline::sweep {
 
 void RefuseForeignSideFiles(const std::filesystem::path& csv) {
-  // `force` is true, because a sweep replaces the side files of another sweep even without --force.
+  // The argument `force` is true, because a sweep replaces the side files of another sweep even
+  // without --force.
   RefuseToReplace(DescriptionFile(csv), "--out", true, "sweep description",
                   [&csv](const std::filesystem::path&) { return IsSweep(csv); });
   RefuseToReplace(SumsFile(csv), "--out", true, "file of checksums", IsSums);

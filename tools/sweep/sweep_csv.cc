@@ -107,9 +107,9 @@ SweepFile::Handle::~Handle() {
   if (fd >= 0) close(fd);
 }
 
-// The lock admits only one writer at a time, because two writers would mix their rows. There can be
-// two writers if a cluster starts a job a second time. The job's first process may still write,
-// because it was only cut off from the network.
+// The lock admits only one writer at a time, because two writers would mix their rows. A second
+// writer is possible if a cluster loses the connection to a job, and starts the job a second time
+// while the job's first process still writes.
 void SweepFile::Open() {
   file_.fd = open(path_.c_str(), kFlags, 0666);
   if (file_.fd < 0) ThrowCannotWrite(path_, errno);
@@ -208,7 +208,7 @@ void SweepFile::Append(const std::vector<SweepRow>& rows) {
   }
   Write(text_, file_);
   ++next_unit_;
-  if (sums_.fd < 0) return;  // a pipe or device has no checksums: no sweep reads its rows again
+  if (sums_.fd < 0) return;  // a pipe or device has no checksums, because no sweep reads its rows
   Write(sums, sums_);
   RequireInPlace();
 }

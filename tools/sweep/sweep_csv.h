@@ -17,7 +17,7 @@ namespace fogline::sweep {
 
 class SweepFile {
  public:
-  /// Opens the file of a shard: a new file, or a file that the same sweep has left unfinished. An
+  /// Opens the file of a shard. The file is new, or the same sweep has written a part of it. An
   /// incomplete end of the file is cut off. With `force` an existing file is replaced.
   /// @throws InputError if the file exists and is not of the same sweep, if another process is
   ///     writing it, if it cannot be written, or as RefuseForeignSideFiles(); std::runtime_error
@@ -29,7 +29,8 @@ class SweepFile {
   std::int64_t next_unit() const { return next_unit_; }
 
   /// Appends the rows of unit next_unit(). @throws std::runtime_error when the disk is full, or if
-  /// the file has been removed; Interrupted during a write to a pipe that is not read
+  /// the file has been removed; Interrupted if an interrupt comes while a write to a pipe waits for
+  /// a reader
   void Append(const std::vector<SweepRow>& rows);
 
  private:

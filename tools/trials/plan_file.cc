@@ -22,11 +22,12 @@ namespace fogline::trials {
 namespace {
 
 constexpr std::string_view kAllowed = "fogline experiment check --schema";
-// Names become parts of file names and of columns. Our choice: file systems allow 255 bytes.
+// Largest length of a name. Names become parts of file names and of columns. The value is our
+// choice; file systems allow 255 bytes.
 constexpr std::size_t kMostNameCharacters = 40;
 constexpr std::size_t kMostTitleCharacters = 80;
 
-/// Checks what one field alone does not show.
+/// Checks the rules that the checks of single fields do not cover.
 class PlanCheck {
  public:
   PlanCheck(const JsonValue& root, DiagnosticList& mistakes) : root_(root), mistakes_(mistakes) {}
@@ -112,8 +113,8 @@ class PlanCheck {
           fmt::format("{} is not above min, {}", NumberText(item.max), NumberText(item.min)));
     }
     const double steps = (item.max - item.min) / item.step;
-    constexpr double kMostSteps = 1000;  // our choice: more could not be told apart on a screen
-    constexpr double kRounding = 1e-9;   // of a step, because 0.1 is no binary number
+    constexpr double kMostSteps = 1000;  // our choice: a screen cannot show more steps separately
+    constexpr double kRounding = 1e-9;   // of a step, because 0.1 is not exact in binary
     if (steps > kMostSteps || std::abs(steps - std::round(steps)) > kRounding * kMostSteps) {
       Add(at + "/step", "range",
           fmt::format("{} does not divide the scale from {} to {} into 1 to {} equal steps",

@@ -30,7 +30,7 @@ struct PlanFile {
 PlanFile LoadPlan(const std::filesystem::path& file);
 
 /// The scenario of a condition.
-/// @param more overrides that count more than those of the condition
+/// @param more overrides that prevail over those of the condition
 /// @throws InputError that names the experiment's file and the condition
 Scenario LoadCondition(const PlanFile& file, const ConditionSection& condition,
                        const std::vector<std::string>& more = {});

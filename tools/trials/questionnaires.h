@@ -23,7 +23,7 @@ struct Answer {
 };
 
 /// Reads an answer as a person types it.
-/// @param why is set to what is allowed if the text is no answer
+/// @param why is set to the allowed answers if the text is not an answer
 std::optional<Answer> ReadAnswer(const ItemSection& item, std::string_view text, std::string& why);
 
 }  // namespace fogline::trials

@@ -15,8 +15,8 @@ namespace fogline::trials {
 
 namespace {
 
-/// Whether a run has begun to write this log. A file that cannot be read counts, too: it may be of
-/// worth.
+/// Whether a run has begun to write this log. A file that cannot be read also counts as begun,
+/// because it may contain data.
 bool HasBegun(const std::filesystem::path& log) {
   try {
     return log::HasSteps(log);
@@ -75,7 +75,7 @@ TrialRecord Results::Read(const Trial& trial) const {
   record.story.state = TrialState::kOpen;
   std::error_code missing;
   while (std::filesystem::exists(LogOf(trial, record.attempts + 1), missing)) ++record.attempts;
-  // A crash before the first step leaves such a log.
+  // A crash before the first step leaves a log without steps.
   while (record.attempts > 0 && !HasBegun(LogOf(trial, record.attempts))) --record.attempts;
   if (record.attempts == 0) return record;
   record.log = LogOf(trial, record.attempts);

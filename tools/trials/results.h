@@ -40,8 +40,8 @@ class Results {
   /// The log of a run of a trial. @param attempt from 1 on
   std::filesystem::path LogOf(const Trial& trial, std::int64_t attempt) const;
 
-  /// A newest log without a step does not count: its run never began, and the next run has its
-  /// name.
+  /// The newest run of a trial. If the newest log has no step, its run never began. Then this log
+  /// does not count, and the next run gets its name.
   TrialRecord Read(const Trial& trial) const;
   /// All practice runs and trials of a participant, in their order.
   std::vector<TrialRecord> ReadAll(std::int64_t participant) const;

@@ -1,4 +1,4 @@
-// Which trials a participant makes, in which order.
+// The trials of a participant, and their order.
 #pragma once
 
 #include <cstddef>
@@ -15,7 +15,7 @@ struct Trial {
   std::int64_t participant = 1;
   bool practice = false;
   std::int64_t number = 1;  // place in the order; practice runs are counted separately
-  std::size_t index = 0;    // of its condition, in `practice` or `conditions` of the plan
+  std::size_t index = 0;    // index of its condition in `practice` or `conditions`
   std::int64_t seed = -1;   // -1: the seed of the condition's scenario
 };
 

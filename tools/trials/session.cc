@@ -44,7 +44,7 @@ class Session {
   }
 
  private:
-  /// Everything that all facts of a trial share.
+  /// The values that all facts of a trial share.
   trial_t BaseOf(const Trial& trial, std::int64_t attempt, std::int64_t seed) const {
     trial_t base{};
     base.experiment = plan_.plan.title;
@@ -58,7 +58,7 @@ class Session {
     return base;
   }
 
-  /// What the desk says about a trial.
+  /// The facts that the desk shows about a trial.
   Next NextOf(const Trial& trial, std::int64_t seed) const {
     const auto& all = trial.practice ? plan_.plan.practice : plan_.plan.conditions;
     return {
@@ -87,7 +87,7 @@ class Session {
     if (record.story.state == TrialState::kBroken) {
       throw std::runtime_error(fmt::format("{}: {}", PathText(path), record.story.note));
     }
-    // A network may lose a fact. It is not lost for the log.
+    // The network may have lost facts. Adds these facts to the log.
     AddFacts(path, record.story, facts, key());
     record.story = ReadStory(path);
   }
@@ -123,7 +123,7 @@ class Session {
     return speaker ? speaker->End() : std::vector<trial_t>();
   }
 
-  /// Asks what is not answered, and ends the trial.
+  /// Asks the questions that have no answer yet, and ends the trial.
   void AskAfter(TrialRecord& record) {
     trial_t base = BaseOf(record.trial, record.attempts, 0);
     base.header = {.run_id = record.story.run_id,

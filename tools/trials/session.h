@@ -1,5 +1,6 @@
 // The trials of one participant: runs each trial that is not done, asks the questions after it, and
-// puts everything into its log. A session that was killed goes on at the next trial.
+// writes the answers into its log. If a session was killed, the next session begins with the first
+// trial that is not done.
 #pragma once
 
 #include <cstdint>
@@ -20,21 +21,22 @@ struct SessionOptions {
   std::int64_t participant = 1;
   double speed = 1;                    // simulated seconds per second
   std::vector<std::string> overrides;  // of every trial, such as /person/drives=true
-  bool breaks = true;                  // false: no break is longer than the person wants
-  /// Makes the pedals of the person who drives, for each run. Empty: this program has no seat.
+  bool breaks = true;                  // false: breaks have no least duration
+  /// Makes the pedals of the person who drives; called for each run. Empty: this program has no
+  /// seat.
   std::function<std::unique_ptr<drive::PedalSource>(const PersonSection&)> pedals;
   runner::ExperimentOptions run;  // transport and traffic of each run
 };
 
 /// The work that a session has done.
 struct SessionOutcome {
-  std::int64_t runs = 0;   // that this session has made
-  std::int64_t asked = 0;  // trials for whose questions only the answers were missing
+  std::int64_t runs = 0;   // number of runs that this session has made
+  std::int64_t asked = 0;  // number of trials of which only answers were missing
 };
 
 /// Makes the trials of a participant that are not done.
 /// @throws InputError for a folder that cannot be used; Interrupted; std::runtime_error if a run
-///     fails. The next session goes on from there
+///     fails. The next session continues from there
 SessionOutcome RunSession(const PlanFile& plan, const Results& results, SessionOptions options,
                           Desk& desk);
 

@@ -1,5 +1,5 @@
-// Tells the recorder of a run the facts of its trial, while the run is under way. It has a thread
-// of its own, because the runner's thread is busy with the run.
+// Sends the facts of a trial to the recorder during the run. A speaker has a thread of its own,
+// because the runner's thread is busy with the run.
 #pragma once
 
 #include <atomic>
@@ -17,7 +17,7 @@ namespace fogline::trials {
 class Speaker {
  public:
   /// Sends the fact BEGIN when the first TRUTH of the run comes.
-  /// @param base a fact with everything that all facts of the trial share
+  /// @param base a fact with the values that all facts of the trial share
   /// @throws InputError, std::runtime_error as runtime::Bus()
   Speaker(const std::string& url, std::int64_t run_id, const runtime::TrafficOptions& traffic,
           trial_t base);
@@ -31,7 +31,7 @@ class Speaker {
   void Mark(const std::string& text);
 
   /// Ends the thread. @return every fact so far; a fact may be missing in the log, because a
-  /// network loses messages
+  /// network can lose messages
   std::vector<trial_t> End();
 
  private:
@@ -39,7 +39,7 @@ class Speaker {
 
   trial_t base_;
   std::mutex mutex_;
-  std::vector<trial_t> facts_;  // those that are numbered
+  std::vector<trial_t> facts_;  // all facts so far, by sequence number
   std::size_t sent_ = 0;
   std::int64_t step_ = -1;
   std::int64_t utime_ = 0;

@@ -13,7 +13,8 @@ struct Tables {
   /// A row for each trial that has a log: participant, trial, condition, order, seed, log, one
   /// column for each item of a questionnaire, and one for each measure of the run.
   std::string trials;
-  /// The same values and the markers: participant, trial, condition, kind, item, value, unit.
+  /// A row for each answer, measure and marker: participant, trial, condition, kind, item, value,
+  /// unit.
   std::string values;
   std::int64_t rows = 0;     // of `trials`
   std::int64_t missing = 0;  // trials that are not done, practice runs included

@@ -115,8 +115,8 @@ void AddFacts(const std::filesystem::path& log, const TrialStory& story,
     ++head.events;
   }
   file.Close();
-  // A log has no seal if the runner was killed after the last step. It is then unknown whether the
-  // log has all that the recorder wrote, so it stays without a seal.
+  // A log has no seal if the runner was killed after the last step. Then it is unknown whether the
+  // log is complete, so the log stays without a seal.
   if (story.seal) {
     log_seal_t seal = story.seal->says;
     seal.file_hash = hash.Hex();

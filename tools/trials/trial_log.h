@@ -1,5 +1,5 @@
-// The facts of a trial in its log (lcmtypes/trial_t.lcm). The recorder writes those that come
-// during the run; this file adds those from after the run, such as answers.
+// The facts of a trial in its log (lcmtypes/trial_t.lcm). The recorder writes the facts that come
+// during the run. The functions of this file add facts that come after the run, such as answers.
 #pragma once
 
 #include <cstdint>
@@ -30,17 +30,18 @@ struct TrialStory {
   std::int64_t steps = 0;
   std::int64_t last_utime = 0;       // simulated time of the last step, us
   double speed = 1;                  // simulated seconds per second
-  std::string note;                  // what is wrong with the log; "" if nothing is
-  std::vector<trial_t> facts;        // each once, by their sequence
+  std::string note;                  // fault of the log; "" if it has none
+  std::vector<trial_t> facts;        // each fact once, by its sequence
   std::optional<log::LogSeal> seal;  // none if the run broke off
   bool altered = false;              // the log differs from its seal
 };
 
-/// Reads a log. A log that cannot be read is that of a broken run, and the note says why.
+/// Reads a log. A log that cannot be read counts as the log of a broken run, and the note says why.
 TrialStory ReadStory(const std::filesystem::path& log);
 
-/// Adds facts to the log of a complete run, and seals it again. Facts whose sequence the log has
-/// are left out. The log is replaced as a whole, so a crash leaves the old log or the new one.
+/// Adds facts to the log of a complete run, and seals it again. Facts with a sequence number that
+/// the log already has are left out. The log is replaced as a whole, so a crash leaves the old log
+/// or the new one.
 /// @param story of the log
 /// @param key signs the seal; nullptr: no signature
 /// @throws std::runtime_error if the log was altered after it was sealed, or cannot be written

@@ -20,9 +20,10 @@ struct ArrivalView {
 };
 
 /// Counts arrivals, interval by interval. Jitter is the sample standard deviation of the times
-/// between successive arrivals, computed by the recurrence of Welford (Technometrics 4, 1962). This
-/// jitter needs no clock of the sender, unlike RFC 3550's interarrival jitter. The clock of a paced
-/// run, or of a log that is played fast, differs in speed from the receiver's clock.
+/// between successive arrivals, computed by the recurrence of Welford (Technometrics 4, 1962). RFC
+/// 3550's interarrival jitter needs the clock of the sender. This jitter does not, because the
+/// clock of a paced run, or of a log that is played fast, differs in speed from the receiver's
+/// clock.
 class Arrivals {
  public:
   void Add(std::size_t bytes, TimePoint now);
@@ -39,7 +40,7 @@ class Arrivals {
   // The members below are counts of the interval.
   std::int64_t new_messages_ = 0;
   std::int64_t new_bytes_ = 0;
-  std::int64_t gaps_ = 0;  // times between arrivals whose second arrival is in the interval
+  std::int64_t gaps_ = 0;  // number of gaps whose second arrival is in the interval
   double mean_gap_s_ = 0;
   double sum_of_squares_ = 0;  // sum of squared deviations from the mean
   double longest_gap_s_ = 0;

@@ -9,8 +9,8 @@
 namespace fogline::watch {
 namespace {
 
-// Interval at which the program checks whether another run should be followed. It is not shorter,
-// because opening a network takes time.
+// Interval at which the program checks whether another run should be followed. A shorter interval
+// would cost too much time, because opening a network takes time.
 constexpr Duration kFollowEvery = milliseconds(100);
 // After this many unknown names a network is closed and opened again.
 constexpr std::int64_t kMostNames = 10'000;
@@ -37,7 +37,7 @@ FollowedNetwork::Network::Network(const std::string& url, const runtime::Bus::Wa
 
 bool FollowedNetwork::Network::Drain(TimePoint now) {
   bus.Drain();
-  // The tap comes second, so it has taken the packet of each message that the bus has handled.
+  // The bus comes first: the tap then takes the packets of all messages that the bus has handled.
   if (tap) tap->Drain(now);
   return bus.replaced() != std::exchange(replaced, bus.replaced());
 }
@@ -52,7 +52,7 @@ void FollowedNetwork::Open() {
 std::unique_ptr<PacketTap> FollowedNetwork::Tap(const std::string& url) {
   try {
     return PacketTap::Open(url, senders_);
-  } catch (const std::runtime_error& error) {  // the messages can be watched without it
+  } catch (const std::runtime_error& error) {  // without it only the counts are missing
     tap_trouble_ = error.what();
     return nullptr;
   }
@@ -61,7 +61,8 @@ std::unique_ptr<PacketTap> FollowedNetwork::Tap(const std::string& url) {
 void FollowedNetwork::ForgetNames(std::int64_t unknown) {
   if (unknown - names_ < kMostNames) return;
   names_ = unknown;
-  // A run on a network on which LCM receives is not announced (runtime::MayBeAnnounced()).
+  // Only this network can collect names: a followed network has no LCM that receives, because runs
+  // on such networks are not announced (runtime::MayBeAnnounced()).
   if (network_->bus.LcmReceives()) Open();
 }
 
@@ -102,7 +103,7 @@ void FollowedNetwork::DrainFollowed(TimePoint now) {
   if (!followed_) return;
   try {
     if (followed_->Drain(now)) ++generation_;
-  } catch (const std::exception&) {  // its relay has ended
+  } catch (const std::exception&) {  // the relay of this network has ended
     Leave(runs_.front().run_id);
   }
 }

@@ -1,5 +1,6 @@
-// The network that a program observes: the one of its URL. Without a URL the program also observes
-// the network of the newest run that is announced on this machine. It only listens.
+// The network that a program observes: the network of its URL. Without a URL the program also
+// observes the network of the newest run that is announced on this machine. The program sends
+// nothing.
 #pragma once
 
 #include <array>
@@ -20,12 +21,13 @@ namespace fogline::watch {
 
 class FollowedNetwork {
  public:
-  /// A flood may leave messages that poll() does not report. So call Handle() at least so often.
+  /// Interval at which Handle() must be called at least. After a flood of messages, messages may
+  /// wait that poll() does not report.
   static constexpr Duration kLookEvery = milliseconds(50);
 
   /// @param follows whether to follow announced runs
   /// @param watcher gets every message, except LCM's own and beacons
-  /// @throws InputError, std::runtime_error as Bus()
+  /// @throws InputError, std::runtime_error like Bus()
   FollowedNetwork(std::string url, bool follows, runtime::Bus::Watcher watcher);
 
   /// Handles messages that have come, and looks for announced runs.
@@ -33,7 +35,7 @@ class FollowedNetwork {
   void Handle(TimePoint now);
 
   /// Closes the network of the URL and opens it again, if LCM receives there (Bus::LcmReceives())
-  /// and has too many names. The watcher misses the messages of these milliseconds.
+  /// and has too many names. The watcher misses messages for some milliseconds.
   /// @param unknown messages so far on channels whose names were unknown
   void ForgetNames(std::int64_t unknown);
 
@@ -42,35 +44,35 @@ class FollowedNetwork {
   std::array<int, 2> descriptors() const {
     return {network_->bus.fd(), followed_ ? followed_->bus.fd() : -1};
   }
-  /// Changes when a network was opened or closed, or its relay was lost or has come back. A
-  /// descriptor may then have the same number and be another file.
+  /// A number that changes when a network is opened or closed, or when its relay is lost or comes
+  /// back. A descriptor may then have the same number, but be another file.
   std::int64_t generation() const { return generation_; }
 
-  /// The network of the followed run, or else the given network.
+  /// The URL of the followed run's network; without a followed run, the given URL.
   const std::string& url() const { return followed_ ? followed_->bus.url() : network_->bus.url(); }
-  /// The roles that wait for a run on the given network or, without one, on this machine.
+  /// The roles that wait for a run on the given network, or on this machine if no URL is given.
   std::vector<runtime::WaitingRole> waiting(TimePoint now) const { return waiting_.Current(now); }
   bool follows() const { return listener_.has_value(); }
   bool followed() const { return followed_.has_value(); }
-  /// The announced runs, the followed one first.
+  /// The announced runs; the followed run comes first.
   const std::vector<runtime::Announcement>& runs() const { return runs_; }
 
-  /// The senders, and the messages of each that were lost.
+  /// The senders, and how many messages of each sender were lost.
   SendersView ViewSenders(TimePoint now) const { return senders_.View(now); }
-  /// Whether packets have numbers, by which a loss is found. Those of a relay have none.
+  /// Whether packets have numbers by which a loss is found. Packets of a relay have no numbers.
   bool numbered() const { return network_->tap || (followed_ && followed_->tap); }
-  /// Why packets that have numbers cannot be counted; "" if they are counted.
+  /// The reason why packets with numbers cannot be counted; "" if they are counted.
   const std::string& tap_trouble() const { return tap_trouble_; }
 
  private:
   struct Network {
     Network(const std::string& url, const runtime::Bus::Watcher& watcher);
-    /// @return whether a descriptor has become another file
+    /// @return whether a descriptor may be another file
     bool Drain(TimePoint now);
 
     runtime::Bus bus;
     std::unique_ptr<PacketTap> tap;  // nullptr if packets have no numbers
-    std::int64_t replaced = 0;       // of the bus
+    std::int64_t replaced = 0;       // bus.replaced() at the last Drain()
   };
 
   void Open();
@@ -91,7 +93,7 @@ class FollowedNetwork {
   std::optional<runtime::BeaconListener> listener_;  // set if announced runs are to be followed
   std::vector<runtime::Announcement> runs_;
   std::optional<Network> followed_;        // the network of the followed run
-  std::vector<std::int64_t> unreachable_;  // ids of runs
+  std::vector<std::int64_t> unreachable_;  // ids of runs whose networks could not be opened
   TimePoint follow_at_{};
   std::string tap_trouble_;
   std::int64_t generation_ = 0;

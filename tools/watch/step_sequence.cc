@@ -70,8 +70,7 @@ void StepSequence::StartAt(std::int64_t step) {
 
 void StepSequence::MoveTo(std::int64_t newest) {
   const std::int64_t by = newest - counts_.newest;
-  // Steps that leave the window: the window's oldest steps, and the steps that the sequence jumps
-  // over.
+  // The loop visits the steps that leave the window, and the steps that the sequence jumps over.
   for (std::int64_t step = std::max(first_, counts_.newest - kWindow + 1); step <= newest - kWindow;
        ++step) {
     const std::int64_t age = counts_.newest - step;

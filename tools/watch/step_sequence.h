@@ -35,8 +35,8 @@ class StepSequence {
   /// 3550, appendix A.1). The skipped steps are not counted as lost, because it is unknown whether
   /// they were ever sent.
   static constexpr std::int64_t kMaxJump = 3000;
-  /// Old steps restart the sequence if no new step has come for this long. This happens when a log
-  /// is played twice.
+  /// If no new step has come for this long, an old step restarts the sequence. This happens when a
+  /// log is played twice.
   static constexpr Duration kBeginsAgain = milliseconds(1000);
 
  private:
@@ -47,7 +47,7 @@ class StepSequence {
   std::int64_t first_ = 0;     // first step of the sequence
   std::bitset<kWindow> seen_;  // bit i: step newest - i
   std::int64_t awaited_ = -1;  // successor of a step that was too far ahead
-  TimePoint progressed_{};     // when `newest` last grew
+  TimePoint progressed_{};     // when counts_.newest last grew
 };
 
 }  // namespace fogline::watch

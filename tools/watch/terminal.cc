@@ -46,7 +46,7 @@ Terminal::Terminal() {
     has_keys_ = true;
     termios keys = before_;
     keys.c_lflag &= ~static_cast<tcflag_t>(ICANON | ECHO);
-    keys.c_cc[VSUSP] = _POSIX_VDISABLE;  // a stop by Ctrl-Z would leave the shell without echo
+    keys.c_cc[VSUSP] = _POSIX_VDISABLE;  // after a stop by Ctrl-Z the shell would have no echo
     tcsetattr(fd_, TCSANOW, &keys);
   }
   Write(kEnter);
@@ -90,7 +90,7 @@ bool Terminal::Read() {
     keys_.Take({bytes.data(), static_cast<std::size_t>(size)});
     return true;
   }
-  // At the end of stdin, poll() would report stdin as readable forever.
+  // poll() reports stdin as readable forever after the end of stdin.
   if (size == 0 || (errno != EINTR && errno != EAGAIN)) has_keys_ = false;
   return false;
 }

@@ -1,5 +1,5 @@
-// A terminal that is redrawn in place: alternate screen, no echo, one key at a time. It uses ANSI
-// escape sequences (ECMA-48) that every current terminal knows, and no terminal database.
+// A terminal that is redrawn in place: alternate screen, no echo, one key at a time. The class uses
+// ANSI escape sequences (ECMA-48) that every current terminal knows, and no terminal database.
 #pragma once
 
 #include <termios.h>
@@ -15,7 +15,7 @@ namespace fogline::watch {
 
 class Terminal {
  public:
-  /// Takes over stdout, and the keys of stdin if stdin is a terminal too.
+  /// Takes over stdout. If stdin is a terminal, also takes over the keys of stdin.
   Terminal();
   /// Restores the screen.
   ~Terminal();
@@ -28,7 +28,7 @@ class Terminal {
   /// Whether output to the terminal fails, for example because its window was closed.
   bool gone() const { return gone_; }
 
-  /// The size of its window; 80 by 24 if the terminal does not tell it.
+  /// The size of the window; 80 by 24 if the terminal does not report a size.
   struct Size {
     std::size_t columns = 80;
     std::size_t rows = 24;

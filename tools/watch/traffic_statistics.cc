@@ -120,7 +120,7 @@ void TrafficStatistics::AddStatus(RunRecord& run, runtime::Bytes bytes, TimePoin
   if (!runtime::Decode(bytes, status)) return;
   for (RoleRecord& role : run.roles) {
     if (role.status.instance != status.instance || role.status.role != status.role) continue;
-    if (status.sequence <= role.status.sequence) return;  // a copy, or older than the last one
+    if (status.sequence <= role.status.sequence) return;  // repeated, or older than the last one
     role.status = std::move(status);
     role.heard = now;
     return;

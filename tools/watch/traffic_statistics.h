@@ -30,7 +30,7 @@ struct ChannelView {
   ArrivalView arrivals;
   std::optional<StepSequence::Counts> steps;  // only for channels with a message in every step
   Undecodable undecodable;
-  std::vector<std::uint8_t> newest;  // the last message that could be decoded, or is of no run
+  std::vector<std::uint8_t> newest;  // the last message that could be decoded, or belongs to no run
 
   std::int64_t NumUndecodable() const;
 };
@@ -63,9 +63,9 @@ struct TrafficView {
                                     // of room
 };
 
-/// Whether a channel is LCM's own (its test of the network, and the announcements of ports by
-/// mpudpm), has the beacons of runs or the STATUS of waiting roles, or belongs to `fogline doctor`.
-/// Such a channel carries no traffic of programs.
+/// Whether a channel carries no traffic of programs. Such channels are LCM's own (the self-test of
+/// the network, and the announcements of ports by mpudpm), the channels of beacons and of waiting
+/// roles, and the channels of `fogline doctor`.
 bool IsHousekeeping(std::string_view channel);
 
 /// Statistics of all messages that arrive. The memory is bounded for any input: if there is no
@@ -102,7 +102,7 @@ class TrafficStatistics {
   struct RoleRecord {
     status_t status;
     TimePoint heard;
-    // The last reading of processor time; the next reading is compared with it.
+    // The last reading of processor time, for comparison with the next reading.
     std::int64_t base_cpu_ms = 0;
     TimePoint base;
     std::optional<double> cpu_percent;

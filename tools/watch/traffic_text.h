@@ -1,4 +1,4 @@
-// TrafficView for people: lines of text that fit into a window.
+// A TrafficView as text for people: lines that fit into a window.
 #pragma once
 
 #include <string>

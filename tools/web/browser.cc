@@ -17,7 +17,7 @@ namespace {
 
 constexpr const char* kOpener = "xdg-open";
 
-/// The path of a program in $PATH; "" if it is not there.
+/// The path of a program in $PATH; "" if $PATH does not have the program.
 std::string FindProgram(const std::string& name) {
   const char* path = std::getenv("PATH");
   std::istringstream folders(path == nullptr ? "" : path);
@@ -33,7 +33,8 @@ bool IsSet(const char* variable) {
   return value != nullptr && *value != '\0';
 }
 
-/// Turns the child of the child into the opener. It makes only async-signal-safe calls.
+/// Turns the child's child into the program that opens the browser. Makes only async-signal-safe
+/// calls.
 [[noreturn]] void Become(const char* program, char* const* arguments) {
   setsid();  // Ctrl-C in the terminal does not reach the browser
   sigset_t none;
@@ -58,7 +59,7 @@ void OpenBrowser(const std::string& url) {
   const std::array<char*, 3> arguments{program.data(), address.data(), nullptr};
   const pid_t child = fork();
   if (child == 0) {
-    // The browser becomes a child of init, so this program need not wait for its end.
+    // The browser becomes a child of init, so this program does not wait for the browser's end.
     if (fork() == 0) Become(program.c_str(), arguments.data());
     _exit(0);
   }

@@ -5,11 +5,12 @@
 
 namespace fogline::web {
 
-/// Whether there is a screen (DISPLAY or WAYLAND_DISPLAY), and xdg-open, which knows the browser.
+/// Whether this machine has a screen (DISPLAY or WAYLAND_DISPLAY), and xdg-open, which starts the
+/// browser.
 bool HasBrowser();
 
-/// Starts the browser. It outlives this process. A browser that cannot be started is not reported:
-/// the address is printed anyway.
+/// Starts the browser, which runs on after the end of this process. A failure is not reported,
+/// because the address is printed in any case.
 void OpenBrowser(const std::string& url);
 
 }  // namespace fogline::web

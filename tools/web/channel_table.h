@@ -1,4 +1,4 @@
-// The channels of a network by number. Binary frames name a channel by its number.
+// Numbers for the channels of a network. Binary frames name a channel by its number.
 #pragma once
 
 #include <cstddef>
@@ -18,17 +18,17 @@ using ChannelId = std::uint16_t;
 struct KnownChannel {
   ChannelId id = 0;
   std::string name;
-  std::string type;  // "": unknown, because it is no type of Fogline
+  std::string type;  // "": unknown, because it is not a type of Fogline
 };
 
-/// The channels of the graph have their places in kChannels. Other channels get the next numbers
-/// when they are heard.
+/// The number of each channel. A channel of the graph has its place in kChannels. Other channels
+/// get the next numbers in the order of their first messages.
 class ChannelTable {
  public:
-  /// The most other channels. Any program on the network can invent names.
+  /// Limit for the other channels, because any program on the network can invent names.
   static constexpr std::size_t kMostOthers = 4096;
 
-  /// The number of a channel. A new channel is added.
+  /// Returns the number of a channel. Adds a new channel.
   /// @param bytes a message of the channel; its first bytes name its type
   /// @return nullopt if there are too many channels
   std::optional<ChannelId> IdOf(std::string_view name, runtime::Bytes bytes);

@@ -109,7 +109,8 @@ void LiveView::Wait() {
     generation_ = network_.generation();
     for (std::size_t i = 0; i < descriptors_.size(); ++i) {
       descriptors_[i].reset();
-      // A descriptor of our own: the network may close the other one at any time.
+      // The descriptor is a duplicate, because the network may close its own descriptor at any
+      // time.
       const int fd = fcntl(network_.descriptors()[i], F_DUPFD_CLOEXEC, 0);
       if (fd < 0) continue;
       descriptors_[i].emplace(context_, fd);
@@ -177,7 +178,7 @@ void LiveView::BeginHistory(Viewer& viewer, RequestId id) {
   Pump(viewer.client->id());
 }
 
-/// Sends the next messages, if the client has taken everything before.
+/// Sends the next messages if no earlier frame waits to be sent to the client.
 void LiveView::Pump(std::uint64_t id) {
   const auto found = viewers_.find(id);
   if (found == viewers_.end()) return;
@@ -188,7 +189,8 @@ void LiveView::Pump(std::uint64_t id) {
     return client.CutOff(CloseCode::kTryAgainLater,
                          fmt::format("does not read; {} bytes wait for it", behind));
   }
-  // A client of Foxglove's protocol may have subscribed to none of the messages.
+  // A client of Foxglove's protocol may have subscribed to none of these messages. Then the next
+  // messages follow at once.
   while (client.waiting() == 0 && viewer.place < ring_.end()) {
     const std::string_view messages = ring_.From(viewer.place);
     if (viewer.history) {
@@ -234,7 +236,7 @@ void LiveView::SendToAll(std::string text) {
 void LiveView::TellChannel(const KnownChannel& channel) {
   SendToAll(ChannelText(channel));
   const LcmStruct* type = FoglineTypes().Named(channel.type);
-  if (type == nullptr) return;  // Foxglove could not show it
+  if (type == nullptr) return;  // Foxglove cannot show this channel
   const foxglove::Channel& added =
       foxglove_channels_.Add({.id = channel.id, .topic = channel.name, .type = type});
   for (const auto& [id, viewer] : viewers_) {
@@ -242,7 +244,7 @@ void LiveView::TellChannel(const KnownChannel& channel) {
   }
 }
 
-/// Tells new channels, a new run and new events.
+/// Tells the clients about new channels, a new run and new events.
 void LiveView::TellNews() {
   for (; told_channels_ < channels_.others().size(); ++told_channels_) {
     TellChannel(channels_.others()[told_channels_]);
@@ -294,7 +296,7 @@ std::string LiveView::Health() {
                               {"viewers", server_ ? server_->counts().viewers : 0},
                               {"cut_off", server_ ? server_->counts().cut_off : 0},
                               {"refused", server_ ? server_->counts().refused : 0}};
-  for (auto& run : json["traffic"]["runs"]) {  // JavaScript rounds numbers beyond 2^53
+  for (auto& run : json["traffic"]["runs"]) {  // as text: JavaScript rounds numbers beyond 2^53
     run["run_id"] = std::to_string(run["run_id"].get<std::int64_t>());
   }
   if (network_.numbered()) json["senders"] = watch::SendersJson(senders);

@@ -1,4 +1,4 @@
-// The run that is on the network, for the clients of a server. It subscribes to everything and
+// Shows the run on the network to the clients of a server. It subscribes to all channels, and
 // publishes nothing.
 #pragma once
 
@@ -36,7 +36,7 @@ struct LiveOptions {
 
 class LiveView final : public View {
  public:
-  /// A client that has so many bytes of messages before it is cut off.
+  /// Number of bytes of unsent messages above which a client is cut off.
   static constexpr std::uint64_t kMostBehind = SendQueue::kMostBytes;
   static constexpr Duration kHealthEvery = milliseconds(250);
 
@@ -44,14 +44,14 @@ class LiveView final : public View {
   /// @throws InputError, std::runtime_error as runtime::Bus()
   LiveView(boost::asio::io_context& context, LiveOptions options);
 
-  /// The server whose counts (viewers, cut off, refused) the clients get in `health`. It must live
-  /// as long as the view is not stopped.
+  /// Sets the server whose counts (viewers, cut off, refused) the clients get in `health`. The
+  /// server must exist until Stop().
   void Show(const Server& server) { server_ = &server; }
-  /// Each message of a channel of the graph also goes to `teller`, after tracker() has heard it. An
-  /// empty function ends this.
+  /// Passes each message on a channel of the graph also to `teller`, after tracker() has handled
+  /// it. An empty function ends this.
   using Teller = std::function<void(const RingMessage& message)>;
   void TellMessages(Teller teller) { teller_ = std::move(teller); }
-  /// The context then has no more work of this view.
+  /// Ends the work of this view in the context.
   void Stop();
 
   void Opened(Client& client) override;
@@ -63,16 +63,16 @@ class LiveView final : public View {
   const RunTracker& tracker() const { return tracker_; }
 
  private:
-  /// A client, and the part of the ring that it has got.
+  /// A client, and its place in the ring: the end of the messages that it has got.
   struct Viewer {
     Client* client = nullptr;
     std::uint64_t place = 0;
-    std::optional<RequestId> history;           // set while it gets messages from before
-    std::int64_t sent = 0;                      // messages of the history
+    std::optional<RequestId> history;           // set while the client gets earlier messages
+    std::int64_t sent = 0;                      // number of messages of the history so far
     std::optional<foxglove::Session> foxglove;  // set if the client speaks Foxglove's protocol
   };
-  /// Statistics of a second that end in turn, so that every health message has the numbers of a
-  /// whole second.
+  /// Number of statistics, each over one second. They end in turn, so every health message has the
+  /// numbers of a whole second.
   static constexpr std::size_t kTurns = 4;
 
   void Hear(std::string_view channel, runtime::Bytes bytes);
@@ -87,7 +87,7 @@ class LiveView final : public View {
   void Translate(Viewer& viewer, std::string_view messages);
   void TellNews();
   void TellChannel(const KnownChannel& channel);
-  /// Names on stderr what cannot be shown.
+  /// Names on stderr the runs and messages that cannot be shown.
   void NameTrouble(const watch::SendersView& senders);
   /// Sends a text to the clients that speak our own protocol.
   void SendToAll(std::string text);
@@ -99,17 +99,17 @@ class LiveView final : public View {
   std::size_t turn_ = 0;
   ChannelTable channels_;
   foxglove::Channels foxglove_channels_;
-  std::size_t told_channels_ = 0;  // channels that the clients know
+  std::size_t told_channels_ = 0;  // number of other channels that the clients know
   MessageRing ring_;
   RunTracker tracker_;
   Teller teller_;
   std::int64_t told_run_ = 0;
-  std::int64_t named_scenarios_ = 0;  // refused scenarios that were named on stderr
-  std::size_t named_fragmented_ = 0;  // channels of too large messages that were named
+  std::int64_t named_scenarios_ = 0;  // number of refused scenarios named on stderr
+  std::size_t named_fragmented_ = 0;  // number of channels with too large messages named on stderr
   LineBudget lines_{"fogline-web"};
   std::int64_t unverified_ = 0;
   watch::FollowedNetwork network_;
-  std::int64_t generation_ = -1;  // of the descriptors below
+  std::int64_t generation_ = -1;  // network_.generation() of descriptors_
   std::array<std::optional<boost::asio::posix::stream_descriptor>, 2> descriptors_;
   boost::asio::steady_timer look_;
   boost::asio::steady_timer health_;

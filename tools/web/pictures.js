@@ -1,5 +1,5 @@
 // Makes the pictures of README.md and docs/, with the browser of the campaign tests. tools/pictures
-// calls it with the names of the pictures.
+// calls this file with the names of the pictures.
 
 import {execFileSync} from "node:child_process";
 import {statSync} from "node:fs";
@@ -9,9 +9,9 @@ import {begin, drives, startDrive} from "../../tests/campaign/web/seat.js";
 import {background, browser, goTo, open, root, scratch, until, view} from "../../tests/campaign/web/window.js";
 
 const {FOGLINE} = process.env;
-const MOST_BYTES = 250000;  // of a picture, so that a clone stays small
+const MOST_BYTES = 250000;  // limit for a picture, so that a clone stays small
 const WIDTH = 1280;         // of a picture; GitHub shows it in about 850 pixels
-const COLOURS = 256;        // of a picture; more do not look better, but need three times the bytes
+const COLOURS = 256;        // of a picture; more would need three times the bytes for no gain
 const SCHEME = {colorScheme: "light"};
 
 /** Waits until the browser has drawn everything that the page has asked for. */
@@ -22,7 +22,7 @@ const drawn = (page) => page.evaluate(async () => {
 /** Runs fogline to its end. */
 const fogline = (...args) => execFileSync(FOGLINE, args, {cwd: root, stdio: ["ignore", "ignore", "inherit"]});
 
-/** The report of tools/demo. */
+/** Makes the picture of the report of tools/demo. */
 async function report(t, started, file) {
   const folder = scratch(t);
   fogline("table", "scenario/paper.json", "--transport", "direct", "--logs", folder);
@@ -41,7 +41,9 @@ async function report(t, started, file) {
   await page.screenshot({path: file});
 }
 
-/** The window of a run in dense fog, 0.3 s after the human has taken over for good. */
+/**
+ * Makes the picture of the window: a run in dense fog, 0.3 s after the last take-over by the human.
+ */
 async function window(t, started, file) {
   const log = path.join(scratch(t), "dense_fog-1.lcm");
   fogline("run", "scenario/dense_fog.json", "--transport", "direct", "--log", log);
@@ -51,7 +53,8 @@ async function window(t, started, file) {
     foglinePage.log.events.findLast(({text}) => text === "transfer to the driver").step));
   await goTo(page, step + 3);
   await page.waitForFunction(() => foglinePage.scene.view && foglinePage.curves.charts.length > 0);
-  // The window ends where the health of the run begins, which the bar with the time would cover.
+  // The picture ends where the health of the run begins. Otherwise the time bar would cover the
+  // health.
   const height = await page.evaluate(() => Math.ceil(
     document.getElementById("health").offsetTop + document.getElementById("timebar").offsetHeight));
   await page.setViewportSize({width: WIDTH, height});
@@ -61,13 +64,15 @@ async function window(t, started, file) {
   await page.screenshot({path: file});
 }
 
-/** The seat at a request to take over. The fog comes early, so that the request does, too. */
+/**
+ * Makes the picture of the seat at a request to take over. With early fog the request comes early.
+ */
 async function drive(t, started, file) {
   const {address} = await startDrive(t, {"/fog/start_s": 3});
   const page = await open(t, started, address, {size: {width: WIDTH, height: 850}, ...SCHEME});
   await begin(page);
   await drives(page, true);
-  // The page holds this moment, because a busy machine may need seconds for the picture.
+  // The page stops at this moment, because a busy machine may need seconds for the picture.
   await page.waitForFunction(() => {
     const isThere = document.getElementById("request-left").textContent.startsWith("9");
     if (isThere) foglineDrive.take = () => {};
@@ -75,7 +80,7 @@ async function drive(t, started, file) {
   });
   await page.evaluate(() => {
     document.activeElement.blur();
-    // All pixels, which the page saves where a picture takes long.
+    // Draws all pixels. The page omits some of them if a picture takes long.
     foglineDrive.budget.level = 0;
     foglineDrive.budget.judge = () => {};
   });
@@ -91,7 +96,10 @@ async function makeRun(page, during = async () => {}) {
   await page.waitForSelector("#questions input");
 }
 
-/** Both pages of an experiment, side by side: the participant answers the questions about a run. */
+/**
+ * Makes the picture of both pages of an experiment, side by side. The participant answers the
+ * questions.
+ */
 async function experiment(t, started, file) {
   const session = background(t, FOGLINE, [
     "experiment", "run", "scenario/experiment/thresholds.json", "--participant", "1", "--results", scratch(t),
@@ -134,7 +142,7 @@ async function experiment(t, started, file) {
 
 const PICTURES = {report, view: window, drive, experiment};
 
-/** Does something, and then ends what it has started. */
+/** Calls `make`, and then ends everything that `make` has started. */
 async function attempt(make) {
   const ends = [];
   try {
@@ -147,7 +155,7 @@ async function attempt(make) {
 for (const name of process.argv.slice(2)) {
   const file = path.join(root, `docs/${name}.png`);
   await attempt(async (t) => PICTURES[name](t, await browser(t), file));
-  // Without the time of writing, so that an equal picture has equal bytes.
+  // Without the time of writing, equal pictures have equal bytes.
   execFileSync("convert", [file, "-strip", "+dither", "-colors", String(COLOURS), "-define", "png:compression-level=9",
                            file]);
   const {size} = statSync(file);

@@ -16,7 +16,7 @@ std::string_view KindOf(const take_over::TakeOverEntry& entry) {
   return InMinimalRisk(entry.to) ? "manoeuvre" : "request";
 }
 
-/// Whether an entry only says that the run has begun.
+/// Whether an entry says only that the run has begun.
 bool IsBeginning(const take_over::TakeOverEntry& entry) {
   return entry.from == arbitration_t::AUTOMATION && entry.to == arbitration_t::AUTOMATION &&
          !entry.transfer;

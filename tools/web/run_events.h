@@ -1,5 +1,5 @@
 // The events of a run, found in its messages: fog, transfers, requests, alarms, manoeuvres,
-// emergency braking, collisions. They are the same for a live run and for its log.
+// emergency braking, collisions. A live run and its log give the same events.
 #pragma once
 
 #include <cstddef>
@@ -22,19 +22,19 @@ struct RunEvent {
   std::string text;
 };
 
-/// Takes the messages of a run in the order of their steps. Some may be missing. A message that
-/// comes again, or too late, is ignored.
+/// Finds the events. Takes the messages of a run in the order of their steps. Messages may be
+/// missing. A message that comes again, or too late, is ignored.
 class RunEvents {
  public:
-  /// The most events that are kept. A DoC that moves around its threshold gives many alarms.
+  /// Limit for the stored events. A DoC that moves around its threshold causes many alarms.
   static constexpr std::size_t kMost = 5000;
 
   void Add(const truth_t& truth);
-  /// @param human_mps2 the driver's offer in this step; nullopt if it is not known
+  /// @param human_mps2 the driver's offer in this step; nullopt if the offer is unknown
   void Add(const arbitration_t& command, std::optional<double> human_mps2);
 
   const std::vector<RunEvent>& events() const { return events_; }
-  /// Events beyond kMost.
+  /// Number of events beyond kMost, which are not stored.
   std::size_t left_out() const { return left_out_; }
   const take_over::TakeOverLog& take_over() const { return take_over_; }
 

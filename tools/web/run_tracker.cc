@@ -10,8 +10,8 @@
 namespace fogline::web {
 namespace {
 
-// If a step is older than the newest one by more than this, the run is being played again. In
-// lockstep no role is so far behind.
+// If a step is this much older than the newest one, the run is being played again. In lockstep no
+// role is so far behind.
 constexpr std::int64_t kPlayedAgain = 1000;
 
 }  // namespace
@@ -44,8 +44,8 @@ void RunTracker::HearRun(runtime::Bytes bytes, TimePoint now) {
 }
 
 void RunTracker::Show(RunFacts run) {
-  // Any program may have sent the text. Our own parser bounds its depth before others recurse into
-  // it.
+  // Any program may have sent the text. Fogline's own parser limits the depth of the JSON before
+  // other parsers handle it recursively.
   DiagnosticList mistakes;
   std::string text = ParseJson(run.scenario_text, 0, mistakes) ? RunText(run) : "";
   if (text.empty()) {

@@ -1,5 +1,5 @@
-// Which run a live view shows, and its events: found in the messages of the network, without
-// sending any.
+// Finds out which run a live view shows, and the events of this run. It uses only messages of the
+// network, and sends none.
 #pragma once
 
 #include <cstddef>
@@ -16,35 +16,35 @@
 
 namespace fogline::web {
 
-/// Follows one run until it has ended or has been silent for kSilent. Then it takes the next run
-/// that it hears. The scenario of a run comes in parts; a run is shown when all of them are there.
+/// Follows one run until it has ended or has been silent for kSilent. Then follows the next run
+/// whose RUN comes. The scenario of a run comes in parts. A run is shown when all parts have come.
 class RunTracker {
  public:
   static constexpr Duration kSilent = milliseconds(2000);
-  /// The most parts of a scenario: about 4 MB of text. A page could not use more.
+  /// Limit for the parts of a scenario: about 4 MB of text. A page could not handle more.
   static constexpr std::int32_t kMostParts = 4096;
 
   RunTracker() = default;
-  /// @param only follows this run and no other
+  /// @param only the only run to follow; nullopt: any run
   explicit RunTracker(std::optional<std::int64_t> only) : run_id_(only), only_(only) {}
 
-  /// Takes a message. @param channel its place in kChannels
+  /// Takes a message. @param channel place of the channel in kChannels
   void Hear(std::size_t channel, runtime::Bytes bytes, TimePoint now);
 
-  /// The run that is followed; nullopt before the first one.
+  /// The followed run; nullopt before the first run.
   std::optional<std::int64_t> followed() const { return run_id_; }
-  /// The run whose scenario is known; nullopt if there is none.
+  /// The last run whose scenario is complete; nullopt if there is none.
   const std::optional<RunFacts>& run() const { return shown_; }
-  /// RunText() of run(); "" if there is none.
+  /// RunText() of run(); "" if run() is nullopt.
   const std::string& run_text() const { return shown_text_; }
-  /// Grows by one with each new run().
+  /// Number of runs that run() has shown so far.
   std::int64_t runs() const { return runs_; }
-  /// Complete scenarios that are no JSON objects. Their runs are not shown.
+  /// Number of complete scenarios that are not JSON objects. Their runs are not shown.
   std::int64_t refused_scenarios() const { return refused_scenarios_; }
-  /// The events of the run so far.
+  /// The events of the followed run so far.
   const std::vector<RunEvent>& events() const { return events_.events(); }
-  /// The events since the last call. They begin again with each new run(), and when a run is played
-  /// again.
+  /// The events since the last call. The events begin again with each new run, and when a run is
+  /// played again.
   std::vector<RunEvent> TakeEvents();
 
  private:
@@ -64,12 +64,12 @@ class RunTracker {
   std::int64_t runs_ = 0;
   std::int64_t refused_scenarios_ = 0;
   RunEvents events_;
-  std::size_t taken_ = 0;     // events that TakeEvents() has returned
-  std::int64_t newest_ = -1;  // step
+  std::size_t taken_ = 0;     // number of events that TakeEvents() has returned
+  std::int64_t newest_ = -1;  // newest step
   truth_t truth_{};
   arbitration_t command_{};
   driver_command_t driver_{};
-  bool offered_ = false;  // driver_ has a message of this run
+  bool offered_ = false;  // whether driver_ has a message of this run
 };
 
 }  // namespace fogline::web

@@ -13,7 +13,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// The text of a document. A name from the network may have bytes that are not valid UTF-8.
+/// A JSON document as text. A name from the network may have bytes that are not valid UTF-8.
 std::string Printed(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }

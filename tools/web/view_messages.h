@@ -1,4 +1,4 @@
-// The frames that a page gets (docs/view.md describes them).
+// The frames that a server sends to a page (docs/view.md describes them).
 #pragma once
 
 #include <cstdint>
@@ -17,10 +17,10 @@
 
 namespace fogline::web {
 
-/// The kinds of binary frames: their first byte.
+/// The kinds of binary frames. The first byte of a frame is its kind.
 enum class FrameKind : std::uint8_t { kMessages = 1, kSteps = 2, kSeries = 3 };
 
-/// A run, as a page needs it.
+/// The facts about a run that a page needs.
 struct RunFacts {
   std::int64_t run_id = 0;
   std::string scenario_text;  // the effective scenario, JSON
@@ -32,14 +32,14 @@ struct RunFacts {
 std::string HelloText(const std::optional<std::string>& url,
                       const std::vector<KnownChannel>& others);
 std::string ChannelText(const KnownChannel& channel);
-/// @return "" if the scenario is no JSON object
+/// @return "" if the scenario is not a JSON object
 std::string RunText(const RunFacts& run);
 std::string LogText(const std::filesystem::path& file, const LogIndex& index);
 std::string EventText(const RunEvent& event);
 std::string HistoryText(RequestId id, std::int64_t messages);
 std::string ErrorText(std::optional<RequestId> id, std::string_view message);
 
-/// A frame of kind 1. @param messages as MessageRing::From() gives them
+/// A frame of kind 1. @param messages in the form of MessageRing::From()
 std::string MessagesFrame(std::string_view messages);
 /// A frame of kind 2 with all messages of these steps.
 std::string StepsFrame(const StepsRequest& request, const LogIndex& index);

@@ -13,7 +13,7 @@ namespace {
 
 using nlohmann::json;
 
-/// @throws InputError if the member is missing, no whole number, or out of range
+/// @throws InputError if the member is missing, not a whole number, or out of range
 std::int64_t WholeNumber(const json& request, const char* name, std::int64_t least,
                          std::int64_t most) {
   const auto found = request.find(name);

@@ -11,7 +11,7 @@ namespace fogline::web {
 
 using RequestId = std::uint32_t;
 
-/// All messages of some steps of a log.
+/// Requests all messages of some steps of a log.
 struct StepsRequest {
   RequestId id = 0;
   std::int64_t from = 0;
@@ -20,7 +20,7 @@ struct StepsRequest {
   static constexpr std::int64_t kMostSteps = 512;
 };
 
-/// A field of a log over time.
+/// Requests a field of a log over time.
 struct SeriesRequest {
   RequestId id = 0;
   std::string channel;
@@ -32,12 +32,12 @@ struct SeriesRequest {
   static constexpr std::int64_t kMostPoints = 20'000;
 };
 
-/// The messages of a live network that have come before.
+/// Requests the messages of a live network that came before the request.
 struct HistoryRequest {
   RequestId id = 0;
 };
 
-/// A frame that is no request, with the reason for its sender.
+/// A frame that is not a request, with the reason for its sender.
 struct BadRequest {
   std::optional<RequestId> id;
   std::string why;
@@ -45,7 +45,7 @@ struct BadRequest {
 
 using ViewRequest = std::variant<StepsRequest, SeriesRequest, HistoryRequest, BadRequest>;
 
-/// Never throws: a wrong text becomes a BadRequest.
+/// Reads a request. Never throws: a wrong text becomes a BadRequest.
 ViewRequest ParseViewRequest(std::string_view text);
 
 }  // namespace fogline::web

@@ -1,5 +1,5 @@
-// fogline view, a program of its own: shows the run that is on the network, or a log, in a browser.
-// Without --seat it only listens: it then never sends a message to a run.
+// fogline view, a program of its own: shows the run on the network, or a log, in a browser. Without
+// --seat it never sends a message to a run.
 #include <chrono>
 #include <cstdint>
 #include <cstdio>
@@ -40,9 +40,9 @@ namespace {
 namespace asio = boost::asio;
 
 constexpr std::uint16_t kDefaultPort = 7680;
-// The ports after the default port that are tried if it is busy.
+// Number of ports that are tried, beginning with the default port, if the user has chosen no port.
 constexpr std::uint16_t kPortsTried = 20;
-// All connections must be closed in this time after Ctrl-C.
+// Time after Ctrl-C in which all connections must be closed.
 constexpr std::chrono::milliseconds kEndLimit(600);
 
 constexpr const char* kExplanation =
@@ -141,7 +141,7 @@ void CheckTogether(const ViewArguments& arguments) {
   }
 }
 
-/// The token in the next line of stdin. @throws InputError
+/// Reads a token from the next line of stdin. @throws InputError
 std::string ReadToken() {
   std::string token;
   std::getline(std::cin, token);
@@ -150,7 +150,8 @@ std::string ReadToken() {
       "error: --tokens-on-stdin: a line is no token: 16 to 128 letters, digits, - and _");
 }
 
-/// @throws InputError if --listen names no address, or stdin has no tokens
+/// @throws InputError if --listen names no address, a line of stdin is not a token, or both are
+///     equal
 ServerOptions OptionsOf(const ViewArguments& arguments) {
   ServerOptions options{
       .port = arguments.port, .origins = arguments.origins, .seat = arguments.seat};
@@ -170,12 +171,12 @@ ServerOptions OptionsOf(const ViewArguments& arguments) {
   return options;
 }
 
-/// Whether the user has chosen the port. Otherwise the next free one is as good.
+/// Whether the user has chosen the port. Otherwise the program tries the next ports if one is busy.
 bool HasChosenPort(const ViewArguments& arguments) {
   return arguments.port_said->count() > 0 || arguments.listen.find(':') != std::string::npos;
 }
 
-/// @throws std::runtime_error if it cannot listen
+/// @throws std::runtime_error if the server cannot listen
 std::unique_ptr<Server> Listen(asio::io_context& context, const ViewArguments& arguments,
                                View& view) {
   ServerOptions options = OptionsOf(arguments);
@@ -195,7 +196,7 @@ std::unique_ptr<Server> Listen(asio::io_context& context, const ViewArguments& a
   }
 }
 
-/// Prints the addresses, and opens the first one.
+/// Prints the addresses, and opens the first address in a browser.
 void Say(const ViewArguments& arguments, const Server& server) {
   const std::string step =
       arguments.open_at ? fmt::format("step={}", *arguments.open_at) : std::string();
@@ -204,7 +205,8 @@ void Say(const ViewArguments& arguments, const Server& server) {
   fmt::print("{}\n", url);
   if (arguments.seat) fmt::print("{}\n", view);
   std::fflush(stdout);
-  // Every user of the machine can read the arguments of the opener, so it gets no token.
+  // Every user of the machine can read the arguments of the browser's program. So no address with a
+  // token is passed to it.
   const bool has_token = url.find("token=") != std::string::npos;
   if (!arguments.no_browser && !has_token && HasBrowser()) OpenBrowser(url);
 }
@@ -221,7 +223,7 @@ void Serve(asio::io_context& context, const ViewArguments& arguments, Server& se
   context.run();
   server.Stop();
   stop_view();
-  // Says to the clients that the program ends. It returns when the last connection is closed.
+  // Tells the clients that the program ends. run_for() returns when the last connection is closed.
   context.restart();
   context.run_for(kEndLimit);
 }

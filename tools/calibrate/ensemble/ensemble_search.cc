@@ -16,8 +16,8 @@ namespace {
 // to 1999 belong to studies.
 constexpr Stream kStarts{2000};
 
-// A search ends at this share of the largest allowed distance. The rest of the distance is a margin
-// for the fresh seeds, because the means over fresh seeds differ a little.
+// A search ends at this share of the largest allowed distance. The other half is a margin, because
+// the means over the fresh seeds differ a little.
 constexpr double kEnough = 0.5;
 
 double Squared(double x) { return x * x; }

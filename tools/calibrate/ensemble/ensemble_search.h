@@ -1,5 +1,5 @@
 // Finds several points that are far from each other and at which a function is small enough. The
-// search for an ensemble of calibrations uses this file. The simulation is in other files.
+// search for an ensemble of calibrations uses these points. This file does not use the simulation.
 #pragma once
 
 #include <cstddef>
@@ -19,8 +19,8 @@ struct Landscape {
   /// result nullopt stops the search.
   FunctionOfShares searched;
   FunctionOfShares fresh;
-  /// The point with rounded values, as a file has them. Both functions have the same value at the
-  /// rounded point as at `shares`.
+  /// Returns the point with the rounded values that a file contains. Each function has the same
+  /// value at the rounded point as at `shares`.
   std::function<std::vector<double>(const std::vector<double>& shares)> rounded;
 };
 

@@ -73,7 +73,7 @@ class CommandLine {
     return nullptr;
   }
 
-  /// The argument at the cursor; nullptr if there is none.
+  /// The positional argument at the cursor; nullptr if the command takes no further argument.
   const CLI::Option* Argument() const {
     const auto arguments =
         command_->get_options([](const CLI::Option* option) { return option->get_positional(); });

@@ -1,6 +1,6 @@
 // Completion of command lines in a shell. The shell's script (cmake/package/completion) calls
 // `fogline --complete WORD...` with the words of the command line up to the cursor. The suggestions
-// come from the definitions of the command line, so they are those of this build.
+// come from the definitions of the command line, so they always fit the program.
 #pragma once
 
 #include <string>
@@ -10,8 +10,8 @@
 
 namespace fogline::cli {
 
-/// The option that asks for suggestions. It is an option of the program, stands first, and is not
-/// in the help text.
+/// The option that asks for suggestions. It is the first word of the command line, and is not in
+/// the help text.
 inline constexpr const char* kComplete = "--complete";
 
 /// A word that may stand at the cursor. If the word ends with '/' or '=', it is not finished.
@@ -22,10 +22,10 @@ struct Suggestion {
 
 struct Completion {
   std::vector<Suggestion> words;
-  std::string files;  // files of this pattern may stand there, too, such as "*.json"; "": no files
+  std::string files;  // pattern of files that may also stand there, such as "*.json"; "": no files
 };
 
-/// What may stand in place of the last word.
+/// The words and files that may stand in place of the last word.
 /// @param words of the command line without the program's name; the last one is the word at the
 ///     cursor, which may be empty
 Completion Complete(const CLI::App& app, const std::vector<std::string>& words);

@@ -15,7 +15,7 @@
 namespace fogline::cli {
 namespace {
 
-/// What a value is, if the check of its option does not tell.
+/// The kind of an option's value, if the option's check does not show the kind.
 enum class Kind {
   kAssignment,  // a field of the scenario and its value, /fog/bias_m=0.3
   kPointer,     // a field or section of the scenario
@@ -32,7 +32,7 @@ struct KindOfName {
   Kind kind;
 };
 
-// Names that mean the same in all verbs that have them.
+// Names of options and arguments. Each name has the same meaning in all verbs that have it.
 constexpr std::array kKinds{
     KindOfName{"--set", Kind::kAssignment},
     KindOfName{"--grid", Kind::kAssignment},
@@ -71,8 +71,8 @@ std::vector<std::string> WordsOf(std::string text) {
   return {std::istream_iterator<std::string>(words), {}};
 }
 
-/// The names that an option's check allows, or that its description lists; empty if neither names
-/// any. CLI11 shows the check CLI::IsMember as "TEXT:{world,radar}".
+/// The names that an option's check allows, or that its description lists; empty if neither has
+/// names. CLI11 shows the check CLI::IsMember as "TEXT:{world,radar}".
 std::vector<std::string> NamesIn(const CLI::Option& option) {
   constexpr std::string_view kList = "One of ";
   const std::string type = option.get_type_name();
@@ -86,13 +86,14 @@ std::vector<std::string> NamesIn(const CLI::Option& option) {
                                         : std::vector<std::string>();
 }
 
-/// The pointer of a field as a user may type it: the first item stands for all items of a list.
+/// The pointer of a field as a user may type it: index 0 replaces the `*` for all items of a list.
 std::string Typed(std::string pointer) {
   std::ranges::replace(pointer, '*', '0');
   return pointer;
 }
 
-/// The next segment of all pointers that begin with `begun`: "/arb" has "/arbitrator/".
+/// Adds the pointers that begin with `begun`, up to the end of their next segment: "/arbitrator/"
+/// for "/arb".
 /// @param end what follows the pointer of a field, such as "="
 void AddPointers(const std::string& begun, std::string_view end, Completion& completion) {
   for (const Field& field : Catalogue()) {
@@ -107,7 +108,8 @@ void AddPointers(const std::string& begun, std::string_view end, Completion& com
   }
 }
 
-/// The values of a field with names, after "/pointer=" and values that are separated by commas.
+/// Adds the named values of a field. @param begun "/pointer=" and the text of values so far,
+/// separated by commas
 void AddFieldValues(const std::string& begun, Completion& completion) {
   const std::size_t equals = begun.find('=');
   const Field* field = FindField(begun.substr(0, equals));

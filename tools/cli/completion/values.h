@@ -9,8 +9,9 @@
 
 namespace fogline::cli {
 
-/// The values of an option or argument that begin with `begun`: those of its check, fields of the
-/// scenario, roles, transports or verbs. A text without such values may be a file.
+/// The values of an option or argument that begin with `begun`. The values are the names that its
+/// check allows, fields of the scenario, roles, transports or verbs. For any other text, the result
+/// suggests files.
 /// @param app the program, which has the verbs
 Completion ValuesOf(const CLI::App& app, const CLI::Option& option, const std::string& begun);
 

@@ -1,5 +1,5 @@
-// The options of verbs that read a log with gaps, of several runs, or without its scenario; and
-// what such a verb says about such a log.
+// The options of verbs that can read a log with gaps, a log of several runs, or a log without its
+// scenario. Also the texts of such verbs about such a log.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,8 @@ class LogReading {
  public:
   explicit LogReading(CLI::App& verb);
 
-  /// Gaps are read. @throws InputError for an invalid scenario
+  /// The options for reading a log. Logs with gaps are accepted. @throws InputError for an invalid
+  /// scenario
   log::ReadOptions Options() const;
 
  private:
@@ -31,7 +32,7 @@ class LogReading {
 /// The option --run alone.
 void AddRunOption(CLI::App& verb, std::optional<std::int64_t>& run_id);
 
-/// @throws InputError always: it names the log and says why a verb cannot use the log
+/// @throws InputError always; its text names the log and says why a verb cannot use the log
 [[noreturn]] void RefuseLog(const std::filesystem::path& log, const std::string& why);
 
 /// Prints on stderr why a log is not complete, and which other runs it has.

@@ -22,8 +22,9 @@ void AddTakeOvers(const runner::ExperimentResult& result, nlohmann::ordered_json
 /// that have a value, without the time of the request.
 std::string TakeOverLine(const metrics::TakeOverMeasures& measures);
 
-/// The same as lines: a line for each request, lines "name  value unit" for its measures, and such
-/// lines for the latency of a person's inputs. "" without a request and without a person.
+/// The measures of a run as lines: a line for each request, lines "name value unit" for its
+/// measures, and such lines for the latency of a person's inputs. "" if the run has neither a
+/// request nor a person who drives.
 std::string TakeOversText(const runner::ExperimentResult& result);
 
 }  // namespace fogline::cli

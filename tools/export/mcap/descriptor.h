@@ -1,4 +1,4 @@
-// A message type of lcmtypes/ as a message type of Protocol Buffers.
+// Describes a message type of lcmtypes/ as a message type of Protocol Buffers:
 //
 //     lcmtypes                           | protobuf (proto3)
 //     -----------------------------------|-------------------------------------------------------
@@ -35,8 +35,8 @@ enum class FieldType : std::uint8_t {
 bool IsBytes(const web::LcmMember& member);
 FieldType FieldTypeOf(const web::LcmMember& member);
 
-/// A serialised google.protobuf.FileDescriptorSet with one file: the type, after the types of its
-/// members. So it needs no other file.
+/// A serialised google.protobuf.FileDescriptorSet with one file: the types of the members, and then
+/// the type itself. So the set needs no other file.
 std::string DescriptorSetOf(const web::LcmTypes& types, const web::LcmStruct& type);
 
 }  // namespace fogline::mcap

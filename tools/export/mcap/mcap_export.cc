@@ -30,7 +30,8 @@ constexpr std::string_view kLibrary = "fogline";
 constexpr std::string_view kEncoding = "protobuf";
 constexpr std::int64_t kNanosPerMicro = 1000;
 
-// A channel is an index in kChannels, or the wall clock of the steps, which is not in the graph.
+// In this file a channel is an index in kChannels, or kWallClock. The channel of the wall clock of
+// the steps is not in the graph.
 constexpr std::size_t kWallClock = kNumChannels;
 constexpr std::size_t kNone = kNumChannels + 1;
 
@@ -49,7 +50,7 @@ std::string_view NameOfChannel(std::size_t channel) {
   return channel == kWallClock ? log::kWallClockChannel : kChannels[channel].name;
 }
 
-/// The channel of an event outside of steps; kNone for any other event.
+/// The channel of an event that does not belong to a step; kNone for any other event.
 std::size_t ChannelBesideSteps(const log::Event& event) {
   if (event.channel == log::kWallClockChannel) return kWallClock;
   const std::size_t channel = ChannelNamed(event.channel);
@@ -58,7 +59,8 @@ std::size_t ChannelBesideSteps(const log::Event& event) {
   return is_beside ? channel : kNone;
 }
 
-/// The steps of a run, and between them the messages outside of steps, as channels of a file.
+/// Writes the steps of a run, and between them the messages outside of steps, as channels of a
+/// file.
 class Exporter {
  public:
   Exporter(const std::filesystem::path& log, const log::ReadOptions& options, AtomicFile& file)

@@ -15,9 +15,9 @@ bool IsMcapExport(const std::filesystem::path& file);
 /// out: the scenario is the attachment scenario.json. Both times of a message are its simulated
 /// time, and its sequence is its step. The metadata record "fogline" has the run's id, digest,
 /// steps, seed and title. Equal logs give equal files.
-/// @throws InputError if the log is no log, has messages that do not fit their channel, or the file
-///     cannot be created; std::runtime_error when the disk is full; Interrupted
-/// @return what the log has
+/// @throws InputError if `log` is not a log, or has messages that do not fit their channel, or if
+///     `file` cannot be created; std::runtime_error when the disk is full; Interrupted
+/// @return the facts about the run in the log
 log::RunLog WriteMcap(const std::filesystem::path& log, const log::ReadOptions& options,
                       const std::filesystem::path& file);
 

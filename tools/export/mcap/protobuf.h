@@ -15,12 +15,13 @@ namespace fogline::mcap {
 enum class WireKind : std::uint8_t {
   kVarint = 0,   // integers and booleans
   kFixed64 = 1,  // double
-  kLength = 2,   // strings, bytes, messages, packed numbers: a length, then so many bytes
+  kLength = 2,   // strings, bytes, messages, packed numbers: the length, then the bytes
   kFixed32 = 5,  // float
 };
 
-/// Groups of seven bits, the lowest first; all but the last have the highest bit set. A negative
-/// number has ten groups, as int32 and int64 of protobuf do.
+/// Appends a number in groups of seven bits, the lowest group first. Each group is one byte. The
+/// highest bit is set in each byte except the last. A negative number has ten bytes, as in
+/// protobuf's int32 and int64.
 inline void PutVarint(std::uint64_t value, std::string& to) {
   constexpr std::uint64_t kMore = 0x80;
   for (; value >= kMore; value >>= 7) to += static_cast<char>(value | kMore);
@@ -36,7 +37,7 @@ inline void PutIntegerField(std::uint32_t number, std::int64_t value, std::strin
   PutVarint(static_cast<std::uint64_t>(value), to);
 }
 
-/// A string, the bytes of a message, or packed numbers.
+/// Appends a field with a length: a string, the bytes of a message, or packed numbers.
 inline void PutLengthField(std::uint32_t number, std::string_view bytes, std::string& to) {
   PutTag(number, WireKind::kLength, to);
   PutVarint(bytes.size(), to);

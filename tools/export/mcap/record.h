@@ -36,7 +36,7 @@ inline constexpr std::string_view kMagic("\x89MCAP0\r\n", 8);
 
 using web::PutLittleEndian;
 
-/// Type String, and a byte array with a length of 32 bits.
+/// Appends a value of type String, or a byte array whose length has 32 bits.
 inline void PutString(std::string_view text, std::string& to) {
   PutLittleEndian(static_cast<std::uint32_t>(text.size()), to);
   to += text;

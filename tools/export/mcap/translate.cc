@@ -26,7 +26,7 @@ WireKind KindOf(FieldType type) {
   }
 }
 
-/// Each function returns false if the bytes are no message of the type.
+/// Translates one message. Each function returns false if the bytes are not a message of the type.
 class Translator {
  public:
   Translator(const web::LcmTypes& types, web::Bytes message) : types_(types), cursor_(message) {}
@@ -70,7 +70,8 @@ class Translator {
     return true;
   }
 
-  /// Numbers without tags of their own. A byte of `bytes` is such a number, too.
+  /// Appends several numbers as one field, without tags between the numbers. A byte of `bytes` is
+  /// such a number, too.
   bool Packed(const web::LcmMember& member, std::uint32_t number, std::size_t count,
               std::string& to) {
     std::string numbers;
@@ -81,7 +82,7 @@ class Translator {
     return true;
   }
 
-  /// A string or a struct, with its tag.
+  /// Appends a string or a struct, with its tag.
   bool Element(const web::LcmMember& member, std::uint32_t number, std::string& to) {
     if (member.primitive) {
       const auto text = cursor_.Text();

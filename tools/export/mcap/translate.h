@@ -1,4 +1,4 @@
-// A message's bytes on the wire of LCM as bytes of Protocol Buffers.
+// Translates the bytes of an LCM message into bytes of Protocol Buffers.
 #pragma once
 
 #include <string>
@@ -7,8 +7,8 @@
 
 namespace fogline::mcap {
 
-/// Appends the message in the encoding that DescriptorSetOf() describes. Every member is written,
-/// zeros too, with all its bits.
+/// Appends the message in the encoding that DescriptorSetOf() describes. Every member is written
+/// with all its bits, even if its value is zero.
 /// @param message with its fingerprint
 /// @return false if the bytes are not exactly one message of this type; `to` then has a part of it
 bool AppendProtobuf(const web::LcmTypes& types, const web::LcmStruct& type, web::Bytes message,

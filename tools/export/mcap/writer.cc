@@ -13,8 +13,8 @@
 namespace fogline::mcap {
 namespace {
 
-/// A chunk ends with the message that makes it this large. A reader decompresses a whole chunk for
-/// one message, and chunks of 1 MiB compress nearly as well as larger ones.
+/// A chunk is complete when it has at least this size. A reader decompresses a whole chunk for one
+/// message, and chunks of 1 MiB compress nearly as well as larger ones.
 constexpr std::size_t kChunkBytes = 1 << 20;
 constexpr std::string_view kCompression = "zstd";
 
@@ -144,7 +144,8 @@ void Writer::PutChunk() {
   entries_.clear();
 }
 
-/// @param offsets is set to the offset of the Message Index of each channel in the chunk
+/// Writes the Message Index records of the chunk. @param offsets is set to the offset of the
+/// Message Index of each channel in the chunk
 /// @return bytes of all these records
 std::uint64_t Writer::PutMessageIndexes(std::map<ChannelId, std::uint64_t>& offsets) {
   const std::uint64_t begin = offset_;

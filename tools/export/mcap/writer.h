@@ -1,7 +1,7 @@
 // Writes an MCAP file (mcap.dev/spec, version 0): chunks that zstd compresses, an index of the
-// messages of each chunk, and a summary with which a reader finds a moment without reading the
-// file. Messages, attachments and metadata go out at once; what stays in memory is one chunk, and
-// 100 bytes for each chunk that was written.
+// messages of each chunk, and a summary. With the summary, a reader finds the messages of a time
+// without reading the whole file. Attachments and metadata are written at once. In memory the
+// writer keeps one chunk, and 100 bytes for each chunk that was written.
 #pragma once
 
 #include <cstddef>
@@ -35,8 +35,8 @@ class Writer {
  public:
   using Sink = std::function<void(std::string_view)>;
 
-  /// Writes magic and Header. @param sink takes the bytes of the file. The writer passes on its
-  /// exceptions.
+  /// Writes magic and Header. @param sink takes the bytes of the file. An exception of `sink`
+  /// reaches the caller.
   /// @param library the program that writes the file
   Writer(Sink sink, std::string_view library);
   ~Writer();
@@ -48,8 +48,8 @@ class Writer {
   /// @param encoding a well-known message encoding, such as "protobuf"
   ChannelId AddChannel(SchemaId schema, std::string_view topic, std::string_view encoding,
                        const std::map<std::string, std::string>& metadata);
-  /// Messages may come in any order of time. Those of one chunk are found fastest if they come in
-  /// the order of log_time. @throws std::runtime_error if zstd fails
+  /// The messages may come in any order of time. A reader finds the messages of a chunk fastest if
+  /// they came in the order of log_time. @throws std::runtime_error if zstd fails
   void Write(ChannelId channel, const Message& message);
   void AddAttachment(std::string_view name, std::string_view media_type, std::string_view data);
   void AddMetadata(std::string_view name, const std::map<std::string, std::string>& metadata);
@@ -57,7 +57,7 @@ class Writer {
   void Finish();
 
  private:
-  /// The range of log_time of some messages, both ends included; 0 if there is none.
+  /// The range of log_time of some messages, both ends included; 0 if there is no message.
   struct Times {
     std::uint64_t first = 0;
     std::uint64_t last = 0;
@@ -81,15 +81,15 @@ class Writer {
 
   Sink sink_;
   std::uint64_t offset_ = 0;  // bytes of the file so far
-  std::uint32_t crc_ = 0;     // CRC-32 of these bytes, since Data End of those of the summary
+  std::uint32_t crc_ = 0;     // CRC-32 of these bytes; after Data End only of the summary
   std::unique_ptr<ZSTD_CCtx_s, FreeContext> compressor_;
 
-  // The chunk under way.
+  // The current chunk.
   std::string records_;
   Times times_;
   std::map<ChannelId, Entries> entries_;
 
-  // The summary, a group of equal records after the other.
+  // The summary. Each group has all records with one opcode.
   std::map<Opcode, std::string> groups_;
   Times all_times_;
   std::map<ChannelId, std::uint64_t> counts_;

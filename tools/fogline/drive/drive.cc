@@ -149,7 +149,7 @@ int Drive(DriveArguments& arguments) {
                           .result = runner::RunExperiment(scenario, options),
                           .resumed = std::nullopt};
   seat.reset();            // restores the terminal
-  if (page) page->Runs();  // says it if the page has failed
+  if (page) page->Runs();  // prints a message if the page has failed
   return cli::PrintOutcome(outcome, arguments.json, "drive");
 }
 

@@ -1,4 +1,5 @@
-// The actions of fogline experiment that have files of their own, and what all actions share.
+// Actions of `fogline experiment` that have a file of their own, and the arguments that all actions
+// have.
 #pragma once
 
 #include <filesystem>

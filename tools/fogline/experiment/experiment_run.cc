@@ -140,8 +140,8 @@ const ConditionSection* DrivenCondition(const trials::PlanFile& plan) {
   return nullptr;
 }
 
-/// @throws InputError if the participant drives in a condition, and has nothing to drive with;
-///     std::runtime_error if this build has no seat
+/// @throws InputError if the participant drives in a condition, but without a page and a device;
+///     std::runtime_error if this build has no page
 void CheckSeat(const RunTrialsArguments& arguments, const trials::PlanFile& plan) {
   const std::string no_page(web::WhyNoPage());
   const bool has_seat = !arguments.no_page && no_page.empty();
@@ -173,7 +173,7 @@ void CheckPorts(const RunTrialsArguments& arguments) {
   }
 }
 
-/// The address of --listen in numbers; "" without it. @throws InputError
+/// The numeric address of --listen; "" without --listen. @throws InputError
 std::string ListenAddress(const RunTrialsArguments& arguments) {
   if (arguments.listen.empty()) return "";
   if (arguments.listen.find(':') != std::string::npos) {

@@ -25,7 +25,8 @@ void RequireScreen();
 std::filesystem::path FindJar(const std::filesystem::path& jars, const std::string& name,
                               const char* package);
 
-/// Replaces this process by the Java program. Its library receives traffic of this machine, too.
+/// Replaces this process by the Java program. A preloaded library lets the program also receive
+/// traffic that stays on this machine.
 /// @throws std::runtime_error if the program cannot be started
 [[noreturn]] void BecomeJava(std::vector<std::string> command);
 

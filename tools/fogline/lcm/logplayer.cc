@@ -55,7 +55,7 @@ int Logplayer(const LogplayerArguments& arguments) {
     throw InputError(fmt::format("error: --lcm-url {}: not an LCM network such as \"{}\"", url,
                                  runtime::kLcmDefaultUrl));
   }
-  const log::EventLogReader log(arguments.log);  // refuses what is no event log
+  const log::EventLogReader log(arguments.log);  // throws if the file is not an event log
   const fs::path java = RequireJava();
   const fs::path lcm = FindJar(arguments.jars, "lcm.jar", "liblcm-java");
   RequireScreen();

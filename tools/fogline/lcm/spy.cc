@@ -1,5 +1,5 @@
-// fogline spy: starts LCM's own lcm-spy with Fogline's message types, which the class path of
-// Debian's /usr/bin/lcm-spy lacks.
+// fogline spy: starts LCM's own lcm-spy with Fogline's message types. The class path of Debian's
+// /usr/bin/lcm-spy lacks these types.
 #include <chrono>
 #include <memory>
 #include <string>

@@ -27,7 +27,7 @@
 namespace fogline {
 namespace {
 
-/// The scenario of the recorded run, with the overrides. It ends where the log ends.
+/// The scenario of the recorded run, with the overrides. It has no step after the end of the log.
 /// @throws InputError
 Scenario LiveScenario(const std::filesystem::path& log, const replay::RecordedMessages& messages,
                       const std::vector<std::string>& overrides) {

@@ -1,4 +1,5 @@
-// fogline replay --live: recorded messages of some roles drive the living rest of the system.
+// fogline replay --live: recorded messages replace some roles of a new run; the other roles
+// compute.
 #pragma once
 
 #include <cstdint>
@@ -19,10 +20,10 @@ class LiveReplay {
   explicit LiveReplay(CLI::App& verb);
 
   bool chosen() const { return live_; }
-  /// Makes the run and prints how much its track differs.
-  /// @param recorded_run its id; nullopt: the first run in the log
+  /// Makes the run, and prints how much its track differs from the recorded track.
+  /// @param recorded_run id of the recorded run; nullopt: the first run in the log
   /// @return the exit code
-  /// @throws InputError, Interrupted, std::runtime_error as RunExperiment()
+  /// @throws InputError, Interrupted, std::runtime_error like RunExperiment()
   int Run(const std::filesystem::path& recorded, std::optional<std::int64_t> recorded_run,
           bool json) const;
 
@@ -34,7 +35,7 @@ class LiveReplay {
   bool force_ = false;
   std::string transport_ = "udpm";
   bool realtime_ = false;
-  double speed_ = 0;  // 0: that of the log
+  double speed_ = 0;  // 0: the speed of the recorded run
   bool quiet_ = false;
 };
 

@@ -9,7 +9,7 @@
 namespace fogline::replay {
 namespace {
 
-// A thread looks at least so often whether it should end.
+// A thread checks at least this often whether it should end.
 constexpr Duration kLookEvery = milliseconds(50);
 
 }  // namespace
@@ -52,7 +52,7 @@ void LiveRoles::TakePart(Part& part) const {
       part.bus->Wait(std::min(node.Poll(now) - now, kLookEvery));
     }
   } catch (const std::exception& error) {
-    node.parts().own.Fail(error.what());  // the runner reports it and ends the run
+    node.parts().own.Fail(error.what());  // the runner reports this error, and ends the run
   }
 }
 

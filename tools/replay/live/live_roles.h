@@ -16,7 +16,7 @@ namespace fogline::replay {
 
 class LiveRoles {
  public:
-  /// @param messages outlives this object
+  /// @param messages must outlive this object
   LiveRoles(const RecordedMessages& messages, runtime::TrafficOptions traffic);
   /// Ends the threads.
   ~LiveRoles();
@@ -25,7 +25,7 @@ class LiveRoles {
 
   /// The roles whose messages are recorded, in the order of kRoles.
   std::vector<Role> roles() const;
-  /// Joins a run with all roles. @throws as runtime::Bus()
+  /// Joins a run with all roles. @throws like runtime::Bus()
   void Join(std::int64_t run_id, const std::string& url);
 
  private:
@@ -34,7 +34,7 @@ class LiveRoles {
     std::unique_ptr<RecordedNode> node;
     std::thread thread;
   };
-  /// Takes part in the run until its end.
+  /// The function of a thread: takes part in the run until its end.
   void TakePart(Part& part) const;
 
   const RecordedMessages& messages_;

@@ -17,11 +17,11 @@ RecordedMessages::RecordedMessages(const std::filesystem::path& log,
     : channels_(std::move(channels)), reader_(log, options) {
   while (const log::StepMessages* messages = reader_.Next()) {
     if (reader_.InTail()) continue;
-    messages_.resize(static_cast<std::size_t>(reader_.step()));  // steps before a late beginning
+    messages_.resize(static_cast<std::size_t>(reader_.step()));  // earlier steps have no messages
     std::vector<runtime::Bytes>& row = messages_.emplace_back();
     for (const std::size_t channel : channels_) {
       const runtime::Bytes message = (*messages)[channel];
-      // A message of other types would be refused by its readers.
+      // Readers would refuse a message of another version of its type.
       const bool fits = message.size() >= runtime::kHeaderEnd &&
                         runtime::ReadInt64(message, 0) == runtime::FingerprintOf(channel);
       row.push_back(fits ? message : runtime::Bytes());

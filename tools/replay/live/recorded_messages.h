@@ -20,21 +20,22 @@ class RecordedMessages {
   const log::RunLog& run() const { return reader_.run(); }
   /// Number of the steps that the log covers, from 0 to its last step.
   std::int64_t steps() const { return static_cast<std::int64_t>(messages_.size()); }
-  /// The message of a step; empty if the log lacks it. It has the run id of the recorded run.
+  /// The message of a step, with the run id of the recorded run; empty if the log lacks the
+  /// message.
   /// @param channel index in channels()
   runtime::Bytes Of(std::int64_t step, std::size_t channel) const;
-  /// Names the first message that is missing, such as "step 394 lacks RADAR"; "" if none is.
+  /// Names the first missing message, such as "step 394 lacks RADAR"; "" if no message is missing.
   std::string FirstGap() const;
 
  private:
   std::vector<std::size_t> channels_;
-  log::RunLogReader reader_;  // it owns the bytes of the messages
+  log::RunLogReader reader_;  // owns the bytes of the messages
   std::vector<std::vector<runtime::Bytes>> messages_;
 };
 
 /// The channels with these names, separated by commas: "RADAR,LIDAR".
-/// @throws InputError for a name that is no channel of a step, or a channel of the world, which is
-///     the clock of the run and lives
+/// @throws InputError if a name is not a channel with a message in each step, or if the world sends
+///     this channel. The world is the clock of the run, so its messages cannot be recorded ones
 std::vector<std::size_t> RecordedChannels(std::string_view names);
 
 }  // namespace fogline::replay

@@ -1,5 +1,5 @@
-// A role that computes nothing: in each step it publishes the messages of a log. It takes part in a
-// run as the role itself does, in lockstep and in real time.
+// A role that computes nothing: in each step it publishes the messages of a log. Like other roles
+// it takes part in a run in lockstep and in real time.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,7 @@ class RecordedNode final : public runtime::Work {
 
  private:
   std::unique_ptr<runtime::FireRule> Join(const Scenario& scenario) override;
-  /// In real time, a message that the log lacks is left out.
+  /// Publishes the messages of a step. In real time it omits a message that the log lacks.
   /// @throws std::runtime_error in lockstep for a message that the log lacks
   void Compute(std::int64_t step) override;
 

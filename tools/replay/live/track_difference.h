@@ -1,4 +1,4 @@
-// How much the track of a run differs from that of another run, step by step.
+// Computes how much the tracks of two runs differ, step by step.
 #pragma once
 
 #include <array>
@@ -13,15 +13,15 @@ namespace fogline::replay {
 /// The differences of one number of track_t::state, over the steps in which both tracks are valid.
 struct StateDifference {
   std::string_view name;   // such as "distance_m"
-  double largest = 0;      // of the absolute values
-  std::int64_t step = -1;  // where it is largest; -1: no step was compared
+  double largest = 0;      // largest absolute difference
+  std::int64_t step = -1;  // step of the largest; -1: none compared
   double rms = 0;
 };
 
 struct TrackDifference {
   std::array<StateDifference, 3> states{{{"distance_m"}, {"speed_mps"}, {"acceleration_mps2"}}};
   std::int64_t compared = 0;      // steps in which both tracks are valid
-  std::int64_t valid_in_one = 0;  // steps in which only one of them is valid
+  std::int64_t valid_in_one = 0;  // steps in which only one track is valid
   std::int64_t not_in_both = 0;   // steps that only one of the logs has
 };
 

@@ -108,7 +108,8 @@ class Gnuplot {
     return {buffer_.data(), static_cast<std::size_t>(size)};
   }
 
-  /// Closes the pipe and waits for gnuplot's end. @return the exit status, in the form of waitpid()
+  /// Closes the pipe, and waits until gnuplot ends. @return the exit status, in the form of
+  /// waitpid()
   int Wait() {
     if (out_ < 0) return status_;
     close(std::exchange(out_, -1));
@@ -173,7 +174,7 @@ void RunGnuplot(const std::string& script, AtomicFile& picture) {
     picture.Write(part);
   }
   const int status = gnuplot.Wait();
-  // Ctrl-C ends gnuplot too. So the interrupt is checked before gnuplot's status.
+  // Ctrl-C also ends gnuplot. So the interrupt is checked before gnuplot's status.
   if (WasInterrupted()) throw Interrupted("interrupted; no file was written");
   if (status != 0) Fail("gnuplot", ContentOf(words.get()));
 }

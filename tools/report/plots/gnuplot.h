@@ -9,8 +9,8 @@
 
 namespace fogline::report {
 
-/// Runs gnuplot with `script`, and writes its standard output into `picture`. The caller must
-/// finish `picture`. RunGnuplot() uses no shell.
+/// Runs gnuplot with `script`, and writes its standard output into `picture`. RunGnuplot() does not
+/// finish `picture`, and uses no shell.
 /// @throws std::runtime_error with gnuplot's own message, or when the disk is full; Interrupted
 void RunGnuplot(const std::string& script, AtomicFile& picture);
 

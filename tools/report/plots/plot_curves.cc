@@ -25,8 +25,8 @@ constexpr std::string_view kRhe = kPalette[1];
 constexpr std::string_view kLight = "d8";  // transparency of the bands; ff is invisible
 constexpr std::string_view kDark = "98";
 constexpr double kHeight = 1000;              // in the unit of kWidth
-constexpr double kLeastThresholdSpan = 0.01;  // smallest range of an axis, so that a flat line does
-                                              // not fill it
+constexpr double kLeastThresholdSpan = 0.01;  // smallest range of an axis; otherwise a flat line
+                                              // would fill it
 constexpr double kLeastPercentSpan = 1;
 
 std::string Number(double value) { return std::isfinite(value) ? fmt::format("{}", value) : "NaN"; }
@@ -73,7 +73,8 @@ std::string PointsBlock(const std::vector<FrontPoint>& points) {
   return block + "EOD\n";
 }
 
-/// Commands that write the thresholds below or beside their points, where there is room.
+/// Commands that write the thresholds below or beside their points. A label without room is
+/// omitted.
 std::string Labels(const ReportCurves& curves, const std::vector<FrontPoint>& points) {
   // Two labels differ by at least kWidePct in RHE, or by at least kHighPct in SI.
   constexpr double kWidePct = 9;

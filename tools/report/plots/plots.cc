@@ -100,8 +100,8 @@ Span Widened(Span span, double least) {
   return {middle - half, middle + half};
 }
 
-/// "axis spans 0.3 % of the value" if the axis spans less than 1 % of the largest value; otherwise
-/// "".
+/// A note such as "axis spans 0.3 % of the value" if the axis spans less than 1 % of the largest
+/// value; otherwise "".
 std::string AxisNote(Span values, Span axis) {
   constexpr double kNarrow = 0.01;
   const double largest = std::max(std::abs(values.low), std::abs(values.high));

@@ -1,5 +1,5 @@
-// The claims of study `conflict` on the delays of two detectors, and these claims with other
-// parameters.
+// The claims of study `conflict` on the delays of two detectors. Study `ensemble` examines these
+// claims with other parameters.
 #pragma once
 
 #include <span>
@@ -19,11 +19,12 @@ struct DelayStatement {
   std::string_view b;
   Sign sign = Sign::kLess;
   double margin = 0;              // s
-  bool is_by_definition = false;  // it follows from the formulas, so the runs only check the code
+  bool is_by_definition = false;  // follows from the formulas, so the runs only check the code
 };
 std::span<const DelayStatement> DelayStatements();
 
-/// The sentence of the claim. For another noise than the usual one, it begins with the noise.
+/// The sentence of the claim. If `noise` is not the usual noise, the sentence begins with the
+/// noise.
 std::string SaysOf(const DelayStatement& statement, std::string_view noise);
 
 /// The statements that are not by definition, in bias fog with the usual noise, with `overrides` of

@@ -12,12 +12,12 @@
 namespace fogline::study {
 namespace {
 
-// Random streams of the resamples. Streams below 1000 belong to roles, 1000 and 1001 to study
-// threshold.
+// Random streams of the resamples. Streams below 1000 belong to roles. Streams 1000 and 1001 belong
+// to study `threshold`.
 constexpr Stream kClearAir{1002};
 constexpr Stream kFog{1003};
 
-/// Delay and detection of one detector at one threshold, by visibility, with weights of the seeds.
+/// Mean delay, and share of detected fogs, of one detector at one threshold, by visibility.
 struct Detection {
   std::vector<double> delay_s;
   std::vector<double> share;

@@ -1,4 +1,5 @@
-// Intervals for the results of detectors. The detectors' thresholds are estimates, too.
+// Intervals for the results of detectors. The intervals take into account that the detectors'
+// thresholds are estimates, too.
 #pragma once
 
 #include <cstddef>
@@ -34,7 +35,7 @@ struct DetectionMeans {
     Estimate detection;  // probability
   };
   std::vector<InFog> by_visibility;
-  Estimate delay_s;  // mean over the ranked visibilities; NaN if there is none
+  Estimate delay_s;  // mean over the ranked visibilities; NaN if no visibility is ranked
 };
 
 /// Detection by one detector, and its differences from the reference.

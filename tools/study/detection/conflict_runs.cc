@@ -16,7 +16,7 @@ using ClearRuns = std::vector<std::vector<ClearRun>>;
 /// All runs of a set.
 struct SetRuns {
   ClearRuns calibration;  // runs from which thresholds are found
-  ClearRuns validation;   // other runs, in which false alarms are counted again
+  ClearRuns validation;   // further runs, in which false alarms are counted again
   ClearRuns long_air;     // used instead of `calibration` if a condition ranks detectors
   std::vector<std::vector<std::vector<ScoreRecords>>> fog;  // by detector, visibility, seed
 
@@ -40,7 +40,8 @@ SetRuns RunShortClearAir(const StudyContext& context, const Traffic& clear_air,
   return runs;
 }
 
-/// Makes the long runs in clear air for some detectors. @param plan its first seed is set here
+/// Makes the long runs in clear air for some detectors. @param plan without its first seed, which
+/// this function sets
 void RunLongClearAir(const StudyContext& context, const Traffic& clear_air, ClearAirPlan plan,
                      const ShowUnit& show, SetRuns& runs) {
   plan.first_seed = kLongClearAirSeeds + plan.runs_per_seed * context.seeds.first;
@@ -106,7 +107,7 @@ void AddAlarms(std::span<const ClearRun> runs, double threshold, std::vector<dou
   }
 }
 
-/// The alarms in the runs that all detectors have.
+/// The first alarms of each detector in those runs that all detectors have.
 std::vector<AlarmTimes> CommonAlarms(const SetRuns& runs, const ConflictSet& set) {
   std::vector<AlarmTimes> alarms(Detectors().size());
   for (std::size_t d = 0; d < alarms.size(); ++d) {
@@ -138,7 +139,8 @@ std::vector<std::size_t> CountsAs(const ConflictSet& set, std::span<const AlarmT
   return counts_as;
 }
 
-/// The detectors that have a threshold. Of the detectors with the same alarms, it has only one.
+/// The detectors that have a threshold. Of the detectors with the same alarms, the result has only
+/// one.
 std::vector<std::size_t> DistinctOf(const ConflictSet& set) {
   std::vector<std::size_t> distinct;
   for (std::size_t d = 0; d < set.thresholds.size(); ++d) {
@@ -147,7 +149,7 @@ std::vector<std::size_t> DistinctOf(const ConflictSet& set) {
   return distinct;
 }
 
-/// Number and mean delay of the alarms in the fog of one visibility.
+/// Sets the number and the mean delay of the alarms in the fog of one visibility.
 void AddDetected(std::span<const ScoreRecords> records, double threshold,
                  DetectorOutcome& detector) {
   detector.detected = 0;

@@ -24,14 +24,16 @@ namespace fogline::study {
 inline constexpr std::array kVisibilities_m{300.0, 150.0, 100.0, 75.0, 50.0};
 /// Mean time to a false alarm for which thresholds are calibrated, s: six false alarms an hour.
 inline constexpr double kArlZero_s = 600;
-/// The mean time to a false alarm at a threshold counts as equal to kArlZero_s up to this ratio.
+/// If the mean time to a false alarm at a threshold is at most this multiple of kArlZero_s, the two
+/// times count as equal.
 inline constexpr double kLoosest = 1.5;
 /// Number of runs in clear air for each seed, for the thresholds of quick and of slow detectors.
-/// These numbers apply if a condition ranks detectors. Otherwise there is one run for each seed.
+/// These numbers apply if a condition of the set ranks detectors. Otherwise there is one run for
+/// each seed.
 inline constexpr std::int64_t kQuickClearAir = 100;
 inline constexpr std::int64_t kSlowClearAir = 5;
-/// First seeds in clear air: far from the seeds in fog, and from each other. Thresholds are found
-/// in other runs than those in which false alarms are counted again.
+/// First seeds in clear air. They are far from the seeds in fog, and from each other. So the runs
+/// that give the thresholds differ from the runs in which false alarms are counted again.
 inline constexpr std::int64_t kCalibrationSeeds = 1'000'000'000;
 inline constexpr std::int64_t kValidationSeeds = 2'000'000'000;
 inline constexpr std::int64_t kLongClearAirSeeds = 3'000'000'000;
@@ -86,7 +88,7 @@ struct ConflictSet {
   std::int64_t runs = 0;
   std::vector<DetectorThreshold> thresholds;
   /// For each detector, the index of the detector that it counts as. All detectors with the same
-  /// alarms count as one of them, and have the results of this one detector.
+  /// alarms count as one of these detectors, and have its results.
   std::vector<std::size_t> counts_as;
   /// Detection by the detectors that have a threshold. The mean delays are means over the
   /// conditions that rank detectors.
@@ -110,7 +112,7 @@ std::vector<ConflictSet> RunConflictSets(const StudyContext& context);
 
 /// A detector in bias fog with the usual noise. Its delay is a mean over all of kVisibilities_m.
 struct DelayOutcome {
-  bool is_compared = false;  // whether it has a threshold at which it can be compared
+  bool is_compared = false;  // whether the detector has a threshold at which it can be compared
   DetectionComparison detection;
 };
 
@@ -120,8 +122,9 @@ inline constexpr std::int64_t kDelayClearAir = 20;
 /// Units of progress for each seed in RunDelays().
 inline constexpr std::int64_t kDelayUnits = 1 + static_cast<std::int64_t>(kVisibilities_m.size());
 
-/// Runs some detectors with other parameters than those of paper.json. @param detectors indices in
-/// Detectors() @param overrides of paper.json; the fog and the noise stay those of the condition
+/// Runs some detectors in bias fog with the usual noise, and with overrides of paper.json.
+/// @param detectors indices in Detectors()
+/// @param overrides of other fields than those of the fog model and the noise
 /// @throws InputError, StudyStopped
 std::vector<DelayOutcome> RunDelays(const StudyContext& context,
                                     std::span<const std::size_t> detectors,

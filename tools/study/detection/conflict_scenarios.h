@@ -27,21 +27,21 @@ struct ConflictNoise {
 /// All noises of the study.
 std::span<const ConflictNoise> ConflictNoises();
 
-/// A fog model and a noise, and what else differs from paper.json.
+/// A fog model, a noise, and further overrides of paper.json.
 struct ConflictSituation {
   std::string_view fog;  // bias or beam
   ConflictNoise noise;
   std::vector<std::string> other{};  // in the form of --set
 };
 
-/// A scenario without fog, of kClearRun_s after the warm-up. The measures know the mounting offset
-/// of the sensors: measure_offset_m is the range of the radar minus that of the LiDAR. The human
-/// always drives.
+/// A scenario without fog that lasts kClearRun_s after the warm-up. The measures know the mounting
+/// offset of the sensors: measure_offset_m is the range of the radar minus that of the LiDAR. The
+/// human always drives.
 /// @throws InputError
 Scenario ScenarioInClearAir(const StudyContext& context, const ConflictSituation& situation);
 
-/// The same, but with fog of kFog_s after the warm-up until the end. The bias of fog
-/// model bias is in inverse proportion to the visibility.
+/// The scenario of ScenarioInClearAir(), but with fog. The fog begins after the warm-up and lasts
+/// kFog_s, until the end. The bias of fog model bias is in inverse proportion to the visibility.
 /// @throws InputError
 Scenario ScenarioInFog(const StudyContext& context, const ConflictSituation& situation,
                        double visibility_m);

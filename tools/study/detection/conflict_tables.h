@@ -15,14 +15,14 @@ namespace fogline::study {
 
 /// "bias, near-range noise".
 std::string NameOfSet(const ConflictSet& set);
-/// The names of all detectors that count as this one.
+/// The names of all detectors that count as this detector.
 std::string NamesOf(const ConflictSet& set, std::size_t detector);
 /// The detectors that have a threshold, the shortest mean delay first. Of the detectors with the
 /// same alarms, the list has only one.
 std::vector<std::size_t> Ranked(const ConflictSet& set);
 
-/// The detectors from the distance of a single step to the Degree of Conflict. Each detector has
-/// one part of the Degree of Conflict more than the detector before it.
+/// Detectors, in order from the distance of a single step to the Degree of Conflict. Each detector
+/// has one part of the Degree of Conflict more than the detector before it.
 struct DocPart {
   std::string_view name;
   std::string_view detector;

@@ -37,7 +37,7 @@ struct Detector {
   std::string name;         // such as "nis", "nis + window", "nis + sign", "nis + window + sign"
   std::size_t measure = 0;  // index in ComparedMeasures()
   bool window = false;      // averages the score over the window of the Degree of Conflict
-  bool sign = false;        // the score is negative if the LiDAR's range is too long, unlike in fog
+  bool sign = false;        // makes the score negative if the LiDAR's range is too long
   bool is_quick = false;    // needs no prediction and little time (RunClearAir())
 };
 

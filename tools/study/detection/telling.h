@@ -1,5 +1,5 @@
-// Finds the detectors that count as one because their alarms are the same. Also finds the
-// conditions that can rank detectors.
+// Finds detectors with the same alarms, which count as one detector. Also finds the conditions that
+// can rank detectors.
 #pragma once
 
 #include <cstddef>
@@ -16,7 +16,7 @@ struct AlarmTimes {
 };
 
 /// For each detector, the index of the detector that it counts as. Detectors with the same alarms
-/// in all compared runs count as one of them: the detector with the most runs. The further runs of
+/// in all compared runs count as the detector of them that has the most runs. The further runs of
 /// two detectors are compared if both have equally many, because then they are the same runs.
 std::vector<std::size_t> OneOfEqualAlarms(std::span<const AlarmTimes> detectors);
 

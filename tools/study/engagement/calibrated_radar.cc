@@ -15,7 +15,7 @@ double StandstillWithoutOffset(const Scenario& scenario) {
 }
 
 std::vector<std::string> CalibratedRadar(const Scenario& scenario) {
-  // Seven digits are those of a calibrated offset.
+  // Seven decimals, because a calibrated offset has seven decimals.
   const double centre = scenario.arbitrator.doc_centre_m - scenario.radar.bias_m;
   return {"/radar/bias_m=0", fmt::format("/arbitrator/doc_centre_m={:.7f}", centre),
           fmt::format("/acc/standstill_m={:.4f}", StandstillWithoutOffset(scenario))};

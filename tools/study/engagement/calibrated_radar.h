@@ -8,12 +8,12 @@
 
 namespace fogline::study {
 
-/// The ACC's standstill gap, m, with which it keeps the host's gap of step 0 if its distance is
-/// right: d_0 = gap - T_hw v, at least 0, rounded to 0.1 mm.
+/// The standstill gap, m, with which the ACC keeps the host's gap of step 0, if the distance that
+/// the ACC gets has no offset: d_0 = gap - T_hw v, at least 0, rounded to 0.1 mm.
 double StandstillWithoutOffset(const Scenario& scenario);
 
-/// Overrides for a radar without the offset of this scenario, a DoC that knows this, and an ACC
-/// that keeps the host's gap of step 0.
+/// Overrides for a radar without the offset of this scenario. The offset is also subtracted from
+/// the centre of the DoC. The ACC keeps the host's gap of step 0.
 std::vector<std::string> CalibratedRadar(const Scenario& scenario);
 
 }  // namespace fogline::study

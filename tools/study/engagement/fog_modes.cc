@@ -15,7 +15,8 @@ StudyCase FogMode::Case(std::string_view with, const std::vector<std::string>& m
 
 // In the mode with missing echoes, the echo of the fog itself is too weak to be detected. The fog
 // is so dense that the echo of the car ahead is not detected either. Real data show this mode
-// (RADIATE, Sheeny et al. 2021): there is no echo of 65 cars beyond 35 m, and no echo of the fog.
+// (RADIATE, Sheeny et al. 2021): 65 cars beyond 35 m give no echo, and the fog gives no echo
+// either.
 const std::vector<FogMode>& FogModes() {
   static const std::vector<FogMode> kModes{
       {"bias fog", "paper.json", {}},

@@ -1,5 +1,5 @@
-// The three ways in which a LiDAR fails in fog, and the two humans. Studies combine each of their
-// variants with them.
+// The three ways in which a LiDAR fails in fog, and the two humans. Studies run each of their
+// variants with each of these ways and each of these humans.
 #pragma once
 
 #include <string>
@@ -19,8 +19,8 @@ struct FogMode {
   std::string_view file;
   std::vector<std::string> overrides;
 
-  /// The case of this fog with the overrides `more`, such as those of a human. `with` names them in
-  /// the case's name, such as "bias fog: perfect human".
+  /// The case of this fog with the overrides `more`, such as those of a human. `with` is the end of
+  /// the case's name, such as "perfect human" in "bias fog: perfect human".
   StudyCase Case(std::string_view with, const std::vector<std::string>& more = {}) const;
 };
 

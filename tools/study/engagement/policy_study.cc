@@ -16,8 +16,8 @@
 namespace fogline::study {
 namespace {
 
-/// Every policy of the table, and rival rules: fusion that handles wrong sensors without a human,
-/// and a driver who must be asked to take over.
+/// Every policy of the table, and further rules: fusion that handles wrong sensors without a human,
+/// hand-back by the fusion, and a driver who must be asked to take over.
 std::vector<StudyVariant> EveryRule() {
   std::vector<StudyVariant> variants;
   for (const policies::PolicyRow& row : policies::Policies()) {
@@ -38,9 +38,9 @@ std::vector<StudyVariant> EveryRule() {
 
 constexpr std::string_view kCalibratedRadar = "calibrated radar";
 
-/// Each fog with each human, with the scenario's noise and with the noise of a real radar. Also the
-/// paper's fog with a calibrated radar: the radar has no mounting offset, and the offset is
-/// subtracted from the centre of the DoC.
+/// Each fog with each human, with the scenario's noise and with the noise of a real radar. The last
+/// cases have the paper's fog and a calibrated radar. A calibrated radar has no mounting offset,
+/// and the offset is subtracted from the centre of the DoC.
 std::vector<StudyCase> PolicyFogs(const Scenario& paper) {
   std::vector<StudyCase> cases;
   for (const FogMode& fog : FogModes()) {

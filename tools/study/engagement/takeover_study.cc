@@ -16,8 +16,8 @@ namespace {
 
 constexpr std::string_view kNoTradedControl = "none";
 
-/// Mean times to take over, s. The paper's driver has 0, because this driver need not be asked.
-/// Zhang et al. 2019 found a mean of 2.7 s in 129 studies.
+/// Mean times to take over, s. The value for the paper's driver is 0, because this driver drives
+/// without a request. Zhang et al. 2019 found a mean of 2.7 s in 129 studies.
 constexpr std::array kLatencies_s{0, 1, 2, 3, 4, 5};
 /// Standard deviation of the time to take over, s. The value is our choice: it is smaller than the
 /// difference of the means.
@@ -67,7 +67,7 @@ std::vector<StudyVariant> TakeOverVariants() {
   return variants;
 }
 
-/// The variants of the main comparison. They are repeated with realistic noise.
+/// The variants of the main comparison. The study repeats these variants with realistic noise.
 std::vector<StudyVariant> MainVariants() {
   std::vector<StudyVariant> variants = TakeOverVariants();
   std::erase_if(variants, [](const StudyVariant& one) {
@@ -149,8 +149,9 @@ report::StudyFigure OverLatency(const Comparison& comparison, std::string_view t
   return figure;
 }
 
-/// Mean compromised safety by latency, for two behaviours of the automation in each fog, with both
-/// humans side by side. @param noise the end of the names of the cases
+/// A table of the mean compromised safety. Its rows are the mean times to take over, with each
+/// human. Its columns are the fogs, with two behaviours of the automation. @param noise the end of
+/// the names of the cases
 report::StudyTable TakeOverMainTable(const Comparison& comparison, std::string_view noise) {
   report::StudyTable table{
       .caption = fmt::format("Mean compromised safety in fog{} (m), means over {} seeds [95 % "
@@ -237,7 +238,7 @@ std::vector<PlannedClaim> TakeOverClaims() {
   };
 }
 
-/// The claims that support the answer, with realistic noise.
+/// Those claims that support the answer, repeated with realistic noise.
 std::vector<PlannedClaim> NoisyClaims() {
   const std::string_view none = kNoTradedControl;
   const auto name = [](std::size_t fog) {

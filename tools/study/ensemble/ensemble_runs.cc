@@ -24,11 +24,11 @@
 namespace fogline::study {
 namespace {
 
-/// The studies whose claims are not those of a comparison.
+/// The studies whose claims do not come from a Comparison.
 constexpr std::string_view kThresholdStudy = "threshold";
 constexpr std::string_view kConflictStudy = "conflict";
 
-/// The common part of all runs of this study.
+/// The input that all runs of this study share.
 struct Ensemble {
   const StudyContext& context;
   std::span<const EnsembleSet> sets;
@@ -44,7 +44,8 @@ std::string NameWith(const EnsembleSet& set, std::string_view test_case) {
   return fmt::format("{}: {}", set.name, test_case);
 }
 
-/// A case with a set. What the case itself changes stays changed.
+/// The case with the parameters of a set. The overrides of the case come after those of the set, so
+/// the overrides of the case prevail.
 StudyCase CaseWith(const Ensemble& ensemble, const EnsembleSet& set, StudyCase one) {
   one.name = NameWith(set, one.name);
   std::vector<std::string> overrides = ensemble.Overrides(set, one.file);
@@ -84,7 +85,7 @@ const Named& NamedIn(const std::vector<Named>& all, std::string_view name) {
   return *std::ranges::find(all, name, &Named::name);
 }
 
-/// Claims of one study that share cases and seeds, so that they share runs.
+/// Claims of one study on common cases and seeds, which share their runs.
 struct SharedRuns {
   std::string_view study;
   std::int64_t one_of = 1;
@@ -106,8 +107,8 @@ struct SharedRuns {
   }
 };
 
-/// The claim with its numbers. If runs end in collisions, a claim on safety becomes the claim that
-/// there are fewer or more seeds with the less safe run on one side than on the other.
+/// The claim with its numbers. If runs end in collisions, a claim on safety is replaced by a claim
+/// on seeds: for fewer or more seeds, the run of the first cell is the less safe one.
 Claim SafetyWithCollisions(const Comparison& comparison, const PlannedClaim& planned) {
   Claim claim = ClaimOf(comparison, planned);
   if (claim.hindrance.empty() || planned.measure != kShortfall || planned.sign == Sign::kEqual) {
@@ -164,7 +165,7 @@ void RunStringOf(const Ensemble& ensemble, const StudyContext& part, std::size_t
   result.runs += static_cast<std::int64_t>(strings.size()) * part.seeds.count();
 }
 
-/// Adds claims with a set to the quoted claims of this study that say the same.
+/// Adds claims with a parameter set to the quoted claims of this study that have the same text.
 void AddClaims(std::string_view study, const EnsembleSet& set, std::vector<Claim> claims,
                EnsembleRuns& result) {
   for (Claim& claim : claims) {
@@ -177,7 +178,7 @@ void AddClaims(std::string_view study, const EnsembleSet& set, std::vector<Claim
   }
 }
 
-/// A mix of situations that is examined, with the beginning of its claims.
+/// A mix of situations that is examined, and the name of the mix in its claims.
 struct ExaminedMix {
   MixedHuman human;
   std::string_view name;
@@ -210,7 +211,8 @@ struct Job {
   std::int64_t units = 0;  // of its progress, for each seed
   std::function<void(const StudyContext& part, EnsembleRuns& result)> run;
 
-  /// The first of `one_of` equal parts of the seeds, or `times` as many seeds.
+  /// The seeds of the job, from the first seed of `all` on. Their number is that of `all`, times
+  /// `times`, divided by `one_of`, but at least 1.
   sweep::SeedRange Seeds(sweep::SeedRange all) const {
     all.last = all.first + std::max<std::int64_t>(1, all.count() * times / one_of) - 1;
     return all;
@@ -246,7 +248,8 @@ std::vector<SharedRuns> PlanShared(const Ensemble& ensemble) {
   return all;
 }
 
-/// For each set a job of a study whose claims share all runs.
+/// Adds a job for each set, if a claim of this study is quoted. The claims of this study share all
+/// runs of a job.
 template <class Run>
 void AddJobs(const Ensemble& ensemble, std::string_view study, std::int64_t units, Run run,
              std::vector<Job>& jobs) {

@@ -1,5 +1,5 @@
-// The runs of study `ensemble`: the comparisons behind claims of other studies, with the scenarios
-// of these studies and with each parameter set.
+// The runs of study `ensemble`. They repeat the comparisons that decide claims of other studies, in
+// the scenarios of these studies, with each parameter set.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,8 @@ struct EnsembleRuns {
   std::int64_t runs = 0;
 };
 
-/// Runs what the claims compare, and no other cells of their studies. All sets have the same seeds.
+/// Runs the cells that the claims compare, and no other cells of the claims' studies. All sets have
+/// the same seeds.
 /// @throws InputError, StudyStopped; std::out_of_range if a study makes no such claim
 EnsembleRuns RunEnsemble(const StudyContext& context, std::span<const EnsembleSet> sets,
                          std::span<const QuotedClaim> quoted);

@@ -72,7 +72,7 @@ std::vector<std::string> ColumnsOf(std::string_view first, std::span<const Ensem
   return columns;
 }
 
-/// For each part of a finding and each set the verdict.
+/// A table of the verdict on each part of each finding in each set.
 report::StudyTable VerdictTable(std::span<const EnsembleSet> sets, const JudgedClaims& judged,
                                 std::int64_t seeds) {
   report::StudyTable table{
@@ -88,7 +88,7 @@ report::StudyTable VerdictTable(std::span<const EnsembleSet> sets, const JudgedC
   return table;
 }
 
-/// For each claim and each set the outcome with its difference.
+/// A table of the outcome and the difference of each claim in each set.
 report::StudyTable OutcomeTable(std::span<const EnsembleSet> sets,
                                 std::span<const ClaimInSets> claims, const JudgedClaims& judged) {
   report::StudyTable table{.caption = "Each claim in each parameter set",
@@ -129,7 +129,7 @@ report::StudyFigure SetsFigure(std::span<const EnsembleSet> sets,
       if (!claim.p) largest = std::max(largest, std::abs(claim.difference.mean));
     }
     for (std::size_t s = 0; s < sets.size(); ++s) {
-      // A share of seeds is no difference of safety, so it has no point.
+      // A difference between shares of seeds is not a difference in safety, so it has no point.
       const Estimate in_set = in_sets[s].p ? Estimate{} : in_sets[s].difference;
       const bool is_turned = in_sets[s].sign == Sign::kLess;
       report::StudySeries& series = figure.series[s];

@@ -7,14 +7,15 @@
 
 namespace fogline::study {
 
-/// A large difference needs only one seed of so many.
+/// A claim on a large difference needs only one in kLarge of the seeds.
 inline constexpr std::int64_t kLarge = 8;
 /// A claim on a mix of situations needs this many times the usual number of seeds. The safety
 /// improvement differs much between situations, so about a thousand situations are needed, as in
 /// study `threshold`.
 inline constexpr std::int64_t kManySituations = 8;
 
-/// All findings, in the order of the page. A person writes the exceptions, after the runs.
+/// All findings, in the order of docs/findings.md. A person writes the exceptions (KnownException)
+/// after the runs.
 const std::vector<ExaminedFinding>& ExaminedFindings();
 
 }  // namespace fogline::study

@@ -15,7 +15,7 @@
 namespace fogline::study {
 namespace {
 
-// Columns of the file before those of the sets: quantity, unit, bounds, scale.
+// Columns of the file before those of the sets: quantity, unit, lowest value, highest value, scale.
 constexpr std::size_t kScale = 4;
 constexpr std::size_t kFirstSet = 5;
 
@@ -44,8 +44,8 @@ std::vector<EnsembleSet> ReadEnsembleSets(const std::filesystem::path& scenarios
     sets.push_back({.name = fmt::format("set {}", i - kFirstSet + 1), .fields = {}});
   }
   while (std::getline(stream, line)) {
-    // The other rows have the results of each set (SI, RHE and the distance from the target), and
-    // no field.
+    // Only the rows of fields begin with a slash. The other rows have the results of each set: SI,
+    // RHE and the distance from the target.
     if (!line.starts_with('/')) continue;
     const std::vector<std::string> cells = CellsOf(line);
     if (cells.size() != columns.size()) RefuseSets(file, "a set has no value of " + cells[0]);
@@ -68,7 +68,7 @@ std::vector<std::string> OverridesOf(const EnsembleSet& set, const std::filesyst
         !field.is_derived && stated.contains(nlohmann::json::json_pointer(field.pointer));
     if (!keeps) overrides.push_back(fmt::format("{}={}", field.pointer, field.value));
   }
-  // The standstill gap of the set contains the error of the paper's fused distance.
+  // The set's own standstill gap includes the error of the fused distance in paper.json.
   if (!is_paper) {
     const double standstill_m = StandstillWithoutOffset(LoadScenario(file, overrides));
     overrides.push_back(fmt::format("/acc/standstill_m={:.4f}", standstill_m));

@@ -1,5 +1,5 @@
-// The parameter sets of scenario/ensemble, with which the paper's experiment meets its published
-// table, as overrides of the studies' scenarios.
+// Reads the parameter sets of scenario/ensemble, and makes overrides of the studies' scenarios from
+// them. With each set the paper's experiment meets its published table.
 #pragma once
 
 #include <filesystem>
@@ -12,7 +12,7 @@ namespace fogline::study {
 struct SetField {
   std::string pointer;
   std::string value;        // as in the file
-  bool is_derived = false;  // it follows from the other fields, so that a run begins in equilibrium
+  bool is_derived = false;  // computed from the other fields, so that a run begins in equilibrium
 };
 
 struct EnsembleSet {
@@ -26,10 +26,11 @@ inline constexpr const char* kSetsFile = "ensemble/sets.csv";
 /// The sets, in the order of the file. @throws InputError
 std::vector<EnsembleSet> ReadEnsembleSets(const std::filesystem::path& scenarios);
 
-/// The overrides with which a scenario has the parameters of the set. In paper.json it has all of
-/// them. Another file keeps the fields that it sets, such as its fog and its sensors, because it
-/// describes another experiment; only the gaps follow from the set, so that a run begins in
-/// equilibrium. @pre the sensors of another file have no offset
+/// The overrides with which a scenario has the parameters of the set. For paper.json these are all
+/// fields of the set. Another file describes another experiment. So the file keeps the values of
+/// fields that it contains, such as its fog and its sensors. But the gaps (the derived fields) come
+/// from the set, so that a run begins in equilibrium.
+/// @pre the sensors of another file have no offset
 /// @throws InputError
 std::vector<std::string> OverridesOf(const EnsembleSet& set, const std::filesystem::path& file);
 

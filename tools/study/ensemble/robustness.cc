@@ -15,20 +15,20 @@ namespace {
 
 constexpr double kSurelyBelow = 0.05;
 
-/// p-value of the side on which the difference lies, and whether this side is the claim's.
+/// Whether the difference is on the claimed side of 0 or of a bound, and the p-value of its side.
 struct OneSide {
   bool is_claimed;
   double p;
 };
 
-/// The estimate moved by so much.
+/// The estimate with `by` added to the mean and to both ends of the interval.
 Estimate Moved(Estimate estimate, double by) {
   for (double* value : {&estimate.mean, &estimate.low, &estimate.high}) *value += by;
   return estimate;
 }
 
-/// Whether the lower bound of an equality decides: the bound that is nearer to the mean, or the
-/// only one.
+/// Whether the lower bound decides a claim of equality. If the claim has both bounds, the bound
+/// nearer to the mean decides.
 bool IsAtLowerBound(const Claim& claim, Bound bound) {
   return bound == Bound::kBoth ? claim.difference.mean < 0 : bound == Bound::kBelow;
 }
@@ -58,8 +58,9 @@ OneSide SideOf(const Claim& claim, Bound bound) {
 
 Sign Turned(Sign sign) { return sign == Sign::kLess ? Sign::kMore : Sign::kLess; }
 
-/// The claim as the runs decide it. An opposite claim is turned around. A claim of equality that is
-/// decided at one bound becomes a claim on the sign of the difference from this bound.
+/// The claim that the runs support. If the outcome is opposite, the claim has the other sign. A
+/// claim of equality that is decided at one bound becomes a claim on the sign of the difference
+/// from this bound.
 Claim AsDecided(Claim claim, Bound bound, InSet outcome) {
   const bool holds = outcome == InSet::kHolds;
   if (claim.sign != Sign::kEqual) {
@@ -83,7 +84,8 @@ InSet ExpectedOf(const ExaminedPart& examined, std::string_view says, int set) {
   return InSet::kHolds;
 }
 
-/// "set 3: "..." is opposite" for each outcome that the author does not say; "" without one.
+/// A text such as "set 3: "..." is opposite" for each outcome that differs from the outcome that
+/// the author states; "" if there is no such outcome.
 std::string Surprises(const ExaminedPart& examined,
                       std::span<const std::vector<JudgedInSet>> judged) {
   std::string text;
@@ -100,7 +102,7 @@ std::string Surprises(const ExaminedPart& examined,
   return text;
 }
 
-/// "eight".
+/// The number as a word, such as "eight".
 std::string CountText(std::size_t count) {
   constexpr std::array<std::string_view, 11> kWords{
       "no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten"};

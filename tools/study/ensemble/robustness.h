@@ -12,20 +12,20 @@
 
 namespace fogline::study {
 
-/// How a finding uses a claim that two things are equal.
+/// The bounds that a finding needs of a claim that two values are equal.
 enum class Bound {
-  kBoth,   // the difference does not matter
-  kBelow,  // it is not less than 0 by more than the margin
-  kAbove,  // it is not more than 0 by more than the margin
+  kBoth,   // the magnitude of the difference is at most the margin
+  kBelow,  // the difference is at least -margin
+  kAbove,  // the difference is at most +margin
 };
 
-/// A claim of another study, by the study's name and the claim's own words.
+/// A claim of another study. The study's name and the claim's text identify the claim.
 struct QuotedClaim {
   std::string_view study;
   std::string_view says;
-  std::int64_t one_of = 1;  // it needs only one of so many seeds, because its difference is large
+  std::int64_t one_of = 1;  // one in `one_of` seeds is enough, because the difference is large
   Bound bound = Bound::kBoth;
-  std::int64_t times = 1;  // it needs so many times the seeds, because its difference varies much
+  std::int64_t times = 1;  // factor for the number of seeds; above 1 if the difference varies much
 };
 
 /// A claim with each parameter set.
@@ -46,7 +46,7 @@ std::string_view Text(InSet outcome);
 
 struct JudgedInSet {
   InSet outcome = InSet::kUndecided;
-  double p = 1;       // of the sign that the difference has
+  double p = 1;       // of the sign that the difference has in the runs
   double p_holm = 1;  // adjusted for all claims in all sets
 };
 
@@ -54,26 +54,26 @@ struct JudgedInSet {
 /// @return for each claim its outcomes, in the order of the sets
 std::vector<std::vector<JudgedInSet>> JudgeInSets(std::span<const ClaimInSets> claims);
 
-/// A claim that does not hold in some sets, as the study's author found it.
+/// A claim that does not hold in some sets. The study's author writes it after the runs.
 struct KnownException {
   std::string_view says;
   std::vector<int> sets;  // numbers from 1
   InSet outcome = InSet::kOpposite;
 };
 
-/// The part of a finding on which claims bear.
+/// A part of a finding. Each part has claims of its own.
 enum class Part {
   kHeading,
-  kSide,  // what the text below the heading says
+  kSide,  // the text below the heading
 };
 /// "heading" or "side claims".
 std::string_view Text(Part part);
 
-/// The claims of one part of a finding, and what is known of them.
+/// The claims of one part of a finding, and the known exceptions.
 struct ExaminedPart {
   std::vector<QuotedClaim> claims;
   std::vector<KnownException> exceptions;
-  std::string_view why;  // what was found in these sets; ends with a full stop; "" without one
+  std::string_view why;  // explains the exceptions, in whole sentences; "" if not needed
 };
 
 /// A finding of docs/findings.md with the claims that decide on it.
@@ -86,27 +86,28 @@ struct ExaminedFinding {
   const ExaminedPart& Of(Part part) const { return part == Part::kHeading ? heading : side; }
 };
 
-/// The verdict on several claims in one set: they hold if each of them does. They are opposite if
-/// at least one is opposite, and otherwise undecided.
+/// The verdict on several claims in one set: `kHolds` if all claims hold, `kOpposite` if at least
+/// one claim is opposite, and otherwise `kUndecided`.
 InSet VerdictOn(std::span<const InSet> claims);
 
-/// For each set the verdict on the claims that were judged.
+/// For each set, the verdict that the runs give on these claims.
 std::vector<InSet> VerdictsOn(std::span<const std::vector<JudgedInSet>> claims);
-/// The same as the author found it.
+/// For each set, the verdict that the study's author states.
 std::vector<InSet> VerdictsOn(const ExaminedPart& examined, std::size_t sets);
 
 /// "set 3", "sets 3 and 7", "sets 3, 5 and 7"; "all eight parameter sets" if these are all.
 std::string SetsText(std::span<const int> numbers, std::size_t sets);
 
-/// "holds in sets 1 and 2; opposite in set 3; undecided in set 4. ...": the verdicts as the author
-/// found them, and then why. Side claims "hold".
+/// "holds in sets 1 and 2; opposite in set 3; undecided in set 4. ...": the verdicts that the
+/// author states, and then ExaminedPart::why. For side claims the verb is "hold".
 std::string SentenceOf(const ExaminedFinding& finding, Part part, std::size_t sets);
 
-/// The claim that a part of a finding has the verdicts that its author says. Its difference is the
-/// least certain one of those that are decided, turned around if it is opposite. If the runs say
-/// anything else of any set, this hinders the claim, and the hindrance names claim, set and
-/// outcome.
-/// @param claims, judged of this part of the finding, in their order
+/// The claim that a part of a finding has the verdicts that its author states. Its difference is
+/// that of the decided claim with the largest p-value. Its sign is the sign that the runs show for
+/// this claim. If any outcome in the runs differs from the author's, the claim has a hindrance,
+/// which names claim, set and outcome.
+/// @param claims the claims of this part of the finding, in their order
+/// @param judged the outcomes of these claims
 Claim ClaimOnPart(const ExaminedFinding& finding, Part part, std::span<const ClaimInSets> claims,
                   std::span<const std::vector<JudgedInSet>> judged);
 

@@ -117,7 +117,7 @@ std::vector<PlannedClaim> NoisyClaimsOnFirst() {
                 "beam fog: aggressive human", Sign::kLess)};
 }
 
-/// The followers with the largest difference between their kinds, without and with traded control.
+/// The kinds of followers that differ most, without and with traded control.
 report::StudyTable FollowersMainTable(const Comparison& comparison) {
   std::vector<NamedCell> rows;
   for (const std::string_view name :

@@ -23,8 +23,8 @@ constexpr double kBefore_s = 1;
 // Smaller decelerations do not count as braking, because noise causes them in clear air.
 constexpr double kLeastBraking_mps2 = 0.01;
 
-// Overrides that start the fog later. So the cars behind the host reach steady gaps before the
-// fog, whatever their time gaps are. The fog lasts as long as in the file.
+// Overrides that start the fog later. So the cars behind the host reach steady gaps before the fog,
+// with any time gaps. The fog lasts as long as in the file.
 const std::vector<std::string> kLater{"/fog/start_s=60", "/steps=1200"};
 
 /// Result of one run.

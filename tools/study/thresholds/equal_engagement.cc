@@ -11,8 +11,8 @@
 namespace fogline::study {
 namespace {
 
-// Random stream of the resamples. Streams below 1000 belong to roles, 1000 to the mix of
-// situations.
+// Random stream of the resamples. Streams below 1000 belong to roles. Stream 1000 belongs to the
+// mix of situations.
 constexpr Stream kSituations{1001};
 
 CurvePoint PointOf(const RuleValues& rule, std::span<const double> weights) {

@@ -26,8 +26,8 @@ struct CurvePlace {
 };
 
 /// The place with this RHE on the curve. The curve is straight between its points. If several
-/// places have this RHE, the result is the place with the largest gain. Thresholds have the same
-/// RHE if they are never reached in clear air. nullopt if the RHE is beyond the curve.
+/// places have this RHE, the result is the place with the largest gain. All thresholds that are
+/// never reached in clear air have the same RHE. nullopt if the RHE is beyond the curve.
 /// @param curve at least one point, in order of threshold
 std::optional<CurvePlace> BestAt(std::span<const CurvePoint> curve, double rhe_pct);
 

@@ -19,7 +19,7 @@ namespace {
 // Random stream of the mix. Streams below 1000 belong to roles.
 constexpr Stream kMix{1000};
 
-/// Range of a uniform distribution, or of a uniform distribution of the logarithm.
+/// Range of a distribution that is uniform in the value, or uniform in its logarithm.
 struct Range {
   double least;
   double most;
@@ -28,7 +28,7 @@ struct Range {
   double Log(double u) const { return least * std::pow(most / least, u); }
 };
 
-// The mix is our choice: each parameter ranges from the paper's value to a bad value.
+// The mix is our choice. Each range contains the value of paper.json, whose leader has amplitude 0.
 constexpr double kClearShare = 0.25;
 constexpr Range kVisibility_m{40, 300};
 constexpr Range kBias_m{0.03, 0.5};  // of fog model bias; paper.json has 0.216

@@ -41,9 +41,9 @@ struct MixedRuns {
 
 /// The human who takes over in the situations.
 enum class MixedHuman {
-  kDrawn,     // half of the humans judge correctly and stay aware; all humans see the fog
+  kDrawn,     // half of the humans judge correctly and stay aware; fog limits everyone's sight
   kPerfect,   // the paper's human
-  kFallible,  // sees the fog, misjudges distances and loses awareness
+  kFallible,  // has a sight limited by fog, misjudges distances and loses awareness
 };
 /// The noise of the radar in the situations.
 enum class MixedRadar {

@@ -21,8 +21,8 @@
 namespace fogline::study {
 namespace {
 
-/// Every member compared with the curve of fixed thresholds, in the order of MixedRuns::members.
-/// Members on the curve itself have no comparison.
+/// Comparisons of the members with the curve of fixed thresholds, in the order of
+/// MixedRuns::members. The comparisons of members on the curve itself are empty.
 struct Beside {
   std::vector<AtEqualEngagement> si;         // in points
   std::vector<AtEqualEngagement> shortfall;  // in m; less is better

@@ -1,4 +1,4 @@
-// A desk: a session talks to the people there, in a terminal or in pages of a browser.
+// A desk: the interface of a session to its people, in a terminal or in pages of a browser.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@
 
 namespace fogline::trials {
 
-/// A run, as the participant may know it: without condition and threshold.
+/// The facts about the next run. The participant may know all of them except `for_experimenter`.
 struct Next {
   Trial trial;
   std::int64_t of = 1;           // number of trials, or of practice runs
@@ -32,22 +32,23 @@ class Desk {
   virtual ~Desk() = default;
 
   /// Returns when the run may begin.
-  /// @throws Interrupted; std::runtime_error if no answer can come any more
+  /// @throws Interrupted; std::runtime_error if the desk can receive no further answer
   virtual void WaitForBegin(const Next& next) = 0;
-  /// The run has a network, and no role yet. Returns when the roles may begin: if the participant
-  /// drives at the seat of the page, when they are ready there.
+  /// Called when the run has a network, before the roles start. Returns when the roles may start.
+  /// If the participant drives at the seat of the page, the roles may start when the participant is
+  /// ready there.
   /// @throws as WaitForBegin()
   virtual void RunOpens(std::int64_t run_id, const std::string& url) = 0;
-  /// The run begins. The speaker takes markers until RunEnded().
+  /// Called when the run begins. The speaker accepts markers until RunEnded().
   virtual void RunBegins(Speaker& speaker) = 0;
-  /// Called again and again from the first step of the log on.
+  /// Called repeatedly during the run, from the first step of the log on.
   virtual void RunGoesOn() = 0;
-  /// Also called if the run breaks off.
+  /// Called when the run has ended, also if it broke off.
   virtual void RunEnded() = 0;
   /// The answers to all items, in their order. @param after the run that they are about
   /// @throws as WaitForBegin()
   virtual std::vector<Answer> Ask(const Next& after, const QuestionnaireSection& questionnaire) = 0;
-  /// The participant has made all trials.
+  /// Called when the participant has made all trials.
   virtual void Finish() = 0;
 };
 

@@ -36,12 +36,12 @@ namespace {
 
 namespace asio = boost::asio;
 
-// Interval at which a wait looks whether Ctrl-C has come.
+// Interval at which a wait checks for Ctrl-C.
 constexpr Duration kWakeEvery = milliseconds(50);
-// All connections must be closed in this time at the end.
+// Time limit for closing all connections at the end.
 constexpr milliseconds kEndLimit(600);
 
-/// The files of a page. Its main file is at "/", and the other page's files are not there.
+/// The files of a page. Its main file is at "/". The files of only the other page are not included.
 std::vector<web::Asset> FilesOf(std::string_view main, std::string_view script) {
   std::vector<web::Asset> files;
   for (web::Asset asset : web::TrialAssets()) {
@@ -120,7 +120,7 @@ std::unique_ptr<web::Server> Listen(asio::io_context& context, const Place& plac
   }
 }
 
-/// Whether fogline-web can listen there is known before the participant begins.
+/// Checks that fogline-web can listen there. This check comes before the participant begins.
 /// @throws as CannotListen()
 void RequireFree(asio::io_context& context, const Place& place) {
   using asio::ip::tcp;
@@ -139,7 +139,8 @@ RunPageOptions ForRuns(const PageOptions& options) {
 
 }  // namespace
 
-/// Both servers in a thread of their own. The session's thread waits for what they receive.
+/// Both servers in a thread of their own. The session's thread waits for the messages that the
+/// servers receive.
 class PageDesk::Pages {
  public:
   explicit Pages(const PageOptions& options)
@@ -174,7 +175,7 @@ class PageDesk::Pages {
     thread_.join();
   }
 
-  /// Changes the state, and shows it.
+  /// Changes the state, and shows it in both pages.
   template <class Change>
   void Set(const Change& change) {
     {
@@ -185,7 +186,7 @@ class PageDesk::Pages {
     Publish();
   }
 
-  /// The next message of this kind. @throws Interrupted
+  /// Waits for the next message of this kind. @throws Interrupted
   PageMessage WaitFor(PageMessage::Kind kind) {
     std::unique_lock lock(mutex_);
     for (;;) {
@@ -207,7 +208,7 @@ class PageDesk::Pages {
     }
   }
 
-  /// The run begins, and this speaker takes markers until EndRun().
+  /// Begins the run. The speaker accepts markers until EndRun().
   void BeginRun(Speaker& speaker) {
     Set([&](PageState& state) {
       speaker_ = &speaker;
@@ -229,7 +230,7 @@ class PageDesk::Pages {
   }
 
   /// Waits until the participant is ready at the seat.
-  /// @throws Interrupted; std::runtime_error if there is no seat any more
+  /// @throws Interrupted; std::runtime_error if the seat cannot open again
   void WaitForPerson(std::int64_t run_id, const std::string& url) {
     const bool ready = processes::WaitForPerson(run_id, url, traffic_, [this] {
       LookAtRunPage();
@@ -251,7 +252,8 @@ class PageDesk::Pages {
   }
 
   void EndRun() {
-    // The participant's page must know it when the seat sends the participant back.
+    // The participant's page must know that the run has ended, before the seat sends the
+    // participant back to this page.
     Set([this](PageState& state) {
       speaker_ = nullptr;
       state.EndRun();
@@ -301,8 +303,8 @@ class PageDesk::Pages {
   std::mutex mutex_;
   std::condition_variable changed_;
   PageState state_{UnixMicros()};
-  std::deque<PageMessage> messages_;  // that fit the state, and are not taken yet
-  Speaker* speaker_ = nullptr;        // set in the state that takes markers
+  std::deque<PageMessage> messages_;  // messages that fit the state, and wait for WaitFor()
+  Speaker* speaker_ = nullptr;        // set while markers are accepted
   asio::io_context context_{1};
   PageView participant_view_;
   PageView experimenter_view_;

@@ -1,9 +1,10 @@
 // A session in the browser: one page for the participant and one for the experimenter, at different
 // addresses. The participant's page shows the title of the run, the questions, and nothing else: no
 // condition, no threshold, no truth. If the participant drives, the page opens the seat of
-// fogline-web for the run, and the seat opens the page again. The experimenter's page shows the
-// condition and what has happened, and takes markers. Each address has a token of its own: the
-// participant cannot guess that of the experimenter, and other users of the machine can guess none.
+// fogline-web for the run. After the run the seat opens the page again. The experimenter's page
+// shows the condition and what has happened, and takes markers. Each address has a token of its
+// own: the participant cannot guess the address of the experimenter, and other users of the machine
+// cannot guess either address.
 //
 // This process serves both pages itself, and writes the answers itself. So no answer depends on
 // fogline-web, which only shows the run and has the seat.
@@ -30,7 +31,8 @@ struct PageOptions {
 
 class PageDesk final : public Desk {
  public:
-  /// @throws InputError if a chosen port cannot be had; std::runtime_error if it cannot listen
+  /// @throws InputError if a port that the user chose is not free; std::runtime_error if the desk
+  /// cannot listen
   explicit PageDesk(const PageOptions& options);
   ~PageDesk() override;
 

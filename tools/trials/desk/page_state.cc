@@ -14,7 +14,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kNoRun = "no run is under way";
-// The experimenter's page shows so many lines.
+// Largest number of lines on the experimenter's page.
 constexpr std::size_t kMostLines = 200;
 
 std::string_view WordOf(Stage stage) {
@@ -48,13 +48,13 @@ Json JsonOf(const ItemSection& item) {
           {"high", item.high}};
 }
 
-/// A frame as JSON; null if it is no object.
+/// A frame as JSON; null if it is not an object.
 Json Parse(std::string_view frame) {
   Json json = Json::parse(frame, nullptr, false);
   return json.is_object() ? json : Json();
 }
 
-/// The text in a member of an object. A member that is missing or no text counts as "".
+/// The text in a member of an object. "" if the member is missing or is not a text.
 std::string Text(const Json& json, const char* name) {
   const auto member = json.find(name);
   return member != json.end() && member->is_string() ? member->get<std::string>() : "";

@@ -1,5 +1,5 @@
-// The contents of the two pages of a session, and the answers that they may give. The class has no
-// sockets.
+// The contents of the two pages of a session, and the check of the pages' messages. The class has
+// no sockets.
 #pragma once
 
 #include <cstdint>
@@ -25,28 +25,33 @@ struct PageMessage {
   std::string text;             // kMarker
 };
 
-/// The state of a session, as its pages see it. Each state has a number, so that an answer to an
-/// earlier state is not taken for one to this state.
+/// The state of a session, as its pages see it. Each state has a number. A page sends the number
+/// with its answer, so an answer to an earlier state is recognised.
 class PageState {
  public:
-  /// @param number of the first state. It must be larger than those of an earlier session, whose
-  ///     pages may still be open, and at most 2^53, so that it is exact in a browser
+  /// @param number of the first state. It must be larger than the numbers of earlier sessions,
+  ///     because their pages may still be open. It must be at most 2^53, so that it is exact in a
+  ///     browser
   explicit PageState(std::int64_t number) : number_(number) {}
 
-  /// @param wait_s the rest of a break, s: the next run cannot begin before its end
+  /// @param wait_s remaining time of a break, s. The next run cannot begin before the end of this
+  /// time
   void Wait(const Next& next, double wait_s);
-  /// The pages of fogline-web for the run can be opened at these addresses.
+  /// Shows the addresses at which the pages of fogline-web for the run can be opened.
   /// @param seat "" if the participant does not drive
   void OpenRun(std::string view, std::string seat);
   void Drive() { Enter(Stage::kDriving); }
-  /// The pages for the run are at these addresses now. @param seat "" if it cannot be opened now
+  /// Shows the new addresses of the pages for the run.
+  /// @param seat "" if the seat cannot be opened at present
   void MoveRun(std::string view, std::string seat);
-  /// The run is over or broke off. Its pages are gone, and no marker is taken any more.
+  /// Ends the run, which is over or broke off. Its pages are removed, and markers are refused from
+  /// then on.
   void EndRun();
   /// @param after the run that the questions are about
   void Ask(const Next& after, const QuestionnaireSection& questionnaire);
   void Finish();
-  /// Adds a line to what the experimenter sees, the newest last. The oldest lines are dropped.
+  /// Adds a line at the end of the lines that the experimenter sees. If there are too many lines,
+  /// the oldest ones are removed.
   void Tell(std::string line);
 
   /// JSON for the page of the participant. It does not contain the condition, the seed, the

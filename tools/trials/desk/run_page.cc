@@ -15,10 +15,10 @@ namespace {
 
 // fogline-web listens within this time, even on a busy machine.
 constexpr Duration kPageLimit = milliseconds(10'000);
-// The pause before fogline-web is started again. It doubles with each start that was in vain.
+// The pause before fogline-web is started again. It doubles with each failed start.
 constexpr Duration kFirstPause = milliseconds(500);
 constexpr Duration kLongestPause = milliseconds(8000);
-// After so many starts in vain, in 7.5 s or more, the cause is not a passing one.
+// After this number of failed starts, in 7.5 s or more, the cause is assumed to be permanent.
 constexpr int kMostFailures = 5;
 
 }  // namespace
@@ -68,7 +68,7 @@ void RunPage::Start() {
 }
 
 void RunPage::Fail(const std::string& how) {
-  web_.Kill();  // the thread of the run does not wait for its end
+  web_.Kill();  // the thread of the run does not wait until fogline-web ends
   state_ = State::kPausing;
   port_ = options_.port;  // another program may have taken the port that the system had chosen
   start_at_ = Clock::now() + std::min(kLongestPause, kFirstPause * (1 << std::min(failed_, 10)));

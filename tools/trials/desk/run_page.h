@@ -1,7 +1,8 @@
 // The pages of fogline-web for a run: the view for the experimenter and, if the participant drives,
-// the seat. fogline-web is a child, at the same addresses for all runs of a session, unless another
-// program takes a port that nobody has chosen. If it dies, it is started again, after a pause that
-// grows; the run and the session go on without it.
+// the seat. fogline-web is a child process. It has the same addresses in all runs of a session.
+// Only a port that the system chose can change, if another program has taken it. If fogline-web
+// ends too early, it is started again after a pause, which grows with each failure. Meanwhile the
+// run and the session continue.
 #pragma once
 
 #include <cstdint>
@@ -15,8 +16,8 @@ namespace fogline::trials {
 
 struct RunPageOptions {
   std::string address = "127.0.0.1";  // IPv4 in numbers, at which fogline-web listens
-  std::uint16_t port = 0;            // 0: any free port, the same one for all runs if it stays free
-  std::vector<std::string> traffic;  // the options --key for fogline-web
+  std::uint16_t port = 0;             // 0: any free port; the same port for all runs, if possible
+  std::vector<std::string> traffic;   // the options --key for fogline-web
 };
 
 class RunPage {
@@ -26,18 +27,18 @@ class RunPage {
 
   explicit RunPage(RunPageOptions options);
 
-  /// Shows this run on this network, and returns when the pages can be opened.
-  /// @throws Interrupted; std::runtime_error if there is no seat. A run can do without its view,
-  /// but
-  ///     not without the person who drives
+  /// Shows this run on this network, and returns when the pages can be opened. If they cannot be
+  /// opened, a run without a seat continues without its view.
+  /// @throws Interrupted; std::runtime_error if the pages cannot be opened, and the run has a seat
   void Show(std::int64_t run_id, const std::string& url, Seat seat);
-  /// Starts fogline-web again if it has died. Call it now and then while the run goes on.
+  /// Starts fogline-web again if it has ended. Call this function regularly during the run.
   Change Look();
-  /// Why no fogline-web can be expected any more; "" if there is one, or the next start may help.
+  /// Reason why no further start of fogline-web can be expected to succeed; "" if fogline-web runs,
+  /// or if the next start may succeed.
   std::string WhyHopeless() const;
   void End();
 
-  /// The addresses with their tokens; "" if there is no such page.
+  /// The addresses with their tokens; "" if the page does not exist.
   const std::string& view_address() const { return view_address_; }
   const std::string& seat_address() const { return seat_address_; }
 
@@ -45,16 +46,16 @@ class RunPage {
   enum class State { kNoRun, kStarting, kListening, kPausing };
 
   void Start();
-  /// Starts it, and waits until it listens. @return false if that was in vain @throws Interrupted
+  /// Starts fogline-web, and waits until it listens. @return whether it listens @throws Interrupted
   bool Comes();
-  /// The start was in vain. Says so at the first time.
+  /// Handles a failed start. Prints a warning for the first failure in a row.
   void Fail(const std::string& how);
   /// Takes the addresses that fogline-web prints. @return whether it listens
   bool TakeAddresses(Duration limit);
 
   const RunPageOptions options_;
-  std::uint16_t port_;  // of the next start
-  // They stay the same, so a page that was open connects again after fogline-web has died.
+  std::uint16_t port_;  // port of the next start
+  // The tokens stay the same. So an open page can connect again after a restart of fogline-web.
   const std::string view_token_;
   const std::string seat_token_;
   std::int64_t run_id_ = 0;
@@ -64,7 +65,7 @@ class RunPage {
   std::string seat_address_;
   processes::WebChild web_;
   State state_ = State::kNoRun;
-  int failed_ = 0;         // starts in a row that were in vain
+  int failed_ = 0;         // number of failed starts in a row
   TimePoint listen_by_{};  // kStarting
   TimePoint start_at_{};   // kPausing
 };

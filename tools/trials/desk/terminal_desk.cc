@@ -18,7 +18,7 @@
 namespace fogline::trials {
 namespace {
 
-// Interval at which a wait looks whether Ctrl-C has come.
+// Interval at which a wait checks for Ctrl-C.
 constexpr Duration kLookEvery = milliseconds(50);
 
 std::string Title(const Next& next) {

@@ -12,7 +12,8 @@
 namespace fogline::watch {
 namespace {
 
-/// The scenario in RUN has 1,000 characters in each part.
+/// Number of characters of a text that are shown. A part of the scenario in RUN has 1,000
+/// characters.
 constexpr std::size_t kMaxText = 300;
 
 template <class V>

@@ -10,9 +10,9 @@
 
 namespace fogline::watch {
 
-/// A line "name   value" for each field of a message, and for each value of an array. If the
-/// channel is none of Fogline, or the message does not decode: its first bytes in hexadecimal. Text
-/// from the network is safe to print.
+/// Lines "name   value", one for each field of a message and for each element of an array. For an
+/// unknown channel, or for a message that cannot be decoded, the first bytes in hexadecimal. Text
+/// from the network is made safe to print.
 std::vector<std::string> FieldLines(std::string_view channel, runtime::Bytes message);
 
 std::vector<std::string> FieldLines(const status_t& status);

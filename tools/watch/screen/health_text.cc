@@ -28,7 +28,7 @@ std::string InputsIn(std::int8_t state, const status_t& status) {
   return inputs;
 }
 
-/// What STATUS says about a role in real time.
+/// Adds remarks on a role in real time, from its STATUS.
 void AddRealtime(const status_t& status, std::vector<std::string>& remarks) {
   if (!status.fallback.empty()) remarks.push_back(Printable(status.fallback));
   if ((status.minimal_risk & status_t::HOST) != 0) remarks.emplace_back("host stops");

@@ -1,4 +1,4 @@
-// What a person should know about a role and a run, in words, from STATUS and HOST_COMMAND.
+// Texts for people about the state of a role and of a run, from STATUS and HOST_COMMAND.
 #pragma once
 
 #include <string>
@@ -8,16 +8,16 @@
 
 namespace fogline::watch {
 
-/// Remarks on a role, the most important one first; none if the role is well. Text from the network
-/// is safe to print.
+/// Remarks on a role, the most important one first; empty if the role has no problem. Text from the
+/// network is made safe to print.
 /// @param realtime whether the run is in real time: its roles do not wait for inputs
 std::vector<std::string> RemarksOn(const RoleView& role, bool realtime);
 
 /// Whether the role needs the attention of a person.
 bool IsUnwell(const RoleView& role);
 
-/// "the automation drives", "the human drives", "a minimal risk manoeuvre", ... according to the
-/// newest HOST_COMMAND; "" if none has come.
+/// The side that drives, according to the newest HOST_COMMAND: "the automation drives", "the human
+/// drives", "a minimal risk manoeuvre", ...; "" if no HOST_COMMAND has come.
 std::string WhoDrives(const RunView& run);
 
 }  // namespace fogline::watch

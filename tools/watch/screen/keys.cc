@@ -65,7 +65,7 @@ std::optional<Key> KeyOf(char byte) {
 std::size_t LengthOfSequence(std::string_view bytes) {
   if (bytes.size() < 2) return 0;
   if (bytes[1] == 'O') return bytes.size() < 3 ? 0 : 3;
-  if (bytes[1] != '[') return 1;  // Escape, and then another key
+  if (bytes[1] != '[') return 1;  // the key Escape, then another key
   for (std::size_t i = 2; i < bytes.size(); ++i) {
     if (bytes[i] >= '@' && bytes[i] <= '~') return i + 1;  // the final byte
   }

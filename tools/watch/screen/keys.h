@@ -22,15 +22,14 @@ enum class Key {
   kQuit,
 };
 
-/// Takes bytes as they come. The escape sequences are those of ECMA-48 as xterm, the Linux console,
-/// screen and tmux send them.
+/// Finds the keys in the bytes of a terminal. The escape sequences are those of ECMA-48 that xterm,
+/// the Linux console, screen and tmux send.
 class KeyReader {
  public:
   void Take(std::string_view bytes) { bytes_ += bytes; }
 
-  /// The next key. Bytes that are no key of this program are left out.
-  /// @param complete whether no byte has come for a moment; an ESC at the end then is the Escape
-  /// key
+  /// The next key. Skips bytes that are not a key of this program.
+  /// @param complete whether no byte has come for a moment; a last ESC is then the key Escape
   std::optional<Key> Next(bool complete);
 
  private:

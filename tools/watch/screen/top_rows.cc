@@ -27,7 +27,7 @@ std::string KeyOf(const RunView& run, const ChannelView& channel) {
   return fmt::format("channel {} {}", run.run_id, channel.channel);
 }
 
-/// Pointers to the elements, sorted by a number that belongs to the column. The largest comes
+/// Pointers to the elements, sorted by the element's number for the column. The largest comes
 /// first.
 template <class T>
 std::vector<const T*> Sorted(const std::vector<T>& all, const TableOrder& order,

@@ -1,4 +1,4 @@
-// Everything that top knows, as rows of tables for 80 columns.
+// The data of `fogline top` as rows of tables for 80 columns.
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@
 
 namespace fogline::watch {
 
-/// All of it at one time.
+/// The data of `fogline top` at one time.
 struct TopView {
   std::string url;
   TrafficView traffic;
@@ -38,18 +38,18 @@ using TableOrders = std::array<TableOrder, kTables>;
 /// The columns by which a table can be sorted; the first is its natural order.
 std::vector<std::string_view> SortColumns(Table table);
 
-/// A row; rows with a key can be opened.
+/// A row of a table. Rows with a key can be opened.
 struct TopRow {
   Line line;
   Table table = Table::kNone;
-  std::string key;  // the same for the same thing at another time; "" for headings
+  std::string key;  // names the role, channel or sender in later views, too; "" for headings
 };
 
-/// The rows of all tables: of each run its roles and channels, waiting roles, other channels,
-/// senders.
+/// The rows of all tables: roles and channels of each run, waiting roles, other channels, senders.
 std::vector<TopRow> TopRows(const TopView& view, const TableOrders& orders);
 
-/// Everything about the thing of a row; the first line is its title. Empty if the thing is gone.
+/// All details of the role, channel or sender of a row; the first line is the title. Empty if it no
+/// longer exists in the view.
 std::vector<Line> DetailsOf(const std::string& key, const TopView& view);
 
 }  // namespace fogline::watch

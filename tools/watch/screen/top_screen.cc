@@ -29,7 +29,7 @@ void TopScreen::Show(TopView view) {
 void TopScreen::Build() {
   rows_ = TopRows(view_, orders_);
   if (!used_) {
-    // The first rows may come above the row that was first before.
+    // New rows may come above the row that was first before.
     cursor_ = 0;
     return Move(0);
   }
@@ -142,13 +142,13 @@ std::string TopScreen::Footer() const {
 std::vector<Line> TopScreen::Overview(std::size_t height) {
   if (rows_.empty()) return {};
   if (cursor_ < first_) first_ = cursor_;
-  // At the first row, the headings above it are visible, too.
+  // At the first row that can be opened, the headings above this row are also visible.
   const bool top =
       std::ranges::all_of(rows_.begin(), rows_.begin() + static_cast<std::ptrdiff_t>(cursor_),
                           [](const TopRow& row) { return row.key.empty(); });
   if (top) first_ = 0;
   if (cursor_ >= first_ + height) first_ = cursor_ + 1 - height;
-  // At the last row, the remarks below it are visible, too.
+  // At the last row that can be opened, the remarks below this row are also visible.
   const std::size_t last = rows_.size() > height ? rows_.size() - height : 0;
   const bool bottom =
       std::ranges::all_of(rows_.begin() + static_cast<std::ptrdiff_t>(cursor_) + 1, rows_.end(),
@@ -165,7 +165,7 @@ std::vector<Line> TopScreen::Overview(std::size_t height) {
 std::vector<Line> TopScreen::Details(std::size_t height) {
   std::vector<Line> all = DetailsOf(opened_, view_);
   if (all.empty()) all = {{"it is gone", Line::Style::kHeading}};
-  // The title stays visible.
+  // The title is always visible.
   std::vector<Line> lines{all.front()};
   all.erase(all.begin());
   const std::size_t room = height - std::min<std::size_t>(height, 1);
@@ -185,7 +185,7 @@ std::vector<Line> TopScreen::Lines(std::size_t columns, std::size_t rows) {
   std::ranges::move(body, std::back_inserter(lines));
   lines.resize(std::max(lines.size(), height + 1));
   lines.push_back({Footer(), Line::Style::kSelected});
-  // The last column stays free: a terminal may treat text that reaches its edge in its own way.
+  // The last column stays empty, because terminals differ in how they treat text at their edge.
   const std::size_t width = columns > 1 ? columns - 1 : 1;
   for (Line& line : lines) line.text = Wide(std::move(line.text), width);
   lines.resize(std::min(lines.size(), rows));

@@ -1,5 +1,5 @@
-// The screen of `fogline top`: tables that scroll, a cursor, and the details of one row. It has no
-// terminal and no clock: its caller passes keys and sizes, and draws the lines.
+// The screen of `fogline top`: tables that scroll, a cursor, and the details of one row. The class
+// has no terminal and no clock: its caller passes keys and sizes, and draws the lines.
 #pragma once
 
 #include <cstddef>
@@ -13,14 +13,14 @@ namespace fogline::watch {
 
 class TopScreen {
  public:
-  /// Replaces what is shown. The cursor stays on its row.
+  /// Replaces the shown data. The cursor stays on its row.
   void Show(TopView view);
 
   /// @return false if the key ends the program
   bool OnKey(Key key);
 
-  /// The lines for a window of this size, at most `rows` lines. The first line is a summary, the
-  /// last one names the keys.
+  /// The lines for a window of this size, at most `rows` lines. The first line is a summary. The
+  /// last line names the keys.
   std::vector<Line> Lines(std::size_t columns, std::size_t rows);
 
  private:
@@ -39,9 +39,9 @@ class TopScreen {
   std::vector<TopRow> rows_;
   std::size_t cursor_ = 0;    // index in rows_
   std::string key_;           // key of the row at the cursor
-  bool used_ = false;         // a key was pressed; before, the cursor stays at the first row
+  bool used_ = false;         // whether a key was pressed; else the cursor stays at the first row
   std::size_t first_ = 0;     // the first row that is visible
-  std::string opened_;        // key of the opened row; "" if none is open
+  std::string opened_;        // key of the opened row; "" if no row is open
   std::size_t scrolled_ = 0;  // lines of the details that are above the window
   std::size_t page_ = 1;      // rows of the last window
 };

@@ -22,13 +22,13 @@ namespace {
 // Without packets for this long the socket renews its membership of the group, as a bus does.
 constexpr Duration kJoinAgainEvery = milliseconds(1000);
 
-/// @throws std::runtime_error with why the socket cannot be opened
+/// @throws std::runtime_error with the reason why the socket cannot be opened
 [[noreturn]] void Fail(const std::string& url, const std::error_code& why) {
   throw std::runtime_error(
       fmt::format("the packets of {} cannot be counted: {}", url, why.message()));
 }
 
-/// @throws std::runtime_error if the network cannot be heard
+/// @throws std::runtime_error if the socket cannot be opened
 std::unique_ptr<runtime::GroupSocket> OpenSocket(const std::string& url, int buffer_bytes) {
   try {
     auto socket =
@@ -96,7 +96,7 @@ void PacketSocket::Attend(bool heard, TimePoint now) {
 }
 
 int PacketSocket::Receive(const std::function<void(const Packet&)>& use) {
-  // An error, such as an interrupt, means that nothing is there yet: the next call tries again.
+  // On an error, such as an interrupt, no packet counts as received: the next call tries again.
   const int count = recvmmsg(fd(), batch_->Ready(), kBatch, 0, nullptr);
   for (int i = 0; i < count; ++i) {
     const auto at = static_cast<std::size_t>(i);

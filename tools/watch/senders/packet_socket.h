@@ -1,4 +1,4 @@
-// A UDP socket that hears the packets of a udpm:// network beside LCM.
+// A UDP socket that receives the packets of a udpm:// network in addition to LCM's own socket.
 #pragma once
 
 #include <cstddef>
@@ -24,30 +24,31 @@ struct Packet {
   // Packets that the kernel dropped before this one, because they found no room in the socket's
   // buffer (SO_RXQ_OVFL).
   std::uint32_t dropped = 0;
-  std::int64_t unix_us = 0;  // when it came: the wall clock, microseconds since 1970
+  std::int64_t unix_us = 0;  // when it came, in us since 1970
 };
 
-/// For one thread. It sends nothing.
+/// Receives packets, and sends nothing. For use in one thread.
 class PacketSocket {
  public:
   struct Options {
     std::size_t packet_bytes;  // each packet is cut off after this many bytes
-    // Without CAP_NET_ADMIN at most net.core.rmem_max.
+    // Size of the receive buffer; without CAP_NET_ADMIN at most net.core.rmem_max.
     int buffer_bytes = runtime::kWideBuffer;
   };
 
   /// @pre the URL is a udpm:// URL (runtime::ParseMulticastUrl)
-  /// @throws std::runtime_error if the network cannot be heard
+  /// @throws std::runtime_error if the socket cannot be opened
   PacketSocket(const std::string& url, const Options& options);
   ~PacketSocket();
   PacketSocket(const PacketSocket&) = delete;
   PacketSocket& operator=(const PacketSocket&) = delete;
 
-  /// Calls `use` for the packets that are there, at most kBatch. @return their number
+  /// Calls `use` for the packets that have come, at most kBatch. @return the number of packets
   int Receive(const std::function<void(const Packet&)>& use);
   static constexpr std::size_t kBatch = 64;
 
-  /// Renews the membership of the group if nothing has come for a second, as a bus does.
+  /// Renews the membership of the multicast group if no packet has come for a second, as a bus
+  /// does.
   /// @param heard whether packets have come at `now`
   void Attend(bool heard, TimePoint now);
 
@@ -60,10 +61,10 @@ class PacketSocket {
 
   std::unique_ptr<runtime::GroupSocket> socket_;
   std::unique_ptr<Batch> batch_;  // buffers for one system call
-  std::uint32_t dropped_ = 0;  // packets that found no room, as the kernel counts: it wraps around
-  // Set if packets come over the route, which may change.
+  std::uint32_t dropped_ = 0;  // the kernel's count of packets that found no room; it wraps around
+  // Set if the packets come over a route of this machine, which may change.
   std::optional<runtime::GroupMembership> membership_;
-  TimePoint heard_{};  // when packets came last, or the membership was renewed
+  TimePoint heard_{};  // time of the last packet, or of the last renewal
 };
 
 }  // namespace fogline::watch

@@ -1,5 +1,5 @@
-// Listens to the packets of a udpm:// network beside LCM. LCM's library throws the numbers of
-// messages away, so a second socket in the same multicast group reads them.
+// Receives the packets of a udpm:// network in addition to LCM. LCM's library does not pass on the
+// numbers of messages, so a second socket in the same multicast group reads them.
 #pragma once
 
 #include <memory>
@@ -12,22 +12,22 @@
 
 namespace fogline::watch {
 
-/// For one thread. It sends nothing, and reads only the heads of packets. It also says how many
-/// packets the kernel dropped because this process did not read them in time (SO_RXQ_OVFL): their
-/// messages may have reached all other processes.
+/// Reads only the heads of packets, and sends nothing. For use in one thread. It also counts the
+/// packets that the kernel dropped because this process did not read them in time (SO_RXQ_OVFL).
+/// The messages in these packets may have reached all other processes.
 class PacketTap {
  public:
   /// Begins to listen. @param senders gets the packets, and must outlive the tap
   /// @return nullptr if the URL is of another transport, whose packets have no numbers
-  /// @throws std::runtime_error if the network cannot be heard
+  /// @throws std::runtime_error if the socket cannot be opened
   static std::unique_ptr<PacketTap> Open(const std::string& url, Senders& senders);
 
-  /// Takes the packets that are there, but at most kDrained, so that a flood does not keep the
+  /// Takes the packets that have come, but at most kDrained, so that many packets do not keep the
   /// caller from other work.
   void Drain(TimePoint now);
   static constexpr int kDrained = 4096;
 
-  /// This descriptor is readable when packets are there.
+  /// A descriptor that is readable when packets have come.
   int fd() const { return socket_.fd(); }
 
  private:

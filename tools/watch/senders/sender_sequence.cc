@@ -7,7 +7,7 @@ namespace fogline::watch {
 
 void SenderSequence::Add(const runtime::LcmPacket& packet, std::int64_t dropped, TimePoint now) {
   if (!begun_) {
-    // The observer may have begun in the middle of a message.
+    // The observer may have begun in the middle of a message. So it begins at a first fragment.
     if (!packet.First()) return;
     begun_ = true;
     dropped_ = dropped;
@@ -18,8 +18,8 @@ void SenderSequence::Add(const runtime::LcmPacket& packet, std::int64_t dropped,
   Take(packet, now);
 }
 
-/// The age of a number: how many numbers the newest one is ahead of it. It is below 0 if the number
-/// is newer.
+/// The age of a number: the newest number minus this number. The age is negative for a number that
+/// is newer than the newest one so far.
 std::int64_t SenderSequence::AgeOf(std::uint32_t number) const {
   return -std::int64_t{static_cast<std::int32_t>(number - newest_)};
 }
@@ -42,7 +42,7 @@ void SenderSequence::Take(const runtime::LcmPacket& packet, TimePoint now) {
   const std::int64_t age = AgeOf(packet.number);
   if (age < -kMaxJump || age >= kWindow) return Doubt(packet, now);
   if (age >= 0 && IsKnown(age) && now - progressed_ >= kBeginsAgain) return Doubt(packet, now);
-  if (doubtful_) {  // its successor has not followed
+  if (doubtful_) {  // the next packet was not its successor
     ++counts_.stray;
     doubtful_.reset();
   }
@@ -50,8 +50,8 @@ void SenderSequence::Take(const runtime::LcmPacket& packet, TimePoint now) {
   TakeOlder(packet, age);
 }
 
-/// Whether there is nothing to learn from a message of this age: it has arrived, or was sent before
-/// the first one that counts.
+/// Whether a message of this age cannot change the counts: it has arrived, or it was sent before
+/// the first message that counts.
 bool SenderSequence::IsKnown(std::int64_t age) const {
   return age >= length_ || whole_[static_cast<std::size_t>(age)];
 }
@@ -66,15 +66,17 @@ void SenderSequence::Advance(const runtime::LcmPacket& packet, std::int64_t ahea
   progressed_ = now;
   Miss(incomplete ? ahead : ahead - 1);
   std::erase_if(partial_, [this](const Partial& p) { return AgeOf(p.number) >= kWindow; });
-  // Later fragments may have come without the first one, if that was dropped here.
+  // Own drops before a first fragment cannot explain a later gap. If the first fragment is missing,
+  // this process may have dropped it, so its drops still count.
   if (packet.First()) unexplained_ = 0;
   if (!Completes(packet)) return;
   whole_[0] = true;
   ++counts_.received;
 }
 
-/// Counts the `count` messages before the newest one as missing. As many as this process dropped
-/// packets may have been lost here. These are taken to be the oldest ones.
+/// Counts the `count` messages before the newest one as missing. If this process has dropped
+/// packets, the oldest of these messages count as missed_here, at most one for each dropped packet.
+/// The other messages count as lost.
 void SenderSequence::Miss(std::int64_t count) {
   const std::int64_t here = std::min(count, unexplained_);
   unexplained_ -= here;
@@ -115,7 +117,7 @@ void SenderSequence::Doubt(const runtime::LcmPacket& packet, TimePoint now) {
     return Take(packet, now);
   }
   ++counts_.restarts;
-  if (!before->First()) return Begin(packet, now);  // the beginning of that message has not come
+  if (!before->First()) return Begin(packet, now);  // the beginning of that message is missing
   Begin(*before, now);
   Take(packet, now);
 }

@@ -1,5 +1,5 @@
-// All senders on an LCM network, and what of their messages was lost. The caller passes packets and
-// times in.
+// All senders on an LCM network, and how many of their messages were lost. The caller passes
+// packets and times as arguments.
 #pragma once
 
 #include <compare>
@@ -14,7 +14,7 @@
 
 namespace fogline::watch {
 
-/// Where packets come from: the socket of one LCM instance.
+/// The origin of packets: the socket of one LCM instance.
 struct SenderAddress {
   std::uint32_t host = 0;  // IPv4
   std::uint16_t port = 0;
@@ -26,30 +26,30 @@ struct SenderAddress {
 struct SenderView {
   std::string address;  // such as "127.0.0.1:41234"
   SenderSequence::Counts counts;
-  std::vector<std::string> channels;  // the first ones on which it sent: they tell who it is
-  bool more_channels = false;         // it has sent on further channels
-  double age_s = 0;                   // since its last packet
+  std::vector<std::string> channels;  // first channels on which it sent, which identify the program
+  bool more_channels = false;         // whether it has sent on further channels
+  double age_s = 0;                   // time since its last packet
 };
 
 struct SendersView {
   std::vector<SenderView> senders;  // by address
   std::int64_t forgotten = 0;       // senders that were dropped for lack of room
-  std::int64_t not_lcm = 0;         // packets that LCM would not take
+  std::int64_t not_lcm = 0;         // packets that are not LCM's
   std::int64_t own_overflow = 0;    // packets that this process dropped for lack of room
-  std::int64_t in_fragments = 0;    // messages larger than a datagram: Fogline does not take them
-  std::vector<std::string> channels_in_fragments;  // the first ones of their channels
+  std::int64_t in_fragments = 0;    // messages larger than a datagram, which Fogline refuses
+  std::vector<std::string> channels_in_fragments;  // the first channels with such messages
 };
 
-/// Its memory is bounded for any input: when there is no room, it forgets the sender that has been
-/// silent longest.
+/// Counts the messages of all senders. The memory is bounded for any input: if there is no room,
+/// the sender that has been silent longest is forgotten.
 class Senders {
  public:
   /// @param head the packet, or its first runtime::kPacketHead bytes
   void Add(const SenderAddress& from, runtime::Bytes head, TimePoint now);
-  /// Says that this process has dropped packets before the next one. Their sender is unknown.
+  /// Counts packets that this process has dropped before the next packet. Their sender is unknown.
   void AddDropped(std::int64_t packets) { own_overflow_ += packets; }
 
-  /// The senders that have sent anything besides LCM's own self-test and the beacons of runs.
+  /// The senders that have sent on a channel for which IsHousekeeping() is false.
   SendersView View(TimePoint now) const;
 
   static constexpr std::size_t kMaxSenders = 256;

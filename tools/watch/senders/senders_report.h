@@ -1,4 +1,4 @@
-// The senders of a network, for people and for programs.
+// The senders of a network, as text for people and as JSON for programs.
 #pragma once
 
 #include <string>
@@ -11,12 +11,12 @@
 
 namespace fogline::watch {
 
-/// A table; no lines if nothing has been sent. Text from the network is safe, as in TrafficLines().
+/// A table; empty if no sender has sent. Text from the network is made safe, as in TrafficLines().
 std::vector<Line> SenderLines(const SendersView& view);
 
-/// The messages that are not taken because they are larger than a datagram, such as "3 messages are
-/// larger than a datagram (CAMERA): they are not shown"; "" if there is nothing. Text from the
-/// network is safe.
+/// A text about messages that are refused because they are larger than a datagram, such as "3
+/// messages are larger than a datagram (CAMERA): they are not shown"; "" if there are no such
+/// messages. Text from the network is made safe.
 std::string FragmentsText(const SendersView& view);
 
 /// Each sender as an object with `address`, `received`, `lost`, `missed_here`, `late`,

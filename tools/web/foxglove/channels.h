@@ -12,17 +12,18 @@ namespace fogline::web::foxglove {
 struct Channel {
   std::uint32_t id = 0;
   std::string topic;                // the name of the LCM channel
-  const LcmStruct* type = nullptr;  // of its messages
+  const LcmStruct* type = nullptr;  // type of its messages
 };
 
-/// All sessions of a server share one object. Channels are only added, so ids keep their meaning.
+/// The channels of a server, which all its sessions share. No channel is removed, so ids stay
+/// valid.
 class Channels {
  public:
   /// @param types must outlive this object
   explicit Channels(const LcmTypes& types) : types_(types) {}
 
-  /// Adds a channel whose type is known. A channel of an unknown type cannot be decoded, so a
-  /// client could do nothing with it. @pre no other channel has this id
+  /// Adds a channel whose type is known. Channels of unknown types are not added, because a client
+  /// could not decode their messages. @pre no other channel has this id
   const Channel& Add(Channel channel);
 
   /// The channel with this id; nullptr if there is none. The pointer stays valid.

@@ -17,7 +17,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// The first byte of a binary frame. Server and client use separate numbers.
+// The first byte of a binary frame. The numbers of the server and of the client are independent.
 constexpr char kMessageData = 1;
 constexpr unsigned char kClientMessageData = 1;
 constexpr unsigned char kClientServiceCall = 2;
@@ -25,7 +25,7 @@ constexpr unsigned char kClientServiceCall = 2;
 // The level of a status.
 constexpr int kError = 2;
 
-/// The requests of the protocol that need a capability, which this server does not have.
+/// The requests that need a capability of the protocol which this server does not have.
 constexpr std::array kNotOffered = std::to_array<std::pair<std::string_view, std::string_view>>({
     {"advertise", "clientPublish"},
     {"unadvertise", "clientPublish"},
@@ -87,7 +87,7 @@ std::string WhyNotBinary(std::string_view bytes) {
   return fmt::format("no binary frame begins with the byte {}", opcode);
 }
 
-/// Joins what is wrong with several entries of a request.
+/// Joins the errors of several entries of a request.
 class Errors {
  public:
   void Add(std::string error) {

@@ -1,6 +1,6 @@
 // The Foxglove WebSocket protocol, version 1, for viewers of other projects such as Foxglove and
-// Lichtblick (github.com/foxglove/ws-protocol, docs/spec.md). The session of one client, without a
-// socket: frames go in and out.
+// Lichtblick (github.com/foxglove/ws-protocol, docs/spec.md). This file has the session of one
+// client without a socket: the caller passes received frames, and sends the returned frames.
 #pragma once
 
 #include <cstdint>
@@ -19,51 +19,51 @@ namespace fogline::web::foxglove {
 /// One WebSocket message.
 struct Frame {
   bool binary = false;
-  std::string bytes;  // UTF-8 if it is not binary
+  std::string bytes;  // UTF-8 if `binary` is false
 
   bool operator==(const Frame&) const = default;
 };
 
-/// A client subscribes to channels and gets their messages as JSON (DecodeJson()). It can send
-/// nothing else: Fogline's viewers never change a run. Each frame that the session cannot accept is
-/// counted and answered by one status of level error.
+/// The session of one client. A client subscribes to channels, and gets their messages as JSON
+/// (DecodeJson()). It cannot send messages, because Fogline's viewers never change a run. Each
+/// frame that the session refuses is counted, and answered by one status of level error.
 class Session {
  public:
   /// @param channels must outlive the session
   explicit Session(const Channels& channels) : channels_(channels) {}
 
-  /// The frames with which the server begins.
+  /// The frames that the server sends first.
   std::vector<Frame> Opened() const;
 
-  /// Tells the client about a channel that was added after Opened().
+  /// The frame that tells the client about a channel that was added after Opened().
   Frame Advertised(const Channel& channel) const;
 
-  /// Takes a frame of the client. @return the answers: at most one
+  /// Takes a frame of the client. @return the answer, if there is one
   std::vector<Frame> Received(std::string_view bytes, bool binary);
 
-  /// A message as the client gets it; nullopt if the client has not subscribed to the channel, or
-  /// the bytes are no message of the channel's type.
+  /// The frame with a message for the client; nullopt if the client has not subscribed to the
+  /// channel, or the bytes are not a message of the channel's type.
   /// @param time_ns when the message was received, in ns since 1970
   /// @param message without a signature (message_signer.h)
   std::optional<Frame> Message(std::uint32_t channel, std::uint64_t time_ns, Bytes message);
 
-  /// Whether the client has subscribed to any channel. If not, Message() has nothing to do.
+  /// Whether the client has subscribed to any channel. If not, Message() returns nullopt.
   bool Subscribed() const { return !subscriptions_.empty(); }
 
   /// The number of frames that were answered by an error.
   std::int64_t refused() const { return refused_; }
-  /// The number of messages that were no messages of their channel's type.
+  /// The number of messages that were not of their channel's type.
   std::int64_t undecodable() const { return undecodable_; }
 
  private:
-  /// Each function returns "" or what is wrong.
+  /// Each of these functions returns "" or an error.
   std::string Text(std::string_view text);
   std::string Subscribe(const nlohmann::ordered_json& request);
   std::string Subscribe(std::uint32_t id, std::uint32_t channel);
   std::string Unsubscribe(const nlohmann::ordered_json& request);
 
   const Channels& channels_;
-  std::map<std::uint32_t, std::uint32_t> subscriptions_;  // channel -> the client's number for it
+  std::map<std::uint32_t, std::uint32_t> subscriptions_;  // the client's number for each channel
   std::int64_t refused_ = 0;
   std::int64_t undecodable_ = 0;
 };

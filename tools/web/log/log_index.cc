@@ -8,7 +8,7 @@
 namespace fogline::web {
 namespace {
 
-/// For each place in kStepNames, the place in kChannels, and the other way round.
+/// The place in kChannels for each place in kStepNames, and the reverse.
 constexpr std::array<std::size_t, log::kStepChannels> kChannelOfRow = [] {
   std::array<std::size_t, log::kStepChannels> channels{};
   std::size_t row = 0;
@@ -24,8 +24,8 @@ constexpr std::array<std::size_t, kNumChannels> kRowOfChannel = [] {
   return rows;
 }();
 
-// A step may be this much later than the number of messages before it allows. Otherwise one forged
-// message with a late step would need the memory of all steps before it.
+// Limit for the step of a message, relative to the number of events before it. Without this limit,
+// one forged message with a late step would need the memory of all steps before.
 constexpr std::int64_t kLargestGap = 100'000;
 
 constexpr std::uint64_t kMostOffset = (1ULL << 44) - 1;
@@ -70,7 +70,7 @@ void LogIndex::Take(const log::Event& event) {
                  runtime::Decode(runtime::WithoutSignature(event.data), ignored);
     return;
   }
-  // The recorder writes channels in the order of the table.
+  // The recorder writes channels in the order of the table, so the search begins at the next one.
   for (std::size_t i = 0; i < log::kStepChannels; ++i) {
     const std::size_t row = (guess_ + i) % log::kStepChannels;
     if (log::kStepNames[row] != event.channel) continue;
@@ -92,7 +92,7 @@ void LogIndex::TakeStep(std::size_t row, runtime::Bytes data) {
   if (offset > kMostOffset || data.size() > kMostSize) return;
   if (step > last_step()) rows_.resize(static_cast<std::size_t>(step) + 1);
   Place& place = rows_[static_cast<std::size_t>(step)][row];
-  if (place.size > 0) return;  // a repetition
+  if (place.size > 0) return;  // the log has this message twice
   place.offset = offset & kMostOffset;
   place.size = data.size() & kMostSize;
   ++messages_;

@@ -1,5 +1,5 @@
-// Where each message of a log stands, by step and channel: any step can be shown at once. Also the
-// run's description and its events.
+// The place of each message in a log, by step and channel, so that any step can be shown at once.
+// The index also has the run's description and its events.
 #pragma once
 
 #include <array>
@@ -15,11 +15,11 @@
 
 namespace fogline::web {
 
-/// Reads a log once and keeps it mapped. The memory is eight bytes for each message, and the pages
-/// of the file that were read last, which the system may take back.
+/// Reads a log once, and keeps the file mapped. The index needs eight bytes of memory for each
+/// message. The system may also keep the last read pages of the file in memory.
 ///
-/// The index also has the messages of incomplete steps, and those behind a step that is missing. So
-/// it may have more steps than RunLogReader, which stops at a step that is not complete.
+/// The index also has the messages of incomplete steps, and the messages behind a missing step. So
+/// it may have more steps than RunLogReader, which stops at an incomplete step.
 class LogIndex {
  public:
   /// @param run_id the run to read; nullopt: the first run in the log
@@ -29,21 +29,21 @@ class LogIndex {
                     std::optional<std::int64_t> run_id = std::nullopt);
 
   const log::RunLog& run() const { return run_; }
-  /// The first and the last step of which there is a message; 0 and -1 if there is none.
+  /// The first and the last step that have a message; 0 and -1 if no step has a message.
   std::int64_t first_step() const { return first_; }
   std::int64_t last_step() const { return static_cast<std::int64_t>(rows_.size()) - 1; }
-  /// The messages in the index.
+  /// Number of messages in the index.
   std::int64_t messages() const { return messages_; }
 
-  /// The message of a step, without its signature; empty if the log lacks the message. It is valid
-  /// as long as the index.
-  /// @param channel its place in kChannels
+  /// The message of a step, without its signature; empty if the log lacks the message. The bytes
+  /// are valid as long as the index exists.
+  /// @param channel place of the channel in kChannels
   runtime::Bytes Message(std::int64_t step, std::size_t channel) const;
 
   const std::vector<RunEvent>& events() const { return events_.events(); }
 
  private:
-  // Place of a message in the file; size 0: there is none.
+  // Place of a message in the file; size 0: the log lacks the message.
   struct Place {
     std::uint64_t offset : 44 = 0;
     std::uint64_t size : 20 = 0;
@@ -62,8 +62,8 @@ class LogIndex {
   std::vector<Row> rows_;  // by step
   std::int64_t first_ = 0;
   std::int64_t messages_ = 0;
-  std::int64_t read_ = 0;   // events that have been read
-  std::size_t guess_ = 0;   // the channel of the next event, probably
+  std::int64_t read_ = 0;   // number of events that have been read
+  std::size_t guess_ = 0;   // probable row of the next event
   bool is_signed_ = false;  // whether the run's messages are signed
   bool knows_run_ = false;  // whether a RUN message of the run has come
 };

@@ -17,10 +17,11 @@
 namespace fogline::web {
 namespace {
 
-// header_t, behind the fingerprint: run_id, step, utime.
+// Offset of utime: the fingerprint comes first, then header_t with run_id, step and utime.
 constexpr std::size_t kUtimeOffset = 24;
 
-/// The channel of a series. @throws InputError if no step has a message of it
+/// The channel of a series.
+/// @throws InputError if the name is not that of a channel with a message in every step
 std::size_t ChannelOfSeries(const std::string& name) {
   const std::size_t channel = ChannelNamed(name);
   if (channel < kNumChannels && kChannels[channel].pace == Pace::kStep) return channel;
@@ -51,7 +52,7 @@ class LoggedField {
   FieldReader read_;
 };
 
-/// A status of Foxglove's protocol, of level warning.
+/// A warning for a client of Foxglove's protocol, as a status of level 1.
 std::string NoLogForFoxglove() {
   return R"({"op":"status","level":1,"message":"a log is shown; Foxglove gets live runs only"})";
 }

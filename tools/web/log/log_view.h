@@ -1,4 +1,4 @@
-// A recorded run, for the clients of a server. Clients ask for what they show.
+// Shows a recorded run to the clients of a server. Clients request the data that they show.
 #pragma once
 
 #include <cstdint>

@@ -53,7 +53,7 @@ class Page {
     return this.within(step);
   }
 
-  /** The nearest step that there is. */
+  /** The nearest step that the store has. */
   within(step) {
     const {firstStep, lastStep} = this.store;
     return Math.max(firstStep, Math.min(step, lastStep));
@@ -71,7 +71,8 @@ class Page {
     });
     sizes.observe(byId("main"));
     addEventListener("hashchange", ({newURL}) => {
-      // Since then keepAddress() may have put the shown moment into the address.
+      // keepAddress() may have changed the address since this event. So the event's address is
+      // used.
       const {hash} = new URL(newURL);
       const {step, token} = readFragment(hash);
       if (token) this.takeNewToken(hash);
@@ -80,12 +81,15 @@ class Page {
     byId("parts").addEventListener("click", (event) => {
       const link = event.target.closest("a");
       if (!link) return;
-      event.preventDefault();  // the fragment of the address is the moment
+      event.preventDefault();  // the fragment of the address is the shown step
       this.showPart(link.getAttribute("href").slice(1));
     });
   }
 
-  /** The reader has pasted the address of a server that was started again. */
+  /**
+   * Connects with a new token: the reader has pasted the address of a server that was started
+   * again.
+   */
   takeNewToken(hash) {
     this.token = takeToken(hash);
     this.wire.moveTo(socketUrl(location, this.token));
@@ -148,8 +152,9 @@ class Page {
   }
 
   /**
-   * The history contains what has come already, so nothing is used until it is complete. Only the
-   * messages before the history's own are then left out.
+   * Asks for the history. Until the history is complete, received messages only wait. The answer
+   * gives the number of messages in the history. Waiting messages that came before the history are
+   * not used.
    */
   askForHistory() {
     this.early = [];
@@ -190,12 +195,12 @@ class Page {
     const {step} = readFragment(location.hash);
     this.clock.pause();
     this.clock.time = this.store.timeOf(step ?? log.first_step);
-    this.store.frame(this.step);  // asks for the picture before the curves
+    this.store.frame(this.step);  // requests the messages before the curves
     this.build();
     this.showConnection("open");
   }
 
-  /** Makes all charts again: another run, other channels, or other colours. */
+  /** Makes all charts again, for another run, other channels, or other colours. */
   build() {
     if (!this.store || (!this.isLive && !this.log)) return;
     this.generation = this.store.generation;
@@ -242,7 +247,7 @@ class Page {
     }
   }
 
-  /** A short note to the reader. */
+  /** Shows a short note to the reader. */
   tell(words) {
     const note = byId("note");
     say(note, words);
@@ -267,7 +272,7 @@ class Page {
     }
   }
 
-  /** Says where that what is shown comes from, and how it relates to the run. */
+  /** Shows where the displayed data come from, and whether they are behind the run. */
   sayOrigin() {
     const isOpen = this.connection === "open";
     const isBehind = isOpen && this.isLive && (this.isOver || this.clock.state !== "live");
@@ -299,7 +304,7 @@ class Page {
   }
 
   /**
-   * Simulated time since the shown step, in s. The page moves the cars on by this time, at their
+   * Simulated time since the shown step, in s. The page moves the cars on for this time, at their
    * last speeds.
    */
   aheadOf(step) {
@@ -319,7 +324,8 @@ class Page {
       this.frame = frame;
       this.frameStep = step;
     }
-    // Until the messages of a step have come, everything but the time bar shows the step before.
+    // Until the messages of a step have come, all parts except the time bar show the last step with
+    // messages.
     const shown = this.frame ? this.frameStep : step;
     const time = store.timeOf(shown);
     const {modes, lambdas} = this.why;

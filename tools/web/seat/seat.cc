@@ -50,7 +50,7 @@ Seat::Taken Seat::Take(std::uint64_t client, const SeatInput& input, TimePoint n
     taken.before = std::exchange(client_, client);
   }
   heard_at_ = now;
-  // The rate limit never refuses an input that says that the person is no longer present.
+  // The rate limit never refuses an input that says that the person has left.
   const bool leaves = message_.present && !input.present;
   if (!limiter_.Take(now) && !leaves) {
     taken.why = fmt::format("more than {} inputs a second", runtime::kMostInputsPerSecond);
@@ -74,8 +74,8 @@ Seat::Taken Seat::Take(std::uint64_t client, const SeatInput& input, TimePoint n
 std::optional<driver_input_t> Seat::Look(TimePoint now) {
   if (client_ && now - heard_at_ >= kSilent) silent_ = true;
   if (!silent_) return std::nullopt;
-  // When a client becomes silent while a person is present, the first message of the empty seat is
-  // sent at once.
+  // When a client becomes silent while its person is present, the first message of the empty seat
+  // is sent at once.
   if (!message_.present && now - sent_at_ < runtime::kInputEvery) return std::nullopt;
   return EmptySeat(now);
 }

@@ -1,12 +1,12 @@
 // The rules of the seat at the page: which client drives, and which messages the run gets. The
 // class has no sockets and reads no clock.
 //
-// One client has the seat. Each of its inputs becomes a DRIVER_INPUT. While no client has the seat,
-// or the client that has it is silent, the run is told every kInputEvery that no person drives. So
-// a run that hears nothing knows that something is wrong.
+// One client has the seat. Each input of this client becomes a DRIVER_INPUT. If no client has the
+// seat, or the client with the seat is silent, a DRIVER_INPUT every kInputEvery says that no person
+// drives. So a run that gets no DRIVER_INPUT knows that there is a fault.
 //
-// A page that is only open does not keep the seat: while no person is present at the client that
-// has it, the first other client with a person gets it.
+// A page that is only open does not keep the seat. If no person is present at the client with the
+// seat, the first other client with a person gets the seat.
 #pragma once
 
 #include <cstdint>
@@ -23,34 +23,35 @@ namespace fogline::web {
 
 class Seat {
  public:
-  /// A page that has been silent for so long drives no more. A page sends every 50 ms, so six
-  /// frames in a row are then missing. It is also the default of /person/deadman_s.
+  /// After this time without an input, a page does not drive. A page sends an input every 50 ms, so
+  /// six inputs in a row are missing then. This is also the default of /person/deadman_s.
   static constexpr Duration kSilent = milliseconds(300);
 
-  /// @param instance of DRIVER_INPUT; not 0
+  /// @param instance value of DRIVER_INPUT's `instance`; not 0
   explicit Seat(std::int64_t instance);
 
-  /// The header of the newest TRUTH, or of a run that has not begun (step -1).
+  /// Takes the header of the newest TRUTH, or the header of a run that has not begun (step -1).
   void Hear(const header_t& header) { message_.header = header; }
   const header_t& header() const { return message_.header; }
 
-  /// A client wants to drive. @return whether it has the seat now; otherwise another one has it
+  /// Gives the seat to a client if the seat is free. @return whether this client has the seat
   bool Sit(std::uint64_t client, TimePoint now);
-  /// A client leaves. @return the message that no person drives any more, if it had the seat
+  /// Takes the seat from a client that leaves.
+  /// @return a message that no person drives, if the client had the seat
   std::optional<driver_input_t> Leave(std::uint64_t client, TimePoint now);
 
   struct Taken {
     std::optional<driver_input_t> message;  // to be sent now
-    std::string why;                        // why the input is refused; "" if it is not
-    bool sits = false;                      // the client has got the seat by this input
-    std::optional<std::uint64_t> before;    // the client that had the seat before, if it `sits`
+    std::string why;                        // why the input is refused; "" if it is accepted
+    bool sits = false;                      // whether this input gave the client the seat
+    std::optional<std::uint64_t> before;    // the client that had the seat before, if `sits`
   };
-  /// An input without a person, from a client that does not have the seat, has no effect.
+  /// Takes an input. An input without a person, from a client without the seat, has no effect.
   Taken Take(std::uint64_t client, const SeatInput& input, TimePoint now);
 
-  /// The message that is due because no person drives, if one is due.
+  /// A message that no person drives, if such a message is due.
   std::optional<driver_input_t> Look(TimePoint now);
-  /// The next time at which Look() may have a message.
+  /// The next time at which Look() may return a message.
   TimePoint next_look() const;
 
   bool Has(std::uint64_t client) const { return client_ == client; }
@@ -60,11 +61,11 @@ class Seat {
 
  private:
   driver_input_t Next(TimePoint now);
-  /// The next message, which says that no person drives.
+  /// The next message. It says that no person drives.
   driver_input_t EmptySeat(TimePoint now);
 
-  driver_input_t message_{};  // the last one
-  std::int64_t sent_ = 0;     // messages
+  driver_input_t message_{};  // the last message
+  std::int64_t sent_ = 0;     // number of messages
   TimePoint sent_at_{};
   std::optional<std::uint64_t> client_;
   TimePoint heard_at_{};

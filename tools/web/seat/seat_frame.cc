@@ -15,7 +15,7 @@ namespace {
 
 using nlohmann::json;
 
-// JavaScript counts exactly up to here.
+// The largest number up to which JavaScript represents every integer.
 constexpr std::int64_t kMostSequence = (std::int64_t{1} << 53) - 1;
 
 template <class Number>
@@ -29,7 +29,7 @@ constexpr auto kKinds = std::to_array<Named<std::int8_t>>({{"keyboard", driver_i
                                                            {"gamepad", driver_input_t::GAMEPAD},
                                                            {"wheel", driver_input_t::WHEEL}});
 
-/// The entry of a table that a value names; nullptr if there is none.
+/// The entry of a table whose name is `value`; nullptr if there is none.
 template <class Table>
 auto Find(const Table& table, const json& value) -> decltype(table.data()) {
   if (!value.is_string()) return nullptr;
@@ -45,7 +45,7 @@ const json& MemberOf(const json& frame, const char* name) {
   return *found;
 }
 
-/// @throws InputError if the value is no number in [least, most]
+/// @throws InputError if the value is not a number in [least, most]
 double NumberIn(const json& value, const char* name, double least, double most) {
   const double number = value.is_number() ? value.get<double>() : least - 1;
   if (!(number >= least && number <= most)) {  // also refuses NaN
@@ -105,7 +105,7 @@ void ReadDevice(const json& frame, SeatInput& input) {
   input.device = name.get<std::string>();
 }
 
-/// @throws InputError that says what is wrong
+/// @throws InputError with the error in the text
 SeatInput ParseInput(std::string_view text) {
   const json frame = json::parse(text, nullptr, false);
   if (frame.is_discarded()) throw InputError("this frame is no JSON");

@@ -12,7 +12,7 @@ namespace fogline::web {
 
 /// An input of the person at the page. Every number is in the range of DRIVER_INPUT.
 struct SeatInput {
-  std::int64_t sequence = 0;  // the page's own number
+  std::int64_t sequence = 0;  // number that the page gives to the input
   double age_ms = 0;          // time since the newest input of the device
   bool present = false;       // false: no person drives
   double throttle = 0;        // [0, 1]
@@ -31,10 +31,11 @@ struct BadSeatFrame {
 
 using SeatFrame = std::variant<SeatInput, BadSeatFrame>;
 
-/// The longest time in ms that a page may name: an hour. A page says longer times as this one.
+/// The longest time in ms that a page may report: an hour. For a longer time a page reports this
+/// one.
 inline constexpr double kMostSeatTime_ms = 3'600'000;
 
-/// Never throws: a wrong text becomes a BadSeatFrame.
+/// Reads a frame. Never throws: a wrong text becomes a BadSeatFrame.
 SeatFrame ParseSeatFrame(std::string_view text);
 
 }  // namespace fogline::web

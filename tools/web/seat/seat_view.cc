@@ -55,7 +55,7 @@ void SeatView::Publish(const driver_input_t& message) {
     bus_.reset();
     try {
       Open();
-    } catch (const std::exception& error) {  // another run's network
+    } catch (const std::exception& error) {  // the network of another run
       lines_.Print(fmt::format("DRIVER_INPUT cannot be sent: {}", error.what()));
     }
   }
@@ -68,7 +68,7 @@ void SeatView::Publish(const driver_input_t& message) {
 
 void SeatView::Hear(const RingMessage& message) {
   if (message.bytes.size() < runtime::kHeaderEnd) return;
-  // Messages of other runs on this network are ignored.
+  // Ignores messages of other runs on this network.
   const auto followed = live_.tracker().followed();
   if (followed && runtime::ReadInt64(message.bytes, runtime::kRunIdOffset) != *followed) return;
   TellRun();
@@ -92,7 +92,7 @@ void SeatView::WaitToLook() {
 }
 
 void SeatView::Look() {
-  if (bus_) bus_->Drain();  // a relay's connection needs it
+  if (bus_) bus_->Drain();  // keeps the connection to a relay alive
   if (const auto message = seat_.Look(Clock::now())) Publish(*message);
   if (!seat_.lost() || std::exchange(told_lost_, true)) return;
   Client& client = *drivers_.at(*seat_.client()).client;

@@ -1,6 +1,6 @@
-// A live view with a seat: what its viewers see, and one client that drives. It publishes the
-// inputs of this client as DRIVER_INPUT on the network of the run, and nothing else. The clients of
-// the seat are no viewers: they get what the page /drive shows (seat_told.h).
+// A live view with a seat for one client that drives. It publishes the inputs of this client as
+// DRIVER_INPUT on the network of the run, and nothing else. The other clients are viewers of the
+// live view. The clients of the seat get only the data of the page /drive (seat_told.h).
 #pragma once
 
 #include <cstddef>
@@ -25,13 +25,14 @@ namespace fogline::web {
 class SeatView final : public View {
  public:
   /// Publishes while the context runs.
-  /// @param live must live as long as this view, and hear no more messages after it
-  /// @param key signs the messages, if there is one
-  /// @throws InputError, std::runtime_error as runtime::Bus()
+  /// @param live must exist as long as this view, and must not handle messages after the end of
+  ///     this view
+  /// @param key signs the messages, if there is a key
+  /// @throws InputError, std::runtime_error like runtime::Bus()
   SeatView(boost::asio::io_context& context, LiveView& live,
            std::optional<runtime::SigningKey> key);
 
-  /// The context then has no more work of this view. Tells the run that no person drives.
+  /// Ends the work of this view in the context. Tells the run that no person drives.
   void Stop();
 
   void Opened(Client& client) override;
@@ -43,13 +44,13 @@ class SeatView final : public View {
   /// A client of fogline.drive.v1.
   struct Driver {
     Client* client = nullptr;
-    std::map<std::size_t, std::string> newest;  // of each channel, that it has not got
+    std::map<std::size_t, std::string> newest;  // newest unsent message of each channel
   };
 
   void Hear(const RingMessage& message);
   void TellRun();
   void TellMessage(const RingMessage& message);
-  /// Sends the newest messages, if the client has taken everything before.
+  /// Sends the newest messages if no earlier frame waits to be sent to the client.
   static void Pump(Driver& driver);
   void Take(Client& client, const SeatInput& input);
   void Refuse(Client& client, const std::string& why);
@@ -63,11 +64,11 @@ class SeatView final : public View {
   std::optional<runtime::SigningKey> key_;
   Seat seat_;
   std::map<std::uint64_t, Driver> drivers_;
-  std::int64_t told_run_ = 0;        // RunTracker::runs() that the drivers know
-  std::int64_t refused_ = 0;         // frames of them
-  bool told_lost_ = false;           // the client that has the seat knows that it is lost
-  std::string url_;                  // of the bus
-  std::optional<runtime::Bus> bus_;  // nullopt: the network is away
+  std::int64_t told_run_ = 0;        // RunTracker::runs() at the last report to the drivers
+  std::int64_t refused_ = 0;         // number of refused frames of drivers
+  bool told_lost_ = false;           // whether the client with the seat knows that it is lost
+  std::string url_;                  // URL of the bus
+  std::optional<runtime::Bus> bus_;  // nullopt: the network cannot be reached
   TimePoint open_at_{};
   std::vector<std::uint8_t> bytes_;
   boost::asio::steady_timer look_;

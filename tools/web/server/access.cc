@@ -83,7 +83,7 @@ Verdict Access::OfWebSocket(const RequestOrigin& request) const {
 }
 
 std::string Access::UrlOf(std::string_view path, std::string_view fragment) const {
-  // 0.0.0.0 stands for every address of this machine. A browser on this machine needs one of them.
+  // 0.0.0.0 means every address of this machine. A browser on this machine needs one real address.
   const std::string address = rules_.address == kEveryAddress ? "127.0.0.1" : rules_.address;
   return fmt::format("http://{}:{}{}{}{}", address, rules_.port, path, fragment.empty() ? "" : "#",
                      fragment);

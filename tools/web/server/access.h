@@ -1,12 +1,12 @@
 // The rules of access to a run. The class has no sockets.
 //
-// A browser shows pages of many sites. Each of them can send requests to a server on this machine.
-// Two rules keep such a page from reading a run. The Host header must name the address on which the
-// server listens: a foreign name that was pointed at this machine (DNS rebinding) stays in this
-// header. And the Origin header, which a browser sends with a WebSocket, must be that of our own
-// page. If the server listens for other machines, a WebSocket also needs a token, which only the
-// printed address contains. There is one token for those who look, and another one for the person
-// who drives.
+// A browser shows pages of many sites. Each page can send requests to a server on this machine. Two
+// rules keep such a page from reading a run. The Host header must name the address on which the
+// server listens. If a foreign name was pointed at this machine (DNS rebinding), the header
+// contains the foreign name. The Origin header, which a browser sends with a WebSocket, must be
+// that of our own page. If the server listens for other machines, a WebSocket also needs a token,
+// which only the printed address contains. Viewers have one token, and the person who drives has
+// another one.
 #pragma once
 
 #include <cstdint>
@@ -21,15 +21,15 @@ inline constexpr std::string_view kDrivePath = "/drive";
 
 enum class Verdict { kAllowed, kWrongHost, kForeignOrigin, kWrongToken };
 
-/// Why a request is refused, as a part of a sentence. @pre the verdict is not kAllowed
+/// The reason why a request is refused, as a part of a sentence. @pre the verdict is not kAllowed
 std::string_view WhyRefused(Verdict verdict);
 
-/// The headers of a request that Access judges. A header that is not there is empty.
+/// The headers of a request that Access judges. A missing header is empty.
 struct RequestOrigin {
   std::string_view host;
   std::string_view origin;
   std::string_view target;  // the path, perhaps with "?token=..."
-  bool drives = false;      // whether it asks for the seat
+  bool drives = false;      // whether the request is for the seat
 };
 
 class Access {
@@ -40,17 +40,17 @@ class Access {
     std::string token;                 // "": no token is needed
     std::vector<std::string> origins;  // further origins that may open a WebSocket
     bool seat = false;                 // whether a person may drive
-    std::string driver_token;          // in place of `token`, for the one who drives
+    std::string driver_token;          // the token of a client that drives, in place of `token`
   };
   explicit Access(Rules rules);
 
-  /// Whether a file of the page may be sent. The files are no secret.
+  /// Whether a file of the page may be sent. The files are not secret.
   Verdict OfPage(const RequestOrigin& request) const;
   /// Whether a WebSocket may be opened.
   Verdict OfWebSocket(const RequestOrigin& request) const;
 
-  /// The address for a browser, such as "http://127.0.0.1:7680/". The token stands behind '#': a
-  /// browser does not send this part to any server.
+  /// The address for a browser, such as "http://127.0.0.1:7680/". The token is behind '#', because
+  /// a browser sends this part to no server.
   /// @param more further parts behind '#', such as "step=190"; "" for none
   std::string Url(std::string_view more = "") const;
   /// The address of the participant's page, with the driver's token.
@@ -68,23 +68,23 @@ class Access {
 /// 128 random bits as 32 hexadecimal digits.
 std::string DrawToken();
 
-/// Whether a text that a person or a program has chosen can be a token: 16 to 128 letters, digits,
-/// '-' and '_', so that it stands in an address as it is.
+/// Whether a text from a person or a program can be a token: 16 to 128 letters, digits, '-' and
+/// '_'. An address can contain such a text without escapes.
 bool IsToken(std::string_view text);
 
 /// Whether two texts are equal, in a time that does not depend on where they differ.
 bool EqualInConstantTime(std::string_view a, std::string_view b);
 
-/// The value of a parameter in the query of a target, such as "/ws?token=a"; "" if there is none.
-/// The value is as it stands there: nothing in it is decoded.
+/// The value of a parameter in the query of a target, such as "/ws?token=a"; "" if the parameter is
+/// missing. The value is not decoded.
 std::string_view QueryValue(std::string_view target, std::string_view name);
 
-/// An origin as a browser sends it: scheme and host in small letters, and without the scheme's
-/// default port.
+/// An origin in the form that a browser sends: scheme and host in small letters, and without the
+/// scheme's default port.
 std::string NormalOrigin(std::string_view origin);
 
-/// An origin such as a browser sends it: "http://HOST" or "https://HOST", perhaps with a port, and
-/// without a path.
+/// Whether a text is an origin in the form that a browser sends: "http://HOST" or "https://HOST",
+/// perhaps with a port, and without a path.
 bool IsOrigin(std::string_view text);
 
 }  // namespace fogline::web

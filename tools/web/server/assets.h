@@ -10,11 +10,11 @@ namespace fogline::web {
 struct Asset {
   std::string_view path;   // such as "/index.html" or "/page.js"
   std::string_view type;   // the media type, such as "text/html; charset=utf-8"
-  std::string_view etag;   // a hash of the bytes, in double quotes as HTTP wants it
-  std::string_view bytes;  // as they are in the file
+  std::string_view etag;   // a hash of the bytes, in double quotes as HTTP requires
+  std::string_view bytes;  // the content of the file
 };
 
-/// All files of the page. Empty if the page could not be built, because the packages of npm were
+/// All files of the page; empty if the page could not be built, because packages of npm were
 /// missing.
 std::span<const Asset> Assets();
 

@@ -23,14 +23,14 @@ namespace websocket = beast::websocket;
 using boost::system::error_code;
 using tcp = asio::ip::tcp;
 
-// A client that is cut off may read the reason for this time.
+// Time in which a client that is cut off may read the reason.
 constexpr std::chrono::seconds kCutOffLimit(1);
 constexpr unsigned kBadRequest = 400;
 constexpr unsigned kHeaderTooLarge = 431;
 constexpr unsigned kUnavailable = 503;
-// While more bytes than this wait for a client, none of its frames is read.
+// If more bytes than this wait to be sent to a client, no frame of this client is read.
 constexpr std::size_t kPauseBytes = 1 << 20;
-// Bytes that the kernel may keep for a client, in addition to those of the queue.
+// Bytes for a client that the kernel may keep, in addition to the bytes in the queue.
 constexpr int kKernelBytes = 256 << 10;
 
 std::string AddressOf(const tcp::socket& socket) {
@@ -112,7 +112,7 @@ class BeastConnection final : public Connection,
   beast::tcp_stream stream_;  // until the WebSocket is opened
   beast::flat_buffer buffer_{Server::kMostFrameBytes + Server::kMostHeaderBytes};
   std::optional<http::request_parser<http::empty_body>> parser_;
-  HttpAnswer answer_;  // its text must live while it is sent
+  HttpAnswer answer_;  // its text must exist while it is sent
   std::optional<Response> response_;
 
   std::optional<Socket> socket_;
@@ -121,16 +121,16 @@ class BeastConnection final : public Connection,
   std::optional<FrameBudget> budget_;
   asio::steady_timer farewell_;  // runs while the connection is being closed
   std::optional<websocket::close_reason> reason_;
-  bool opened_ = false;   // the view knows this client
-  bool reading_ = false;  // an operation waits for a frame
-  bool writing_ = false;  // an operation sends the front of the queue
+  bool opened_ = false;   // whether the view knows this client
+  bool reading_ = false;  // whether a read operation waits for a frame
+  bool writing_ = false;  // whether the front of the queue is being sent
   bool gone_ = false;
 };
 
 // ---- HTTP --------------------------------------------------------------------------------------
 
 void BeastConnection::Begin() {
-  error_code ignored;  // a closed socket reports that at the next operation
+  error_code ignored;  // the next operation reports a closed socket
   stream_.socket().set_option(tcp::no_delay(true), ignored);
   stream_.socket().set_option(asio::socket_base::send_buffer_size(kKernelBytes), ignored);
   parser_.emplace();
@@ -181,7 +181,7 @@ void BeastConnection::HandleRequest() {
     }
     if (TakePlace()) return Upgrade();
   }
-  // Without a WebSocket the page would show nothing.
+  // If no viewer has room, the page is refused, too: without a WebSocket it would show nothing.
   const bool may_drive = access().rules().seat && !opens && MayBeOfDrivePage(PathOf(from.target));
   if (IsFull() && !may_drive && access().OfPage(from) == Verdict::kAllowed) {
     return Refuse(kUnavailable, fmt::format("{} viewers are connected already", limits().viewers),
@@ -193,7 +193,7 @@ void BeastConnection::HandleRequest() {
                access(), assets()));
 }
 
-/// Answers by a line of text. @param why for stderr
+/// Answers with a line of text. @param why reason for stderr
 void BeastConnection::Refuse(unsigned status, const std::string& why, std::string text) {
   CountRefused(why);
   Write(Refusal(status, std::move(text)));
@@ -213,10 +213,10 @@ void BeastConnection::Write(HttpAnswer answer) {
   for (const auto& [name, value] : answer_.headers) {
     response_->set(beast::string_view(name.data(), name.size()), value);
   }
-  // A connection takes one request. Otherwise the idle connections of browsers would take the
+  // A connection handles one request. Otherwise the idle connections of browsers would take the
   // places of viewers.
   response_->keep_alive(false);
-  constexpr unsigned kNotModified = 304;  // says nothing about the size of the file
+  constexpr unsigned kNotModified = 304;  // this answer says nothing about the size of the file
   if (answer_.status != kNotModified) response_->content_length(body.size());
   const bool head = parser_->get().method() == http::verb::head;
   if (!head) response_->body() = {body.data(), body.size()};
@@ -235,7 +235,7 @@ void BeastConnection::Write(HttpAnswer answer) {
 }
 
 // If a socket is closed while bytes of the client are unread, the client may lose the answer. So
-// the rest of its request is read and dropped.
+// this function reads and drops the remaining bytes of the client.
 void BeastConnection::Linger() {
   buffer_.clear();
   stream_.async_read_some(buffer_.prepare(Server::kMostFrameBytes),
@@ -248,7 +248,7 @@ void BeastConnection::Linger() {
 // ---- WebSocket ---------------------------------------------------------------------------------
 
 void BeastConnection::Upgrade() {
-  stream_.expires_never();  // the WebSocket has limits of its own
+  stream_.expires_never();  // the WebSocket has its own limits
   socket_.emplace(std::move(stream_));
   socket_->set_option(websocket::stream_base::timeout{.handshake_timeout = limits().request,
                                                       .idle_timeout = limits().silence,
@@ -312,7 +312,7 @@ void BeastConnection::TakeFrame() {
                     socket_->got_binary());
   }
   buffer_.clear();
-  Read();  // a client that is being closed still has to answer
+  Read();  // a client that is being closed must still answer
 }
 
 void BeastConnection::Send(OutgoingFrame frame) {
@@ -369,7 +369,7 @@ void BeastConnection::Close(CloseCode code, const std::string& why,
   farewell_.async_wait([self = shared_from_this()](error_code stopped) {
     if (!stopped) self->Leave();
   });
-  // A frame that is being sent must be whole before the closing frame.
+  // A frame that is being sent must be complete before the closing frame.
   if (!writing_) SendClose();
 }
 
@@ -384,7 +384,7 @@ void BeastConnection::Leave() {
   auto& stream = socket_ ? beast::get_lowest_layer(*socket_) : stream_;
   stream.socket().close(ignored);
   stream.close();
-  // Later, because a view may be calling this client.
+  // The removal is postponed, because a view may be calling this client at the moment.
   asio::post(context(), [self = shared_from_this()] { self->LeaveServer(self->opened_); });
 }
 

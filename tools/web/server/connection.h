@@ -1,4 +1,4 @@
-// One connection of the server. Only connection.cc knows Beast, because its headers take long to
+// One connection of the server. Only connection.cc includes Beast, because its headers take long to
 // compile.
 #pragma once
 
@@ -14,8 +14,8 @@
 
 namespace fogline::web {
 
-/// First a request by HTTP, then perhaps a WebSocket. A connection lives until its last operation
-/// has ended. The server forgets it as soon as it has left.
+/// A connection: first an HTTP request, then perhaps a WebSocket. The object exists until its last
+/// operation has ended. The server removes it from its list as soon as the connection has left.
 class Connection : public Client {
  public:
   /// Serves the client while the server's context runs.
@@ -24,7 +24,7 @@ class Connection : public Client {
 
   /// Closes the connection, because the program ends.
   virtual void GoAway() = 0;
-  /// Closes a connection that has opened no WebSocket, because others want its place.
+  /// Closes a connection that has opened no WebSocket, because another connection needs its place.
   virtual void GiveWay() = 0;
 
  protected:
@@ -39,11 +39,11 @@ class Connection : public Client {
   const ServerLimits& limits() const { return server_.limits_; }
   bool IsFull() const { return server_.IsFull(); }
   bool drives() const { return protocol() == kDriveProtocol; }
-  /// Makes this client a viewer, or the one who drives. @return false if there are too many
+  /// Makes this client a viewer or a driver. @return false if there is no free place
   [[nodiscard]] bool TakePlace() { return has_place_ = server_.TakePlace(id_, drives()); }
   void CountCutOff(const std::string& why) const { server_.CountCutOff(address(), why); }
   void CountRefused(std::string_view why) const { server_.CountRefused(address(), why); }
-  /// The server forgets this connection. @param opened whether the view knows it
+  /// Makes the server remove this connection. @param opened whether the view knows the connection
   void LeaveServer(bool opened) {
     if (has_place_) server_.LeavePlace(drives());
     if (opened) server_.view_.Closed(*this);
@@ -53,7 +53,7 @@ class Connection : public Client {
  private:
   Server& server_;
   const std::uint64_t id_;
-  bool has_place_ = false;  // it counts as a viewer
+  bool has_place_ = false;  // whether it counts as a viewer
 };
 
 }  // namespace fogline::web

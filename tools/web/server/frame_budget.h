@@ -1,4 +1,4 @@
-// The number of frames that a client may send.
+// Limits the number of frames that a client may send.
 #pragma once
 
 #include <algorithm>
@@ -8,12 +8,12 @@
 namespace fogline::web {
 
 /// A token bucket: it is full at the beginning, each frame takes one token, and it fills up again
-/// at a constant rate. So a client may send `frames` frames at once, and then as many a second.
+/// at a constant rate. So a client may send `frames` frames at once, and then `frames` a second.
 class FrameBudget {
  public:
   static constexpr double kFrames = 200;
-  /// Of a client that drives. The seat itself refuses more than 250 inputs a second; a client that
-  /// sends twice as many heeds no answer.
+  /// Limit for a client that drives. The seat itself refuses more than 250 inputs a second. A
+  /// client that sends twice as many ignores the answers.
   static constexpr double kSeatFrames = 500;
 
   explicit FrameBudget(TimePoint now, double frames = kFrames)

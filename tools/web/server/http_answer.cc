@@ -64,7 +64,7 @@ HttpAnswer Answer(const HttpRequest& request, const Access& access, std::span<co
   if (asset == assets.end()) return Refusal(kNotFound, "There is no such file here.\n");
   HttpAnswer answer;
   answer.headers.emplace_back("ETag", asset->etag);
-  // The browser keeps the file, and asks each time whether it is still the same.
+  // The browser keeps the file, and asks each time whether the file is unchanged.
   answer.headers.emplace_back("Cache-Control", "no-cache");
   if (request.if_none_match.find(asset->etag) != std::string_view::npos) {
     answer.status = kNotModified;

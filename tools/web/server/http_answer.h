@@ -18,24 +18,25 @@ inline constexpr std::string_view kSocketPath = "/ws";
 struct HttpRequest {
   std::string_view method;
   RequestOrigin from;
-  std::string_view if_none_match;  // the ETag that the browser has; "": none
+  std::string_view if_none_match;  // the ETag of the browser's copy; "": no copy
 };
 
 struct HttpAnswer {
   unsigned status = 200;
-  /// The headers that depend on the request. Date, Server and Content-Length are not among them.
+  /// The headers that depend on the request, except Date, Server and Content-Length.
   std::vector<std::pair<std::string_view, std::string>> headers;
   std::string_view body;  // a file of the page, or `text`
   std::string text;       // one line for a person
   Verdict verdict = Verdict::kAllowed;
 };
 
-/// The headers of every answer. The page may load only files of this server, and no other page may
-/// show it in a frame.
+/// The headers of every answer. With them the page may load only files of this server, and no other
+/// page may show it in a frame.
 std::vector<std::pair<std::string_view, std::string_view>> SafetyHeaders();
 
 /// The answer to a request that does not open a WebSocket, or that may not open one. Only GET is
-/// known. "/" is "/index.html", "/drive" is "/drive.html"; a query behind a path is ignored.
+/// allowed. "/" means "/index.html", "/drive" means "/drive.html". A query behind a path is
+/// ignored.
 HttpAnswer Answer(const HttpRequest& request, const Access& access, std::span<const Asset> assets);
 
 /// An answer that has only a line of text.
@@ -44,8 +45,8 @@ HttpAnswer Refusal(unsigned status, std::string text);
 /// The path of a target, without its query.
 std::string_view PathOf(std::string_view target);
 
-/// Whether a path may be that of the participant's page or of one of its files. False only for the
-/// paths of the other page and of the WebSocket. The two pages share all other files.
+/// Whether a path may belong to the participant's page or to one of its files. Returns false only
+/// for the paths of the other page and of the WebSocket. The two pages share all other files.
 bool MayBeOfDrivePage(std::string_view path);
 
 }  // namespace fogline::web

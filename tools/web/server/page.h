@@ -5,8 +5,9 @@
 
 namespace fogline::web {
 
-/// Why this build has no page for a browser, and what to do; "" if it has one. A program that only
-/// starts fogline-web asks this, because Assets() would put all files of the pages into it.
+/// The reason why this build has no page for a browser, and a remedy; "" if it has a page. A
+/// program that only starts fogline-web calls this function, because Assets() would add all files
+/// of the pages to the program.
 std::string_view WhyNoPage();
 
 }  // namespace fogline::web

@@ -1,4 +1,4 @@
-// The frames that wait to be sent to one client. Their number of bytes is bounded.
+// The frames that wait to be sent to one client, with a limit for their bytes.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +9,7 @@
 
 namespace fogline::web {
 
-/// A frame for one client or for several: they share its bytes.
+/// A frame for one or several clients. The clients share its bytes.
 struct OutgoingFrame {
   std::shared_ptr<const std::string> bytes;
   bool binary = false;
@@ -22,13 +22,13 @@ inline OutgoingFrame BinaryFrame(std::string bytes) {
   return {std::make_shared<const std::string>(std::move(bytes)), true};
 }
 
-/// First in, first out. The frame at the front stays there while it is being sent.
+/// A first-in, first-out queue. The frame at the front stays in the queue while it is being sent.
 class SendQueue {
  public:
   static constexpr std::size_t kMostBytes = 8 << 20;
 
-  /// Adds a frame. An empty queue takes any frame.
-  /// @return false if there is no room; the queue then stays as it is
+  /// Adds a frame. An empty queue accepts any frame.
+  /// @return false if there is no room; the queue is then unchanged
   [[nodiscard]] bool Push(OutgoingFrame frame) {
     const std::size_t size = frame.bytes->size();
     if (!frames_.empty() && bytes_ + size > kMostBytes) return false;
@@ -43,7 +43,7 @@ class SendQueue {
     bytes_ -= frames_.front().bytes->size();
     frames_.pop_front();
   }
-  /// Removes all frames, or all frames but the front one.
+  /// Removes all frames, or all frames except the front one.
   void Clear(bool keep_front) {
     while (frames_.size() > (keep_front ? 1U : 0U)) {
       bytes_ -= frames_.back().bytes->size();
@@ -52,7 +52,7 @@ class SendQueue {
   }
 
   bool empty() const { return frames_.empty(); }
-  /// The bytes of all frames, the one that is being sent included.
+  /// The number of bytes of all frames, including the frame that is being sent.
   std::size_t bytes() const { return bytes_; }
 
  private:

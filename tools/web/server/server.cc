@@ -33,7 +33,7 @@ Server::~Server() = default;
 void Server::Take(tcp::socket socket) {
   boost::system::error_code error;
   const address host = socket.remote_endpoint(error).address();
-  if (error) return;  // it has left already
+  if (error) return;  // the client has already left
   MakeRoomFor(host);
   const std::uint64_t id = next_id_++;
   callers_.emplace(id, host);

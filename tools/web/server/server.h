@@ -1,9 +1,10 @@
 // A server for browsers: the files of the page by HTTP, and WebSockets. It has one thread, and
-// nothing blocks it. It knows nothing of runs and logs: a View does.
+// nothing blocks it. The server does not use runs or logs: a View does.
 //
 // Every limit protects the other clients and the memory of this process. A client that exceeds a
-// limit is closed, counted, and named on stderr. A connection that has not opened a WebSocket (a
-// caller) has limits of its own. So a caller that is refused cannot take the place of a viewer.
+// limit is closed, counted, and named on stderr. A client that has not opened a WebSocket is a
+// caller. Callers have their own limits, so a caller that is refused cannot take the place of a
+// viewer.
 #pragma once
 
 #include <chrono>
@@ -28,8 +29,8 @@
 
 namespace fogline::web {
 
-/// The subprotocols of WebSockets: our own for those who look and for the one who drives, and both
-/// names of Foxglove's.
+/// The subprotocols of WebSockets: our own for viewers and for the client that drives, and both
+/// names of Foxglove's protocol.
 inline constexpr std::string_view kViewProtocol = "fogline.view.v1";
 inline constexpr std::string_view kDriveProtocol = "fogline.drive.v1";
 inline constexpr std::string_view kFoxgloveProtocol = "foxglove.websocket.v1";
@@ -43,10 +44,10 @@ constexpr bool IsFoxglove(std::string_view protocol) {
 enum class CloseCode : std::uint16_t {
   kGoingAway = 1001,        // the program ends
   kPolicyViolation = 1008,  // the client sends too many frames
-  kTryAgainLater = 1013,    // the client does not take its bytes
+  kTryAgainLater = 1013,    // the client does not read its bytes
 };
 
-/// An open WebSocket, as a view sees it.
+/// An open WebSocket, in the form that a view uses.
 class Client {
  public:
   virtual ~Client() = default;
@@ -56,13 +57,13 @@ class Client {
   virtual const std::string& address() const = 0;
   /// The subprotocol; kViewProtocol if the client asked for none.
   virtual std::string_view protocol() const = 0;
-  /// Queues a frame. If there is no room in its queue, the client is cut off: it does not take its
-  /// bytes. A client that is being closed gets nothing.
+  /// Queues a frame. A client whose queue has no room is cut off, because it does not read its
+  /// bytes. A client that is being closed gets no frame.
   virtual void Send(OutgoingFrame frame) = 0;
-  /// The bytes that are queued.
+  /// The number of bytes in the queue.
   virtual std::size_t waiting() const = 0;
-  /// Closes the client because it exceeds a limit. The client is counted and named. View::Closed()
-  /// comes later, not during this call.
+  /// Closes the client because it exceeds a limit. The client is counted, and named on stderr.
+  /// View::Closed() is called later, not during this call.
   virtual void CutOff(CloseCode code, const std::string& why) = 0;
 };
 
@@ -71,23 +72,24 @@ class View {
  public:
   virtual ~View() = default;
   virtual void Opened(Client& client) = 0;
-  /// A frame of a client. No further frame of the client is read while much waits to be sent to it.
+  /// Called with a frame of a client. If many bytes wait to be sent to the client, the server reads
+  /// no further frame of this client.
   virtual void Received(Client& client, std::string_view bytes, bool binary) = 0;
-  /// Everything that was queued for the client has been sent.
+  /// Called when everything that was queued for the client has been sent.
   virtual void Idle(Client& client) = 0;
-  /// The last call for this client.
+  /// Called last for this client.
   virtual void Closed(Client& client) = 0;
 };
 
-/// Bounds of a server that tests make smaller.
+/// Limits of a server. Tests make them smaller.
 struct ServerLimits {
-  std::size_t viewers = 64;  // WebSockets, without the place that is kept for the one who drives
+  std::size_t viewers = 64;  // WebSockets, without the place that is kept for a client that drives
   // A browser opens at most 6 connections for a page at a time.
   std::size_t callers = 64;
   std::size_t callers_of_one = 32;  // from one address
-  // A request must be there, and its answer taken, within this time.
+  // Time in which a request must come, and in which its answer must be read.
   std::chrono::milliseconds request{10'000};
-  // A WebSocket that sends nothing for half of this time gets a ping; without an answer it is
+  // If a WebSocket sends nothing for half of this time, it gets a ping. Without an answer it is
   // closed.
   std::chrono::milliseconds silence{60'000};
 };
@@ -104,10 +106,10 @@ struct ServerOptions {
 
 /// Numbers since the start of the server.
 struct ServerCounts {
-  std::int64_t viewers = 0;  // WebSockets that are open now, those that drive included
-  std::int64_t drivers = 0;  // those of them that drive, or ask for the seat
+  std::int64_t viewers = 0;  // WebSockets that are open, including those that drive
+  std::int64_t drivers = 0;  // WebSockets that drive, or ask for the seat
   std::int64_t cut_off = 0;  // viewers that exceeded a limit
-  // Callers that exceeded a limit, or had a wrong Host, Origin or token.
+  // Number of callers that exceeded a limit, or had a wrong Host, Origin or token.
   std::int64_t refused = 0;
 };
 
@@ -119,12 +121,12 @@ class Server {
 
   static constexpr std::size_t kMostHeaderBytes = 8 << 10;
   static constexpr std::size_t kMostFrameBytes = 64 << 10;
-  /// Of a client that drives: an input has less than 1 KiB.
+  /// Limit for a frame of a client that drives. An input has less than 1 KiB.
   static constexpr std::size_t kMostSeatFrameBytes = 4 << 10;
 
-  /// Listens, and accepts while the context runs.
-  /// @param view must live as long as the server
-  /// @throws boost::system::system_error if it cannot listen
+  /// Listens, and accepts connections while the context runs.
+  /// @param view must exist as long as the server
+  /// @throws boost::system::system_error if the server cannot listen
   Server(boost::asio::io_context& context, const ServerOptions& options,
          std::span<const Asset> assets, View& view);
   ~Server();
@@ -134,8 +136,8 @@ class Server {
   const Access& access() const { return access_; }
   const ServerCounts& counts() const { return counts_; }
 
-  /// Closes all connections: it says to the WebSockets that it goes away, and closes those that do
-  /// not answer in kFarewell. The context then has no more work.
+  /// Closes all connections. Tells the WebSockets that the program ends, and closes those that do
+  /// not answer within kFarewell. The context then has no more work.
   void Stop();
   static constexpr std::chrono::milliseconds kFarewell{300};
 
@@ -143,15 +145,15 @@ class Server {
   friend class Connection;
 
   void Take(tcp::socket socket);
-  /// Closes the oldest caller of an address that has its share, or of the address that has most
-  /// callers if there are too many in all.
+  /// Closes the oldest caller of this address if the address has reached its limit. Otherwise, if
+  /// there are too many callers, closes the oldest caller of the address with most callers.
   void MakeRoomFor(const boost::asio::ip::address& host);
   void CloseOldestOf(const boost::asio::ip::address& host);
-  /// Makes a caller a viewer. @return false if there are too many viewers
+  /// Makes a caller a viewer. @return false if there is no free place
   bool TakePlace(std::uint64_t id, bool drives);
   void LeavePlace(bool drives);
-  /// Whether the places of the viewers are taken. Those who drive have one more place, so that
-  /// viewers cannot keep a person from driving.
+  /// Whether all places of viewers are taken. One more place is kept for a client that drives, so
+  /// that viewers cannot keep a person from driving.
   bool IsFull() const;
   void Leave(std::uint64_t id);
   /// Counts a viewer that exceeds a limit, and names it on stderr.
@@ -166,7 +168,7 @@ class Server {
   Acceptor acceptor_;
   Access access_;
   std::map<std::uint64_t, std::shared_ptr<Connection>> connections_;
-  std::map<std::uint64_t, boost::asio::ip::address> callers_;  // the oldest first
+  std::map<std::uint64_t, boost::asio::ip::address> callers_;  // in the order of their connection
   std::uint64_t next_id_ = 0;
   ServerCounts counts_;
 };

@@ -41,7 +41,7 @@ class Decoder {
     for (const LcmMember& member : type.members) {
       std::optional<Json> value = Member(member, lengths);
       if (!value) return std::nullopt;
-      // No two members have the same name, so there is no need to search for it.
+      // No two members have the same name, so this code appends without a search for the name.
       members.emplace_back(member.name, std::move(*value));
     }
     return json;

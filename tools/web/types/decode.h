@@ -1,4 +1,4 @@
-// A message's bytes as JSON, by the description of its type.
+// Decodes a message's bytes into JSON, by the description of its type.
 #pragma once
 
 #include <cstdint>
@@ -12,17 +12,17 @@ namespace fogline::web {
 
 /// The members of a message, in their order.
 ///
-/// Integers beyond 2^53, such as a run's id, are decimal strings, because JavaScript would round
-/// them. Numbers that are infinite or NaN are null. A boolean is true if its byte is not 0. Arrays
-/// are lists of lists; an array without elements is []. In a string that is not valid UTF-8, the
-/// wrong bytes are replaced by U+FFFD, so the result can always be printed.
+/// Integers beyond 2^53, such as a run's id, become decimal strings, because JavaScript would round
+/// them. Numbers that are infinite or NaN become null. A boolean is true if its byte is not 0.
+/// Arrays become lists of lists. An array without elements becomes []. In a string that is not
+/// valid UTF-8, U+FFFD replaces the wrong bytes, so the result can always be printed.
 ///
 /// @param message with its fingerprint and without a signature (message_signer.h)
 /// @return nullopt if the bytes are not exactly one message of this type
 std::optional<nlohmann::ordered_json> DecodeJson(const LcmTypes& types, const LcmStruct& type,
                                                  Bytes message);
 
-/// An integer as DecodeJson() writes it.
+/// An integer in the form that DecodeJson() writes.
 nlohmann::ordered_json IntegerJson(std::int64_t value);
 
 }  // namespace fogline::web

@@ -7,21 +7,22 @@
 
 namespace fogline::web {
 
-/// For each type by its name: `comment`; `constants`, their values by name; `members`, each with
-/// `name`, `type`, `dims`, `comment`, `unit`. A dimension is a number, or the name of the member
-/// that has the length. `unit` is "" if the name has none.
+/// The description of each type, by its name: `comment`; `constants`, their values by name;
+/// `members`, each with `name`, `type`, `dims`, `comment`, `unit`. A dimension is a number, or the
+/// name of the member that has the length. `unit` is "" if the name of the member has no unit.
 nlohmann::ordered_json TypesJson(const LcmTypes& types);
 
-/// For each type by its name: the fingerprint as "0x" and 16 digits.
+/// The fingerprint of each type, by its name, as "0x" and 16 digits.
 nlohmann::ordered_json FingerprintsJson(const LcmTypes& types);
 
 /// The channels of services/graph.h in their order: `id` (the place in kChannels), `name`, `type`,
-/// `from`, `what`. STATUS and RESEND, which several roles send, are `from` "everyone".
+/// `from`, `what`. For STATUS and RESEND, which several roles send, `from` is "everyone".
 nlohmann::ordered_json ChannelsJson();
 
-/// The JSON schema of what DecodeJson() makes of a type. Each field has one type only, because
-/// Foxglove's and Lichtblick's readers refuse schemas with several. So the schema does not say that
-/// an integer beyond 2^53 is a string and that a number which is not finite is null.
+/// The JSON schema for the result of DecodeJson() for a type. Each field has only one type, because
+/// Foxglove's and Lichtblick's readers refuse schemas with several types for a field. So the schema
+/// does not contain that an integer beyond 2^53 is a string, or that an infinite number or NaN is
+/// null.
 nlohmann::ordered_json SchemaJson(const LcmTypes& types, const LcmStruct& type);
 
 }  // namespace fogline::web

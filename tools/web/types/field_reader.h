@@ -1,4 +1,4 @@
-// Reads one number from the bytes of a message, without decoding the rest of the message.
+// Reads one number from the bytes of a message, without decoding the other fields.
 #pragma once
 
 #include <cstddef>
@@ -10,32 +10,33 @@
 
 namespace fogline::web {
 
-/// For one field of one type. It is cheap to call on millions of messages: members of fixed size
-/// are skipped together, and nothing is allocated. It may be used in several threads at once. The
-/// types must outlive it.
+/// Reads one field of one type. Reading is cheap even for millions of messages: members of fixed
+/// size are skipped together, and no memory is allocated. Several threads may use a reader at the
+/// same time. The types must outlive the reader.
 class FieldReader {
  public:
   /// @param path such as "host_gap_m", "header.step", "follower_gap_m[0]", "covariance[0][2]"
-  /// @throws InputError if the type has no such field, or if it is no number; the text proposes the
-  ///     nearest name. An index in an array whose length varies may be any.
+  /// @throws InputError if the type has no such field, or if the field is not a number; the text
+  ///     proposes the nearest name. Any index is accepted for an array whose length varies.
   FieldReader(const LcmTypes& types, const LcmStruct& type, std::string_view path);
 
-  /// The value. A boolean is 0 or another number. An integer beyond 2^53 is rounded.
-  /// @param message with its fingerprint; bytes behind the field do not matter, a signature neither
+  /// Returns the value. A boolean is 0 or another number. An integer beyond 2^53 is rounded.
+  /// @param message with its fingerprint; bytes behind the field, such as a signature, are ignored
   /// @return nullopt if the message is of another type, ends before the field, has fewer elements,
   ///     or the value is infinite or NaN
   std::optional<double> operator()(Bytes message) const;
 
  private:
-  /// Fixed bytes to skip, then a member whose size varies or that is a length. nullptr: no member.
+  /// A number of fixed bytes to skip, and then a member whose size varies or that is a length. The
+  /// member is nullptr if only the bytes are skipped.
   struct Stride {
     std::size_t bytes = 0;
     const LcmMember* member = nullptr;
   };
-  /// The way through one struct.
+  /// The path through one struct.
   struct Level {
-    std::vector<Stride> strides;        // over the members before `target`
-    const LcmMember* target = nullptr;  // a struct, or a number on the last level
+    std::vector<Stride> strides;        // steps over the members before `target`
+    const LcmMember* target = nullptr;  // a struct; a number on the last level
     std::vector<std::size_t> indices;   // one for each dimension of the target
   };
 

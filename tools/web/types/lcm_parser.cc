@@ -15,7 +15,7 @@ namespace {
 
 using Kind = LcmToken::Kind;
 
-/// The integer that the whole text is; nullopt if it is none.
+/// The integer that the text represents; nullopt if the text is not an integer.
 std::optional<std::int64_t> IntegerIn(std::string_view text) {
   const bool negative = text.starts_with('-');
   if (negative) text.remove_prefix(1);
@@ -69,7 +69,7 @@ class Parser {
     if (Peek().kind != Kind::kWord) Fail(fmt::format("{} is missing", what));
     return Next();
   }
-  /// A name that the struct itself gives: it has no dots.
+  /// The name that a struct defines: such a name has no dots.
   const LcmToken& Name(std::string_view what) {
     const LcmToken& name = Word(what);
     if (name.text.find('.') != std::string::npos) Fail(fmt::format("{} has a dot", what), name);

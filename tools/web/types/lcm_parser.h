@@ -1,6 +1,7 @@
-// Reads LCM's type language as lcm-gen does (LCM, lcmgen.c). Two things that lcm-gen accepts are
-// refused: enums, which no generated class for C++ has; and structs without members, because an
-// array of them could have any length in a message without bytes.
+// Reads LCM's type language in the same way as lcm-gen (LCM, lcmgen.c). The parser refuses two
+// things that lcm-gen accepts. It refuses enums, because no generated class for C++ has them. It
+// refuses structs without members, because an array of such structs could have any length in a
+// message without bytes.
 #pragma once
 
 #include <string_view>
@@ -10,8 +11,9 @@
 
 namespace fogline::web {
 
-/// The structs of one file, in their order. Their members name other structs, which LcmTypes finds.
-/// @param file for errors
+/// The structs of one file, in their order. LcmTypes later finds the structs that their members
+/// name.
+/// @param file name of the file for errors
 /// @throws InputError "FILE:LINE: error: ..." at the first mistake
 std::vector<LcmStruct> ParseLcm(std::string_view text, std::string_view file);
 

@@ -11,7 +11,7 @@ struct PrimitiveInfo {
   std::size_t size;
 };
 
-/// In the order of LcmPrimitive.
+/// The primitive types in the order of LcmPrimitive.
 constexpr std::array kPrimitives{
     PrimitiveInfo{"int8_t", LcmPrimitive::kInt8, 1},
     PrimitiveInfo{"int16_t", LcmPrimitive::kInt16, 2},
@@ -34,7 +34,8 @@ constexpr std::array kUnits = std::to_array<std::pair<std::string_view, std::str
     {"_hz", "Hz"},
 });
 
-// lcm-gen computes with int64_t and shifts it with its sign. It adds characters as signed ones.
+// Adds a byte to a hash. lcm-gen computes with int64_t, so its right shift keeps the sign. It adds
+// characters as signed numbers.
 std::int64_t HashByte(std::int64_t hash, std::int64_t byte) {
   const std::uint64_t mixed =
       (static_cast<std::uint64_t>(hash) << 8) ^ static_cast<std::uint64_t>(hash >> 55);

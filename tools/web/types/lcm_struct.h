@@ -1,4 +1,4 @@
-// A struct of LCM's type language: what a file of lcmtypes/ says about one message type.
+// A struct of LCM's type language: the description of one message type in a file of lcmtypes/.
 #pragma once
 
 #include <array>
@@ -16,7 +16,7 @@ namespace fogline::web {
 
 using Bytes = std::span<const std::uint8_t>;
 
-/// The types that LCM itself knows.
+/// The primitive types of LCM.
 enum class LcmPrimitive : std::uint8_t {
   kInt8,
   kInt16,
@@ -47,7 +47,7 @@ struct LcmConstant {
 
 /// One dimension of an array.
 struct LcmDimension {
-  std::string size;  // as written: a number, or the name of the member that is the length
+  std::string size;  // as written: a number, or the name of the member with the length
   std::optional<std::size_t> fixed;  // the number; nullopt if the length varies
   std::size_t slot =
       0;  // if the length varies: LcmMember::length_slot of the member with the length
@@ -57,11 +57,11 @@ struct LcmMember {
   std::string name;
   std::string type;                       // as written: a primitive type or a struct
   std::optional<LcmPrimitive> primitive;  // nullopt: a struct
-  std::size_t nested = 0;                 // a struct's place in LcmTypes::structs()
-  std::vector<LcmDimension> dimensions;   // empty: one value
-  std::string comment;                    // the lines before it, and the comment behind it
-  /// Set if arrays of the struct have their lengths from this member: a number that counts such
-  /// members from 0 on.
+  std::size_t nested = 0;                 // place of a struct in LcmTypes::structs()
+  std::vector<LcmDimension> dimensions;   // empty: a single value
+  std::string comment;                    // the lines before the member, and the comment behind it
+  /// The number of this member among the members of the struct that are lengths, from 0 on; nullopt
+  /// if the member is not the length of an array.
   std::optional<std::size_t> length_slot;
 };
 
@@ -80,9 +80,9 @@ struct LcmStruct {
   std::string FullName() const { return package.empty() ? name : package + "." + name; }
 };
 
-/// The limits of what the parser accepts. They let a decoder work without allocating memory for
-/// lengths and dimensions.
-inline constexpr std::size_t kMaxLengths = 16;  // members of a struct that are lengths
+/// Limits for the parser. With these limits, a decoder needs no allocated memory for lengths and
+/// dimensions.
+inline constexpr std::size_t kMaxLengths = 16;  // limit for a struct's members that are lengths
 inline constexpr std::size_t kMaxDimensions = 4;
 
 /// The hash of the struct's own names, types and dimensions, without the structs in it. LCM's

@@ -7,11 +7,11 @@
 namespace fogline::web {
 
 struct LcmText {
-  std::string_view file;  // its name, such as "truth_t.lcm"
+  std::string_view file;  // name of the file, such as "truth_t.lcm"
   std::string_view text;
 };
 
-/// All files, by name.
+/// All files, in the order of their names.
 std::span<const LcmText> LcmTexts();
 
 }  // namespace fogline::web

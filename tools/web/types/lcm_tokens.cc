@@ -15,9 +15,11 @@ constexpr std::string_view kSymbols = "{}[];,=";
 
 bool IsDigit(char c) { return c >= '0' && c <= '9'; }
 bool IsLetter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
-// A word may have dots: the name of a struct with its package.
+// Whether a character belongs to a word. A word may have dots: the name of a struct with its
+// package.
 bool IsInWord(char c) { return IsLetter(c) || IsDigit(c) || c == '.'; }
-// A number may have a sign behind its exponent, and the letters of a hexadecimal one.
+// Whether a character belongs to a number. A number may have a sign behind its exponent, and the
+// letters of a hexadecimal number.
 bool IsInNumber(char c) { return IsInWord(c) || c == '+' || c == '-'; }
 
 std::string_view Trimmed(std::string_view text) {
@@ -91,7 +93,7 @@ class Lexer {
     Comment(text, began);
   }
 
-  /// @param began the line on which the comment begins; it ends on line_
+  /// @param began the line on which the comment begins; the comment ends on line_
   void Comment(std::string_view text, int began) {
     if (!tokens_.empty() && tokens_.back().line == began) {
       return AppendLine(text, tokens_.back().comment_behind);
@@ -133,7 +135,7 @@ class Lexer {
   std::string_view rest_;
   std::string_view file_;
   int line_ = 1;
-  std::string comment_;   // of the lines directly before the next token
+  std::string comment_;   // lines of comment directly before the next token
   int comment_end_ = -1;  // the last line of comment_
   std::vector<LcmToken> tokens_;
 };

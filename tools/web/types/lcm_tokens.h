@@ -1,4 +1,4 @@
-// The words of a text in LCM's type language.
+// Divides a text in LCM's type language into words.
 #pragma once
 
 #include <cstdint>
@@ -19,9 +19,9 @@ struct LcmToken {
   std::string comment_behind;
 };
 
-/// The words, and a last one of kind kEnd. A comment belongs to the word behind it if no blank line
-/// is between them, or to the last word of its own line.
-/// @param file for errors
+/// The words of a text, and a last word of kind kEnd. A comment belongs to the word behind it if no
+/// blank line is between them. A comment behind a word on the same line belongs to this word.
+/// @param file name of the file for errors
 /// @throws InputError for a character that the language does not have, or a comment without an end
 std::vector<LcmToken> LcmTokens(std::string_view text, std::string_view file);
 

@@ -20,8 +20,8 @@ constexpr int kUntouched = 0;
 constexpr int kUnderWay = 1;
 constexpr int kComplete = 2;
 
-/// Whether a member that says `named` means this struct. Without a package it means one of the
-/// same package.
+/// Whether the type `named` of a member of the struct `user` means the struct `type`. A name
+/// without a package means a struct of the same package.
 bool Means(std::string_view named, const LcmStruct& user, const LcmStruct& type) {
   if (named.find('.') != std::string_view::npos) return named == type.FullName();
   return named == type.name && user.package == type.package;
@@ -70,7 +70,7 @@ std::optional<std::size_t> LcmTypes::FixedSize(const LcmMember& member) const {
   }
   for (const LcmDimension& dimension : member.dimensions) {
     if (!size || !dimension.fixed) return std::nullopt;
-    // No message has room for more. Without this limit the product could overflow.
+    // No message has room for more elements. Without this limit the product could overflow.
     if (*dimension.fixed > kLargestMessage) return std::nullopt;
     *size *= *dimension.fixed;
     if (*size > kLargestMessage) return std::nullopt;
@@ -78,7 +78,7 @@ std::optional<std::size_t> LcmTypes::FixedSize(const LcmMember& member) const {
   return size;
 }
 
-/// Computes fingerprint and size of a struct, after those of the structs in it.
+/// Computes fingerprint and size of a struct. First computes those of the structs in it.
 void LcmTypes::Complete(std::size_t place, std::vector<int>& states) {
   if (states[place] == kComplete) return;
   LcmStruct& type = structs_[place];
@@ -86,7 +86,8 @@ void LcmTypes::Complete(std::size_t place, std::vector<int>& states) {
     throw InputError(fmt::format("{} contains itself", type.FullName()));
   }
   states[place] = kUnderWay;
-  // lcm-gen adds the structs' fingerprints to the own hash, and rotates the sum by one bit.
+  // lcm-gen adds the fingerprints of the structs to the struct's own hash, and rotates the sum by
+  // one bit.
   auto sum = static_cast<std::uint64_t>(OwnHash(type));
   type.fixed_size = 0;
   for (const LcmMember& member : type.members) {

@@ -24,7 +24,7 @@ class LcmTypes {
   const LcmStruct* WithFingerprint(std::int64_t fingerprint) const;
   /// The type of a message, by its first 8 bytes; nullptr if it is unknown.
   const LcmStruct* TypeOf(Bytes message) const;
-  /// The struct of a member. @pre the member is no primitive
+  /// The struct of a member. @pre the member is not a primitive
   const LcmStruct& StructOf(const LcmMember& member) const { return structs_[member.nested]; }
   /// Size of a member on the wire; nullopt if it varies, or no message has room for it.
   std::optional<std::size_t> FixedSize(const LcmMember& member) const;

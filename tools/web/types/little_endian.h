@@ -1,4 +1,4 @@
-// Numbers in binary frames: little endian, as browsers' typed arrays have them.
+// Numbers in binary frames: little endian, as in browsers' typed arrays.
 #pragma once
 
 #include <algorithm>
@@ -17,7 +17,7 @@ void PutLittleEndian(Number number, std::string& to) {
   to.append(bytes.data(), bytes.size());
 }
 
-/// Takes a number off the beginning. @pre it is there
+/// Removes a number from the beginning of a text, and returns it. @pre the text is long enough
 template <class Number>
 Number TakeLittleEndian(std::string_view& from) {
   std::array<char, sizeof(Number)> bytes{};

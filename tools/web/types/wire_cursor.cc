@@ -44,7 +44,7 @@ std::optional<double> WireCursor::Number(LcmPrimitive primitive) {
 }
 
 std::optional<std::string_view> WireCursor::Text() {
-  const auto length = Integer(LcmPrimitive::kInt32);  // with the 0 at the end
+  const auto length = Integer(LcmPrimitive::kInt32);  // including the 0 at the end
   if (!length || *length < 1 || static_cast<std::uint64_t>(*length) > rest_.size()) {
     return std::nullopt;
   }

@@ -1,5 +1,5 @@
-// Reads the bytes of an LCM message from front to back, by the description of its type. Nothing is
-// read beyond the end, and no length is believed that the message has no room for.
+// Reads the bytes of an LCM message from front to back, by the description of its type. The cursor
+// never reads beyond the end, and refuses a length for which the message has no room.
 #pragma once
 
 #include <array>
@@ -12,7 +12,8 @@
 
 namespace fogline::web {
 
-/// No LCM message is larger: the size of a message in fragments has 32 bits (LCM, udpm_util.h).
+/// The largest possible size of an LCM message: a message in fragments has a size of 32 bits (LCM,
+/// udpm_util.h).
 inline constexpr std::size_t kLargestMessage = 0xffff'ffff;
 
 /// The values of a struct's members that are lengths, by LcmMember::length_slot.
@@ -24,8 +25,9 @@ struct Extent {
   std::size_t count = 1;  // number of elements; 0 if any dimension is 0
 };
 
-/// Each function advances behind what it reads. It returns nullopt or false if the message does not
-/// have it; the cursor then stays unusable.
+/// A place in a message. Each function reads a value and advances behind it. If the message does
+/// not contain the value, the function returns nullopt or false, and the cursor must not be used
+/// further.
 class WireCursor {
  public:
   explicit WireCursor(Bytes message) : rest_(message) {}
@@ -39,13 +41,13 @@ class WireCursor {
 
   /// @pre the primitive is an integer, a byte or a boolean
   std::optional<std::int64_t> Integer(LcmPrimitive primitive);
-  /// Any number, a byte or a boolean too. @pre the primitive is no string
+  /// Any number, or a byte or a boolean as a number. @pre the primitive is not a string
   std::optional<double> Number(LcmPrimitive primitive);
-  /// A string with a 0 at its end and none before. The view is valid as long as the message.
+  /// A string with a 0 at its end and no other 0. The view is valid as long as the message.
   std::optional<std::string_view> Text();
 
-  /// The dimensions of a member. Every element takes at least one byte, so there are at most as
-  /// many elements as bytes are left.
+  /// The dimensions of a member; nullopt if the message has no room for the elements. Every element
+  /// takes at least one byte, so there are at most as many elements as remaining bytes.
   std::optional<Extent> ExtentOf(const LcmMember& member, const Lengths& lengths) const;
 
   /// Skips a member with all its elements; keeps its value if it is a length.

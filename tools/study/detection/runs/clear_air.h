@@ -15,7 +15,7 @@ namespace fogline::study {
 
 /// Length of a run in clear air after the warm-up, s.
 inline constexpr double kClearRun_s = 115;
-/// Length of the warm-up, s. At its end filters and windows are full, and the track has settled.
+/// Length of the warm-up, s. At its end, the windows are full, and the filter's track has settled.
 inline constexpr double kWarmUp_s = 5;
 /// In clear air, every kClearStride-th step counts for ROC and AUC. The stride is longer than the
 /// windows of 8 steps, so that the counted steps are nearly independent.

@@ -1,4 +1,4 @@
-// Runs in which only the sensors are random: the human always drives and sees the truth, so the
+// Runs in which only the sensors are random. The human always drives and sees the truth, so the
 // traffic does not depend on the sensors.
 #pragma once
 

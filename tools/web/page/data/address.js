@@ -1,15 +1,15 @@
-// The fragment of the page's address: "#step=190" is the moment, "#token=..." gives access.
+// The fragment of the page's address: "#step=190" is the shown step, "#token=..." gives access.
 
 const TOKEN = "fogline.token";
 
-/** {step, token}; step is null if the address has none. */
+/** Returns {step, token}; step is null if the address has no step. */
 export function readFragment(fragment) {
   const parts = new URLSearchParams(fragment.replace(/^#/, ""));
   const step = /^\d+$/.test(parts.get("step") ?? "") ? Number(parts.get("step")) : null;
   return {step, token: parts.get("token") ?? ""};
 }
 
-/** The fragment that reopens a step. */
+/** The fragment of an address that shows a step again. */
 export function fragmentOf(step, token) {
   return `#${token ? `token=${encodeURIComponent(token)}&` : ""}step=${step}`;
 }

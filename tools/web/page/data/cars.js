@@ -1,11 +1,11 @@
-// The cars on the road at a moment, from the messages of a step. It draws nothing.
+// Computes the cars on the road at a moment, from the messages of a step. It draws nothing.
 
-// From 0.7 m/s2 on the brake lamps of a car without a pedal may shine, and from 1.3 m/s2 on they
-// must (UN R13-H, 5.2.22.4).
+// The brake lamps of a car without a pedal may shine from 0.7 m/s2 on, and must shine from 1.3 m/s2
+// on (UN R13-H, 5.2.22.4).
 export const BRAKE_LAMPS_FROM_MPS2 = 0.7;
 const CONTRAST_AT_VISIBILITY = 0.05;  // the definition of the meteorological optical range
 
-/** Extinction in 1/m at a visibility in m, by Koschmieder. */
+/** Extinction in 1/m for a visibility in m, by Koschmieder. */
 export function extinction(visibility_m) {
   return visibility_m > 0 ? -Math.log(CONTRAST_AT_VISIBILITY) / visibility_m : 0;
 }
@@ -13,9 +13,9 @@ export function extinction(visibility_m) {
 const brakes = (acceleration_mps2) => acceleration_mps2 <= -BRAKE_LAMPS_FROM_MPS2;
 
 /**
- * All cars, the foremost first: [{name, kind, front_m, speed_mps, brakes}], where front_m is the
- * front bumper's place relative to the host's. `ahead_s` is the time since the step: the cars have
- * moved on at their speeds. No car may pass another only by this.
+ * All cars, the foremost first: [{name, kind, front_m, speed_mps, brakes}]. front_m is the place of
+ * the front bumper relative to the host's front bumper. `ahead_s` is the time since the step: the
+ * cars have moved on at their speeds. This movement lets no car pass another car.
  */
 export function carsOf(truth, ahead_s = 0) {
   const place = (position_m, speed_mps) =>
@@ -33,7 +33,10 @@ export function carsOf(truth, ahead_s = 0) {
   ];
 }
 
-/** Where each sensor sees the preceding car, in m ahead of the host; null: nowhere. */
+/**
+ * The distance ahead of the host, in m, at which each sensor sees the preceding car; null if it
+ * sees none.
+ */
 export function sightings({RADAR, LIDAR, TRACK}) {
   return {
     radar: RADAR?.valid ? RADAR.range_m : null,

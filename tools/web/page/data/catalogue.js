@@ -1,11 +1,12 @@
-// The channels and types that the server has described. It finds channels, decodes messages, and
-// lists fields.
+// The channels and types that the server has described. The catalogue finds channels, decodes
+// messages, and lists fields.
 
 import {DecodeError, fieldsOf, fingerprintOf, makeDecoder} from "./lcm.js";
 
 const FOGLINE_HEADER = "header_t";
-const CONTROL = new Set(["RUN", "STATUS", "RESEND", "DRIVER_INPUT", "TRIAL"]);  // not each step
-// Where header_t lies in a message that begins with it, after the fingerprint.
+const CONTROL = new Set(["RUN", "STATUS", "RESEND", "DRIVER_INPUT", "TRIAL"]);  // not in every step
+// Places of run_id, step and utime, and the end of header_t, in a message that begins with
+// header_t.
 const AT = {run_id: 8, step: 16, utime: 24, end: 32};
 
 export class Catalogue {
@@ -52,7 +53,7 @@ export class Catalogue {
   }
 
   /**
-   * All numeric fields of messages of steps: [{channel, path, name, unit, comment}], where name is
+   * All numeric fields of the messages of steps: [{channel, path, name, unit, comment}]. name is
    * "CHANNEL.path".
    */
   fields() {
@@ -71,8 +72,8 @@ export function headerOf(bytes) {
 }
 
 /**
- * Fields that fit what the reader typed, the best first. Each word must occur in the field's name,
- * comment or unit. A word in the name weighs more than a word in the comment.
+ * The fields that fit the text that the reader typed, the best first. Each word must occur in the
+ * field's name, comment or unit. A word in the name weighs more than a word in the comment.
  */
 export function searchFields(fields, typed, most) {
   const words = typed.toLowerCase().split(/\s+/).filter(Boolean);

@@ -1,4 +1,4 @@
-// The reader's time: follows the live run, plays, or stands still. It knows no page.
+// The reader's time: follows the live run, plays, or is paused. It does not use the document.
 
 export const SPEEDS = [0.1, 0.2, 0.5, 1, 2, 5, 10];
 
@@ -11,7 +11,7 @@ export class Clock {
 
   /** The simulated step that is shown. */
   step(step_s) {
-    const EARLY = 1e-6;  // steps; 0.3 s of steps of 0.1 s is step 3, although 0.3 / 0.1 < 3
+    const EARLY = 1e-6;  // in steps: 0.3 s is step 3 of 0.1 s, although 0.3 / 0.1 < 3
     return Math.floor(this.time / step_s + EARLY);
   }
 
@@ -36,13 +36,13 @@ export class Clock {
   follow() { this.state = "live"; }
   pause() { this.state = "paused"; }
 
-  /** Plays on; from the beginning if the end is reached. */
+  /** Plays on, or plays from the beginning if the time is at the end. */
   play(first, last) {
     if (this.time >= last) this.time = first;
     this.state = "playing";
   }
 
-  /** Chooses the next faster (+1) or slower (-1) speed. */
+  /** Chooses the next higher (+1) or lower (-1) speed. */
   changeSpeed(direction) {
     const place = SPEEDS.indexOf(this.speed) + direction;
     this.speed = SPEEDS[Math.min(SPEEDS.length - 1, Math.max(0, place))];

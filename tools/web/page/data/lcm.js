@@ -1,9 +1,9 @@
-// Decodes LCM messages by the description of their types, which the server sends in `hello`:
-// {TYPE: {constants: {NAME: number}, members: [{name, type, dims: [number or name], ...}]}}.
-// It makes no code from text, because the page's content security policy forbids that.
+// Decodes LCM messages by the description of their types, which the server sends in `hello`: {TYPE:
+// {constants: {NAME: number}, members: [{name, type, dims: [number or name], ...}]}}. The decoder
+// makes no code from text, because the page's content security policy forbids this.
 
 const FINGERPRINT_BYTES = 8;
-const MOST_DEPTH = 16;  // of types within types; no sensible description is deeper
+const MOST_DEPTH = 16;  // limit for types within types; sensible descriptions are less deep
 
 const PRIMITIVES = {
   int8_t: {bytes: 1, read: (view, at) => view.getInt8(at)},
@@ -16,7 +16,7 @@ const PRIMITIVES = {
   double: {bytes: 8, read: (view, at) => view.getFloat64(at)},
 };
 
-/** A message that does not fit its type. */
+/** Thrown for a message that does not fit its type. */
 export class DecodeError extends Error {}
 
 /** An integer as a number if a number can hold it exactly, otherwise as a BigInt. */
@@ -48,7 +48,9 @@ function readString(reader) {
 }
 readString.least = 5;
 
-/** A reader of lists. A length is refused if the rest of the message cannot hold so many items. */
+/**
+ * A reader of lists. It refuses a length for which the remaining bytes of the message are too few.
+ */
 function listReader(readItem, dim) {
   const readList = (reader, message) => {
     const length = typeof dim === "number" ? dim : Number(message[dim]);
@@ -88,8 +90,9 @@ function structReader(types, name, depth) {
 }
 
 /**
- * Makes a function that decodes the bytes (Uint8Array) of a message of this type. Bytes after the
- * members, such as a signature, are left alone. The function throws a DecodeError.
+ * Makes a function that decodes the bytes (Uint8Array) of a message of this type. The function
+ * ignores bytes after the members, such as a signature. It throws a DecodeError for a message that
+ * does not fit the type.
  */
 export function makeDecoder(types, name) {
   const read = structReader(types, name, 0);
@@ -107,26 +110,26 @@ export function fingerprintOf(bytes) {
   return `0x${value.toString(16).padStart(16, "0")}`;
 }
 
-/** Splits a path: "header.step" is ["header", "step"], "state[0]" is ["state", 0]. */
+/** Splits a path: "header.step" becomes ["header", "step"], "state[0]" becomes ["state", 0]. */
 export function parsePath(path) {
   return path.split(/[.[]/).map((part) => part.endsWith("]") ? Number(part.slice(0, -1)) : part);
 }
 
-/** The value at a parsed path; undefined if the message has none. */
+/** The value at a parsed path; undefined if the message does not have it. */
 export function valueAt(message, parts) {
   let value = message;
   for (const part of parts) value = value?.[part];
   return value;
 }
 
-/** The value at a parsed path as a number; NaN if there is none. */
+/** The value at a parsed path as a number; NaN if the message has no number there. */
 export function numberAt(message, parts) {
   const value = valueAt(message, parts);
   if (typeof value === "number") return value;
   return typeof value === "boolean" || typeof value === "bigint" ? Number(value) : NaN;
 }
 
-/** Index tuples of a list; a dimension of variable length has the first index only. */
+/** Index tuples of a list. For a dimension of variable length they have only the first index. */
 function indices(dims) {
   return dims.reduce((tuples, dim) => tuples.flatMap((tuple) => {
     const length = typeof dim === "number" ? dim : 1;

@@ -1,4 +1,4 @@
-// The messages of a live run, as far back as the page keeps them.
+// The messages of a live run, as far back as the page stores them.
 
 import {headerOf} from "./catalogue.js";
 import {numberAt, parsePath} from "./lcm.js";
@@ -7,7 +7,7 @@ import {Series} from "./series.js";
 
 const KEEP_S = 600;              // of simulated time
 const KEEP_BYTES = 96 * 2 ** 20;
-const AWAY_MS = 2000;            // if no step has come for so long, the run has stopped
+const AWAY_MS = 2000;            // the run has stopped if no step has come for this long
 const TIDY_AFTER = 4096;         // messages between two removals of old messages
 
 /** Messages of one channel in the order of their steps. */
@@ -45,7 +45,7 @@ export class LiveStore {
     this.clear();
   }
 
-  /** Forgets everything. Series that were taken before do not grow any more. */
+  /** Forgets all messages. Series that were returned before do not grow after this call. */
   clear() {
     this.generation = (this.generation ?? 0) + 1;
     this.tracks = new Map();    // by channel name
@@ -66,7 +66,7 @@ export class LiveStore {
     this.runId = id;
   }
 
-  /** The scenario's step; before the scenario is known, that of the messages. */
+  /** The step of the scenario; before the scenario is known, the step of the messages. */
   get step_s() { return this.run?.step_s ?? this.seenStep_s ?? 0.1; }
   timeOf(step) { return step * this.step_s; }
   get firstTime() { return this.timeOf(this.firstStep); }
@@ -77,7 +77,7 @@ export class LiveStore {
     if (!channel?.hasHeader) return;
     const header = headerOf(bytes);
     if (!header) return;
-    this.runId ??= header.run_id;  // the server has not said yet which run it follows
+    this.runId ??= header.run_id;  // the server has not yet named the run that it follows
     if (header.run_id !== this.runId) return;
     if (channel.name === "STATUS") this.addStatus(channel, bytes);
     else if (channel.isStepwise) this.keep(channel, header, arrived_ms, bytes);
@@ -103,7 +103,10 @@ export class LiveStore {
     if (++this.count % TIDY_AFTER === 0) this.tidy();
   }
 
-  /** Whether a log of the same run is played once more. Old messages also come in a repair. */
+  /**
+   * Whether a log of the same run is played once more: an old TRUTH then comes after a pause. A
+   * repair also brings old messages, but without a pause.
+   */
   beginsAgain({name}, {step}, arrived_ms) {
     return name === "TRUTH" && step < this.lastStep && arrived_ms - this.arrived_ms > AWAY_MS;
   }
@@ -128,7 +131,7 @@ export class LiveStore {
     this.firstStep = Math.ceil(oldest / this.step_s);
   }
 
-  /** The newest messages at a step: {NAME: message}; null if there are none. */
+  /** The newest message of each channel at a step: {NAME: message}; null before the first step. */
   frame(step) {
     if (this.lastStep < 0) return null;
     const frame = {};
@@ -156,6 +159,6 @@ export class LiveStore {
     return this.wanted.get(name).series;
   }
 
-  /** A live series has every value already. */
+  /** The same as series(), because a live series already has every value. */
   detail(channel, path) { return this.series(channel, path); }
 }

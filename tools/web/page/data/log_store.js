@@ -1,8 +1,8 @@
-// The messages of a recorded run, fetched from the server as they are needed.
+// The messages of a recorded run. The page fetches them from the server when it needs them.
 
 import {Series} from "./series.js";
 
-const CHUNK = 64;          // steps that are fetched together
+const CHUNK = 64;          // number of steps that are fetched together
 const KEEP_CHUNKS = 64;
 const MOST_POINTS = 20000;   // of a series over the whole log; the server sends up to twice as many
 const DETAIL_POINTS = 4000;  // of a series over a part of the log
@@ -13,11 +13,11 @@ export class LogStore {
     this.catalogue = catalogue;
     this.wire = wire;
     this.run = null;
-    this.chunks = new Map();   // by number; the last used one stands last
+    this.chunks = new Map();   // by number; the last used chunk is last
     this.wanted = new Map();   // series by field name
     this.details = new Map();
-    this.fetching = null;      // number of the chunk that is under way
-    this.next = null;          // number of the chunk that is wanted after it
+    this.fetching = null;      // number of the chunk that was requested
+    this.next = null;          // number of the chunk to request next
     this.firstStep = 0;
     this.lastStep = -1;
     this.arrived_ms = 0;
@@ -34,7 +34,7 @@ export class LogStore {
   get firstTime() { return this.timeOf(this.firstStep); }
   get lastTime() { return this.timeOf(Math.max(0, this.lastStep)); }
 
-  /** The messages of a step: {NAME: message}; null while they are under way. */
+  /** The messages of a step: {NAME: message}; null until they have come. */
   frame(step) {
     if (step < this.firstStep || step > this.lastStep) return null;
     const number = Math.floor(step / CHUNK);
@@ -65,7 +65,10 @@ export class LogStore {
     return frame;
   }
 
-  /** Fetches a chunk, one at a time. Only the newest of the waiting chunks is fetched next. */
+  /**
+   * Fetches a chunk. One chunk is fetched at a time. Of several waiting chunks only the newest is
+   * fetched.
+   */
   want(number) {
     if (this.fetching === number) return;
     if (this.fetching !== null) {
@@ -105,7 +108,7 @@ export class LogStore {
     }, () => {});
   }
 
-  /** The values of a field over the whole log. The series is empty until it has arrived. */
+  /** The values of a field over the whole log. The series is empty until the values have come. */
   series(channel, path) {
     const name = `${channel}.${path}`;
     if (!this.wanted.has(name)) {
@@ -119,8 +122,8 @@ export class LogStore {
   }
 
   /**
-   * The values of a field between two times, as fine as a screen can show. A fetched part begins and
-   * ends at multiples of its length, so a moving window seldom needs another part.
+   * The values of a field between two times, with as many points as a screen can show. A fetched
+   * part begins and ends at multiples of its length, so a moving window seldom needs another part.
    */
   detail(channel, path, from_s, to_s) {
     const whole = this.series(channel, path);

@@ -1,6 +1,6 @@
 // Texts about the lost messages of a `health` frame.
 
-/** {count, words}: the packets that were lost, 0 if that is not known. */
+/** Returns {count, words}: the number of lost messages, 0 if it is unknown, and a text about it. */
 export function lossesOf({senders, senders_note: note, traffic}, number = String) {
   if (!senders) {
     const transport = traffic?.lcm_url?.split(":")[0];
@@ -14,7 +14,10 @@ export function lossesOf({senders, senders_note: note, traffic}, number = String
   return {count, words};
 }
 
-/** Texts about messages that the viewer does not show, and about clients that it has refused. */
+/**
+ * Texts about messages that the viewer does not show, and about clients that the server has
+ * refused.
+ */
 export function lacksOf(health, number = String) {
   const {own_overflow: missed, too_large: large, too_large_channels: channels = [],
          refused_scenarios: scenarios, cut_off: cutOff, refused} = health;

@@ -1,6 +1,6 @@
 // The side that drives the host, by HOST_COMMAND.mode (lcmtypes/arbitration_t.lcm).
 
-/** The sides that can drive. The page shows each by a colour, a shape and a pattern. */
+/** The sides that can drive. The page shows each side by a colour, a shape and a pattern. */
 export const SIDES = {
   automation: {words: "Automation drives", short: "automation"},
   human: {words: "The human drives", short: "human"},
@@ -28,8 +28,8 @@ const MODES = [
 ];
 
 /**
- * {name, side, words, asks, urgent} of a mode. A collision warning does not change the side that
- * drives.
+ * The description {name, side, words, asks, urgent} of a mode. In a collision warning the same side
+ * drives as before.
  */
 export function modeOf(mode, lambda_human = 0) {
   const known = MODES[mode];
@@ -40,8 +40,8 @@ export function modeOf(mode, lambda_human = 0) {
 }
 
 /**
- * Spans of equal value: [{from, to, value}] of times and values in order. `to` is the begin of the
- * next span, and `end` for the last one.
+ * Spans of equal value: [{from, to, value}], from ascending times and their values. `to` is the
+ * begin of the next span. For the last span it is `end`.
  */
 export function spansOf(times, values, end) {
   const spans = [];
@@ -56,9 +56,9 @@ export function spansOf(times, values, end) {
 }
 
 /**
- * The request that is open at a time: {since_s, left_s, share}, or null. `times` and `modes` are
- * HOST_COMMAND's until this time, and lead_s is the scenario's. A request begins with the first of
- * the successive modes that ask.
+ * The request that is open at a time: {since_s, left_s, share}; null if no request is open. `times`
+ * and `modes` come from HOST_COMMAND up to this time. lead_s comes from the scenario. A request
+ * begins with the first of the successive modes that ask.
  */
 export function requestAt(times, modes, time, lead_s) {
   let place = upTo(times, time);

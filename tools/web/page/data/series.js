@@ -2,7 +2,9 @@
 
 import {upTo} from "./modes.js";
 
-/** Columns of values, with NaN where the series `valid` is 0: a sensor has no value there. */
+/**
+ * Columns of values, with NaN where the series `valid` is 0, because a sensor has no value there.
+ */
 export function whereValid({times, values}, valid) {
   return {times, values: values.map((value, i) => valid.at(times[i]) ? value : NaN)};
 }
@@ -54,14 +56,14 @@ export class Series {
     ++this.version;
   }
 
-  /** Columns of the times in [from, to], with one value before and one after. */
+  /** Columns of the times in [from, to], with one more value before and one more after them. */
   within(from, to) {
     const begin = Math.max(0, upTo(this.times, from));
     const end = Math.min(this.length, upTo(this.times, to) + 2);
     return {times: this.times.subarray(begin, end), values: this.values.subarray(begin, end)};
   }
 
-  /** The last value at a time; NaN before the first. */
+  /** The last value at or before a time; NaN before the first value. */
   at(time) {
     const place = upTo(this.times, time);
     return place < 0 ? NaN : this.values[place];

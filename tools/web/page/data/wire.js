@@ -1,13 +1,13 @@
-// The connection to the server: the protocol fogline.view.v1 (docs/view.md). It decodes no LCM
+// The connection to the server by the protocol fogline.view.v1 (docs/view.md). It decodes no LCM
 // message.
 
 const PROTOCOL = "fogline.view.v1";
-const RETRY_MS = {first: 1000, then: 2000};  // after the connection was lost
-export const GOING_AWAY = 1001;  // the code with which the server closes when its program ends
+const RETRY_MS = {first: 1000, then: 2000};  // delay after the connection was lost
+export const GOING_AWAY = 1001;  // code with which the server closes when its program ends
 
 const KIND = {messages: 1, steps: 2, series: 3};
 
-/** Kind 1: {messages: [{channel, arrived_ms, bytes}]}, in the order of arrival. */
+/** Reads a frame of kind 1: {messages: [{channel, arrived_ms, bytes}]}, in the order of arrival. */
 function readMessages(view, buffer) {
   const messages = [];
   for (let at = 1; at < buffer.byteLength;) {
@@ -19,7 +19,7 @@ function readMessages(view, buffer) {
   return {messages};
 }
 
-/** Kind 2: {id, messages: [{channel, step, bytes}]}. */
+/** Reads a frame of kind 2: {id, messages: [{channel, step, bytes}]}. */
 function readSteps(view, buffer) {
   const messages = [];
   for (let at = 5; at < buffer.byteLength;) {
@@ -31,7 +31,7 @@ function readSteps(view, buffer) {
   return {id: view.getUint32(1, true), messages};
 }
 
-/** Kind 3: {id, times, values}. */
+/** Reads a frame of kind 3: {id, times, values}. */
 function readSeries(view, buffer) {
   const n = view.getUint32(5, true);
   const times = new Float64Array(n);
@@ -43,7 +43,9 @@ function readSeries(view, buffer) {
   return {id: view.getUint32(1, true), times, values};
 }
 
-/** Reads a binary frame: {kind, ...}. Throws a RangeError if its lengths do not fit. */
+/**
+ * Reads a binary frame: {kind, ...}. Throws a RangeError if the lengths in the frame do not fit.
+ */
 export function readFrame(buffer) {
   const view = new DataView(buffer);
   const kind = view.getUint8(0);
@@ -60,11 +62,14 @@ export function socketUrl(location, token) {
 }
 
 /**
- * Keeps a connection to the server. It calls `on.text(object)`, `on.messages(messages)` and
- * `on.state("open", "ended", "lost" or "refused")`: "ended" if the server has said that its program
- * ends, until there is a connection again; "refused" if there never was a connection. Questions have
- * answers: ask() returns a promise, which is rejected if the server answers with an error or the
- * connection is lost.
+ * Keeps a connection to the server. It calls `on.text(object)`, `on.messages(messages)`, and
+ * `on.state(state)` with one of four states:
+ * "open": there is a connection;
+ * "ended": the server has said that its program ends, and there is no new connection yet;
+ * "lost": the connection was lost;
+ * "refused": there never was a connection.
+ * ask() sends a question, and returns a promise of the answer. The promise is rejected if the
+ * server answers with an error, or the connection is lost.
  */
 export class Wire {
   constructor(url, on) {
@@ -91,7 +96,7 @@ export class Wire {
     this.socket.onclose = ({code}) => this.lose(code);
   }
 
-  /** Connects to another address, such as one with a new key. */
+  /** Connects to another address, such as an address with a new token. */
   moveTo(url) {
     if (url === this.url) return;
     this.url = url;

@@ -1,16 +1,16 @@
-// How much the page may draw, so that it shows at least 30 frames a second on slow machines, too.
-// It looks at the time between frames, because that contains the work of the graphics processor. A
-// page may also say that something else is late. A level that was too slow before is tried again
-// after a longer time.
+// Limits how much the page draws, so that slow machines also show at least 30 frames a second. It
+// measures the time between frames, because this time contains the work of the graphics processor.
+// The page may also report that something else is late. A level that was too slow before is tried
+// again after a longer time.
 
 const SLOW_MS = 30;         // mean time between frames
 const FAST_MS = 20;
 const LOOK_EVERY_MS = 500;
-const CALM_LOOKS = 10;      // fast looks before more is drawn again; twice as many after each relapse
+const CALM_LOOKS = 10;      // fast looks before the page draws more; doubled after each relapse
 const MOST_PATIENCE = 320;
-const HIDDEN_MS = 1000;     // a longer time between frames: the page was hidden
+const HIDDEN_MS = 1000;     // a longer time between frames means that the page was hidden
 
-/** For each level: rest between two drawings of a chart; pixels and rate of the driver's view. */
+/** The levels: pause between two drawings of a chart, and pixels and rate of the driver's view. */
 const LEVELS = [
   {rest_ms: 40, ratio: 1, every: 1},
   {rest_ms: 80, ratio: 0.75, every: 1},
@@ -22,8 +22,9 @@ const LEVELS = [
 
 export class Budget {
   /**
-   * @param slow_ms mean time between frames from which on it draws less
-   * @param isLate says every LOOK_EVERY_MS whether something else is late, because too much is drawn
+   * @param slow_ms if the mean time between frames is longer, the page draws less
+   * @param isLate returns whether something else is late because the page draws too much; called
+   * every LOOK_EVERY_MS
    */
   constructor({slow_ms = SLOW_MS, isLate = () => false} = {}) {
     this.slow_ms = slow_ms;
@@ -33,7 +34,7 @@ export class Budget {
     this.began = null;
     this.frames = 0;
     this.calm = 0;
-    this.raised = false;  // the last change of the level was that more is drawn
+    this.raised = false;  // whether the last change of the level was to draw more
     this.last = null;
   }
 

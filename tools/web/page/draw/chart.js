@@ -1,12 +1,12 @@
-// A uPlot chart over simulated time, with the look of the report's charts (tools/report/chart.js).
+// A uPlot chart over simulated time, in the style of the report's charts (tools/report/chart.js).
 
 import uPlot from "uplot";
 
 import {decimal} from "./format.js";
 import {upTo} from "../data/modes.js";
 
-const VALUE_AXIS_WIDTH = 52;  // the same in all charts, so that their time axes line up
-export const TOP = 8;         // above the plot, in pixels
+const VALUE_AXIS_WIDTH = 52;  // equal in all charts, so that their time axes line up
+export const TOP = 8;         // space above the plot, in pixels
 const SYNC = "time";          // all charts share the reader's cursor
 
 export const stepped = uPlot.paths.stepped({align: 1});
@@ -87,7 +87,7 @@ export function makeChart(element, options) {
   return chart;
 }
 
-/** A click, which is no drag, picks a time. */
+/** Calls onPick with the time of a click. A drag is not a click. */
 function listenForPick(chart, onPick) {
   let pressedAt = null;
   chart.over.addEventListener("pointerdown", ({clientX}) => { pressedAt = clientX; });

@@ -2,7 +2,7 @@
 
 export const byId = (id) => document.getElementById(id);
 
-/** Makes an element with attributes and children. A null child is left out. */
+/** Makes an element with attributes and children. Null children are omitted. */
 export function make(name, attributes = {}, ...children) {
   const element = document.createElement(name);
   for (const [key, value] of Object.entries(attributes)) {
@@ -23,7 +23,7 @@ export function setAttribute(element, name, value) {
 }
 
 /**
- * Gives a canvas as many pixels as it covers, and clears it.
+ * Gives a canvas one pixel for each pixel of the screen that it covers, and clears it.
  * @return {context, width, height}: its 2D context, and its width and height, in CSS pixels
  */
 export function fitCanvas(canvas) {
@@ -40,7 +40,7 @@ export function fitCanvas(canvas) {
   return {context, width, height};
 }
 
-/** Diagonal lines, so that areas are distinguishable without colour. */
+/** A pattern of diagonal lines, so that areas differ without colour. */
 export function hatch(context, colour, {both = false, size = 6} = {}) {
   const ratio = devicePixelRatio;
   const tile = document.createElement("canvas");

@@ -1,8 +1,8 @@
-// Loads the driver's view, and shows it in the colours of the system.
+// Loads the driver's view, and shows it in the light or dark colours of the system.
 
 import {byId, darkScheme, make} from "./dom.js";
 
-const VIEW_FILE = "./driver_view.js";  // three.js is in this file, which is loaded on its own
+const VIEW_FILE = "./driver_view.js";  // this file contains three.js, and is loaded separately
 
 /** Gives the view the light or dark colours of the system. */
 export function setScheme(view) {
@@ -11,7 +11,7 @@ export function setScheme(view) {
 
 /**
  * Loads the view into its canvas, in light colours.
- * @return the view; null if it cannot be shown, and the page then says why
+ * @return the view; null if it cannot be shown; the page then shows the reason
  */
 export async function loadView() {
   try {

@@ -1,18 +1,18 @@
-// The sounds of the page, by WebAudio: no file is loaded. A browser lets a page sound only after the
-// person has pressed something on it.
+// The sounds of the page, by WebAudio: no file is loaded. A browser lets a page make sounds only
+// after the person has pressed something on the page.
 
-// Tones in Hz and times in s. Our choice: a person hears two tones in turn also in noise, and also
-// with ears that hear one of them badly. The urgent request is faster and higher.
+// Tones in Hz and times in s. Our choice: a person hears two alternating tones even in noise, and
+// even with ears that hear one of them badly. The urgent request is faster and higher.
 const REQUEST = {tones: [660, 880], tone_s: 0.14, every_s: 0.9, gain: 0.25};
 const URGENT = {tones: [880, 1175], tone_s: 0.1, every_s: 0.35, gain: 0.35};
 const CHANGE = {tones: [523], tone_s: 0.15, gain: 0.15};
-const EDGE_S = 0.01;  // a tone that begins or ends at once would click
+const EDGE_S = 0.01;  // a tone that begins or ends suddenly would click
 
 export class Alarm {
   constructor() {
     this.context = null;
     this.nextAt = 0;
-    this.played = 0;   // tones so far
+    this.played = 0;   // number of tones so far
   }
 
   /** Call this when the person presses something. */
@@ -37,7 +37,9 @@ export class Alarm {
     this.play(kind);
   }
 
-  /** The sound when another side drives. The person also tries the loudness with it. */
+  /**
+   * Plays the sound for a change of the side that drives. The person also tests the volume with it.
+   */
   change() {
     if (this.isAllowed) this.play(CHANGE);
   }

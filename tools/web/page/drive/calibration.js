@@ -1,10 +1,10 @@
-// The axes and buttons of a device that are its pedals, and how far they move. It knows no document:
-// the browser's localStorage comes as an argument.
+// The axes and buttons of a device that are its pedals, and how far they move. This file does not
+// use the document: the browser's localStorage comes as an argument.
 //
 // A calibration: {throttle: PEDAL, brake: PEDAL, take_over: BUTTON, give_back: BUTTON}. A PEDAL is
 // {axis or button, released, pressed, dead}: the raw values of the released and of the fully
-// pressed pedal, and the share of its way that is no input. `pressed` may be below `released`. A
-// BUTTON is the number of a button, or null.
+// pressed pedal, and the share of its way that counts as no input. `pressed` may be below
+// `released`. A BUTTON is the number of a button, or null.
 
 const KEPT_UNDER = "fogline.drive.calibration.";
 const MOST_DEAD = 0.3;      // a larger dead zone would leave too little of the pedal's way
@@ -14,8 +14,8 @@ const DEFAULT_DEAD = 0.03;  // our choice: the rest position of consumer pedals 
 const LEAST_WAY = 0.4;
 
 /**
- * The calibration of gamepads with the browser's "standard" mapping: the right and the left trigger
- * (W3C Gamepad, 8: buttons 7 and 6) are throttle and brake, the lower and the right button (0 and
+ * The calibration of gamepads with the browser's "standard" mapping. The right and the left trigger
+ * (W3C Gamepad, 8: buttons 7 and 6) are throttle and brake. The lower and the right button (0 and
  * 1) take over and give back.
  */
 const STANDARD = {
@@ -25,7 +25,9 @@ const STANDARD = {
   give_back: 1,
 };
 
-/** The raw value of an axis or of a button; null if the device has none of this number. */
+/**
+ * The raw value of an axis or of a button; null if the device has no axis or button of this number.
+ */
 export function rawOf(pad, {axis, button}) {
   const value = axis === undefined ? pad.buttons[button]?.value : pad.axes[axis];
   return Number.isFinite(value) ? value : null;
@@ -42,10 +44,10 @@ export function pedalValue(pad, pedal) {
 
 export const isDown = (pad, button) => button !== null && pad.buttons[button]?.pressed === true;
 
-/** The same pedal the other way round. */
+/** The pedal with exchanged values of released and pressed. */
 export const inverted = (pedal) => ({...pedal, released: pedal.pressed, pressed: pedal.released});
 
-/** The same pedal with another dead zone, as far as that is sensible. */
+/** The pedal with another dead zone, limited to [0, MOST_DEAD]. */
 export function withDeadZone(pedal, dead) {
   return {...pedal, dead: Number.isFinite(dead) ? Math.min(MOST_DEAD, Math.max(0, dead)) : 0};
 }
@@ -60,27 +62,27 @@ function isPedal(pedal) {
 
 const isButton = (button) => button === null || (Number.isInteger(button) && button >= 0);
 
-/** Whether a device can drive with it. */
+/** Whether a calibration has valid pedals and buttons, so that a device can drive with it. */
 export function isComplete(calibration) {
   return isPedal(calibration?.throttle) && isPedal(calibration?.brake) &&
     isButton(calibration.take_over) && isButton(calibration.give_back);
 }
 
 /**
- * The kept calibration of a device, if it is complete; otherwise that of its mapping. null if it has
- * neither: the person must then calibrate it first.
+ * The stored calibration of a device, if it is complete; otherwise the calibration of its mapping;
+ * null if the device has neither. The person must then calibrate the device first.
  */
 export function calibrationOf(storage, {id, mapping}) {
   try {
     const kept = JSON.parse(storage.getItem(KEPT_UNDER + id));
     if (isComplete(kept)) return kept;
   } catch {
-    // Another program has written there, or the browser keeps nothing.
+    // Another program has written this entry, or the browser stores nothing.
   }
   return mapping === "standard" ? structuredClone(STANDARD) : null;
 }
 
-/** @return whether the browser has kept it */
+/** Stores the calibration of a device. @return whether the browser has stored it */
 export function keepCalibration(storage, {id}, calibration) {
   try {
     storage.setItem(KEPT_UNDER + id, JSON.stringify(calibration));
@@ -90,22 +92,22 @@ export function keepCalibration(storage, {id}, calibration) {
   }
 }
 
-/** Forgets the kept calibration of a device. */
+/** Removes the stored calibration of a device. */
 export function forgetCalibration(storage, {id}) {
   try {
     storage.removeItem(KEPT_UNDER + id);
   } catch {
-    // The browser keeps nothing.
+    // The browser stores nothing.
   }
 }
 
 /**
- * Learns a pedal while a person presses it fully and releases it. A browser may report 0 for an
- * axis that has not moved yet, so the rest position is the last value and not the first one.
+ * Learns a pedal while a person presses the pedal fully and releases it. A browser may report 0 for
+ * an axis that has not moved yet. So the rest position is the last value, not the first one.
  */
 export class PedalLesson {
   constructor() {
-    this.seen = new Map();  // by place: {axis or button, least, most, last}
+    this.seen = new Map();  // {axis or button, least, most, last} by place
   }
 
   see(pad) {
@@ -119,7 +121,7 @@ export class PedalLesson {
                           last: value});
   }
 
-  /** The pedal that has moved farthest; null if nothing has moved far enough. */
+  /** The pedal that has moved farthest; null if no pedal has moved far enough. */
   result() {
     let best = null;
     for (const {least, most, last, ...source} of this.seen.values()) {
@@ -133,13 +135,13 @@ export class PedalLesson {
   }
 }
 
-/** Learns a button: the first one that goes down. */
+/** Learns a button: the first button that is pressed. */
 export class ButtonLesson {
   constructor() {
     this.before = null;
   }
 
-  /** @return the number of the button; null if none has gone down yet */
+  /** @return the number of the button; null if no button was pressed yet */
   see(pad) {
     const down = pad.buttons.map(({pressed}) => pressed);
     const found = this.before ? down.findIndex((now, i) => now && !this.before[i]) : -1;

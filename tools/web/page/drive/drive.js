@@ -17,10 +17,10 @@ import {LEAST_GAP_MS, LOOK_EVERY_MS, Sender} from "./sender.js";
 import {Setup} from "./setup.js";
 import {Answer, Countdown, told, whyAwayInWords} from "./told.js";
 
-// A person waits for the next frame after each input. So this page draws less as soon as it misses
-// one frame of 60 Hz in three, and as soon as inputs are late.
+// A person waits for the next frame after each input. So this page already draws less if it misses
+// one of three frames of 60 Hz, or if inputs are late.
 const SLOW_MS = 22;
-const GONE_MS = 5000;  // if the server is away for so long, it does not come back to this page
+const GONE_MS = 5000;  // after this time without the server, the page goes back
 
 class Drive {
   constructor() {
@@ -35,9 +35,9 @@ class Drive {
     this.newest = null;
     this.view = null;
     this.instance = "";
-    this.state = "";         // of the seat: yours, taken, lost; "": not known
-    this.hasLeft = false;    // the person had begun, and has left the seat
-    this.refused = false;    // this page has asked for the seat in vain
+    this.state = "";         // of the seat: yours, taken, lost; "": unknown
+    this.hasLeft = false;    // whether the person had begun, and has left the seat
+    this.refused = false;    // whether this page has asked for the seat, but another page has it
     this.back = backOf(location.hash, location.hostname);
     this.setup = new Setup(this.person, (open) => this.set("busy", open));
     loadView().then((view) => { this.view = view; });
@@ -66,7 +66,7 @@ class Drive {
       this.alarm.allow();
       this.alarm.context?.resume().then(() => this.alarm.change());
     });
-    addEventListener("hashchange", () => {  // the address of another program in the same tab
+    addEventListener("hashchange", () => {  // another program's address in the same tab
       if (!location.hash) return;
       this.back = backOf(location.hash, location.hostname);
       this.wire.again(socketUrl(location, takeDriverToken()));
@@ -82,7 +82,7 @@ class Drive {
     this.person.set("visible", !document.hidden);
   }
 
-  /** A finger on a button of the page holds a key. */
+  /** Lets a finger on a button of the page hold a key. */
   touch(button, key) {
     const hold = (down) => ({timeStamp, pointerId}) => {
       if (down) button.setPointerCapture(pointerId);
@@ -91,7 +91,7 @@ class Drive {
     };
     button.addEventListener("pointerdown", hold(true));
     for (const name of ["pointerup", "pointercancel"]) button.addEventListener(name, hold(false));
-    button.addEventListener("contextmenu", (event) => event.preventDefault());  // of a finger that rests
+    button.addEventListener("contextmenu", (event) => event.preventDefault());  // for a long press
   }
 
   begin() {
@@ -111,7 +111,7 @@ class Drive {
     const {key, ctrlKey, altKey, metaKey, repeat, target, timeStamp} = event;
     if (!isDriving(key) || (down && (ctrlKey || altKey || metaKey))) return;
     if (down && target.matches?.("input, select, textarea")) return;
-    // A key that repeats was pressed before, perhaps by a person who has been away since.
+    // A repeated key was pressed before, perhaps when the person was away. It moves no pedal.
     if (!repeat && !this.person.key(key, down, timeStamp)) return;
     event.preventDefault();  // the arrows would scroll
     if (repeat) return;
@@ -126,7 +126,7 @@ class Drive {
     this.person.look(pads, now);
     this.setup.look(pads);
     const input = this.person.input(now);
-    // An input with a person asks for the seat of another page.
+    // An input with a person asks for the seat that another page has.
     if (this.state === "taken") input.present = this.person.whyNotReady() === "";
     for (const button of input.buttons) {
       if (!this.input?.buttons.includes(button)) this.answer.press(button, this.told, now);
@@ -195,11 +195,11 @@ class Drive {
     this.refused = state === "taken" && this.state === "taken";
     if (this.refused) this.person.set("begun", false);
     this.state = state;
-    // A lost seat still belongs to this page: the next frame takes it again.
+    // A lost seat still belongs to this page: the page's next frame takes the seat again.
     this.set("seated", state === "yours" || state === "lost");
   }
 
-  /** The server has ended or is gone: opens the page from which the person came, if there is one. */
+  /** Opens the page from which the person came, if there is one. Called if the server is gone. */
   goBack() {
     if (this.back !== "") location.replace(this.back);
     this.back = "";

@@ -1,35 +1,37 @@
-// The latency: the time from an input to the frame that shows it. It knows no document.
+// The latency: the time from an input to the frame that shows it. This file does not use the
+// document.
 //
-// A measurement begins at the time of an input: that of the event of a key (Event.timeStamp), or
-// the time at which the browser got the state of a gamepad (Gamepad.timestamp). The input goes to
-// the seat, which publishes it as DRIVER_INPUT and answers with its number. The measurement ends
-// when the page has drawn the first frame (requestAnimationFrame) after a DRIVER_COMMAND came that
-// was made from this input or from a newer one. So it contains the ways through page, seat and
-// network, the wait of the driver role for its next step, and the drawing. It does not contain the
-// times of keyboard and screen.
+// A measurement begins at the time of an input. For a key this is the time of its event
+// (Event.timeStamp). For a gamepad it is the time at which the browser got the state
+// (Gamepad.timestamp). The page sends the input to the seat. The seat publishes it as DRIVER_INPUT,
+// and answers with the number of this message. A DRIVER_COMMAND then comes that was made from this
+// input or from a newer one. The measurement ends when the page has drawn the next frame
+// (requestAnimationFrame). So it contains the ways through page, seat and network, the wait of the
+// driver role for its next step, and the drawing. It does not contain the times of keyboard and
+// screen.
 
 export const WARN_ABOVE_MS = 100;
-export const LATE_ABOVE_MS = 40;  // the page then draws less: the goal of the 95th percentile is 50 ms
-const LATE_OF = 10;               // one measurement in so many may be late
-const FORGET_AFTER_MS = 2000;  // no step of the run has used the input
-const KEPT = 512;              // measurements, for the percentiles
-const WARN_OF = 10;            // newest measurements
+export const LATE_ABOVE_MS = 40;  // the page then draws less; goal for the 95th percentile: 50 ms
+const LATE_OF = 10;               // one of this many measurements may be late
+const FORGET_AFTER_MS = 2000;  // time without a step of the run that uses the input
+const KEPT = 512;              // number of measurements for the percentiles
+const WARN_OF = 10;            // number of the newest measurements for the warning
 
 export class Latency {
   constructor() {
     this.probe = null;     // {sequence, began_ms, input: number of DRIVER_INPUT or null, applied}
     this.values = [];
     this.count = 0;
-    this.unjudged = [];    // measurements since takeLate() has judged
+    this.unjudged = [];    // measurements since takeLate() last judged
   }
 
   /** The newest measurement in ms; null if there is none. */
   get newest() { return this.values.at(-1) ?? null; }
 
-  /** The longest of the last measurements in ms; -Infinity if there is none. */
+  /** The longest of the last WARN_OF measurements in ms; -Infinity without a measurement. */
   get highest() { return Math.max(...this.values.slice(-WARN_OF)); }
 
-  /** Whether one of the last measurements was too long. */
+  /** Whether one of the last WARN_OF measurements was too long. */
   get isHigh() { return this.highest > WARN_ABOVE_MS; }
 
   /** Whether more than one measurement in LATE_OF was late. Each measurement is judged once. */
@@ -40,30 +42,37 @@ export class Latency {
     return late > judged.length / LATE_OF;
   }
 
-  /** The value below which a share of the kept measurements lies (nearest rank); null without any. */
+  /**
+   * The value below which a share of the stored measurements lies (nearest rank); null without any.
+   */
   percentile(share) {
     if (this.values.length === 0) return null;
     const sorted = [...this.values].sort((a, b) => a - b);
     return sorted[Math.max(0, Math.ceil(share * sorted.length) - 1)];
   }
 
-  /** A frame with this number was sent because of an input at this time. Only one input is followed. */
+  /**
+   * Call this when a frame with this number was sent for an input at this time. Begins a
+   * measurement if no other one is in progress.
+   */
   sent(sequence, began_ms, now_ms) {
     if (this.probe && now_ms - this.probe.began_ms < FORGET_AFTER_MS) return;
     this.probe = {sequence, began_ms, input: null, applied: false};
   }
 
-  /** The seat has published the frame as DRIVER_INPUT of this number. */
+  /** Call this when the seat has published the frame as DRIVER_INPUT of this number. */
   published(sequence, input) {
     if (this.probe?.sequence === sequence) this.probe.input = input;
   }
 
-  /** A DRIVER_COMMAND was made from the DRIVER_INPUT of this number. */
+  /** Call this when a DRIVER_COMMAND was made from the DRIVER_INPUT of this number. */
   commanded(input) {
     if (this.probe && this.probe.input !== null && input >= this.probe.input) this.probe.applied = true;
   }
 
-  /** A frame was drawn. @return the measurement that ends with it, or null */
+  /**
+   * Call this when a frame was drawn. @return the measurement that ends with this frame, or null
+   */
   drawn(now_ms) {
     if (!this.probe?.applied) return null;
     const value = now_ms - this.probe.began_ms;
@@ -75,6 +84,6 @@ export class Latency {
     return value;
   }
 
-  /** The connection was lost. The input that is followed may be lost, too. */
+  /** Drops the current measurement, because a lost connection may have lost its input. */
   forget() { this.probe = null; }
 }

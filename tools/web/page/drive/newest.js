@@ -1,13 +1,13 @@
-// The newest messages of the run that the participant's page needs. It keeps no history.
+// The newest messages of the run that the participant's page needs. It stores no history.
 
 import {headerOf} from "../data/catalogue.js";
 
 const NEEDED = new Set(["TRUTH", "HOST_COMMAND", "DRIVER_COMMAND"]);
 
 /**
- * The page to open when the server has ended: the part "back=URL" behind "#", if the URL is a page of
- * this machine or of the machine of this page. Any other URL is ignored, because an address can be
- * forged. "": the page stays open.
+ * The page to open when the server has ended; "": the page stays open. The fragment names it by
+ * "back=URL". The URL must be a page of this machine or of the machine of this page. Any other URL
+ * is ignored, because an address can be forged.
  */
 export function backOf(fragment, hostname) {
   const back = new URLSearchParams(fragment.replace(/^#/, "")).get("back") ?? "";
@@ -45,7 +45,7 @@ export class Newest {
     if (!NEEDED.has(channel?.name)) return null;
     const header = headerOf(bytes);
     if (!header) return null;
-    this.runId ??= header.run_id;  // the server has not said yet which run it follows
+    this.runId ??= header.run_id;  // the server has not yet named the run that it follows
     if (header.run_id !== this.runId || header.step <= (this.steps[channel.name] ?? -1)) return null;
     const message = this.catalogue.decode(channel, bytes);
     if (!message) return null;

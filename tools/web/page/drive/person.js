@@ -1,5 +1,5 @@
 // The input of the person at the page: keys, a gamepad or a wheel, buttons of the page, and whether
-// a person is there. It knows no document.
+// a person is present. This file does not use the document.
 
 import {isComplete, isDown, pedalValue} from "./calibration.js";
 import {Ramps} from "./ramps.js";
@@ -8,13 +8,13 @@ export const KEYBOARD = {id: "", kind: "keyboard", name: "Keyboard"};
 export const PEDAL_KEYS = {ArrowUp: "throttle", ArrowDown: "brake"};
 export const BUTTON_KEYS = {t: "take_over", g: "give_back"};
 
-// A button counts as down for at least this time, in which at least two messages go out. Otherwise
-// a short click could fall between two steps of the run.
+// A button counts as down for at least this time, in which the page sends at least two messages.
+// Otherwise a short click could fall between two steps of the run.
 const LEAST_PRESS_MS = 120;
-// Raw values below this are noise of a device that is not touched: analogue sticks rest within it.
+// Smaller changes of raw values are noise: analogue sticks at rest move less than this.
 const NOISE = 0.01;
 
-/** "wheel" or "gamepad", by what the device calls itself. */
+/** "wheel" or "gamepad", from the name that the device reports. */
 export function kindOf(id) {
   return /wheel|racing|pedal|driving force|\bg(25|27|29|920|923)\b|\bt(150|248|300|500)\b|fanatec|simucube|moza/i
     .test(id) ? "wheel" : "gamepad";
@@ -33,13 +33,13 @@ export class Person {
     this.ramps = new Ramps();
     this.device = KEYBOARD;
     this.calibration = null;
-    this.pad = null;          // the newest state of the chosen gamepad; null: it is not there
-    this.begun = false;       // the person has said that they are ready
+    this.pad = null;          // newest state of the chosen gamepad; null: not connected
+    this.begun = false;       // whether the person has said that they are ready
     this.visible = true;
     this.focused = true;
-    this.busy = false;        // a dialog is open
-    this.seated = false;      // the server has given the seat to this page
-    this.down = new Set();    // buttons that are held by a key
+    this.busy = false;        // whether a dialog is open
+    this.seated = false;      // whether the server has given the seat to this page
+    this.down = new Set();    // buttons that a key holds
     this.until_ms = {take_over: -Infinity, give_back: -Infinity};
     this.touched_ms = null;   // time of the newest input of the device
     this.raw = [];
@@ -56,22 +56,28 @@ export class Person {
     this.calibration = calibration;
   }
 
-  /** Releases all keys and buttons: no person is there. */
+  /** Releases all keys and buttons, because no person is present. */
   drop() {
     this.ramps.drop();
     this.down.clear();
     this.until_ms = {take_over: -Infinity, give_back: -Infinity};
   }
 
-  /** Sets visible, focused, busy or begun. A person who leaves the page also leaves the pedals. */
+  /**
+   * Sets visible, focused, busy, seated or begun. If the person then does not drive, releases all
+   * keys and buttons.
+   */
   set(name, value) {
     this[name] = value;
     if (this.whyAway() !== "") this.drop();
   }
 
-  /** @param down whether the key goes down. @return whether the key does something */
+  /**
+   * Takes a change of a key. @param down whether the key is pressed. @return whether the page uses
+   * the key
+   */
   key(key, down, now_ms) {
-    if (this.whyAway() !== "") return false;  // and all keys are up when the person comes back
+    if (this.whyAway() !== "") return false;  // all keys are up when the person comes back
     const pedal = PEDAL_KEYS[key];
     const button = BUTTON_KEYS[key.toLowerCase()];
     if (pedal) {
@@ -90,7 +96,7 @@ export class Person {
     return true;
   }
 
-  /** A button of the page, or the begin of a press. */
+  /** Takes a click on a button of the page, or the beginning of a press of a key. */
   press(button, now_ms) {
     this.until_ms[button] = now_ms + LEAST_PRESS_MS;
     this.touched_ms = now_ms;
@@ -104,18 +110,18 @@ export class Person {
     const raw = [...this.pad.axes, ...this.pad.buttons.map(({value}) => value)];
     if (!movesBeyondNoise(this.raw, raw)) return;
     this.raw = raw;
-    // `timestamp` is the time at which the browser got the state. Some browsers leave it 0.
+    // `timestamp` is the time at which the browser got the state. It is 0 in some browsers.
     const {timestamp} = this.pad;
     this.touched_ms = timestamp > 0 && timestamp <= now_ms ? timestamp : now_ms;
   }
 
-  /** Why the person does not drive; "" if the person drives. */
+  /** The reason why the person does not drive; "" if the person drives. */
   whyAway() {
     if (!this.begun) return "not begun";
     return this.seated ? this.whyNotReady() : "no seat";
   }
 
-  /** Why the person would not drive with a seat either; "" if they are ready for one. */
+  /** The reason why the person would not drive even with a seat; "" if the person is ready. */
   whyNotReady() {
     if (!this.begun) return "not begun";
     if (!this.visible) return "hidden";

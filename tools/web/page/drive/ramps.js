@@ -1,18 +1,23 @@
-// Arrow keys as pedals. A key is down or up, so each pedal follows its key by a ramp. The ramp begins
-// with the way of FIRST_S: so an event of a key moves its pedal, and can be sent, at once. It knows
-// no document.
+// Arrow keys as pedals. A key is down or up, so each pedal follows its key by a ramp. The ramp
+// begins with a step: the way of FIRST_S. So a key moves its pedal at once, and the page can send
+// the change at once. This file does not use the document.
 
-// Until the page knows the scenario: the defaults of /person/key_press_ps and key_release_ps.
+// Rates before the page knows the scenario: the defaults of /person/key_press_ps and
+// key_release_ps.
 const RATES = {press_ps: 1.5, release_ps: 4};
 
-// Our choice: a step of scenario/drive.json. A person does not feel a pedal that is 3 % ahead.
+// Our choice: a person does not feel that a pedal is 3 % ahead. This is a step of
+// scenario/drive.json.
 export const FIRST_S = 0.02;
 
-// If the time between two looks is longer, the page has paused, and a held key moves its pedal only
-// for this time. It is more than ten times LOOK_EVERY_MS (sender.js).
+// Limit for the time between two looks in which a held key moves its pedal. If the time is longer,
+// the page has paused. The limit is more than ten times LOOK_EVERY_MS (sender.js).
 const MOST_PASSED_S = 0.1;
 
-/** The rates of a scenario: shares of a pedal's way per second, while its key is down and up. */
+/**
+ * The rates of a scenario: shares of a pedal's way per second while its key is down, and while it
+ * is up.
+ */
 export function ratesOf(scenario) {
   const {key_press_ps: press_ps, key_release_ps: release_ps} = scenario?.person ?? {};
   return press_ps > 0 && release_ps > 0 ? {press_ps, release_ps} : RATES;
@@ -33,7 +38,7 @@ export class Ramps {
     this.move(FIRST_S);
   }
 
-  /** Releases both keys and both pedals at once: no person is at the keyboard. */
+  /** Releases both keys and both pedals at once, because no person is at the keyboard. */
   drop() {
     this.held = {throttle: false, brake: false};
     this.value = {throttle: 0, brake: 0};
@@ -46,8 +51,8 @@ export class Ramps {
   }
 
   /**
-   * Moves the pedals on to this time. The brake wins: while its key is down, the throttle comes
-   * back, as a driver has one foot for both.
+   * Moves the pedals on to this time. The brake has priority: while its key is down, the throttle
+   * goes back, because a driver has one foot for both pedals.
    * @return {throttle, brake} in [0, 1]
    */
   advance(now_ms) {

@@ -1,14 +1,14 @@
-// The connection to the seat: the protocol fogline.drive.v1 (docs/view.md).
+// The connection to the seat by the protocol fogline.drive.v1 (docs/view.md).
 
 import {fragmentWithoutToken, readFragment} from "../data/address.js";
 import {GOING_AWAY, readFrame} from "../data/wire.js";
 
 const PROTOCOL = "fogline.drive.v1";
 const TOKEN = "fogline.drive.token";
-const RETRY_MS = 1000;  // after the connection was lost
+const RETRY_MS = 1000;  // delay after the connection was lost
 
 /**
- * Takes the driver's token out of the address, where other people could read it, and keeps it for
+ * Takes the driver's token out of the address, where other people could read it, and stores it for
  * this tab. The view has a different token. The other parts of the address stay, for a reload.
  */
 export function takeDriverToken() {
@@ -22,9 +22,10 @@ export function takeDriverToken() {
 }
 
 /**
- * Keeps a connection. It calls `on.text(object)`, `on.messages(messages)` and
- * `on.state("open", "ended", "lost" or "refused")`: "ended" if the server has said that its program ends,
- * until there is a connection again; "refused" if there never was a connection.
+ * Keeps a connection to the seat. It calls `on.text(object)`, `on.messages(messages)`, and
+ * `on.state(state)` with "open", "ended", "lost" or "refused". The state is "ended" if the server
+ * has said that its program ends, and there is no new connection yet. It is "refused" if there
+ * never was a connection.
  */
 export class SeatWire {
   constructor(url, on) {
@@ -57,7 +58,7 @@ export class SeatWire {
     };
   }
 
-  /** Connects to another address, perhaps only with another token. */
+  /** Connects to another address. The new address may differ only in its token. */
   again(url) {
     this.url = url;
     const {socket} = this;

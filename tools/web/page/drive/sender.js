@@ -1,15 +1,15 @@
 // The frames that the page sends to the seat (fogline.drive.v1 in docs/view.md), and the times at
-// which they are due. It knows no document and no socket.
+// which they are due. This file does not use the document, and has no socket.
 
-export const KEEP_ALIVE_MS = 50;  // a seat that hears nothing for longer knows that something is wrong
+export const KEEP_ALIVE_MS = 50;  // longest time between frames; see Seat::kSilent
 export const LEAST_GAP_MS = 4;    // at most 250 frames a second
-// How often the page looks at the devices, and whether a frame is due. A browser does not tell a page
-// that a pedal has moved, so half of this time is part of the latency.
+// Interval at which the page reads the devices, and checks whether a frame is due. A browser does
+// not report that a pedal has moved, so half of this time is part of the latency.
 export const LOOK_EVERY_MS = 8;
 const MOST_NAME_BYTES = 64;
 const MOST_AXES = 16;
-const MOST_MS = 3_600_000;        // a longer time is sent as this one
-const SAME = 1e-4;                // a smaller change of a pedal or an axis does not count
+const MOST_MS = 3_600_000;        // a longer time is sent as this time
+const SAME = 1e-4;                // a smaller change of a pedal or an axis causes no frame
 
 const utf8 = new TextEncoder();
 
@@ -28,7 +28,10 @@ export function cutText(text, mostBytes = MOST_NAME_BYTES) {
 const within = (value, least, most) =>
   Number.isFinite(value) ? Math.min(most, Math.max(least, value)) : least;
 
-/** A frame. @param age_ms time since the newest input of the device. @param latency_ms or null */
+/**
+ * The frame for an input. @param age_ms time since the newest input of the device. @param
+ * latency_ms newest measurement, or null
+ */
 export function inputFrame(input, sequence, age_ms, latency_ms) {
   const {present, throttle, brake, axes, buttons, device} = input;
   return {
@@ -42,7 +45,7 @@ export function inputFrame(input, sequence, age_ms, latency_ms) {
 
 const differs = (a, b) => Math.abs(a - b) > SAME;
 
-/** Whether the difference of two inputs needs a frame. */
+/** Whether two inputs differ so much that a frame is needed. */
 export function isChange(before, after) {
   return before === null || before.present !== after.present ||
     before.device.id !== after.device.id || differs(before.throttle, after.throttle) ||
@@ -50,23 +53,23 @@ export function isChange(before, after) {
     before.axes.length !== after.axes.length || before.axes.some((value, i) => differs(value, after.axes[i]));
 }
 
-/** Says when a frame is due, and numbers the frames. */
+/** Decides when a frame is due, and numbers the frames. */
 export class Sender {
   constructor() {
     this.sequence = 0;
     this.begin();
   }
 
-  /** Begins with another connection. It has no earlier frame. */
+  /** Begins with a new connection, on which no frame was sent. */
   begin() {
     this.before = null;
     this.sent_ms = -Infinity;
   }
 
   /**
-   * Whether this input is to be sent now: each change, but not more often than every LEAST_GAP_MS,
-   * and without a change so often that no gap is longer than KEEP_ALIVE_MS. The first input without
-   * a person is sent without delay.
+   * Whether this input must be sent at this time. A change is sent, but not sooner than
+   * LEAST_GAP_MS after the last frame. Without a change, a frame is sent before KEEP_ALIVE_MS have
+   * passed. The first input without a person is sent without delay.
    */
   isDue(input, now_ms) {
     const passed_ms = now_ms - this.sent_ms;
@@ -75,10 +78,10 @@ export class Sender {
     return passed_ms + LOOK_EVERY_MS > KEEP_ALIVE_MS;
   }
 
-  /** Whether a change waits only because the last frame was sent a moment ago. */
+  /** Whether an input that is not due is a change that waits for LEAST_GAP_MS. */
   isHeldBack(input) { return isChange(this.before, input); }
 
-  /** The frame of this input. @return {sequence, ...} */
+  /** Makes the frame of this input. @return {sequence, ...} */
   next(input, now_ms, touched_ms, latency_ms) {
     this.before = input;
     this.sent_ms = now_ms;

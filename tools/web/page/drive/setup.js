@@ -46,7 +46,7 @@ export class Setup {
     return this.dialog.open;
   }
 
-  /** Takes the gamepads that are there now. */
+  /** Takes the gamepads that are connected at present. */
   look(pads) {
     const there = [...pads].filter((pad) => pad?.connected);
     const known = there.map(({id}) => id).join("\n");
@@ -57,7 +57,7 @@ export class Setup {
     if (this.dialog.open) this.teach();
   }
 
-  /** The list of devices. A device that was chosen stays in it while it is unplugged. */
+  /** Fills the list of devices. A chosen device stays in the list while it is unplugged. */
   fill(there) {
     const {id} = this.person.device;
     const ids = new Set([...there.map((pad) => pad.id), ...(id === "" ? [] : [id])]);
@@ -67,7 +67,8 @@ export class Setup {
       ...[...ids].map((one) => make("option", {value: one},
         there.some((pad) => pad.id === one) ? one : `${one} (unplugged)`)));
     this.list.value = id;
-    // Before the person has begun, a device that they used before, or the first one, is chosen.
+    // Before the person has begun, the page chooses the device that the person used before, or else
+    // the first device. It chooses none if the person's last choice was the keyboard.
     if (!this.person.begun && id === "" && there.length > 0) {
       const before = this.remembered();
       if (before !== "") this.choose((there.find((pad) => pad.id === before) ?? there[0]).id, false);
@@ -95,7 +96,7 @@ export class Setup {
       try {
         localStorage.setItem(CHOSEN, id);
       } catch {
-        // The browser keeps nothing.
+        // The browser stores nothing.
       }
     }
     this.show();
@@ -107,7 +108,7 @@ export class Setup {
     say(byId("setup-note"), "The calibration of this device is forgotten.");
   }
 
-  /** The button “Learn” begins a lesson, and ends one of a pedal. */
+  /** Handles the button “Learn”: it begins a lesson, and also ends the lesson of a pedal. */
   learn(name) {
     if (this.lesson?.name === name) {
       this.finish(name, this.lesson.teacher.result?.() ?? null);

@@ -1,5 +1,5 @@
-// The texts about the run for the person: the side that drives, and the request to take over. They
-// do not mention sensors, thresholds or conflict. It knows no document.
+// The texts about the run for the person: the side that drives, and the request to take over. The
+// texts do not mention sensors, thresholds or conflict. This file does not use the document.
 
 import {modeOf} from "../data/modes.js";
 
@@ -18,7 +18,7 @@ const TOLD = {
   EMERGENCY_BRAKING: "The car brakes in an emergency",
 };
 
-// By TRUTH.collision (lcmtypes/truth_t.lcm).
+// The texts for the end of a drive, by TRUTH.collision (lcmtypes/truth_t.lcm).
 const ENDED = [
   "The drive has ended",
   "The drive has ended: your car has hit the car ahead",
@@ -28,14 +28,15 @@ const ENDED = [
 const noSide = (words) => ({side: "unknown", words, asks: false, urgent: false, answered: false});
 
 /**
- * {side, words, asks, urgent, answered} for a HOST_COMMAND; without one the drive has not begun.
+ * The description {side, words, asks, urgent, answered} of a HOST_COMMAND. Without a HOST_COMMAND
+ * the drive has not begun.
  * @param truth the newest TRUTH, which says whether the run has ended
  */
 export function told(command, truth = null) {
   if (truth?.last) return noSide(ENDED[truth.collision] ?? ENDED[0]);
   if (!command) return noSide("The drive has not begun");
   const {name, side, asks: waits = false, urgent = false} = modeOf(command.mode, command.lambda_human);
-  const asks = waits && name !== "HANDOVER";  // then the person has answered
+  const asks = waits && name !== "HANDOVER";  // in HANDOVER the person has already answered
   const drives = side === "human" ? TOLD.HUMAN : TOLD.AUTOMATION;
   const words = name === "COLLISION_WARNING" ? `Collision warning. ${drives}`
     : TOLD[name] ?? "It is not known who drives";

@@ -3,7 +3,10 @@
 import {make, setAttribute} from "../draw/dom.js";
 
 export class Combobox {
-  /** @param suggest(typed) gives options [{key, parts: [nodes]}]; onChoose(key) is called */
+  /**
+   * @param suggest(typed) returns options [{key, parts: [nodes]}]; onChoose(key) is called for a
+   * choice
+   */
   constructor(input, list, {suggest, onChoose}) {
     Object.assign(this, {input, list, suggest, onChoose});
     this.active = -1;
@@ -58,7 +61,7 @@ export class Combobox {
     if (!option) return;
     this.input.value = "";
     this.onChoose(option.key);
-    this.close();  // the list would cover what was chosen
+    this.close();  // the list would cover the chosen field
   }
 
   key(event) {

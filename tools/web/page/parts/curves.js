@@ -1,4 +1,4 @@
-// Curves of the fields that the reader has chosen. Fields of one unit share a chart.
+// Curves of the fields that the reader has chosen. Fields with the same unit share a chart.
 
 import {Combobox} from "./combobox.js";
 import {drawNow, extremes, fillSpan, joined, makeChart, widened} from "../draw/chart.js";
@@ -11,14 +11,14 @@ import {spansOf} from "../data/modes.js";
 import {whereValid} from "../data/series.js";
 
 const FIRST_FIELDS = ["TRUTH.host_gap_m", "RADAR.range_m", "LIDAR.range_m", "TRUTH.host_speed_mps"];
-const MOST_FIELDS = 8;         // as many as there are colours
+const MOST_FIELDS = 8;         // number of colours
 const MOST_SUGGESTIONS = 40;
 const MINUTE_S = 60;
-const REST = {most_ms: 1000, factor: 5};  // between two drawings; factor: of the time for one
+const REST = {most_ms: 1000, factor: 5};  // pause between drawings; factor: of a drawing's time
 const LEAST_SPAN = 1e-3;  // of a value axis, as a share of the values
 const KEEP = "fogline.fields";
 
-/** The reader's last choice, if the browser kept one. */
+/** The reader's last choice, if the browser has stored it. */
 function keptFields() {
   try {
     const kept = JSON.parse(localStorage.getItem(KEEP));
@@ -31,10 +31,10 @@ function keptFields() {
 function keepFields(fields) {
   try {
     localStorage.setItem(KEEP, JSON.stringify(fields.map(({name}) => name)));
-  } catch { /* a browser that keeps nothing */ }
+  } catch { /* the browser stores nothing */ }
 }
 
-/** A piece of a curve, as its key. */
+/** A piece of a curve, as a key for the reader. */
 function lineKey(colour, dash) {
   const draw = (kind, attributes) => {
     const element = document.createElementNS("http://www.w3.org/2000/svg", kind);
@@ -53,7 +53,7 @@ export class Curves {
     this.place = byId("charts");
     this.chips = byId("chosen");
     this.charts = [];
-    this.known = [];  // fields of the run; none before there is a connection
+    this.known = [];  // fields of the run; empty before there is a connection
     this.fields = [];
     this.span = "minute";  // "minute", "all", or [from, to] after a zoom
     this.hover = null;
@@ -193,13 +193,16 @@ export class Curves {
     return this.store.detail(channel, path, from, to);
   }
 
-  /** Whether a sensor has a value: its field `valid`. null for fields that always have one. */
+  /**
+   * The series `valid` of a field, which says whether a sensor has a value; null for a field that
+   * always has one.
+   */
   validOf({channel, path}, from, to) {
     const depends = path !== "valid" && !path.startsWith("header.") && this.fieldNamed(`${channel}.valid`);
     return depends ? this.seriesOf({channel, path: "valid"}, from, to) : null;
   }
 
-  /** The values of a field in this time, with a gap where a sensor has none. */
+  /** The values of a field in this time, with a gap where a sensor has no value. */
   columnsOf(field, from, to) {
     const columns = this.seriesOf(field, from, to).within(from, to);
     const valid = this.validOf(field, from, to);
@@ -215,7 +218,7 @@ export class Curves {
     }
   }
 
-  /** Draws the moment. At least `least_ms` lie between two drawings. */
+  /** Draws the moment. There are at least `least_ms` between two drawings. */
   draw(moment, least_ms) {
     this.moment = moment;
     this.sayValues(moment);
@@ -241,7 +244,10 @@ export class Curves {
     chart.setScale("x", {min: from, max: to});
   }
 
-  /** The values at the cursor, or else of the shown moment, to the last digit that matters. */
+  /**
+   * Shows the values at the cursor, or without a cursor the values of the shown moment, with all
+   * significant digits.
+   */
   sayValues({frame, time, run}) {
     const hover = this.hover;
     this.fields.forEach(({channel, path, unit}, i) => {

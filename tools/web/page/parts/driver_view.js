@@ -1,5 +1,6 @@
-// The driver's view of the road ahead, with three.js. Fog takes contrast by Koschmieder's law: at
-// the distance d a fraction exp(-sigma d) is left. The page loads this file only when it is shown.
+// The driver's view of the road ahead, with three.js. Fog reduces contrast by Koschmieder's law: at
+// the distance d a fraction exp(-sigma d) is left. The page loads this file only when it shows the
+// view.
 
 import {
   AmbientLight, BoxGeometry, Color, CylinderGeometry, DirectionalLight, Fog, Group, InstancedMesh,
@@ -9,9 +10,9 @@ import {
 
 import {carsOf, extinction} from "../data/cars.js";
 
-// three's own fog has another law, and uses the depth instead of the distance. `fogNear` carries
-// sigma in 1/m. Each pixel computes its own distance, because the ground has few corners. Light
-// adds up linearly, so the colours are made linear for it.
+// Replaces three's own fog, which has another law, and uses the depth instead of the distance.
+// `fogNear` contains sigma in 1/m. Each pixel computes its own distance, because the ground has few
+// vertices. Light adds up linearly, so the colours are made linear for the mixture.
 const chunk = (lines) => `#ifdef USE_FOG\n${lines}\n#endif`;
 ShaderChunk.fog_pars_vertex = chunk("varying vec3 vFogPlace;");
 ShaderChunk.fog_vertex = chunk("vFogPlace = mvPosition.xyz;");
@@ -24,7 +25,7 @@ ShaderChunk.fog_fragment = chunk(`
 
 const EYE = {height_m: 1.25, behind_front_m: 2.1};
 const LANE_M = 3.6;
-const ROAD_M = 420;      // shown of the road
+const ROAD_M = 420;      // length of the road that is shown
 const DASH = {length_m: 6, period_m: 18};
 const POST_PERIOD_M = 50;
 const FIELD_OF_VIEW = 24;  // vertical, in degrees
@@ -34,7 +35,7 @@ const COLOURS = {
   dark: {sky: "#59636d", asphalt: "#30353a", verge: "#3b4337", marking: "#c3c7c8", car: "#222c38"},
 };
 
-/** Whether the browser has no graphics processor. Smooth edges would then cost too much. */
+/** Whether the browser has no graphics processor. Smooth edges would then take too much time. */
 function drawsInSoftware() {
   const probe = document.createElement("canvas").getContext("webgl2");
   const info = probe?.getExtension("WEBGL_debug_renderer_info");
@@ -52,7 +53,7 @@ function box(width, height, length, material, x, y, z) {
   return mesh;
 }
 
-/** A strip on the road, from the eye to the horizon. */
+/** A strip on the road, from behind the eye to the horizon. */
 function strip(width, material, x, y = 0) {
   const mesh = new Mesh(new PlaneGeometry(width, ROAD_M + 40, 1, 60), material);
   mesh.rotation.x = -Math.PI / 2;
@@ -60,7 +61,7 @@ function strip(width, material, x, y = 0) {
   return mesh;
 }
 
-/** The same thing again and again along the road. */
+/** A row of equal objects along the road. */
 function row(geometry, material, period_m, places) {
   const n = Math.ceil(ROAD_M / period_m) + 1;
   const mesh = new InstancedMesh(geometry, material, n * places.length);
@@ -116,8 +117,9 @@ export class DriverView {
   }
 
   /**
-   * Draws everything once, and clears the picture. A browser makes a shader when it first draws with it, and does
-   * nothing else meanwhile. The person's pedals would have no effect when the car ahead brakes for the first time.
+   * Draws everything once, and clears the picture. A browser compiles a shader when it first draws
+   * with the shader, and does nothing else meanwhile. Without this call, the person's pedals would
+   * have no effect for this time when the car ahead first brakes.
    */
   warmUp() {
     this.lead.position.z = -20;  // in sight
@@ -171,7 +173,7 @@ export class DriverView {
     return true;
   }
 
-  /** @param moment {frame, ahead_s, length_m}. @param share of the pixels that are drawn */
+  /** @param moment {frame, ahead_s, length_m}. @param share share of the pixels that are drawn */
   draw({frame: {TRUTH: truth}, ahead_s, length_m}, share) {
     if (!truth || !this.fit(share)) return;
     const eye_m = truth.host_position_m + ahead_s * truth.host_speed_mps - EYE.behind_front_m;

@@ -1,4 +1,4 @@
-// The health of the run: roles, senders, and channels. It shows what `fogline top` shows.
+// The health of the run: roles, senders, and channels. It shows the same data as `fogline top`.
 
 import {byId, make, say, setAttribute} from "../draw/dom.js";
 import {count, decimal, share} from "../draw/format.js";
@@ -12,7 +12,7 @@ function refusals(refused) {
   return texts.join(", ") || "0";
 }
 
-/** The fallback of a role, and the channel that caused it. */
+/** The fallback of a role with the channel that caused it, and the inputs that are not OK. */
 function fallbackOf(status) {
   if (!status) return "";
   const bad = (status.input ?? []).filter((_, i) => status.input_state[i] >= 2)
@@ -21,7 +21,7 @@ function fallbackOf(status) {
   return [status.fallback ? status.fallback + cause : "", ...bad].filter(Boolean).join("; ");
 }
 
-/** The health of a role: "good", "note" or "bad". After the run's end the roles are silent. */
+/** The health of a role: "good", "note" or "bad". Silence after the run's end is "good". */
 function grade(role, status, isOver) {
   if (isOver && !role.error && role.state !== "FAILED") return "good";
   if (role.silent || role.state === "FAILED" || role.error) return "bad";
@@ -74,7 +74,7 @@ function channelRow(channel) {
     cell(count(channel.undecodable)));
 }
 
-/** The run of the traffic that the page shows; the newest one if the page knows none. */
+/** The run that the page shows, in the traffic; the newest run if the page knows no run. */
 function shownRun(traffic, run) {
   const runs = traffic?.runs ?? [];
   return run ? runs.find(({run_id}) => run_id === run.run_id) : runs.at(-1);
@@ -93,7 +93,7 @@ export class Health {
     table.querySelector("tbody").replaceChildren(...rows);
   }
 
-  /** Shows a `health` frame of a live run. @param isOver whether its last step has come */
+  /** Shows a `health` frame of a live run. @param isOver whether the run's last step has come */
   drawLive(health, run, statuses, isOver) {
     const shown = shownRun(health.traffic, run);
     const roles = shown?.roles ?? [];
@@ -122,7 +122,10 @@ export class Health {
     say(this.network, facts.filter(Boolean).join(" · "));
   }
 
-  /** Shows a recorded run: its completeness. Roles, senders and channels are those of a live run. */
+  /**
+   * Shows whether the log of a recorded run is complete. A log has no roles, senders and channels
+   * here.
+   */
   drawLog(log, run) {
     for (const part of Object.keys(this.parts)) this.fill(part, []);
     setAttribute(this.summary, "data-grade", log.complete ? "good" : "note");

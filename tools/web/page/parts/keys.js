@@ -1,4 +1,4 @@
-// The keyboard: each key, what it does, and the overlay that lists them.
+// The keyboard: the effect of each key, and the overlay that lists the keys.
 
 import {byId, make} from "../draw/dom.js";
 

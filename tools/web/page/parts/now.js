@@ -1,17 +1,17 @@
-// The strip on top: the side that drives, since when, and why; the request to take over with its
-// countdown.
+// The strip at the top: the side that drives, since when, and why; the request to take over with
+// its countdown.
 
 import {byId, say, setAttribute} from "../draw/dom.js";
 import {decimal, seconds, withUnit} from "../draw/format.js";
 import {modeOf, requestAt, SIDES, upTo} from "../data/modes.js";
 
-const ANNOUNCE_AFTER_MS = 400;  // a reader who moves quickly through time does not hear each change
+const ANNOUNCE_AFTER_MS = 400;  // otherwise a quick move through time would read out each change
 
 const LASTS = {
   automation: "The automation has driven for", human: "The human has driven for",
   risk: "The manoeuvre has lasted", unknown: "This has lasted"};
 
-/** The time at which the side that drives at the end of `times` began to drive. */
+/** The time at which the side that drives at the end of `times` began; null if it always drove. */
 function drivingSince(times, modes, lambdas) {
   let place = times.length - 1;
   if (place < 0) return null;
@@ -21,14 +21,14 @@ function drivingSince(times, modes, lambdas) {
   return place > 0 ? times[place] : null;
 }
 
-// Where the Degree of Conflict is not the reason for a mode, the page says the reason first.
+// Reasons for modes whose reason is not the Degree of Conflict. The page says this reason first.
 const REASONS = {
   COLLISION_WARNING: "The car ahead is too near. ",
   EMERGENCY_BRAKING: "A collision is near. ",
 };
 const NO_DRIVER = "Neither the automation nor the human goes on driving. ";
 
-/** Why the side of this HOST_COMMAND drives. */
+/** The reason why the side of this HOST_COMMAND drives, as text. */
 export function reason({mode, lambda_human, doc, threshold}) {
   const {name, side} = modeOf(mode, lambda_human);
   const compared = doc >= threshold ? "at or above" : "below";
@@ -49,7 +49,7 @@ export class Now {
     this.timer = 0;
   }
 
-  /** @return the side that drives */
+  /** Draws the strip. @return the side that drives */
   draw({frame, time, run, isLive}, modes, lambdas) {
     const command = frame?.HOST_COMMAND;
     if (!command) {

@@ -1,4 +1,4 @@
-// The road from above, to scale: cars, gaps, brake lamps, what the sensors see, and fog.
+// The road from above, to scale: cars, gaps, brake lamps, the sensors' values, and fog.
 
 import {carsOf, extinction, sightings} from "../data/cars.js";
 import {fitCanvas, hatch} from "../draw/dom.js";
@@ -10,12 +10,12 @@ const LANE_M = 3.6;
 const DASH = {length_m: 6, period_m: 18};  // the line between the lanes
 const MARGIN_M = 10;                       // shown before the first and behind the last car
 const LEAST_SPAN_M = 60;
-const SLACK = 1.25;      // the scale stays while the cars fill between 1/SLACK and all of the width
+const SLACK = 1.25;      // the scale stays while the cars fill 1/SLACK^2 to all of the width
 const SCALE_BARS_M = [1, 2, 5, 10, 20, 50, 100, 200, 500];
-const SIGHTS_HEIGHT = 52;  // for the marks of the sensors, in pixels
-const GAPS_HEIGHT = 58;   // for the gaps, and the scale bar below them
+const SIGHTS_HEIGHT = 52;  // height for the marks of the sensors, in pixels
+const GAPS_HEIGHT = 58;   // height for the gaps, and for the scale bar below them
 
-/** Marks of the sensors: colour and shape say the same. */
+/** Marks of the sensors. Both colour and shape show which sensor it is. */
 const SIGHTS = [
   {key: "radar", label: "radar", draw: circle},
   {key: "lidar", label: "LiDAR", draw: diamond},
@@ -42,11 +42,14 @@ function cross(pen, x, y, r) {
 export class Road {
   constructor(canvas) {
     this.canvas = canvas;
-    this.window = null;  // {from_m, to_m}: what is shown, relative to the host's front bumper
+    this.window = null;  // {from_m, to_m} of the shown road, relative to the host's front bumper
     this.lane = 0;       // middle of the lane, in pixels of the page from the top
   }
 
-  /** Chooses what is shown. It changes only if the cars leave it or fill too little of it. */
+  /**
+   * Chooses the part of the road that is shown. It changes only if cars leave it or fill too little
+   * of it.
+   */
   chooseWindow(cars, length_m) {
     const to_m = Math.max(cars[0].front_m, 0) + MARGIN_M;
     const from_m = cars.at(-1).front_m - length_m - MARGIN_M;
@@ -93,7 +96,7 @@ function drawSurface({pen, width, top, bottom, scale, theme, x}, host_m) {
   pen.fillRect(0, top + 4, width, bottom - top - 8);
   pen.fillStyle = theme.marking;
   pen.fillRect(0, top + 8, width, 1.5);
-  pen.fillRect(0, bottom - 9.5, width, 1.5);  // the fog line
+  pen.fillRect(0, bottom - 9.5, width, 1.5);  // the edge line
   const middle = (top + bottom) / 2;
   const first = -host_m % DASH.period_m;
   const from = Math.floor((-x(first) / scale) / DASH.period_m) * DASH.period_m;
@@ -152,7 +155,7 @@ function fillPattern(pen, pattern) {
   pen.restore();
 }
 
-/** Windscreen and rear window: they show which way a car drives. */
+/** Draws windscreen and rear window, which show in which direction a car drives. */
 function drawScreens(pen, {left, length, width}, lane) {
   if (length < 18) return;
   pen.fillStyle = "rgba(0, 0, 0, 0.45)";
@@ -167,7 +170,7 @@ function drawBrakeLamps(pen, {left, width}, lane, theme) {
   }
 }
 
-/** Covers the road: it takes as much contrast as the fog between the road and the host's driver. */
+/** Covers the road: reduces contrast as much as the fog between the road and the host's driver. */
 function drawHaze({pen, width, top, bottom, theme, x, scale}, truth) {
   const sigma = extinction(truth.fog_visibility_m);
   const eye = x(-2);
@@ -183,7 +186,7 @@ function drawHaze({pen, width, top, bottom, theme, x, scale}, truth) {
   }
 }
 
-/** Marks above the road where each sensor sees the preceding car. */
+/** Draws marks above the road where each sensor sees the preceding car. */
 function drawSights({pen, width, top, theme, x}, frame, truth) {
   const seen = sightings(frame);
   const colours = {radar: theme.radar, lidar: theme.lidar, fusion: theme.ink};
@@ -221,7 +224,7 @@ function line(pen, x1, y1, x2, y2) {
   pen.stroke();
 }
 
-/** Dimension lines of the gaps below the road; a tick shows the safe distance. */
+/** Draws dimension lines of the gaps below the road. A tick shows the safe distance. */
 function drawGaps({pen, width, bottom, theme, x, length_m}, cars, frame) {
   const {ACC_COMMAND, FOLLOWER_COMMAND} = frame;
   const y = bottom + 13;
@@ -263,7 +266,7 @@ function drawScaleBar({pen, width, scale, theme}, height) {
   pen.fillText(`${length_m} m`, left - 6, y - 3);
 }
 
-/** The picture in words. */
+/** A description of the picture in words. */
 export function roadInWords(frame, length_m) {
   if (!frame.TRUTH) return "The road from above. There is no message about the cars yet.";
   const cars = carsOf(frame.TRUTH);

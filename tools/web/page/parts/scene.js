@@ -25,8 +25,9 @@ export class Scene {
   }
 
   /**
-   * Draws the moment if it differs from the last one that was drawn.
-   * @param budget {ratio, every}: share of the pixels, and of the frames, that the view draws
+   * Draws the moment if it differs from the moment that was drawn last.
+   * @param budget {ratio, every}: share of the pixels that the view draws; it draws each `every`-th
+   * frame
    */
   draw(moment, {ratio, every}) {
     const {frame, ahead_s, step, side} = moment;
@@ -57,7 +58,7 @@ export class Scene {
     byId("collision").hidden = truth.collision === 0;
   }
 
-  /** Says what the pictures show, for readers who do not see them. */
+  /** Describes the pictures in words, for readers who do not see them. */
   describe({frame, length_m}) {
     const now = performance.now();
     if (now - this.wordsAt < WORDS_EVERY_MS) return;

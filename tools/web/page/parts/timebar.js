@@ -54,7 +54,7 @@ export class Timebar {
     this.drawTrack(store, modes, lambdas, events, theme);
   }
 
-  /** Fog, the side that drives, and events over the whole time. */
+  /** Draws fog, the side that drives, and events over the whole time. */
   drawTrack(store, modes, lambdas, events, theme) {
     const fog = store.series("TRUTH", "fog_present");
     const state = [modes.version, lambdas.version, fog.version, store.lastStep, events.length,
@@ -89,8 +89,8 @@ export class Timebar {
   }
 
   /**
-   * The list of events; the last one before the shown step is marked. The events that are in the list
-   * stay, because one of them may have the focus.
+   * Fills the list of events, and marks the last event at or before the shown step. Elements that
+   * are already in the list are not replaced, because one of them may have the focus.
    */
   drawEvents(events, step, run) {
     const list = byId("events");
@@ -119,7 +119,7 @@ export class Timebar {
   }
 }
 
-/** The step of the next (+1) or last (-1) event from a step on; null if there is none. */
+/** The step of the next (+1) or previous (-1) event, seen from a step; null if there is none. */
 export function eventFrom(events, step, direction) {
   const found = direction > 0 ? events.find((event) => event.step > step)
                               : events.findLast((event) => event.step < step);

@@ -1,5 +1,5 @@
-// Why this side drives, over the last 20 s: conflict against threshold, authorities, and the error
-// of each sensor.
+// Shows why this side drives, over the last 20 s: conflict and threshold, authorities, and the
+// error of each sensor.
 
 import {drawNow, extremes, fillSpan, joined, makeChart, stepped, TOP, widened}
   from "../draw/chart.js";
@@ -10,10 +10,10 @@ import {Series, whereValid} from "../data/series.js";
 import {withAlpha} from "../draw/theme.js";
 
 export const WINDOW_S = 20;
-const BAND = {height: 12, gap: 5};  // above the conflict, for the side that drives, in pixels
+const BAND = {height: 12, gap: 5};  // space above the conflict for the side that drives, in pixels
 const LEAST_ERROR_SPAN_M = 0.5;
 
-/** Distance of each source to the truth: [key, channel, path, validity path]. */
+/** The values whose errors are drawn: {key, channel, path, label}. */
 const SOURCES = [
   {key: "radar", channel: "RADAR", path: "range_m", label: "radar"},
   {key: "lidar", channel: "LIDAR", path: "range_m", label: "LiDAR"},
@@ -37,7 +37,7 @@ export function drawBand(chart, spans, theme, top, height) {
   }
 }
 
-/** Value minus truth of a source, where the source has a value. */
+/** Value minus truth of a source; NaN where the source has no value. */
 function errorColumns(value, valid, truth) {
   const {times, values} = whereValid(value, valid);
   return {times, values: values.map((one, i) => one - truth.at(times[i]))};
@@ -49,7 +49,7 @@ export class Why {
     this.charts = [];
   }
 
-  /** Begins with another store, or other colours. */
+  /** Begins with another store, or with other colours. */
   build(store, theme) {
     for (const chart of this.charts) chart.destroy();
     this.store = store;
@@ -130,7 +130,7 @@ export class Why {
     return spansOf(times, sides, this.shownEnd);
   }
 
-  /** The last known time within the shown time. */
+  /** The end of the shown time, or the last known time if this is earlier. */
   get shownEnd() {
     return Math.min(this.range[1], this.store.lastTime);
   }
@@ -140,7 +140,7 @@ export class Why {
     return [end - WINDOW_S, end];
   }
 
-  /** Draws the moment. While time goes on, `rest_ms` lies between two drawings. */
+  /** Draws the moment. While time goes on, there are at least `rest_ms` between two drawings. */
   draw(moment, rest_ms) {
     this.moment = moment;
     const all = [this.doc, this.threshold, this.modes, this.lambdas, this.automation, this.fog,
@@ -168,7 +168,7 @@ export class Why {
     this.sayValues(moment);
   }
 
-  /** The numbers of the shown moment, beside the names of the curves. */
+  /** Shows the numbers of the shown moment, beside the names of the curves. */
   sayValues({frame, time}) {
     const {HOST_COMMAND: command, TRUTH: truth} = frame ?? {};
     say(byId("value-doc"), decimal(command?.doc, 2));
