@@ -14,7 +14,7 @@ namespace fogline {
 /// callers share the values, so a caller must not change them.
 const FieldList& Catalogue();
 
-/// The same for an experiment and for a laboratory.
+/// All fields of an experiment, and all fields of a laboratory, in the form of Catalogue().
 const FieldList& ExperimentCatalogue();
 const FieldList& LabCatalogue();
 

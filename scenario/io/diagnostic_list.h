@@ -34,8 +34,8 @@ class DiagnosticList {
   bool empty() const { return kept_.empty(); }
   bool Has(std::string_view rule) const;
 
-  /// @pre not empty; every place lies in `sources`
-  /// @param allowed the command that shows what is allowed; "": that of a scenario
+  /// @pre not empty; `sources` has the source of every place
+  /// @param allowed the command that shows the allowed values; "" means the command for a scenario
   /// @throws ScenarioError with all mistakes, sorted by their places
   [[noreturn]] void Throw(const std::vector<Source>& sources, std::string_view allowed = "");
 
@@ -49,7 +49,7 @@ class DiagnosticList {
   std::vector<Entry> kept_;
 };
 
-/// @throws ScenarioError with the one mistake of a file that cannot be read at all
+/// Reports a file that cannot be read at all. @throws ScenarioError with this one mistake
 [[noreturn]] void ThrowUnreadable(std::string_view file, std::string_view message);
 
 }  // namespace fogline

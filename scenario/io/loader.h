@@ -45,8 +45,8 @@ class ScenarioError : public InputError {
 Scenario LoadScenario(const std::filesystem::path& file,
                       const std::vector<std::string>& overrides = {});
 
-/// As LoadScenario(), for a text in memory. Messages show `name` as the file's name. Reads no other
-/// file.
+/// Does the same as LoadScenario() for a text in memory, but reads no other file. Messages show
+/// `name` as the file's name.
 /// @throws ScenarioError
 Scenario ParseScenario(std::string_view text, std::string_view name = "scenario",
                        const std::vector<std::string>& overrides = {});
@@ -60,10 +60,10 @@ std::string PrintScenario(const Scenario& scenario);
 /// accepts exactly the JSON documents without duplicate keys that ParseScenario accepts.
 std::string ScenarioSchema();
 
-/// JSON schema (draft-07) of the files of experiments with people (sections/experiment.h).
+/// JSON schema (draft-07) of the files of experiments with people (sections/plans/experiment.h).
 std::string ExperimentSchema();
 
-/// JSON schema (draft-07) of the files of laboratories (sections/lab.h).
+/// JSON schema (draft-07) of the files of laboratories (sections/plans/lab.h).
 std::string LabSchema();
 
 /// Explanation of a field or section for a person: meaning, type, unit, range, default, source. "/"

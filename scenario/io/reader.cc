@@ -28,8 +28,8 @@ std::optional<double> ToNumber(const JsonValue& value) {
   return std::nullopt;
 }
 
-// Accepts 3 and 3.0, as JSON schema does. A number beyond int64 becomes the nearest limit of int64,
-// which is outside the range of every field.
+// The value as an integer, if it is one. Both 3 and 3.0 are integers, as in JSON schema. A number
+// beyond int64 becomes the nearest limit of int64, which is outside the range of every field.
 std::optional<std::int64_t> ToInteger(const JsonValue& value) {
   if (const auto* integer = value.As<std::int64_t>()) return *integer;
   const auto* number = value.As<double>();
@@ -65,7 +65,8 @@ std::vector<std::string_view> KeysOf(const FieldList& fields) {
 // Reads values into fields, and notes each mistake at its pointer.
 class Reader {
  public:
-  /// The names with which an unknown key is compared, besides the fields beside it.
+  /// Where the reader looks for the name that an unknown key may mean: in the whole scenario, or
+  /// only in the same section.
   enum class Hints { kScenario, kNone };
 
   explicit Reader(DiagnosticList& mistakes, Hints hints = Hints::kScenario)
@@ -73,7 +74,7 @@ class Reader {
 
   // Reads those members of an object that are fields.
   void ReadFields(const JsonObject& object, const FieldList& fields);
-  // Refuses members that are no fields. `known` has the names of the fields.
+  // Refuses members that are not fields. `known` has the names of the fields.
   void RefuseUnknownKeys(const JsonObject& object, const std::string& pointer,
                          const std::vector<std::string_view>& known);
 
@@ -89,7 +90,7 @@ class Reader {
 
  private:
   void CheckNeed(const JsonObject& object, const Field& section, const NeedSpec& need);
-  // The items of a list; null if the value is no list or has a wrong length.
+  // The items of a list; null if the value is not a list or has a wrong length.
   const JsonArray* Items(const JsonValue& value, const std::string& pointer, const ListSpec& list);
 
   // Notes a wrong type.

@@ -134,7 +134,7 @@ Json::json_pointer PlaceOf(std::string_view pointer) {
   return Json::json_pointer(place);
 }
 
-// Adds to the schema of the enclosing object when a section is required.
+// Adds the condition under which a section is required to the schema of the enclosing object.
 void AddNeed(Json& object, std::string_view section, const NeedSpec& need) {
   Json any_of = Json::array();
   for (const std::string_view field : need.fields) {

@@ -43,7 +43,7 @@ struct IntegerSpec {
   std::string_view unit = "";
 };
 
-/// A list: how many items it may have.
+/// The allowed number of items of a list.
 struct ListSpec {
   std::int64_t min_items;
   std::int64_t max_items;
@@ -53,8 +53,8 @@ struct ListSpec {
 /// a control character (C0, DEL, C1), so a text can be shown on any terminal.
 inline constexpr std::int64_t kMaxTextLength = 4096;
 
-/// If the choice `choice` beside a section is `value`, the file must have the section. At least one
-/// of the section's `fields` (texts or lists) must then not be empty.
+/// If the field `choice` beside a section has the value `value`, the file must have the section. At
+/// least one of the section's `fields` (texts or lists) must then not be empty.
 struct NeedSpec {
   std::string_view choice;
   std::string_view value;

@@ -90,7 +90,7 @@ FieldList FieldsOf(Scenario& scenario);
 /// The fields of a published row, with pointers that begin with `pointer`.
 FieldList FieldsOf(PublishedRow& row, const std::string& pointer);
 
-/// As FieldsOf(Scenario&), for an experiment and for a laboratory.
+/// The fields of an experiment or a laboratory itself, in the same way as for a scenario.
 FieldList FieldsOf(ExperimentPlan& plan);
 FieldList FieldsOf(LabPlan& plan);
 

@@ -91,7 +91,7 @@ struct PersonSection {
                 "our choice, because a foot leaves a pedal in about a quarter of a second");
 };
 
-/// The error of every run that a person cannot drive.
+/// Error text for a run that is not in real time although a person drives.
 inline constexpr std::string_view kPersonNeedsRealtime =
     "/person/drives: a person drives only in real time, with one process for each role: use "
     "fogline "

@@ -80,7 +80,7 @@ struct MeasuresSection {
       "our choice, because it is three times the accuracy of a Velodyne VLP-16, 3 cm");
 };
 
-/// No run has more steps.
+/// Largest number of steps of a run.
 inline constexpr std::int64_t kMostRunSteps = 10'000'000;
 
 struct Scenario {

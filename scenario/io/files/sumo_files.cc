@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kMostBytes = kMaxTextLength;  // a character has one byte at least
 
-/// Appends a line in pieces that are short enough. @return whether that is possible
+/// Appends a line in pieces of at most kMostBytes bytes. @return false if a piece would be longer
 bool AppendLine(std::string_view line, std::vector<std::string>& lines) {
   while (line.size() > kMostBytes) {
     const std::size_t space = line.rfind(' ', kMostBytes);
@@ -28,7 +28,7 @@ bool AppendLine(std::string_view line, std::vector<std::string>& lines) {
 }
 
 /// Reads the lines of a file. In XML a tab is a space, and no other control character is allowed.
-/// @return what is wrong with the file; "" if nothing is
+/// @return the mistake in the file; "" if the file has none
 std::string ReadLines(const std::filesystem::path& file, std::vector<std::string>& lines) {
   FileText read = ReadFile(file, kMaxFileBytes, ".xml");
   if (!read.error.empty()) return read.error;

@@ -1,5 +1,5 @@
-// The fields of an experiment with people: who drives what, in which order, and what they are
-// asked. tools/trials/plan_file.h reads and checks the JSON files.
+// The fields of an experiment with people: the scenarios that the participants drive, the order,
+// and the questions. tools/trials/plan_file.h reads and checks the JSON files.
 #pragma once
 
 #include <array>
@@ -37,7 +37,7 @@ constexpr auto ChoicesOf(ItemKind) {
                                 {"text", "a free text, which may be empty"}});
 }
 
-/// A question of an own questionnaire.
+/// A question of a questionnaire of kind `own`.
 struct ItemSection {
   FOGLINE_FIELD(std::string, name, "",
                 "Name of the item, in logs and tables: a to z, 0 to 9, - and _.");
