@@ -5,7 +5,7 @@
 // An algorithm with such an input has these two functions.
 //
 //     static bool UsesOnDemandInput(const Scenario& scenario);  // whether the input is used
-//     void SetOnDemandInput(const M& message);                  // if so, called before each Step
+//     void SetOnDemandInput(const M& message);                  // called before each Step, if used
 //
 // M is the message of the same step if the producer of M comes before this role in the order of
 // evaluation. If the producer comes after this role, M is the message of the previous step. At step
@@ -13,19 +13,19 @@
 // SetOnDemandInput gets the newest M that has come. SetOnDemandInput is not called before the first
 // M has come.
 //
-// An algorithm may have a live input: what a person does, which no role computes. An algorithm with
-// a live input has these two functions.
+// An algorithm may have a live input: the actions of a person. No role computes this input. An
+// algorithm with a live input has these two functions.
 //
 //     static bool UsesLiveInput(const Scenario& scenario);  // whether the input is used
-//     void SetLiveInput(const driver_input_t* input);       // if so, called before each Step
+//     void SetLiveInput(const driver_input_t* input);       // called before each Step, if used
 //
 // Only a run in real time has a live input. SetLiveInput gets the newest message, or nullptr if no
-// person is there (services/runtime/seat/seat_gate.h). The output of the algorithm names the
-// message, so a replay can find it in the log.
+// person is there (services/runtime/seat/seat_gate.h). The output of the algorithm contains the
+// instance and the sequence number of this message, so a replay can find the message in the log.
 //
-// The role that begins the steps (the world) has a function Start(run_id) for step 0. It may have a
-// function Prepare(), too. Prepare() does the slow part of step 0 before the role says that it is
-// ready.
+// The role that begins the steps (the world) has a function Start(run_id) for step 0. This role may
+// also have a function Prepare(). Prepare() does the slow part of step 0 before the role reports
+// that it is ready.
 #pragma once
 
 #include <concepts>

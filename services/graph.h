@@ -18,7 +18,8 @@ namespace fogline {
 // Every role that computes messages, in the order of evaluation within a step. A row is
 // ROLE(folder, Class, purpose). The role is the class fogline::FOLDER::CLASS of
 // services/FOLDER/FOLDER.h, its name is FOLDER, its program is fogline-FOLDER, and its value is
-// Role::kCLASS. services/closed_loop/algorithms.h compares rows and folders.
+// Role::kCLASS. services/closed_loop/algorithms.h checks that each row has a folder, and each
+// folder a row.
 #define FOGLINE_ROLES(ROLE)                                                         \
   ROLE(world, World, "moves the cars and is the clock of the run")                  \
   ROLE(radar, Radar, "measures range and range rate; fog hardly affects it")        \
@@ -33,7 +34,7 @@ namespace fogline {
 enum class Role : std::uint8_t {
   FOGLINE_ROLES(FOGLINE_ROLE_VALUE)  // the roles that compute messages
   kRecorder,                         // writes the log; its row is in kRoles
-  kRunner,  // `fogline run`: starts and ends a run, and computes nothing in its steps
+  kRunner,                           // `fogline run`: starts and ends a run, and computes no step
 };
 #undef FOGLINE_ROLE_VALUE
 
@@ -174,9 +175,9 @@ struct ChannelInfo {
   std::string_view what;
   RoleSet on_demand;
 
-  /// Whether the recorder logs the channel. The recorder logs every kStep channel, and RUN, so that
-  /// a log contains its scenario. In real time, the recorder also logs STATUS, DRIVER_INPUT and
-  /// TRIAL.
+  /// Whether the recorder logs the channel in every run: every kStep channel, and RUN, so that a
+  /// log contains its scenario. In real time, the recorder also logs STATUS, DRIVER_INPUT and
+  /// TRIAL. For these three channels the result is false.
   constexpr bool Logged() const { return pace == Pace::kStep || name == "RUN"; }
 };
 
@@ -229,8 +230,9 @@ constexpr std::int64_t LagOf(Role producer, Role reader) {
   return 0;
 }
 
-/// Whether every role except the world, which begins a step, reads only channels of roles above it.
-/// Then no message is older than its readers expect.
+/// Whether every role except the world reads only channels of roles that come before it in kRoles.
+/// Then each of these roles uses only messages of its own step. The world begins a step, and uses
+/// messages of the previous step.
 constexpr bool RolesAreInOrder() {
   for (const ChannelInfo& channel : kChannels) {
     for (const RoleInfo& reader : kRoles) {
@@ -245,7 +247,7 @@ static_assert(
     RolesAreInOrder(),
     "a role reads a channel of a role below it: move the reader's row in FOGLINE_ROLES down");
 
-/// Whether the kStep channels are in the order of their roles.
+/// Whether the kStep channels of kGraph are in the order of their producers in kRoles.
 constexpr bool ChannelsAreInOrder() {
   Role last = Role::kWorld;
   for (const ChannelInfo& channel : kChannels) {
@@ -261,7 +263,7 @@ static_assert(ChannelsAreInOrder(),
 /// The unit of simulated time in messages (header_t, utime) is the microsecond.
 inline constexpr double kMicrosPerSecond = 1e6;
 
-/// Index in kChannels of the channel with this name; kNumChannels if no channel has it.
+/// Index in kChannels of the channel with this name; kNumChannels if there is no such channel.
 constexpr std::size_t ChannelNamed(std::string_view name) {
   std::size_t place = 0;
   while (place < kNumChannels && kChannels[place].name != name) ++place;

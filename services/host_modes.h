@@ -8,8 +8,8 @@
 namespace fogline {
 
 /// Whether the host is in a minimal risk manoeuvre, or stands after such a manoeuvre. The cause is
-/// failed inputs in real time, a request that the driver did not answer in time, or a severe
-/// situation during a request.
+/// failed inputs in real time, a request that the driver did not answer in time, a severe situation
+/// during a request, or a person who left the seat while driving.
 constexpr bool InMinimalRisk(std::int8_t mode) {
   return mode == arbitration_t::MINIMAL_RISK ||
          (mode >= arbitration_t::MRM_COMFORT && mode <= arbitration_t::MRM_FAILED);
@@ -30,7 +30,7 @@ constexpr bool IsLocked(std::int8_t mode) {
 inline constexpr double kMainAuthority = 0.5;
 
 /// Whether the human drives, that is whether the human has half of the authority or more. A
-/// transfer is a change of this result. A human with any authority is engaged.
+/// transfer is a change of this result. A human with an authority above 0 is engaged.
 constexpr bool HumanDrives(double lambda_human) { return lambda_human >= kMainAuthority; }
 constexpr bool HumanIsEngaged(double lambda_human) { return lambda_human > 0; }
 /// Whether the mode says that the human drives; false if InEmergency(). If the result is true in a

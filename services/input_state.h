@@ -7,7 +7,7 @@
 namespace fogline {
 
 enum class InputState : std::uint8_t {
-  kAwaited,  // no message has come yet, and none is overdue
+  kAwaited,  // no message has come yet, and the first message is not overdue
   kOk,
   kStale,  // overdue: the last value is still used
   kLost,   // overdue for so long that the last value is not used

@@ -9,10 +9,10 @@
 
 namespace fogline::acc {
 
-/// Offers the automation's acceleration a_A in every step, also while the human drives. Uses the
-/// host's own odometry and the track of the preceding car, never the truth. Does not decide about
-/// authority. A track that has become too uncertain, because the sensors gave no values, counts as
-/// no track.
+/// Offers the automation's acceleration a_A in every step, also while the human drives. The ACC
+/// uses the host's own odometry and the track of the preceding car, never the truth. The ACC does
+/// not decide about authority. A track that has become too uncertain, because the sensors gave no
+/// values, is not used.
 class Acc {
  public:
   /// @throws InputError if the weights of scenario.acc make an ill-conditioned problem.

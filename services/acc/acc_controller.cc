@@ -95,8 +95,8 @@ double AccController::CommandOf(double control, double acceleration_mps2) const 
 // would keep the car's acceleration. The value is clamped to the limits of u, because the driver
 // may brake harder than the automation may. A longitudinal vehicle never follows its command
 // exactly. For such a vehicle, the value is the u of the last step, but limited to values near the
-// u that would keep the acceleration. The difference of these two u is at most the lead of a ramp
-// at the jerk limit over an engine with the model's lag. So u cannot drift away while the human
+// u that would keep the acceleration. The two u differ by at most T_e jerk_max / K_e. On a ramp at
+// the jerk limit, the model's engine needs this difference. So u cannot drift away while the human
 // drives.
 double AccController::PreviousControl(double acceleration_mps2) const {
   const double holding = -acceleration_mps2 / section_.engine_gain;

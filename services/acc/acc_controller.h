@@ -16,16 +16,17 @@
 namespace fogline::acc {
 
 /// Model predictive adaptive cruise control: keeps the safe distance d_r = T_hw v + d_0 to the
-/// preceding car. Uses distances and speeds, and knows nothing of sensors, messages and authority.
+/// preceding car. The inputs are distances and speeds. The controller uses no sensors, no messages
+/// and no authority.
 ///
 /// The unconstrained optimum is linear in the situation, so its gain is computed once. If the plan
 /// of this gain meets every limit, the controller uses this plan. Otherwise the controller solves
 /// the quadratic program. A point mass applies a command at once, so its command is the model's
 /// acceleration one step ahead. The command starts from the car's actual acceleration, so the
 /// command is continuous after a take-over. A longitudinal vehicle has its own lag, in place of the
-/// model's lag. The command of this vehicle is -K_e u, the steady acceleration that u causes. The
-/// difference between this command and the vehicle's acceleration is limited. The limit is the
-/// difference that the model's engine has on a ramp at the jerk limit.
+/// model's lag. The command of this vehicle is -K_e u, the steady acceleration that u causes.
+/// Before each step, the difference between the last command and the vehicle's acceleration is
+/// limited to T_e jerk_max. On a ramp at the jerk limit, the model's engine has this difference.
 class AccController {
  public:
   struct Input {
@@ -36,7 +37,7 @@ class AccController {
     bool has_target;            // whether distance_m and relative_speed_mps are valid
   };
 
-  /// How a command was computed; the numbers are those of accel_command_t.
+  /// How a command was computed; accel_command_t uses the same numbers.
   enum class Solver : std::int8_t {
     kUnconstrained = 0,  // the precomputed optimum, within all limits
     kActiveSet = 1,      // the optimum on the limits
@@ -61,12 +62,12 @@ class AccController {
   /// Resets the object to the state of a new AccController(section, step_s, vehicle). If section
   /// and step_s are unchanged, the object keeps the results of its construction. Computing these
   /// results again would take most of the time of a short run.
-  /// @throws InputError as the constructor; the object is then unchanged.
+  /// @throws InputError under the same condition as the constructor; the object is then unchanged.
   void Restart(const AccSection& section, double step_s,
                VehicleModel vehicle = VehicleModel::kPointMass);
 
-  /// u_0, ..., u_{N-1} of the last step with kUnconstrained or kActiveSet. A controller computes
-  /// the whole plan only if it must, so this function may compute it.
+  /// u_0, ..., u_{N-1} of the last step with kUnconstrained or kActiveSet. If Step() did not need
+  /// the whole plan, plan() computes it.
   std::span<const double> plan();
 
  private:

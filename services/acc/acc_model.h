@@ -7,9 +7,9 @@
 
 namespace fogline::acc {
 
-/// Order of the state x = [delta_d, delta_v, a]: the distance minus the safe distance
-/// d_r = T_hw v + d_0 in m, the preceding car's speed minus the own speed in m/s, and the own
-/// acceleration in m/s2.
+/// Order of the elements of the state x = [delta_d, delta_v, a]: the distance minus the safe
+/// distance d_r = T_hw v + d_0 in m, the preceding car's speed minus the own speed in m/s, and the
+/// own acceleration in m/s2.
 enum AccState : Eigen::Index { kDeltaD = 0, kDeltaV = 1, kOwnAcceleration = 2 };
 
 /// x' = A x + B u, y = C x, while the preceding car keeps its speed:

@@ -159,7 +159,8 @@ void AccProgram::Limits(const AccSituation& now, Eigen::VectorXd& lower,
 
 bool AccProgram::IsWithinLimits(const AccSituation& now, std::span<const double> controls) const {
   // The sign bit of a difference shows on which side of a limit a value is. The compiler vectorises
-  // these loops; it would not vectorise comparisons, because they can raise floating-point flags.
+  // these loops. It would not vectorise comparisons, because comparisons can raise floating-point
+  // flags.
   const auto bits = [](double difference) { return std::bit_cast<std::int64_t>(difference); };
   const double lowest = min_control_ - kTolerance;
   const double highest = max_control_ + kTolerance;
@@ -170,7 +171,7 @@ bool AccProgram::IsWithinLimits(const AccSituation& now, std::span<const double>
   for (std::size_t j = 1; j < controls.size(); ++j) {
     violated |= bits(largest_change - std::abs(controls[j] - controls[j - 1]));
   }
-  // A situation that is not a number makes each control not a number.
+  // If an element of the situation is not a number, every control is not a number.
   if (violated < 0 || std::isnan(first_change)) return false;
   const Reach reach = ReachOf(now);
   return (!reach.speed || SpeedsAreWithinLimits(now, controls)) &&

@@ -32,8 +32,9 @@ struct AccSituation {
 ///
 /// w = v + T_e a is the speed at which the car settles if u is 0 from now on; w' = -K_e u. Because
 /// T_e v' = w - v, the speed stays below v_max while w stays below v_max, also between the steps.
-/// In the same way the speed stays at or above 0. (Limits on v_j itself would be less cautious. But
-/// u acts on v with a delay, and an optimum on such limits oscillates from step to step.)
+/// In the same way, the speed stays at or above 0 while w stays at or above 0. (Limits on v_j
+/// itself would be less cautious. But u acts on v with a delay, so with such limits the optimum
+/// would oscillate from step to step.)
 ///
 /// The fall-back plan approaches the section's fall-back deceleration (as far as the limits of u
 /// allow it) at the fastest allowed change of u. The fall-back plan meets the first three limits in
@@ -68,10 +69,11 @@ class AccProgram {
   /// Whether a plan u_0, ..., u_{N-1} meets every limit with s = 0.
   bool IsWithinLimits(const AccSituation& now, std::span<const double> controls) const;
 
-  /// Whether bounds of a plan prove that IsWithinLimits() is true for it. False proves nothing.
-  /// The result does not depend on rounding, which is far below kTolerance.
-  /// @param largest_control no |u_j| of the plan is larger
-  /// @param largest_change no |u_j - u_{j-1}| is larger, with u_{-1} = now.previous_control
+  /// Whether the bounds of a plan prove that IsWithinLimits() is true for this plan. If the result
+  /// is false, IsWithinLimits() may still be true. The result does not depend on rounding, which is
+  /// far below kTolerance.
+  /// @param largest_control upper bound of every |u_j| of the plan
+  /// @param largest_change upper bound of every |u_j - u_{j-1}|, with u_{-1} = now.previous_control
   bool IsCertainlyWithinLimits(const AccSituation& now, double largest_control,
                                double largest_change) const;
 

@@ -7,9 +7,9 @@
 
 namespace fogline::acc {
 
-/// The optimum without limits is linear in the situation: u = K p, with p = [x(k); u_{-1}]. A
-/// controller needs only u_0 if it knows that the whole plan meets the limits. The two bounds below
-/// often show this, and cost far less than the plan: by the triangle inequality,
+/// The optimum without limits is linear in the situation: u = K p, with p = [x(k); u_{-1}]. If the
+/// whole plan meets the limits, a controller needs only u_0. The two bounds below often prove that
+/// the plan meets the limits, and cost far less than the plan. By the triangle inequality,
 ///
 ///     |u_j|           <= sum_i max_j |K_ji| |p_i|
 ///     |u_j - u_{j-1}| <= sum_i max_j |K_ji - K_{j-1,i}| |p_i|,    where u_{-1} = p_4
@@ -36,15 +36,15 @@ class LinearPlan {
 
   /// Writes u_0, ..., u_{N-1} into `plan`.
   void Compute(const Eigen::Vector4d& p, Eigen::VectorXd& plan) const {
-    // Column by column: so the compiler vectorises the sums.
+    // The compiler vectorises these sums, because they add whole columns.
     plan =
         (gain_.col(0) * p(0) + gain_.col(1) * p(1)) + (gain_.col(2) * p(2) + gain_.col(3) * p(3));
   }
 
-  /// No |u_j| is larger; not a number if an element of p is not a number.
+  /// Upper bound of every |u_j|; not a number if an element of p is not a number.
   double ControlBound(const Eigen::Vector4d& p) const { return control_bound_.dot(p.cwiseAbs()); }
 
-  /// No |u_j - u_{j-1}| is larger; not a number if an element of p is not a number.
+  /// Upper bound of every |u_j - u_{j-1}|; not a number if an element of p is not a number.
   double ChangeBound(const Eigen::Vector4d& p) const { return change_bound_.dot(p.cwiseAbs()); }
 
  private:

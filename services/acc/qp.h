@@ -26,9 +26,9 @@ namespace fogline::acc {
 /// iteration uses only the part of a row of C between its outermost nonzeros.
 ///
 /// The factors depend only on H and C. So every call except the first starts from the active set of
-/// the previous call. This set is nearly right if the problems are those of successive steps. Every
-/// start gives the same minimum except for rounding. Equal sequences of calls give bitwise equal
-/// results.
+/// the previous call. If the problems belong to successive steps, this set is nearly the new active
+/// set. Every start gives the same minimum, apart from rounding. Equal sequences of calls give
+/// bitwise equal results.
 ///
 /// Only the constructor allocates memory.
 class QpSolver {
@@ -55,7 +55,8 @@ class QpSolver {
   QpSolver(const Eigen::MatrixXd& hessian, const Eigen::MatrixXd& constraints,
            const Options& options);
 
-  /// `linear` (g) has n entries, `lower` and `upper` have m entries; an infinite limit is no limit.
+  /// `linear` (g) has n entries, `lower` and `upper` have m entries; an infinite limit has no
+  /// effect.
   Result Solve(const Eigen::VectorXd& linear, const Eigen::VectorXd& lower,
                const Eigen::VectorXd& upper);
 
@@ -63,8 +64,7 @@ class QpSolver {
   /// minimum.
   Eigen::MatrixXd SolveHessian(const Eigen::MatrixXd& columns) const;
 
-  /// Forgets the previous calls. The next Solve() starts without active limits, like the first
-  /// Solve().
+  /// Empties the active set. The next Solve() starts without active limits, like the first Solve().
   void Restart() { active_ = 0; }
 
   /// x of the last Solve().
@@ -117,7 +117,7 @@ class QpSolver {
   Eigen::VectorXd along_;             // n, the first `active_` entries count
   Eigen::VectorXd rest_;              // n, orthogonal to Q
   Eigen::VectorXd correction_;        // n, correction of `along_`
-  Eigen::VectorXd dual_direction_;    // n, fall of lambda_ per unit of step
+  Eigen::VectorXd dual_direction_;    // n, decrease of lambda_ per unit of step
   Eigen::VectorXd primal_direction_;  // n, change of x_ per unit of step
 
   Eigen::VectorXd scaled_;       // n, L'x at the start

@@ -9,8 +9,8 @@
 namespace fogline::arbitrator {
 namespace {
 
-/// Only a driver who is asked also answers, and gives back. @throws InputError for a choice of the
-/// scenario that needs this
+/// Checks a scenario without requests to the driver. @throws InputError if the person may override
+/// or may come back, because both need requests
 void RequireNoAnswers(const PersonSection& person) {
   constexpr const char* kNeeds = " needs /arbitrator/take_over/mode \"requested\"";
   if (person.override_by != OverrideBy::kNone) {
@@ -143,8 +143,8 @@ bool Arbitrator::Ask(double wanted, const ego_t& ego, const track_t& track,
     offers.automation_mps2 = asked.acceleration_mps2;
     eased_mps2_ = std::max(0.0, asked.acceleration_mps2);
   }
-  // A driver who overrides has the whole authority at once. So has a driver who ends a manoeuvre,
-  // because the automation is off.
+  // A driver who overrides has the whole authority at once. A driver who ends a manoeuvre also has
+  // the whole authority at once, because the automation is off.
   if (manoeuvre_ran || take_over_->overridden()) {
     transfer_.Overrule(
         {.lambda_human = 1, .acceleration_mps2 = sent_mps2_.value_or(ego.acceleration_mps2)});

@@ -42,7 +42,7 @@ class Arbitrator {
   /// meter would give.
   void SetOnDemandInput(const truth_t& truth);
 
-  /// The host's command for the step that begins here. Call it once per step, in the order of
+  /// Returns the host's command for the step of `ego`. Call Step() once per step, in the order of
   /// steps. The result is valid until the next call.
   const arbitration_t& Step(const ego_t& ego, const radar_t& radar, const lidar_t& lidar,
                             const track_t& track, const accel_command_t& automation,
@@ -53,14 +53,14 @@ class Arbitrator {
     meter_.Observe(radar, lidar, track);
     if (recovery_) recovery_->Observe(radar, lidar, track);
   }
-  /// Second part of a Step(): decides. In real time a step may be decided without new values of the
-  /// sensors.
+  /// Second part of a Step(): computes the command. In real time, Choose() may be called for a step
+  /// without new values of the sensors.
   const arbitration_t& Choose(const ego_t& ego, const track_t& track,
                               const accel_command_t& automation, const driver_command_t& driver);
 
-  /// Emergency braking: may replace acceleration and mode of the command, whichever side drives.
-  /// The mode of a manoeuvre stays unchanged. Call Guard() once per decision, after Choose().
-  /// Step() calls Guard() itself.
+  /// Applies emergency braking: may replace acceleration and mode of the command, also while the
+  /// human drives. The mode of a manoeuvre stays unchanged. Call Guard() once per decision, after
+  /// Choose(). Step() calls Guard() itself.
   void Guard(const ego_t& ego, const track_t& track, arbitration_t& command);
 
   /// Whether the last decision wants the human to drive, also while the transfer is still in
@@ -71,8 +71,8 @@ class Arbitrator {
   bool must_ask() const {
     return take_over_ && take_over_->outcome().authority != take_over::Authority::kHuman;
   }
-  /// Whether a request is pending, or the host is in the manoeuvre that follows an unanswered
-  /// request. This manoeuvre needs only the odometry as input.
+  /// Whether a request to take over is pending, or the host is in a manoeuvre that TakeOver has
+  /// begun. This manoeuvre needs only the odometry as input.
   bool asks() const {
     return must_ask() && take_over_->outcome().state != take_over::TakeOverState::kAutomated;
   }
@@ -89,8 +89,8 @@ class Arbitrator {
   policies::EngagementRequest OwnRequest(const ego_t& ego, const track_t& track,
                                          const accel_command_t& automation,
                                          const driver_command_t& driver);
-  /// Handles an engagement request for a human who must be asked. @return false if the host is in
-  /// a manoeuvre
+  /// Passes an engagement request to TakeOver, for a human who must be asked. @return false if the
+  /// host is in a manoeuvre
   bool Ask(double wanted, const ego_t& ego, const track_t& track, const driver_command_t& driver,
            Transfer::Offers& offers);
 

@@ -18,7 +18,8 @@ namespace fogline::arbitrator {
 /// `probability`, the DoC is not this function of x, but the score itself.
 class ConflictMeter {
  public:
-  /// @throw InputError if measure_scale is `probability`, but the measure's score is no probability
+  /// @throw InputError if measure_scale is `probability`, but the measure's score is not a
+  /// probability
   explicit ConflictMeter(const Scenario& scenario);
 
   /// Adds the values of a step. `track` is for measures that need a prediction as witness. `track`
@@ -33,9 +34,9 @@ class ConflictMeter {
     score_ = measure_->Step(evidence);
   }
 
-  /// Conflict of all steps that were observed: z in m, or the score in the measure's own unit.
+  /// Conflict after the last observed step: z in m, or the score in the measure's own unit.
   double conflict() const { return measure_ ? score_ : doc_.conflict_m(); }
-  /// DoC of this value of conflict().
+  /// DoC that belongs to a value of conflict().
   double DocOf(double conflict) const {
     if (is_posterior_) return std::clamp(conflict, 0.0, 1.0);
     return conflict::DegreeOfConflict(conflict, slope_, centre_);

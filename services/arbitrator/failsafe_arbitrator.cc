@@ -7,16 +7,16 @@
 namespace fogline::arbitrator {
 namespace {
 
-// The automation can drive if three things are available: its command, the track from which the
+// The automation can drive if three inputs are available: its command, the track from which the
 // command is computed, and values of both sensors in pairs of one step. Without pairs there is no
-// Degree of Conflict, which says whether to trust the automation. The result is the worst state of
-// these inputs.
+// Degree of Conflict, so the arbitrator cannot judge the automation. The result is the worst state
+// of these inputs.
 Offer AutomationOffer(const ArbitratorInputs& inputs, InputState pairs) {
   return std::max({OfferOf(inputs.radar.state), OfferOf(inputs.lidar.state), OfferOf(pairs),
                    OfferOf(inputs.track.state), OfferOf(inputs.automation.state)});
 }
 
-// The newest message; an empty message if none has come.
+// The newest message; an empty message if no message has come.
 template <class M>
 const M& OrNone(const Heard<M>& input) {
   static const M kNone{};
@@ -56,7 +56,7 @@ const arbitration_t& FailsafeArbitrator::Step(const header_t& header,
     case Decision::kRegular:
       break;
     case Decision::kAutomation:
-      if (arbitrator_.asks()) break;  // the regular decision does not rely on the driver here
+      if (arbitrator_.asks()) break;  // the regular decision needs no driver here
       Drive(arbitration_t::AUTOMATION, inputs.automation.newest->acceleration_mps2);
       break;
     case Decision::kHuman:
@@ -86,8 +86,8 @@ void FailsafeArbitrator::Regular(const ArbitratorInputs& inputs, Offer automatio
 }
 
 // A person may be gone although the driver's process sends its messages: the seat is empty or
-// silent. The readiness is then 0. At the start of the run the first input of the
-// person may not have come yet.
+// silent. The readiness is then 0. At the start of the run, the first input of the person may not
+// have come yet.
 Offer FailsafeArbitrator::HumanOffer(std::int64_t step, const ArbitratorInputs& inputs) const {
   const Offer offer = OfferOf(inputs.driver.state);
   const bool absent = person_ && offer == kThere && inputs.driver.newest->readiness <= 0;

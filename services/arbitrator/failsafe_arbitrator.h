@@ -1,6 +1,6 @@
 // The arbitrator in real time: it decides in every step with the available inputs. If all inputs
-// are available, its result equals that of Arbitrator, bit by bit. If inputs are missing, the table
-// of failsafe_table.h decides.
+// are available, its result equals the result of Arbitrator, bit by bit. If inputs are missing, the
+// table of failsafe_table.h decides.
 #pragma once
 
 #include <optional>
@@ -31,7 +31,7 @@ class FailsafeArbitrator {
  public:
   explicit FailsafeArbitrator(const Scenario& scenario);
 
-  /// As in Arbitrator. If SetOnDemandInput() is not called, the last values apply.
+  /// See Arbitrator. If SetOnDemandInput() is not called, the last values apply.
   static bool UsesOnDemandInput(const Scenario& scenario) {
     return Arbitrator::UsesOnDemandInput(scenario);
   }
@@ -43,8 +43,8 @@ class FailsafeArbitrator {
   /// values, even if these are old.
   const arbitration_t& Step(const header_t& header, const ArbitratorInputs& inputs);
 
-  /// Starts the manoeuvre at the next step, independently of the inputs. Call it if the vehicle, or
-  /// an earlier instance of this role, is already in a manoeuvre.
+  /// Starts the manoeuvre at the next step, independently of the inputs. Call DemandMinimalRisk()
+  /// if the vehicle, or an earlier instance of this role, is already in a manoeuvre.
   void DemandMinimalRisk() { demanded_ = true; }
 
   /// Text about the fallback that replaces the arbitrator's regular decision; "" if there is no

@@ -20,7 +20,8 @@ class FusionRecovery {
  public:
   explicit FusionRecovery(const Scenario& scenario);
 
-  /// Call it once for each step that has values, in the order of steps.
+  /// Compares the track and the sensors of one step. Call Observe() once for each step that has
+  /// values, in the order of steps.
   void Observe(const radar_t& radar, const lidar_t& lidar, const track_t& track);
 
   /// Whether all steps of the last hand_back_s have agreed.

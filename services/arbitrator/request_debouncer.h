@@ -14,17 +14,17 @@ namespace fogline::arbitrator {
 ///     none  the human is wanted while DoC >= threshold
 ///     band  the human is wanted from DoC >= threshold until
 ///           DoC < threshold - min(band, threshold/2):
-///           a DoC that falls to 0 always returns authority, also if the threshold moves
+///           so a DoC of 0 always returns authority, also if the threshold changes
 ///     sprt  Wald's test (1945) of log odds: L += logit(DoC) - logit(threshold);
 ///           the human is wanted from L >= ln((1 - beta)/alpha) on,
 ///           the automation from L <= ln(beta/(1 - alpha)) on;
 ///           after every decision, a new test begins from L = 0
 ///
-/// Then a change waits until min_dwell_s since the last change has passed. The test's probabilities
-/// of error are alpha and beta if the DoC is a probability and its steps are independent. A DoC of
-/// a windowed z is no probability, and its steps depend on each other, so the test errs more often.
-/// If the DoC is a posterior, it already contains the evidence of all steps. Then L = logit(DoC) -
-/// logit(threshold), so that evidence does not count twice.
+/// Then a change of this result waits until min_dwell_s since the last change has passed. The
+/// test's probabilities of error are alpha and beta if the DoC is a probability and its steps are
+/// independent. The DoC of a windowed z is not a probability, and its steps depend on each other.
+/// So the test then makes more errors. If the DoC is a posterior, it already contains the evidence
+/// of all steps. Then L = logit(DoC) - logit(threshold), so that evidence does not count twice.
 ///
 /// With hand_back fusion, a return to the automation also waits until the track has recovered
 /// (fusion_recovery.h). A firm request is never delayed.
@@ -33,7 +33,7 @@ class RequestDebouncer {
   /// @param posterior whether the DoC is a posterior probability of all evidence so far
   RequestDebouncer(const TransferSection& section, double step_s, bool posterior = false);
 
-  /// Wanted authority of the human in this step, in [0, 1]. Call it once per decision.
+  /// Wanted authority of the human in this step, in [0, 1]. Call Step() once per decision.
   /// @param recovered whether the track has recovered; has an effect only with hand_back fusion
   double Step(const policies::EngagementRequest& request, double doc, bool recovered = true) {
     if (request.firm) return request.lambda_human;

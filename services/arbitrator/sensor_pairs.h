@@ -15,19 +15,20 @@
 
 namespace fogline::arbitrator {
 
-/// The newest pair and its health. The limits are those of HealthSection, in steps instead of time.
+/// The newest pair and its health. HealthSection gives the limits; here they count steps instead of
+/// periods of time.
 class SensorPairs {
  public:
   explicit SensorPairs(const HealthSection& section);
 
-  /// Takes the newest message of each sensor; nullptr if none has come. A message that was already
-  /// taken has no effect. Call Update() once per decision.
+  /// Takes the newest message of each sensor; nullptr if no message has come. A message that was
+  /// already taken has no effect. Call Update() once per decision.
   /// @param step at which the arbitrator decides
   /// @return the health of the pair
   InputState Update(std::int64_t step, const radar_t* radar, const lidar_t* lidar);
 
   bool has_pair() const { return pair_step_ >= 0; }
-  /// The step of the newest pair, -1 if there is none.
+  /// The step of the newest pair, -1 if there is no pair.
   std::int64_t newest() const { return pair_step_; }
   /// The newest pair. @pre has_pair()
   const radar_t& radar() const { return radar_; }
@@ -42,7 +43,7 @@ class SensorPairs {
   void Judge(std::int64_t step);
 
   HealthSection section_;
-  // The last messages of each sensor, at index step modulo kDepth; step -1: none.
+  // The last messages of each sensor, at index step modulo kDepth; an empty place has step -1.
   std::array<radar_t, kDepth> radars_{};
   std::array<lidar_t, kDepth> lidars_{};
   std::int64_t pair_step_ = -1;

@@ -12,7 +12,7 @@ namespace fogline::arbitrator {
 namespace {
 
 // k of the sigmoid. k equals the paper's slope of the DoC, but per duration instead of per metre.
-// The steepest change of the sigmoid is 2.53 times that of the linear ramp.
+// The steepest slope of the sigmoid is 2.53 times the slope of the linear ramp.
 constexpr double kSteepness = 10;
 
 double Logistic(double x) { return 1 / (1 + std::exp(-x)); }

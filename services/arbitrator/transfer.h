@@ -15,12 +15,12 @@ namespace fogline::arbitrator {
 ///     linear        lambda_H moves by at most step/duration
 ///     sigmoid       lambda_H = S(p), p moves by at most step/duration,
 ///                   S(p) = (s(k (p - 1/2)) - s(-k/2))/(s(k/2) - s(-k/2)), s the logistic function
-///     jerk_limited  as step, but the command changes by no more than jerk until it reaches a
+///     jerk_limited  like step, but with a limited jerk of the command until the command reaches a
 ///
 /// With every profile, the gate limits the command itself for gate_s after the beginning of a
 /// transfer. The gate also limits the change of the command until the command reaches a. A transfer
-/// begins when the wanted main authority (kMainAuthority) changes sides. Braking that is harder
-/// than yield_mps2 ends both limits at once.
+/// begins when the wanted authority passes kMainAuthority. Braking that is harder than yield_mps2
+/// ends both limits at once.
 ///
 /// If lambda_H is 0 or 1 and no limit applies, the command is the offer of the side with authority,
 /// bit by bit. services/arbitrator/README.md describes the return to the automation.

@@ -1,5 +1,5 @@
 // The algorithms of all roles, made from the rows of graph.h and the folders of services. Every
-// program that needs all algorithms takes them from here. The compiler names a row without a
+// program that needs all algorithms includes this file. The compiler reports a row without a
 // folder, and a folder without a row.
 #pragma once
 

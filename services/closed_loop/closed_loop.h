@@ -1,6 +1,6 @@
 // The whole experiment in one process without transport of messages, for sweeps, calibration and
 // tests. ClosedLoop calls the same Step functions as the processes, in the order of the graph
-// table. The results equal those of the distributed run.
+// table. The results equal the results of the distributed run.
 #pragma once
 
 #include <array>
@@ -19,7 +19,8 @@
 
 namespace fogline::closed_loop {
 
-/// The newest message of each kStep channel; before the first, a message in which all is zero.
+/// The newest message of each kStep channel; before the first message, a message whose fields are
+/// all zero.
 class Messages {
  public:
   Messages() {
@@ -91,7 +92,7 @@ class ClosedLoop {
   /// Resets the object for another run. This run equals the run of a new ClosedLoop(scenario) bit
   /// by bit. Restart() is cheaper than a new object, because an ACC with an unchanged section keeps
   /// its precomputed gains.
-  /// @throws as the constructor; Restart() must then succeed before the next Run()
+  /// @throws the exceptions of the constructor; Restart() must then succeed before the next Run()
   void Restart(const Scenario& scenario);
 
   /// Computes all steps, and calls `visit(const StepView&)` after each step. Call Run() once after
@@ -154,7 +155,8 @@ class ClosedLoop {
     static_assert(!(AlgorithmTraits<A>::kStarts || ...), "one role begins the steps");
     using Type = std::tuple<RoleOf<First>, RoleOf<A>...>;
     static Type Make(const Scenario& scenario) {
-      // Braces construct the roles in their order, so the first refusal is the same everywhere.
+      // Braces construct the roles in their order. So if several roles refuse the scenario, the
+      // first of these roles always throws the exception.
       return Type{RoleOf<First>(scenario), RoleOf<A>(scenario)...};
     }
   };
@@ -182,7 +184,8 @@ class ClosedLoop {
 /// Runs one scenario after another. Only one thread may use an object.
 class ReusedLoop {
  public:
-  /// One run; `visit` as in ClosedLoop::Run(). @throws as the constructor of ClosedLoop
+  /// Computes one run; ClosedLoop::Run() describes `visit`. @throws the exceptions of ClosedLoop's
+  /// constructor
   template <class Visit>
   void Run(const Scenario& scenario, Visit&& visit) {
     if (loop_) {
@@ -192,7 +195,7 @@ class ReusedLoop {
     }
     loop_->Run(0, visit);
   }
-  /// One run with `seed` in place of the scenario's seed.
+  /// Computes one run with `seed` in place of the scenario's seed.
   template <class Visit>
   void Run(const Scenario& scenario, std::int64_t seed, Visit&& visit) {
     scenario_ = scenario;

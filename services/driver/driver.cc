@@ -56,7 +56,7 @@ Driver::Driver(const Scenario& scenario)
 
 // In most modes other than AUTOMATION, the driver drives or has been asked to drive. A driver who
 // does not take over may still end the manoeuvre in which the car stops. A collision warning and
-// emergency braking draw the driver's attention to the road, too. In the locked modes, the driver
+// emergency braking also draw the driver's attention to the road. In the locked modes, the driver
 // has no task, because the car stands until the end of the run, or is in a manoeuvre that no driver
 // can end.
 void Driver::SetOnDemandInput(const arbitration_t& host) {

@@ -16,7 +16,7 @@
 
 namespace fogline::driver {
 
-/// By default, the driver is that of Sourav & Cheng 2024: the Intelligent Driver Model on the
+/// By default, the driver is the driver of Sourav & Cheng 2024: the Intelligent Driver Model on the
 /// ground truth. The driver perceives the truth perfectly and without delay, also in fog. The
 /// scenario sets the readiness. Each switch of scenario section `human` replaces a part of this
 /// driver by a more realistic model (services/models/driver).
@@ -34,13 +34,14 @@ class Driver {
 
   /// Whether a person drives. SetLiveInput() is then called before every Step().
   static bool UsesLiveInput(const Scenario& scenario) { return scenario.person.drives; }
-  /// Takes the input of the person; nullptr: no person is there. The next offer is a function of
+  /// Takes the input of the person; nullptr if no person drives. The next offer is a function of
   /// this input alone (services/models/driver/pedal_response.h). Without a person the pedals are
   /// released, and the readiness is 0.
   void SetLiveInput(const driver_input_t* input);
 
-  /// The acceleration that the driver offers. Call it in the order of steps. The driver has a
-  /// memory only with switch misjudges or loses_awareness. The result is valid until the next call.
+  /// The acceleration that the driver offers. Call Step() in the order of steps. The result depends
+  /// on earlier steps only with switch misjudges or loses_awareness. The result is valid until the
+  /// next call.
   const driver_command_t& Step(const truth_t& truth);
 
  private:
@@ -55,7 +56,7 @@ class Driver {
   HumanParameters errors_;  // errors of an aware driver
   PersonSection person_;
   models::PedalResponse pedals_;
-  double readiness_;  // of a person who is there
+  double readiness_;  // readiness of a person who drives
   double step_s_;
   models::DriverTask task_ = models::DriverTask::kMonitors;
   std::optional<std::int64_t> last_step_;

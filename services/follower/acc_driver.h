@@ -21,7 +21,7 @@ class AccDriver final : public CarDriver {
 
   /// Resets the object to the state of a new AccDriver(scenario). Restart() is cheaper than a new
   /// object if the ACC's parameters are equal.
-  /// @throws as the constructor
+  /// @throws the exceptions of the constructor
   void Restart(const Scenario& scenario) {
     controller_.Restart(scenario.follower, scenario.step_s, scenario.follower_vehicle.model);
     aeb_ = AebOf(scenario.followers);

@@ -10,7 +10,7 @@
 
 namespace fogline::follower {
 
-/// The emergency braking of a following car; nullopt if the cars have none.
+/// The emergency braking of a following car; nullopt if the cars have no emergency braking.
 inline std::optional<models::Aeb> AebOf(const FollowersSection& followers) {
   if (!followers.aeb.enabled) return std::nullopt;
   return models::Aeb(followers.aeb);
@@ -25,7 +25,7 @@ class CarDriver {
 
   virtual ~CarDriver() = default;
 
-  /// The driver's action in this step. Call it once per step, in the order of steps.
+  /// The driver's action in this step. Call Step() once per step, in the order of steps.
   /// @param now the truth, with a car ahead
   /// @param visibility_m meteorological optical range
   virtual Action Step(std::int64_t step, const models::Situation& now, double visibility_m) = 0;

@@ -24,7 +24,7 @@ class Follower {
 
   /// Resets the object to the state of a new Follower(scenario). Restart() is cheaper than a new
   /// object if an ACC's parameters are equal.
-  /// @throws as the constructor; Restart() must then succeed before the next Step()
+  /// @throws the exceptions of the constructor; Restart() must then succeed before the next Step()
   void Restart(const Scenario& scenario);
 
   /// One command for each following car in `truth`, nearest to the host first.

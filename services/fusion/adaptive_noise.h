@@ -20,14 +20,14 @@ struct CorrectionTrace {
 ///     residual    R <- max(R_0, a R + (1 - a) (e^2 + H P+ H'))       Mohamed & Schwarz 1999;
 ///                                                                    Akhlaghi, Zhou & Huang 2017
 ///
-/// In a filter whose R is right, both terms in brackets have the mean R. The variance of d is S = H
-/// P- H' + R, the variance of e is R^2 / S, and H P+ H' is R - R^2 / S.
+/// If the R of the filter is right, both terms in brackets have the mean R. The variance of d is S
+/// = H P- H' + R, the variance of e is R^2 / S, and H P+ H' is R - R^2 / S.
 ///
 /// R never falls below the assumed variance R_0, for three reasons. The term of the innovation may
-/// be negative. A sensor that is wrong but steady pulls the estimate to its side. Then the
-/// innovations of this sensor are small, and without the limit the filter would trust this sensor
-/// more and more. And the assumed variance covers errors that are not white, such as a constant
-/// offset.
+/// be negative. A wrong sensor with a steady error shifts the estimate towards its own values. The
+/// innovations of this sensor are then small. Without the limit, the filter would give this sensor
+/// more and more weight. And the assumed variance covers errors that are not white, such as a
+/// constant offset.
 class AdaptiveNoise {
  public:
   /// @param assumed_variance R_0, above 0
@@ -37,8 +37,8 @@ class AdaptiveNoise {
   /// R for the next correction.
   double variance() const { return variance_; }
 
-  /// Call Learn() after each correction by this value, and only then. A value that the filter does
-  /// not use says nothing about the noise of the values that it uses.
+  /// Call Learn() after each correction by this value, and only then. The values that the filter
+  /// refuses do not show the noise of the values that it uses.
   void Learn(const CorrectionTrace& correction);
 
  private:

@@ -41,9 +41,9 @@ double Ekf::InnovationVariance(const Jacobian& jacobian, double noise_variance) 
   return jacobian.dot(jacobian * covariance_.topLeftCorner<2, 2>()) + noise_variance;
 }
 
-// Without a lateral offset a value depends on one state alone, and only that column of I - K H
-// differs from the column of I. The function leaves out all zeros, so it costs half as much as the
-// general one. Both give equal results, bit by bit.
+// Without a lateral offset, a value depends on one state alone. Then only the column of this state
+// in I - K H differs from the column of I. The function leaves out all zeros, so it costs half as
+// much as CorrectByBoth(). Both functions give equal results, bit by bit.
 template <int kState>
 void Ekf::CorrectBy(double slope, double innovation, double noise_variance) {
   const double variance = slope * (slope * covariance_(kState, kState)) + noise_variance;
@@ -77,9 +77,9 @@ void Ekf::Correct(const Jacobian& jacobian, double innovation, double noise_vari
   }
 }
 
-// The third column of I - K H is that of I, because no sensor measures a_p. So both products leave
-// out its zeros. Each sum has the order a + (b + c), as a product of whole matrices has: another
-// order would change the last bit of results.
+// The third column of I - K H equals the third column of I, because no sensor measures a_p. So both
+// products leave out the zeros of this column. Each sum has the order a + (b + c), as in a product
+// of whole matrices. Another order would change the last bit of results.
 void Ekf::CorrectByBoth(const Jacobian& jacobian, double innovation, double noise_variance) {
   const Eigen::Vector3d gain = covariance_.leftCols<2>() * jacobian.transpose() /
                                InnovationVariance(jacobian, noise_variance);

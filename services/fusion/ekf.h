@@ -22,7 +22,7 @@ namespace fogline::fusion {
 class Ekf {
  public:
   using State = Eigen::Vector3d;
-  using Covariance = Eigen::Matrix3d;  // order of State; units: products of those of State
+  using Covariance = Eigen::Matrix3d;  // order of State; units: products of State's units
   /// Derivative of one measured value with respect to [d, dv]. No sensor measures a_p.
   using Jacobian = Eigen::RowVector2d;
 
@@ -40,8 +40,8 @@ class Ekf {
   double InnovationVariance(const Jacobian& jacobian, double noise_variance) const;
 
   /// Corrects the estimate by one measured value. `innovation` is measured minus predicted. The
-  /// function uses Joseph's form, P = (I - K H) P (I - K H)' + K R K'. This form keeps P positive
-  /// definite in spite of rounding in K (Bucy & Joseph 1968).
+  /// function uses Joseph's form, P = (I - K H) P (I - K H)' + K R K'. With this form, P stays
+  /// positive definite even if K has rounding errors (Bucy & Joseph 1968).
   void Correct(const Jacobian& jacobian, double innovation, double noise_variance);
 
   const State& state() const { return state_; }

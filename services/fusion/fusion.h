@@ -1,6 +1,6 @@
 // Fuses radar and LiDAR into one estimate of the car ahead. The fusion knows the geometry of the
-// sensors, but does not know whether there is fog. So the fusion trusts the LiDAR in fog, too
-// (unless gating is on). The experiment is about this weakness.
+// sensors, but does not know whether there is fog. So the fusion also uses the LiDAR's wrong values
+// in fog, unless gating refuses them. The experiment studies this weakness.
 #pragma once
 
 #include <array>
@@ -19,14 +19,14 @@ namespace fogline::fusion {
 
 /// Extended Kalman filter (ekf.h) over radar range, radar range rate and LiDAR range, corrected by
 /// one value after another in this order. Each value is compared with the state that the earlier
-/// values have corrected. The noises of the values are independent, so without lateral offsets the
-/// result is that of a joint correction. Missing values and values that the gate refuses are
-/// skipped.
+/// values have corrected. The noises of the values are independent. So without lateral offsets, the
+/// result equals the result of a joint correction. Missing values and values that the gate refuses
+/// are skipped.
 ///
-/// The assumed noise is that of the scenario's section `fusion`. The filter does not use the
-/// standard deviations that the sensors state (range_std_m and the like), because a sensor does not
-/// know when fog deceives it. With fusion.adaptive_noise, the filter itself estimates the noise of
-/// each value from the corrections by this value (adaptive_noise.h).
+/// The scenario's section `fusion` gives the assumed noise. The filter does not use the standard
+/// deviations that the sensors state (such as range_std_m), because a sensor does not know when fog
+/// makes its value wrong. With fusion.adaptive_noise, the filter itself estimates the noise of each
+/// value from the corrections by this value (adaptive_noise.h).
 ///
 /// A policy that selects sensors (services/decision/policies) first judges each step's values
 /// against the prediction. The values of a sensor that the policy does not select are compared with
@@ -41,16 +41,16 @@ class Fusion {
   /// Takes only the gap from the truth. Only the policy uses this gap.
   void SetOnDemandInput(const truth_t& truth) { true_gap_m_ = truth.host_gap_m; }
 
-  /// The track of this step. Call it once per step, in the order of steps, beginning with the first
-  /// step. `ego` has the host's acceleration during the step that ended here. The result is valid
-  /// until the next call.
+  /// The track of this step. Call Step() once per step, in the order of steps, beginning with the
+  /// first step. `ego` has the host's acceleration during the step that ended here. The result is
+  /// valid until the next call.
   const track_t& Step(const ego_t& ego, const radar_t& radar, const lidar_t& lidar);
 
  private:
   /// Values in order of use; index of track_t's innovation, innovation_variance and usage.
   enum Value : std::size_t { kRadarRange, kRadarRangeRate, kLidarRange, kNumValues };
 
-  /// The prediction of a measured value from the present estimate.
+  /// A measured value as predicted from the present estimate.
   struct Expectation {
     double value;
     Ekf::Jacobian jacobian;

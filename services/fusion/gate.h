@@ -8,15 +8,15 @@ namespace fogline::fusion {
 /// Gate on the normalised innovation squared of one measured value, nu^2 / S. This value is
 /// chi-square distributed with one degree of freedom while the filter's model is valid (Bar-Shalom,
 /// Li & Kirubarajan 2001, section 5.4). After `reopen_after` refusals in a row, a change of the
-/// scene is more likely than failed measurements. So the gate then stays open until a value is
-/// inside the gate again. A gate that never reopens refuses every value outside of it.
+/// scene is more likely than failed measurements. So the gate then admits every value until a value
+/// is inside the limit again. A gate that never reopens refuses every value outside the limit.
 class Gate {
  public:
   /// @param probability probability that a good value is inside the gate, in (0, 1)
   /// @param reopen_after at least 0; 0: the gate never reopens
   Gate(double probability, std::int64_t reopen_after);
 
-  /// Whether to use a value with this normalised innovation squared. Call it once per value.
+  /// Whether to use a value with this normalised innovation squared. Call Admits() once per value.
   bool Admits(double normalised_innovation_squared);
 
   /// Largest normalised innovation squared inside the gate.

@@ -8,9 +8,9 @@
 //   fog before R: P_f = K beta J                                     beta: backscatter in 1/(m sr)
 //   J = max over R' of  integral over [R' - L, R'] of  sin^2(pi (R' - r) / L) g(r) dr      in 1/m
 //
-// K is the same in both formulas, because the target's delta pulse has the factor 2/c here. Hahner
-// et al. include this factor in their Gamma (their Gamma of 1e-6 is 150 here). The maximum of the
-// fog's echo lies at r* = R' - L / 2.
+// K is the same in both formulas, because the delta pulse of the target has the factor 2/c in this
+// file. Hahner et al. include this factor in their Gamma (their Gamma of 1e-6 is 150 here). The
+// maximum of the fog's echo lies at r* = R' - L / 2.
 #pragma once
 
 #include "scenario/sections/sensing.h"
@@ -42,10 +42,10 @@ struct FogPeak {
 /// pulse, J is L g(r*) / 2, and g is largest at r*.) extinction_pm >= 0.
 FogPeak FindFogPeak(const BeamOptics& optics, double extinction_pm);
 
-/// Beta(2, 20) distributed number from two uniform numbers in (0, 1): the second smallest of 21
-/// uniform numbers. The smallest number is 1 - u^(1/21). The second smallest divides the rest of
-/// the interval like the smallest of 20 numbers (Devroye 1986, V.3). The method is exact and needs
-/// no rejection.
+/// Beta(2, 20) distributed number from two uniform numbers in (0, 1). Beta(2, 20) is the
+/// distribution of the second smallest of 21 uniform numbers. The smallest number is 1 - u^(1/21).
+/// In the interval above it, the second smallest number is distributed like the smallest of 20
+/// uniform numbers (Devroye 1986, V.3). The method is exact and needs no rejection.
 double Beta2And20(double u, double v);
 
 }  // namespace fogline::lidar

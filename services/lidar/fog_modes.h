@@ -1,5 +1,5 @@
-// The ways in which a LiDAR fails in fog, each with its share of the steps. The shares do not come
-// from physics.
+// The modes of a LiDAR in fog, each with its share of the steps. The shares are parameters, not
+// results of physics.
 #pragma once
 
 #include <cstdint>
@@ -22,7 +22,7 @@ enum class FogMode : std::uint8_t {
 ///                                        1 from missing_beyond_m on, linear between them
 ///     near echo  l near_echo_share
 ///     biased     l biased_share
-///     right      the rest
+///     right      all other steps
 ///
 /// Steps are independent. A share of 1 gives the pure mode at level 1.
 class FogModes {

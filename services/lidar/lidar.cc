@@ -99,7 +99,7 @@ std::optional<Lidar::Echo> Lidar::MedianEcho(const truth_t& truth, double target
   CollectEchoes(truth, target_m);
   if (2 * static_cast<std::int64_t>(echoes_.size()) < lidar_.beam.beams) return std::nullopt;
   // If the number of echoes is even, the median is the nearer of the two middle echoes. So the
-  // range is always that of one echo.
+  // reported range is always the range of one echo.
   const auto median = echoes_.begin() + static_cast<std::ptrdiff_t>((echoes_.size() - 1) / 2);
   std::nth_element(echoes_.begin(), median, echoes_.end());
   // The variance of the time of arrival has a part proportional to 1 / SNR. At the detection

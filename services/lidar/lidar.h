@@ -1,6 +1,6 @@
-// The host's LiDAR. In each step, the LiDAR measures one distance of the preceding car, or none.
-// The LiDAR does not track or filter, and cannot distinguish an echo of the fog from an echo of the
-// car.
+// The host's LiDAR. In each step, the LiDAR measures the distance of the preceding car, or has no
+// value. The LiDAR does not track or filter, and cannot distinguish an echo of the fog from an echo
+// of the car.
 #pragma once
 
 #include <compare>
@@ -22,21 +22,22 @@ namespace fogline::lidar {
 ///     none   d = r
 ///     bias   d = r - fog.bias_m * fog level              (Sourav & Cheng 2024)
 ///     beam   d = median over the beams' echoes           (services/lidar/fog_beam.h)
-///     modes  d = r, or r - fog.bias_m, or an echo of the fog, or none, each in a share of the
+///     modes  d = r, or r - fog.bias_m, or an echo of the fog, or no value, each in a share of the
 ///            steps                                       (services/lidar/fog_modes.h)
 /// On each beam the echo powers of target and fog are lognormal and independent. The stronger of
-/// the two is the beam's echo if it exceeds the detection threshold. The fog's echo lies at r* plus
-/// a Beta(2, 20) distributed scatter, never behind the target. At least half of the beams must have
-/// an echo. So a single beam and the LiDAR have the same range at which they detect with
-/// probability 1/2, for any number of beams. A minority of the beams cannot determine the result.
+/// these two echoes is the beam's echo if its power exceeds the detection threshold. The fog's echo
+/// lies at r* plus a Beta(2, 20) distributed scatter, never behind the target. At least half of the
+/// beams must have an echo. So a single beam and the LiDAR have the same range at which they detect
+/// with probability 1/2, for any number of beams. A minority of the beams cannot determine the
+/// result.
 class Lidar {
  public:
-  /// Indices of the draws of stream kLidar within a step.
+  /// Indices of the random numbers of stream kLidar within a step.
   static constexpr std::uint32_t kNoiseDraw = 0;        // Normal2: range, second unused
   static constexpr std::uint32_t kDropoutDraw = 1;      // Uniform2: first number, second unused
   static constexpr std::uint32_t kModeDraw = 2;         // Uniform2: first number, second unused
   static constexpr std::uint32_t kModeScatterDraw = 3;  // Uniform2: scatter of a near echo
-  /// Indices of the draws of stream kLidarBeam within a step, for beam n from 0.
+  /// Indices of the random numbers of stream kLidarBeam within a step, for beam n, counted from 0.
   static constexpr std::uint32_t PowerDraw(std::uint32_t n) { return 2 * n; }  // target, fog
   static constexpr std::uint32_t ScatterDraw(std::uint32_t n) { return 2 * n + 1; }
 

@@ -43,7 +43,7 @@ struct WrittenLog {
 
 /// A killed recorder leaves at most kRingSteps incomplete steps and a torn event after the last
 /// complete step. The recorder has not reported these bytes. All these bytes lie within the last
-/// kTailBytes of the log. 128 KiB for each channel are 87 of its largest messages.
+/// kTailBytes of the log. The 128 KiB of each channel have space for 87 of its largest messages.
 inline constexpr std::int64_t kTailBytes = static_cast<std::int64_t>(kNumChannels) * (128 << 10);
 
 /// Appends events to a new file, or continues an old file after a given LogHead.
@@ -60,17 +60,17 @@ class EventLogWriter {
 
   /// @throws std::runtime_error, for example if the disk is full
   void Write(std::string_view channel, std::int64_t utime, runtime::Bytes data);
-  /// Hands all bytes written so far to the operating system, so that they survive a kill -9 of this
-  /// process.
+  /// Hands all bytes written so far to the operating system, so that these bytes are not lost if
+  /// this process is killed (kill -9).
   /// @throws std::runtime_error
   void Flush();
   /// Bytes of all events so far, including the events that Flush() has not handed over yet.
   std::int64_t size() const { return size_; }
   /// The bytes of all events so far (size()), and the number of these events.
   LogHead head() const { return {.bytes = size_, .events = events_}; }
-  /// The part of the log that was handed to the operating system. In a continued log this part
-  /// begins with the last kTailBytes of the old log, as they were found in the file. The earlier
-  /// writer has reported the bytes before this part.
+  /// The part of the log that was handed to the operating system. In a continued log, this part
+  /// begins with the last kTailBytes of the old log, as read from the file. The earlier writer has
+  /// reported the bytes before this part.
   const WrittenLog& written() const { return written_; }
 
  private:
@@ -95,10 +95,10 @@ void AppendEvent(std::int64_t number, std::string_view channel, std::int64_t uti
                  runtime::Bytes data, std::vector<std::uint8_t>& bytes);
 
 /// Appends an event behind the last event of a log.
-/// @param before all events that the log is known to have
+/// @param before the known events of the log
 /// @return `before` and the new event
-/// @throws std::runtime_error if the event cannot be written; the error says whether the log is as
-///     before, or contains a part of the event
+/// @throws std::runtime_error if the event cannot be written; the error says whether the log is
+///     unchanged, or contains a part of the event
 LogHead AppendToLog(const std::filesystem::path& log, const LogHead& before,
                     std::string_view channel, std::int64_t utime, runtime::Bytes data);
 
@@ -113,8 +113,8 @@ struct Event {
   runtime::Bytes data;
 };
 
-/// The event at the beginning of `bytes`; nullopt if there is none.
-/// @param why is set to the reason if there is no event
+/// The event at the beginning of `bytes`; nullopt if there is no whole event.
+/// @param why is set to the reason if there is no whole event
 std::optional<Event> ParseEvent(runtime::Bytes bytes, std::string_view& why);
 /// The size of an event in a file, in bytes.
 std::size_t SizeInFile(const Event& event);
@@ -139,8 +139,8 @@ class EventLogReader {
   std::optional<Event> Next();
   /// After this call, Next() continues after `head`.
   void GoTo(const LogHead& head);
-  /// What is wrong with the end of the file; "" if nothing is wrong. Known once Next() has reached
-  /// the end.
+  /// Description of the torn tail; "" if there is no torn tail. Known after Next() has reached the
+  /// end.
   const std::string& torn() const { return torn_; }
   /// Whether the file has no bytes.
   bool empty() const { return content_.empty(); }

@@ -26,8 +26,9 @@ void VisitLatency(const InputLatency& l, Visitor&& visit) {
   visit("max_us", l.max_us, "us", "the same: longest");
 }
 
-/// A seat repeats its newest measurement in each message, and sends messages also without a new
-/// input. So a measurement counts once for each new input of the device (driver_input_t.time_us).
+/// Collects the latencies of a run. A seat repeats its newest measurement in each message, and also
+/// sends messages without a new input. So a measurement counts only in a message with a new input
+/// of the device (a new driver_input_t.time_us).
 class InputLatencyAccumulator {
  public:
   /// Adds the next DRIVER_INPUT of the log.

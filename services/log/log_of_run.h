@@ -1,4 +1,4 @@
-// The file of a log while its run writes and reads it.
+// The file of a log during the run that writes it.
 #pragma once
 
 #include <filesystem>
@@ -16,7 +16,7 @@ namespace fogline::log {
 /// destructor restores the older log.
 class LogOfRun {
  public:
-  /// For a run without a log.
+  /// An object for a run without a log.
   LogOfRun() = default;
   /// @throws InputError if another run is writing the log, or if the log cannot be written
   explicit LogOfRun(const std::filesystem::path& log);
@@ -32,8 +32,8 @@ class LogOfRun {
   LogOfRun(const LogOfRun&) = delete;
   LogOfRun& operator=(const LogOfRun&) = delete;
 
-  /// Removes the older log. Call it when the log has its first step. From then on, a killed run
-  /// leaves one log and no other file. Later calls do nothing.
+  /// Removes the older log. Call RemoveOlder() when the log has its first step. After that, a
+  /// killed run leaves one log and no other file. Later calls have no effect.
   void RemoveOlder();
 
   /// "" for a run without a log.
@@ -42,12 +42,12 @@ class LogOfRun {
  private:
   std::filesystem::path path_;
   std::unique_ptr<FileLock> lock_;
-  std::filesystem::path older_;  // the older log; "" if there was none
+  std::filesystem::path older_;  // the older log; "" if there was no older log
 };
 
 /// Looks for the older log that a killed run has left beside `log`. If that run has written no step
-/// into `log`, the function restores the older log. The files are then the same as after a normal
-/// end of the run.
+/// into `log`, the function restores the older log. A run that ends normally without a step leaves
+/// the same files.
 /// @param option the command line option that names the log, such as "--log"
 /// @param patience how long to wait until the processes of the killed run have ended
 /// @return one line that says what was found; "" if there is no older log
@@ -55,7 +55,8 @@ class LogOfRun {
 std::string TakeBackOlder(const std::filesystem::path& log, std::string_view option,
                           Duration patience = Duration::zero());
 
-/// Whether a log contains more than a scenario and a seal. @throws InputError if it is no event log
+/// Whether a log contains more than a scenario and a seal. @throws InputError if the file is not an
+/// event log
 bool HasSteps(const std::filesystem::path& log);
 
 }  // namespace fogline::log

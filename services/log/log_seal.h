@@ -36,20 +36,21 @@ bool IsLogSeal(const Event& event);
 LogSeal ReadLogSeal(const Event& event, const LogHead& before);
 
 /// Fills in `seal.check`, and appends the seal to a log.
-/// @param before all events that the log is known to have
+/// @param before the known events of the log
 /// @param key signs the seal; nullptr: no signature
-/// @throws std::runtime_error as AppendToLog()
+/// @throws std::runtime_error of AppendToLog()
 void SealLog(const std::filesystem::path& log, const LogHead& before, log_seal_t seal,
              const runtime::SigningKey* key);
 
-/// Why a run is not the sealed run; "" if it is. @param steps the number of steps of the digest
+/// Why a run is not the sealed run; "" if it is the sealed run. @param steps the number of steps of
+/// the digest
 std::string WhyNotSealedRun(const LogSeal& seal, const std::string& digest, std::int64_t steps,
                             const std::string& scenario_hash);
 
 /// Why a file is not the sealed file; "" if it is the sealed file. A copy (LogSeal::copied) has
 /// other event times, so its bytes differ from the sealed bytes, and the result is "". If the bytes
-/// of a copy are equal to the sealed bytes, the time of the seal was changed. The result then says
-/// so.
+/// of a copy are equal to the sealed bytes, the time of the seal was changed, and the result states
+/// this.
 std::string WhyNotSealedFile(const LogSeal& seal, const EventLogReader& file);
 
 /// The result of verifying a seal's signature.

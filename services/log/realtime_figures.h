@@ -29,7 +29,7 @@ struct RealtimeFigures {
   // Steps that a role skipped, or computed without a due input.
   std::int64_t deadline_misses = 0;
   std::int64_t late_messages = 0;    // messages that came too late to be used
-  std::int64_t missed_messages = 0;  // messages that are not in the log, published or not
+  std::int64_t missed_messages = 0;  // messages that are not in the log, whether published or not
   // At least this number of the missed messages was published. Messages that came too late for the
   // recorder do not count here.
   std::int64_t unlogged_messages = 0;

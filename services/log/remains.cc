@@ -46,7 +46,7 @@ class Follower {
   const Remains& remains() const { return remains_; }
 
  private:
-  /// Whether the event stands beside the steps of a run in real time. (The STATUS of a role that
+  /// Whether the event belongs to a run in real time, but to no step. (The STATUS of a role that
   /// has computed no step has step -1.)
   bool IsBeside(const Event& event) const {
     constexpr std::array kBeside{ChannelOf<status_t>().name, ChannelOf<driver_input_t>().name,

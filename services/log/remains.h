@@ -1,5 +1,5 @@
-// Finds the steps that the log of an unfinished run contains, in a time that does not depend on the
-// length of the log.
+// Finds the steps that the log of an unfinished run contains. Usually the time for this does not
+// depend on the length of the log.
 #pragma once
 
 #include <cstdint>
@@ -27,7 +27,7 @@ struct LogFront {
 };
 
 /// Reads the scenario of a log, or the part of the scenario that the log contains.
-/// @throws InputError if the file is no event log
+/// @throws InputError if the file is not an event log
 LogFront ReadFront(const std::filesystem::path& file);
 
 /// The steps of the run that a log contains.
@@ -41,11 +41,11 @@ struct Remains {
 /// Finds the last complete step of a log that a recorder was writing. Usually the end of the file
 /// shows this step. Otherwise the function reads the log from its beginning to the first event that
 /// does not continue the log.
-/// @param front the front of the log, with the whole scenario
-/// @param alive is called with the number of steps so far, from time to time while the function
+/// @param front scenario and graph of the log; the scenario must be complete
+/// @param alive is called repeatedly, with the number of steps so far, while the function
 ///     reads the whole log
 /// @param tail number of bytes at the end of the file that the function reads first
-/// @throws InputError if it is no event log
+/// @throws InputError if the file is not an event log
 Remains ReadRemains(const std::filesystem::path& file, const LogFront& front,
                     const std::function<void(std::int64_t steps)>& alive = {},
                     std::int64_t tail = kTailBytes);
@@ -53,7 +53,7 @@ Remains ReadRemains(const std::filesystem::path& file, const LogFront& front,
 /// An interrupted run leaves some incomplete steps, a torn event or a seal after the complete steps
 /// of its log. For a log in lockstep, this function describes any other bytes after the complete
 /// steps; "" if there are no other bytes.
-/// @throws InputError if it is no event log
+/// @throws InputError if the file is not an event log
 std::string OddEnd(const std::filesystem::path& file, const LogFront& front,
                    const Remains& remains);
 

@@ -22,7 +22,7 @@
 namespace fogline::log {
 namespace {
 
-/// The channels of a log of which a step lacks its message.
+/// The channels, among `channels`, whose messages the step lacks.
 runtime::ChannelSet LackingIn(const StepMessages& messages, const runtime::ChannelSet& channels) {
   runtime::ChannelSet lacks = channels;
   for (std::size_t i = 0; i < kNumChannels; ++i) {
@@ -44,7 +44,7 @@ class RunLogReader::Assembler {
 
   const StepMessages* Next() {
     if (over_) return nullptr;
-    over_ = true;  // remains if an exception leaves this function
+    over_ = true;  // stays true if an exception leaves this function
     const StepMessages* const step = ReadStep();
     over_ = step == nullptr;
     return step;
@@ -53,17 +53,17 @@ class RunLogReader::Assembler {
   const RunLog& run() const { return run_; }
   std::int64_t step() const { return next_ - 1; }
   bool InTail() const { return tail_ && step() >= *tail_; }
-  /// Whether gaps are read; a run in real time has its own rule for them.
+  /// Whether gaps are read. A run in real time has another rule for missing messages.
   bool ReadsGaps() const { return options_.gaps && !realtime_; }
 
  private:
   // In real time, a message may come in the log after messages of later steps. The later steps are
   // at most this many steps ahead.
   static constexpr std::int64_t kLongestOverdue = 64;
-  // If gaps are read, at most this many steps wait for their missing messages. A logger may get a
-  // message late, after it was sent again, and far later steps by then.
+  // If gaps are read, at most this many steps wait for their missing messages. A logger may receive
+  // a repeated message after messages of far later steps.
   static constexpr std::size_t kMostOpen = 4096;
-  // A step that is further ahead than this was not sent by the run.
+  // A message of a step that is further ahead than this number does not belong to the run.
   static constexpr std::int64_t kLongestGap = 1'000'000;
 
   struct Pending {
@@ -105,7 +105,7 @@ class RunLogReader::Assembler {
     return true;
   }
 
-  /// The messages of the next step, which may have no messages.
+  /// Takes the messages of the next step; a step may have no messages.
   StepMessages TakeStep() {
     begun_ = true;
     const auto next = pending_.begin();
@@ -140,7 +140,7 @@ class RunLogReader::Assembler {
   void FindTail() {
     if (!ReadsGaps() || pending_.empty()) return;
     const Pending& newest = pending_.rbegin()->second;
-    // The run has ended with this step, so messages that are missing there are gaps.
+    // The run has ended with this step, so the missing messages of this step are gaps.
     if (runtime::Decode(newest.messages[IndexOf<truth_t>()], truth_) && truth_.last) return;
     auto step = pending_.rbegin();
     while (step != pending_.rend() && step->second.there != run_.channels) ++step;
@@ -187,7 +187,7 @@ class RunLogReader::Assembler {
     if (reader_.empty()) Refuse("the log is empty: no run has begun to write it");
     FinishScenario();
     run_.digest = run_.gaps.Any() ? "" : digest_.Hex();
-    foreign_ -= others_.Forget(run_.run_id);  // messages before the log named its run
+    foreign_ -= others_.Forget(run_.run_id);  // messages of this run before its id was known
     run_.other_runs = others_.all();
     run_.events = reader_.head();
     const std::string alteration = Alteration();
@@ -306,7 +306,7 @@ class RunLogReader::Assembler {
     if (const auto priority = ReadPriority(event, run_.run_id)) realtime_->Add(*priority);
   }
 
-  /// The recorder writes the graph before all steps.
+  /// Takes the graph. The recorder writes the graph before all steps.
   void TakeGraph(const Event& event) {
     if (parts_.empty() || run_.steps > 0 || !pending_.empty()) return;
     try {
@@ -330,7 +330,7 @@ class RunLogReader::Assembler {
   void ExpectRealtime(const run_t& run) {
     const Scenario scenario = ParseLoggedScenario(parts_.Text(), file_);
     steps_ = scenario.steps;
-    // A message that came before the scenario can claim any step.
+    // A message that came before the scenario can have any step number.
     pending_.erase(pending_.lower_bound(steps_), pending_.end());
     realtime_.emplace(run.pace, std::llround(scenario.step_s * 1e6), scenario.steps);
   }
@@ -348,7 +348,8 @@ class RunLogReader::Assembler {
   }
 
   /// The payload of a message, without the signature that lcm-logger also writes. This reader
-  /// cannot verify signatures. In a signed run the payload of a message without one is empty here.
+  /// cannot verify signatures. In a signed run, the result for a message without a signature is
+  /// empty.
   runtime::Bytes Payload(runtime::Bytes data) const {
     if (!is_signed_) return data;
     return runtime::LooksSigned(data) &&
@@ -367,21 +368,21 @@ class RunLogReader::Assembler {
   StepMessages current_{};
   std::int64_t next_ = 0;             // the step after current_
   bool begun_ = false;                // whether a step was given
-  std::int64_t first_steps_ = 0;      // complete steps before the first gap: those of the digest
+  std::int64_t first_steps_ = 0;      // complete steps before the first gap, in the digest
   std::optional<std::int64_t> tail_;  // the first step of the tail, if there is one
-  std::string tail_lacks_;            // the channels that it lacks
+  std::string tail_lacks_;            // the channels that this step lacks
   std::size_t guess_ = 0;
   std::int64_t foreign_ = 0;
-  std::int64_t astray_ = 0;  // steps that are too far from the others
+  std::int64_t astray_ = 0;  // steps that are too far from the other steps
   OtherRuns others_;
   bool has_run_;              // whether run_.run_id is known
-  std::string status_hash_;   // the scenario's hash as a role has told it; "" if not known
+  std::string status_hash_;   // the scenario's hash in a role's STATUS; "" if not known
   bool is_signed_ = false;    // whether the run's messages are signed
-  bool other_types_ = false;  // whether the writer's message types are not those of this build
+  bool other_types_ = false;  // whether the writer's message types differ from those of this build
   std::string conflict_;      // names the first step with two different messages of one channel
   truth_t truth_{};
   bool last_ = false;
-  bool over_ = false;   // no further step comes: the log has ended, or an error was thrown
+  bool over_ = false;   // no further step follows: the log has ended, or an error was thrown
   bool ended_ = false;  // the log has no further event
   std::optional<RealtimeAccumulator> realtime_;
   std::int64_t steps_ = 0;  // number of steps of the scenario, in real time

@@ -31,23 +31,23 @@ struct RunLog {
   std::string scenario_hash;
   runtime::ChannelSet channels;  // the channels of a step (log_graph.h)
   std::int64_t steps = 0;        // number of complete steps
-  // Digest of these steps; "" if the log has gaps and they were read (ReadOptions::gaps).
+  // Digest of the complete steps; "" if the log has gaps and they were read (ReadOptions::gaps).
   std::string digest;
-  // Whether four conditions are met: the log ends with the last step of the run, the log was not
-  // changed after it was sealed, no event is torn, and no two messages of one step and channel
-  // differ. In lockstep, all messages must be in the log, too.
+  // Whether these conditions are met: the scenario is known, the log ends with the last step of the
+  // run, the log was not changed after it was sealed, no event is torn, and no two messages of one
+  // step and channel differ. In lockstep, the log must also have all messages.
   bool ended = false;
   // Whether `ended` is true and, in real time, no published message is known to be missing.
   bool complete = false;
   // Why the log is not complete, or what was ignored; "" if there is no such remark.
   std::string note;
   LogHead events{};                         // all whole events of the file
-  std::optional<LogSeal> seal;              // none in a log of lcm-logger or of an interrupted run
+  std::optional<LogSeal> seal;              // nullopt if the log has no seal
   bool altered = false;                     // the log differs from its seal
   std::optional<RealtimeFigures> realtime;  // set for a run in real time
   LogGaps gaps;                             // in lockstep, if they were read (ReadOptions::gaps)
   std::vector<RunInLog> other_runs;         // the first other runs of which the log has messages
-  // Whether the scenario is known. It is always known if ReadOptions::needs_scenario.
+  // Whether the scenario is known. Always true if ReadOptions::needs_scenario.
   bool has_scenario = true;
 };
 
@@ -57,7 +57,7 @@ class RunLogReader {
  public:
   using Compared = ReadOptions::Compared;
 
-  /// @throws InputError when the file cannot be read or is no event log
+  /// @throws InputError if the file cannot be read or is not an event log
   explicit RunLogReader(const std::filesystem::path& file, Compared compared = Compared::kRun)
       : RunLogReader(file, ReadOptions{.compared = compared}) {}
   RunLogReader(const std::filesystem::path& file, const ReadOptions& options);
@@ -66,21 +66,22 @@ class RunLogReader {
   /// The next complete step, from 0 on; nullptr at the end. In real time the step may be
   /// incomplete. With ReadOptions::gaps the steps begin with the first step of which the log has a
   /// message, and may be incomplete or empty. The bytes of the step are valid for the lifetime of
-  /// the reader. After an exception it returns nullptr.
-  /// @throws InputError at the end, when the log has no scenario of a run, lacks the chosen run, or
-  /// is of another scenario than the given one; in real time also at the first message of a run
-  /// whose scenario is invalid; at a message whose type is that of another version of
-  /// Fogline, which the error then names
+  /// the reader. After an exception, Next() returns nullptr.
+  /// @throws InputError at the end of the log if the log has no scenario, lacks the chosen run, or
+  /// has another scenario than the given one. In real time, also at the first message of a run with
+  /// an invalid scenario. Also at a message with the type of another version of Fogline; the error
+  /// then names this version.
   const StepMessages* Next();
   /// The number of the step that Next() has returned.
   std::int64_t step() const;
   /// Whether this step is one of the incomplete steps at the end of the log that a run leaves when
-  /// it ends early. They are no gaps.
+  /// it ends early. The missing messages of these steps are not gaps.
   bool InTail() const;
-  /// Whether a message that this step lacks is a gap in the log of a run in lockstep.
+  /// Whether a missing message of this step counts as a gap: gaps are read, the run is in lockstep,
+  /// and InTail() is false.
   bool MayHaveGap() const;
 
-  /// The contents of the whole log. Known once Next() has returned nullptr.
+  /// The contents of the whole log. Known after Next() has returned nullptr.
   const RunLog& run() const;
 
  private:

@@ -36,7 +36,7 @@ class AveragedJerk {
   std::array<Point, kMostPoints> points_;
   std::size_t begin_ = 0;
   std::size_t count_ = 0;
-  bool dropped_ = false;  // true: accelerations before the oldest point were known, too
+  bool dropped_ = false;  // whether older points have been dropped
 };
 
 }  // namespace fogline::metrics

@@ -9,7 +9,7 @@
 
 namespace fogline::metrics {
 
-/// nullopt: the run has no step in fog, or no following car.
+/// A field is nullopt if the run has no step in fog, or no following car.
 struct FogEffect {
   /// Mean of CS over the steps in fog, m.
   std::optional<double> mean_compromised_safety_m;

@@ -13,8 +13,8 @@
 
 namespace fogline::metrics {
 
-/// Measures of one following car. The car ahead of the first following car is the host.
-/// nullopt: the run has no step that is relevant for the measure.
+/// Measures of one following car. The car ahead of the first following car is the host. A field is
+/// nullopt if the run has no step that is relevant for the measure.
 struct FollowerMetrics {
   /// Smallest true gap to the car ahead, m.
   std::optional<double> min_gap_m;
@@ -27,8 +27,8 @@ struct FollowerMetrics {
   std::optional<double> mean_compromised_safety_fog_m;
 };
 
-/// Calls `visit(name, value, unit, description)` for each measure, as VisitMetrics() does for a
-/// run.
+/// Calls `visit(name, value, unit, description)` for each measure of a car, like VisitMetrics() for
+/// a run.
 template <class Visitor>
 void VisitFollowerMetrics(const FollowerMetrics& m, Visitor&& visit) {
   const auto number = [&](std::string_view name, std::optional<double> value, std::string_view unit,
@@ -53,7 +53,7 @@ class FollowerAccumulator {
 
  private:
   struct Car {
-    FollowerMetrics measures;  // measures that need no division at the end
+    FollowerMetrics measures;  // all measures except the mean, which Result() computes
     Mean compromised_safety_fog_m;
   };
   static void AddSafety(bool fog, double compromised_m, Car& car);

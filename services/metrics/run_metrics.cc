@@ -34,8 +34,8 @@ MetricsAccumulator::MetricsAccumulator(const Scenario& scenario)
       detection_(scenario),
       track_(scenario) {}
 
-// AddMotion() comes before AddAuthority(), because a jerk belongs to the transfers before its step.
-// The command of a step is applied only in the next step.
+// The command of a step is applied only in the next step. So the jerk of a step belongs to the
+// transfers of earlier steps, and AddMotion() comes before AddAuthority().
 void MetricsAccumulator::Add(const Sample& sample) {
   if (!previous_) first_time_s_ = sample.time_s;
   ++metrics_.steps;
@@ -93,7 +93,7 @@ void MetricsAccumulator::AddTransfer(const Sample& sample) {
   transferred_s_ = sample.time_s;
 }
 
-// The acceleration at step 0 is a convention; no acceleration was applied.
+// Step 0 does not count, because no acceleration was applied before it.
 void MetricsAccumulator::AddMotion(const Sample& sample) {
   if (sample.step == 0) return;
   Raise(metrics_.max_abs_acceleration_mps2, std::abs(sample.host_acceleration_mps2));

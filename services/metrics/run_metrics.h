@@ -22,8 +22,8 @@
 namespace fogline::metrics {
 
 /// Measures of one run. The values of a step count for the time until the next step. "Fog" is the
-/// fog window; "clear air" is every step outside this window. nullopt: the run has no step that is
-/// relevant for the measure.
+/// fog window; "clear air" is every step outside this window. A field is nullopt if the run has no
+/// step that is relevant for the measure.
 struct RunMetrics {
   /// Number of samples.
   std::int64_t steps = 0;
@@ -77,8 +77,8 @@ struct RunMetrics {
   /// nullopt without a change. For a ramp of the authorities, the interval lasts from the ramp's
   /// first step until `handover_s` after the ramp's last step.
   std::optional<double> max_handover_jerk_mps3;
-  /// As max_handover_jerk_mps3, but for the jerk averaged over 1 s (AveragedJerk). The averaged
-  /// second may begin before the change.
+  /// Largest |jerk| of the host in the same intervals, averaged over 1 s (AveragedJerk), m/s3. The
+  /// averaged second may begin before the change.
   std::optional<double> max_handover_jerk_1s_mps3;
   /// Time in which the wrong side drives, time from deception to alarm, false alarms.
   DetectionMetrics detection;
@@ -124,10 +124,10 @@ double CompromisedSafety(const Sample& sample);
 /// Collects the measures of a run, sample by sample, in order of steps.
 class MetricsAccumulator {
  public:
-  /// For a run of this scenario: uses its section `measures`, the offsets of its sensors, and the
-  /// noise that its filter assumes.
+  /// Collects the measures of a run of this scenario. Uses the section `measures`, the offsets of
+  /// the sensors, and the noise that the filter assumes.
   explicit MetricsAccumulator(const Scenario& scenario);
-  /// For a run of a scenario with the defaults.
+  /// Collects the measures of a run of a scenario with the defaults.
   MetricsAccumulator() : MetricsAccumulator(Scenario{}) {}
 
   void Add(const Sample& sample);
@@ -152,7 +152,7 @@ class MetricsAccumulator {
   PairAccumulator host_;
   PairAccumulator follower_;
   DetectionAccumulator detection_;
-  RunMetrics metrics_;  // measures that need no division at the end
+  RunMetrics metrics_;  // measures that Add() computes; Result() adds the others
   TrackJudge track_;
   FogEffectAccumulator fog_effect_;
   UntilRecovery<CompromisedSafetySums> compromised_safety_until_recovery_m_;

@@ -16,7 +16,8 @@ inline void Lower(std::optional<double>& least, double value) {
   if (!std::isnan(value) && (!least || value < *least)) least = value;
 }
 
-/// As Lower(), for the largest value.
+/// Sets `most` to `value` if `value` is larger or is the first value. A missing value (NaN) has no
+/// effect.
 inline void Raise(std::optional<double>& most, double value) {
   if (!std::isnan(value) && (!most || value > *most)) most = value;
 }
@@ -29,7 +30,7 @@ class Mean {
     sum_ += value;
     ++count_;
   }
-  /// nullopt without a value.
+  /// The mean; nullopt without a value.
   std::optional<double> Value() const {
     if (count_ == 0) return std::nullopt;
     return sum_ / static_cast<double>(count_);

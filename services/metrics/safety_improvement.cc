@@ -51,7 +51,7 @@ double CompromisedSafetyOfRun::Next(const Sample& sample) {
 
 void SafetyImprovement::Add(const Sample& baseline, const Sample& traded) {
   if (baseline.step != traded.step) RefuseToPair(baseline, traded);
-  if (!baseline.fog_present && !traded.fog_present) return;  // nothing begins, and nothing counts
+  if (!baseline.fog_present && !traded.fog_present) return;  // neither run is in fog
   const double without = baseline_.Next(baseline);
   const double with = traded_.Next(traded);
   if (!baseline.fog_present || !(without > floor_m_)) return;

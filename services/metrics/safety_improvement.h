@@ -23,7 +23,7 @@ class MeanImprovement {
     sum_ += (without - with) / without;
     ++steps_;
   }
-  /// nullopt without a step.
+  /// The mean; nullopt without a step.
   std::optional<double> Pct() const;
 
  private:
@@ -46,7 +46,8 @@ class CompromisedSafetyOfRun {
  public:
   explicit CompromisedSafetyOfRun(SafetyReading reading) : reading_(reading) {}
 
-  /// For kGapLost and kSafeDistanceLost: 0 before the fog.
+  /// Compromised safety of the next step. With kGapLost and kSafeDistanceLost, the result before
+  /// the fog is 0.
   double Next(const Sample& sample);
 
  private:
@@ -55,13 +56,13 @@ class CompromisedSafetyOfRun {
 };
 
 /// Safety improvement SI of a run with traded control over its baseline, in % (Sourav & Cheng
-/// 2024). The baseline is a run without traded control (same scenario, same seed, lambda_A = 1
-/// throughout).
+/// 2024). The baseline is a run without traded control (same scenario, same seed, lambda_A = 1 in
+/// every step).
 ///
 ///     SI = 100/n sum (CS_baseline - CS_traded) / CS_baseline
 ///
 /// The sum has the n relevant steps: the steps in fog with CS_baseline > floor. The floor is a free
-/// parameter of SI, because the paper has none.
+/// parameter of SI, because the paper states no floor.
 class SafetyImprovement {
  public:
   /// @param floor_m at least 0; avoids the ratio 0/0
@@ -107,7 +108,8 @@ inline constexpr std::array<SafetyChoice, 7> kSafetyChoices{{
 std::optional<double> SafetyImprovementPct(std::span<const Sample> baseline,
                                            std::span<const Sample> traded, double floor_m);
 
-/// Measures of a pair of runs. nullopt: the pair has no step that is relevant for the measure.
+/// Measures of a pair of runs. A field is nullopt if the pair has no step that is relevant for the
+/// measure.
 struct PairedMetrics {
   /// SI, %.
   std::optional<double> si_pct;
@@ -120,7 +122,7 @@ struct PairedMetrics {
   std::array<std::optional<double>, kSafetyChoices.size()> other_si_pct;
 };
 
-/// Calls `visit(name, value, unit, description)` for every measure except `other_si_pct`, as
+/// Calls `visit(name, value, unit, description)` for every measure except `other_si_pct`, like
 /// VisitMetrics().
 template <class Visitor>
 void VisitPairedMetrics(const PairedMetrics& m, Visitor&& visit) {
@@ -151,7 +153,7 @@ class PairedAccumulator {
 };
 
 /// Measures of two whole runs of a scenario, over the steps that both runs have.
-/// @throws std::invalid_argument as SafetyImprovementPct()
+/// @throws std::invalid_argument in the same cases as SafetyImprovementPct()
 PairedMetrics MeasurePair(std::span<const Sample> baseline, std::span<const Sample> traded,
                           const Scenario& scenario);
 

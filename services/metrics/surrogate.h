@@ -40,8 +40,8 @@ double CrashProbability(const MeasuresSection& section, double drac_mps2);
 /// distance d_r, max(0, d_r - d) (Sourav & Cheng 2024). The result is NaN if d or d_r is NaN.
 double CompromisedSafety(double safe_distance_m, double gap_m);
 
-/// Measures of a pair of cars over a run. nullopt: the run has no step that is relevant for the
-/// measure.
+/// Measures of a pair of cars over a run. A field is nullopt if the run has no step that is
+/// relevant for the measure.
 struct PairMetrics {
   /// Least time to collision, s.
   std::optional<double> min_ttc_s;
@@ -61,8 +61,8 @@ struct PairMetrics {
   /// Least gap minus RSS safe distance, m (Shalev-Shwartz, Shammah & Shashua 2017), with the
   /// parameters of the scenario.
   std::optional<double> min_rss_margin_m;
-  /// As min_rss_margin_m, with the parameters that ad-rss-lib suggests (the defaults of
-  /// models::RssParameters).
+  /// Least gap minus RSS safe distance, m, with the parameters that ad-rss-lib suggests (the
+  /// defaults of models::RssParameters).
   std::optional<double> min_rss_margin_ad_rss_m;
   /// Crash potential index: mean over time of the probability that the deceleration rate to avoid a
   /// crash exceeds the car's maximum, in [0, 1] (Cunto & Saccomanno 2008).

@@ -8,7 +8,8 @@
 namespace fogline::radar {
 namespace {
 
-// At 77 GHz the two polarisations differ by less than 5 %; the horizontal one attenuates more.
+// At 77 GHz the attenuations of the two polarisations differ by less than 5 %. Horizontal
+// polarisation has the larger attenuation.
 constexpr Polarization kPolarization = Polarization::kHorizontal;
 
 }  // namespace

@@ -1,5 +1,5 @@
-// The host's radar. In each step it measures the distance of the preceding car, and the rate of
-// this distance. It tracks nothing, filters nothing and measures one target only.
+// The host's radar. In each step, the radar measures the distance of the preceding car, and the
+// rate of this distance. The radar does not track or filter, and measures only one target.
 #pragma once
 
 #include <cstdint>
@@ -13,20 +13,20 @@ namespace fogline::radar {
 
 /// Here x is the gap and y the lateral offset. A target at r = sqrt(x^2 + y^2) is measured as
 ///     range = r + bias + noise,   range rate = x x' / r + noise
-/// where noise is Gaussian and white. There is no detection beyond the maximum range, and none in a
-/// step with a dropout. Rain shortens the maximum range. Fog shortens the maximum range with the
-/// fog models beam and modes. With the fog models none and bias, fog has no effect on the radar, as
-/// in the paper (Sourav & Cheng 2024).
+/// where noise is Gaussian and white. The radar has no value for a target beyond the maximum range,
+/// and no value in a step with a dropout. Rain shortens the maximum range. Fog shortens the maximum
+/// range with the fog models beam and modes. With the fog models none and bias, fog has no effect
+/// on the radar, as in the paper (Sourav & Cheng 2024).
 class Radar {
  public:
-  /// Indices of the draws of stream kRadar within a step.
+  /// Indices of the random numbers of stream kRadar within a step.
   static constexpr std::uint32_t kNoiseDraw = 0;    // Normal2: range, range rate
   static constexpr std::uint32_t kDropoutDraw = 1;  // Uniform2: first number, second unused
 
   explicit Radar(const Scenario& scenario);
 
-  /// The measurement in the step of `truth`. It depends only on scenario and truth, not on earlier
-  /// steps.
+  /// The measurement in the step of `truth`. The measurement depends only on scenario and truth,
+  /// not on earlier steps.
   const radar_t& Step(const truth_t& truth);
 
  private:

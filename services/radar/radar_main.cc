@@ -1,6 +1,6 @@
-// The process `radar`: measures the preceding car once per step. It does not receive the LiDAR's
-// values, and uses the truth only to add errors to it. services/runtime/process/service.h connects
-// the process to its channels.
+// The process `radar`: measures the preceding car once per step. The process does not receive the
+// LiDAR's values. It adds errors to the true distance and its rate.
+// services/runtime/process/service.h connects the process to its channels.
 #include "services/radar/radar.h"
 #include "services/runtime/process/service.h"
 

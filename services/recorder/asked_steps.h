@@ -1,4 +1,4 @@
-// The old steps that roles have asked for and have not got yet.
+// The old steps that roles have asked for, and that the recorder has not sent yet.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +23,8 @@ class AskedSteps {
   };
 
   /// The largest number of steps in the set. A role whose request is dropped asks again. Even if
-  /// all roles of a run ask at once for different steps, they ask for a seventh of this number.
+  /// all roles of a run ask for different steps at the same time, they ask for only a seventh of
+  /// this number.
   static constexpr std::size_t kMost = 4096;
 
   void Add(std::int64_t step, Channels channels) {
@@ -43,7 +44,7 @@ class AskedSteps {
 
  private:
   std::map<std::int64_t, Channels> steps_;
-  std::int64_t from_ = 0;  // Take() returns the first step that is not before this one
+  std::int64_t from_ = 0;  // Take() returns the first requested step from this number on
 };
 
 }  // namespace fogline::recorder

@@ -21,7 +21,7 @@ namespace fogline::recorder {
 /// In real time messages may be missing, so only the last step can be found.
 class History {
  public:
-  /// @param front of the log
+  /// @param front scenario and graph of the log
   /// @param remains the known steps of the log
   History(std::filesystem::path file, const log::LogFront& front, const log::Remains& remains);
   ~History();
@@ -50,8 +50,8 @@ class History {
   /// @return the last of these steps that is not later than `step`; if all are later, the first of
   ///     them; nullopt if no step begins there
   std::optional<Place> Look(std::int64_t from, std::int64_t limit, std::int64_t step);
-  /// Reads bytes of the file, fewer if the file ends earlier. The bytes are valid until the next
-  /// call.
+  /// Reads bytes of the file, or fewer bytes if the file ends earlier. The bytes are valid until
+  /// the next call.
   /// @throws std::runtime_error
   runtime::Bytes Read(std::int64_t from, std::int64_t size);
 
@@ -64,7 +64,7 @@ class History {
   std::int64_t steps_;
   std::int64_t last_;  // byte at which the last step begins
   std::int64_t end_;   // byte at which the last step ends
-  // Recently found steps, and the step after each of them: it is usually requested next.
+  // Recently found steps, and the steps after them, because these are usually requested next.
   std::array<Place, runtime::kRingSteps> found_{};
   std::vector<std::uint8_t> chunk_;
 };

@@ -16,11 +16,11 @@ constexpr Duration kAskEvery = milliseconds(20);
 // At most this many steps may be incomplete: half of the number of steps that a producer stores.
 // The other half leaves time for the producers' answers.
 constexpr std::int64_t kMaxOpen = runtime::kRingSteps / 2;
-// At most this many STATUS and DRIVER_INPUT messages may wait to be written: several from each role
-// in each open step.
+// At most this many STATUS, DRIVER_INPUT and TRIAL messages may wait to be written: several from
+// each role in each open step.
 constexpr std::size_t kMaxHeard = 4096;
-// So many DRIVER_INPUT are logged in a second: those of four seats that send as often as a seat
-// may. So a flood fills neither the memory nor the disk.
+// At most as many DRIVER_INPUT messages are logged in a second as this number of seats may send. So
+// a flood of messages cannot fill the memory or the disk.
 constexpr double kSeats = 4;
 
 }  // namespace
@@ -44,9 +44,10 @@ void RecordRule::Listen() {
   });
 }
 
-// The driver takes inputs from the first TRUTH on. At that time this recorder has joined.
+// Subscribes to DRIVER_INPUT and TRIAL. The driver uses inputs from the first TRUTH on, and the
+// recorder has joined before this TRUTH.
 void RecordRule::ListenToInputs() {
-  // The driver refuses what is unsound, and counts it.
+  // The driver refuses and counts invalid messages. The recorder only ignores them.
   parts_.bus.Subscribe(ChannelOf<driver_input_t>().name, [this](runtime::Arrival& arrival) {
     const auto* input = arrival.As<driver_input_t>();
     if (input == nullptr || input->header.run_id != *parts_.run.id ||

@@ -1,7 +1,7 @@
 // The recorder's rule in real time: the world does not wait for the recorder. The recorder writes
 // steps in order as soon as they are complete. The recorder asks for a missing message as long as
 // the producer can still have the message. A step that stays incomplete is written without the
-// missing messages. RUN tells the recorder that a step is under way, even if none of its messages
+// missing messages. RUN tells the recorder that a step is under way, even if no message of the step
 // has come. Each STATUS, each DRIVER_INPUT and each TRIAL is also written into the log, after the
 // step in which it came, because the states of the roles, the acts of a person and the facts of a
 // trial are part of the record.
@@ -38,7 +38,7 @@ class RecordRule final : public runtime::FireRule {
   /// A step that is under way and not written yet.
   struct Open {
     std::int64_t step = -1;
-    TimePoint seen{};  // when its first message came, or when it was first known to be under way
+    TimePoint seen{};  // time of its first message, or of the first sign that it is under way
     int asked = 0;
     TimePoint asked_at{};
   };
@@ -48,11 +48,11 @@ class RecordRule final : public runtime::FireRule {
     std::vector<std::uint8_t> bytes;
   };
 
-  /// Messages of an input that came after their step was written. Each is counted once.
+  /// Messages of an input that came after their step was written. Each message is counted once.
   struct Refused {
     std::int64_t count = 0;
     std::array<std::int64_t, runtime::kRingSteps>
-        steps{};  // by slot: the step that was counted last, plus one; 0: none
+        steps{};  // by slot: last counted step plus one; 0 if no step
   };
 
   /// Writes the steps that are due, and asks for the messages that other steps lack.

@@ -54,7 +54,7 @@ Recorder::Recorder(runtime::Bus& bus, std::optional<std::int64_t> run_id,
 
 std::unique_ptr<runtime::FireRule> Recorder::Join(const Scenario& scenario) {
   wall_clock_ = wall_clock_ || parts_.run.realtime;
-  newest_clock_ = parts_.run.progress + 1;  // the TRUTH of an earlier step comes again
+  newest_clock_ = parts_.run.progress + 1;  // the TRUTH of an earlier step may be sent again
   if (existing_ == Existing::kReplace || !Resume()) WriteScenario();
   step_us_ = std::llround(scenario.step_s * 1e6);
   if (!parts_.run.realtime) return std::make_unique<runtime::LockstepRule>(parts_);
@@ -245,8 +245,8 @@ void Recorder::AnswerStep(const AskedSteps::Asked& asked, TimePoint now) {
 }
 
 // In real time no role computes old steps again. Only a restarted world needs an old message: the
-// TRUTH with the positions of the cars. The process that published this TRUTH is dead, so the
-// recorder sends it.
+// TRUTH with the positions of the cars. The process that published this TRUTH has ended, so the
+// recorder sends this message.
 void Recorder::AnswerRecent(std::string_view channel, runtime::StepRange steps, TimePoint now) {
   if (channel != ChannelOf<truth_t>().name || !node_.outputs().limiter().Has(now)) return;
   const runtime::StepRing& truths = parts_.inputs.Of(IndexOf<truth_t>()).ring;
@@ -304,8 +304,8 @@ void Recorder::OnLeave() {
     if (recording_ != nullptr) WriteEvents(std::max(newest, next - 1));
     log_->Flush();
   } catch (const std::runtime_error&) {
-    // The disk is full. If complete steps did not fit, an earlier write has reported this. These
-    // incomplete steps do not matter.
+    // The disk is full. If complete steps did not fit, an earlier write has reported this. A log
+    // without these incomplete steps is still valid.
   }
   TellWritten();
   log_.reset();

@@ -1,9 +1,10 @@
-// The recorder: writes every per-step message of a run, and its scenario, into an LCM event log. It
-// takes part in the lockstep: the world runs at most kMaxAhead steps ahead of the log on disk, so a
-// fast run loses no message. The log has the events in the order of the steps, and within a step in
-// the order of the graph table. The order of arrival does not matter. So the logs of equal runs
-// differ only in the run id. The recorder also answers requests for recorded steps, from roles that
-// have been started again. If the recorder itself is killed, another recorder continues its log.
+// The recorder: writes every per-step message of a run, and its scenario, into an LCM event log.
+// The recorder takes part in the lockstep: the world is at most kMaxAhead steps ahead of the log on
+// disk. So a fast run loses no message. The log has the events in the order of the steps, and
+// within a step in the order of the graph table. The order of arrival does not matter. So the logs
+// of equal runs differ only in the run id. The recorder also answers requests for recorded steps,
+// from roles that have been started again. If the recorder itself is killed, another recorder
+// continues its log.
 #pragma once
 
 #include <filesystem>
@@ -22,7 +23,7 @@ class Recorder final : public runtime::Work {
  public:
   /// Whether the recorder replaces an existing file, or continues it.
   enum class Existing { kReplace, kResume };
-  /// Whether the log has the wall clock of each step. In real time it always has.
+  /// Whether the log has the wall clock of each step. In real time the log always has it.
   enum class WallClock { kNo, kYes };
 
   /// With kReplace and a run id, an existing file is replaced at once. With kReplace and no run id,
@@ -55,13 +56,14 @@ class Recorder final : public runtime::Work {
   /// Notes the wall clock at which the TRUTH of a step has come.
   void NoteWallClock(const truth_t& truth);
   void WriteWallClock(std::int64_t step);
-  /// Writes what came apart from the steps, in this step or before (RecordRule::TakeEvents).
+  /// Writes the STATUS, DRIVER_INPUT and TRIAL messages that came in this step or before
+  /// (RecordRule::TakeEvents).
   void WriteEvents(std::int64_t step);
   /// Writes into STATUS how much of the log the operating system has, and the checksum of this
   /// part.
   void TellWritten();
   void AnswerRecent(std::string_view channel, runtime::StepRange steps, TimePoint now);
-  /// Answers some of the requests. @return when to call it again
+  /// Answers some of the requests. @return the time of the next call
   TimePoint AnswerSome(TimePoint now);
   void AnswerStep(const AskedSteps::Asked& asked, TimePoint now);
   /// Publishes a requested message again, unless the rate limiter refuses.
@@ -77,7 +79,7 @@ class Recorder final : public runtime::Work {
   std::int64_t step_us_ = 0;
   bool wall_clock_;
   std::array<wall_clock_t, runtime::kRingSteps> clocks_{};  // by slot
-  std::int64_t newest_clock_ = -1;                          // the newest step that has one
+  std::int64_t newest_clock_ = -1;                          // the newest step that has a clock
   AskedSteps asked_;
   RecordRule* recording_ = nullptr;  // the rule in real time, otherwise nullptr
   struct Answered {

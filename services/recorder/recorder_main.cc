@@ -1,5 +1,5 @@
-// The recorder as a process: it writes the event log of one run. It is no general logger of LCM
-// traffic (use `fogline record` for this), and it computes nothing.
+// The recorder as a process: it writes the event log of one run. The recorder is not a general
+// logger of LCM traffic (use `fogline record` for this), and computes no messages.
 #include "services/recorder/recorder.h"
 
 #include <memory>

@@ -32,7 +32,7 @@ class FailsafeWorld {
   /// The next step.
   const Output& Step(const WorldInputs& inputs);
 
-  /// Describes what the cars without a command do; "" if every car has a command.
+  /// Text about the fallback of the cars without a command; "" if every car has a command.
   const std::string& fallback() const { return fallback_; }
   /// Cars that are in a minimal risk manoeuvre, as bits of status_t.
   std::int8_t minimal_risk() const;

@@ -17,16 +17,16 @@ struct Fog {
 /// Level of a profile at x in [0, 1). x is the share of the fog window that has passed.
 double FogLevel(FogProfile profile, double x);
 
-/// The fog of a scenario. Times are compared in whole microseconds, so that the binary rounding of
-/// 0.1 does not decide whether a step belongs to the fog window. The end of the window does not
+/// The fog of a scenario. Times are compared in whole microseconds. Otherwise the binary rounding
+/// of 0.1 could decide whether a step belongs to the fog window. The end of the window does not
 /// belong to the window.
 class FogSchedule {
  public:
   explicit FogSchedule(const FogSection& fog);
 
   /// Fog `utime` microseconds after the start of the run. The models beam and modes blend the
-  /// extinction of clear air and of fog linearly by the level. With the other models the visibility
-  /// is that of clear air.
+  /// extinction of clear air and of fog linearly by the level. With the other models, the
+  /// visibility is the visibility of clear air.
   Fog At(std::int64_t utime) const;
 
  private:

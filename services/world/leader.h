@@ -9,7 +9,7 @@
 
 namespace fogline::world {
 
-/// The preceding car's speed profile. With profile sumo there is none (services/models/traffic).
+/// The preceding car's speed profile. Profile sumo has no speeds here (services/models/traffic).
 class Leader {
  public:
   /// @throw std::invalid_argument if the profile is `recorded` and there are no speeds.

@@ -61,7 +61,7 @@ StatedBraking HardestStated(const LeadSection& lead) {
   switch (lead.profile) {
     case LeadProfile::kConstant:
     case LeadProfile::kRecorded:  // the braking of a recording is known only step by step
-    case LeadProfile::kSumo:      // SUMO's types of cars state the braking of its cars
+    case LeadProfile::kSumo:      // SUMO's own vehicle types state the braking of its cars
       break;
     case LeadProfile::kBreakpoints:
       return HardestBreakpoint(lead);

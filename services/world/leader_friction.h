@@ -11,12 +11,13 @@ namespace fogline::world {
 ///     g (mu cos(theta) + sin(theta)),   at least 0,
 ///
 /// on a slope of angle theta; on a level road this limit is mu g. mu is the friction of
-/// road.surface (services/models/vehicle). So the same road limits this car and the vehicles behind
-/// it. A point mass has no tyres. If all other cars are point masses, the preceding car is a point
-/// mass, too, and has no limit.
+/// road.surface (services/models/vehicle). So this car and the vehicles behind it have the same
+/// friction. A point mass has no tyres. If all other cars are point masses, the preceding car is a
+/// point mass, too, and has no limit.
 class LeaderFriction {
  public:
-  /// @throw InputError if the profile states a braking that is possible nowhere on this road
+  /// @throw InputError if the profile states a braking that is not possible at any place of this
+  /// road
   LeaderFriction(const Scenario& scenario, models::GradeProfile road);
 
   /// The acceleration of the profile, limited to what friction allows at this place.

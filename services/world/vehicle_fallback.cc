@@ -72,8 +72,8 @@ void VehicleFallback::StepHost(const truth_t& now, const Heard<arbitration_t>& h
   }
 }
 
-// A message without an acceleration for the car counts as missing, so that this message does not
-// keep the input OK.
+// A message without an acceleration for the car counts as missing. Otherwise such messages would
+// keep the state of the input at OK.
 void VehicleFallback::StepFollower(std::size_t car, const truth_t& now,
                                    const Heard<follower_command_t>& followers) {
   FollowingCar& follower = followers_[car];

@@ -22,13 +22,13 @@ namespace fogline::world {
 ///     input          | acceleration of the car
 ///     ---------------|---------------------------------------------------------
 ///     OK             | the command
-///     AWAITED, STALE | the last command; before the first, the applied acceleration
+///     AWAITED, STALE | the last command; before any command, the applied acceleration
 ///     LOST           | minimal risk manoeuvre, in which the car then stays
 class CarFallback {
  public:
   CarFallback(const MinimalRiskSection& limits, double step_s) : minimal_risk_(limits, step_s) {}
 
-  /// The acceleration for the step that begins now. Call it once per step.
+  /// The acceleration for the step that begins now. Call Step() once per step.
   /// @param command_mps2 the newest command, if any has come
   /// @param speed_mps, applied_mps2 of the car at the beginning of the step
   double Step(InputState state, std::optional<double> command_mps2, double speed_mps,
@@ -43,11 +43,10 @@ class CarFallback {
   std::optional<double> last_mps2_;
 };
 
-/// The host and the following cars. The results have the form that World::Step takes. Each
-/// following car has its own fallback. If messages lack the acceleration of one car, only this car
-/// stops.
+/// The host and the following cars. The results are the inputs of World::Step(). Each following car
+/// has its own fallback. If messages lack the acceleration of one car, only this car stops.
 ///
-/// Once the arbitrator has commanded the host's minimal risk manoeuvre, the vehicle remembers the
+/// If the arbitrator has commanded the host's minimal risk manoeuvre, the vehicle stays in the
 /// manoeuvre. The vehicle follows the arbitrator's commands while they continue the manoeuvre. If
 /// no further commands come, or if another arbitrator commands something else, the vehicle carries
 /// out the manoeuvre by itself. Only a driver who was asked and has taken over ends the manoeuvre
@@ -57,19 +56,19 @@ class VehicleFallback {
   explicit VehicleFallback(const Scenario& scenario);
 
   /// Computes the commands for the step that begins with `now`; host() and followers() return them.
-  /// Call it once per step.
+  /// Call Step() once per step.
   void Step(const truth_t& now, const Heard<arbitration_t>& host,
             const Heard<follower_command_t>& followers);
 
   /// Puts the host into the manoeuvre, because the host was in the manoeuvre under an earlier
   /// process.
   void ResumeHost(const truth_t& now) { host_.BeginMinimalRisk(now.host_acceleration_mps2); }
-  /// Puts all following cars into the manoeuvre, because it is not known which cars were in the
-  /// manoeuvre under the earlier process.
+  /// Puts all following cars into the manoeuvre, because this process does not know which cars the
+  /// earlier process had in the manoeuvre.
   void ResumeFollowers(const truth_t& now);
 
-  /// The host's command as carried out. While the vehicle stops by itself, the mode is MINIMAL_RISK
-  /// and both authorities are 0. Before the first command, the mode is AUTOMATION.
+  /// The command that the host carries out. While the vehicle stops by itself, the mode is
+  /// MINIMAL_RISK and both authorities are 0. Before the first command, the mode is AUTOMATION.
   const arbitration_t& host() const { return host_out_; }
   const follower_command_t& followers() const { return followers_out_; }
 
@@ -78,7 +77,8 @@ class VehicleFallback {
   bool host_in_minimal_risk() const {
     return host_.in_minimal_risk() || (commanded_ && IsLocked(host_out_.mode));
   }
-  /// Whether the vehicle carries out the manoeuvre by itself; the arbitrator has to know this.
+  /// Whether the vehicle carries out the manoeuvre by itself. The process of the world reports this
+  /// to the arbitrator.
   bool host_stops_by_itself() const { return host_.in_minimal_risk(); }
   /// Whether any of the following cars is in the manoeuvre.
   bool follower_in_minimal_risk() const;
@@ -96,7 +96,7 @@ class VehicleFallback {
   void StepFollower(std::size_t car, const truth_t& now,
                     const Heard<follower_command_t>& followers);
 
-  /// State of a command that is missing in the last `steps` messages, by the limits for inputs.
+  /// State of a command that is missing in the last `steps` messages. The limits for inputs apply.
   InputState StateAfter(std::int64_t steps) const;
 
   HealthSection health_;

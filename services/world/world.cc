@@ -186,13 +186,14 @@ void World::FollowTraffic() {
     in_traffic_[i - kHost] = models::Advance(cars_[i].motion, cars_[i].acceleration_mps2, step_s_);
   }
   ahead_ = traffic_->Step(in_traffic_);
-  // Until another car is in its place, and in front of an empty lane, the car keeps its speed.
+  // The preceding car keeps its speed in two cases: at the end of the step another car is ahead of
+  // the host, or the lane is empty.
   const bool same = ahead_ && !ahead_->changed;
   const double change_mps = same ? ahead_->speed_mps - cars_[kPreceding].motion.speed_mps : 0.0;
   Obey(kPreceding, change_mps / step_s_);
 }
 
-// Where SUMO has the car, without the rounding of the integration.
+// Places the preceding car where SUMO has it, without the rounding of the integration.
 void World::PlaceByTraffic() {
   Car& preceding = cars_[kPreceding];
   preceding.motion = {ahead_->rear_m + world_.vehicle_length_m, ahead_->speed_mps};

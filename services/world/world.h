@@ -1,5 +1,5 @@
-// The road: it moves the cars, counts the time of the run and has the complete state. The preceding
-// car follows its profile, the other cars follow their commands.
+// The world moves the cars, counts the time of the run and has the complete true state. The
+// preceding car follows its profile, the other cars follow their commands.
 #pragma once
 
 #include <cstddef>
@@ -25,9 +25,9 @@ namespace fogline::world {
 
 /// The preceding car, the host and the cars that follow it, in one lane. The preceding car has the
 /// speed of its profile. While the profile brakes harder than friction allows, the car is faster
-/// than its profile (leader_friction.h). With profile sumo the preceding car is the nearest of the
-/// cars that SUMO moves (services/models/traffic), so it may be another car than a step before.
-/// Each other car is a point mass or a vehicle. A point mass has exactly the commanded
+/// than its profile (leader_friction.h). With profile sumo, the preceding car is the nearest of the
+/// cars that SUMO moves (services/models/traffic). So it may be another car than in the previous
+/// step. Each other car is a point mass or a vehicle. A point mass has exactly the commanded
 /// acceleration. A vehicle follows the command as far as it can (services/models/vehicle). The
 /// acceleration of every car is constant within a step (services/models/vehicle/motion.h). Cars
 /// that have collided do not push each other. If the run does not end, these cars continue to
@@ -47,7 +47,7 @@ class World {
   void Prepare();
 
   /// Step 0: the state that the scenario describes. Begins a new run.
-  /// @throw InputError as Prepare(), if Prepare() was not called before
+  /// @throw InputError of Prepare(), if Prepare() was not called before
   const Output& Start(std::int64_t run_id);
 
   /// Continues after a step that another instance published. With point masses, this instance
@@ -67,7 +67,8 @@ class World {
   ///     commands than following cars.
   const Output& Step(const arbitration_t& host, const follower_command_t& followers);
 
-  /// Ends the run, so that another object can begin one: a process runs one simulation of SUMO.
+  /// Ends the run. Another object can then begin a run: a process can have only one simulation of
+  /// SUMO.
   void End();
 
   /// The last published step.
@@ -80,7 +81,8 @@ class World {
     double acceleration_mps2 = 0;  // constant during the step, or until the car rests
     double applied_mps2 = 0;       // mean acceleration over the step that ended
   };
-  // In the order of the lane, from the front. The car at index i follows the car at index i - 1.
+  // The cars in the order of the lane, from the front. The car at index i follows the car at index
+  // i - 1.
   enum : std::size_t { kPreceding, kHost, kFirstFollower };
 
   double TimeOf(std::int64_t step) const;
@@ -107,9 +109,9 @@ class World {
   Leader leader_;
   LeaderFriction friction_;
   FogSchedule fog_;
-  std::unique_ptr<models::Traffic> traffic_;  // nullptr: the leader has a profile
+  std::unique_ptr<models::Traffic> traffic_;  // nullptr if the leader has a profile
   std::vector<models::Motion> in_traffic_;    // the host and its followers at the end of the step
-  std::optional<models::LeaderInTraffic> ahead_;  // at the end of the step; nullopt: an empty lane
+  std::optional<models::LeaderInTraffic> ahead_;  // at the end of the step; nullopt if none
 
   bool prepared_ = false;  // whether the cars have their places of step 0
   std::int64_t run_id_ = 0;

@@ -8,7 +8,7 @@ namespace fogline::conflict {
 struct StatedRange {
   bool valid = false;  // false: no value in this step; other fields have no meaning
   double range_m = 0;  // m
-  double std_m = 0;    // m, above 0; nominal: a value that grows with bias hides conflict
+  double std_m = 0;    // m, above 0; nominal: a std_m that grew with the bias would hide conflict
 };
 
 /// The evidence of one step: two sensors, and a third witness.
@@ -28,7 +28,7 @@ class ConflictMeasure {
  public:
   virtual ~ConflictMeasure() = default;
 
-  /// The score after this step's evidence. Call it once per step.
+  /// The score after this step's evidence. Call Step() once per step.
   virtual double Step(const Evidence& evidence) = 0;
   /// Returns to the state after construction, so that the same evidence gives the same scores
   /// again.
@@ -45,7 +45,7 @@ struct Blame {
 };
 
 /// Finds the sensor that is wrong. The values of radar and LiDAR alone are not sufficient for this.
-/// The rules of ConflictMeasure apply.
+/// The rules of ConflictMeasure (no clock, no shared state, no allocation in Step) apply.
 class BlameMeasure {
  public:
   virtual ~BlameMeasure() = default;

@@ -26,7 +26,7 @@ using BlameMeasureRow = MetricRow<BlameMeasure>;
 
 /// All measures of conflict, in the order of services/decision/conflict/README.md.
 std::span<const ConflictMeasureRow> ConflictMeasures();
-/// All measures that tell which sensor is wrong.
+/// All measures that find the sensor that is wrong.
 std::span<const BlameMeasureRow> BlameMeasures();
 
 }  // namespace fogline::conflict

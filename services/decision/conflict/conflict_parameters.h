@@ -19,12 +19,12 @@ struct ConflictParameters {
   /// remains after calibration. Every measure except `doc` subtracts the offset. The paper defines
   /// `doc` without an offset.
   double offset_m = 0;
-  /// Rule for a step without radar or LiDAR value, for every measure except those of LiDAR modes.
-  /// Such a step repeats the last difference, is skipped, or counts as a difference of
+  /// Rule for a step without radar or LiDAR value, for every measure except the measures of LiDAR
+  /// modes. Such a step repeats the last difference, is skipped, or counts as a difference of
   /// `missing_conflict_m`.
   MissingLidar missing = MissingLidar::kHold;
-  /// For rule conflict: the difference that a missing value counts as, m, above 0. The default is
-  /// that of the scenario's section `arbitrator`.
+  /// With rule conflict, a missing value counts as this difference, m, above 0. The scenario's
+  /// section `arbitrator` has the same default.
   double missing_conflict_m = 10;
   /// Standard deviations, m, above 0, for a missing value that counts as conflict before the sensor
   /// has stated a standard deviation. Sources: Continental ARS408 far range; Velodyne VLP-16.
@@ -84,7 +84,8 @@ struct ConflictParameters {
   double sprt_alpha = 0.01;
   double sprt_beta = 0.01;
   /// Multiple of ln((1 - beta)/alpha) at which the log likelihood ratio stops growing, at least 1.
-  /// The limit has the same reason as cusum_ceiling.
+  /// Without this limit, the ratio would stay high for a long time after a long fog bank, like the
+  /// sum of the CUSUM.
   double sprt_ceiling = 4;
 
   // ---- LiDAR modes (IMM, Blom & Bar-Shalom 1988) ----

@@ -1,4 +1,4 @@
-// Policy `availability`: no hand-over to a driver who would take over too late.
+// Policy `availability`: the automation hands over only to a driver who can take over in time.
 #pragma once
 
 #include "services/decision/policies/isolation.h"
@@ -11,7 +11,7 @@ namespace fogline::policies {
 ///     DRAC(t) = (w + b t)^2 / (2 (s - w t - b t^2/2)) = limit
 ///
 /// with gap s and closing speed w. The time is 0 if the follower already has to brake so hard, and
-/// infinite if the follower never has to.
+/// infinite if the follower never has to brake so hard.
 double TimeUntilHardBraking(double gap_m, double closing_mps, double host_braking_mps2,
                             double limit_mps2);
 
@@ -22,8 +22,8 @@ double TimeUntilHardBraking(double gap_m, double closing_mps, double host_brakin
 /// authority, and the sensor to blame is not used. Marberger et al. 2018 define availability as the
 /// time budget minus the required time.
 ///
-/// The fusion never uses the sensor that is to blame, as with Isolate. The fusion does not know
-/// whether the driver is available. While the driver drives, the track is not used. When the
+/// The fusion never uses the sensor that is to blame, as in policy Isolate. The fusion does not
+/// know whether the driver is available. While the driver drives, the track is not used. When the
 /// automation drives again, it has a usable track from the first step on.
 class Availability final : public EngagementPolicy {
  public:

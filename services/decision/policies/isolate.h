@@ -1,5 +1,5 @@
-// Policy `isolate`: the automation drives without the sensor that is to blame. Every policy with
-// hand-overs should be better than `isolate`.
+// Policy `isolate`: the automation drives without the sensor that is to blame. The policy is a
+// reference: hand-overs are useful only if they give a better result than `isolate`.
 #pragma once
 
 #include "services/decision/policies/isolation.h"

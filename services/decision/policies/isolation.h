@@ -9,8 +9,9 @@
 
 namespace fogline::policies {
 
-/// Drops the sensor with the larger blame, by the scenario's measure of blame, if this blame is at
-/// least blame_threshold. Never drops both sensors. The witness is the filter's prediction.
+/// Excludes the sensor with the larger blame if this blame is at least blame_threshold. The
+/// scenario chooses the measure of blame. Both sensors are never excluded together. The witness is
+/// the filter's prediction.
 class Isolation {
  public:
   explicit Isolation(const ArbitratorSection& section)

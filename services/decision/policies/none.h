@@ -5,7 +5,7 @@
 
 namespace fogline::policies {
 
-/// lambda_A = 1 throughout.
+/// lambda_A = 1 in every step.
 class None final : public EngagementPolicy {
  public:
   static constexpr Rule kRule = Rule::kNever;

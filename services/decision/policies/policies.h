@@ -21,7 +21,7 @@ struct PolicyRow {
   std::unique_ptr<EngagementPolicy> (*make)(const Scenario& scenario);
 };
 
-/// The row of class P. The constants of P give the other columns.
+/// The row of policy class P; the constants and functions of P give all columns except the name.
 template <class P>
 constexpr PolicyRow RowFor(std::string_view name) {
   constexpr bool kSelectsSensors =

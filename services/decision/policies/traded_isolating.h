@@ -6,8 +6,8 @@
 namespace fogline::policies {
 
 /// The paper's rule. While the automation drives, it does not use the sensor that is to blame, as
-/// with Isolate. If the driver must be asked, the automation drives in this way until the driver
-/// takes over.
+/// in policy Isolate. If the driver must be asked, the automation drives in this way until the
+/// driver takes over.
 class TradedIsolating final : public EngagementPolicy {
  public:
   static constexpr Rule kRule = Rule::kThreshold;

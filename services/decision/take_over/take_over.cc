@@ -23,7 +23,8 @@ MinimalRiskSection LimitsOf(const TakeOverSection& section) {
   return {.deceleration_mps2 = section.emergency_deceleration_mps2, .jerk_mps3 = section.jerk_mps3};
 }
 
-/// The acceleration of a person who overrides, or a lower one; nullopt if no person can override.
+/// a_P: a person overrides only with an acceleration of at most this value; nullopt if no person
+/// can override.
 std::optional<double> OverrideOf(const PersonSection& person) {
   if (!person.drives || person.override_by == OverrideBy::kNone) return std::nullopt;
   const models::PedalResponse pedals(person);
@@ -126,7 +127,7 @@ void TakeOver::TakeAuthority(const TakeOverRow& row, std::int64_t step) {
   transferred_ = step;
   overridden_ = row.event == TakeOverEvent::kOverride;
   if (row.state != TakeOverState::kAutomated) return;
-  // No request led to this authority: the last one ended before.
+  // No request led to this authority: the last request has ended before.
   request_.reset();
   awaits_answer_ = false;
 }
@@ -152,7 +153,7 @@ void TakeOver::Ask(std::int64_t step) {
   if (!absent) answer_step_ = step + StepsUntil(time_s, step_s_);
 }
 
-// A person's answer holds until the next request, like that of the modelled driver.
+// The answer of a person is valid until the next request, like the answer of the modelled driver.
 void TakeOver::HearAnswer(std::int64_t step, const TakeOverInputs& inputs) {
   if (!awaits_answer_ || !inputs.acknowledged) return;
   awaits_answer_ = false;

@@ -25,7 +25,7 @@ struct TakeOverInputs {
   double speed_mps = 0;            // speed of the host
   double applied_mps2 = 0;         // last sent command; at first the applied acceleration
   const track_t* track = nullptr;  // nullptr if no preceding car is known
-  // Of a person who drives; false for the model of a driver.
+  // Inputs of a person who drives; always false for the model of a driver.
   bool acknowledged = false;  // the driver answers now
   bool gives_back = false;    // the driver wants the automation to drive
 };
@@ -64,12 +64,12 @@ inline constexpr double kOverdueFactor = 2.0;
 /// acknowledgement and transfer the automation drives for at least one step. Only a driver who
 /// answers during the manoeuvre gets authority at once.
 ///
-/// If the scenario has a person who drives, nothing is drawn: T is the time of the first step after
-/// the request in which the person answers. The automation gets authority back only if, in
-/// addition, the person gives it back.
+/// If the scenario has a person who drives, no random number is drawn: T is the time of the first
+/// step after the request in which the person answers. A return to the automation has a further
+/// condition: the person gives the authority back.
 ///
 /// With when_gone until_back, the manoeuvre also begins when a person who has the authority is gone
-/// (readiness 0). It then waits for a new answer, as after a request.
+/// (readiness 0). TakeOver then waits for a new answer of the person, as after a request.
 ///
 /// A person overrides with a brake that is at override_pedal or beyond, and that brakes harder than
 /// the last sent command a'. a_P is the acceleration of a brake at override_pedal with the throttle
@@ -85,8 +85,8 @@ class TakeOver {
   const TakeOverOutcome& Step(const header_t& header, const TakeOverInputs& inputs);
 
   const TakeOverOutcome& outcome() const { return out_; }
-  /// The last request, if there has been a request. Empty again after an override without a
-  /// request, and after a person who had the authority is gone. The field `effective` is always
+  /// The last request; empty if there has been no request. Also empty after an override without a
+  /// request, and after a person who had the authority has left. The field `effective` is always
   /// empty.
   const std::optional<TakeOverRequest>& request() const { return request_; }
   /// Whether a manoeuvre is running, has failed, or has ended in standstill.

@@ -30,9 +30,9 @@ struct TakeOverEntry {
   std::string_view logged;
 };
 
-/// The text of an entry, for a person who reads it. It says whether a person has acknowledged a
-/// request, or whether the acknowledgement of the model of a driver was drawn. It also says whether
-/// a person has overridden.
+/// The text of an entry, for a person who reads it. For an acknowledgement, the text says whether a
+/// person has acknowledged, or whether the answer of the modelled driver was drawn. The text also
+/// says whether a person has overridden.
 /// @param person section of the scenario of this run
 std::string_view TextOf(const TakeOverEntry& entry, const PersonSection& person);
 
@@ -54,13 +54,13 @@ class TakeOverLog {
   void Add(const arbitration_t& command, std::optional<double> human_mps2);
 
   const std::vector<TakeOverEntry>& entries() const { return entries_; }
-  /// Forgets the entries so far, for a caller that needs only the requests of a long run.
+  /// Removes the entries so far, for a caller that needs only the requests of a long run.
   void DropEntries() { entries_.clear(); }
   const std::vector<TakeOverRequest>& requests() const { return requests_; }
   /// The mode of the last command without emergency braking; AUTOMATION before the first command.
   std::int8_t mode() const { return last_ ? last_->mode : arbitration_t::AUTOMATION; }
-  /// Removes the entries so far, and all requests but the last one, which may still change. So a
-  /// reader of an endless run needs bounded memory. @return the entries
+  /// Removes the entries so far, and all requests except the last request, which may still change.
+  /// So a reader of an endless run needs bounded memory. @return the entries
   std::vector<TakeOverEntry> TakeEntries();
 
  private:
@@ -74,12 +74,13 @@ class TakeOverLog {
 
   std::optional<arbitration_t> last_;                  // its mode ignores emergency braking
   std::int8_t last_sent_ = arbitration_t::AUTOMATION;  // mode of the last command
-  // If the driver has a share of the authority: the command before the driver got the share (empty
-  // after the driver's first effective input), and whether the driver was asked.
+  // The next two fields have a meaning only if the driver has a share of the authority. The first
+  // is the command before the driver got the share; it is empty after the driver's first effective
+  // input. The second says whether the driver was asked.
   std::optional<double> before_share_mps2_;
   bool asked_ = false;
-  // Whether the driver has, or had, authority without an open request: after an override, and after
-  // a person who had taken over was gone.
+  // Whether the driver has, or had, authority without an open request. Two events lead to this: an
+  // override, and the absence of a person who had taken over.
   bool unasked_ = false;
   std::vector<TakeOverEntry> entries_;
   std::vector<TakeOverRequest> requests_;

@@ -92,7 +92,7 @@ using Row = TakeOverRow;
 ///     does not drive off, because driving off (5.5.4) is a new run.
 ///   - The manoeuvre never returns from its second stage to its first stage (Autoware's
 ///     mrm_handler).
-///   - A driver who brakes harder than the car does overrides at once, with or without a request
+///   - A driver who brakes harder than the car overrides at once, with or without a request
 ///     (6.3). A car that stands after a manoeuvre stays locked.
 inline constexpr std::array kTakeOverTable{
     //  state          event          guard   next           authority    logged

@@ -15,7 +15,7 @@
 namespace fogline::log {
 namespace {
 
-// The steps of all logs that do not name their graph.
+// The graph of a log that does not name its graph and was written by an older program.
 constexpr auto kFirstGraph =
     std::to_array<std::string_view>({"TRUTH", "HOST_EGO", "RADAR", "LIDAR", "TRACK", "ACC_COMMAND",
                                      "DRIVER_COMMAND", "HOST_COMMAND", "FOLLOWER_COMMAND"});

@@ -19,20 +19,21 @@ runtime::ChannelSet OwnStepChannels();
 
 /// Writes the graph of a run, behind its scenario.
 /// @param channels kStep channels
-/// @throws std::runtime_error as EventLogWriter::Write()
+/// @throws std::runtime_error of EventLogWriter::Write()
 void WriteLogGraph(EventLogWriter& log, std::int64_t run_id,
                    const runtime::ChannelSet& channels = OwnStepChannels());
 
 /// The channels that an event on kLogGraphChannel names.
-/// @return no channel if the event is no graph of this run with TRUTH, which says which step is the
-///     last
+/// @return no channel if the event is not a graph of this run, or if the graph lacks TRUTH (only
+///     TRUTH shows which step is the last)
 /// @throws InputError for a channel that this program does not know; the error text does not
 ///     contain the log's name
 runtime::ChannelSet ReadLogGraph(const Event& event, std::int64_t run_id);
 
-/// The channels of a log that does not name its graph, such as a log of lcm-logger. A run with the
-/// message types of this program has the graph of this program. Other such logs are from programs
-/// that did not yet name the graph: TRUTH to FOLLOWER_COMMAND, the nine channels of that time.
+/// The channels of a log that does not name its graph, such as a log of lcm-logger. If the log has
+/// the message types of this program, the result is the graph of this program. Otherwise an older
+/// program wrote the log, and the result is the graph of all older programs: the nine channels from
+/// TRUTH to FOLLOWER_COMMAND.
 /// @param type_fingerprint of the log's RUN messages
 runtime::ChannelSet StepChannelsOf(std::int64_t type_fingerprint);
 

@@ -11,18 +11,18 @@ namespace fogline::log {
 
 /// What a reader has found out about a log, apart from RunLog.
 struct LogRemarks {
-  std::string torn;                        // how the file was cut off; "": it was not
-  std::string alteration;                  // how the log differs from its seal; "": it does not
+  std::string torn;                        // how the file was cut off; "" if it was not
+  std::string alteration;                  // how the log differs from its seal; "" if not
   bool has_last = false;                   // whether the log has the last step of the run
   std::int64_t next = 0;                   // the first step that the log does not have
   std::optional<std::int64_t> incomplete;  // a step at the end that lacks messages
-  std::string lacks;                       // the channels that it lacks
-  std::int64_t astray = 0;                 // steps that no run can have
+  std::string lacks;                       // the channels that this step lacks
+  std::int64_t astray = 0;                 // steps whose numbers are impossible for the run
   std::string conflict;                    // two different messages of one step and channel
   std::int64_t foreign = 0;                // messages of other runs
 };
 
-/// The remark; "" if there is none. @param run all fields but `note`
+/// The remark; "" if there is no remark. @param run all its fields except `note` are set
 std::string NoteOf(const RunLog& run, const LogRemarks& remarks);
 
 }  // namespace fogline::log

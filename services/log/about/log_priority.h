@@ -1,5 +1,5 @@
-// The real-time priority of a run's roles, in the log of this run (lcmtypes/log_priority_t.lcm). It
-// is not part of the run and not in its digest.
+// The real-time priority of a run's roles, in the log of this run (lcmtypes/log_priority_t.lcm).
+// This message is not part of the run and not in its digest.
 #pragma once
 
 #include <cstdint>
@@ -16,8 +16,9 @@ namespace fogline::log {
 /// it.
 inline constexpr std::string_view kLogPriorityChannel = "FOGLINE_PRIORITY";
 
-/// Which roles of a run in real time the kernel runs before ordinary processes (SCHED_FIFO), when
-/// the run has begun. Roles on other machines are unknown.
+/// The roles of a run in real time that got a real-time priority at the start of the run, and the
+/// roles that did not get it. The kernel runs roles with this priority before ordinary processes
+/// (SCHED_FIFO). The priority of roles on other machines is unknown.
 struct RealtimePriority {
   std::vector<std::string> granted;
   std::vector<std::string> refused;

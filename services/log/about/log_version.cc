@@ -16,8 +16,8 @@
 namespace fogline::log {
 namespace {
 
-/// A version, with the fingerprint of its run_t and that of all its message types. A log begins
-/// with run_t, which has the second number.
+/// A released version, with the fingerprint of its run_t, and the fingerprint of all its message
+/// types. A log begins with a run_t message, which contains the second fingerprint.
 struct Release {
   std::string_view version;
   std::uint64_t run_type;
@@ -32,7 +32,7 @@ constexpr std::array kReleases{
 
 std::string Named(std::string_view version) { return fmt::format("Fogline {}", version); }
 
-/// The first release for which `has` is true; "" if there is none.
+/// The first release for which `has` is true; "" if there is no such release.
 template <class Has>
 std::string FindRelease(const Has& has) {
   for (const Release& release : kReleases) {

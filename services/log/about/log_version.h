@@ -1,4 +1,5 @@
-// The version of Fogline that wrote a log, for the error of a reader that cannot read it.
+// The version of Fogline that wrote a log, for the error message of a reader that cannot read this
+// log.
 #pragma once
 
 #include <filesystem>
@@ -10,26 +11,27 @@ namespace fogline::log {
 
 /// The writer of a log.
 struct LogVersion {
-  /// Such as "Fogline 0.1.0"; "" if the log does not tell. The seal tells the version. A log
-  /// without a seal tells it if the table of released versions (log_version.cc) has its message
-  /// types.
+  /// Such as "Fogline 0.1.0"; "" if the version is not known. The seal contains the version. For a
+  /// log without a seal, the version is known if the table of released versions (log_version.cc)
+  /// has the log's message types.
   std::string writer;
   /// Whether the message types of the writer differ from those of this build.
   bool other_types = false;
 
   /// Such as "written by Fogline 0.1.0 with other message types; this is Fogline 0.2.0"; "" if the
-  /// log has the version of this build, or does not tell a version.
+  /// log has the version of this build, or if the version is not known.
   std::string Text() const;
 };
 
-/// Reads the whole log. @throws InputError if the file cannot be read or is no event log
+/// Reads the whole log. @throws InputError if the file cannot be read or is not an event log
 LogVersion VersionOf(const std::filesystem::path& log);
 
 /// Refuses a log of another version. @throws InputError that names the version
 [[noreturn]] void RefuseVersion(const std::filesystem::path& log);
 
 /// Reads the scenario of a log.
-/// @throws InputError; for a log of another version, a last line names this version
+/// @throws InputError if the scenario is invalid; for a log of another version, the last line of
+/// the error names this version
 Scenario ParseLoggedScenario(const std::string& text, const std::filesystem::path& log);
 
 }  // namespace fogline::log

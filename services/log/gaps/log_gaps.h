@@ -1,5 +1,5 @@
-// The messages that the log of a run in lockstep lacks: a logger that joined late, or that lost
-// some messages, leaves such a log. A run in real time counts its missing messages in
+// The messages that the log of a run in lockstep lacks. Such a log comes from a logger that joined
+// late, or that lost some messages. A run in real time counts its missing messages in
 // RealtimeFigures.
 #pragma once
 
@@ -28,18 +28,18 @@ struct LogGaps {
   static constexpr std::size_t kMostGaps = 1000;
 
   std::int64_t first = 0;  // the first step of which the log has a message
-  std::int64_t steps = 0;  // steps after it that lack a message
+  std::int64_t steps = 0;  // steps after `first` that lack a message
   std::array<std::int64_t, kNumChannels> messages{};  // missing messages of each channel
-  std::vector<Gap> gaps;                              // the first ones
-  std::int64_t left_out = 0;                          // gaps that came after `gaps` was full
+  std::vector<Gap> gaps;                              // the first gaps, at most kMostGaps
+  std::int64_t left_out = 0;                          // number of later gaps
 
-  /// Whether the log lacks its first steps, or a message after them.
+  /// Whether the log lacks its first steps, or a message of a later step.
   bool Any() const { return first > 0 || steps > 0; }
   std::int64_t Messages() const;
   /// Adds a step that lacks the messages of these channels. Steps come in order.
   void Add(std::int64_t step, const std::bitset<kNumChannels>& channels);
   /// Such as "2 messages of 2 steps are missing (RADAR 1, LIDAR 1), first: step 394 lacks RADAR";
-  /// "" if no message is missing. It does not name the steps before the first one.
+  /// "" if no message is missing. The text does not contain the steps before `first`.
   std::string Text() const;
 };
 

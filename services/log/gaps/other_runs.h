@@ -19,7 +19,7 @@ inline std::string IdsOf(const std::vector<RunInLog>& runs) {
   return ids;
 }
 
-/// Counts messages by run. A file may contain any run ids, so only the first kMost are remembered.
+/// Counts messages by run. A file may contain any run ids, so only the first kMost runs are stored.
 class OtherRuns {
  public:
   static constexpr std::size_t kMost = 16;
@@ -32,7 +32,7 @@ class OtherRuns {
     }
     if (runs_.size() < kMost) runs_.push_back({.run_id = run_id, .messages = 1});
   }
-  /// Forgets a run, which is no other run. @return its messages
+  /// Removes the run that is being read. @return the number of its messages so far
   std::int64_t Forget(std::int64_t run_id) {
     std::int64_t messages = 0;
     std::erase_if(runs_, [&](const RunInLog& run) {
@@ -41,7 +41,7 @@ class OtherRuns {
     });
     return messages;
   }
-  /// In the order of their first messages.
+  /// The runs, in the order of their first messages.
   const std::vector<RunInLog>& all() const { return runs_; }
 
  private:

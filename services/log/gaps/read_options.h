@@ -10,12 +10,12 @@ namespace fogline::log {
 struct ReadOptions {
   /// The part of a log that is compared with its seal.
   enum class Compared {
-    kRun,   // scenario and steps; in real time all bytes, because STATUS gives results, too
-    kFile,  // all bytes of the file, which are read once more at the end
+    kRun,   // scenario and steps; in real time all bytes, because STATUS also gives results
+    kFile,  // all bytes of the file, which are read again at the end
   };
 
   Compared compared = Compared::kRun;
-  /// In lockstep: whether the reader also gives steps that lack messages. Otherwise the run ends
+  /// In lockstep: whether the reader also gives steps that lack messages. Otherwise the reader ends
   /// before the first of these steps.
   bool gaps = false;
   /// The run to read; nullopt: the first run in the log.

@@ -5,7 +5,7 @@
 namespace fogline::metrics {
 namespace {
 
-/// A sample without values, after this one.
+/// A sample without values, one step after `before`.
 Sample Hole(const Sample& before, double step_s) {
   Sample hole{.step = before.step + 1, .time_s = before.time_s + step_s};
   for (double Sample::*field : {&Sample::preceding_speed_mps,

@@ -13,7 +13,7 @@ namespace fogline::metrics {
 
 /// A pedal has moved if its position differs by this share of its travel from the position at the
 /// request. Our choice: 1 % is more than two steps of an axis with 8 bits (0.4 % each), so the
-/// noise of such an axis is no movement.
+/// noise of such an axis does not count as a movement.
 inline constexpr double kMovement = 0.01;
 
 /// Fills in first_movement_time_s and pedal_on_time_s of the requests of a run.
@@ -29,8 +29,8 @@ class InputTimes {
   InputTimes(std::span<TakeOverMeasures> requests, double pedal)
       : requests_(requests), pedal_(pedal) {}
 
-  /// Adds the next input of a seat from which the driver's commands were made. Inputs of a seat
-  /// come in order.
+  /// Adds the next input of a seat whose inputs the driver has used. The inputs of a seat must come
+  /// in order.
   void Add(const driver_input_t& input);
 
  private:

@@ -42,7 +42,8 @@ std::string_view NameOf(TakeOverEnd end) {
   return "";
 }
 
-// The acceleration of a step was applied before the step, so it belongs to the commands before.
+// The acceleration in the TRUTH of a step was applied before this step. So it belongs to the
+// earlier commands.
 void TakeOverAccumulator::Add(const truth_t& truth, const arbitration_t* command,
                               const track_t* track, std::optional<double> human_mps2) {
   if (truth.fog_present == 0) {
@@ -50,7 +51,7 @@ void TakeOverAccumulator::Add(const truth_t& truth, const arbitration_t* command
   } else if (!fog_speed_mps_) {
     fog_speed_mps_ = truth.host_speed_mps;
   }
-  // The acceleration at step 0 is a convention; no acceleration was applied.
+  // Step 0 does not count, because no acceleration was applied before it.
   std::optional<double> jerk_mps3;
   if (truth.header.step > 0) {
     jerk_mps3 = jerk_.Add(Seconds(truth.header.utime), truth.host_acceleration_mps2);

@@ -16,16 +16,16 @@
 
 namespace fogline::metrics {
 
-/// Reads the steps of a run in order; steps may be missing. The times of a request are those of
-/// TakeOverLog, so `fogline events` lists the same times. The memory grows with the number of
-/// requests, and not with the length of the run.
+/// Reads the steps of a run in order; steps may be missing. TakeOverLog gives the times of a
+/// request, so `fogline events` lists the same times. The memory grows with the number of requests,
+/// and not with the length of the run.
 class TakeOverAccumulator {
  public:
   /// Adds a step.
   /// @param command HOST_COMMAND of the step; nullptr if the message is missing. The state of a
   ///     request then does not change in this step.
-  /// @param track TRACK of the step; nullptr if the message is missing. The policy then counts as
-  ///     excluding what it excluded in the step before.
+  /// @param track TRACK of the step; nullptr if the message is missing. The exclusion in the last
+  ///     TRACK then still applies.
   /// @param human_mps2 a_H, the driver's offer; nullopt if it is not known
   void Add(const truth_t& truth, const arbitration_t* command, const track_t* track,
            std::optional<double> human_mps2);
@@ -37,9 +37,9 @@ class TakeOverAccumulator {
   /// Values of the judged interval, while it lasts.
   struct Judged {
     Mean deceleration_mps2;
-    // Only TTC and time gap are used. They do not depend on the section.
+    // Only TTC and time gap are used. These two measures do not depend on the section.
     PairAccumulator pair{MeasuresSection{}};
-    // Parts of the interval by what drove, and the time of the last step.
+    // The time in which each side drove, and the time of the last step.
     std::int64_t automation_us = 0;
     std::int64_t excluded_us = 0;
     std::int64_t driver_us = 0;
@@ -51,9 +51,9 @@ class TakeOverAccumulator {
   void AddCommand(const truth_t& truth, const arbitration_t& command,
                   std::optional<double> human_mps2);
   void Begin(const truth_t& truth);
-  /// Adds the time since the last step to what has driven since then.
+  /// Adds the time since the last step to the side that has driven since then.
   void AddDriving(std::int64_t utime);
-  /// Adds what a step tells of the situation, also the step of the request.
+  /// Adds the values of a step's TRUTH, also for the step of the request.
   void Look(const truth_t& truth);
   void NoteTimes(std::int64_t utime);
   void NoteOutcome(std::int8_t mode);

@@ -1,5 +1,5 @@
-// Measures of each request to take over: how fast the driver answered, and how the car moved
-// meanwhile.
+// Measures of each request to take over: how fast the driver answered, and how the car moved in the
+// judged interval.
 #pragma once
 
 #include <cstdint>
@@ -18,15 +18,16 @@ enum class TakeOverEnd : std::uint8_t {
   kFallback,       // the driver drives without an answer, because inputs have failed
 };
 
-/// "taken_over" and so on, for JSON and CSV.
+/// Name of an outcome for JSON and CSV, such as "taken_over".
 std::string_view NameOf(TakeOverEnd end);
 
-/// Measures of one request. Times without further words begin with the step of the request. A field
-/// is empty if its event has not happened, or if no step is relevant for the measure.
+/// Measures of one request. A time begins with the step of the request, unless its comment names
+/// another beginning. A field is empty if its event has not happened, or if no step is relevant for
+/// the measure.
 ///
 /// The *judged interval* begins with the step of the request. It ends with the first step in which
 /// the driver counts as recovered, the automation drives again, or the car stands after a minimal
-/// risk manoeuvre; at the latest with the run.
+/// risk manoeuvre. If no such step comes, the interval ends with the run.
 struct TakeOverMeasures {
   TakeOverEnd outcome = TakeOverEnd::kOpen;
   /// Time of the request since the start of the run, s.
@@ -34,9 +35,10 @@ struct TakeOverMeasures {
   /// Length of the judged interval, s.
   double judged_s = 0;
 
-  /// Only if a person drives: time to the first DRIVER_INPUT in which the person has moved a pedal
-  /// or pressed the button for taking over since the request, and to the first DRIVER_INPUT in
-  /// which a pedal has reached the threshold for taking over, s (input_times.h).
+  /// Only if a person drives (input_times.h): first_movement_time_s is the time to the first
+  /// DRIVER_INPUT in which the person has moved a pedal, or pressed the button for taking over,
+  /// since the request, s. pedal_on_time_s is the time to the first DRIVER_INPUT in which a pedal
+  /// has reached the threshold for taking over, s.
   std::optional<double> first_movement_time_s;
   std::optional<double> pedal_on_time_s;
   /// Time to the acknowledgement, the driver's first answer that the arbitrator has received, s.
@@ -50,8 +52,8 @@ struct TakeOverMeasures {
 
   /// Speed of the host in the step of the request, m/s.
   double speed_at_request_mps = 0;
-  /// Speed of the host in the first step of the fog, m/s: of the fog during the request, otherwise
-  /// of the first fog that begins in the judged interval.
+  /// Speed of the host in the first step of a fog, m/s. If there is fog at the request, this fog
+  /// counts. Otherwise the first fog that begins in the judged interval counts.
   std::optional<double> speed_at_fog_mps;
   /// Largest applied deceleration of the host in the judged interval, m/s2; 0 if it never slows
   /// down.
@@ -67,13 +69,14 @@ struct TakeOverMeasures {
   std::optional<double> min_ttc_s;
   std::optional<double> min_time_gap_s;
 
-  /// Parts of the judged interval by what drove the host, s. While authority is shared, the mode in
-  /// HOST_COMMAND names the side. A step without HOST_COMMAND counts like the step before it.
+  /// Times in the judged interval in which automation, driver and manoeuvre drove the host, s.
+  /// While authority is shared, the mode in HOST_COMMAND names the side. A step without
+  /// HOST_COMMAND counts like the step before it.
   double automation_drove_s = 0;
   double driver_drove_s = 0;
   double manoeuvre_drove_s = 0;
   /// Part of automation_drove_s in which the policy excluded a value of a sensor from the fusion,
-  /// s. A step in which this sensor measures nothing does not count.
+  /// s. A step in which this sensor has no value does not count.
   double sensor_excluded_s = 0;
 
   friend bool operator==(const TakeOverMeasures&, const TakeOverMeasures&) = default;

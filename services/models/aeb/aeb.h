@@ -29,7 +29,7 @@ class Aeb {
  public:
   explicit Aeb(const AebSection& section) : section_(section) {}
 
-  /// The state in this step. Call it once per step.
+  /// The state in this step. Call Step() once per step.
   AebState Step(const Situation& seen);
   AebState state() const { return state_; }
 

@@ -20,8 +20,8 @@ enum class DriverTask {
 ///
 /// The reaction time is T_r0 + k (1 - A). The size of the errors follows SUMO's driver state. The
 /// factor of the relative gap error is 0.75. The factor of the closing speed's error is 0.15 per
-/// second, times the gap. Each factor is multiplied by a random process. Its standard
-/// deviation is 0.2 (1 - A).
+/// second, times the gap. Each factor is multiplied by a random process with standard deviation 0.2
+/// (1 - A).
 class Awareness {
  public:
   /// @throw std::invalid_argument for a parameter out of its range.

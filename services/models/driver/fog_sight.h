@@ -16,8 +16,7 @@ enum class Seen { kOutline, kLamps, kNothing };
 ///     lamps:    I e^(-sigma d) / d^2 >= E_t       up to d_l                       (Allard 1876)
 ///     closing:  W |v - v_l| / d^2 > threshold
 ///
-/// If the closing is not visible, the driver perceives v_l = v and acceleration 0 of the car
-/// ahead.
+/// If the closing is not visible, the driver perceives v_l = v and acceleration 0 of the car ahead.
 /// The perceived distance is d up to a share of d_o, and kappa d from d_o on. Between these
 /// distances the factor grows linearly from 1 to kappa. d_l = (2 / sigma) W_0(sigma / 2 sqrt(I /
 /// E_t)) with Lambert's W.

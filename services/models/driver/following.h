@@ -9,9 +9,9 @@
 
 namespace fogline::models {
 
-/// The IDM of services/driver, and the two models that Kesting, Treiber & Helbing (Philosophical
-/// Transactions of the Royal Society A 368:4585, 2010) and Treiber & Kesting (Traffic Flow
-/// Dynamics, 2013) derived from it. With s* and the parameters of idm.h and z = s* / s:
+/// The IDM (idm.h), and the two models that Kesting, Treiber & Helbing (Philosophical Transactions
+/// of the Royal Society A 368:4585, 2010) and Treiber & Kesting (Traffic Flow Dynamics, 2013)
+/// derived from it. With s* and the parameters of idm.h and z = s* / s:
 ///
 /// Improved IDM (IIDM); its equilibrium gap below v_0 is exactly s_0 + v T:
 ///

@@ -16,7 +16,7 @@ const HumanParameters& Checked(const HumanParameters& human) {
   return human;
 }
 
-// A time as a number of whole steps and the rest, in steps.
+// A time as a number of whole steps, and the remaining part of a step.
 struct Steps {
   double whole;
   double rest;

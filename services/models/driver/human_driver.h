@@ -21,7 +21,7 @@ struct Attention {
   double approach_error_ps;  // r_c
 };
 
-/// Human Driver Model (Treiber, Kesting & Helbing, Physica A 360:71, 2006) for the one car ahead:
+/// Human Driver Model (Treiber, Kesting & Helbing, Physica A 360:71, 2006) for one car ahead:
 ///
 ///     s_est   = s e^(V_s w_s)                  w_s, w_l: Ornstein-Uhlenbeck of variance 1
 ///     v_l,est = v_l - s r_c w_l
@@ -31,10 +31,10 @@ struct Attention {
 /// constant since then:
 ///
 ///     v'   = v + T_r a             s' = s_est - T_r (v - v_l,est)
-///     v_l' = v' - (v - v_l,est)                    with all values of t - T_r
+///     v_l' = v' - (v - v_l,est)                    with all values at the time t - T_r
 ///
 /// The equations come from other literature that quotes the paper. Only the abstract of the paper
-/// itself was checked. Without errors and reaction time, the result equals that of the
+/// itself was checked. Without errors and reaction time, the result equals the result of the
 /// car-following model, bit by bit.
 class HumanDriver {
  public:
@@ -48,12 +48,12 @@ class HumanDriver {
   HumanDriver(const HumanParameters& human, const Following& model, const Random& random,
               double step_s);
 
-  /// The acceleration in this step. Call it once per step, in the order of steps, because errors
-  /// and memory continue from step to step. Until T_r has passed, the driver acts on the first
-  /// situation.
+  /// The acceleration in this step. Call Step() once per step, in the order of steps, because
+  /// errors and memory continue from step to step. Until T_r has passed, the driver acts on the
+  /// first situation.
   double Step(std::int64_t step, const Situation& seen);
-  /// The acceleration of a driver whose attention changes. A reaction time above that of the
-  /// constructor is reduced to that of the constructor.
+  /// The acceleration of a driver whose attention changes. A reaction time above the constructor's
+  /// reaction time is reduced to the constructor's reaction time.
   double Step(std::int64_t step, const Situation& seen, const Attention& attention);
 
  private:

@@ -29,7 +29,7 @@ class PedalResponse {
     return std::max(wanted, -person_.full_brake_mps2);
   }
 
-  /// Whether the travel of a pedal is that of a person who takes over.
+  /// Whether the travel of a pedal has reached the threshold for taking over.
   bool TakesOver(double throttle, double brake) const {
     return std::max(throttle, brake) >= person_.take_over_pedal;
   }

@@ -1,5 +1,6 @@
 // Response of a careful driver to the car ahead, by one of three definitions. This response is a
-// reference for followers. A follower may also apply it in addition to its car-following model.
+// reference for followers. A follower may also apply this response in addition to its car-following
+// model.
 #pragma once
 
 #include "services/models/driver/situation.h"
@@ -43,7 +44,7 @@ class SafetyResponse {
   SafetyResponse(SafetyModel model, double step_s, const ResponseParameters& response = {},
                  const RssParameters& rss = {}, const FuzzyParameters& fuzzy = {});
 
-  /// Deceleration in this step in m/s2, 0 if none. Call it once per step.
+  /// Deceleration in this step in m/s2, 0 if none. Call Step() once per step.
   double Step(const Situation& seen);
 
   /// Whether the model saw danger in the last step.

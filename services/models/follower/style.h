@@ -23,7 +23,7 @@ struct StyleParameters {
 /// of 0.5 to 1.1 s that the authors of the Human Driver Model examine.
 StyleParameters ParametersOf(Style style);
 
-/// Relative frequency of each style: at least 0, and at least one above 0.
+/// Relative frequency of each style. Every frequency is at least 0, and at least one is above 0.
 struct StyleShares {
   double aggressive = 1;
   double normal = 1;

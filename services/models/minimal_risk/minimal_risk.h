@@ -34,12 +34,12 @@ class MinimalRisk {
   void Begin(double acceleration_mps2);
   bool begun() const { return begun_; }
 
-  /// The acceleration for the step that begins here. Call it once per step. @pre begun()
+  /// The acceleration for the step that begins here. Call Step() once per step. @pre begun()
   /// @param speed_mps measured at the beginning of the step, at least 0
   double Step(double speed_mps) { return Step(speed_mps, limits_.deceleration_mps2); }
   /// The acceleration with another deceleration d, which may change from step to step. The limit on
   /// jerk still applies.
-  /// @param deceleration_mps2 above 0, at most that of the limits
+  /// @param deceleration_mps2 above 0, at most the deceleration of the limits
   double Step(double speed_mps, double deceleration_mps2);
 
  private:

@@ -30,8 +30,8 @@ Names Through(const std::string& lane, const std::string& next) {
   return {};
 }
 
-/// The same in the other direction: the lanes inside of the junction, the last one first, and then
-/// `before`.
+/// The lanes inside of the junction between `before` and `lane`, from the last to the first, and
+/// then `before`; empty if no connection leads there.
 Names BackThrough(const std::string& lane, const std::string& before) {
   Names lanes = Through(before, lane);
   if (lanes.empty()) return lanes;
@@ -49,13 +49,14 @@ Names LanesOf(const std::string& edge) {
   return lanes;
 }
 
-/// The longest way from a lane along edges; of equally long ways, that on the rightmost lanes. Each
-/// lane of an edge is searched once, because the way from it does not depend on the way to it. A
-/// road on which each lane leads to several lanes has very many ways.
+/// Finds the longest way from a lane along edges. Of equally long ways, the class takes the way on
+/// the rightmost lanes. If each lane leads to several lanes, there are very many ways. So the class
+/// searches each lane of an edge only once: the longest way from a lane does not depend on the way
+/// to this lane.
 class LongestWay {
  public:
-  /// The lanes from a lane to one of the next edge, which is the last of them; empty if none lead
-  /// there.
+  /// Function that returns the lanes from `lane` to `next`, which is a lane of the next edge.
+  /// `next` is the last of these lanes. The result is empty if no lanes lead there.
   using Between = Names (*)(const std::string& lane, const std::string& next);
 
   LongestWay(Names edges, Between between) : edges_(std::move(edges)), between_(between) {}
@@ -74,7 +75,7 @@ class LongestWay {
  private:
   struct Way {
     std::size_t lanes = 0;  // number of its lanes
-    Names begin;            // its lanes up to that of the next edge
+    Names begin;            // lanes of the way, up to the lane of the next edge
   };
 
   /// The way from a lane along the edges from `edge` on.

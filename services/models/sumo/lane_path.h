@@ -14,8 +14,8 @@ struct LanePlace {
   double position_m = 0;
 };
 
-/// The lanes of a route that lead to one lane and onward from it without a change of the lane,
-/// with the lanes inside of junctions.
+/// The lanes of a route that lead to a given lane, and from this lane onward, without a change of
+/// lane. The path includes the lanes inside of junctions.
 class LanePath {
  public:
   struct Lane {

@@ -7,7 +7,8 @@
 
 namespace fogline::sumo {
 
-/// The file exists as long as the object, and leaves nothing behind, however the process ends.
+/// The file exists as long as the object. After the end of the process, even after a kill, no file
+/// remains.
 class MemoryFile {
  public:
   /// A file with these lines. @throws std::system_error

@@ -19,8 +19,8 @@
 namespace fogline::sumo {
 namespace {
 
-// The only simulation of this process. It is no mutex, because one thread may begin a run and
-// another one end it.
+// Guards the only simulation of this process. A mutex cannot be used, because one thread may begin
+// a run and another thread may end this run.
 std::binary_semaphore simulation(1);
 
 constexpr double kMicrosPerSecond = 1e6;
@@ -28,15 +28,16 @@ constexpr std::int64_t kSeeds = std::int64_t{1} << 31;  // SUMO's seed is an int
 constexpr const char* kRoute = "fogline";
 constexpr const char* kType = "DEFAULT_VEHTYPE";
 constexpr const char* kPrefix = "fogline.";
-// SUMO takes a car off the road at the end of its route. Fogline's cars stop being part of the
-// traffic a little before.
+// SUMO removes a car at the end of its route. So Step() refuses a host that is nearer to the end of
+// its lane than this distance.
 constexpr double kBeforeTheEnd_m = 1.0;
-// Bits of SUMO's speed mode and lane change mode: 0 obeys the caller alone.
+// Bits of SUMO's speed mode and lane change mode: with 0, a car follows only the caller's commands.
 constexpr int kObey = 0;
 constexpr double kFastest_mps = 100.0;
 
-/// SUMO writes its errors to std::cerr, and its exceptions often say no more than "Process Error".
-/// While this object exists, it keeps what goes to std::cerr. Fogline itself does not use it.
+/// Keeps the text that SUMO writes to std::cerr while this object exists. SUMO's exceptions often
+/// contain only "Process Error", and SUMO writes the reason to std::cerr. Fogline itself does not
+/// use std::cerr.
 class KeptErrors {
  public:
   KeptErrors() : before_(std::cerr.rdbuf(kept_.rdbuf())) {}
@@ -70,7 +71,8 @@ void SumoTraffic::Close() {
   try {
     libsumo::Simulation::close();
   } catch (const std::exception&) {
-    // The simulation failed before, and that error is the one to report.
+    // The simulation has failed before. The caller reports that first error, so this error is
+    // ignored.
   }
   files_.reset();
   path_.reset();
@@ -112,13 +114,15 @@ void SumoTraffic::Load() {
        fmt::format("{}", step_s),
        // The acceleration is constant within a step, as in services/models/vehicle/motion.h.
        "--step-method.ballistic", "--seed", fmt::format("{}", setup_.seed % kSeeds),
-       // No car disappears because it stands long, or because others came too close.
+       // No car disappears because it stands for a long time, or because another car comes too
+       // close.
        "--time-to-teleport", "-1", "--collision.action", "none"});
   libsumo::Simulation::step(setup_.start_s);
 }
 
-/// The first error that SUMO has said, in one line, or else the error of its library. The
-/// scenario's name of a text replaces the name of its file.
+/// The first error that SUMO has written, in one line; without such an error, the error of SUMO's
+/// library. In the text, "net" and "routes" (the names in the scenario) replace the names of the
+/// files.
 std::string SumoTraffic::WhyNot(const std::string& error, const std::string& said) const {
   constexpr std::string_view kError = "Error: ";
   std::string why = said.starts_with(kError) ? said.substr(kError.size()) : said;
@@ -142,7 +146,8 @@ void SumoTraffic::RequireCarBehindWhichToBegin() const {
                                setup_.behind, setup_.start_s, cars.empty() ? "none" : Some(cars)));
 }
 
-/// Puts Fogline's cars on the road: the host so far behind its car as the scenario says.
+/// Puts Fogline's cars on the road. The host begins behind a car of SUMO, with the gap that the
+/// scenario gives.
 void SumoTraffic::Enter(std::span<const models::Motion> cars) {
   const std::string& behind = setup_.behind;
   const std::string lane = libsumo::Vehicle::getLaneID(behind);
@@ -174,8 +179,8 @@ void SumoTraffic::Enter(std::span<const models::Motion> cars) {
 }
 
 /// Gives SUMO the places and speeds of Fogline's cars. moveTo() must come before
-/// setPreviousSpeed(), because it keeps the speed that SUMO computed. moveToXY() would move a car
-/// only at the end of SUMO's next step (SUMO's issues 8661 and 11091).
+/// setPreviousSpeed(), because moveTo() keeps the speed that SUMO computed. moveToXY() would move a
+/// car only at the end of SUMO's next step (SUMO's issues 8661 and 11091).
 void SumoTraffic::Move(std::span<const models::Motion> cars) const {
   for (std::size_t i = 0; i < cars.size(); ++i) {
     const LanePlace place = path_->At(Along(cars[i]));
@@ -184,7 +189,7 @@ void SumoTraffic::Move(std::span<const models::Motion> cars) const {
   }
 }
 
-/// The car on the path whose front bumper is the next one in front of the host's.
+/// The car on the path whose front bumper is the nearest one ahead of the host's front bumper.
 std::optional<models::LeaderInTraffic> SumoTraffic::Ahead(const models::Motion& host) {
   const double host_m = Along(host);
   std::string nearest;

@@ -15,8 +15,8 @@
 
 namespace fogline::sumo {
 
-/// SUMO has one simulation in a process. So a second object waits in Begin() until the first one's
-/// run has ended.
+/// SUMO has one simulation in a process. So a second object waits in Begin() until the run of the
+/// first object has ended.
 class SumoTraffic final : public models::Traffic {
  public:
   explicit SumoTraffic(const models::TrafficSetup& setup) : setup_(setup) {}

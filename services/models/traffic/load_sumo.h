@@ -1,5 +1,6 @@
-// Traffic by SUMO (Debian's package sumo). The module with SUMO is a file of its own, because SUMO
-// needs 200 shared libraries. It is loaded only for a scenario whose preceding cars come from SUMO.
+// Traffic by SUMO (Debian's package sumo). The module with SUMO is a separate file, because SUMO
+// needs 200 shared libraries. The module is loaded only for a scenario whose preceding cars come
+// from SUMO.
 #pragma once
 
 #include <filesystem>
@@ -11,7 +12,7 @@
 
 namespace fogline::models {
 
-/// The module beside the running program: in ../lib/fogline.
+/// Path of the module: ../lib/fogline/sumo.so, seen from the folder of the running program.
 std::filesystem::path SumoModule();
 
 /// Loads SUMO; the simulation itself begins with Traffic::Begin(). A process runs one simulation at

@@ -1,5 +1,5 @@
-// Cars that another simulator moves, and the cars of Fogline among them. Positions are those of the
-// front bumper along the lane, as in truth_t.
+// Cars that another simulator moves, and the cars of Fogline among them. A position is the position
+// of the front bumper along the lane, as in truth_t.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace fogline::models {
 
-/// What the other simulator needs to begin.
+/// Inputs of the other simulator for the beginning of a run.
 struct TrafficSetup {
   std::vector<std::string> net;     // lines of the network
   std::vector<std::string> routes;  // lines of the routes and cars
@@ -29,10 +29,11 @@ struct LeaderInTraffic {
   double rear_m = 0;  // position of its rear bumper
   double speed_mps = 0;
   double acceleration_mps2 = 0;
-  bool changed = false;  // whether it is another car than at the step before
+  bool changed = false;  // whether this is another car than in the step before
 };
 
-/// All functions take the cars of Fogline from the front: the host, then the following cars.
+/// All functions take the cars of Fogline in the order from the front: the host, then the following
+/// cars.
 class Traffic {
  public:
   virtual ~Traffic() = default;
@@ -42,14 +43,14 @@ class Traffic {
   /// @throws InputError "/lead/sumo/...: message" if the cars have no place in the traffic
   virtual LeaderInTraffic Begin(std::span<const Motion> cars) = 0;
 
-  /// Moves the other cars from step k to k + 1. They react to the cars of Fogline as these were at
-  /// step k.
+  /// Moves the other cars from step k to k + 1. The other cars react to the state of Fogline's cars
+  /// at step k.
   /// @param cars the cars of Fogline at step k + 1
   /// @return the car ahead of the host at step k + 1; nullopt if the lane ahead is empty
   /// @throws std::runtime_error if the host leaves the road, or the other simulator fails
   virtual std::optional<LeaderInTraffic> Step(std::span<const Motion> cars) = 0;
 
-  /// Ends the run, and lets another run of this process begin.
+  /// Ends the run. Another run of this process can then begin.
   virtual void End() = 0;
 };
 

@@ -28,9 +28,9 @@ inline constexpr double kAirDensity_kgpm3 = 1.225;
 ///   the wheels. This force is at least -mu m g cos(theta), and at most mu m g cos(theta) times the
 ///   driven share.
 ///
-/// Within a step the mean forces act, so that v(t) has a closed form (tanh or tan). Slope and power
-/// limit are those of the middle of the step. The remaining error is of second order in the step.
-/// Cars do not roll backwards, because the brakes hold a car at rest.
+/// Within a step the mean forces act, so that v(t) has a closed form (tanh or tan). The slope and
+/// the power limit are taken from the middle of the step. The remaining error is of second order in
+/// the step. Cars do not roll backwards, because the brakes hold a car at rest.
 ///
 /// Not thread-safe. Only the constructor allocates memory.
 class LongitudinalVehicle {
@@ -86,7 +86,7 @@ class LongitudinalVehicle {
   Actuator brake_;
   double traction_n_ = 0;
   double brake_n_ = 0;
-  double last_mps2_ = 0;  // result of the last Step(); before the first, the command of Begin()
+  double last_mps2_ = 0;  // result of the last Step(); after Begin(), its command
 };
 
 }  // namespace fogline::models

@@ -62,9 +62,9 @@ struct VehicleParameters {
 /// The defaults.
 inline constexpr VehicleParameters kSedan{};
 
-/// A light car. m is that of the BMW 320i in the CommonRoad vehicle models (vehicle 2). P follows
-/// from the acceleration limit of these models above the switching speed: 1093 kg * 11.5 m/s2 *
-/// 7.319 m/s = 92 kW. The rest: estimate.
+/// A light car. m is the mass of the BMW 320i in the CommonRoad vehicle models (vehicle 2). P
+/// follows from the acceleration limit of these models above the switching speed: 1093 kg * 11.5
+/// m/s2 * 7.319 m/s = 92 kW. The other values are estimates.
 inline constexpr VehicleParameters kCompact{
     .mass_kg = 1093.0,
     .drag_coefficient = 0.31,
@@ -75,9 +75,9 @@ inline constexpr VehicleParameters kCompact{
 
 /// A loaded tractor with semi-trailer. m is the European limit for five axles (Directive 96/53/EC,
 /// 40 t). c_d and A: a tractor of Auburn University's GAVLAB in its published parameter files
-/// (0.79, 7.80 m2); c_r: 0.0098, from the Peterbilt trucks of the same laboratory. The rest:
-/// estimate. The brakes are stronger than the 5.0 m/s2 that UN R13 requires of heavy trucks, and
-/// slow, because they use compressed air.
+/// (0.79, 7.80 m2); c_r: 0.0098, from the Peterbilt trucks of the same laboratory. The other values
+/// are estimates. The brakes are stronger than the 5.0 m/s2 that UN R13 requires of heavy trucks,
+/// and slow, because they use compressed air.
 inline constexpr VehicleParameters kTruck{
     .mass_kg = 40e3,
     .rotating_mass_factor = 1.1,

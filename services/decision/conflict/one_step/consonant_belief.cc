@@ -24,14 +24,14 @@ double Overlap(double distance, double a, double b) {
   return std::max(0.0, std::min(a, distance + b) - std::max(-a, distance - b));
 }
 
-// Probability of [low, high] under N(0, s1^2), minus that under N(d, s2^2).
+// Probability of [low, high] under N(0, s1^2), minus its probability under N(d, s2^2).
 double Excess(double low, double high, double d, double s1, double s2) {
   return NormalBelow(high / s1) - NormalBelow(low / s1) -
          (NormalBelow((high - d) / s2) - NormalBelow((low - d) / s2));
 }
 
-// Several measures that look at the same step ask for the same products. Each thread keeps the last
-// ones, as many as the measures need in a step.
+// Several measures need the same products in a step. So each thread keeps the most recent products,
+// as many as the measures need in one step.
 struct ProductKey {
   int levels = 0;
   double distance_m = 0;
@@ -42,7 +42,7 @@ struct ProductKey {
 
 class RecentProducts {
  public:
-  /// nullptr if the product of this key is not among the last ones.
+  /// The product of this key; nullptr if the product is not stored.
   const double* Find(const ProductKey& key) const {
     const auto found = std::ranges::find(keys_, key);
     return found == keys_.end() ? nullptr

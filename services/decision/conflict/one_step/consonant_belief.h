@@ -26,19 +26,19 @@ class ConsonantBeliefs {
   /// c12 = sum of m1(A) m2(B) |A and B|/|A or B|, in [0, 1]: the product under Jousselme's D.
   /// @param distance_m at least 0, between the means.  @param std1_m, std2_m above 0
   double JaccardProduct(double distance_m, double std1_m, double std2_m) const;
-  /// c11 = c22: the same product of a reading with itself. It is equal for all readings.
+  /// c11 = c22: the product of a reading with itself. This product is equal for all readings.
   double JaccardSquare() const { return jaccard_square_; }
 
   /// Integral over x of pl1(x) pl2(x), in m. pl is the plausibility of single points (contour). pl
   /// determines a consonant belief completely.
   double ContourProduct(double distance_m, double std1_m, double std2_m) const;
 
-  /// d_J, in [0, 1].
+  /// Jousselme's distance d_J, in [0, 1].
   double JousselmeDistance(const Disagreement& disagreement) const;
   /// 1 - cosine of the contours, in [0, 1]. The cosine of the masses themselves would be 0 for all
   /// different readings, because intervals of two different readings are never the same set.
   double CosineConflict(const Disagreement& disagreement) const;
-  /// 1 - r, in [0, 1].
+  /// 1 - r, r = c12/sqrt(c11 c22), in [0, 1].
   double CorrelationConflict(const Disagreement& disagreement) const;
 
  private:

@@ -8,8 +8,9 @@
 
 namespace fogline::conflict {
 
-/// A measure that depends only on the disagreement of the step: double(Disagreement). A skipped
-/// step scores 0. With rule `hold`, a missing value before the first measured value scores 0, too.
+/// A measure that depends only on the disagreement of the step. Score is a function
+/// double(Disagreement). A skipped step scores 0. With rule `hold`, a step with a missing value
+/// before the first measured value also scores 0.
 template <class Score>
 class Momentary final : public ConflictMeasure {
  public:

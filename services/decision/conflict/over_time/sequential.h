@@ -28,8 +28,8 @@ class Cusum final : public ConflictMeasure {
   double sum_ = 0;
 };
 
-/// Generalised likelihood ratio for a jump of unknown size at an unknown step j, either sign
-/// (Willsky & Jones 1976; Basseville & Nikiforov 1993, section 2.4.3):
+/// Generalised likelihood ratio for a jump of unknown size and sign at an unknown step j (Willsky &
+/// Jones 1976; Basseville & Nikiforov 1993, section 2.4.3):
 ///
 ///     max over j of (sum from j to now of u_i)^2/(2 n_j),        at least 0
 ///

@@ -30,8 +30,8 @@ class SensorResidual {
   SensorResidual(const ConflictParameters& parameters, double nominal_std_m,
                  double missing_error_m);
 
-  /// T after this step; 0 without a prediction or a residual. As the rule of the parameters says, a
-  /// missing value repeats the last residual, adds no residual, or counts as conflict.
+  /// T after this step; 0 without a prediction or a residual. A missing value repeats the last
+  /// residual, adds no residual, or counts as conflict; parameters.missing chooses the rule.
   double Step(const StatedRange& sensor, const StatedRange& prediction, double offset_m);
   void Reset();
 
@@ -102,10 +102,10 @@ Support DengSupport(const BeliefProducts& products);
 /// Murphy 2000 averages the evidence. Here the support of a body is 1 - d_J/sqrt(c11). d_J is the
 /// distance of the body from the average of the two other bodies.
 Support MurphySupport(const BeliefProducts& products);
-/// As Deng's support, but Sim is the cosine of the angle between two bodies as vectors under
-/// Jousselme's metric, by the law of cosines. This formula is our interpretation of the published
-/// description of Zhang et al. 2014 (vector space, cosine theorem, degree of mutual support, an
-/// extension of Deng's rule). The authors' equations were not available.
+/// Deng's support with another similarity: Sim is the cosine of the angle between two bodies as
+/// vectors under Jousselme's metric, by the law of cosines. This formula is our interpretation of
+/// the published description of Zhang et al. 2014 (vector space, cosine theorem, degree of mutual
+/// support, an extension of Deng's rule). The authors' equations were not available.
 Support MutualSupport(const BeliefProducts& products);
 
 /// Blame = 1 - support/support0, at least 0. support0 is the support that the sensor would have
