@@ -10,17 +10,17 @@
 namespace fogline::runtime {
 namespace {
 
-// If the network loses the inputs of a role, the role recovers within a second. The limit is twice
-// this time or kDeafPeriods periods, whichever is longer.
+// If the network loses the inputs of a role, the role recovers within a second. A role counts as
+// deaf after kDeaf, which is twice this time, or after kDeafPeriods periods if these are longer.
 constexpr Duration kDeaf = milliseconds(2000);
 constexpr int kDeafPeriods = 5;
 // Three times the longest interval between two STATUS messages. If two STATUS messages of a role
 // are further apart, the time between them is not counted.
 constexpr Duration kSteady = milliseconds(600);
-// A network that loses 30 % of all messages loses this many in a row in 6 of a million cases.
+// A network that loses 30 % of all messages loses this many in a row with probability 6e-6.
 constexpr std::int64_t kSureMessages = 10;
-// A role may be ahead of the last known step of its producer by this many steps. A STATUS arrives
-// within 100 ms; these are five steps at 50 Hz.
+// A role may be ahead of the last known step of its producer by this many steps. The producer's
+// STATUS arrives within 100 ms, which is the time of five steps at 50 Hz.
 constexpr std::int64_t kAhead = 5;
 
 }  // namespace
@@ -51,8 +51,8 @@ void DeafRoles::Heard(Role role, const status_t& status, TimePoint now) {
     const bool awaited = status.input_state[i] == status_t::INPUT_AWAITED;
     const Duration silent = awaited ? since : std::max(Duration::zero(), age - ear.age);
     const Role from = kChannels[channel].from;
-    // If this role is ahead of the producer, all messages of the producer come late: the role
-    // receives them but cannot use them.
+    // Late messages show that the role receives the channel. But if the role is ahead of the
+    // producer, all messages come late and the role can use none of them. Then they do not count.
     const bool late = status.input_late[i] > ear.late && !IsAheadOf(from, status.header.step, now);
     const std::int64_t published = speakers_[static_cast<std::size_t>(from)].ticks;
     const bool came = !awaited && age < since;
@@ -63,7 +63,8 @@ void DeafRoles::Heard(Role role, const status_t& status, TimePoint now) {
       ear.unsure = {};
     } else {
       if (silent <= kSteady && !first) ear.unsure += silent;
-      // After the last step that the producer has computed, no message is missing.
+      // The silence counts as missed only when the producer has reported a further step. Without a
+      // further step, the producer has published no message that could be missing.
       const bool computed = speakers_[static_cast<std::size_t>(from)].advanced > speaker.heard;
       if (computed) ear.missed += std::exchange(ear.unsure, {});
     }

@@ -1,7 +1,7 @@
-// Finds the deaf roles of a run in real time by their STATUS. A deaf process is alive and reports
-// its state. But for a long time, it has received nothing on a channel to which another role
-// publishes all the time. Such a role does not recover by itself. A network that loses many
-// messages for a while makes no role deaf.
+// Finds the deaf roles of a run in real time by their STATUS. A deaf role is alive and sends its
+// STATUS. But it has received no message on one of its input channels for a long time, although the
+// producer of this channel publishes. A deaf role does not recover by itself. A role does not count
+// as deaf if the network only loses many messages for a while.
 #pragma once
 
 #include <array>
@@ -20,10 +20,10 @@ namespace fogline::runtime {
 
 struct Deafness {
   std::size_t channel;  // the channel that the role does not receive, an index in kChannels
-  Duration missed;      // how long; counts only time in which the producer is known to publish
+  Duration missed;      // time without a message while the producer is known to publish
 };
 
-/// "has heard no TRUTH for 2.1 s, although the world has published it".
+/// Returns a text such as "has heard no TRUTH for 2.1 s, although the world has published it".
 std::string Text(const Deafness& deaf);
 
 class DeafRoles {
@@ -37,8 +37,8 @@ class DeafRoles {
   /// Forgets everything about the role, because its process is dead.
   void Forget(Role role) { speakers_[static_cast<std::size_t>(role)] = {}; }
 
-  /// The input that the role has missed for the longest time; nullopt if this time is not yet long
-  /// enough to be sure.
+  /// The input that the role has missed for the longest time; nullopt if this time is too short to
+  /// call the role deaf.
   std::optional<Deafness> Of(Role role) const { return Missing(role, limit_); }
   /// Like Of(), but for a run that is over. Half of the time is enough, because no further message
   /// will come.
@@ -50,7 +50,7 @@ class DeafRoles {
     Duration age{};
     std::int64_t late = 0;
     Duration missed{};
-    std::int64_t published = 0;  // steps of the producer when the role last received one of them
+    std::int64_t published = 0;  // the producer's step count at the last message that came
     Duration unsure{};           // time to add to `missed` when the producer reports a further step
   };
   struct Speaker {
@@ -62,10 +62,10 @@ class DeafRoles {
   };
 
   std::optional<Deafness> Missing(Role role, Duration limit) const;
-  /// Whether the producer has published so many messages in this time that a network that loses
-  /// many of them has not lost all.
+  /// Whether the producer has published enough messages since the last message that came. Even a
+  /// bad network would not lose all of so many messages.
   bool IsSure(const Ear& ear, Role from) const;
-  /// Whether the role's STATUS messages show that it computes one step after another.
+  /// Whether the role's STATUS messages show that the role computes one step after another.
   bool Computes(Role role, TimePoint now) const;
   /// Whether `step` is later than any step that the role can have computed by `now`.
   bool IsAheadOf(Role role, std::int64_t step, TimePoint now) const;

@@ -18,12 +18,12 @@ struct ForeignPeer {
   std::int64_t run_id;
 };
 
-/// "fusion (pid 4711 on lab2) of run 123"
+/// Returns a text such as "fusion (pid 4711 on lab2) of run 123".
 std::string Describe(const ForeignPeer& peer);
 
 /// The foreign processes that sent the most STATUS messages. A flood of invented names does not
-/// fill the memory, and does not hide a process that continues to send. A name that came once is
-/// forgotten before a name that came again.
+/// fill the memory, and does not hide a process that continues to send. If there are too many
+/// processes, the process with the fewest STATUS messages is forgotten first.
 class ForeignPeers {
  public:
   /// The largest number of processes that are reported.

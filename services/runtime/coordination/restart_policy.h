@@ -1,5 +1,6 @@
-// Decides when a dead role is started again. The first restart comes soon. If a restart does not
-// help, the wait before the next restart is longer. The number of restarts in a run is limited.
+// Decides when a dead role is started again. The first restart comes soon. If the run makes no
+// progress after a restart, the wait before the next restart is longer. The number of restarts in a
+// run is limited.
 #pragma once
 
 #include <algorithm>
@@ -11,15 +12,15 @@ namespace fogline::runtime {
 
 class RestartPolicy {
  public:
-  /// The shortest and the longest wait before a restart. The wait doubles with each restart that
-  /// does not help. The values are those of procman, LCM's process manager.
+  /// The shortest and the longest wait before a restart. The wait doubles with each restart after
+  /// which the run makes no progress. The values are those of procman, LCM's process manager.
   static constexpr Duration kShortest = milliseconds(10);
   static constexpr Duration kLongest = milliseconds(1000);
 
   /// @param limit the largest number of restarts of the role in one run
   explicit RestartPolicy(int limit) : limit_(limit) {}
 
-  /// Notes that the role has died when the run was at this step.
+  /// Notes that the role's process has ended while the run was at this step.
   /// @return how long to wait before the restart; nullopt if there is no further restart
   std::optional<Duration> OnDeath(std::int64_t step) {
     if (restarts_ >= limit_) return std::nullopt;
@@ -30,8 +31,8 @@ class RestartPolicy {
     return wait_;
   }
 
-  /// Notes that the role could not be started. A failed try does not count as a restart; the run's
-  /// stall timeout ends the tries.
+  /// Notes that the role could not be started. A failed try does not count as a restart. The tries
+  /// end when the run's stall timeout ends the run.
   /// @return how long to wait before the next try
   Duration OnFailedStart() { return wait_ = std::min(2 * wait_, kLongest); }
 

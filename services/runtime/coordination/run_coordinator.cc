@@ -22,8 +22,9 @@ constexpr Duration kRepeatEvery = milliseconds(200);
 constexpr Duration kPartsEvery = milliseconds(10);
 // If the recorder's report of the last step was lost, the runner asks for it at this interval.
 constexpr Duration kAskRecorderEvery = milliseconds(5);
-// In real time, a role may be two steps ahead of the runner's count of periods. A tick may be late
-// by less than a period, and the world takes a step as soon as it starts.
+// In real time, a role may be two steps ahead of the runner's count of periods. One step is needed
+// because a tick may be late by less than a period. The other step is needed because a world that
+// starts takes its first step at once.
 constexpr std::int64_t kEarly = 2;
 
 std::optional<Role> RoleNamed(std::string_view name) {
@@ -318,7 +319,7 @@ void RunCoordinator::Announce(std::int8_t phase, std::size_t part, std::int64_t 
   run.minimal_risk = minimal_risk_;
   run.stall_ms = Milliseconds(options_.stall_limit);
   for (const RoleInfo& info : kRoles) {
-    // A role that the runner starts itself is named if another process claims it.
+    // RUN names a role that the runner starts itself only if another process claims this role.
     const std::int64_t holder = HolderOf(info.role, now);
     if (!IsExternal(info.role) && !(member(info.role).rival && holder != 0)) continue;
     run.external.emplace_back(info.name);

@@ -1,6 +1,6 @@
 // The coordinator of a run, a part of the runner. It announces the scenario, waits until every role
-// is ready, and lets the world start. It follows the STATUS of every role, and tells a role that
-// joins late how far the run is. If a step does not complete, the coordinator names the culprit.
+// is ready, and lets the world start. It reads the STATUS of every role, and tells a late role the
+// step that the run has reached. If a step does not complete, the coordinator names the culprit.
 #pragma once
 
 #include <array>
@@ -35,10 +35,10 @@ struct RunCoordinatorOptions {
   // of the same run has used only smaller numbers.
   std::int64_t sequence = 0;
   double pace = 0;                            // simulated seconds per second; 0: no limit
-  bool realtime = false;                      // whether the run does not wait for slow roles
+  bool realtime = false;                      // whether this is a run in real time
   Duration period{};                          // duration of a step in real time, on the wall clock
   Duration join_limit{};                      // longest wait until all roles are ready; 0: no limit
-  Duration prepare_limit{};                   // the same while roles only prepare (AllPrepare())
+  Duration prepare_limit{};                   // replaces join_limit while AllPrepare() is true
   Duration stall_limit = milliseconds(4000);  // longest time without a completed step of any role
   std::vector<Role> external;                 // roles that are started elsewhere
   int restarts = 0;                           // largest number of restarts of each external role
@@ -69,8 +69,8 @@ class RunCoordinator {
   double ChanceOfLife(Role role, Duration silence) const {
     return signs_of_life_.ChanceOfLife(role, silence);
   }
-  /// In real time, a channel from which the role has received nothing for a long time, although the
-  /// producer publishes to it.
+  /// The channel on which the role is deaf; nullopt if the role is not deaf, or the run is not in
+  /// real time.
   std::optional<Deafness> Deaf(Role role) const { return deaf_.Of(role); }
   /// The longest time for which the runner was held up since the last call; 0 if it was not held
   /// up.
@@ -103,8 +103,8 @@ class RunCoordinator {
   const ForeignPeers& foreign_peers() const { return foreign_peers_; }
   /// The expected builds of the roles.
   const RoleBuilds& builds() const { return options_.builds; }
-  /// Whether the run goes on after the final loss of this role. In real time, the run goes on
-  /// without any role except the world (the road) and the recorder (the log).
+  /// Whether the run goes on after the final loss of this role. A run in lockstep needs every role.
+  /// A run in real time needs only the world (the road) and the recorder (the log).
   bool GoesOnWithout(Role role) const {
     return options_.realtime && phase_ == Phase::kRunning && role != Role::kWorld &&
            role != Role::kRecorder;
@@ -114,11 +114,12 @@ class RunCoordinator {
   /// Ends the run with an error from outside, such as the death of a process.
   void Fail(std::string error);
   /// Notes that a process that the runner has started is dead and will be started again. From now
-  /// on late messages of that process are ignored, and another instance may take the role.
+  /// on, late messages of that process are ignored, and another instance may take the role.
   /// @param host the machine of the process, as STATUS names it; "": this machine
   void MarkDead(Role role, std::int32_t pid, TimePoint now, const std::string& host = "");
-  /// Stores why the role cannot be started again or watched at present, for the error message of a
-  /// stall; "" if it can.
+  /// Stores the reason why the role cannot be started again or watched at present. The error
+  /// message of a stall contains this reason.
+  /// @param why the reason; "" if there is none
   void Hinder(Role role, std::string why);
   /// Notes that the runner has started the role again, as this process.
   void Launched(Role role, std::int32_t pid, TimePoint now, const std::string& host = "");
@@ -146,7 +147,8 @@ class RunCoordinator {
     std::optional<status_t> rival;  // another instance that claims this role
     TimePoint rival_since{};
     TimePoint rival_heard{};
-    // The last process that claims this role for so long that it cannot have missed the refusal.
+    // The last process that was refused. This process has claimed the role for so long that it must
+    // have received a RUN that names the other process.
     std::optional<status_t> refused;
     // `undead` is the time at which an instance that counts as dead began to send again;
     // `undead_heard` is the time of its last STATUS.
@@ -163,8 +165,8 @@ class RunCoordinator {
   // A role without a STATUS for this long (five heartbeats) counts as silent.
   static constexpr Duration kSilent = milliseconds(1000);
 
-  /// Whether each role that is not ready prepares for the run: it has waited for the scenario, and
-  /// has sent nothing since. SUMO, for example, loads its network.
+  /// Whether each role that is not ready prepares for the run: its last STATUS was WAITING, and the
+  /// role has been silent since then. Such a role may, for example, load the network of SUMO.
   bool AllPrepare(TimePoint now) const;
   void Refuse(RefusalCounter kind) { ++(own_.*kind); }
   void OnStatus(const status_t& heard);
@@ -173,8 +175,7 @@ class RunCoordinator {
   /// Ends the run when the world is done and, in lockstep, the recorder's report includes the last
   /// step. The runner then compares the log with this report.
   void FinishWhenRecorded(TimePoint now);
-  /// Ends the run after its last step is recorded. The run fails if a role is deaf at the end of
-  /// the run.
+  /// Ends the run. The run fails if a role is deaf at the end of the run.
   void OnDone();
   /// Handles a role's report of its failure.
   void OnFailure(Role role, const status_t& status);
@@ -183,19 +184,20 @@ class RunCoordinator {
   /// Whether this role is missing, so that the run cannot begin or go on.
   bool Lacks(Role role, TimePoint now) const;
   bool IsExternal(Role role) const;
-  /// A process on this machine, or on another one.
+  /// The process with this pid on `host`; "" is this machine.
   Process ProcessOn(const std::string& host, std::int32_t pid) const {
     return {.host = host.empty() ? host_ : host, .pid = pid};
   }
   /// Whether to accept the STATUS; false if it comes from a dead or second instance of the role.
   bool Admit(Role role, const status_t& status, TimePoint now);
-  /// Admit() for a STATUS of a process that is not the role's current process.
+  /// Does the work of Admit() for a process that is not the role's current process.
   bool AdmitOther(Role role, const status_t& status, TimePoint now);
   /// Handles a STATUS of a process that counts as dead.
   void OnUndead(Role role, const status_t& status, TimePoint now);
-  /// Notes that a process claims a role that another process has. RUN then says who has the role.
+  /// Notes that a process claims a role that another process has. RUN then says which process has
+  /// the role.
   void NoteRival(Role role, const status_t& status, TimePoint now);
-  /// Notes that a process is refused although it continues to claim the role.
+  /// Records that a process continues to claim a role and is refused.
   void NoteRefused(Role role, const status_t& status);
   /// A line for each role that two processes claim; "" if there is none.
   std::string RefusedText() const;
@@ -222,7 +224,7 @@ class RunCoordinator {
   status_t own_{};  // counts messages that the runner itself has refused or could not send
   std::string host_;
   Phase phase_ = Phase::kJoining;
-  TimePoint going_since_{};       // since when phase() has been kRunning
+  TimePoint going_since_{};       // when phase() became kRunning
   bool ready_ = false;            // whether all roles were ready at the last Poll()
   std::int8_t minimal_risk_ = 0;  // cars in a minimal risk manoeuvre, as in status_t
   std::function<void(const status_t&)> on_status_;
@@ -230,7 +232,7 @@ class RunCoordinator {
   TimePoint began_;
   OwnPauses pauses_;
   TimePoint announce_at_{};
-  std::size_t next_part_ = 0;  // of the scenario, for programs that only listen
+  std::size_t next_part_ = 0;  // next part of the scenario for programs that only listen
   TimePoint parts_at_{};
   std::optional<TimePoint> ask_recorder_at_;  // when to ask for the recorder's last report
   std::int64_t sequence_;                     // sequence number of the last RUN

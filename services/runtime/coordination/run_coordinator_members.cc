@@ -10,9 +10,8 @@
 namespace fogline::runtime {
 namespace {
 
-// The longest time between the sending and the arrival of a STATUS. Suppose that another process
-// claims a role. If a STATUS of the first process comes more than this time later, the first
-// process is alive.
+// The longest time between the sending and the arrival of a STATUS. If a STATUS of a replaced
+// process comes more than this time after the replacement, the replaced process is alive.
 constexpr Duration kOnItsWay = milliseconds(100);
 // A process that has lost its role leaves the run within this time. In this time, five RUN messages
 // say that another process has the role (Membership).
@@ -26,8 +25,9 @@ bool RunCoordinator::IsExternal(Role role) const {
 
 bool RunCoordinator::HasRival(Role role, TimePoint now) const {
   const Member& of = member(role);
-  // The run waits until the rival has left. A rival that stays is refused, and a silent rival
-  // counts as gone: the runner does not see the death of a process that was started elsewhere.
+  // The run waits for the rival to leave, but at most for kLeaves. After this time the rival is
+  // refused. A silent rival counts as gone, because the runner does not see the end of a process
+  // that was started elsewhere.
   return of.rival && !of.child && HeldAgainst(of.rival_since, now) <= kLeaves &&
          HeldAgainst(of.rival_heard, now) <= kLeaves;
 }
@@ -75,7 +75,7 @@ void RunCoordinator::OnUndead(Role role, const status_t& status, TimePoint now) 
       HeldAgainst(member.replaced_at, now) <= kOnItsWay) {
     return;
   }
-  announce_at_ = now;  // tells the process that another process has its role
+  announce_at_ = now;  // RUN tells the process that another process has its role
   const bool speaks_on = member.undead && member.undead_instance == status.instance &&
                          HeldAgainst(member.undead_heard, now) <= kSilent;
   if (!speaks_on) member.undead = now;
@@ -95,7 +95,7 @@ void RunCoordinator::NoteRival(Role role, const status_t& status, TimePoint now)
   if (!speaks_on) {
     member.rival = status;
     member.rival_since = now;
-    announce_at_ = now;  // tells the process that another process has its role
+    announce_at_ = now;  // RUN tells the process that another process has its role
   }
   member.rival_heard = now;
 }
@@ -122,7 +122,7 @@ bool RunCoordinator::AdmitOther(Role role, const status_t& status, TimePoint now
   Member& member = members_[static_cast<std::size_t>(role)];
   NoteRival(role, status, now);
   if (!member.rival || member.rival->instance != status.instance) return false;  // it has left
-  // The first process keeps the role while it lives.
+  // The first process keeps the role while its STATUS messages come.
   if (!IsExternal(role) || HeldAgainst(member.heard, now) <= kSilent) {
     if (HeldAgainst(member.rival_since, now) > kLeaves) NoteRefused(role, status);
     return false;

@@ -15,7 +15,8 @@ struct SendTrouble {
   std::string error;  // why the last message could not be sent
 };
 
-/// "world 3, fusion 12 (Operation not permitted); lidar 1 (Network is unreachable)", "" for none.
+/// Returns a text such as "world 3, fusion 12 (Operation not permitted); lidar 1 (Network is
+/// unreachable)"; "" if `troubles` is empty.
 std::string Text(const std::vector<SendTrouble>& troubles);
 
 }  // namespace fogline::runtime

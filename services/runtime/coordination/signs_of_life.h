@@ -1,7 +1,7 @@
-// If no message of a process comes, either the process sends none, or the network loses its
-// messages. This class estimates which of the two is the case. All processes send at the same
-// intervals over the same network. So the share of the other processes' messages that is lost gives
-// the probability that all messages of a living process are lost.
+// If no message of a process comes, either the process sends no messages, or the network loses
+// them. This class computes the probability that the network loses all messages of a living
+// process. All processes send at the same intervals over the same network. So the probability
+// follows from the share of the other processes' messages that is lost.
 #pragma once
 
 #include <algorithm>

@@ -16,8 +16,8 @@ namespace fogline::runtime {
 
 /// The channel of beacon_t. The channel is not in kGraph, because no run uses the channel.
 inline constexpr std::string_view kBeaconChannel = "FOGLINE_BEACON";
-/// The interval at which a run announces itself. The interval is short, so that a person who looks
-/// for the run need not wait.
+/// The interval at which a run announces itself. The interval is short, so that a person finds the
+/// run without a long wait.
 inline constexpr Duration kBeaconEvery = milliseconds(500);
 
 /// A run as its beacon describes it. Its texts are safe to print.
@@ -31,9 +31,9 @@ struct Announcement {
   std::vector<Role> awaited;  // roles that the run waits for, in the order of kRoles
 
   bool Awaits(Role role) const;
-  /// "run 123 at udpm://239.255.76.67:7700?ttl=0, scenario A box of fog, announced by pid 4711 on
-  /// lab1; it waits for the driver". The text is ASCII: '?' stands for other characters of the
-  /// title.
+  /// Returns a text such as "run 123 at udpm://239.255.76.67:7700?ttl=0, scenario A box of fog,
+  /// announced by pid 4711 on lab1; it waits for the driver". The text is ASCII: '?' stands for
+  /// other characters of the title.
   std::string Text() const;
 };
 
@@ -45,7 +45,7 @@ class Announcements {
   ///     another host name is refused
   explicit Announcements(std::string host) : host_(std::move(host)) {}
 
-  /// @param wall_us wall clock, microseconds since 1970
+  /// Evaluates the bytes of a beacon. @param wall_us wall clock, microseconds since 1970
   void Hear(Bytes bytes, TimePoint now, std::int64_t wall_us);
 
   /// The runs that have not ended, the newest first.

@@ -30,7 +30,8 @@ std::string TitleOf(const std::string& scenario) {
 }  // namespace
 
 Beacon::Beacon(Announcement run)
-    // No program may follow a beacon to a URL that must not be announced.
+    // For a URL that must not be announced, the sender gets the meeting address as its own URL. So
+    // it sends nothing.
     : sender_(MayBeAnnounced(run.url) ? run.url : MeetingUrl()) {
   beacon_.header.run_id = run.run_id;
   beacon_.began_us = WallMicroseconds();

@@ -20,9 +20,10 @@ namespace fogline::runtime {
 /// run itself are verified.
 class Beacon {
  public:
-  /// Announces nothing in three cases: the run is at the meeting address itself; programs must not
-  /// follow a beacon to the run's URL (MayBeAnnounced()); the meeting address is no multicast group
-  /// or has no route.
+  /// Announces nothing in three cases:
+  /// - The run is at the meeting address itself.
+  /// - Programs must not follow a beacon to the run's URL (MayBeAnnounced()).
+  /// - The meeting address is not a multicast group, or has no route.
   /// @param run the run; the constructor fills in its host, its process and the time of its
   ///     beginning
   explicit Beacon(Announcement run);
@@ -33,7 +34,7 @@ class Beacon {
 
   /// Whether the next beacon is due.
   bool Due(TimePoint now) const { return sender_.is_open() && now >= due_; }
-  /// @param awaited roles that the run waits for now
+  /// Sends a beacon. @param awaited roles that the run waits for now
   void Send(TimePoint now, const std::vector<Role>& awaited);
 
  private:
@@ -48,7 +49,7 @@ class Beacon {
 /// Receives beacons, for a program that looks for a run.
 class BeaconListener {
  public:
-  /// Receives nothing if the address is no multicast group.
+  /// Receives nothing if the address is not a multicast group.
   explicit BeaconListener(const std::string& meeting_url);
 
   /// Reads the beacons that have come.
@@ -56,7 +57,7 @@ class BeaconListener {
   /// The runs that have not ended, the newest first.
   std::vector<Announcement> Runs() const { return announcements_.Current(Clock::now()); }
   std::int64_t refused() const { return announcements_.refused(); }
-  /// This descriptor is readable when Look() has something to read; -1 if nothing can ever come.
+  /// Descriptor that is readable when a beacon has come; -1 if the listener receives nothing.
   int fd() const { return bus_ ? bus_->fd() : -1; }
 
  private:

@@ -10,12 +10,12 @@ struct _lcm_t;
 
 namespace fogline::runtime {
 
-/// The messages stay on this machine (ttl=0), even if the meeting address has another ttl, and are
-/// never signed. A message that cannot be sent is lost.
+/// Sends messages that stay on this machine (ttl=0), even if the meeting address has another ttl.
+/// The messages are never signed. A message that cannot be sent is lost.
 class MeetingSender {
  public:
-  /// Sends nothing if `own_url` is the meeting address itself, or if the meeting address is no
-  /// multicast group or has no route. @param own_url the network of which the messages tell
+  /// Sends nothing if `own_url` is the meeting address itself, or if the meeting address is not a
+  /// multicast group or has no route. @param own_url the network that the messages are about
   explicit MeetingSender(const std::string& own_url);
   ~MeetingSender();
   MeetingSender(const MeetingSender&) = delete;
@@ -25,7 +25,7 @@ class MeetingSender {
   void Publish(std::string_view channel, Bytes bytes);
 
  private:
-  // This is LCM itself, not a Bus: if LCM only sends, it starts no thread and no self-test.
+  // LCM itself in place of a Bus: if LCM only sends, it starts no thread and no self-test.
   _lcm_t* lcm_ = nullptr;
 };
 

@@ -15,11 +15,11 @@ namespace fogline::runtime {
 
 class RunSeeker {
  public:
-  /// @throws InputError as Bus()
+  /// @throws InputError in the cases of Bus()
   RunSeeker(Role role, const std::string& meeting_url)
       : role_(role), listener_(meeting_url), began_(Clock::now()), pauses_(began_) {}
 
-  /// Call it while the role has no run, or its runner is silent.
+  /// Looks for a run to join. Call it while the role has no run, or its runner is silent.
   /// @return the run to join now: the newest run that waits for this role and was not tried in
   ///     vain; nullopt if there is no such run
   std::optional<Announcement> Look(TimePoint now);
@@ -29,10 +29,10 @@ class RunSeeker {
   /// Whether the announced run is over, or the role has received nothing from this run for
   /// kSilentLimit. The role then goes back to the meeting address.
   bool InVain(TimePoint now);
-  /// For the time kTryAgain, Look() does not return the run that was tried last. So a run at the
-  /// meeting address comes first. The exclusion ends earlier if an announcement says that the run
-  /// does not wait for the role. If the run waits for the role again after that, the role has
-  /// become free.
+  /// Gives up the run that was tried last: Look() does not return this run for the time kTryAgain.
+  /// In this time the role can join a run at the meeting address itself. The exclusion ends earlier
+  /// if an announcement says that the run does not wait for the role. If the run waits for the role
+  /// after that, the role has become free again.
   void GiveUp(TimePoint now);
   /// From now on, Look() does not return this run, because the role already takes part in it.
   void Ignore(std::int64_t run_id) { own_ = run_id; }

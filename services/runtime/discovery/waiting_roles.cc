@@ -13,7 +13,7 @@
 namespace fogline::runtime {
 namespace {
 
-// The longest text of a role that is shown.
+// Largest length of each text in a WaitingRole, in bytes, before unsafe characters are replaced.
 constexpr std::size_t kMaxText = 200;
 
 std::string Safe(const std::string& text) { return Printable(text.substr(0, kMaxText)); }

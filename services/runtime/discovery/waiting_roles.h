@@ -1,5 +1,5 @@
-// Roles that wait for a run. A role without a run sends its STATUS with run id 0 on a channel of
-// its own. So a person sees which roles are there before any run.
+// Roles that wait for a run. A role without a run sends its STATUS with run id 0 on the channel
+// kWaitingChannel. So programs can show which roles wait, even before any run begins.
 #pragma once
 
 #include <cstdint>
@@ -15,14 +15,15 @@
 
 namespace fogline::runtime {
 
-/// The channel is not in kGraph, because no run uses the channel. In its status_t, waiting_for is
-/// the URL of the network on which the role waits, and waiting_ms the time for which it has waited.
+/// The channel on which a waiting role sends its STATUS. The channel is not in kGraph, because no
+/// run uses it. In this STATUS, waiting_for is the URL of the network on which the role waits, and
+/// waiting_ms is the time for which the role has waited.
 inline constexpr std::string_view kWaitingChannel = "FOGLINE_WAITING";
 /// The interval at which a waiting role sends its STATUS.
 inline constexpr Duration kWaitingEvery = milliseconds(500);
 
-/// Says that a role waits: on the network on which it waits, with the ttl of that network, and at
-/// the meeting address.
+/// Sends the STATUS of a waiting role to two networks: to the network on which the role waits, with
+/// the ttl of this network, and to the meeting address.
 class WaitingNotice {
  public:
   bool Due(TimePoint now) const { return now >= due_; }
@@ -32,7 +33,7 @@ class WaitingNotice {
  private:
   TimePoint due_{};
   std::optional<MeetingSender> meeting_;
-  std::string url_;  // the network of which meeting_ tells
+  std::string url_;  // the network that the messages of meeting_ are about
   std::vector<std::uint8_t> buffer_;
 };
 
@@ -45,9 +46,10 @@ struct WaitingRole {
   std::string version;
   std::string url;
   double waiting_s = 0;
-  bool same_types = true;  // whether it was built with the message types of this program
+  bool same_types = true;  // whether the role has the message types of this program
 
-  /// "driver waits on udpm://239.255.76.67:7700?ttl=1: pid 4711 on lab2, version 0.1.0"
+  /// Returns a text such as "driver waits on udpm://239.255.76.67:7700?ttl=1: pid 4711 on lab2,
+  /// version 0.1.0".
   std::string Text() const;
 };
 
@@ -59,12 +61,13 @@ class WaitingRoles {
 
   /// The roles that still wait, in the order of kRoles, and by host and process.
   std::vector<WaitingRole> Current(TimePoint now) const;
-  /// The number of messages that are no STATUS of this build.
+  /// The number of messages that are not a valid STATUS of this build.
   std::int64_t undecodable() const { return undecodable_; }
 
-  /// A role that has said nothing for this long (six messages) does not wait any more.
+  /// A role without a message for this long (six messages) counts as gone.
   static constexpr Duration kGone = 6 * kWaitingEvery;
-  /// A further role replaces the role that has been silent for the longest time.
+  /// The largest number of roles that are remembered. A further role replaces the role that has
+  /// been silent for the longest time.
   static constexpr std::size_t kMax = 64;
 
  private:

@@ -3,8 +3,8 @@
 namespace fogline::runtime {
 namespace {
 
-// If a role is asked for a step that it has not computed yet, the role asks for its own inputs.
-// This is the shortest time between two of these requests of the role.
+// If a role is asked for a step that it has not computed yet, the role asks for its own inputs. The
+// constant is the shortest time after the role's last request for inputs.
 constexpr Duration kMinBetweenAsks = milliseconds(2);
 
 }  // namespace
@@ -24,7 +24,7 @@ void LockstepRule::OnGo(const run_t& run, TimePoint now) {
 StepRing::Verdict LockstepRule::Judge(const Input& input, std::int64_t step, Bytes bytes) const {
   const auto verdict = input.ring.Classify(step, bytes, FirstNeeded(input));
   // A role that catches up also receives the current steps of the other roles. These steps are too
-  // new for the role.
+  // new for the role, so it ignores them. It does not count them as refused.
   const bool elsewhere = CatchingUp() && step <= late_ + kRingSteps;
   return verdict == StepRing::Verdict::kOutOfWindow && elsewhere ? StepRing::Verdict::kElsewhere
                                                                  : verdict;
@@ -108,8 +108,8 @@ void LockstepRule::Advance(TimePoint now) {
 TimePoint LockstepRule::Repair(TimePoint now) {
   if (expected_ < next() || FirstMissing() == nullptr) return now + OwnStatus::kHeartbeat;
   const TimePoint ask_at = retry_.Wait(now);
-  // The role has not asked for the inputs of this step yet, so these inputs will not come without a
-  // request.
+  // A role that catches up gets old inputs only on request. If it has not asked for the inputs of
+  // this step yet, it asks at once.
   if (CatchingUp() && next() > asked_) {
     AskForMissing(now);
     retry_.AskedForMany(now);

@@ -6,7 +6,7 @@
 //
 // Catching up. RUN says which step the world has reached. A node that joins late, for example
 // because its predecessor was killed, computes all steps from step 0 on, and asks for the inputs of
-// many steps at a time. The recorder sends old inputs, and their producers send the newest inputs.
+// many steps at a time. The recorder sends old inputs, and the producers send the newest inputs.
 // The node does not publish old outputs, because the recorder has them.
 //
 // The role that begins the steps (the world) also waits for GO, keeps to the pace, and stays at

@@ -12,7 +12,7 @@ namespace {
 // A step takes a second at most (scenario field step_s).
 constexpr std::int64_t kMaxTime_us = kMaxStep * 1'000'000;
 
-// All counters that Fogline adds up or compares. Refusals have a table of their own.
+// The counters that Fogline adds up or compares. The counters of refusals are in kRefusals.
 constexpr std::int64_t status_t::*kCounters[] = {
     &status_t::last_heard_ms,  &status_t::repairs_asked,   &status_t::repairs_served,
     &status_t::duplicates,     &status_t::ticks,           &status_t::ticks_late,

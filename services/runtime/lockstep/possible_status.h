@@ -6,9 +6,9 @@
 
 namespace fogline::runtime {
 
-/// False if a counter is higher than any process can count, or if a step or time is outside the
-/// range of all runs. If all STATUS messages are possible, sums of their counters and differences
-/// of their times do not overflow.
+/// Returns false if a counter is negative or higher than any process can count, or if a step or
+/// time is outside the range of all runs. If all STATUS messages are possible, sums of their
+/// counters and differences of their times do not overflow.
 bool IsPossible(const status_t& status);
 
 }  // namespace fogline::runtime

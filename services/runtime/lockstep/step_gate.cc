@@ -22,7 +22,7 @@ StepGate::StepGate(Bus& bus, status_t& own) {
     }
     // If the recorder has failed, the step that it reports may not be on disk.
     if (status->role != NameOf(Role::kRecorder) || status->state == status_t::FAILED) return;
-    // No process of the world has begun this step in this run yet, so the recorder cannot have the
+    // If no process of the world has begun this step in this run yet, the recorder cannot have the
     // step.
     if (status->header.step > std::max(own.header.step, begun_before_)) {
       ++own.out_of_window;

@@ -18,22 +18,23 @@ class FireRule {
   FireRule(const FireRule&) = delete;
   FireRule& operator=(const FireRule&) = delete;
 
-  /// The runner says GO. May be called repeatedly.
+  /// Called when the runner says GO. May be called repeatedly.
   virtual void OnGo(const run_t& /*run*/, TimePoint /*now*/) {}
-  /// A message of `input` (an index in Inputs::all()) has come. The message is of this run and of a
-  /// step of the scenario. The rule judges it and passes it to Inputs::Keep().
+  /// Called when a message of `input` (an index in Inputs::all()) has come. The message is of this
+  /// run and of a step of the scenario. The rule judges the message and passes it to
+  /// Inputs::Keep().
   virtual void OnInput(std::size_t input, std::int64_t step, Arrival& arrival) = 0;
   /// Does what is due. @return the latest time for the next call
   virtual TimePoint Poll(TimePoint now) = 0;
-  /// A RUN has reported the progress of the run (RunNews::progress).
+  /// Called when a RUN has reported the progress of the run (RunNews::progress).
   virtual void OnProgress() {}
-  /// This step is known to be under way.
+  /// Notes that this step is under way.
   virtual void Expect(std::int64_t /*step*/) {}
-  /// Another process asks for the output of a step that this role has not computed yet.
+  /// Called when another process asks for the output of a step that this role has not computed yet.
   virtual void OnAskedAhead(std::int64_t /*step*/, TimePoint /*now*/) {}
   /// Called before every STATUS. Adds to the STATUS what the rule knows.
   virtual void WriteStatus(TimePoint /*now*/) {}
-  /// This step is the last one of the run.
+  /// Notes that this step is the last step of the run.
   virtual void SetFinal(std::int64_t /*step*/) {}
 
  protected:

@@ -12,7 +12,8 @@
 namespace fogline::runtime {
 namespace {
 
-/// Why the bytes are not a valid message of a channel; nullptr if they are valid.
+/// The counter for the reason why the bytes are not a valid message of the channel; nullptr if they
+/// are valid.
 RefusalCounter WrongOn(std::size_t channel, Arrival& arrival) {
   static const auto wrong = std::apply(
       [](const auto&... each) {

@@ -1,6 +1,6 @@
-// The inputs of a role: the channels that it reads, and the last steps of each channel. Messages
-// that are of another run, or cannot be of this run, are refused. The rule decides about all other
-// messages.
+// The inputs of a role: the channels that the role reads, and the last steps of each channel. A
+// message is refused if it is of another run, or of a step that the run does not have. The rule
+// decides about all other messages.
 #pragma once
 
 #include <cstdint>
@@ -27,7 +27,7 @@ struct Input {
   bool on_demand;            // whether this is an input on demand (algorithm.h)
   StepRing ring;
   TimePoint heard{};
-  // Called with each message that is new and sound; may be empty.
+  // Called with each message that is new and valid; may be empty.
   std::function<void(std::int64_t step, Arrival& arrival)> keep{};
 
   /// Whether this input has the message that a step uses. Also true if step - lag is below 0,
@@ -39,7 +39,8 @@ class Inputs {
  public:
   Inputs(const Inputs&) = delete;  // the bus refers to this object
   Inputs& operator=(const Inputs&) = delete;
-  /// Reads the role's inputs except those on demand. The recorder reads every kStep channel.
+  /// Subscribes to the role's inputs, except the inputs on demand. The recorder reads every kStep
+  /// channel.
   /// @param rule the role's rule, null until the role has joined
   Inputs(Bus& bus, Role role, const RunNews& run, OwnStatus& own,
          const std::unique_ptr<FireRule>& rule);
@@ -50,15 +51,15 @@ class Inputs {
   std::span<const Input> all() const { return inputs_; }
   /// The input of a channel (an index in kChannels). @pre the role reads the channel
   Input& Of(std::size_t channel);
-  /// Reads this channel, too. Call it in Work::Join().
+  /// Subscribes to this channel, too. Call it in Work::Join().
   Input& ReadOnDemand(std::size_t channel);
 
   /// Carries out the rule's verdict on a message of an input, and counts the message if it is
   /// refused. In lockstep, the role fails if two messages of the same step and channel have
   /// different bytes.
-  /// @return true if the message is new and sound; the input then has it
+  /// @return true if the message is new and valid; the input has then stored the message
   bool Keep(std::size_t input, std::int64_t step, Arrival& arrival, StepRing::Verdict verdict);
-  /// Stores a message that is known from the log of a predecessor.
+  /// Stores a message from the log that a predecessor of this process has written.
   void Remember(std::size_t input, std::int64_t step, Bytes bytes);
 
  private:
@@ -73,7 +74,7 @@ class Inputs {
   OwnStatus& own_;
   const std::unique_ptr<FireRule>& rule_;
   std::vector<Input> inputs_;
-  std::int64_t remembered_ = 0;  // the steps before this one were read from a log
+  std::int64_t remembered_ = 0;  // all steps before this step were read from a log
 };
 
 }  // namespace fogline::runtime

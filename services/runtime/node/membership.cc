@@ -53,8 +53,8 @@ TimePoint Membership::Poll(TimePoint now) {
 
 void Membership::CheckSends(TimePoint now) {
   const Bus::FailedSends& failed = parts_.bus.failed_sends();
-  // A role without a run sends only that it waits. In real time the other roles go on without this
-  // role, and the runner decides how long this role may be silent.
+  // A role without a run only sends notices that it waits. In real time the other roles go on
+  // without this role, and the runner decides how long this role may be silent.
   if (own_.left() || !run_.id || run_.realtime || !failed.since ||
       !runner_.Stalled(*failed.since, now))
     return;
@@ -71,7 +71,7 @@ void Membership::OnRun(Bytes bytes) {
     OnOtherRun(run, now);
     return own_.Refuse(&status_t::foreign);
   }
-  // The RUN of a log has no number. It invites no role.
+  // A RUN from a played log has no sequence number. A role does not join a run by such a RUN.
   if (!run_.id && run.sequence < 1) return own_.Refuse(&status_t::foreign);
   const status_t& own = own_.message();
   if (!run_.id && SeatIn(run, own.role, own.instance) != Seat::kFree) {

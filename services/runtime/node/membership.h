@@ -17,7 +17,7 @@ namespace fogline::runtime {
 
 class Membership {
  public:
-  /// @param run_id take part only in this run; nullopt: in the first run that waits for the role
+  /// @param run_id the run to join; nullopt: the first run that waits for the role
   /// @param rule gets the rule of the run when the role joins
   Membership(Parts& parts, std::optional<std::int64_t> run_id, Work& work,
              std::unique_ptr<FireRule>& rule);
@@ -32,20 +32,21 @@ class Membership {
   void OnRun(Bytes bytes);
   /// Handles a RUN of another run.
   void OnOtherRun(const run_t& run, TimePoint now);
-  /// Whether the runner has just sent this RUN. Otherwise the RUN may be a repetition from an old
-  /// run. If the answer is not known yet, asks the runner.
+  /// Whether the runner is known to have sent this RUN just now. Otherwise the RUN may be a
+  /// repetition from an old run. In this case the function asks the runner and returns false.
   bool IsFresh(const run_t& run, TimePoint now);
   /// Asks a runner for a RUN that answers this process.
   void AskWhetherThere(const run_t& run, TimePoint now);
   /// In lockstep the role fails if nothing could be sent for longer than the run's stall limit.
   void CheckSends(TimePoint now);
-  /// Whether the runner has given the role's place to another process. A role that knows its run
-  /// from an option first asks: the RUN of a log that is played names a process of the logged run.
+  /// Whether the runner has given the role's place to another process. If an option names the run,
+  /// the role first asks the runner, because the RUN may come from a played log. Such a RUN names a
+  /// process of the logged run.
   bool HasLostItsPlace(const run_t& run, TimePoint now);
   /// Whether a log was played in place of a run, and is over.
   bool LogIsOver(TimePoint now);
-  /// Takes a RUN's news about the whole run. @return whether this RUN is newer than all earlier RUN
-  /// messages
+  /// Evaluates what a RUN says about the run, if this RUN is newer than all earlier RUN messages.
+  /// @return whether the RUN is newer
   bool TakeNews(const run_t& run, TimePoint now);
   /// Forgets a run whose runner fell silent before the whole scenario had come.
   void Unbind();

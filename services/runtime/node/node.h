@@ -1,7 +1,7 @@
 // One role's part in a run. Membership joins the run, Inputs and Outputs store messages, a FireRule
 // decides when a step is computed, and Work computes the step.
 //
-// Everything happens on the one thread that calls Bus::Wait() and Poll().
+// All work is done on the one thread that calls Bus::Wait() and Poll().
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,7 @@ namespace fogline::runtime {
 
 class Node {
  public:
-  /// @param run_id take part only in this run; nullopt: in the first run that waits for the role
+  /// @param run_id the run to join; nullopt: the first run that waits for the role
   /// @param work the role's work, which owns this node
   Node(Bus& bus, Role role, std::optional<std::int64_t> run_id, Work& work);
   Node(const Node&) = delete;

@@ -14,8 +14,8 @@ namespace {
 
 // The longest error text. It must fit into a STATUS together with all other fields.
 constexpr std::size_t kMaxErrorBytes = 700;
-// After a failed send the next STATUS does not wait for the heartbeat, because the run may be over
-// by then. This STATUS is sent when this time has passed since the last STATUS.
+// After a failed send, the next STATUS is sent when this time has passed since the last STATUS. It
+// does not wait for the heartbeat, because the run may end before the heartbeat.
 constexpr Duration kTellSends = milliseconds(20);
 
 }  // namespace

@@ -71,7 +71,7 @@ class OwnStatus {
   std::vector<std::uint8_t> buffer_;
   TimePoint said_at_{};  // when the last STATUS was sent
   TimePoint due_{};      // when the next STATUS is due
-  TimePoint use_at_{};   // when to measure this process again
+  TimePoint use_at_{};   // when to measure CPU time and memory again
 };
 
 }  // namespace fogline::runtime

@@ -19,7 +19,7 @@ class Requests {
 
   /// Asks for these steps of a channel. @pre the role is in a run
   void Ask(std::string_view channel, StepRange steps) { AskIn(*run_.id, channel, steps); }
-  /// Asks for these steps of a channel of any run.
+  /// Asks for these steps of a channel in the run `run_id`.
   void AskIn(std::int64_t run_id, std::string_view channel, StepRange steps) {
     resend_t resend{};
     resend.header = {.run_id = run_id, .step = steps.first, .utime = 0};

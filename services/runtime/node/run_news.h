@@ -11,7 +11,7 @@ namespace fogline::runtime {
 
 struct RunNews {
   std::optional<std::int64_t> id;  // nullopt: no run is known yet
-  // A run on this network that has no place for this role; heard while the role has no run.
+  // Id of a run on this network that has no place for this role; set while the role has no run.
   std::optional<std::int64_t> full;
   std::int64_t sequence = 0;     // sequence number of the newest RUN
   std::int64_t progress = -1;    // last step that is known to have begun; -1: none

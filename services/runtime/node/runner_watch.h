@@ -62,7 +62,7 @@ class RunnerWatch {
   }
   bool Silent(TimePoint now) const { return Silence(now) > kSilent; }
   bool Gone(TimePoint now) const { return Silence(now) > stall_limit_ + kGone; }
-  /// The same for a sender that was last heard at the time `heard`.
+  /// Like Gone(), but for a sender whose last message came at the time `heard`.
   bool GoneSince(TimePoint heard, TimePoint now) const {
     return pauses_.HeldAgainst(heard, now) > stall_limit_ + kGone;
   }

@@ -1,4 +1,5 @@
-// What a role does in a run. Its Node does the rest: joining, inputs, outputs, STATUS.
+// The work of a role in a run. The role's Node does everything else: joining, inputs, outputs,
+// STATUS.
 #pragma once
 
 #include <cstdint>
@@ -35,16 +36,16 @@ class Work {
   /// Does the work that is due apart from the steps. Called before the rule's Poll(), while the
   /// role is READY or RUNNING. @return the latest time for the next call
   virtual TimePoint Poll(TimePoint /*now*/) { return TimePoint::max(); }
-  /// Called before every STATUS. The role finishes the work that the STATUS reports as done; the
-  /// recorder, for example, flushes its log.
+  /// Called before every STATUS. The role finishes the work that the STATUS reports as done. For
+  /// example, the recorder flushes its log.
   virtual void BeforeStatus() {}
   /// Called once when the role's part in its run ends (OwnStatus::left()). OwnStatus::Release()
   /// does not call this function.
   virtual void OnLeave() {}
-  /// Another process asks for a STATUS that shows at least this step.
+  /// Called when another process asks for a STATUS that shows at least this step.
   virtual void OnStatusAsked(std::int64_t /*step*/) {}
-  /// Another process asks for these steps of a channel. The producer of this channel may be another
-  /// role.
+  /// Called when another process asks for these steps of a channel. The channel's producer may be
+  /// another role.
   virtual void OnAsked(std::string_view /*channel*/, StepRange /*steps*/, TimePoint /*now*/) {}
 
  protected:

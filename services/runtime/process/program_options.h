@@ -1,5 +1,5 @@
 // The command line of a role, and options that several programs share. The program `fogline` and
-// its verbs have a command line of their own (tools/cli).
+// its verbs have other command lines (tools/cli).
 #pragma once
 
 #include <cstddef>
@@ -17,7 +17,7 @@ class App;
 
 namespace fogline::runtime {
 
-/// Adds an option that takes a whole number from 1 to the largest 64-bit one, and refuses all else.
+/// Adds an option whose value is a whole number from 1 to 2^63 - 1.
 /// @param name such as "--run-id"
 void AddRunIdOption(CLI::App& app, const std::string& name, std::optional<std::int64_t>& run_id,
                     const std::string& help);
@@ -38,27 +38,27 @@ class ProgramOptions {
   enum class Help { kAlone, kWithDefault };
   void Text(const std::string& name, std::string& value, const std::string& help,
             Help shown = Help::kAlone);
-  /// A text that the user must give.
+  /// Adds an option with a text that the user must give.
   void RequiredText(const std::string& name, std::string& value, const std::string& help);
   void Flag(const std::string& name, bool& value, const std::string& help);
-  /// A whole number from least to most.
+  /// Adds an option with a whole number from `least` to `most`.
   void Count(const std::string& name, std::size_t& value, const std::string& help, int least,
              int most);
-  /// A time in s, from 0 to most.
+  /// Adds an option with a time in s, from 0 to `most`.
   void Seconds(const std::string& name, double& value, const std::string& help, double most);
-  /// A finite number from least to most.
+  /// Adds an option with a finite number from `least` to `most`.
   void Number(const std::string& name, double& value, const std::string& help, double least,
               double most);
-  /// One of these texts.
+  /// Adds an option whose value is one of the texts in `choices`.
   void Choice(const std::string& name, std::string& value, const std::string& help,
               const std::vector<std::string>& choices);
   void RunId(const std::string& name, std::optional<std::int64_t>& run_id, const std::string& help);
   void Traffic(TrafficOptions& options);
-  /// What --help prints after the options. A second call replaces the text.
+  /// Sets the text that --help prints after the options. A second call replaces the text.
   void Footer(const std::string& text);
 
   /// Reads the command line. Prints the help, the version, or what is wrong.
-  /// @return the exit code of a program that has nothing else to do
+  /// @return the exit code if the program must end now; nullopt if the program goes on
   std::optional<int> Parse(int argc, char** argv);
 
  private:

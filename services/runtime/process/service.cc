@@ -69,7 +69,7 @@ class Service {
       const TimePoint now = Clock::now();
       pauses_.Attend(now);
       if (own().released()) {
-        if (arguments_.run_id) break;  // its run has another process
+        if (arguments_.run_id) break;  // another process has its place in the run
         StartOver(now);
       } else if (own().Waits()) {
         WarnOfSignatures();
@@ -105,7 +105,7 @@ class Service {
     work_ = make_(*bus, run_id);
     bus_ = std::move(bus);
     starts_over_ = false;
-    preferred_ = false;  // this bus may start a thread of its own
+    preferred_ = false;  // the new bus may start a further thread
   }
 
   /// Joins the network for the first time. A process with the option --run-id was started by a
@@ -243,7 +243,8 @@ class Service {
   /// the runner.
   bool IsOfARunner() const { return arguments_.run_id && EndsWithItsParent(); }
 
-  /// A role that a runner has started waits only for moments.
+  /// Sends a notice that the role waits, if a notice is due. A role that a runner has started sends
+  /// no notice, because such a role waits only for a moment.
   void SayThatItWaits(TimePoint now) {
     if (!waiting_.Due(now) || IsOfARunner()) return;
     waiting_.Send(own().message(), *bus_, began_, now);
@@ -256,7 +257,7 @@ class Service {
     if (warned_) Say(trouble);
   }
 
-  /// Says once of a run on this network why the process does not take part in it.
+  /// Prints once for each run on this network that has no place for the role.
   void NameTheFullRun() {
     if (!news().full || std::exchange(full_, news().full) == news().full) return;
     Say(fmt::format("run {} on {} has its {} already; waiting for another run", *full_, bus_->url(),
@@ -266,7 +267,7 @@ class Service {
   void PreferIfRealtime() {
     if (!news().realtime || std::exchange(preferred_, true)) return;
     const int priority = arguments_.role == Role::kWorld ? kWorldPriority : kPriority;
-    if (RunBeforeOthers(priority) || IsOfARunner()) return;  // a runner says it for its roles
+    if (RunBeforeOthers(priority) || IsOfARunner()) return;  // a runner prints this for its roles
     if (std::exchange(said_not_preferred_, true)) return;
     Say("the kernel grants no real-time priority, or locks no memory: on a busy machine steps "
         "begin "
@@ -279,7 +280,7 @@ class Service {
   OwnPauses pauses_;
   std::unique_ptr<Bus> bus_;
   std::unique_ptr<Work> work_;
-  std::optional<RunSeeker> seeker_;  // while the role has no run, or its runner is silent
+  std::optional<RunSeeker> seeker_;  // set while the role has no run, or its runner is silent
   WaitingNotice waiting_;
   TimePoint try_at_{};  // when to try again to join a network
   bool starts_over_ = false;

@@ -1,4 +1,4 @@
-// The main program of a service: one role as a process of its own.
+// The main program of a service: one role as a separate process.
 #pragma once
 
 #include <functional>

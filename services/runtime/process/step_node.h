@@ -91,7 +91,7 @@ class StepNode final : public Work {
     return parts_.run.realtime ? RuleInRealtime(scenario) : RuleInLockstep();
   }
 
-  /// Does the slow part of step 0 before the role says that it is ready.
+  /// Does the slow part of step 0 before the role reports READY.
   void Prepare() {
     if constexpr (requires(InRealtime failsafe) { failsafe.Prepare(); }) {
       if (failsafe_) return failsafe_->Prepare();

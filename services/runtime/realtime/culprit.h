@@ -27,14 +27,14 @@ struct Culprit {
   bool operator==(const Culprit&) const = default;
 };
 
-/// Blames the producer of the first lost input. The inputs are in the order of the graph table, and
-/// this order is an order of evaluation. If this producer has reported lost inputs itself, the
-/// blame passes to the producer of the first of these inputs, and so on. If the blame would pass to
-/// a channel that was blamed before, it stays at the current producer.
+/// Blames the producer of the first lost input. The inputs are in the order of the graph table,
+/// which is the order in which the channels are computed in a step. If this producer has reported
+/// lost inputs itself, the blame passes to the producer of the first of these inputs, and so on. If
+/// the blame would pass to a channel that was blamed before, it stays at the current producer.
 /// @return nullopt if `lost` is empty
 std::optional<Culprit> FindCulprit(const ChannelSet& lost, const LostByRole& reported);
 
-/// "lidar (LIDAR lost)".
+/// Returns a text such as "lidar (LIDAR lost)".
 std::string Text(const Culprit& culprit);
 
 }  // namespace fogline::runtime

@@ -1,5 +1,5 @@
 // Collects the failures in a run in real time, and the reactions of its roles, from the STATUS of
-// the roles. A person reads these texts during the run, or later from the log.
+// the roles. The texts of this class are shown during the run, or later from the log.
 #pragma once
 
 #include <array>
@@ -19,21 +19,22 @@ namespace fogline::runtime {
 struct Fallback {
   std::int64_t step = 0;  // step that was under way at the change
   std::string role;
-  std::string what;     // "TRACK, ACC_COMMAND lost: the human drives"
+  std::string what;     // such as "TRACK, ACC_COMMAND lost: the human drives"
   std::string culprit;  // role that stopped publishing, "" if there is none
   double age_s = 0;     // age of the role's first lost (or else stale) input
 
-  /// "step 217: arbitrator: TRACK lost (culprit: fusion, last heard 0.25 s ago): the human drives"
+  /// Returns a text such as "step 217: arbitrator: TRACK lost (culprit: fusion, last heard 0.25 s
+  /// ago): the human drives".
   std::string Text() const;
 
-  std::string inputs;  // "TRACK, ACC_COMMAND lost"
-  std::string does;    // "the human drives"; safe to print
+  std::string inputs;  // such as "TRACK, ACC_COMMAND lost"
+  std::string does;    // such as "the human drives"; safe to print
 };
 
 class FallbackLog {
  public:
-  /// At most this many changes are stored. Further changes would tell a reader little, and must not
-  /// fill the memory.
+  /// The largest number of changes that are stored. Further changes would be of little use to a
+  /// reader, and must not fill the memory.
   static constexpr std::size_t kMaxKept = 1000;
 
   /// @param step_us simulated time of a step

@@ -27,7 +27,7 @@ namespace fogline::runtime {
 /// sender sends at its normal rate again.
 ///
 /// The loss of an input is detected `lost` periods after its last step. This is at most `lost`
-/// periods after the death of the sender, plus the time until the receiver calls Update() (see
+/// periods after the end of the sender, plus the time until the receiver calls Update() (see
 /// NextChange()).
 class InputHealth {
  public:

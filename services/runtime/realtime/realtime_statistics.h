@@ -14,10 +14,11 @@ class status_t;
 
 namespace fogline::runtime {
 
-/// A tick is the beginning of a step. A tick of the world is due when a period begins; a tick of
-/// another role is due when an input arrives. The latency of a step begins when the world has sent
-/// the TRUTH of this step, and ends when the HOST_COMMAND of this step reaches the world. Both
-/// times are on the world's clock, so the clocks of two hosts are never compared.
+/// The statistics of one role: ticks and latency. A tick is the beginning of a step. A tick of the
+/// world is due when a period begins. A tick of another role is due when the last needed input
+/// arrives, or at the role's deadline. The latency of a step begins when the world has sent the
+/// TRUTH of this step. It ends when the HOST_COMMAND of this step reaches the world. Both times are
+/// on the world's clock, so the clocks of two hosts are never compared.
 class RealtimeStatistics {
  public:
   /// A tick that is later than this counts as late.

@@ -63,7 +63,7 @@ StepRing::Verdict RealtimeWatch::Judge(std::size_t input, std::int64_t step, Byt
 }
 
 void RealtimeWatch::Heard(std::size_t input, std::int64_t step, TimePoint time) {
-  NoticeOwnPause(time);  // first, because a pause shifts the clock for the ticks
+  NoticeOwnPause(time);  // called first: a pause shifts the clock for the ticks
   const auto inputs = parts_.inputs.all();
   if (inputs[input].on_demand) return horizon_.KnowOf(step);
   // The world's ticks begin the steps of every role except the world itself.

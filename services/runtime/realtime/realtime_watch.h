@@ -60,7 +60,7 @@ class RealtimeWatch {
   /// Whether a message of the input has come recently, either in time or too late to be used.
   bool Speaks(std::size_t input, TimePoint now) const;
 
-  /// The inputs that a step needs: all inputs except those on demand.
+  /// The inputs that a step needs: all inputs except the inputs on demand.
   std::span<const Input> awaited() const { return parts_.inputs.all().first(health_.size()); }
   /// The input that brings the world's ticks; the number of inputs if no input brings them.
   std::size_t tick_input() const { return tick_input_; }

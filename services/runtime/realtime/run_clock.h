@@ -1,6 +1,6 @@
 // The clock by which a role judges its inputs in real time: the wall clock without the world's
 // pauses. If the world's process pauses, all other roles stop publishing a step later, although
-// only the world is to blame. During its own pause, the world receives none of its inputs.
+// only the world is to blame. During its own pause, the world receives no inputs.
 #pragma once
 
 #include <algorithm>
@@ -33,7 +33,8 @@ class RunClock {
     heard_ = now;
   }
 
-  /// @pre `now` is not before the last call of Heard()
+  /// This clock's time at the wall-clock time `now`. @pre `now` is not before the last call of
+  /// Heard()
   TimePoint At(TimePoint now) const { return std::min(then_ + (now - heard_), limit_); }
   /// The wall-clock time at which At() reaches `at`; TimePoint::max() if At() does not reach `at`
   /// before the next step.

@@ -4,9 +4,9 @@
 // A message of a step proves that the world has begun this step. The world never runs faster than
 // its clock, so each proof gives an upper bound for the steps at all later times. A proof that
 // comes late (a TRUTH that was lost and sent again) gives a bound that is too low. So the highest
-// (loosest) bound counts. It comes from the message with the shortest delay. If the world stands
-// still, the bound becomes higher than necessary. If the clocks of the world and the receiver drift
-// apart, newer proofs are better, so old proofs are forgotten.
+// (loosest) bound counts. This bound comes from the message with the shortest delay. If the world
+// stops for a time, the bound becomes higher than necessary. If the clocks of the world and the
+// receiver drift apart, newer proofs are better, so old proofs are forgotten.
 #pragma once
 
 #include <algorithm>
@@ -112,10 +112,10 @@ class RunHorizon {
   /// The progress that the runner reports is at most this old. In this time a role sends five
   /// STATUS messages, of which some may be lost.
   static constexpr Duration kHearsay = milliseconds(1000);
-  /// A message or a report of the runner limits the newest possible step for this long. A message
-  /// that is sent again comes late, but a message that has left its producer's ring is not sent
-  /// again. The runner reports old progress while it receives no STATUS itself. In a run that goes
-  /// on, this lasts less than a minute.
+  /// How long a message (kHeardPeriods, in periods) or a report of the runner (kToldFor) limits the
+  /// newest possible step. A message may come late because it was sent again. Messages that have
+  /// left their producer's ring of kRingSteps steps are not sent again. The runner reports old
+  /// progress while it receives no STATUS. In a run that goes on, this lasts less than a minute.
   static constexpr std::int64_t kHeardPeriods = kRingSteps;
   static constexpr Duration kToldFor = milliseconds(60'000);
   /// After this many periods without a newer step, the runner's progress alone limits the steps.

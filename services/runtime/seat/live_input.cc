@@ -9,8 +9,8 @@ LiveInput::LiveInput(Parts& parts, const Scenario& scenario)
       gate_(duration_cast<Duration>(std::chrono::duration<double>(scenario.person.deadman_s))) {
   if (!parts.run.realtime) throw InputError(std::string(kPersonNeedsRealtime));
   parts_.bus.Subscribe(ChannelOf<driver_input_t>().name, [this](Arrival& arrival) {
-    // Before the first TRUTH the recorder may not have joined yet. So the log has every message
-    // that counts.
+    // Messages before the first TRUTH are ignored, because the recorder may not have joined yet. So
+    // the log has every message that has an effect.
     const bool begun = parts_.inputs.Of(IndexOf<truth_t>()).ring.newest() >= 0;
     if (!parts_.own.Running() || !begun) return;
     if (const RefusalCounter wrong = Take(arrival)) parts_.own.Refuse(wrong);

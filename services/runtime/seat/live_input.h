@@ -1,4 +1,4 @@
-// The live input of a role: DRIVER_INPUT, from a seat at which a person sits.
+// The live input of a role: the DRIVER_INPUT messages of a seat at which a person sits.
 #pragma once
 
 #include "scenario/sections/scenario.h"

@@ -1,4 +1,4 @@
-// Decides which DRIVER_INPUT counts: one seat has the driver at a time, and its silence is noticed.
+// Decides which DRIVER_INPUT messages count. Only one seat at a time has the driver.
 #pragma once
 
 #include <optional>
@@ -9,16 +9,16 @@
 
 namespace fogline::runtime {
 
-/// The seat whose newest message is present and at most `deadman` old has the driver. While a seat
-/// has the driver, the messages of other seats are refused. When this seat is silent or empty, the
-/// next message of a person at any seat counts.
+/// A seat has the driver while its newest message is less than `deadman` old and says that a person
+/// is present. While a seat has the driver, the messages of other seats are refused. When this seat
+/// is silent, or its person has left, the next message of a person at any seat counts.
 ///
 /// The class reads no clock. So tests can give it any times.
 class SeatGate {
  public:
   explicit SeatGate(Duration deadman) : deadman_(deadman) {}
 
-  /// Takes a message that was decoded, of this run.
+  /// Takes a decoded message of this run.
   /// @return why the message is refused; nullptr if it is not refused. An older message of the same
   ///     seat is not refused, and has no effect.
   RefusalCounter Take(const driver_input_t& input, TimePoint now) {

@@ -53,7 +53,7 @@ std::string Escaped(std::string_view channel) {
   return escaped;
 }
 
-/// Sets a flag while an object lives.
+/// Sets a flag while an object of this class exists.
 class FlagSet {
  public:
   explicit FlagSet(bool& flag) : flag_(flag) { flag_ = true; }
@@ -249,8 +249,8 @@ Bus::Topic* Bus::SubscribedTopic(std::string_view channel) {
 
 bool Bus::HasPacket(Duration timeout) {
   if (filtered_ || watcher_) return inbox_->Wait(timeout);
-  // Without a filter, messages come that have no reader. After so many of them the caller does its
-  // other work.
+  // Without a filter, messages without a reader come, too. After this many of them the function
+  // returns, so that the caller can do its other work.
   constexpr int kMostOthers = 100;
   const TimePoint end = Clock::now() + timeout;
   for (int i = 0; i < kMostOthers && inbox_->Wait(end - Clock::now()); ++i) {

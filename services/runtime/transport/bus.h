@@ -1,10 +1,10 @@
-// LCM behind one small class: the URL gets safe options, channel names are taken literally, receive
-// queues do not have LCM's limit of 30 messages, and handlers may throw. On request the class signs
-// messages or simulates a bad network.
+// A small class through which programs use LCM. The class adds safe options to the URL, and takes
+// channel names literally. Its receive queues do not have LCM's limit of 30 messages. Handlers may
+// throw. On request the class signs messages or simulates a bad network.
 //
 // With udpm a bus reads its socket itself, because LCM's thread costs a second wake-up for each
 // message. Messages then wait in the kernel's buffer and, on request, in a backlog (KeepBacklog()).
-// LCM sends. With mpudpm, memq, and a udpm URL whose options Fogline does not know, LCM also
+// LCM only sends. With mpudpm, memq, and a udpm URL whose options Fogline does not know, LCM also
 // receives.
 #pragma once
 
@@ -37,15 +37,15 @@ class Client;
 
 namespace fogline::runtime {
 
-/// The error that a network cannot be reached, perhaps only for a time: this machine has no route
-/// for the multicast of the network's URL.
+/// Thrown if a network cannot be reached, perhaps only for a time: this machine has no route for
+/// the multicast of the network's URL.
 class NetworkAway : public InputError {
  public:
   using InputError::InputError;
 };
 
-/// The error that this machine's own messages to the network do not come back to it: a firewall may
-/// drop them.
+/// Thrown if this machine's own messages to the network do not come back to this machine. A
+/// firewall may drop them.
 class NetworkClosed : public InputError {
  public:
   using InputError::InputError;
@@ -73,11 +73,11 @@ class Bus {
   ///     reach this process before their signature is checked.
   void Secure(const MessageSigner& signer);
   bool secured() const { return signer_.has_value(); }
-  /// From now on, a process that is busy for long loses no messages until its backlog is full: with
-  /// udpm a thread takes them out of the kernel's buffer (udpm/backlog.h). Each message then wakes
-  /// two threads. So this is for runs in real time, whose roles do not wait for a busy process; in
-  /// lockstep, lost messages are sent again. With the other transports the bus always has a
-  /// backlog. A handler may call this.
+  /// Starts a backlog: with udpm, a thread takes the messages out of the kernel's buffer
+  /// (udpm/backlog.h). So a busy process loses no messages until its backlog is full. But each
+  /// message then wakes two threads. The backlog is meant for runs in real time, whose roles do not
+  /// wait for a busy process. In lockstep, lost messages are sent again. With the other transports
+  /// the bus always has a backlog. A handler may call this function.
   /// @throws std::runtime_error if the kernel grants no thread or no descriptor
   void KeepBacklog();
   /// From now on, the bus receives messages as over a bad network.
@@ -95,11 +95,11 @@ class Bus {
   void SetSampleRate(std::string_view channel, double share);
 
   /// Calls `watcher` from Wait() for every message on any channel, except messages that are too
-  /// large for Fogline, and keeps a backlog of them. May be called once at most.
+  /// large for Fogline. Also starts a backlog (KeepBacklog()). May be called once at most.
   using Watcher = std::function<void(std::string_view channel, Bytes)>;
   void SubscribeAll(Watcher watcher);
-  /// Whether LCM receives. LCM then keeps every channel name that it hears, at about 300 bytes
-  /// each.
+  /// Whether LCM receives the messages. LCM then stores the name of every channel from which a
+  /// message comes, in about 300 bytes a name.
   bool LcmReceives() const { return lcm_ != nullptr && !inbox_; }
 
   /// Sends bytes, which are copied before the call returns. A message that cannot be sent is lost,
@@ -107,7 +107,8 @@ class Bus {
   /// @throws std::runtime_error if the message is larger than kMaxMessageBytes
   void Publish(std::string_view channel, Bytes bytes) { Publish(TopicOf(channel), bytes); }
 
-  /// A channel on this bus. Callers that publish often use it, because a search by name takes time.
+  /// A channel on this bus. Callers that publish often use a Topic, because a search by name takes
+  /// time.
   struct Topic;
   Topic& TopicOf(std::string_view channel);
   void Publish(const Topic& topic, Bytes bytes);
@@ -146,12 +147,13 @@ class Bus {
   /// This descriptor is readable when Wait(0) would handle a message. With tcpq this is true only
   /// when all earlier messages have been handled.
   int fd() const { return fd_; }
-  /// Grows whenever fd() refers to another file: with tcpq, when the relay is lost or comes back;
-  /// with udpm, in KeepBacklog() and in SubscribeAll(). A caller that has given a copy of fd() to
-  /// epoll must then copy it again.
+  /// A count that grows whenever fd() begins to refer to another file. With tcpq this happens when
+  /// the relay is lost or comes back, with udpm in KeepBacklog() and in SubscribeAll(). A caller
+  /// that has given a copy of fd() to epoll must then copy fd() again.
   std::int64_t replaced() const;
   const std::string& url() const { return url_; }
-  /// Why the relay of tcpq cannot be reached at present: messages are then lost. "" if it can.
+  /// Why the relay of tcpq cannot be reached at present; "" if the relay can be reached. Messages
+  /// are lost while the relay cannot be reached.
   std::string WhyCutOff() const;
 
  private:
@@ -193,13 +195,14 @@ class Bus {
   std::optional<MessageSocket> inbox_;       // receives with udpm
   int fd_ = -1;
   std::int64_t replaced_ = 0;
-  std::vector<int> sockets_;  // the UDP sockets that receive: that of inbox_, or those of LCM
+  std::vector<int> sockets_;  // the UDP sockets that receive: the socket of inbox_, or LCM's
   bool filtered_ = true;      // false if the kernel has refused a filter
   // Set if messages of the group come over the route, which may change.
   std::optional<GroupMembership> membership_;
   TimePoint joined_{};  // when a silent bus last renewed its membership
   FailedSends failed_sends_;
-  // With memq only this object publishes: waiting_ counts its messages that wait to be handled.
+  // With memq only this object publishes. Then waiting_ is the number of its messages that have not
+  // been handled yet.
   bool in_memory_;
   std::int64_t waiting_ = 0;
   TimePoint now_{};            // when Wait() last handled a message
@@ -213,11 +216,12 @@ class Bus {
   Unverified not_taken_;
 };
 
-/// What the user of a process should know about keys and signatures; "" if there is nothing.
+/// A text that tells the user of a process what is wrong with keys and signatures; "" if no trouble
+/// is known.
 std::string SignatureTrouble(const Bus::Unverified& unverified);
 
-/// LCM has one subscription for all handlers of a channel. So a message is dispatched once and
-/// decoded once.
+/// A channel and its handlers. LCM has one subscription for all handlers of a channel. So a message
+/// is dispatched once and decoded once.
 struct Bus::Topic {
   Bus* bus;
   std::string channel;
@@ -227,7 +231,7 @@ struct Bus::Topic {
   double share = 1;
 };
 
-/// A multicast URL for this machine only. The port is random, so two runs hardly ever share a port.
+/// A multicast URL for this machine only. The port is random, so two runs rarely share a port.
 std::string FreshMulticastUrl();
 
 }  // namespace fogline::runtime

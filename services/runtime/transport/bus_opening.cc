@@ -1,4 +1,4 @@
-// How a bus opens its network, and says why it cannot.
+// Opens the network of a bus. If the network cannot be opened, the error says why.
 #include <lcm/lcm.h>
 #include <sodium.h>
 
@@ -23,7 +23,7 @@
 namespace fogline::runtime {
 namespace {
 
-/// Keeps the traffic of a udpm URL without a ttl on this machine.
+/// Adds ttl=0 to a udpm URL without a ttl, so that its traffic stays on this machine.
 std::string WithDefaults(const std::string& url) {
   if (!url.starts_with("udpm://") || url.find("ttl") != std::string::npos) return url;
   return fmt::format("{}{}ttl=0", url, url.find('?') == std::string::npos ? '?' : '&');
@@ -46,7 +46,7 @@ void RequireMulticast(const std::string& url) {
   throw InputError(fmt::format("error: LCM cannot open \"{}\"", url));
 }
 
-/// LCM tests a network on this channel before it receives. A bus does the same.
+/// The channel on which LCM tests a network before it receives. A bus makes the same test.
 constexpr const char* kSelfTest = "LCM_SELF_TEST";
 
 }  // namespace
@@ -107,7 +107,7 @@ void Bus::OpenInbox() {
   filtered_ = inbox_->filtered();
 }
 
-/// Requires that a message of this bus comes back, and then takes no channel.
+/// Tests that a message of this bus comes back to this bus. Then accepts messages of no channel.
 /// @throws NetworkClosed
 void Bus::TestInbox() {
   constexpr int kTries = 10;
@@ -134,13 +134,13 @@ void Bus::TestInbox() {
                     network.group, network.port, why));
   }
   Filter(ChannelFilter({}));
-  // Tests of other processes may wait in the buffer. They have no reader.
+  // The buffer may contain test messages of other processes. These messages are dropped.
   for (int i = 0; i < kDrained && inbox_->Wait(Duration::zero()); ++i) inbox_->Take();
 }
 
 /// Lets LCM receive in its own thread. @throws InputError if LCM cannot
 void Bus::ReceiveThroughLcm() {
-  // mpudpm gets no filter, because it announces its ports on a channel of its own.
+  // mpudpm gets no filter, because it announces its ports on an additional channel.
   const bool udpm = url_.starts_with("udpm://");
   std::optional<LcmSockets> sockets;
   // Until LCM's self-test is over, each socket accepts only the messages of this test. The filter

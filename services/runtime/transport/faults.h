@@ -1,6 +1,6 @@
 // Simulates a bad network on request. Messages that a process receives are lost, doubled, delayed,
 // overtaken or damaged before the process reads them. The simulation works on any bus, also on a
-// bus in memory. The fate of the n-th message that a role receives depends only on the seed, the
+// bus in memory. The faults of the n-th message that a role receives depend only on the seed, the
 // role and n.
 #pragma once
 
@@ -18,13 +18,14 @@
 
 namespace fogline::runtime {
 
-/// How bad the network is: the probability of each fault for each message, independently.
+/// The probability of each fault of a message, and the delay of all messages. The faults are
+/// independent of each other.
 struct FaultRates {
   double loss = 0;
   double duplicate = 0;
-  double reorder = 0;   // held back for 2 ms, so that later messages overtake it
-  double truncate = 0;  // cut off at a random place
-  double flip = 0;      // one bit is wrong
+  double reorder = 0;   // the message is held back for 2 ms, so later messages overtake it
+  double truncate = 0;  // the message is cut off at a random place
+  double flip = 0;      // one bit of the message is wrong
   double delay_ms = 0;  // delay of every message
   std::int64_t seed = 1;
 

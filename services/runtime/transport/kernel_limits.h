@@ -5,15 +5,15 @@ namespace fogline::runtime {
 
 /// The receive buffer that a process asks for, in bytes.
 inline constexpr int kWideBuffer = 8 * 1024 * 1024;
-/// A buffer of this size, in bytes, holds a burst of 5,000 messages of a run; the kernel's default
-/// loses 88 % of it. `fogline doctor` warns of a smaller one.
+/// Size in bytes of a receive buffer that has room for a burst of 5,000 messages of a run. With the
+/// kernel's default size, 88 % of this burst is lost. `fogline doctor` warns of a smaller buffer.
 inline constexpr int kEnoughBuffer = 2 * 1024 * 1024;
 
 /// Gives a socket a receive buffer, above net.core.rmem_max if this process has CAP_NET_ADMIN.
-/// With the kernel's default limit, the buffer holds a hundred datagrams; a flood of 20,000
-/// datagrams a second fills it in 5 ms. A larger buffer has room for the messages that come while a
-/// busy machine runs other processes.
-/// @param bytes without the capability at most net.core.rmem_max
+/// With the kernel's default limit, the buffer holds a hundred datagrams. A flood of 20,000
+/// datagrams a second fills such a buffer in 5 ms. A larger buffer has room for the messages that
+/// come while a busy machine runs other processes.
+/// @param bytes the size; without the capability, the kernel limits it to net.core.rmem_max
 void SetReceiveBuffer(int socket, int bytes = kWideBuffer);
 
 /// The size of a socket's receive buffer, in bytes.

@@ -56,7 +56,7 @@ int LcmSockets::OnBind(int socket, const sockaddr* address, socklen_t size) {
 
 int LcmSockets::OnConnect(int socket, const sockaddr* address, socklen_t size) const {
   const int result = Connect(socket, address, size);
-  // LCM connects a socket only to find out whether there is a route.
+  // LCM connects a socket only to find out whether there is a route. kLoopback needs no route.
   return reach_ == Reach::kLoopback ? 0 : result;
 }
 

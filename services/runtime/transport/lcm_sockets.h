@@ -15,8 +15,8 @@
 
 namespace fogline::runtime {
 
-/// While an object lives, it controls every UDP socket that LCM opens in its thread. A thread may
-/// have one object at a time.
+/// While an object of this class exists, it controls every UDP socket that LCM opens in the thread
+/// of the object. A thread may have one such object at a time.
 class LcmSockets {
  public:
   enum class Reach {
@@ -27,12 +27,12 @@ class LcmSockets {
   };
 
   enum class Joins {
-    kGroup,  ///< each socket joins the group, as LCM wants
+    kGroup,  ///< each socket joins the group, as usual in LCM
     /// No socket joins the group. This is enough for messages that are only sent.
     kNothing,
   };
 
-  /// @param filter for each socket that receives, from its start; empty: no filter
+  /// @param filter attached to each receiving socket before its first datagram; empty: no filter
   LcmSockets(std::vector<sock_filter> filter, Reach reach, Joins joins = Joins::kGroup);
   ~LcmSockets();
   LcmSockets(const LcmSockets&) = delete;
@@ -58,9 +58,9 @@ class LcmSockets {
   bool refused_ = false;
 };
 
-/// Joins a group on loopback. If the socket is already in the group there, because the route leads
-/// over loopback, this is no error.
-/// @return whether the socket is in the group; otherwise errno says why not
+/// Joins a group on loopback. The call also succeeds if the socket is already in this group on
+/// loopback, because the route leads over loopback.
+/// @return whether the socket is in the group; if it is not, errno says why
 bool JoinOnLoopback(int socket, const in_addr& group);
 
 /// Whether loopback is up. In some containers loopback is down.

@@ -22,8 +22,8 @@ constexpr std::string_view kTcpq = "tcpq://";
 constexpr std::uint16_t kLcmPort = 7667;
 // The longest URL that may be announced. A URL with all options of LCM takes 60 characters.
 constexpr std::size_t kMaxAnnounced = 200;
-// The least receive buffer that may be announced, in bytes: with a smaller one, a program that
-// follows the run would hear little of it.
+// The least receive buffer that may be announced, in bytes. With a smaller buffer, a program that
+// joins the run would lose most messages of the run.
 constexpr int kLeastAnnouncedBuffer = 100'000;
 
 std::optional<in_addr> ParseAddress(std::string_view text) {
@@ -74,7 +74,7 @@ bool IsOfThisMachine(in_addr numeric) {
 /// The host and port of a relay in a tcpq:// URL, with LCM's defaults for missing parts.
 struct RelayPlace {
   std::string_view host;
-  std::optional<std::uint16_t> port;  // nullopt if the port is no number
+  std::optional<std::uint16_t> port;  // nullopt if the port is not a number
 
   bool operator==(const RelayPlace&) const = default;
 };

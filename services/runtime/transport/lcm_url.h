@@ -15,15 +15,15 @@ inline constexpr std::string_view kLcmDefaultUrl = "udpm://239.255.76.67:7667?tt
 /// $LCM_DEFAULT_URL, which LCM's own programs read, too; nullopt if it is unset or empty.
 std::optional<std::string> UrlOfEnvironment();
 
-/// The network of a program: the URL that its command line gives, if it is not empty; else
-/// $LCM_DEFAULT_URL; else LCM's default address.
+/// The network of a program: the first of these three URLs that is not empty. They are the URL from
+/// the command line (`given`), $LCM_DEFAULT_URL, and LCM's default address.
 std::string NetworkUrl(const std::string& given);
 
 /// The network on which programs without a URL listen, and on which runs announce themselves
 /// (beacon.h).
 inline std::string MeetingUrl() { return NetworkUrl(""); }
 
-/// Whether the text begins like the URL of an LCM network, memq included.
+/// Whether the text begins like the URL of an LCM network, including memq.
 bool IsLcmUrl(std::string_view url);
 
 /// The contents of a udpm:// URL, with LCM's defaults for missing parts.
@@ -36,19 +36,20 @@ struct MulticastAddress {
   bool operator==(const MulticastAddress&) const = default;
 };
 
-/// The contents of a udpm:// URL; nullopt if the text is no udpm:// URL, has a host that is no IPv4
-/// address in numbers, or has an option that LCM does not know.
+/// The contents of a udpm:// URL. The result is nullopt if the text is not a udpm:// URL, if the
+/// host is not an IPv4 address in numbers, if the port is wrong, or if an option is wrong or
+/// unknown to LCM.
 std::optional<MulticastAddress> ParseMulticastUrl(std::string_view url);
 
 /// Whether two URLs name one network. For udpm this compares group and port, for tcpq host and
 /// port, otherwise the whole URL without its options.
 bool SameNetwork(std::string_view a, std::string_view b);
 
-/// Whether a program may join this network if the program knows it only from a message. The URL
-/// must name a multicast group whose traffic ends at the next router or before (ttl 0 or 1), with a
-/// receive buffer of 100 kB to kWideBuffer if the URL gives its size, or a relay of this machine
-/// with its address in numbers. mpudpm is refused, because nothing filters the messages that reach
-/// LCM's parser.
+/// Whether a program may join this network if the program knows it only from a message. The URL may
+/// name a relay of this machine, with its address in numbers. The URL may also name a multicast
+/// group whose traffic ends at the next router or before (ttl 0 or 1). If such a URL gives the size
+/// of the receive buffer, the size must be between 100 kB and kWideBuffer. mpudpm is refused,
+/// because no filter protects LCM's parser.
 bool MayBeAnnounced(std::string_view url);
 
 }  // namespace fogline::runtime

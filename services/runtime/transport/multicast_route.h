@@ -26,8 +26,8 @@ std::string InPlaceOfUnicast(std::string_view url);
 /// The kernel's error for a route to an IPv4 address; "" if there is a route.
 std::string RouteError(const std::string& address);
 
-/// The interface of the route to an IPv4 address; "" if there is no such route or `address` is no
-/// IPv4 address.
+/// The interface of the route to an IPv4 address; "" if there is no such route or `address` is not
+/// an IPv4 address.
 /// @param table in the form of /proc/net/route; the longest prefix wins, then the lowest metric
 std::string RouteInterface(std::string_view table, const std::string& address);
 

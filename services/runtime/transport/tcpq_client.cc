@@ -46,7 +46,7 @@ std::runtime_error CannotReach(const Endpoint& relay, int error) {
 
 }  // namespace
 
-/// The connection is lost.
+/// Thrown inside the client when the connection is lost.
 class Client::Lost : public std::runtime_error {
  public:
   Lost(const Endpoint& relay, std::string_view why)
@@ -224,7 +224,7 @@ bool Client::Parse() {
 
 void Client::Handle() {
   if (!Parse()) return;
-  const Frame frame = *next_;  // its bytes are valid until Readable() appends others
+  const Frame frame = *next_;  // its bytes are valid until Readable() appends other bytes
   next_.reset();
   for (const auto& [channel, handler] : handlers_) {
     if (channel == frame.name) handler(frame.payload);

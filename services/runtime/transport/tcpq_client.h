@@ -1,7 +1,7 @@
 // A client of a tcpq relay, in place of LCM's own client. LCM's client aborts when the relay ends,
-// and waits without limit for a server that sends nothing. It takes five system calls and packets
-// for a message, and loses its connection when a signal comes. Fogline's client uses the same
-// protocol with the same relays.
+// and waits without limit for a server that sends nothing. It needs five system calls and up to
+// five packets for each message, and loses its connection when a signal comes. Fogline's client
+// uses the same protocol with the same relays.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,7 @@
 
 namespace fogline::runtime::tcpq {
 
-/// The relay has ended or stopped working, and does not come back.
+/// Thrown if the relay has ended or stopped working, and does not come back.
 class ConnectionLost : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -28,10 +28,10 @@ class ConnectionLost : public std::runtime_error {
 
 /// One connection, for one thread.
 ///
-/// Readable() restores a lost connection as soon as the relay is back, and never waits longer for
-/// this than its `timeout`. All messages in the meantime are lost. If the relay is not back after
-/// kTries tries, Readable() throws ConnectionLost once. After that, Readable() only waits, so that
-/// the process can end a run properly.
+/// Readable() restores a lost connection as soon as the relay is back. One call never waits longer
+/// than its `timeout`. All messages are lost until the connection is restored. If the relay is not
+/// back after kTries tries, Readable() throws ConnectionLost once. After that, Readable() only
+/// waits, so that the process can end a run properly.
 class Client {
  public:
   using Handler = std::function<void(Bytes)>;
@@ -73,8 +73,8 @@ class Client {
 
   /// The descriptor stays the same when the connection is restored.
   int fd() const { return fd_; }
-  /// Grows whenever the descriptor refers to another file. A copy of the descriptor, and epoll,
-  /// still refer to the old file, which may be readable for ever.
+  /// A count that grows whenever the descriptor begins to refer to another file. A copy of the
+  /// descriptor, and epoll, still refer to the old file, which may be readable for ever.
   std::int64_t replaced() const { return replaced_; }
   /// Whether the connection is lost at present.
   bool lost() const { return lost_; }
@@ -87,7 +87,7 @@ class Client {
   class Lost;
   /// Begins to connect a socket to the relay. @return the socket
   int BeginConnect() const;
-  /// Waits up to `timeout` until the socket is connected. @return whether it is
+  /// Waits up to `timeout` until the socket is connected. @return whether the socket is connected
   /// @throws std::runtime_error if the relay cannot be reached
   bool Connected(Duration timeout) const;
   /// Sends the client's greeting and its subscriptions.
@@ -99,10 +99,11 @@ class Client {
   void SendFrame();
   void Receive();
   bool Parse();
-  /// Goes on with a try to connect again, or begins one that is due. @return whether the relay is
+  /// Continues the try to connect again, or begins a try that is due. @return whether the relay is
   /// back
   bool ConnectAgain(Duration timeout);
-  /// The steps of a try. Each of them waits up to `timeout`. @return whether the relay is back
+  /// Does the next steps of a try: begins it, connects, and exchanges greetings. Each step waits up
+  /// to `timeout`. @return whether the relay is back
   bool Try(Duration timeout);
   /// Marks the connection as lost: nothing is sent or received until the relay is back.
   void Lose(const Lost& lost);

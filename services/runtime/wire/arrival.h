@@ -13,7 +13,8 @@ namespace fogline::runtime {
 /// the first message allocates memory.
 class Arrival {
  public:
-  /// Takes the next message. Its bytes stay valid while its readers are being called.
+  /// Takes the next message. The bytes must stay valid while the readers of this message are
+  /// called.
   void Renew(Bytes bytes, TimePoint time) {
     bytes_ = bytes;
     time_ = time;
@@ -24,7 +25,7 @@ class Arrival {
   /// When the message was handled. The bus does not read its clock for every message. So this may
   /// be the time of a slightly earlier message.
   TimePoint time() const { return time_; }
-  /// For readers that need only the bytes.
+  /// The bytes, for handlers with a parameter of type Bytes.
   operator Bytes() const { return bytes_; }
 
   /// The message; nullptr if the bytes are not exactly one M, or a value is not finite.
@@ -33,7 +34,7 @@ class Arrival {
     const Reading<M>& reading = Read<M>();
     return reading.wrong == nullptr ? &reading.message : nullptr;
   }
-  /// Why the bytes are not a valid M; nullptr if they are valid.
+  /// The counter for the reason why the bytes are not a valid M; nullptr if they are valid.
   template <class M>
   RefusalCounter Wrong() {
     return Read<M>().wrong;

@@ -17,7 +17,7 @@ using BuildId = std::int64_t;
 /// Stands for the build id of a program that has no build id or does not report it.
 inline constexpr BuildId kUnknownBuild = 0;
 
-/// The build id in the first bytes of a program's file (ELF, of this machine's byte order); the
+/// The build id in the first bytes of a program's file (ELF, of this machine's byte order). The
 /// bytes must include the notes of the file.
 BuildId BuildIdIn(Bytes file);
 /// The build id of a program's file.

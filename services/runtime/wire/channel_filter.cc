@@ -36,7 +36,7 @@ sock_filter Load(std::size_t size, std::size_t offset) {
                   static_cast<std::uint32_t>(offset));
 }
 
-/// The distance of a jump, which is one byte wide.
+/// The distance of a jump, as the single byte that an instruction has for it.
 std::uint8_t Jump(std::size_t instructions) {
   if (instructions > std::numeric_limits<std::uint8_t>::max()) {
     throw std::logic_error(fmt::format("a filter would jump over {} instructions", instructions));
@@ -44,7 +44,7 @@ std::uint8_t Jump(std::size_t instructions) {
   return static_cast<std::uint8_t>(instructions);
 }
 
-/// Skips `skip` instructions unless the value that was loaded last is `value`.
+/// Skips `skip` instructions if the value that was loaded last is not `value`.
 sock_filter SkipUnless(std::uint32_t value, std::size_t skip) {
   return BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, value, 0, Jump(skip));
 }

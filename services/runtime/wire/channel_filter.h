@@ -1,15 +1,15 @@
 // Lets the kernel drop LCM messages that this process has not subscribed to.
 //
 // Every process of an LCM network receives every message. Without a filter, a process wakes up for
-// each message, and throws most messages away. With ten processes and nine messages a step, two
-// thirds of a machine's work for a step is spent on waking threads that then have nothing to do.
+// each message, and drops most messages. With ten processes and nine messages a step, two thirds of
+// a machine's work for a step is spent on waking threads that then have nothing to do.
 // With a socket filter (socket(7)) the kernel reads the channel's name when a datagram arrives, and
 // wakes no thread for an unwanted datagram. Nothing else changes: subscribed messages arrive in the
 // same order.
 //
 // The filter also drops datagrams that no Fogline process sends, before they reach a parser.
-// These are fragments, whose bounds LCM does not check properly (lcm-proj/lcm#628: a remote heap
-// write), and datagrams that are no LCM message at all.
+// Such datagrams are fragments, and datagrams that are not LCM messages. LCM does not check the
+// bounds of fragments properly (lcm-proj/lcm#628: a remote heap write).
 #pragma once
 
 #include <linux/filter.h>
@@ -35,14 +35,14 @@ struct Wanted {
 };
 
 /// A filter program that takes only LCM datagrams ("LC02": int32 sequence number, channel, 0, data)
-/// on these channels, with at most kMaxMessageBytes of data and a signature. It drops fragments of
-/// large messages ("LC03").
+/// on these channels. It drops fragments of large messages ("LC03"), and datagrams that are longer
+/// than the longest channel name, kMaxMessageBytes of data and a signature require.
 /// @throws std::logic_error if the contents of a channel need more instructions than a jump can
 ///     skip
 std::vector<sock_filter> ChannelFilter(std::vector<Wanted> wanted);
 
-/// Like ChannelFilter(), but for all channels: takes every whole LCM message that is not too large
-/// and whose channel name ends with a 0.
+/// A filter program that takes the messages of all channels: every whole LCM message that is not
+/// too large and whose channel name ends with a 0.
 std::vector<sock_filter> AnyChannelFilter();
 
 /// Attaches a filter to the socket, in place of an earlier filter.

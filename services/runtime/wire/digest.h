@@ -9,7 +9,7 @@
 
 namespace fogline::runtime {
 
-/// BLAKE2b-256 of bytes that come in pieces.
+/// Computes BLAKE2b-256 of bytes that come in pieces.
 class Hash {
  public:
   Hash();
@@ -18,7 +18,7 @@ class Hash {
   Hash& operator=(Hash&&) noexcept;
 
   void Add(Bytes piece);
-  /// 64 hexadecimal digits, of everything added so far.
+  /// The hash of everything added so far, as 64 hexadecimal digits.
   std::string Hex() const;
 
  private:
@@ -26,8 +26,9 @@ class Hash {
   std::unique_ptr<State> state_;
 };
 
-/// BLAKE2b-256 of the payloads of all kStep channels in the order of the graph table, step by step.
-/// The run id is not included, because the id names a run but does not describe the run.
+/// Computes BLAKE2b-256 of the payloads of all kStep channels, step by step, and in the order of
+/// the graph table within a step. The run id is not included, because the id names a run but does
+/// not describe the run.
 class Digest {
  public:
   /// Adds one encoded message (at least kHeaderEnd bytes).
@@ -36,14 +37,14 @@ class Digest {
     hash_.Add(message.subspan(kStepOffset));
   }
 
-  /// 64 hexadecimal digits, of everything added so far.
+  /// The hash of everything added so far, as 64 hexadecimal digits.
   std::string Hex() const { return hash_.Hex(); }
 
  private:
   Hash hash_;
 };
 
-/// BLAKE2b-256 of a text, 64 hexadecimal digits.
+/// BLAKE2b-256 of a text, as 64 hexadecimal digits.
 std::string HashOf(std::string_view text);
 
 }  // namespace fogline::runtime

@@ -11,19 +11,21 @@
 
 namespace fogline::runtime {
 
-/// A seat sends at least one message in this time, so a longer silence is a fault.
+/// The longest time between two messages of a seat. A longer silence is a fault.
 inline constexpr Duration kInputEvery = milliseconds(50);
 /// A seat sends at most this many messages in a second. Our choice: the fastest gamepads report 250
 /// times a second over Bluetooth.
 inline constexpr double kMostInputsPerSecond = 250;
-/// So many messages of a seat may come at once: those of a network that has stopped for 0.2 s.
+/// The number of messages of a seat that may come at once. A network that has stopped for 0.2 s
+/// then delivers this many messages.
 inline constexpr double kMostInputsAtOnce = 50;
 /// Longest name of a device, in bytes of UTF-8.
 inline constexpr std::size_t kMostDeviceBytes = 64;
-/// No usual gamepad or wheel has more axes.
+/// The largest number of axes. No usual gamepad or wheel has more axes.
 inline constexpr std::int32_t kMostAxes = 16;
 
-/// Whether every number of the message is in its range. @return nullptr if so
+/// Checks whether every number of the message is in its range.
+/// @return nullptr if every number is in its range; otherwise the counter for the refusal
 inline RefusalCounter WrongIn(const driver_input_t& input) {
   const auto in = [](double value, double least, double most) {
     return value >= least && value <= most;  // false for NaN

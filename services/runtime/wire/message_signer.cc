@@ -53,8 +53,8 @@ std::optional<Role> ProducerOf(std::string_view channel, Bytes payload) {
 }
 
 /// Whether a role may send this message. A role may send its own messages. The recorder may also
-/// send steps of other roles, because it answers requests for steps that their producers have
-/// forgotten.
+/// send steps of other roles, because it answers requests for steps that their producers do not
+/// store any more.
 bool MaySend(Role sender, std::string_view channel, Bytes payload) {
   const auto* found = std::ranges::find(kChannels, channel, &ChannelInfo::name);
   const bool step = found != kChannels.end() && found->pace == Pace::kStep;
@@ -81,7 +81,7 @@ struct Wiped : std::array<T, kSize> {
 };
 
 constexpr std::size_t kKeyDigits = 2 * std::tuple_size_v<SigningKey::Secret>;
-// Room for a key, its line end and one more character. A longer file is no key.
+// Room for a key, its line end and one more character. A longer file is not a key.
 using KeyText = Wiped<char, kKeyDigits + 3>;
 
 /// Reads a file into `text`, at most until `text` is full.

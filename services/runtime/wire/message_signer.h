@@ -37,8 +37,8 @@ class SigningKey {
   SigningKey& operator=(const SigningKey&) = default;
 
   /// @throws InputError when the file cannot be read, contains no key, or is not a secret of this
-  ///     user. A file is no secret if it belongs to another user (except root), or if other users
-  ///     can read or change it.
+  ///     user. A file is not a secret if it belongs to another user (except root), or if other
+  ///     users can read or change it.
   static SigningKey Load(const std::filesystem::path& file);
   /// Writes a random key into a new file that only its owner can read.
   /// @throws InputError when the file exists or cannot be created; std::runtime_error when the disk

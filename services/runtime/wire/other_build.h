@@ -24,8 +24,8 @@ struct OtherBuild {
   BuildId build;  // the build that the process reports
   BuildId ours;   // build of the role's program in the runner's folder
 
-  /// "driver (pid 4711 on lab2) is of build 1f..., but the runner is of build 2e...". If one of the
-  /// builds is not known, the text says which build.
+  /// Returns a text such as "driver (pid 4711 on lab2) is of build 1f..., but the runner is of
+  /// build 2e...". If one of the builds is not known, the text says which build.
   std::string Text() const;
 };
 

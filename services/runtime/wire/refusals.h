@@ -33,8 +33,8 @@ inline constexpr std::array kRefusals{
 using RefusalCounter = std::int64_t status_t::*;
 
 /// Decodes a message.
-/// @return why the message must be refused; nullptr if it is sound. Run and step are not checked
-///     here.
+/// @return why the message must be refused; nullptr if the message is valid. Run and step are not
+///     checked here.
 template <class M>
 [[nodiscard]] RefusalCounter Examine(Bytes bytes, M& message) {
   if (bytes.size() < kHeaderEnd) return &status_t::malformed;

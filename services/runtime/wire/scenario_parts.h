@@ -11,8 +11,8 @@
 
 namespace fogline::runtime {
 
-/// Bytes of scenario text in one RUN message; the rest of kMaxMessageBytes is for the other fields
-/// of RUN.
+/// Bytes of scenario text in one RUN message. The other bytes of kMaxMessageBytes are for the other
+/// fields of RUN.
 inline constexpr std::size_t kPartBytes = 1000;
 
 /// The range of a run's speed, in simulated seconds per second: a step of 0.1 s takes between 0.1

@@ -38,14 +38,15 @@ class StepRing {
   enum class Verdict {
     kNew,        // Store() it
     kDuplicate,  // known already, or so old that it is not needed
-    // The same step with other bytes. There are two producers, or a producer whose output is not a
-    // function of its inputs.
+    // Of a step that the ring has with other bytes. There are two producers, or a producer whose
+    // output is not a function of its inputs.
     kConflict,
-    kOutOfWindow,  // so far ahead that it cannot belong to a run in lockstep
+    kOutOfWindow,  // of a step that cannot be under way yet
     kElsewhere,    // of no use to this role, but its step is known to be under way
     kLate,         // came after the end of its step
   };
 
+  /// Judges a message of a step in lockstep.
   /// @param needed the next step that the reader of this ring needs
   Verdict Classify(std::int64_t step, Bytes bytes, std::int64_t needed) const {
     const Slot& slot = slots_[RingSlot(step)];

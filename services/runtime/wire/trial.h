@@ -13,14 +13,17 @@ namespace fogline::runtime {
 /// Largest length in bytes of the title of an experiment, of a unit, and of the name of a
 /// condition, a questionnaire or an item.
 inline constexpr std::size_t kMostTrialNameBytes = 100;
-/// Longest text of a marker or of an answer, in bytes. With it, a TRIAL fits one datagram.
+/// Longest text of a marker or of an answer, in bytes. A TRIAL with such a text fits into one
+/// datagram.
 inline constexpr std::size_t kMostTrialTextBytes = 500;
-/// A recorder logs at most this many TRIAL in a second, and at once. Our choice: a person makes
-/// fewer, and a flood then fills neither the memory nor the disk.
+/// A recorder logs at most kMostTrialFactsPerSecond TRIAL messages in a second, and at most
+/// kMostTrialFactsAtOnce at once. Our choice: a person causes fewer messages, and a flood of
+/// messages cannot fill the memory or the disk.
 inline constexpr double kMostTrialFactsPerSecond = 20;
 inline constexpr double kMostTrialFactsAtOnce = 40;
 
-/// Whether every number and text of the message is in its range. @return nullptr if so
+/// Checks whether every number and text of the message is in its range.
+/// @return nullptr if all are in their range; otherwise the counter for the refusal
 inline RefusalCounter WrongIn(const trial_t& fact) {
   const auto is_short = [](const std::string& text) { return text.size() <= kMostTrialNameBytes; };
   const bool sound = fact.header.step >= -1 && fact.kind >= trial_t::BEGIN &&
@@ -32,7 +35,7 @@ inline RefusalCounter WrongIn(const trial_t& fact) {
   return sound ? nullptr : &status_t::out_of_range;
 }
 
-/// The text without the part that is too long for a TRIAL. No character of UTF-8 is cut in two.
+/// The beginning of the text that is short enough for a TRIAL. No character of UTF-8 is cut in two.
 inline std::string CutForTrial(std::string_view text) {
   if (text.size() <= kMostTrialTextBytes) return std::string(text);
   std::size_t end = kMostTrialTextBytes;

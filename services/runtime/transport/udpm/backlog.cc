@@ -16,7 +16,7 @@
 namespace fogline::runtime {
 namespace {
 
-// What a packet costs beside its bytes: the vector and its place on the heap.
+// Memory that a packet needs in addition to its bytes: the vector and its block on the heap.
 constexpr std::size_t kPacketCost = 64;
 
 void Raise(int event) {
@@ -82,7 +82,8 @@ void Backlog::Receive(const std::stop_token& stop) {
       room_.wait(lock, stop, [this] { return bytes_ < capacity_; });
       continue;
     }
-    // Nothing is there, or the network reports an error, which recv() reports once.
+    // There is no packet, or recv() has reported an error of the network. recv() reports such an
+    // error only once.
     std::array<pollfd, 2> waited{pollfd{.fd = socket_, .events = POLLIN, .revents = 0},
                                  pollfd{.fd = end_, .events = POLLIN, .revents = 0}};
     poll(waited.data(), waited.size(), -1);

@@ -1,7 +1,7 @@
-// Takes packets out of a UDP socket in a thread of its own, and keeps them until the caller takes
-// them. So a caller that is busy, or that the kernel does not run, loses none: without
-// CAP_NET_ADMIN the kernel's own buffer may hold only a few hundred packets (net.core.rmem_max).
-// The thread costs one more wake-up for each packet that the caller waits for.
+// Takes packets out of a UDP socket in a separate thread, and stores them until the caller takes
+// them. So no packet is lost while the caller is busy, or while the kernel does not run the caller.
+// Without CAP_NET_ADMIN the kernel's own buffer may hold only a few hundred packets
+// (net.core.rmem_max). The thread costs one more wake-up for each packet that the caller waits for.
 #pragma once
 
 #include <condition_variable>
@@ -22,10 +22,10 @@ class Backlog {
  public:
   using Packet = std::vector<std::uint8_t>;
 
-  /// @param socket does not block; it must outlive the object
-  /// @param most longer packets are dropped
+  /// @param socket a socket that does not block and that outlives this object
+  /// @param most the largest packet, in bytes; longer packets are dropped
   /// @param wanted whether a packet is kept; called in the thread
-  /// @param capacity in bytes; of a longer backlog the rest stays in the kernel's buffer
+  /// @param capacity in bytes; while the backlog is full, packets stay in the kernel's buffer
   /// @throws std::system_error if the kernel grants no thread or no descriptor
   Backlog(int socket, std::size_t most, bool (*wanted)(Bytes packet),
           std::size_t capacity = 64UL << 20);
@@ -51,8 +51,8 @@ class Backlog {
   std::mutex mutex_;
   std::condition_variable_any room_;
   std::deque<Packet> packets_;
-  std::size_t bytes_ = 0;  // of packets_
-  std::jthread thread_;    // last: it uses the other members
+  std::size_t bytes_ = 0;  // size of packets_, with the cost of each packet
+  std::jthread thread_;    // declared last, because the thread uses the other members
 };
 
 }  // namespace fogline::runtime

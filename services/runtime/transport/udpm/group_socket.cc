@@ -23,7 +23,7 @@ void Require(bool succeeded, const std::string& url) {
 }
 
 /// Joins the group where LCM's sockets join it (lcm_sockets.h).
-/// @return whether it has joined; otherwise errno says why not
+/// @return whether the socket has joined the group; if it has not, errno says why
 bool Join(int fd, const in_addr& group, const std::string& url) {
   const ip_mreq membership{.imr_multiaddr = group, .imr_interface = {}};
   const bool joined =
@@ -60,7 +60,7 @@ void GroupSocket::Open(const std::string& url, std::vector<sock_filter> filter,
     Require(setsockopt(fd_, SOL_SOCKET, option, &on, sizeof(on)) == 0, url);
   }
   SetReceiveBuffer(fd_, buffer_bytes.value_or(network->receive_buffer.value_or(kWideBuffer)));
-  // Bound to the group, the socket gets no packets of other groups on the same port.
+  // A socket that is bound to the group gets no packets of other groups on the same port.
   Require(bind(fd_, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) == 0, url);
   Require(Join(fd_, address.sin_addr, url), url);
 }

@@ -1,5 +1,5 @@
-// A UDP socket in the multicast group of a udpm:// network. Beside LCM, it receives the packets of
-// the network. It sends nothing.
+// A UDP socket in the multicast group of a udpm:// network. It receives the packets of the network
+// without LCM, and sends nothing.
 #pragma once
 
 #include <linux/filter.h>
@@ -14,10 +14,10 @@ class GroupSocket {
  public:
   /// Opens a socket that does not block.
   /// @pre the URL is a udpm:// URL (ParseMulticastUrl)
-  /// @param filter from the socket's start; empty: no filter
-  /// @param buffer_bytes without CAP_NET_ADMIN at most net.core.rmem_max; nullopt: recv_buf_size of
-  ///     the URL, or else kWideBuffer
-  /// @throws std::system_error if the network cannot be heard
+  /// @param filter attached before the first packet comes; empty: no filter
+  /// @param buffer_bytes size of the receive buffer, without CAP_NET_ADMIN at most
+  ///     net.core.rmem_max; nullopt: recv_buf_size of the URL, or kWideBuffer if the URL has none
+  /// @throws std::system_error if the socket cannot receive the network's packets
   GroupSocket(const std::string& url, std::vector<sock_filter> filter,
               std::optional<int> buffer_bytes = std::nullopt);
   ~GroupSocket();

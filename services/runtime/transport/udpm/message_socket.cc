@@ -10,8 +10,9 @@
 namespace fogline::runtime {
 namespace {
 
-// Receive() looks at no more than this many packets that are no messages, so that a flood of them
-// does not hold up Wait() beyond its time limit. Only without a filter such packets come.
+// Largest number of packets that Receive() reads in search of a message. So a flood of packets that
+// are not messages does not hold up Wait() beyond its time limit. Such packets come only without a
+// filter.
 constexpr int kMostOthers = 100;
 
 std::optional<MessageSocket::Message> MessageIn(Bytes packet) {
@@ -55,7 +56,8 @@ bool MessageSocket::Receive() {
   return false;
 }
 
-/// @return the packet, which is empty if it is too large; nullopt if none is there
+/// @return the next packet, or an empty one if the packet is too large; nullopt if there is no
+/// packet
 std::optional<Bytes> MessageSocket::NextPacket() {
   if (backlog_) {
     auto packet = backlog_->Take();
@@ -65,7 +67,8 @@ std::optional<Bytes> MessageSocket::NextPacket() {
   }
   // MSG_TRUNC: the size is that of the whole packet, even if the packet is too large.
   const ssize_t size = recv(socket(), buffer_.data(), buffer_.size(), MSG_TRUNC);
-  // Nothing is there, or the network reports an error, which recv() reports once.
+  // There is no packet, or recv() has reported an error of the network. recv() reports such an
+  // error only once.
   if (size < 0) return std::nullopt;
   const auto bytes = static_cast<std::size_t>(size);
   return Bytes(buffer_.data(), bytes <= buffer_.size() ? bytes : 0);

@@ -1,6 +1,6 @@
 // Receives the messages of a udpm:// network in the thread of the caller.
 //
-// LCM receives in a thread of its own. For each message this thread wakes up, writes into a pipe,
+// LCM receives in a separate thread. For each message this thread wakes up, writes into a pipe,
 // and the pipe wakes the caller. The lockstep of nine processes on two cores waits for such
 // wake-ups most of the time.
 #pragma once
@@ -22,7 +22,7 @@
 
 namespace fogline::runtime {
 
-/// For one thread.
+/// A socket that receives messages, for use by one thread.
 class MessageSocket {
  public:
   struct Message {
@@ -31,8 +31,8 @@ class MessageSocket {
   };
 
   /// @pre the URL is a udpm:// URL (ParseMulticastUrl)
-  /// @param filter from the socket's start
-  /// @throws std::system_error if the network cannot be heard
+  /// @param filter attached before the first packet comes
+  /// @throws std::system_error if the socket cannot receive the network's packets
   MessageSocket(const std::string& url, std::vector<sock_filter> filter);
 
   /// From now on, a thread takes the messages out of the kernel's buffer (backlog.h), and fd() is
@@ -42,8 +42,8 @@ class MessageSocket {
   void KeepBacklog();
   bool keeps_backlog() const { return backlog_.has_value(); }
 
-  /// Waits up to `timeout` for a message. It takes only whole messages with at most
-  /// kMaxMessageBytes and a signature, as ChannelFilter() does. A signal ends the wait.
+  /// Waits up to `timeout` for a message. Ignores fragments, and messages with more data than
+  /// kMaxMessageBytes and a signature, like ChannelFilter(). A signal ends the wait.
   /// @return whether there is a message
   bool Wait(Duration timeout);
   /// The message for which Wait() has returned true. It is valid until the next call of Wait().
@@ -67,7 +67,7 @@ class MessageSocket {
   GroupSocket socket_;
   std::optional<Backlog> backlog_;
   std::array<std::uint8_t, kMostPacket> buffer_;
-  Backlog::Packet kept_;  // the packet of message_, if the backlog had it
+  Backlog::Packet kept_;  // the packet of message_, if it came from the backlog
   std::optional<Message> message_;
 };
 
