@@ -27,7 +27,7 @@ class AtomicFile {
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
 
-  /// @throws std::runtime_error when the disk is full
+  /// Adds text to the file. @throws std::runtime_error when the disk is full
   void Write(std::string_view text);
 
   /// Path of the temporary file. A library can open this path and write the content, in place of
@@ -59,7 +59,7 @@ class AtomicFile {
   std::filesystem::path target_;  // file_ with links resolved
   std::filesystem::path part_;    // name of the temporary file; "" if it has no name
   int fd_ = -1;
-  int device_ = -1;  // pipe or device
+  int device_ = -1;  // descriptor of the pipe or device; -1 if there is none
   std::string buffer_;
 };
 

@@ -1,4 +1,4 @@
-// Reads columns of numbers from a CSV file: commas, a header line, no quotes.
+// Reads columns of numbers from a CSV file with commas, a header line, and no quotes.
 #pragma once
 
 #include <cstdint>
@@ -24,11 +24,12 @@ std::vector<std::string_view> CsvHeader(std::string_view text);
 /// "tabs". The result is "" if the header line has no such separator.
 std::string_view ForeignSeparator(std::span<const std::string_view> header);
 
-/// Called for each cell that is not a finite number, and for each row that lacks a cell.
+/// Called for each cell that is not a finite number, for each row that lacks a cell, and for empty
+/// lines between rows.
 using CsvRefuse = std::function<void(std::uint32_t offset, std::string message)>;
 
-/// The numbers of each of `columns` (indices into the header), top to bottom. Accepts LF and CRLF,
-/// a byte order mark, spaces around cells, and empty lines at the end.
+/// Returns the numbers of each column in `columns` (indices into the header), from top to bottom.
+/// Accepts LF and CRLF, a byte order mark, spaces around cells, and empty lines at the end.
 std::vector<std::vector<CsvNumber>> ReadCsvColumns(std::string_view text,
                                                    const std::vector<std::size_t>& columns,
                                                    const CsvRefuse& refuse);

@@ -18,14 +18,14 @@ struct FileText {
   std::string error;
 };
 
-/// `; did you mean "scenario/paper.json"?` for the name of a file that does not exist. Suggests a
-/// file of the same folder with a similar name; "" if there is none.
+/// Returns a text such as `; did you mean "scenario/paper.json"?` for the name of a file that does
+/// not exist. Suggests a file in the same folder with a similar name; "" if there is no such file.
 /// @param ending the ending of suggested files, such as ".json"; "" for any ending
 std::string DidYouMeanFile(const std::filesystem::path& file, std::string_view ending = "");
 
-/// The bytes of a file or pipe of at most `max_bytes`. A shell's `<(command)` is such a pipe. Reads
-/// a pipe up to its end, but fails if no process writes into it for 5 s. If the file does not
-/// exist, the error suggests a file with this ending.
+/// Reads a file or pipe of at most `max_bytes` bytes. A shell's `<(command)` is such a pipe. A pipe
+/// is read up to its end, but reading fails if no process writes into the pipe for 5 s. If the file
+/// does not exist, the error suggests a file with the ending `ending`.
 /// @throws std::runtime_error as ThrowIfExhausted()
 FileText ReadFile(const std::filesystem::path& file, std::size_t max_bytes,
                   std::string_view ending = "");

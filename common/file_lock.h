@@ -15,7 +15,7 @@ class FileLock {
  public:
   enum class Kind {
     kOwn,     // for the owner: refused while any other lock exists
-    kShared,  // for a process that works for the owner and may end later
+    kShared,  // for a process that works for the owner and may end after the owner
   };
 
   /// Opens a file or folder and locks it. A file that is missing is created.

@@ -15,8 +15,8 @@ namespace fogline {
 
 class OwnPauses {
  public:
-  /// If the time between two calls of Attend() is longer, this time is a pause. Every process calls
-  /// Attend() several times a second (OwnStatus::kHeartbeat is the longest interval).
+  /// If the time between two calls of Attend() is longer than kPause, it counts as a pause. Every
+  /// process calls Attend() several times a second (OwnStatus::kHeartbeat is the longest interval).
   static constexpr Duration kPause = milliseconds(500);
 
   explicit OwnPauses(TimePoint now) : looked_(now) {}

@@ -10,7 +10,7 @@
 #include <string_view>
 
 // Philox uses no vector instructions. Without these two lines Random123 includes the compiler's
-// headers of all of them: 1.8 MB of text.
+// headers for all vector instructions: 1.8 MB of text.
 #define R123_USE_SSE 0
 #define R123_USE_X86INTRIN_H 0
 #include <Random123/philox.h>
@@ -36,8 +36,8 @@ constexpr Stream FollowerErrors(std::uint32_t car) {
   return static_cast<Stream>(static_cast<std::uint32_t>(Stream::kFollowerErrors) + car);
 }
 
-/// The stream of a role that has no number above. The largest bit of its number is set, so it
-/// differs from all streams with a number. @param role name of the role
+/// The stream of a role that has no stream in `Stream`. The largest bit of the result is set, so
+/// the result differs from all numbers in `Stream`. @param role name of the role
 constexpr Stream StreamOf(std::string_view role) {
   std::uint32_t hash = 2'166'136'261;  // FNV-1a
   for (const char c : role) hash = (hash ^ static_cast<unsigned char>(c)) * 16'777'619;

@@ -28,7 +28,7 @@ constexpr std::size_t kCharactersPerEdit = 3;
 constexpr std::size_t kMinBeginning = 2;
 
 // Size in bytes of the control character (C0, DEL, C1 in UTF-8) at the beginning of `text`; 0 if
-// there is none.
+// `text` does not begin with a control character.
 std::size_t ControlCharacterSize(std::string_view text) {
   const auto byte = [text](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   if (byte(0) < 0x20 || byte(0) == 0x7f) return 1;
@@ -36,7 +36,7 @@ std::size_t ControlCharacterSize(std::string_view text) {
   return 0;
 }
 
-// The character at the beginning of a text; without code point if the text does not begin with
+// The character at the beginning of a text. It has no code point if the text does not begin with
 // valid UTF-8.
 struct Character {
   std::size_t bytes = 1;

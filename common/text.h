@@ -17,12 +17,13 @@ std::string NumberText(double value);
 /// 899.9000000000001.
 std::string TimeText(double time_s);
 
-/// The text in one line that any terminal can show safely. Control characters (C0, DEL, C1) and
+/// Makes a text safe to show in one line of any terminal. Control characters (C0, DEL, C1) and
 /// invisible characters that change the text around them (directions of writing, zero width) are
 /// escaped as in JSON. A byte that is not UTF-8 is written as "\xff".
 std::string EscapeControls(std::string_view text);
 
-/// As EscapeControls(), but line feeds stay unchanged. The meaning of a JSON text does not change.
+/// Escapes a text like EscapeControls(), but keeps line feeds. So the meaning of a JSON text does
+/// not change.
 std::string EscapeLines(std::string_view text);
 
 /// The name of a file, escaped for a terminal.
@@ -35,13 +36,13 @@ std::string Printable(std::string_view text);
 /// The text as a JSON string: in double quotes, with control characters escaped.
 std::string Quote(std::string_view text);
 
-/// The text for a message, as Quote(), but long texts are cut.
+/// The text for a message, in quotes like Quote(). A long text is cut.
 std::string QuoteShort(std::string_view text);
 
 /// The text for a message, without quotes. Control characters are escaped, and long texts are cut.
 std::string Shown(std::string_view text);
 
-/// `text` and its unit, if there is one.
+/// `text` and `unit` with a space between them; only `text` if `unit` is "".
 std::string WithUnit(std::string_view text, std::string_view unit);
 
 /// The names in double quotes: `"box", "half_sine", "triangle"`.
@@ -57,7 +58,7 @@ std::size_t EditDistance(std::string_view a, std::string_view b);
 std::optional<std::string_view> Nearest(std::string_view word,
                                         std::span<const std::string_view> candidates);
 
-/// `; did you mean "x"?`, or nothing.
+/// Returns a text such as `; did you mean "x"?`; "" if there is no suggestion.
 std::string DidYouMean(std::optional<std::string_view> suggestion);
 
 /// Number of characters (code points) of valid UTF-8.

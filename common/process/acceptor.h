@@ -1,4 +1,4 @@
-// Accepts connections for a server with one thread, until it is stopped.
+// Accepts connections for a server with one thread, until Stop() is called.
 #pragma once
 
 #include <chrono>
@@ -18,9 +18,9 @@ class Acceptor {
  public:
   using tcp = boost::asio::ip::tcp;
 
-  /// Listens. Begin() begins to accept.
-  /// @param lines gets what goes wrong, and must outlive the acceptor
-  /// @throws boost::system::system_error if it cannot listen
+  /// Begins to listen. Connections are accepted only after Begin().
+  /// @param lines prints the errors, and must outlive the acceptor
+  /// @throws boost::system::system_error if the acceptor cannot listen
   Acceptor(boost::asio::io_context& context, const tcp::endpoint& endpoint, LineBudget& lines)
       : lines_(lines), acceptor_(context, endpoint), pause_(context) {}
 
@@ -30,15 +30,15 @@ class Acceptor {
     Accept();
   }
 
-  /// Accepts nothing more. The context then has no more work of it.
+  /// Stops accepting connections. Then the acceptor has no more work in the context.
   void Stop() {
     boost::system::error_code ignored;
     acceptor_.close(ignored);
     pause_.cancel();
   }
 
-  /// The address on which it listens. If port 0 was requested, it has the port that the system has
-  /// chosen.
+  /// The address on which the acceptor listens. If port 0 was requested, the address has the port
+  /// that the system has chosen.
   tcp::endpoint endpoint() const { return acceptor_.local_endpoint(); }
 
  private:

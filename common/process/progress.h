@@ -13,14 +13,14 @@ namespace fogline {
 class Progress {
  public:
   /// @param what unit of the count, such as "step"; @param total full count
-  /// @param shown false: there is never a bar
+  /// @param shown false: no bar is ever drawn
   Progress(std::string what, std::int64_t total, bool shown = true);
   /// Erases the bar.
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  /// @param note text after the bar
+  /// Draws the bar, but not too often. @param note text after the bar
   void Show(std::int64_t done, std::string_view note = "");
   /// Prints a line on stderr, in place of the bar.
   void Say(std::string_view line);

@@ -6,7 +6,7 @@
 
 namespace fogline {
 
-/// The word in single quotes, or as it is if it needs none.
+/// The word in single quotes; the word itself if it needs no quotes.
 inline std::string ShellWord(std::string_view text) {
   constexpr std::string_view kPlain =
       "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_./-,=+";

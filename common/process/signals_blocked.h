@@ -1,12 +1,13 @@
-// Keeps signals in the thread that handles them.
+// Keeps signals away from threads that do not handle them.
 #pragma once
 
 #include <csignal>
 
 namespace fogline {
 
-/// While an object lives, this thread and the threads that it starts get no signals. A thread that
-/// is started meanwhile never gets one, so signals reach the threads that wait for them.
+/// While an object of this class exists, its thread gets no signals. A thread that is started in
+/// this time never gets a signal, even later. So the kernel gives signals to the other threads,
+/// which handle them.
 class SignalsBlocked {
  public:
   SignalsBlocked() {
