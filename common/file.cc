@@ -152,9 +152,10 @@ std::string WhyNoRegularFile(const std::filesystem::path& file) {
 }
 
 int WriteAll(int fd, std::string_view bytes, bool (*stop)()) {
-  // The signal may arrive in another thread, and then it does not interrupt a waiting write(). So
-  // with `stop`, WriteAll() first waits for room. Then WriteAll() writes at most PIPE_BUF bytes at
-  // once, so write() does not wait.
+  // `stop` tells whether a signal such as SIGINT has come. This signal may arrive in another
+  // thread, and then it does not interrupt a write() that waits. So with `stop`, WriteAll() first
+  // waits for room. Then each write() gets at most PIPE_BUF bytes. There is room for these bytes,
+  // so write() does not wait.
   const std::size_t most = stop == nullptr ? bytes.size() : PIPE_BUF;
   while (!bytes.empty()) {
     if (stop != nullptr && !HasRoom(fd)) {

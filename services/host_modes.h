@@ -15,7 +15,8 @@ constexpr bool InMinimalRisk(std::int8_t mode) {
          (mode >= arbitration_t::MRM_COMFORT && mode <= arbitration_t::MRM_FAILED);
 }
 
-/// Whether emergency braking warns or brakes. The mode then does not say which side drives.
+/// Whether the automatic emergency braking is active: it warns or brakes. The mode then does not
+/// say which side drives.
 constexpr bool InEmergency(std::int8_t mode) {
   return mode == arbitration_t::COLLISION_WARNING || mode == arbitration_t::EMERGENCY_BRAKING;
 }

@@ -13,7 +13,8 @@ using Eigen::Index;
 
 constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 
-// The slack is the first unknown, so that the nonzero part of every row of C is short.
+// The slack is the first unknown. If it were the last one, the nonzero part of each row with a
+// slack would extend to the end of the row, and the solver would use this whole part.
 constexpr Index kSlack = 0;
 constexpr Index kFirstControl = 1;
 

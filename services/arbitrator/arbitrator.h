@@ -85,7 +85,8 @@ class Arbitrator {
   void Overrule(const arbitration_t& sent);
 
  private:
-  /// The engagement request of a policy with its own rule, for the conflict in out_.
+  /// What a policy with a rule of its own (neither kThreshold nor kNever) requests, for the DoC in
+  /// out_.
   policies::EngagementRequest OwnRequest(const ego_t& ego, const track_t& track,
                                          const accel_command_t& automation,
                                          const driver_command_t& driver);

@@ -58,7 +58,7 @@ enum class SealSignature { kNone, kHolds, kWrong };
 SealSignature VerifySeal(const LogSeal& seal, const runtime::SigningKey& key);
 
 /// Why a log's bytes differ from the bytes that were written; "" if they do not differ.
-/// @param written the last report of each writer of the log
+/// @param written for each writer of the log, the part of the log that the writer has reported last
 std::string WhyNotWritten(const EventLogReader& file, const std::vector<WrittenLog>& written);
 
 }  // namespace fogline::log

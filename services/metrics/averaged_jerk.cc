@@ -17,8 +17,8 @@ void AveragedJerk::DropOldest() {
   dropped_ = true;
 }
 
-// The acceleration of a point was applied since the previous point. So a(t - 1 s) is the
-// acceleration of the first point at or after t - 1 s.
+// The acceleration of a point was applied from the time of the previous point to the time of this
+// point. So a(t - 1 s) is the acceleration of the first point at or after t - 1 s.
 std::optional<double> AveragedJerk::Add(double time_s, double acceleration_mps2) {
   if (count_ == kMostPoints) DropOldest();
   points_[(begin_ + count_) % kMostPoints] = {time_s, acceleration_mps2};

@@ -111,8 +111,8 @@ class Mutator {
     }
   }
 
-  /// Replaces, deletes, doubles or overwrites a token. The new token is a token of another input,
-  /// or one of kValues.
+  /// Replaces a token by another one, deletes it, doubles it, or writes a value over the bytes from
+  /// its beginning on. The new token is a token of another input, or one of kValues.
   void ChangeToken(Input& input) {
     const auto [begin, end] = Token(input);
     Input token(At(input, begin), At(input, end));

@@ -33,8 +33,9 @@ class Machine {
   Machine(Machine&& other) noexcept;
   Machine(const Machine&) = delete;
 
-  /// The command line that runs a command on this machine, for Background and RunCommand(). The id
-  /// of the started process is the id of the command's process.
+  /// The command line that runs a command on this machine, for Background and RunCommand(). The
+  /// command line replaces itself by the command (nsenter executes it), so a signal to the started
+  /// process reaches the command.
   std::vector<std::string> On(const std::vector<std::string>& command) const;
   /// Runs lines of sh on this machine. @return their output @throws std::runtime_error with the
   /// error text if a line fails

@@ -48,7 +48,8 @@ struct Finding {
 
   bool Meets(double limit) const;
   bool met() const { return note.empty() && Meets(comparison.goal); }
-  /// "met", "bar 2 met", "missed" or "not measured".
+  /// "met", "missed" or "not measured"; "bar 2 met" if only the intermediate goal `bar`, here 2, is
+  /// met.
   std::string Verdict() const;
 };
 

@@ -117,7 +117,8 @@ void ExamineProcesses(Findings& findings) {
     const bool has_runner = parent != processes.end() && IsRunner(parent->second.program);
     const Finding finding = AssessRole(process, has_runner);
     if (has_runner) runs[process.parent].push_back(&process);
-    // Roles of a run without problems get one common line below.
+    // A role of a run gets a line of its own only if it has a problem. Below, each run gets one
+    // line for all its roles.
     if (!has_runner || finding.level != Level::kOk) findings.push_back(finding);
   }
   for (const auto& [runner, roles] : runs) {

@@ -23,9 +23,9 @@ enum class PedalKey : std::uint8_t { kThrottle, kBrake };
 /// moment. After the person has released the key, the pedal begins to move back a little later.
 class KeyPedals {
  public:
-  /// For this time a character counts as a key that is down. Characters of such a key come every 33
-  /// to 40 ms (Linux console, X11: 25 to 30 in a second). The value is three times as long, so that
-  /// delays of a terminal over a network do not interrupt a pedal.
+  /// After a character, its key counts as down for this time. Characters of a key that is down come
+  /// every 33 to 40 ms (Linux console, X11: 25 to 30 in a second). The value is three times as
+  /// long, so that delays of a terminal over a network do not interrupt a pedal.
   static constexpr Duration kPress = milliseconds(120);
   /// For this time the pedal waits for the second character. The value is a little longer than the
   /// longest usual delay of the second character: X11's 660 ms (Linux console: 250 ms).

@@ -31,7 +31,8 @@ constexpr int kSshFailed = 255;
 // What a POSIX shell returns if there is no such program.
 constexpr int kNoProgram = 127;
 
-// The name of the shell that starts ssh. The shell puts its name before its own errors.
+// The name ($0) of the shell that starts ssh. The shell puts this name before its own errors, so
+// HowItEnded() can distinguish them from errors of ssh.
 constexpr std::string_view kShell = "--ssh";
 
 /// The options of ssh. It never asks for a password, and gives up soon if the machine is silent.

@@ -23,8 +23,9 @@ namespace fogline::sweep {
 
 /// Result of the runs of all seeds with one threshold.
 struct ThresholdRow {
-  /// Adds a run, its measures as a pair, and the effect of the fog without traded control. SI and
-  /// RHE may be missing: SI needs compromised safety in the paired run.
+  /// Adds the runs of one seed: the measures of the run, the measures of the run and its paired
+  /// run, and the effect of the fog in the paired run. SI may be missing, because it needs
+  /// compromised safety in the paired run. RHE may be missing, because it needs clear air.
   void Add(const metrics::RunMetrics& measures, const metrics::PairedMetrics& paired,
            const metrics::FogEffect& without) {
     const auto add = [](const std::optional<double>& value, stats::Statistics& to) {

@@ -26,7 +26,8 @@ const ConditionSection& ConditionOf(const ExperimentPlan& plan, const Trial& tri
 /// @param participant from 1 to plan.participants
 std::vector<Trial> ScheduleOf(const ExperimentPlan& plan, std::int64_t participant);
 
-/// The questions after a trial, in their order. Standard questionnaires have their items.
+/// The questions after a trial, in their order. A standard questionnaire, such as nasa_tlx, is
+/// returned with the items of the standard.
 std::vector<QuestionnaireSection> QuestionsAfter(const ExperimentPlan& plan, const Trial& trial);
 
 /// Least time between a trial and the next one, s; 0 without a break.

@@ -7,8 +7,8 @@ namespace fogline::trials {
 std::vector<std::vector<std::size_t>> WilliamsDesign(std::size_t conditions) {
   const std::size_t n = conditions;
   // The first order zigzags from both ends to the middle: 0, 1, n - 1, 2, n - 2 ... If n is even,
-  // the differences of its neighbours modulo n are all different. If n is odd, this order and the
-  // reversed order together have each difference twice.
+  // all differences (modulo n) between neighbours in this order are distinct. If n is odd, this
+  // order and the reversed order together have each difference twice.
   std::vector<std::size_t> zigzag;
   for (std::size_t place = 0; place < n; ++place) {
     zigzag.push_back(place % 2 == 1 ? (place + 1) / 2 : (n - place / 2) % n);

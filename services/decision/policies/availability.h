@@ -6,7 +6,8 @@
 namespace fogline::policies {
 
 /// Time in s until a follower has to brake harder than `limit_mps2` to avoid the host. Until then,
-/// the follower keeps its speed, and the host brakes with `host_braking_mps2` >= 0:
+/// the follower keeps its speed, and the host brakes with b = `host_braking_mps2` >= 0. The result
+/// is the first t at which DRAC, the deceleration rate to avoid a crash, reaches the limit:
 ///
 ///     DRAC(t) = (w + b t)^2 / (2 (s - w t - b t^2/2)) = limit
 ///

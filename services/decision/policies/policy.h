@@ -70,7 +70,8 @@ struct EngagementRequest {
   bool firm = true;
 };
 
-/// The paper's rule with this threshold: the human drives unless 0 <= DoC < threshold.
+/// The paper's rule with this threshold: the human drives unless DoC < threshold. So the human also
+/// drives if the DoC is NaN.
 inline EngagementRequest Compare(double doc, double threshold) {
   return {.lambda_human = doc < threshold ? 0.0 : 1.0, .threshold = threshold, .firm = false};
 }

@@ -33,8 +33,8 @@ std::string_view LoggedOf(std::int8_t from, std::int8_t to) {
   return "change of state";
 }
 
-/// Whether the automation drives without an answer of the driver. Only an override leads from such
-/// a mode to RECOVERING.
+/// Whether the automation drives, and the driver has not answered a request (or there is none).
+/// Only an override leads from such a mode to RECOVERING.
 bool IsUnanswered(std::int8_t mode) {
   return mode == arbitration_t::AUTOMATION || mode == arbitration_t::REQUEST ||
          mode == arbitration_t::REQUEST_URGENT;

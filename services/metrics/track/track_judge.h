@@ -15,9 +15,9 @@ namespace fogline::metrics {
 /// filter knows them.
 double ErrorOfOffsets(const Scenario& scenario);
 
-/// The true gap d and the distance d + e_0 of clear air are the ends of an interval. In a step the
-/// track is *wrong* if its fused distance d_fused is outside of this interval by more than the
-/// tolerance:
+/// In clear air, a steady filter measures the distance d + e_0 if the true gap is d. The values d
+/// and d + e_0 are the ends of an interval. In a step the track is *wrong* if its fused distance
+/// d_fused is outside of this interval by more than the tolerance:
 ///
 ///     d_fused - d < min(0, e_0) - tolerance   or   d_fused - d > max(0, e_0) + tolerance
 ///

@@ -238,8 +238,8 @@ void RunCoordinator::OnStatus(const status_t& heard) {
     return Fail(fmt::format("{} (pid {} on {}) was built with other message types", status.role,
                             status.pid, status.host));
   }
-  // Each instance is compared with its own last step. So a role that catches up makes progress,
-  // too, although its predecessor had reached a later step.
+  // Each instance is compared with its own last step. So a process that was started again and
+  // catches up counts as progress, although the role's process before it had reached a later step.
   if (member.status && status.header.step > member.status->header.step) progressed_ = now;
   progress_ = std::max(progress_, status.header.step);
   signs_of_life_.Heard(*role, member.status ? status.sequence - member.status->sequence - 1 : 0,

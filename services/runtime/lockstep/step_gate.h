@@ -33,8 +33,9 @@ class StepGate {
   bool Finished(std::int64_t next) const {
     return final_ && next > *final_ && recorded_ >= *final_;
   }
-  /// The step for which to ask the recorder, if step `next` waits for the recorder and a request is
-  /// due; otherwise nullopt.
+  /// The step that the recorder must have on disk before step `next` can begin, if a request for
+  /// the recorder's STATUS is due. nullopt if `next` does not wait for the recorder, or if no
+  /// request is due.
   std::optional<std::int64_t> WantsRecorded(std::int64_t next, TimePoint now);
   /// When the result of Open() or WantsRecorded() may next change although no message comes.
   TimePoint NextPoll(std::int64_t next, TimePoint now) const;

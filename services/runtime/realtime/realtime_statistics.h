@@ -18,7 +18,7 @@ namespace fogline::runtime {
 /// world is due when a period begins. A tick of another role is due when the last needed input
 /// arrives, or at the role's deadline. The latency of a step begins when the world has sent the
 /// TRUTH of this step. It ends when the HOST_COMMAND of this step reaches the world. Both times are
-/// on the world's clock, so the clocks of two hosts are never compared.
+/// on the world's clock, so the clocks of two machines are never compared.
 class RealtimeStatistics {
  public:
   /// A tick that is later than this counts as late.

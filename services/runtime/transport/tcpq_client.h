@@ -55,7 +55,7 @@ class Client {
   void Subscribe(std::string_view channel, std::string_view pattern, Handler handler);
 
   /// Calls `watcher` from Handle() for every message on any channel that is published after the
-  /// relay has got the subscription. May be called once at most.
+  /// relay has got the subscription. SubscribeAll() may be called once at most.
   using Watcher = std::function<void(std::string_view channel, Bytes)>;
   void SubscribeAll(Watcher watcher);
 

@@ -40,7 +40,8 @@ std::string ProgramOfThePage() {
   return FenceOf(Content(SourceDirectory() / "docs/protocol.md"), "python");
 }
 
-/// A folder with the driver of the page and the types that it needs, and a network.
+/// A folder with the driver program of docs/protocol.md and the message types that it needs, and a
+/// network.
 class PythonDriverTest : public testing::Test {
  protected:
   PythonDriverTest() {

@@ -139,7 +139,8 @@ TEST_F(TakeOverRunTest, ShowsWhatDroveUntilTheTakeOver) {
   Run("direct", false, "traded_isolating");
   const auto measures = Events()["requests"].at(0)["measures"];
   const auto value = [&measures](const char* name) { return measures[name].get<double>(); };
-  // THEN the automation drives until the take-over, for a time without the LiDAR
+  // THEN the automation drives until the take-over, and drives without the LiDAR for a part of this
+  // time
   EXPECT_NEAR(value("automation_drove_s"), value("take_over_time_s"), 1e-9);
   EXPECT_GT(value("sensor_excluded_s"), 1);
   EXPECT_LE(value("sensor_excluded_s"), value("automation_drove_s"));

@@ -38,8 +38,8 @@ class Clone {
     Must("git init -q && git add -A");
   }
 
-  /// Executes a script in the clone. The program make fails there, and the home folder is empty at
-  /// first.
+  /// Executes a script in the clone. In the script the command `make` fails. HOME is a folder of
+  /// the clone, without files of a user.
   Outcome Run(const std::string& script) const {
     std::vector<std::string> command = WithoutMake(home_);
     command.insert(command.end(), {"bash", "-c",

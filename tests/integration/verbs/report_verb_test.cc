@@ -200,7 +200,8 @@ TEST(ReportVerbTest, WritesTheFiguresAsPngSvgAndPdfIntoTheFoldersAskedFor) {
 }
 
 TEST(ReportVerbTest, EndsOnCtrlCWithoutAPage) {
-  // GIVEN a log that is cut off, and curves that would take minutes. The cut log is reported first
+  // GIVEN a log that is cut off, and curves that would take minutes. The verb first prints that the
+  // log is incomplete
   const ScratchFolder folder;
   const std::string log = folder.File("cut.lcm");
   RunCommand({Program("fogline"), "run", "scenario/paper.json", "--transport", "direct", "--log",

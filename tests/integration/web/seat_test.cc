@@ -62,7 +62,8 @@ TEST_F(SeatPageTest, AnInputIsPublishedWithTheNewestStep) {
   EXPECT_EQ(published["sequence"], 40);
   EXPECT_EQ(published["input"], input.sequence);
   EXPECT_EQ(published["instance"], std::to_string(input.instance));
-  // The time comes from CLOCK_MONOTONIC, which is the same clock in this process.
+  // `time_us` is a time of CLOCK_MONOTONIC. All processes of a machine share this clock, so the
+  // test can compare `time_us` with its own clock.
   const double now_us = 1e6 * Seconds(Clock::now().time_since_epoch());
   EXPECT_GT(static_cast<double>(input.time_us), now_us - 60e6);
   EXPECT_LT(static_cast<double>(input.time_us), now_us);

@@ -131,7 +131,9 @@ class Exporter {
                                    .data = protobuf_});
   }
 
-  /// Sets protobuf_ to a message. A logger of signed traffic writes messages with their signatures.
+  /// Sets protobuf_ to a message. Another logger, such as lcm-logger, records signed messages with
+  /// their signatures. So a message that does not decode is tried again without its last bytes,
+  /// which may be a signature.
   /// @return false if the message does not decode
   bool Translate(std::size_t channel, runtime::Bytes bytes) {
     const auto translate = [&](runtime::Bytes message) {

@@ -25,8 +25,7 @@ constexpr std::string_view kRhe = kPalette[1];
 constexpr std::string_view kLight = "d8";  // transparency of the bands; ff is invisible
 constexpr std::string_view kDark = "98";
 constexpr double kHeight = 1000;              // in the unit of kWidth
-constexpr double kLeastThresholdSpan = 0.01;  // smallest range of an axis; otherwise a flat line
-                                              // would fill it
+constexpr double kLeastThresholdSpan = 0.01;  // gives a flat line a margin
 constexpr double kLeastPercentSpan = 1;
 
 std::string Number(double value) { return std::isfinite(value) ? fmt::format("{}", value) : "NaN"; }
@@ -125,8 +124,8 @@ std::string CurveKey(const std::vector<std::string>& entries) {
       fmt::join(entries, ", \\\n     "));
 }
 
-/// "set xrange" for all `values` except NaN, with a margin. The range is at least `least`, so that
-/// a flat line does not fill the axis.
+/// "set xrange" or "set yrange" for all `values` except NaN. The margin at each end is a share of
+/// the range of the values, or of `least` if `least` is larger. So a flat line has a margin, too.
 std::string Range(char axis, const std::vector<double>& values, double least) {
   constexpr double kMargin = 0.04;
   double low = std::numeric_limits<double>::infinity();

@@ -37,7 +37,8 @@ inline constexpr std::array<DocPart, 4> kDocParts{
 report::StudyTable TableOfParts(std::span<const ConflictSet> sets);
 /// A table that shows which conditions rank detectors.
 report::StudyTable TableOfConditions(std::span<const ConflictSet> sets);
-/// Mean delays of each measure of a single step with and without window and sign.
+/// A table of mean delays from fog to alarm. It has one row for each measure that uses a single
+/// step. Its columns are the measure as it is, with window, with sign, and with both.
 report::StudyTable TableOfOptions(const ConflictSet& set);
 /// A table of every detector of a set, in order of rank.
 report::StudyTable TableOfDetectors(const ConflictSet& set);

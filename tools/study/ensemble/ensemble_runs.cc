@@ -186,7 +186,7 @@ struct ExaminedMix {
 constexpr std::array<ExaminedMix, 2> kExaminedMixes{
     {{MixedHuman::kDrawn, ""}, {MixedHuman::kPerfect, kPerfectHuman}}};
 
-/// Runs a mix of situations with a set, and adds the claims on fixed thresholds.
+/// Runs a mix of situations with one set of parameters, and adds the claims on fixed thresholds.
 void RunMixOf(const Ensemble& ensemble, const StudyContext& part, const EnsembleSet& set,
               const ExaminedMix& mix, EnsembleRuns& result) {
   const MixedRuns mixed = RunMix(part, RulesNamed(kFixedRules), mix.human, MixedRadar::kDrawn,

@@ -48,7 +48,7 @@ std::vector<StudyCase> StringKinds();
 std::vector<StringOutcome> RunStrings(const StudyContext& context, std::span<const StudyCase> kinds,
                                       std::span<const StudyVariant> variants);
 
-/// The text of the claim on a kind of string.
+/// The text of the claim about strings of cars of this kind.
 std::string StringSays(std::string_view kind);
 /// For each kind of string with HostVariants(), the claim that the last car brakes less hard behind
 /// a host with traded control.

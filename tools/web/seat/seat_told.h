@@ -1,6 +1,6 @@
 // The frames about a run for the page of the seat: only data that the page shows to the person who
-// drives. A participant of an experiment can read all data in the own browser, so the browser must
-// not get the condition.
+// drives. A participant of an experiment can read everything that the browser receives. So the
+// frames must not show the condition of the trial.
 #pragma once
 
 #include <cstddef>

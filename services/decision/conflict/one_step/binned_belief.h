@@ -24,10 +24,10 @@ struct BinnedPair {
 
 /// Radar (1) and LiDAR (2) on bins of `bin_width_m`: m({bin}) = eta P(bin), m(Theta) = 1 - eta
 /// (Shafer's discounting), where P is the sensor's Gaussian. The radar's reading is an edge of the
-/// grid, so that the pair depends only on the difference. Mirrored differences give equal pairs. A
-/// reading within a bin and a reading on an edge give different evidence, even with equal
-/// precision. So the measures grow from one multiple of the width to the next, but are not
-/// monotonic between them.
+/// grid, so that the pair depends only on the difference. The sign of the difference has no effect.
+/// A reading within a bin and a reading on an edge give different evidence, even with equal
+/// precision. So a measure is larger at the next multiple of the width. Between two multiples it
+/// may fall while the difference grows.
 BinnedPair PairOnBins(const Disagreement& disagreement, const ConflictParameters& parameters);
 
 /// Dempster's conflict k = sum of m1(A) m2(B) over disjoint A, B, in [0, 1] (Dempster 1967). k has

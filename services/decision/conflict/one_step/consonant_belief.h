@@ -23,7 +23,8 @@ class ConsonantBeliefs {
   /// @param levels in [1, kMostLevels]
   explicit ConsonantBeliefs(int levels);
 
-  /// c12 = sum of m1(A) m2(B) |A and B|/|A or B|, in [0, 1]: the product under Jousselme's D.
+  /// c12 = sum over the focal sets A of reading 1 and B of reading 2 of m1(A) m2(B) D(A, B), in [0,
+  /// 1]. D(A, B) = |A and B|/|A or B| is the matrix of Jousselme's distance.
   /// @param distance_m at least 0, between the means.  @param std1_m, std2_m above 0
   double JaccardProduct(double distance_m, double std1_m, double std2_m) const;
   /// c11 = c22: the product of a reading with itself. This product is equal for all readings.

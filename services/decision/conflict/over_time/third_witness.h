@@ -95,9 +95,10 @@ struct Support {
   double lidar;
 };
 
-/// Deng et al. 2004: credibility Crd_i = Sup_i/sum of Sup, Sup_i = sum over j of Sim_ij, with
-/// Sim = 1 - d_J/sqrt(c11). (sqrt(c11) is the largest d_J of consonant beliefs. Without this
-/// divisor disjoint bodies of evidence would still support each other.)
+/// The support is the credibility of Deng et al. 2004: Crd_i = Sup_i / (sum of all Sup). Sup_i is
+/// the sum of Sim_ij over the other bodies j. Sim_ij = 1 - d_J/sqrt(c11), with Jousselme's distance
+/// d_J between i and j, and c11 = products.square. (sqrt(c11) is the largest d_J of consonant
+/// beliefs. Without this divisor disjoint bodies of evidence would still support each other.)
 Support DengSupport(const BeliefProducts& products);
 /// Murphy 2000 averages the evidence. Here the support of a body is 1 - d_J/sqrt(c11). d_J is the
 /// distance of the body from the average of the two other bodies.

@@ -193,8 +193,8 @@ TEST(LidarProperty, NothingIsEverSeenBehindTheTarget) {
 }
 
 TEST(LidarProperty, DenserFogNeverBringsTheTargetBack) {
-  // The draws of a step are the same in any fog. So if the target's echo loses in some fog, it also
-  // loses in denser fog.
+  // The draws of a step are the same in any fog. So if the LiDAR does not measure the target in
+  // some fog, it does not measure the target in denser fog.
   lidar::Lidar lidar(Beam());
   for (std::int64_t step = 0; step < 100; ++step) {
     bool sees_target = true;

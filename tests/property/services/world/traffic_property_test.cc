@@ -1,5 +1,5 @@
-// Properties of whole runs with several followers, some with human drivers, and with cars that are
-// more than a point mass.
+// Properties of whole runs with several followers. Some followers have human drivers. In some runs
+// the cars have the vehicle model `longitudinal` in place of a point mass.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>

@@ -16,7 +16,8 @@ namespace {
 using testing::HasSubstr;
 using testing::StartsWith;
 
-/// The numbers of a scenario in which each list has one item.
+/// All fields of a scenario that are a number or a list of numbers. In Catalogue() each list of
+/// parts has one item.
 std::vector<Field> AllNumbers() {
   std::vector<Field> numbers;
   for (const Field& field : Catalogue()) {

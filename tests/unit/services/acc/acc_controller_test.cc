@@ -149,8 +149,9 @@ TEST(AccControllerTest, HoldsTheBrakeAtAStandstillTooCloseToTheNextCar) {
 TEST(AccControllerTest, ApproachesItsMaximumSpeedFromBelow) {
   const AccSection section;
   const Trip trip = Drive(section, {200, 45, 30}, 600);
-  // The plan keeps the limit exactly. But the car of this test holds a command for a whole step,
-  // whereas the engine of the model approaches the command gradually.
+  // The plan keeps the limit exactly. In the plan, the acceleration approaches the command
+  // gradually. The car of this test has the commanded acceleration from the beginning of the step.
+  // So its speed may differ a little from the plan.
   EXPECT_LE(trip.fastest_mps, section.max_speed_mps + 1e-3);
   EXPECT_NEAR(trip.cars.speed_mps, section.max_speed_mps, 1e-3);
   EXPECT_EQ(trip.fallbacks, 0);
@@ -211,10 +212,10 @@ TEST(AccControllerTest, FallsBackAtTheIterationLimit) {
   EXPECT_EQ(output.control, section.max_jerk_mps3 * kStep_s / section.engine_gain);
 }
 
-// The car may have any acceleration a when the automation takes over from a driver. Within the step
-// the acceleration covers the share (1 - e^(-h/T_e)) of the way from a to -K_e u. And -K_e u
-// differs from a by at most one change of u, plus the part of a that is outside of the automation's
-// limits.
+// The car may have any acceleration a when the automation takes over from a driver. In a step of h,
+// the acceleration of the ACC's model goes the share 1 - e^(-h/T_e) of the way from a to -K_e u,
+// the steady acceleration of the control u. -K_e u differs from a by at most h max_jerk_mps3, plus
+// the amount by which a is outside of the automation's limits.
 TEST(AccControllerTest, TakesOverWithoutABump) {
   const AccSection section;
   const double share = -std::expm1(-kStep_s / section.engine_time_constant_s);

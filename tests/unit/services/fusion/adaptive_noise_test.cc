@@ -82,9 +82,9 @@ TEST(AdaptiveNoiseTest, FindsTheNoiseThatIsReallyThere) {
                    .corrected_variance = variance});
       sum += noise.variance();
     }
-    // The sum has about 200 independent estimates, each from 100 values. So the standard deviation
-    // of the mean is at least 4 sqrt(2/20000) = 0.04. It is larger, because the estimate also
-    // changes the gain. The tolerance is 5 % of the true noise, which is five times 0.04.
+    // The sum is over 40,000 steps, and nearly every step adds one squared value. So the standard
+    // deviation of the mean is at least about 4 sqrt(2/40000) = 0.028. The tolerance is 5 % of the
+    // true noise, which is seven times 0.028.
     EXPECT_NEAR(sum / kSteps, kTrueNoise, 0.2);
   }
 }

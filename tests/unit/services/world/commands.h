@@ -1,4 +1,5 @@
-// Commands to the world, states of the world's inputs, and the TRUTH of an output, for tests.
+// Functions for tests of the world: they make commands, name the states of an input, and take TRUTH
+// out of the output of World::Step().
 #pragma once
 
 #include <cstdint>

@@ -237,7 +237,8 @@ TEST_F(SeveralFollowersTest, StopOnlyTheCarThatMessagesLeaveOut) {
   EXPECT_EQ(Step(kOk, &two), (std::vector<double>{-1, 0.5, 1})) << "its last command holds";
   EXPECT_EQ(fallback_->follower_state(), kStale);
   EXPECT_FALSE(fallback_->follower_in_minimal_risk());
-  // THEN this car stops after the same time as with a lost command, and the other cars continue
+  // THEN this car begins to stop after as many periods as if its messages were lost, and the other
+  // cars obey their commands
   const std::vector<double> stopping = Step(kOk, &two);
   EXPECT_EQ(stopping[0], -1);
   EXPECT_EQ(stopping[1], 0.5);

@@ -164,7 +164,8 @@ TEST(MakeReportTest, PutsTheReproducedTableBesideThePublishedOne) {
                                "<td class=\"deviation\">± <data value=\"4.5\">4.50</data></td>"
                                "<td><data value=\"80.79\">80.79</data></td>"));
   EXPECT_THAT(table, HasSubstr("\u221210.25"));
-  // One row is not published (two cells), and no row has an effect of the fog (three cells each).
+  // One row has no published values (two cells). None of the four rows has values for the effect of
+  // the fog (three cells in each row).
   EXPECT_EQ(Count(table, "<td>–</td>"), 2U + 3U * 4U);
   EXPECT_THAT(table, HasSubstr("Mean and standard deviation over seeds 1 to 200."));
 }

@@ -281,8 +281,9 @@ class Witness {
     answered_ = false;
   }
 
-  /// The upper bound of services/models/minimal_risk/README.md for the time to rest on a level
-  /// road: apply the brake, slow down, release the brake, and three steps.
+  /// The longest time until the car stands, on a level road
+  /// (services/models/minimal_risk/README.md). It is the sum of the times to apply the brake, to
+  /// slow down and to release the brake, and of three steps.
   double LongestStop_s(const take_over::TakeOverInputs& inputs, double deceleration_mps2) const {
     const double push = std::max(inputs.applied_mps2, 0.0);
     const double jerk = section_.jerk_mps3;

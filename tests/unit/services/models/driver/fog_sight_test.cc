@@ -88,7 +88,8 @@ TEST(FogSightTest, MisjudgesDistanceMoreTheVaguerTheOutline) {
 
 TEST(FogSightTest, OverlooksClosingInBelowTheAngularThreshold) {
   const models::FogSight sight{FogSightParameters{}};
-  // 1.8 dv / 30^2 = 0.003 at dv = 1.5 m/s.
+  // The driver sees that the gap closes if W dv / d^2 > 0.003 rad/s. With the car's width W = 1.8 m
+  // and d = 30 m, this is dv > 1.5 m/s.
   EXPECT_EQ(sight.Perceive(BehindABrakingCar(20, 30, 18.51), 1000).ahead->speed_mps, 20);
   EXPECT_EQ(sight.Perceive(BehindABrakingCar(20, 30, 18.51), 1000).ahead->acceleration_mps2, 0);
   EXPECT_EQ(sight.Perceive(BehindABrakingCar(20, 30, 18.49), 1000).ahead->speed_mps, 18.49);

@@ -5,8 +5,8 @@
 namespace fogline {
 namespace {
 
-/// Sends messages at this rate to a process. The process admits the share that its rate limiter
-/// allows.
+/// Simulates a sender with a constant rate, and a process. The process admits the messages that its
+/// LoadShedder allows.
 class Sender {
  public:
   explicit Sender(runtime::LoadShedder& shedder) : shedder_(shedder) {}

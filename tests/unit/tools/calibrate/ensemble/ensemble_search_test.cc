@@ -24,8 +24,8 @@ calibrate::Landscape Plain() {
           .rounded = AsTheyAre};
 }
 
-/// A landscape in which a point meets the target if its share in the first field differs from 1/2
-/// by at most 0.05.
+/// A landscape in which a point meets the target if its first field lies at a share of 0.45 to 0.55
+/// of the field's range.
 calibrate::Landscape Valley() {
   calibrate::Landscape landscape = Plain();
   landscape.searched = [](const Shares& shares) {

@@ -101,7 +101,8 @@ TEST(AgainstFixedTest, FindsASmallDifferenceUnderTheLargeOneOfTheSituations) {
 
 TEST(AgainstFixedTest, KnowsThatTheEngagementIsAnEstimateToo) {
   // The rule's own RHE has a deviation of 20 points over 200 situations, so its mean has a
-  // deviation of 1.4 points. One point of RHE changes the gain by one point.
+  // deviation of 1.4 points. On the line of the fixed rules, one point of RHE changes the gain by
+  // one point.
   Rule low = MakeRule(80, 0);
   Rule high = MakeRule(10, 0);
   Rule rule = MakeRule(40, 0);
