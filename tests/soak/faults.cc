@@ -7,6 +7,7 @@
 #include <thread>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace fogline::test {
 namespace {
@@ -42,24 +43,46 @@ bool LoseInput(SoakedRun& run, Random& random, const Limits&) {
   return true;
 }
 
-/// Executes the shell command `begin` on a machine, waits for this time, and executes `end`. If no
-/// message was lost in this time, Lack() waits longer, because a busy machine may send messages
-/// late. `felt` is a shell command that succeeds if a message was lost.
+/// Stops the processes of a run, until the destructor lets them continue.
+class Held {
+ public:
+  explicit Held(const SoakedRun& run) : processes_(run.Processes()) { SignalAll(SIGSTOP); }
+  ~Held() { SignalAll(SIGCONT); }
+  Held(const Held&) = delete;
+  Held& operator=(const Held&) = delete;
+
+  const std::vector<pid_t>& processes() const { return processes_; }
+
+ private:
+  void SignalAll(int signal) const {
+    for (const pid_t process : processes_) kill(process, signal);
+  }
+
+  const std::vector<pid_t> processes_;
+};
+
+/// Executes the shell command `begin` on a machine, waits for `seconds`, and executes the shell
+/// command `end`. The run stands still during `begin`: on a busy machine this command may take
+/// longer than the rest of the run. If no message was lost in this time, Lack() waits up to 5 s
+/// longer before `end`, because a busy machine may send messages late. `felt` is a shell command
+/// that succeeds if a message was lost.
 /// @return whether a message was lost
-bool Lack(const Machine& machine, const std::string& begin, const std::string& end, double seconds,
-          const std::string& felt) {
-  constexpr int kTenths = 50;  // limit of the longer wait; a role sends STATUS five times a second
-  return machine.Do(fmt::format("{}; sleep {:.3f}; hit=no;"
+bool Lack(const SoakedRun& run, const Machine& machine, const std::string& begin,
+          const std::string& end, double seconds, const std::string& felt) {
+  constexpr int kTenths = 50;  // longest further wait; a role sends STATUS five times a second
+  const Held held(run);
+  return machine.Do(fmt::format("{}; kill -CONT {} || true; sleep {:.3f}; hit=no;"
                                 "for i in $(seq {}); do if {}; then hit=yes; break; fi; sleep 0.1;"
                                 "done; {}; echo $hit",
-                                begin, seconds, kTenths, felt, end)) == "yes\n";
+                                begin, fmt::join(held.processes(), " "), seconds, kTenths, felt,
+                                end)) == "yes\n";
 }
 
 /// For some time the kernel refuses to send a share of the datagrams: sendto() fails with EPERM.
-bool RefuseToSend(const Machine& machine, double share, double seconds) {
+bool RefuseToSend(const SoakedRun& run, const Machine& machine, double share, double seconds) {
   const int of_1000 = std::max(1, static_cast<int>(1000 * share));
   const std::string which = share < 1 ? fmt::format("numgen random mod 1000 < {}", of_1000) : "";
-  return Lack(machine,
+  return Lack(run, machine,
               fmt::format("nft 'table inet refuse {{ counter refused {{}}; chain output {{"
                           " type filter hook output priority 0;"
                           " meta l4proto udp {} counter name refused drop; }}; }}'",
@@ -69,40 +92,40 @@ bool RefuseToSend(const Machine& machine, double share, double seconds) {
 }
 
 bool FailSends(SoakedRun& run, Random& random, const Limits&) {
-  return RefuseToSend(AMachine(run, random), LogUniform(random, 0.01, 0.1),
+  return RefuseToSend(run, AMachine(run, random), LogUniform(random, 0.01, 0.1),
                       Uniform(random, 0.2, 2));
 }
 
 bool ReloadFirewall(SoakedRun& run, Random& random, const Limits&) {
-  return RefuseToSend(AMachine(run, random), 1, Uniform(random, 0.1, 1.5));
+  return RefuseToSend(run, AMachine(run, random), 1, Uniform(random, 0.1, 1.5));
 }
 
 /// Removes an interface, address or route, so that a machine has no route for multicast. The kernel
 /// counts the datagrams for which it finds no route (OutNoRoutes).
-bool TakeTheWay(const Machine& machine, const std::string& begin, const std::string& end,
-                double seconds) {
+bool TakeTheWay(const SoakedRun& run, const Machine& machine, const std::string& begin,
+                const std::string& end, double seconds) {
   const std::string unrouted = "$(awk '/^Ip: [0-9]/ { print $13 }' /proc/net/snmp)";
-  return Lack(machine,
+  return Lack(run, machine,
               "routes=$(ip route show | grep -v 'proto kernel'); before=" + unrouted + "; " + begin,
               end + "; echo \"$routes\" | while read route; do ip route replace $route; done",
               seconds, "[ " + unrouted + " -gt $before ]");
 }
 
 bool TakeInterface(SoakedRun& run, Random& random, const Limits&) {
-  return TakeTheWay(AMachine(run, random), "ip link set eth0 down", "ip link set eth0 up",
+  return TakeTheWay(run, AMachine(run, random), "ip link set eth0 down", "ip link set eth0 up",
                     Uniform(random, 0.1, 1.5));
 }
 
 bool TakeAddress(SoakedRun& run, Random& random, const Limits&) {
-  return TakeTheWay(AMachine(run, random),
+  return TakeTheWay(run, AMachine(run, random),
                     "address=$(ip -o -4 addr show dev eth0 | sed 's/.*inet \\([^ ]*\\).*/\\1/');"
                     "ip addr del $address dev eth0",
                     "ip addr add $address dev eth0", Uniform(random, 0.1, 1.5));
 }
 
 bool TakeRoute(SoakedRun& run, Random& random, const Limits&) {
-  return TakeTheWay(AMachine(run, random), "ip route del $(echo \"$routes\" | head -1)", "true",
-                    Uniform(random, 0.1, 1.5));
+  return TakeTheWay(run, AMachine(run, random), "ip route del $(echo \"$routes\" | head -1)",
+                    "true", Uniform(random, 0.1, 1.5));
 }
 
 bool Partition(SoakedRun& run, Random& random, const Limits& limits) {
