@@ -1,4 +1,4 @@
-// The whole run on a bad network.
+// The whole run of the paper's scenario on bad networks.
 #include <gtest/gtest.h>
 
 #include "tests/integration/network/bad_network.h"

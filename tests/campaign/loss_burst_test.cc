@@ -12,7 +12,8 @@
 namespace fogline::test {
 namespace {
 
-/// Number of tests of each kind of burst: 2, or FOGLINE_TEST_BURSTS / 100. There are 100 kinds.
+/// Number of tests of each kind of burst: FOGLINE_TEST_BURSTS / 100, at least 1; 2 without this
+/// variable. There are 100 kinds.
 std::size_t Repeats() {
   const char* bursts = std::getenv("FOGLINE_TEST_BURSTS");
   return bursts == nullptr ? 2 : static_cast<std::size_t>(std::max(1, std::atoi(bursts) / 100));

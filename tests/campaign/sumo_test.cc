@@ -95,7 +95,8 @@ TEST_F(SumoTest, AWorldThatIsKilledTwiceComputesTheSameRun) {
   EXPECT_EQ(WatchedRun::RestartsOf(result, "world"), 2);
 }
 
-// On a busy machine the world gets so little processor time that it needs seconds to load SUMO.
+// The test stops the world again and again, as on a busy machine. There the world gets so little
+// processor time that it needs seconds to load SUMO.
 TEST_F(SumoTest, AWorldThatLoadsSumoForLongIsNotTakenForHung) {
   WatchedRun watched({}, 60, kPace, behind_a_queue_);
   const pid_t world = watched.PidOf("world");
@@ -107,7 +108,8 @@ TEST_F(SumoTest, AWorldThatLoadsSumoForLongIsNotTakenForHung) {
     watched.Listen(milliseconds(1));
     ASSERT_LT(Clock::now() - began, kPatience);
   }
-  // A silent process that does not work is killed after 2 s.
+  // A silent process that does not work is killed after 2 s. This world needs more than 4 s to load
+  // SUMO, and must not be killed.
   EXPECT_GT(Clock::now() - began, milliseconds(4000)) << "the world was not slow";
   EXPECT_EQ(WatchedRun::RestartsOf(watched.ExpectSameResult(), "world"), 0);
 }

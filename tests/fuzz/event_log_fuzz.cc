@@ -27,8 +27,9 @@ bool SameBut(std::int64_t number, const log::Event& a, const log::Event& b) {
          std::ranges::equal(a.data, b.data);
 }
 
-/// The reader maps the file, so no sanitizer notices a read beyond the file's end. This function
-/// parses the same bytes in a block of memory that ends where the input ends.
+/// Parses the same bytes in a block of memory that ends where the input ends, and demands the same
+/// events. A sanitizer notices a read beyond the end of this block. It does not notice a read
+/// beyond the file's end, because the reader maps the file.
 void DemandSameInMemory(runtime::Bytes bytes, const std::vector<log::Event>& events) {
   std::string_view why;
   for (const log::Event& event : events) {

@@ -26,8 +26,9 @@ std::vector<Input> Seeds();
 /// Ends the program with the text `what` if `holds` is false.
 void Demand(bool holds, const char* what);
 
-/// A target calls Took() for each input that it does not refuse. A target that refuses all inputs,
-/// or takes all of them, tests nothing.
+/// Counts an input that the target does not refuse; each target calls Took() for such inputs. A
+/// target that refuses all mutations of its inputs, or takes all of them, tests nothing, and
+/// replay.cc then fails.
 void Took();
 /// The number of calls of Took() so far.
 long Taken();
@@ -56,8 +57,9 @@ class Cutter {
 
   bool empty() const { return rest_.empty(); }
   std::uint8_t Byte();
-  /// A datagram: its length in two bytes, big endian, and its bytes. The datagram is shorter than
-  /// this length if the input ends, or if the length exceeds the limit for messages.
+  /// Returns the next datagram. In the input, a datagram has its length in two bytes, big endian,
+  /// and then its bytes. It is shorter than this length if the input ends, or if the length exceeds
+  /// the limit for messages.
   runtime::Bytes Datagram();
 
  private:

@@ -1,4 +1,4 @@
-// The reader of a log for a restarted recorder, and for a runner that resumes a run. Input: the
+// The reader of a log, which a restarted recorder and a runner that resumes a run use. Input: the
 // file.
 #include <algorithm>
 #include <stdexcept>
@@ -112,8 +112,9 @@ void DemandUsefulRemains(runtime::Bytes bytes) {
     DemandWholeRun(all, kept.path());
     DemandAllMessages(front, all, file.path(), 0);
     DemandMessagesOrRefusal(front, end, file.path());
-    // If the end of the log gave the right number of steps, the end of a longer log must also give
-    // the right number.
+    // DemandGoesOn() adds a step to the log. If the last kShortTail bytes gave the right number of
+    // steps before, they must also give it then. Otherwise DemandGoesOn() reads the last `size`
+    // bytes.
     DemandGoesOn(front, all, file.path(), end.steps == all.steps ? kShortTail : size);
     if (all.steps > 0) Took();
   } catch (const InputError&) {

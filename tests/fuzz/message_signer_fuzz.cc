@@ -1,5 +1,5 @@
-// Signatures. Input: an index into kChannels, a role, the position of an alteration (two bytes),
-// the alteration itself, and a message that may be signed.
+// The signatures of messages. Input: an index into kChannels, a role, the position of an alteration
+// (two bytes), the alteration itself, and a message that may be signed.
 #include <algorithm>
 #include <array>
 

@@ -130,7 +130,7 @@ class Mutator {
       case 2:
         token.insert(token.end(), token.begin(), token.end());
         break;
-      case 3: {  // overwrites in place: no byte moves
+      case 3: {  // overwrites in place; the length of the input stays the same
         const std::string_view value = kValues[Below(std::size(kValues))];
         const std::size_t size = std::min(value.size(), input.size() - begin);
         std::copy_n(value.begin(), size, At(input, begin));
@@ -146,8 +146,8 @@ class Mutator {
     input.insert(At(input, begin), token.begin(), token.end());
   }
 
-  /// The position of a token: a string in quotation marks, a word of characters that numbers have,
-  /// or up to 64 bytes of any kind.
+  /// Returns begin and end of a token: a string in quotation marks, a word of characters that
+  /// numbers have, or up to 64 bytes of any kind.
   std::pair<std::size_t, std::size_t> Token(Input& input) {
     std::size_t begin = Below(input.size());
     const auto in_word = [&input](std::size_t at) {

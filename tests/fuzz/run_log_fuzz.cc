@@ -11,8 +11,9 @@
 namespace fogline::fuzz {
 namespace {
 
-// A log in real time has all steps of its scenario, although most of them may have no message. This
-// target reads at most this many steps, so that their contents fit into memory.
+// For a log in real time, the reader returns all steps of the scenario, although most of these
+// steps may have no message. This target reads at most this many steps, so that their contents fit
+// into memory.
 constexpr std::size_t kMostSteps = 100'000;
 struct TooManySteps {};
 
@@ -23,7 +24,7 @@ struct Reading {
   log::RunLog run;
 };
 
-/// @throws TooManySteps
+/// Reads the steps of a log. @throws TooManySteps
 Reading Read(const std::filesystem::path& file) {
   Reading reading;
   log::RunLogReader reader(file);
@@ -102,7 +103,7 @@ void DemandRunOrRefusal(runtime::Bytes bytes) {
   }
 }
 
-/// Adds the graph of a run in which only these channels have messages.
+/// Adds to a log the graph of a run in which only these channels have messages.
 Input WithLogGraph(const Input& log, const runtime::ChannelSet& channels) {
   const MemoryFile from(log);
   const MemoryFile to;
@@ -158,7 +159,7 @@ std::vector<Input> Seeds() {
       writer.Write(event.channel, event.utime, signer.Sign(event.channel, event.data));
     }
   }
-  // The same events in reverse order. The scenario's parts still come first.
+  // The events in reverse order, but all RUN messages (the scenario's parts) come first.
   const auto steps = std::ranges::find_if(
       events, [](const log::Event& event) { return event.channel != ChannelOf<run_t>().name; });
   std::reverse(steps, events.end());

@@ -88,7 +88,7 @@ void ForEachType(const Handle& handle) {
       kGraph);
 }
 
-/// For each type: the index of its channel in kChannels, in one byte, and then a message.
+/// A seed for each type: the index of its channel in kChannels, in one byte, and then a message.
 inline std::vector<Input> SeedOfEachType() {
   std::vector<Input> seeds;
   ForEachType([&seeds]<class M>(std::size_t place) {

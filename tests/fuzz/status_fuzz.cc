@@ -44,7 +44,7 @@ void DemandSoundRunner(runtime::Bytes input) {
   });
   if (heard || !coordinator.foreign_peers().known().empty()) Took();
   DemandPrintable(coordinator);
-  coordinator.Poll(Clock::now() + kLongAfter);  // no progress: the runner must blame a role
+  coordinator.Poll(Clock::now() + kLongAfter);  // no progress: the runner must name a role
   DemandPrintable(coordinator);
 }
 

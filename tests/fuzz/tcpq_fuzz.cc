@@ -29,7 +29,7 @@ void DemandFaithful(const runtime::tcpq::Frame& frame) {
   Demand(frame.wire.size() <= kLargestFrame, "no frame is larger than the limits");
 }
 
-/// @param piece gives the number of bytes that arrive next
+/// Reads a stream that arrives in pieces. @param piece gives the number of bytes that arrive next
 Reading Read(std::uint32_t magic, runtime::Bytes stream,
              const std::function<std::size_t()>& piece) {
   Reading reading;

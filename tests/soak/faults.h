@@ -12,7 +12,7 @@
 
 namespace fogline::test {
 
-/// Limits of the random parameters.
+/// Limits of the random durations of faults.
 struct Limits {
   double freeze_s = 60;     // longest time for which all processes are stopped
   double partition_s = 20;  // longest time for which a machine is disconnected
@@ -21,7 +21,7 @@ struct Limits {
 struct FaultKind {
   std::string_view name;
   std::string_view what;
-  bool three_machines;  // some runs are on three machines; all runs if `alone` is empty
+  bool three_machines;  // a third of the runs are on three machines; all if `alone` is empty
   std::optional<SoakedRun::Place> alone;  // place of the other runs
   /// Options of `fogline run` that cause the fault; empty if `strike` causes the fault.
   std::vector<std::string> (*options)(std::mt19937_64& random);

@@ -33,7 +33,8 @@ constexpr int kNoMachines = 4;
 // Limits of the time and of the number of runs: a year, and more runs than are possible in a year.
 constexpr double kMostMinutes = 525'600;
 constexpr std::int64_t kMostRuns = 1'000'000'000;
-// The least value of --minutes. This time is over before a run can begin.
+// The smallest value of --minutes. This time is over before a run can begin, so a test uses it for
+// a soak without runs.
 constexpr double kLeastMinutes = 1e-9;
 // Limits of the duration of a fault.
 constexpr double kShortestFault_s = 0.1;
@@ -52,7 +53,7 @@ struct Options {
   Limits limits;
 };
 
-/// The results of the runs of one kind.
+/// The results of the runs with one kind of fault.
 struct Tally {
   std::int64_t runs = 0;
   std::int64_t struck = 0;  // faults that hit a run
@@ -76,7 +77,7 @@ Ended SoakOnce(const FaultKind& kind, std::uint64_t seed, std::int64_t number,
   const Experiment experiment = Experiment::Draw(random);
   const Undisturbed undisturbed = RunUndisturbed(experiment);
   std::vector<std::string> options = kind.options(random);
-  // The run is so slow that a fault of a tenth of a second covers many steps.
+  // With --pace 10 the run is so slow that a fault of 0.1 s covers many steps.
   options.insert(options.end(), {"--pace", "10", "--stall-timeout", "90"});
   const bool three = kind.three_machines && (!kind.alone || random() % 3 == 0);
   std::vector<double> shares;

@@ -16,7 +16,8 @@
 
 namespace fogline::test {
 
-/// The parameters of a run. They are random, but the same for the same seed and number.
+/// The parameters of a run. They are random, but depend only on the seed of the soak and on the
+/// number of the run.
 struct Experiment {
   std::string scenario;
   int steps = 0;
@@ -25,7 +26,7 @@ struct Experiment {
   static Experiment Draw(std::mt19937_64& random);
 };
 
-/// The result of the same run without faults and without messages.
+/// The result of a run with an experiment's parameters, without faults and without messages.
 struct Undisturbed {
   std::string digest;
   std::uintmax_t log_bytes = 0;
@@ -42,8 +43,8 @@ class SoakedRun {
 
   SoakedRun(const Experiment& experiment, Place place, std::vector<std::string> options);
 
-  /// Waits until this share of the log is written. @return whether the run is still in progress
-  /// then; false also after the time limit
+  /// Waits until the log has this share of the bytes of the undisturbed run's log. @return whether
+  /// the run is still in progress then; false also after the time limit
   bool WaitForShare(double share, const Undisturbed& whole);
   bool Running() const { return IsAlive(run_->pid()); }
 
@@ -61,7 +62,8 @@ class SoakedRun {
   /// Ends the process of a role, drawn at random, by SIGKILL. Starts the role again if the runner
   /// has not started it.
   bool KillARole(std::mt19937_64& random);
-  /// Stops a process, drawn at random, of a role that the runner has started.
+  /// Stops (SIGSTOP) the process of a role that the runner has started. The role is drawn at
+  /// random.
   bool StopARole(std::mt19937_64& random) const;
   /// Ends the runner by SIGKILL, waits for its end, and lets another runner resume the run.
   bool KillTheRunnerAndResume();

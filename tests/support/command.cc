@@ -17,11 +17,12 @@ namespace {
 
 using SteadyClock = std::chrono::steady_clock;
 
-// A run of a test has a port of its own, even if the shell that starts the tests sets
-// LCM_DEFAULT_URL. A test that needs this variable sets it.
+// Unsets LCM_DEFAULT_URL, which the shell that starts the tests may have set. Without this variable
+// each run of a test has a port of its own. A test that needs the variable sets it.
 [[maybe_unused]] const int kWithoutDefaultUrl = unsetenv("LCM_DEFAULT_URL");
 
-/// A new folder below the build folder, where tools/test finds and removes files of killed tests.
+/// Makes a new folder below Testing/tmp in the build folder. tools/test removes the folders of
+/// killed tests there.
 std::filesystem::path FreshFolder(const std::string& kind) {
   const auto scratch = std::filesystem::path(FOGLINE_BINARY_DIR) / "Testing" / "tmp";
   std::filesystem::create_directories(scratch);
@@ -54,7 +55,8 @@ Background::Background(const std::vector<std::string>& command) : directory_(Fre
   if (pid_ == 0) {
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     setpgid(0, 0);
-    // A shell lets its background jobs ignore SIGINT, and programs inherit what they ignore.
+    // A shell lets its background jobs ignore SIGINT, and programs inherit what they ignore. So the
+    // program gets the default actions.
     for (const int number : {SIGINT, SIGTERM, SIGHUP}) signal(number, SIG_DFL);
     if (chdir(FOGLINE_SOURCE_DIR) != 0) _exit(127);
     dup2(open("/dev/null", O_RDONLY), STDIN_FILENO);

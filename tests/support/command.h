@@ -97,8 +97,8 @@ class ScratchFolder {
   std::filesystem::path path_;
 };
 
-/// The beginning of a command line. The command that follows runs with a `make` that always fails,
-/// as on a fresh Debian system, which has no make.
+/// The beginning of a command line, to which a test appends a command. For this command, `make` is
+/// a script that always fails. It simulates a fresh Debian system, which has no make.
 std::vector<std::string> WithoutMake(const ScratchFolder& folder);
 
 }  // namespace fogline::test

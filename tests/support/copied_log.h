@@ -9,8 +9,8 @@
 
 namespace fogline::test {
 
-/// Copies a log event by event. `change` may alter an event, add other events, and return false to
-/// end the copy.
+/// Copies a log event by event. `change` is called before each event is written. It may alter the
+/// event, write other events, or return false to end the copy before this event.
 template <class Change>
 void Copy(const std::string& from, const std::string& to, const Change& change) {
   log::EventLogReader reader(from);

@@ -7,8 +7,8 @@
 
 namespace fogline::test {
 
-/// While this object lives, a write beyond `bytes` bytes of a file fails, in this process and in
-/// the processes that it starts.
+/// While an object of this class exists, a write beyond `bytes` bytes of a file fails, in this
+/// process and in the processes that it starts.
 class FileSizeLimit {
  public:
   explicit FileSizeLimit(rlim_t bytes) : bytes_(bytes), handler_(std::signal(SIGXFSZ, SIG_IGN)) {

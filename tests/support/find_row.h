@@ -1,4 +1,4 @@
-// Rows of the tables of policies and measures by name.
+// Functions that find a row by its name in the tables of policies and measures.
 #pragma once
 
 #include <algorithm>

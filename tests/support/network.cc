@@ -40,7 +40,8 @@ std::int64_t Counted(const std::string& counter) {
   return at == std::string::npos ? -1 : std::stoll(counter.substr(at + 8));
 }
 
-/// A shell command that makes a machine lose the UDP datagrams that match.
+/// A shell command that makes a machine lose the UDP datagrams that match the nft expression
+/// `match`; "" matches all datagrams.
 std::string LossOf(const std::string& match) {
   return "nft 'table inet loss { counter lost {}; chain input { type filter hook input priority 0;"
          " meta l4proto udp " +
@@ -61,7 +62,8 @@ std::string WhyNoMachines() {
 
 Machine::Machine(const std::string& name) : name_(name) {
   // A thread may leave the namespaces of its process for new ones. The new namespaces exist as long
-  // as one of their files is open.
+  // as one of their files is open. So a separate thread enters new namespaces, opens their files,
+  // and ends.
   std::exception_ptr failed;
   std::thread([this, &failed] {
     try {
@@ -122,12 +124,12 @@ void Machine::EndAll() const {
 }
 
 void Machine::LoseUdp(int per_cent) const {
-  // nft does not accept a comparison that is always true.
+  // nft does not accept a comparison that is always true, so 100 % has no comparison.
   Do(LossOf(per_cent < 100 ? "numgen random mod 100 < " + std::to_string(per_cent) : ""));
 }
 
 void Machine::LoseChannel(const std::string& channel) const {
-  // The name comes after the headers of UDP and LCM, 8 bytes each.
+  // The channel's name follows the headers of UDP and LCM, 8 bytes each, so it begins at bit 128.
   std::ostringstream name;
   for (const char letter : channel + '\0') {
     name << std::hex << std::setw(2) << std::setfill('0') << static_cast<int>(letter);

@@ -1,7 +1,7 @@
 // Several simulated machines on this machine. They are network namespaces with their own addresses
 // and host names, joined by veth pairs and a bridge. The kernel handles their packets like those of
-// real machines, and can lose some packets on request. The namespaces change nothing outside. The
-// namespaces have no names, so the kernel removes them when this process and its children have
+// real machines, and can lose some packets on request. Nothing outside of the namespaces changes.
+// The namespaces have no names, so the kernel removes them when this process and its children have
 // ended. The destructor of a machine ends all processes that still run on the machine.
 #pragma once
 
@@ -14,9 +14,9 @@
 
 namespace fogline::test {
 
-/// The URL of a run whose messages go over a network of its own. With ttl=1, messages go over the
-/// interface to which the route leads. With the default ttl=0, messages go over loopback. All tests
-/// use one group and port, because each test has networks of its own.
+/// The LCM URL of a run on simulated machines. With ttl=1, messages go over the interface to which
+/// the route leads. With the default ttl=0, messages go over loopback. All tests use one group and
+/// port, because each test has networks of its own.
 inline constexpr const char* kUrl = "udpm://239.255.76.67:7700?ttl=1";
 
 /// The reason why this process cannot make machines, such as "unshare: Operation not permitted"; ""
@@ -55,7 +55,7 @@ class Machine {
   std::int64_t LostUdp() const;
   /// From now on the kernel loses no datagrams.
   void LoseNothing() const { Do("nft delete table inet loss"); }
-  /// Calls a function. The sockets that it makes belong to this machine.
+  /// Calls `function`. The sockets that `function` makes belong to this machine.
   void Enter(const std::function<void()>& function) const;
 
  private:

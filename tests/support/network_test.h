@@ -12,7 +12,8 @@
 
 namespace fogline::test {
 
-/// Tests with this fixture are skipped, with the reason, if machines cannot be made.
+/// Fixture of tests on simulated machines. If these machines cannot be made, the tests are skipped
+/// or fail, with the reason (MachineLacks()).
 class NetworkTest : public testing::Test {
  protected:
   void SetUp() override {
@@ -49,7 +50,8 @@ class NetworkTest : public testing::Test {
     return Result({code, run.Out(), run.Err()});
   }
 
-  /// The digest of the same run in one process without messages.
+  /// The digest of a run of the paper's scenario with the options `more`, in one process and
+  /// without messages.
   std::string Undisturbed(std::vector<std::string> more = {}) {
     more.insert(more.end(), {"--transport", "direct"});
     return Result(RunCommand(Run(more)))["digest"];

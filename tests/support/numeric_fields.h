@@ -13,9 +13,9 @@
 
 namespace fogline::test {
 
-/// The largest number of elements that NumericFields lists for each dimension of an array.
+/// The number of elements that NumericFields lists for a dimension of an array.
 struct ListedElements {
-  std::size_t varying = 4;  // if the length varies: messages may have fewer or more
+  std::size_t varying = 4;  // for a dimension of varying length; a message may have fewer or more
   std::size_t fixed = 64;
 };
 

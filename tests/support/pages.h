@@ -1,4 +1,4 @@
-// The pages of the documentation, as tests read them.
+// Functions with which tests read the pages of the documentation.
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,6 @@
-// Checks of a sensor's random errors over many seeds and steps. Every bound is a quantile of the
-// exact distribution and excludes one case in a million on each side.
+// Checks of a sensor's random errors over many seeds and steps. Each bound excludes one case in a
+// million. It is a quantile of the exact distribution, or, in ExpectUniform(), of a distribution
+// that is exact only for many samples.
 #pragma once
 
 #include <cmath>

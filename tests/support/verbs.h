@@ -1,4 +1,4 @@
-// The verbs of `fogline`, as its help lists them, and the command lines that they refuse.
+// The verbs of `fogline`, as its help lists them, and the errors of command lines that they refuse.
 #pragma once
 
 #include <gmock/gmock.h>

@@ -33,7 +33,9 @@ struct WebClient::Parts {
   beast::flat_buffer buffer;
   std::string protocol;
 
-  /// Runs one operation. `start` gets the handler. @return its error
+  /// Runs one asynchronous operation to its end. `start` gets the handler, and starts the
+  /// operation.
+  /// @return the error of the operation @throws std::runtime_error after the time limit
   template <class Start>
   error_code Run(const Start& start, std::chrono::seconds limit = kPatience) {
     std::optional<error_code> result;

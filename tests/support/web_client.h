@@ -44,7 +44,7 @@ class WebClient {
   struct Options {
     std::string target = "/ws";
     std::string protocol = "fogline.view.v1";  // "": asks for none
-    std::string host;                          // "": the address of the server
+    std::string host;                          // header Host; "": the address of the server
     std::string origin;                        // "": none
     int receive_bytes = 0;                     // buffer of the socket; 0: default of the system
   };
@@ -68,11 +68,11 @@ class WebClient {
 };
 
 /// Sends bytes to a port of this machine, and reads until the other side closes.
-/// @return the bytes that the other side has sent; "" if it closes the connection at once
+/// @return the bytes that the other side has sent; "" if it sends nothing
 std::string Exchange(std::uint16_t port, const std::string& bytes,
                      std::chrono::seconds limit = kPatience);
 
-/// A GET request. @param more further header lines, each with "\r\n"
+/// The text of a GET request for Exchange(). @param more further header lines, each with "\r\n"
 std::string GetRequest(std::uint16_t port, const std::string& target, const std::string& more = "");
 
 /// The status of an answer; 0 if the answer is not HTTP.

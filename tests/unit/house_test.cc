@@ -28,7 +28,7 @@ using ::testing::StartsWith;
 using ::testing::UnorderedElementsAre;
 
 struct Room {
-  std::string folder;  // with its subfolders, unless they are rooms of their own; see kAlone
+  std::string folder;  // with the subfolders that are not rooms of their own; see kAlone
   std::string space;   // the namespace of its types is fogline::SPACE; "": fogline
   std::string why;     // reason for the position of this room in the order
 };
@@ -116,7 +116,8 @@ const std::vector<Room> kRooms = WithRoles({
     {"tools/benchmarks", "benchmarks", "a program that measures the others"},
 });
 
-/// This room has no subfolders. A new folder in it needs a line of its own in kRooms.
+/// The room of services has only the files directly in this folder. A new subfolder needs a line of
+/// its own in kRooms.
 constexpr std::string_view kAlone = "services";
 
 /// The table of all measures of conflict. This file may include all measures; no measure includes
@@ -207,8 +208,9 @@ TEST(HouseTest, FindsAFileThatIsInNoRoom) {
 }
 
 TEST(HouseTest, OnlyFilesThatAnExtensionReplacesAndAProgramIncludeTheListsOfChoices) {
-  // A program with a longer list (tests/integration/extension) replaces these files. Any other file
-  // of a library would bring a second definition of the list into this program.
+  // A program with more policies or measures (tests/integration/extension) replaces these files,
+  // because they contain the lists of choices. If any other file of a library included a list, the
+  // program would have two definitions of this list.
   std::vector<std::string> files;
   for (const auto& file : Sources()) {
     const std::string text = Read(SourceDirectory() / file);

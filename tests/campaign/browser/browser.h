@@ -28,8 +28,9 @@ inline constexpr ViewSize kDesktop{1280, 900};
 inline constexpr ViewSize kPhone{360, 740};
 
 /// The page in a frame of the wanted size, because a window of Chromium is at least 500 pixels
-/// wide. Chromium prints the page when all documents are loaded. So an unfinished document beside
-/// the page delays the printing. The probe closes this document when the probe ends.
+/// wide. Chromium prints the page only when all documents are loaded. The document of the frame
+/// `hold` is opened and stays unfinished, so it delays the printing. kProbe closes this document at
+/// its end.
 inline constexpr std::string_view kFrame = R"(<!DOCTYPE html><body style="margin:0">
 <iframe id="hold" hidden></iframe>
 <script>document.getElementById("hold").contentDocument.open();</script>

@@ -97,7 +97,8 @@ TEST_F(CurvesInBrowserTest, HidesAMeasureWithItsBandsAndShowsItAgain) {
     await settled();
     found.again = counts();)");
   EXPECT_THAT(found["problems"], SizeIs(0)) << found;
-  // There are 11 series: the threshold, 2 means, and 2 edges of each band. Each mean has 2 bands.
+  // counts() returns the numbers of series and of bands. The 11 series are the threshold, 2 means,
+  // and the 2 edges of each band. Each mean has 2 bands.
   EXPECT_EQ(found["before"], json::parse("[11, 4]"));
   EXPECT_EQ(found["hidden"], json::parse("[6, 2]"));
   EXPECT_EQ(found["again"], found["before"]);

@@ -11,8 +11,9 @@
 namespace fogline::test {
 namespace {
 
-/// A shell, and the first line that the test types into it. This line sets a prompt, and the text
-/// of the prompt does not occur in the line.
+/// A shell, and the first line that the test types into it. This line sets a prompt. The line does
+/// not contain the text of the prompt, so the test does not take the echo of the line for the
+/// prompt.
 struct Shell {
   std::string name;
   std::string command;
@@ -74,7 +75,7 @@ TEST_P(ShellCompletionTest, CompletesVerbsOptionsFieldsRolesAndFiles) {
   shell.Type(GetParam().first_line + "\r");
   ASSERT_TRUE(shows(kPrompt)) << shell.text();
   for (const Case& line : kCases) {
-    // Ctrl-A moves the cursor to the begin of the line. printf shows the words of the completed
+    // Ctrl-A moves the cursor to the beginning of the line. printf shows the words of the completed
     // line.
     shell.Type(line.typed + "\t\001printf '<%s>' \r");
     EXPECT_TRUE(shows("<" + line.word + ">")) << line.typed << "\n" << shell.text();

@@ -169,7 +169,8 @@ print(fl.run(paper, external="driver").digest == fl.run(paper, transport="direct
   EXPECT_EQ(driver.Wait(), 0) << driver.Err();
 }
 
-/// The unit of a role. It starts the programs of the unpacked package, not those in /usr/bin.
+/// The systemd unit of a role. It starts the programs of the unpacked package, not those in
+/// /usr/bin.
 class UnitTest : public PackageTest {
  protected:
   void SetUp() override {

@@ -1,6 +1,7 @@
-// The decoder of the page: messages as JSON, and single fields of messages. Input: an index into
-// kChannels, and the message. The index kNumChannels means a type with features that Fogline's
-// types do not have; then the target puts the fingerprint before the input.
+// The decoder of messages for the page of `fogline view`: whole messages as JSON, and single
+// fields. Input: an index into kChannels, and the message. The index kNumChannels means a type with
+// features that Fogline's types do not have; then the target puts the fingerprint of this type
+// before the input.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -46,7 +47,7 @@ struct Reading {
   std::vector<web::FieldReader> readers;
 };
 
-/// The number at a path; nullopt if the JSON has none there.
+/// The number at a path; nullopt if the JSON has no number at this path.
 std::optional<double> NumberAt(const Json& message, const std::vector<web::PathPart>& path) {
   const Json* value = &message;
   for (const web::PathPart& part : path) {
@@ -122,7 +123,8 @@ bool Equal(const Json& shown, const Json& expected) {
   return shown == expected;
 }
 
-/// Whether a value obeys its JSON schema, or is one of the exceptions that description.h names.
+/// Whether a value obeys its JSON schema, or is one of the exceptions that
+/// tools/web/types/description.h names.
 bool Fits(const Json& value, const Json& schema) {
   const std::string type = schema.at("type");
   if (type == "object") {
@@ -173,8 +175,8 @@ void DemandBounded(runtime::Bytes rest) {
   const std::optional<Json> json = web::DecodeJson(reading.types, reading.type, bytes);
   DemandReadable(reading, bytes, json);
   if (!json) return;
-  // A byte becomes at most a few characters. Each element of `parts` also has the names of its
-  // fields.
+  // A byte of the message becomes at most a few characters of the text, and each element of `parts`
+  // adds the names of its fields. Together this is less than 64 characters for each byte.
   Demand(json->dump().size() <= 1000 + 64 * bytes.size(), "no message becomes a long text");
   Took();
 }
@@ -188,7 +190,7 @@ std::vector<Input> Seeds() {
     other.insert(other.end(), {7, 1, 0, 0, 0, 2, 'a', 0, 1, 0x3f, 0x80, 0, 0});
   }
   for (int name = 0; name < 2; ++name) other.insert(other.end(), {0, 0, 0, 2, 'n', 0});
-  other.resize(other.size() + 8 * 8 + 4);  // cube, last
+  other.resize(other.size() + 8 * 8 + 4);  // fields cube and last
   seeds.push_back(other);
   return seeds;
 }

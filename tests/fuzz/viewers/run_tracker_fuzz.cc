@@ -1,6 +1,6 @@
 // The choice of the run that a live view shows, and the events of this run. Input: messages. Each
 // message has an index into kChannels, the time since the message before in units of 10 ms, and a
-// flag that tells whether the events are taken after it.
+// flag that tells whether the target takes the events after this message.
 #include <algorithm>
 
 #include <nlohmann/json.hpp>

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kMaxEvents = 256;
 
-/// The rules for the messages of a seat, whatever frames its pages send.
+/// Checks the messages of a seat. Its rules hold whatever frames the pages send.
 class Listener {
  public:
   void Hear(const driver_input_t& message, TimePoint now) {
@@ -35,7 +35,8 @@ class Listener {
   }
   /// @pre Look() of the seat was called at this time
   void DemandHeard(TimePoint now) const {
-    // A page may have come just before the next message was due.
+    // After kSilent without a frame, the seat sends every kInputEvery. The tolerance is two such
+    // periods.
     Demand(now - heard_at_ < web::Seat::kSilent + 2 * runtime::kInputEvery,
            "the run hears from the seat");
     Demand(next_ > 0, "the run hears from the seat");

@@ -63,7 +63,8 @@ class Frames final : public web::View {
   int open_ = 0;
 };
 
-/// A server that runs until the program ends. So no data of a client may remain in the server.
+/// A server that all inputs share, because it runs until the program ends. If data of a client
+/// remained in the server, these data could change the result of a later input.
 class Served {
  public:
   std::string host() const { return fmt::format("127.0.0.1:{}", server_.access().rules().port); }
@@ -75,7 +76,7 @@ class Served {
     tcp::socket client(context_);
     client.connect({asio::ip::address_v4::loopback(), server_.access().rules().port});
     client.non_blocking(true);
-    // The kernel accepts these few bytes at once.
+    // The kernel accepts these few bytes completely in one call.
     if (!opening.empty()) client.write_some(asio::buffer(opening));
     const auto end = std::chrono::steady_clock::now() + kPatience;
     std::string answer;
@@ -108,7 +109,7 @@ class Served {
     bytes = {};
   }
 
-  /// @return success while more bytes may come
+  /// Appends the bytes that have come to `answer`. @return success while more bytes may come
   static error_code Read(tcp::socket& client, std::string& answer) {
     std::array<char, 4096> buffer;
     error_code error;

@@ -1,4 +1,4 @@
-// The requests of a page. Input: a text frame.
+// The requests of a page to the server of `fogline view`. Input: a text frame.
 #include <nlohmann/json.hpp>
 
 #include "tests/fuzz/fuzz.h"

@@ -12,8 +12,9 @@ namespace {
 
 constexpr int kSteps = 1000;  // 20 s; each test ends its run earlier
 constexpr double kDeadman_s = 0.3;
-// A seat sends every 40 ms, and the driver answers every 20 ms. So the fallback may come 0.06 s
-// before kDeadman_s has passed.
+// The tests measure the time from the end of the seat's messages. The seat sends every 40 ms, and
+// the driver answers every 20 ms. So the last input may be up to 0.06 s old when this time begins,
+// and the fallback may come up to 0.06 s before kDeadman_s has passed.
 constexpr double kInTime_s = kDeadman_s - 0.06;
 // The longest time for which a busy machine may delay a process.
 constexpr double kSlack_s = 3;
@@ -33,8 +34,8 @@ class DeadmanInRealtimeTest : public testing::Test {
     EXPECT_GE(commands_.driver.input_sequence, 0);
   }
 
-  /// Expects that no person drives any more, and that the host stops by itself.
-  /// @return the time until then, in s
+  /// Expects that no person drives any more, and that the host stops by itself. @return the time in
+  /// s until the driver was not ready
   double ExpectTheFallback() {
     const double after_s = commands_.WaitFor([&] { return commands_.driver.readiness == 0; });
     EXPECT_GE(after_s, 0) << "the driver is still ready";
@@ -73,7 +74,7 @@ TEST_F(DeadmanInRealtimeTest, AKilledSeatIsNoticedAfterTheDeadmansTime) {
   EXPECT_LT(after_s, kDeadman_s + kSlack_s);
 }
 
-// If the device is unplugged, the seat still sends messages. They say that no person is present.
+// If the device is unplugged, the seat still sends messages, which say that no person is present.
 TEST_F(DeadmanInRealtimeTest, AnUnpluggedDeviceCountsAtOnce) {
   Background seat(SeatCommand(run_.url(), "0 0.4 0 1 1; 4 0.4 0 1 0"));
   WaitUntilThePersonDrives();

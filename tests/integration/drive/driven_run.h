@@ -13,8 +13,8 @@ namespace fogline::test {
 
 inline constexpr const char* kDriveScenario = "scenario/drive.json";
 
-/// Settings with which the policy always wants the human. So the person is asked from the first
-/// step on.
+/// Settings with which the policy always wants the human. So the person is asked to take over from
+/// the first step on.
 inline std::vector<std::string> AlwaysAsked() {
   return {"/person/drives=true", "/arbitrator/threshold=0", "/arbitrator/take_over/mode=requested"};
 }

@@ -93,7 +93,7 @@ TEST_F(KeysInRealtimeTest, TheTerminalIsRestoredAfterSigterm) {
   EXPECT_TRUE(program.IsAsBefore());
 }
 
-// The log is refused after the terminal was opened.
+// The verb opens the terminal, and then finds that it cannot write the log.
 TEST_F(KeysInRealtimeTest, TheTerminalIsRestoredAfterAnError) {
   Words command = Drive(100);
   *(std::ranges::find(command, "--log") + 1) = "/nowhere/run.lcm";

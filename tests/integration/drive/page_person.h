@@ -15,8 +15,8 @@
 
 namespace fogline::test {
 
-/// Takes over and brakes a little until the destructor is called. Connects again if fogline-web
-/// ends.
+/// A person who takes over, and brakes a little until the destructor is called. The object connects
+/// again if fogline-web ends.
 class PagePerson {
  public:
   /// @param target of the WebSocket, with the driver's token if there is one

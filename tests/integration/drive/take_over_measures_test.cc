@@ -1,5 +1,5 @@
-// The measures of a take-over by a person, in real processes. A script without our code computes
-// the same measures from the raw messages of the log.
+// The measures of a take-over by a person, in real processes. take_over_measures.py, which does not
+// use Fogline's code, computes the same measures from the raw messages of the log.
 #include <set>
 #include <string>
 #include <vector>
@@ -24,7 +24,7 @@ std::vector<std::string> ShortStory() {
 constexpr const char* kStory =
     "0 0 0 0 1; 7 0 0.02 0 1; 7.5 0 0.05 1 1; 7.8 0 0.3 0 1; 9 0 0.6 0 1; 10 0.4 0 0 1";
 
-/// What the script prints for this log.
+/// What take_over_measures.py prints for this log.
 nlohmann::json WorkedOut(const std::string& log) {
   const Outcome outcome =
       RunCommand({"python3", "tests/integration/drive/take_over_measures.py", log, "0.1"});

@@ -61,7 +61,7 @@ std::vector<driver_input_t> InputsIn(const std::filesystem::path& log) {
   return log::ReadDriverInputs(log, reader.run().run_id);
 }
 
-/// The instances of the seat whose person was present.
+/// The instances of all seats that have sent an input of a person who was present.
 std::set<std::int64_t> SeatsIn(const std::filesystem::path& log) {
   std::set<std::int64_t> seats;
   for (const driver_input_t& input : InputsIn(log)) {
@@ -227,7 +227,7 @@ TEST_F(DrivenTrialsInRealtimeTest, AfterAKillOfFoglineWebTheParticipantDrivesOnA
   PageSession session(Run());
   std::optional<PagePerson> person;
   std::set<std::string> seats;
-  std::vector<bool> open;  // whether the participant's page has the seat; each change
+  std::vector<bool> open;  // for each change: whether the participant's page has the seat
   bool killed = false;
   for (std::int64_t known = -1;;) {
     const nlohmann::json state = session.NextState(known);

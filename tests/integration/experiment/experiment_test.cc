@@ -111,8 +111,8 @@ TEST_F(ExperimentRealtimeTest, ASessionThatIsKilledInARunLosesNothing) {
     // Participant 2: the second run is killed while it is under way.
     Background session(Session(2));
     const std::string log = results_ + "/participant-02/trial-2-high.lcm";
-    // The recorder writes the begin of the trial during the run. No program adds it to this log
-    // later.
+    // The recorder writes the beginning of the trial, a TRIAL message, during the run. No program
+    // adds it to this log later, because the run is killed.
     ASSERT_TRUE(ComesToHave("TRIAL", log)) << session.Err();
     session.Signal(SIGKILL);
     session.Wait();
@@ -230,7 +230,8 @@ TEST_F(ExperimentRealtimeTest, ThePagesShowOnlyWhatIsMeantForThem) {
   EXPECT_EQ(status(session.experimenter_port(), "/experimenter.js"), 200);
   EXPECT_EQ(status(session.experimenter_port(), "/participant.js"), 404);
   WebClient participant = open(session.participant_port(), session.participant_token());
-  // The first state can come before the session is ready for the run.
+  // The first state can come before the session is ready for the run, so the test waits for the
+  // state "waiting".
   std::string state;
   while (state.find("waiting") == std::string::npos) {
     state = participant.Receive().bytes;

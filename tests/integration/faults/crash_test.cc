@@ -68,8 +68,8 @@ TEST(CrashTest, OfRolesThatReadEachOtherChangesNoResult) {
 TEST(CrashTest, OfARoleThatCatchesUpChangesNoResult) {
   WatchedRun watched;
   watched.WaitForStep(100);
-  // Each new process is killed as soon as the test receives its first message. The process is then
-  // killed before, while or after it catches up with the run.
+  // Each new process is killed as soon as the test receives its first message. So the process may
+  // be killed before, while or after it catches up with the run.
   for (int i = 0; i < 5; ++i) {
     for (const char* role : {"fusion", "recorder", "world"}) watched.Signal(role, SIGKILL);
   }
@@ -99,9 +99,8 @@ TEST(CrashTest, ProcessesThatHangAreKilledAndStartedAgain) {
 }
 
 TEST(CrashTest, ARunnerThatWasHeldUpItselfTakesNoRoleForHung) {
-  // GIVEN a runner that is stopped for 3.5 s. A role that sends nothing for 3 s (half of the
-  // timeout) counts as hung. The runner continues before the run would end (8 s). Even a busy
-  // machine delays a role by less than 3 s
+  // GIVEN a runner that is stopped for 3.5 s in a run of 8 s. A role that sends nothing for 2 s
+  // counts as hung, but the runner must not count the time of its own pause
   WatchedRun watched({"--stall-timeout", "6"}, 8000);
   watched.WaitForStep(100);
   kill(watched.run().pid(), SIGSTOP);

@@ -26,7 +26,8 @@ class PacedRun {
       : run_({Program("fogline"), "run", "scenario/paper.json", "--pace", "1", "--restarts", "0",
               "--log", folder_.File("run.lcm")}) {
     EXPECT_TRUE(run_.WaitForErr("processes: "));
-    // The run is under way when kUnderWay steps are on disk. No event shows this moment.
+    // The run is under way when kUnderWay steps are on disk. The runner reports no event at this
+    // moment, so the test reads the log again and again.
     const auto end = SteadyClock::now() + kPatience;
     while (StepsOnDisk() < kUnderWay && SteadyClock::now() < end) {
       std::this_thread::sleep_for(kLookEvery);

@@ -149,7 +149,7 @@ class ResumeAfterKillTest : public ResumeTest {
     // The faster transport takes 0.2 s for these steps. The run is killed in the first half of this
     // time.
     constexpr int kMany = 20'000;
-    // On a busy machine a run may end before the test kills it.
+    // On a busy machine a run may end before the test kills it. Then the test tries again.
     constexpr int kTries = 10;
     const auto whole = Undisturbed(kMany);
     const std::uintmax_t size = std::filesystem::file_size(File("whole.lcm"));

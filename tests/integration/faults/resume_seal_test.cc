@@ -62,8 +62,8 @@ TEST_F(ResumeOfCompleteLogTest, SaysTheResultAgainAndComputesNothing) {
 
 TEST_F(ResumeOfCompleteLogTest, ComputesAgainWhatItGoesOnFrom) {
   Undisturbed();
-  // GIVEN a log that was changed at step 100. All roles publish the last steps of a log again, but
-  // step 100 is before these last steps
+  // GIVEN a log that was changed at step 100. When a run continues, all roles publish the last
+  // steps of its log again. Step 100 is before these last steps
   const auto resume = [&](std::int64_t steps, const Words& more) {
     Copy(File("whole.lcm"), log_,
          [&](log::EventLogWriter&, const log::Event& event, std::vector<std::uint8_t>& data) {

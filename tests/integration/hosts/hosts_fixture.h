@@ -48,8 +48,8 @@ class HostsTest : public NetworkTest {
           std::to_string(i + 1) + " meta l4proto udp drop; }; }'");
     }
   }
-  /// Waits until the log of a run has a dozen steps. Only a run with a pace still continues at this
-  /// time.
+  /// Waits until the log of a run has a dozen steps. The run must have a pace. Without a pace it
+  /// would have ended by this time.
   [[nodiscard]] bool IsUnderWay() const { return GrowsTo(20'000, Log()); }
 
   /// Makes a copy of the program `fogline`. The copy differs from the program only by its version.
@@ -70,7 +70,7 @@ class HostsTest : public NetworkTest {
     return printed.substr(0, printed.find('\n'));
   }
 
-  // Tests that are the same for each kind of connection. ---------------------------------------
+  // The tests of each kind of connection to other machines. -----------------------------------
 
   void ExpectTheDigestOfDirect(const Lab& lab, const std::string& ssh) {
     const auto result =

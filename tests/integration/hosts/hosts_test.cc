@@ -27,7 +27,8 @@ class EnteredHostsTest : public HostsTest {
     if (IsSkipped() || HasFatalFailure()) return;
     lab_.emplace(2);
     std::ofstream script(folder_.File("enter"));
-    // The last argument is the command that ssh would get. SSH_CONNECTION is what sshd would set.
+    // The last argument is the command that ssh would get. SSH_CONNECTION has a value such as sshd
+    // sets.
     script << "for command; do :; done\nexport SSH_CONNECTION='10.76.67.1 1 10.76.67.2 22'\nexec";
     for (const std::string& word : (*lab_)[1].On({"sh", "-c"})) script << " '" << word << "'";
     script << " \"$command\"\n";

@@ -20,8 +20,8 @@
 namespace fogline::test {
 
 /// Publishes a mark, on a channel of no role, until `seen` returns true. A program that has
-/// received the mark listens, and has received all messages before the mark. @return false after
-/// kPatience
+/// received the mark listens to the network, and has received all messages that were sent before
+/// the mark. @return false after kPatience
 inline bool Mark(runtime::Bus& bus, const std::string& channel, const std::function<bool()>& seen) {
   const auto end = Clock::now() + kPatience;
   while (!seen()) {

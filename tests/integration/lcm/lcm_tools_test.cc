@@ -102,8 +102,8 @@ constexpr std::int64_t kStepsOfSpy = 10;
 
 /// The driver of a run. The driver answers for a step only after lcm-logger has written all earlier
 /// messages. lcm-logger queues 30 messages, and lcm-spy queues as many as the buffer of its socket
-/// holds. On a busy machine both programs lose further messages. A run that waits for its driver
-/// sends fewer messages at a time.
+/// holds. On a busy machine both programs lose further messages. This driver makes the run wait, so
+/// the run sends fewer messages at a time.
 class DriverThatWaits {
  public:
   DriverThatWaits(const std::string& url, const std::string& key, Logger& logger, Spy& spy)

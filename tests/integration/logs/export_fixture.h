@@ -35,7 +35,7 @@ void ForEachField(const M& message, const Visit& visit) {
   });
 }
 
-/// Calls visit.operator()<M>(message) for every message of a step.
+/// Calls visit(message) for every message of a step.
 template <class Visit>
 void ForEachMessage(const log::StepMessages& messages, const Visit& visit) {
   ForEachStepChannel([&]<class M>(std::size_t channel) {

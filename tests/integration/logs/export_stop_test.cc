@@ -44,8 +44,8 @@ class HaltedExport {
   Background& process() { return *process_; }
   bool WaitUntilItWaits() const {
     const auto end = std::chrono::steady_clock::now() + kPatience;
-    // The test asks the kernel again and again how full the pipe is. No event shows this, and
-    // reading would empty the pipe.
+    // The test asks the kernel again and again how full the pipe is, because the kernel reports no
+    // event when a pipe is full. Reading would empty the pipe.
     for (int bytes = 0; bytes < 4096; std::this_thread::sleep_for(kLookEvery)) {
       if (ioctl(pipe_, FIONREAD, &bytes) != 0 || std::chrono::steady_clock::now() > end) {
         return false;

@@ -1,6 +1,6 @@
 // Logs that lack messages, because the logger lost messages or began late, and logs of several
 // runs. The verbs use the messages in the log, name the missing messages, and compute nothing from
-// a gap.
+// steps that lack a message.
 #include <algorithm>
 #include <csignal>
 #include <filesystem>

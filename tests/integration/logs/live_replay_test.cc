@@ -154,8 +154,8 @@ TEST_F(LiveReplayInRealtimeTest, DrivesTheSystemByTheWallClock) {
   const nlohmann::json live = Live({"--realtime", "--speed", "5"});
   EXPECT_EQ(live["steps"], 250);
   EXPECT_EQ(live["realtime"]["speed"], 5);
-  // If a message is late, a step of the fusion differs. The recorded sensors do not differ, so the
-  // tracks agree to within the largest step of the range.
+  // If a message is late, the fusion computes a step differently. But both fusions get the same
+  // recorded sensors, so their tracks stay near each other.
   EXPECT_GT(live["track"]["compared_steps"], 200);
   EXPECT_LT(live["track"]["distance_m"]["rms"], 0.1);
 }

@@ -195,8 +195,7 @@ TEST_F(SealedLogTest, ARunGoesOnWithNoLogThatWasChangedSinceItWasSealed) {
   const EventPlace radar = FirstEventOf(log_, "RADAR");
   FlipLowestBit(log_, radar.at + radar.size - 17);
   expect_refused(key, "the log is not the one that was sealed: ");
-  // THEN the run does not continue this log. WHEN the bit is as it was sealed, THEN the run
-  // continues
+  // THEN the run does not continue this log. WHEN the bit is changed back, THEN the run continues
   FlipLowestBit(log_, radar.at + radar.size - 17);
   EXPECT_EQ(resume(key).code, 0);
   EXPECT_EQ(Digest({log_, "--key", key}, 0)["signature"], "holds");

@@ -33,7 +33,7 @@ TEST_F(McapExportTest, WritesEqualFilesForEqualLogs) {
   ASSERT_EQ(Export({"--mcap", again}).code, 0);
   const std::string content = Content(mcap_);
   EXPECT_EQ(content, Content(again));
-  // The magic of the specification, at both ends.
+  // The magic bytes of the MCAP specification, at both ends of the file.
   EXPECT_THAT(content, StartsWith("\x89MCAP0\r\n"));
   EXPECT_THAT(content, EndsWith("\x89MCAP0\r\n"));
 }

@@ -17,8 +17,8 @@ using testing::HasSubstr;
 using Words = std::vector<std::string>;
 using Payload = std::vector<std::uint8_t>;
 
-/// Carries messages between a run and one of its roles, which is on another network. Alters one
-/// message.
+/// A bridge between a run and one of its roles, which is on another network. It carries their
+/// messages, and alters one message.
 class Bridge {
  public:
   Bridge(const std::string& run, const std::string& role) : run_(run), role_(role) {
@@ -57,7 +57,7 @@ class Bridge {
 
 class AlteredTrafficTest : public testing::Test {
  protected:
-  /// A run whose LiDAR is behind the bridge.
+  /// Makes a run whose LiDAR is on the other side of the bridge.
   Outcome RunAcross(Bridge& bridge, const Words& more) {
     const Background lidar({Program("fogline-lidar"), "--lcm-url", lidar_url_});
     Words command{Program("fogline"), "run",        "scenario/paper.json",

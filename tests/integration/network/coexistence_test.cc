@@ -19,7 +19,7 @@ using nlohmann::json;
 using testing::HasSubstr;
 
 TEST(CoexistenceTest, ALogThatIsPlayedCapturesNoWaitingRole) {
-  // GIVEN the log of a run that waited for a driver from elsewhere, and another waiting driver
+  // GIVEN the log of a run that waited for a driver from elsewhere, and another driver that waits
   Meeting meeting;
   Background first(meeting.Command("fogline-driver", {}));
   const Outcome recorded =

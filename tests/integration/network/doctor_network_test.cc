@@ -50,7 +50,8 @@ class DoctorNetworkTest : public NetworkTest {
   }
 };
 
-// Commands for a firewall that accepts only established traffic of its own machine.
+// Commands for a firewall that accepts only packets of connections that the machine itself has
+// begun.
 constexpr const char* kClosed =
     "nft 'table inet filter { chain input { type filter hook input priority filter; policy drop; "
     "ct state established,related accept; }; }'";

@@ -157,7 +157,8 @@ class Attacker {
     if (payload.size() < runtime::kHeaderEnd) return;
     const std::string_view channel = text.substr(kWholeHeader, end - kWholeHeader);
     const auto is_channel = [channel](const auto& one) { return one.name == channel; };
-    // A false announcement of a run would be a valid message.
+    // Only messages of a run's channels become templates, because a false announcement of a run
+    // would be a valid message.
     if (std::ranges::none_of(kChannels, is_channel)) return;
     genuine_[std::string(channel)] = {payload.begin(), payload.end()};
   }

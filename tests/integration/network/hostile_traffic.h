@@ -39,8 +39,8 @@ class HostileTrafficTest : public NetworkTest {
     machine.RouteMulticastToItself();
     more.insert(more.begin(), {Program("hostile_traffic"), "--port", "7700", "--rate",
                                std::to_string(hostility.rate_hz), "--seconds", "600"});
-    // A real attacker has a machine of its own. On a busy machine this one leaves the processor to
-    // the run.
+    // A real attacker has a machine of its own. On a busy machine the hostile program leaves the
+    // processor to the run.
     if (!hostility.alone) more.insert(more.begin(), {"nice", "-n", "10"});
     Background hostile(machine.On(more));
     Background run(machine.On(Run({"--lcm-url", "udpm://239.255.76.67:7700?ttl=0", "--pace",

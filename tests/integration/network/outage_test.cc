@@ -92,7 +92,7 @@ TEST_P(SeveralMachinesOutageTest, IsRepairedAndTold) {
   // WHEN a part of the network fails on the driver's machine and comes back
   lab[1].Do(GetParam().begin);
   // The run waits for the driver. No event shows this test that a message of the driver was lost.
-  // The driver sends a message every 200 ms.
+  // The driver sends a message every 200 ms, so at least one is lost in 300 ms.
   std::this_thread::sleep_for(milliseconds(300));
   lab[1].Do(GetParam().end);
   // THEN the result is that of an undisturbed run
@@ -127,7 +127,7 @@ TEST_F(OutageTest, ARoleThatIsStartedWhileTheNetworkIsAwayWaitsForIt) {
   machine.Do("ip route del 239.0.0.0/8");
   kill(PidOf(run.Err(), "fusion"), SIGKILL);
   EXPECT_TRUE(run.WaitForErr("started again as pid ")) << run.Err();
-  // No event shows that the new process has found no route.
+  // No event shows that the new process has found no route, so the test waits for a fixed time.
   LastFor(milliseconds(500));
   machine.RouteMulticastToItself();
   // THEN the new process continues from the step of the old process
@@ -297,7 +297,7 @@ TEST_F(OutageTest, LeavesStockProgramsThatHearARunAndAreHeard) {
   const std::string stock = Log() + ".stock";
   Background logger(
       machine.On({"lcm-logger", "--quiet", "--flush-interval=10", "--lcm-url=" + url, stock}));
-  // lcm-logger listens when this socket exists; the kernel prints addresses as hexadecimal numbers.
+  // lcm-logger listens when this socket exists. The kernel prints the port 7700 as 1E14.
   machine.Do("until grep -q :1E14 /proc/net/udp; do sleep 0.01; done");
   // WHEN a run takes place on loopback and the interface goes down during it
   Background run(machine.On(PacedRun({"--lcm-url", url})));

@@ -1,4 +1,4 @@
-// The tap on a multicast group. The senders are real LCM instances.
+// The tap on a multicast group (watch::PacketTap). The senders are real LCM instances.
 #include "tools/watch/senders/packet_tap.h"
 
 #include <gtest/gtest.h>
@@ -74,7 +74,7 @@ TEST_F(PacketTapTest, HearsEveryMessageOfALcmInstanceEvenTheLongOnes) {
   }
   ASSERT_EQ(lcm_publish(lcm.get(), "IMAGE", data.data(), kLongBytes), 0);
   ASSERT_EQ(lcm_publish(lcm.get(), "END", data.data(), 1), 0);
-  // The instance has also numbered the messages of its self-test.
+  // The test has sent kShort + 2 messages. The LCM instance also sends messages of its self-test.
   ASSERT_TRUE(DrainUntil(*tap_, [&] { return Received("END") >= kShort + 2; }));
   const SenderView sender = SenderOn(senders_, "END");
   EXPECT_EQ(sender.channels, (std::vector<std::string>{"POSE", "IMAGE", "END"}));
@@ -120,7 +120,7 @@ TEST_F(PacketTapTest, TellsItsOwnOverflowFromLossOnTheNetwork) {
   const auto counts = SenderOn(senders_, "FLOOD").counts;
   EXPECT_EQ(counts.missed_here, senders_.View(Clock::now()).own_overflow);
   EXPECT_LE(counts.lost, DroppedByKernel() - dropped_before);
-  // AND a message that the sender leaves out is lost, as before.
+  // AND a message that the sender leaves out counts as lost, as before the overflow.
   ++number;
   sender.Send(number, "FLOOD");
   ASSERT_TRUE(DrainUntil(

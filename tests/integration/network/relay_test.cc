@@ -100,7 +100,7 @@ TEST(RelayTest, CarriesABurstToAPublisherThatOnlyReadsAfterwards) {
   runtime::Bus bus(relay.url());
   int heard = 0;
   bus.Subscribe("BURST", [&heard](runtime::Bytes) { ++heard; });
-  // WHEN the whole burst is published at once
+  // WHEN the whole burst is published without a pause
   const Payload payload(1000, 1);
   constexpr int kMessages = 20'000;
   for (int i = 0; i < kMessages; ++i) bus.Publish("BURST", payload);

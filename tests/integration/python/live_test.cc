@@ -1,4 +1,5 @@
-// fl.Live listens to a run that announces itself, over any transport.
+// fl.Live (in the Python package fogline_lab) listens to a run that announces itself, over any
+// transport.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -21,7 +21,7 @@ namespace {
 
 using testing::HasSubstr;
 
-/// The text of the Python block of a page in which `text` is.
+/// Returns the text of the Python block that contains `text`, in a Markdown page.
 std::string BlockWith(const std::string& text, const std::string& page) {
   const std::string fence = "```python\n";
   const std::size_t begin = page.rfind(fence, page.find(text)) + fence.size();

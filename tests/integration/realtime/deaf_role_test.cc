@@ -73,7 +73,8 @@ TEST_F(DeafRoleTest, IsNamedAndStartedAgainAndComputesWhenItHears) {
 TEST_F(DeafRoleTest, AtTheEndIsAFailureOfTheRun) {
   const Machine machine("deaf");
   machine.RouteMulticastToItself();
-  // The ACC counts as deaf after some 3 s. On a busy machine this may take two seconds more.
+  // The ACC counts as deaf after some 3 s. On a busy machine this may take two seconds more, so the
+  // run lasts 6 s.
   Background run(machine.On(RealtimeRun(6, {"--restarts", "0"})));
   ASSERT_TRUE(run.WaitForErr("processes: "));
   ASSERT_TRUE(GrowsTo(20'000, Log()));

@@ -300,7 +300,8 @@ class LossBurstInRealtimeTest : public NetworkTest {
                                std::to_string(result.plan.machines) + " machines";
       EXPECT_EQ(result.trouble, "") << what;
       EXPECT_EQ(result.back.size(), result.plan.bursts.size()) << what;
-      // A burst must not cause the start of a role. No role hangs, and no role is deaf for long.
+      // A burst must not make the runner start a role again. No role hangs, and no role is deaf for
+      // long.
       EXPECT_EQ(result.restarts, 0) << what;
       restarts_ += result.restarts;
       for (std::size_t i = 0; i < result.back.size(); ++i) {

@@ -142,7 +142,8 @@ TEST_F(LossyNetworkInRealtimeTest, ForLongerThanMessagesAreKeptFailsTheRun) {
   Listener listener(*machine_);
   Background run(RealtimeRun(4 * kLossyRunRate_hz));
   ASSERT_TRUE(listener.WaitForStep(kLossyRunRate_hz)) << run.Err();
-  // A second has 50 steps. The recorder asks only for the last 32 steps again.
+  // A second has 50 steps. The recorder asks only for the last 32 steps again, so the log lacks
+  // steps.
   LoseEverythingFor(milliseconds(1000));
   EXPECT_EQ(run.Wait(), kFailed);
   EXPECT_THAT(run.Err(), HasSubstr(kNotWhole));

@@ -1,4 +1,4 @@
-// Whether a run in real time reports which roles have real-time priority.
+// A run in real time reports which roles have real-time priority.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>

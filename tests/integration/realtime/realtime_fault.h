@@ -84,7 +84,8 @@ inline FaultPlan PlanOf(const Fault& fault) {
   return plan;
 }
 
-// The vehicle stops by itself, and the restarted arbitrator does not interrupt the stop.
+// Expects that the vehicle stops by itself, and that the restarted arbitrator does not interrupt
+// the stop.
 inline void JudgeWithoutArbitrator(const Log& log, std::int64_t lost) {
   EXPECT_LT(log.truth.at(lost + 1 + kInForce).host_acceleration_mps2,
             log.truth.at(lost).host_acceleration_mps2);
@@ -96,7 +97,7 @@ inline void JudgeWithoutArbitrator(const Log& log, std::int64_t lost) {
       [](std::int8_t mode) { return mode == arbitration_t::MINIMAL_RISK; }, "the vehicle stops");
 }
 
-// The host drives as in a run without the fault, and the following car stops.
+// Expects that the host follows its commands as before, and that the following car stops.
 inline void JudgeWithoutFollower(const Log& log, std::int64_t lost) {
   ExpectCommandsAreCarriedOut(log, 1, log.last());
   ExpectFollowerObeys(log, 1, lost);
@@ -105,7 +106,8 @@ inline void JudgeWithoutFollower(const Log& log, std::int64_t lost) {
   ExpectStandstillWithinLimits(log, lost, Follower);
 }
 
-// Only the automation can drive. When the human is needed, the human does not answer.
+// Expects that the human does not drive while the driver is lost. If the human is needed in this
+// time, the host must stop.
 inline void JudgeWithoutDriver(const Log& log, const Fault& fault, const Log::Silence& silence,
                                std::int64_t lost) {
   ExpectCommandsAreCarriedOut(log, 1, log.last());
@@ -128,7 +130,8 @@ inline void JudgeWithoutDriver(const Log& log, const Fault& fault, const Log::Si
   ExpectStandstillWithinLimits(log, wanted->first, Host);
 }
 
-// The human drives until the automation has been back for kRecoverSteps steps.
+// Expects that the human drives until the automation has been back for kRecoverSteps steps, and
+// that the automation drives at the end.
 inline void JudgeWithoutAutomation(const Log& log, const Log::Silence& silence, std::int64_t lost) {
   ExpectCommandsAreCarriedOut(log, 1, log.last());
   ASSERT_TRUE(log.command.contains(lost + kInForce));

@@ -143,7 +143,7 @@ TEST_F(RecordTest, BeginsANewFileAtASize) {
     sent.push_back({"CHANNEL", Payload(i, 500)});
     bus_.Publish(sent.back().channel, sent.back().data);
   }
-  // The events have 53.5 kB, so the mark is in the sixth file.
+  // The events have 53.5 kB, and a file has at most 10 kB. So the mark is in the sixth file.
   ASSERT_TRUE(record.CatchUp("END", folder_.File("all-005.lcm")));
   const json summary = record.End();
   ASSERT_GE(summary["files"].size(), 6U);

@@ -20,8 +20,8 @@ struct Variant {
   std::vector<std::string> fields;
 };
 
-/// The host approaches a slow car with an ACC that can hardly brake. Another car follows the host
-/// closely.
+/// The host has an ACC that can hardly brake, and approaches a slow car. Another car follows the
+/// host closely.
 const std::vector<std::string> kSlowCar{"/lead/speed_mps=8",
                                         "/world/host_gap_m=40",
                                         "/world/follower_gap_m=10",

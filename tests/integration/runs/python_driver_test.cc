@@ -35,7 +35,7 @@ runpy.run_path(sys.argv[0], run_name="__main__")
 print("lost", Lossy.lost)
 )";
 
-/// The program that the page shows.
+/// The Python program that docs/protocol.md shows.
 std::string ProgramOfThePage() {
   return FenceOf(Content(SourceDirectory() / "docs/protocol.md"), "python");
 }

@@ -45,7 +45,8 @@ TEST(RunTest, NamesTheFirstStepAndFieldInWhichRunsOfTwoSeedsDiffer) {
   const auto one = RunPaper(folder.File("one.lcm"), {"--transport", "memq", "--seed", "1"});
   const auto two = RunPaper(folder.File("two.lcm"), {"--transport", "memq", "--seed", "2"});
   EXPECT_NE(one["digest"], two["digest"]);
-  // The first random number of a run is drawn by the radar at step 0.
+  // The radar draws the first random number of a run, at step 0. So runs with different seeds first
+  // differ there.
   const Outcome diff =
       RunCommand({Program("fogline"), "diff", folder.File("one.lcm"), folder.File("two.lcm")});
   EXPECT_EQ(diff.code, 1);
@@ -117,7 +118,7 @@ TEST(RunTest, InMemoryMayTakeLongerThanAStepMay) {
 
 TEST(RunTest, EndsAtACollisionIfTheScenarioSaysSo) {
   const ScratchFolder folder;
-  // GIVEN a leader that stops at once and an ACC that can hardly brake
+  // GIVEN a leader that makes an emergency stop, and an ACC that can hardly brake
   const auto run =
       RunPaper(folder.File("crash.lcm"),
                {"--transport", "udpm", "--set", "/lead/profile=emergency_brake", "--set",

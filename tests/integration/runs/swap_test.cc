@@ -24,7 +24,7 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-// The requester of this test's RESEND messages.
+// The name of the requester in the RESEND messages of this test.
 constexpr const char* kTest = "test";
 
 /// A folder outside of the tree with an installed Fogline. The external drivers are built only
@@ -216,7 +216,7 @@ TEST(SwapTest, AClassWithAStepFunctionIsARoleByFindPackageAlone) {
   EXPECT_EQ(reader.run().steps, 500);
 }
 
-// The message types have headers only, so the program links no library of message types.
+// The message types consist of headers only, so the program links no library of message types.
 TEST(SwapTest, ARoleFromElsewhereLinksOnlyTheRuntimeAndWhatTheRuntimeUses) {
   const Elsewhere elsewhere;
   EXPECT_THAT(elsewhere.LibrariesOfMyDriver(),

@@ -54,7 +54,8 @@ std::map<std::string, int> CountByMeasure(const std::string& csv) {
   return counts;
 }
 
-/// Expects that the page of the conflict study distinguishes its delays from a measure of a run.
+/// Expects that the page of the conflict study says that its delays are not deception_to_alarm_s, a
+/// measure of a run.
 void ExpectDelaysFromFogToAlarm(const std::string& page) {
   EXPECT_THAT(page, HasSubstr("<th scope=\"col\">fog to alarm (s)</th>"));
   EXPECT_THAT(page, HasSubstr("This delay is not deception_to_alarm_s of a run"));
@@ -162,7 +163,7 @@ TEST(StudyVerbTest, TriesItsFolderBeforeItComputes) {
   const ScratchFolder folder;
   const std::string file = folder.File("file");
   std::ofstream(file) << "in the way";
-  // This study would take an hour.
+  // This study would take an hour, so the verb must refuse the folder before it computes.
   const Outcome refused = Study({"policy", "--seeds", "1:100000", "--out", file + "/studies"});
   EXPECT_EQ(refused.code, 2);
   EXPECT_THAT(refused.err, HasSubstr("/file/studies: error: --out: cannot write: "));

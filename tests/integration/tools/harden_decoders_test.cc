@@ -15,7 +15,7 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-/// A type with a member of each kind that needs a check, as lcm-gen writes it.
+/// A decoder as lcm-gen writes it. Its type has a member of each kind that needs a check.
 class HardenDecodersTest : public testing::Test {
  protected:
   HardenDecodersTest() {

@@ -225,7 +225,8 @@ TEST(ReadmeTest, ItsCommandsLeaveNoFileThatGitDoesNotKnow) {
     // These commands take long. With few seeds or steps they write the same files.
     if ((*at)[2] == "study" || (*at)[2] == "calibrate") command += " --seeds 1:2";
     if (command.find("--pace") != std::string::npos) command += " --set /steps=20";
-    // The run shows its page until Ctrl-C. A run of 20 steps takes 2 s.
+    // The run shows its page until Ctrl-C, so `timeout` sends this signal after 20 s. A run of 20
+    // steps takes 2 s.
     if (command.find("--view") != std::string::npos) {
       command = "timeout --preserve-status --signal=INT 20 " + command;
     }

@@ -17,7 +17,8 @@ namespace {
 
 using nlohmann::json;
 
-// The experiment in 30 s, without noise. The follower reaches its desired gap within seconds.
+// The paper's experiment, shortened to 30 s and without noise. The follower reaches its desired gap
+// within seconds.
 constexpr const char* kScenario = R"({
   "$schema": "scenario.schema.json",
   "version": 1,
@@ -189,7 +190,7 @@ TEST_F(CalibrateTest, EndsWithTheBestSoFarOnCtrlC) {
 
 class EnsembleOfCalibrateTest : public CalibrateTest {
  protected:
-  /// The arguments of a search for sets whose tables are near the target.
+  /// The arguments of a search for sets of parameters whose tables are near the target.
   std::vector<std::string> Search(const std::vector<std::string>& more) const {
     std::vector<std::string> arguments{"calibrate",     scenario_,
                                        "--target",      target_,
@@ -216,7 +217,8 @@ TEST_F(EnsembleOfCalibrateTest, WritesItsSetsAndTheirTable) {
   ASSERT_EQ(found["sets"].size(), 2U);
   EXPECT_GE(found["least_distance"], 0.05);
   for (const json& set : found["sets"]) {
-    // Each set is a scenario. Its table equals the table that calibrate reported.
+    // Each set of parameters is a scenario file. Its table equals the table that calibrate
+    // reported.
     const std::string file = sets_ + "/" + set["file"].get<std::string>();
     EXPECT_EQ(RunFogline({"check", file}).code, 0);
     const Outcome table = RunFogline(

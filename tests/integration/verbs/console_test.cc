@@ -142,7 +142,8 @@ TEST(ConsoleTest, AnErrorIsNotWaitedForWithoutEnd) {
 }
 
 TEST(ConsoleTest, DoesNotChangeHowOtherProcessesWriteToTheSamePipe) {
-  // Before and after the run, a write of the shell to the pipe blocks until the pipe has room.
+  // Before and after the run, a write of the shell to the pipe blocks until the pipe has room: the
+  // run has not set O_NONBLOCK.
   const ScratchFolder folder;
   const Outcome outcome =
       RunCommand({"bash", "-c",
@@ -204,7 +205,8 @@ TEST(ConsoleTest, WritesNothingIntoAFileThatHasTheNumberOfAClosedStderr) {
   ASSERT_EQ(RunCommand(sweep).code, 0);
   const std::string whole = Content(file);
   std::filesystem::resize_file(file, whole.rfind('\n', whole.size() - 2) + 1);
-  // The sweep reports on stderr how many rows the file already has.
+  // stderr is closed, so the file of the sweep can get the number of stderr. The sweep reports on
+  // stderr how many rows the file already has, but this text must not come into the file.
   EXPECT_EQ(RunCommand(Shell("exec 2>&-", sweep)).code, 0);
   EXPECT_EQ(Content(file), whole);
 }

@@ -185,7 +185,7 @@ TEST_F(DoctorOnMachineTest, HearsTheRunOfAnotherMachine) {
   const json document = json::parse(doctor.out);
   const std::string heard = Find(document["findings"], "check", "other_runs")["what"];
   EXPECT_THAT(heard, HasSubstr("run " + run.Err().substr(4, run.Err().find(" on ") - 4)));
-  // doctor names the processes of this computer on all networks.
+  // doctor names the processes of this machine on all networks.
   EXPECT_THAT(doctor.out,
               HasSubstr("fogline (pid " + std::to_string(run.pid()) + ") has a run with " +
                         std::to_string(kRoles.size()) + " processes on " + kEverywhere));

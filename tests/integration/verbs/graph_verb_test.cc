@@ -40,7 +40,7 @@ TEST(GraphVerbTest, PrintsTheHashesThatARoleInAnotherLanguageNeeds) {
   const auto radar = graph["channels"][IndexOf<radar_t>()];
   EXPECT_EQ(radar["type"], "radar_t");
   EXPECT_EQ(radar["type_hash"], Hexadecimal(radar_t::getHash()));
-  // In a signed message, this number names the sender.
+  // The index of a role in this list is its number, which names the sender in a signed message.
   for (std::size_t i = 0; i < kRoles.size(); ++i) {
     EXPECT_EQ(graph["roles"][i]["name"], std::string(kRoles[i].name));
     EXPECT_EQ(static_cast<std::size_t>(kRoles[i].role), i);

@@ -120,7 +120,7 @@ TEST_F(OutputFilesTest, AReportGoesThroughAPipeOrIntoNothing) {
   EXPECT_EQ(Bash("fogline report run.lcm -o >(cat > copied) && wait $!").code, 0);
   EXPECT_EQ(Content(folder_.File("copied")), Content(page_));
   // Descriptor 9 keeps the pipe open for reading and writing. So `head` would find no end of the
-  // file, and gets the number of bytes to read.
+  // file; the command tells it how many bytes to read.
   EXPECT_EQ(Bash("mkfifo pipe; exec 9<>pipe; fogline report run.lcm -o pipe & report=$!;"
                  "head -c $(stat -c %s page.html) <&9 > named; wait $report")
                 .code,

@@ -72,8 +72,8 @@ TEST_F(SweepTest, GoesOnWhereverAKillHasTornTheFile) {
   const std::size_t header = whole.find('\n') + 1;
   const std::size_t second_row = whole.find('\n', header) + 1;
   // The file is cut in the header, after the header, in the first row, after the first row, and at
-  // regular distances. The cut after the first row is in the middle of a unit, which has three
-  // rows.
+  // regular distances. The cut after the first row is in the middle of a unit of work, which has
+  // three rows.
   std::vector<std::size_t> cuts{0,          1,          header - 1,       header,
                                 header + 1, second_row, whole.size() - 1, whole.size()};
   for (std::size_t cut = 0; cut < whole.size(); cut += whole.size() / 13) cuts.push_back(cut);

@@ -48,7 +48,7 @@ TEST(TableTextTest, EndsWithSafetyByOtherFloorsAndReadings) {
       RunCommand({Program("fogline"), "table", "scenario/paper.json", "--thresholds", "0.5"});
   ASSERT_EQ(table.code, 0) << table.err;
   EXPECT_THAT(table.out, HasSubstr("(/measures/safety_floor_m, 0.01 m)"));
-  // With the scenario's own floor, this value equals SI.
+  // The floor of the scenario is 10 mm, so the value with this floor equals SI.
   const nlohmann::json row = TableRows({"--thresholds", "0.5"})[0];
   EXPECT_EQ(row["other_si_pct"]["floor_10mm"], row["si_pct"]);
   EXPECT_EQ(row["other_si_pct"].size(), 7U);
@@ -220,7 +220,7 @@ TEST(TableOfRunsTest, IsTheSameWithADriverFromElsewhereThatIsStartedForEveryRun)
 
 TEST(TableOfRunsTest, CountsTheRunsThatEndInACollision) {
   EXPECT_EQ(TableRows({"--thresholds", "0.5", "--seeds", "1:3"})[0]["collisions"], 0);
-  // GIVEN a leader that stops at once, and two cars that can hardly brake
+  // GIVEN a leader that makes an emergency stop, and two cars that can hardly brake
   const nlohmann::json rows =
       TableRows({"--thresholds", "1", "--seeds", "1:3", "--set", "/lead/profile=emergency_brake",
                  "--set", "/acc/min_acceleration_mps2=-0.1"});

@@ -236,7 +236,7 @@ TEST(TopScreenTest, ShowsScrollsSortsAndOpensARunOn80By24AndFollowsTheWindow) {
   const std::string url = runtime::FreshMulticastUrl();
   const Background run(RunOn(url, folder, {"--pace", "1"}));
   TopOnTerminal top(url);
-  // THEN all roles with their diagnosis are visible at once
+  // THEN all roles with their diagnosis are visible at the same time
   ASSERT_TRUE(top.WaitUntil([&] { return ShowsEveryRole(top.screen()); })) << top.screen().Text();
   EXPECT_THAT(top.screen().rows()[23], HasSubstr("q quit"));
   EXPECT_TRUE(top.Shows("the automation drives"));

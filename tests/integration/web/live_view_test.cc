@@ -92,7 +92,7 @@ TEST(LiveViewTest, GivesEachMessageAsTheRunLogsIt) {
   const json hello = ReceiveOp(client, "hello");
   EXPECT_EQ(hello["mode"], "live");
   EXPECT_THAT(hello["url"].get<std::string>(), HasSubstr(url));
-  constexpr int kSteps = 230;  // fog begins at 190, the human drives from 203 on
+  constexpr int kSteps = 230;  // fog begins at step 190, the human drives from step 203 on
   constexpr std::size_t kMessages = kSteps * log::kStepChannels;
   Background run(RunOn(url, folder.File("run.lcm"), kSteps, "10"));
   Got got;

@@ -40,7 +40,7 @@ TEST(RelayViewTest, NeedsHardlyAnyProcessorTimeWhileTheRelayIsAwayAndThenGoesOn)
   relay.process().Signal(SIGKILL);
   relay.process().Wait();
   const double before_s = ProcessorTime_s(viewed.process().pid());
-  // The test needs a pause of this length.
+  // The test measures the processor time in a pause of this length.
   constexpr double kAway_s = 2;
   std::this_thread::sleep_for(std::chrono::duration<double>(kAway_s));
   const double needed_s = ProcessorTime_s(viewed.process().pid()) - before_s;

@@ -142,7 +142,7 @@ TEST(RunViewTest, RunsWithoutAViewerThatCannotBeStarted) {
   // WHEN a run gets --view
   const Outcome run = RunCommand(
       RunAndView(folder.File("fogline"), folder.File("run.lcm"), {"--set", "/steps=30"}));
-  // THEN it reports once that it cannot show the run, and does not wait
+  // THEN the run reports once that fogline-web cannot be started, and does not wait
   EXPECT_EQ(run.code, 0) << run.err;
   EXPECT_EQ(json::parse(run.out)["steps"], 30);
   const std::size_t said = run.err.find("--view: cannot start");

@@ -93,7 +93,8 @@ TEST_F(SeatPageTest, AClosedSocketReleasesThePedalsAtOnce) {
   const TimePoint closed = Clock::now();
   page.reset();
   const driver_input_t away = network_.Hear(IsAway);
-  // The seat reports the absence when the page is closed. The time limit of silence is 300 ms.
+  // The seat reports the absence when the page is closed, before the time limit of silence (300 ms)
+  // has passed.
   EXPECT_LT(Clock::now() - closed, milliseconds(250));
   EXPECT_EQ(away.brake, 0);
   EXPECT_EQ(away.buttons, 0);
@@ -132,7 +133,8 @@ TEST_F(SeatPageTest, TheSecondPageIsToldThatTheSeatIsTaken) {
     second.Send(Braking(0));
     answer = AnswerTo(second);
     if (answer["op"] == "error") break;
-    // If the machine has stopped the first person for 300 ms, this person counts as absent.
+    // If the machine has stopped the first person for 300 ms, this person counts as absent, and the
+    // second page gets the seat. Then this page gives the seat back, and the test tries again.
     second.Send(Away(1));
     AnswerTo(second);
     network_.Hear(IsThere);

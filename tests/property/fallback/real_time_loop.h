@@ -1,6 +1,7 @@
 // A run in real time with all roles in one process. The clock of the run is a number that the loop
-// increases. Each role can stop sending at a step. A role that lacks an input also sends nothing,
-// as its own process would. The arbitrator and the world continue with the inputs that they have.
+// increases. A test can make a role send nothing from a step on. A role that lacks an input also
+// sends nothing, as a process of this role would. The arbitrator and the world continue with the
+// inputs that they have.
 #pragma once
 
 #include <array>
@@ -23,7 +24,7 @@
 
 namespace fogline::test {
 
-// More than the rounding of accelerations and speeds in one step.
+// Tolerance for the rounding of accelerations (m/s2) and speeds (m/s) in one step.
 inline constexpr double kRounding = 1e-9;
 
 /// One channel at its reader: the newest message and the state of the input.
@@ -37,7 +38,7 @@ class Line {
     health_.Arrived(message.header.step, now);
   }
   Heard<M> At(TimePoint now) { return {health_.Update(now), newest_ ? &*newest_ : nullptr}; }
-  /// Whether a message of this step may still come.
+  /// Whether the message of this step may still come: it has not come, and the input is not LOST.
   bool Waits(std::int64_t step, TimePoint now) {
     return health_.Update(now) != InputState::kLost && health_.newest() < step;
   }
@@ -47,8 +48,9 @@ class Line {
   std::optional<M> newest_;
 };
 
-/// The visible data of a step: the truth, the offers and the arbitrator's command (nullptr if the
-/// role is silent), and the command that the vehicle carries out in this step.
+/// The data of a step that a test may check: the truth, the offers, the arbitrator's command, and
+/// the command that the vehicle carries out in this step. A pointer is nullptr if the role sends
+/// nothing in this step.
 struct Moment {
   const truth_t& truth;
   const accel_command_t* automation;
@@ -135,8 +137,8 @@ class RealTimeLoop {
     return {automation, human};
   }
 
-  // The arbitrator decides at once if no message can come later. Otherwise it decides at the
-  // deadline.
+  // The arbitrator decides at the time `now` if each of its inputs has its message of this step or
+  // is LOST. Otherwise it decides at the deadline.
   const arbitration_t& Arbitrate(const ego_t& ego, TimePoint now) {
     const std::int64_t step = ego.header.step;
     const bool waits = std::apply([&](auto&... line) { return (line.Waits(step, now) || ...); },

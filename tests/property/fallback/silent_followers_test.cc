@@ -21,7 +21,8 @@ using test::RealTimeLoop;
 constexpr std::size_t kCars = 5;
 constexpr std::int64_t kUntilFallback = 4;  // periods from the last command to the fallback
 
-/// The paper's scenario with people and ACCs behind the host.
+/// The paper's scenario with five cars behind the host. Each is driven by an ACC or by a human
+/// driver.
 Scenario Column() {
   Scenario scenario =
       LoadScenario(FOGLINE_SOURCE_DIR "/scenario/paper.json", {"/world/end_on_collision=false"});
@@ -70,8 +71,8 @@ TEST(SilentFollowersTest, WithoutASilentFollowerIsTheLockstepRun) {
   follower::Follower follower(scenario);
   lockstep.Start(1);
   RealTimeLoop(scenario).Run([&](const Moment& m) {
-    // GIVEN the same commands to the host, THEN the followers' commands equal the commands of a run
-    // in lockstep
+    // GIVEN a run in lockstep with the same commands to the host, THEN the commands of the
+    // followers are equal in both runs
     const follower_command_t& command = follower.Step(lockstep.truth());
     ASSERT_EQ(m.truth.follower_position_m, lockstep.truth().follower_position_m);
     ASSERT_EQ(m.vehicle.followers().acceleration_mps2, command.acceleration_mps2);

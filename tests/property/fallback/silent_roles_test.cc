@@ -20,7 +20,7 @@ using test::kRounding;
 using test::Moment;
 using test::RealTimeLoop;
 
-constexpr std::int64_t kDetection = 3;  // periods
+constexpr std::int64_t kDetection = 3;  // periods from the last message until the input is LOST
 constexpr std::int64_t kInForce = 1;    // periods from the detection until the fallback is in force
 constexpr std::int64_t kBetweenDeaths = 13;  // steps
 
@@ -28,10 +28,11 @@ Scenario Shipped(const std::string& name) {
   return LoadScenario(FOGLINE_SOURCE_DIR "/scenario/" + name, {});
 }
 
-// The longest manoeuvre from the speeds of these scenarios.
+// Upper bound for the time from the first missing message until the car stands, at the speeds of
+// these scenarios.
 constexpr std::int64_t kManoeuvre = 260;  // steps
 
-// Compares the motion of a car, step by step, with the limits of the manoeuvre.
+// Compares the motion of a car, step by step, with the limits of the minimal risk manoeuvre.
 class Braking {
  public:
   explicit Braking(const Scenario& scenario)
@@ -72,7 +73,7 @@ class SilentRolesTest : public testing::TestWithParam<const char*> {
       double last_mps2 = 0;
       loop.Run([&](const Moment& m) {
         ASSERT_EQ(m.truth.collision, truth_t::COLLISION_NONE) << "at step " << m.truth.header.step;
-        // The acceleration of the car is the command of the previous step.
+        // The acceleration of the host is the command of the previous step.
         if (m.truth.host_speed_mps > 0 && m.truth.header.step > 0) {
           ASSERT_EQ(m.truth.host_acceleration_mps2, last_mps2);
         }
@@ -83,12 +84,14 @@ class SilentRolesTest : public testing::TestWithParam<const char*> {
       if (HasFatalFailure()) return;
     }
   }
-  // Whether the fallback must be in force in this step.
+  // Whether the fallback must be in force in this step if the roles are silent from step `death`
+  // on.
   static bool Due(std::int64_t death, const Moment& m) {
     return m.truth.header.step >= death - 1 + kDetection + kInForce;
   }
 
-  // Checks that the host comes to a standstill after step `death`.
+  // Checks in each step that the host brakes within the limits of the manoeuvre, and in the last
+  // step that the host stands (if the run is long enough after step `death`).
   void CheckHostStops(std::int64_t death, const Moment& m) {
     CheckStops(death, m, m.truth.host_speed_mps, m.truth.host_acceleration_mps2);
   }

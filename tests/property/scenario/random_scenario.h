@@ -117,8 +117,8 @@ inline Scenario RandomScenario(ValueDraw& draw) {
   return scenario;
 }
 
-/// The pointer of every field, and its value as a text. Texts are equal only for equal values,
-/// because doubles are written with all their bits.
+/// The JSON pointer of every field, and its value as a text. Texts are equal only for equal values,
+/// because the text of a double shows all its bits.
 inline std::vector<std::pair<std::string, std::string>> Flatten(Scenario scenario) {
   struct Text {
     std::string operator()(const NumberField& number) const {

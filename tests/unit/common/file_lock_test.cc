@@ -20,7 +20,7 @@ using Kind = FileLock::Kind;
 class FileLockTest : public testing::Test {
  protected:
   /// The error text of an attempt to take a lock; "" if the attempt succeeds. The function releases
-  /// the lock at once.
+  /// the lock before it returns.
   static std::string ErrorOf(const std::string& path, Kind kind) {
     return test::ErrorOf([&] { const FileLock lock(path, kind, "--log", "run"); });
   }

@@ -37,7 +37,8 @@ TEST(TextTest, EscapesWhatIsNotSeenButChangesWhatIs) {
 }
 
 TEST(TextTest, EscapesWhatIsNoUtf8ByteByByte) {
-  // A lone byte, a surplus byte, a surrogate, an overlong form, an incomplete character.
+  // A continuation byte alone, a byte that UTF-8 never has, a surrogate, an overlong form, an
+  // incomplete character.
   EXPECT_EQ(EscapeControls("\x9b|\xff|\xed\xa0\x80|\xc0\xaf|\xe2\x82"),
             R"(\x9b|\xff|\xed\xa0\x80|\xc0\xaf|\xe2\x82)");
 }

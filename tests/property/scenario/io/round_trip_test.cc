@@ -25,8 +25,9 @@ TEST(RoundTripProperty, PrintedScenariosReadBackBitByBit) {
   }
 }
 
-// The text of a value in an override. The text of a list of sections is a list of empty sections;
-// further overrides set the fields of these sections. A section has no override of its own.
+// Makes the text of a field's value for an override (POINTER=TEXT). The text of a list of sections
+// is a list of empty sections; further overrides set the fields of these sections. A section has no
+// override of its own.
 struct OverrideValue {
   std::string operator()(const NumberField& number) const { return NumberText(*number.value); }
   std::string operator()(const IntegerField& integer) const {

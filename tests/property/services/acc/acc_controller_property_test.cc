@@ -15,8 +15,8 @@ using Solver = acc::AccController::Solver;
 
 constexpr double kTolerance = 1e-9;
 
-// Situations from calm to hopeless. The logarithm of the speed is uniform, so slow cars are as
-// frequent as fast cars.
+// A random situation, from steady following to a collision that no braking can avoid. The logarithm
+// of the speed is uniform, so low speeds are frequent, too.
 acc::AccController::Input RandomInput(Draw& draw, const AccSection& section) {
   const double scale = draw.LogUniform(0.01, 1);
   const double speed = draw.LogUniform(0.5, 55);
@@ -28,15 +28,16 @@ acc::AccController::Input RandomInput(Draw& draw, const AccSection& section) {
           .has_target = true};
 }
 
-// The control that a new controller takes as the control of the previous step.
+// The control u (services/acc/README.md) that a new controller takes as the control of the previous
+// step.
 double PreviousControl(const AccSection& section, double acceleration_mps2) {
   return std::clamp(-acceleration_mps2 / section.engine_gain,
                     -section.max_acceleration_mps2 / section.engine_gain,
                     -section.min_acceleration_mps2 / section.engine_gain);
 }
 
-// Calls `check` with a section, a step, an input, the controller, and the controller's first output
-// for this input.
+// Calls `check` for random situations, with the parameters of an ACC, a step in s, an input, the
+// controller, and the controller's first output for this input.
 template <class Check>
 void ForRandomSituations(std::int64_t seed, Check&& check) {
   Draw draw(seed);
@@ -64,7 +65,8 @@ TEST(AccControllerPropertyTest, EverySituationHasAnOptimum) {
   EXPECT_LT(on_limits, 1900);
 }
 
-// The controller omits the exact check if the bounds of the plan already prove its result.
+// The controller does not run the exact check of a plan's limits if upper bounds of the plan's
+// controls and of their changes already prove that the plan keeps the limits.
 TEST(AccControllerPropertyTest, BoundsAreNeverBelowThePlanAndProveOnlyWhatTheExactCheckFinds) {
   Draw draw(7);
   int proved = 0;
@@ -135,7 +137,8 @@ double HighestInFallback(const AccSection& section, double step_s,
   return highest;
 }
 
-// The test computes speeds by closed-form integrals of the model, also in the middle of each step.
+// The test computes speeds by closed-form integrals of the model, at the middle and at the end of
+// each step.
 TEST(AccControllerPropertyTest, PlansKeepTheMaximumSpeedWhereTheFallbackDoes) {
   int close = 0;
   ForRandomSituations(3, [&](const AccSection& section, double step_s, const auto& input,
@@ -179,7 +182,7 @@ TEST(AccControllerPropertyTest, PlansOfAFasterCarLoseSpeedAsInAFallback) {
 }
 
 // The controller uses the plan of the precomputed gain only if this plan also keeps the soft
-// limits.
+// limits: the minimum gap, and no reversing.
 TEST(AccControllerPropertyTest, UnconstrainedPlansKeepTheMinimumGapAndDoNotReverse) {
   int close = 0;
   ForRandomSituations(5, [&](const AccSection& section, double step_s, const auto& input,
@@ -213,7 +216,7 @@ TEST(AccControllerPropertyTest, TheCommandGoesOnFromTheRealAcceleration) {
   });
 }
 
-// The leader always keeps the limits of the automation.
+// The leader never brakes harder than the automation may brake.
 TEST(AccControllerPropertyTest, NeverHitsALeaderThatBrakesNoHarderThanItself) {
   Draw draw(7);
   const AccSection section;

@@ -33,7 +33,8 @@ void Write(const QuadraticProgram& program, const Eigen::VectorXd& x) {
 // written
 bool SolveAndWrite(acc::QpSolver& solver, const QuadraticProgram& program) {
   const acc::QpSolver::Result result = solver.Solve(program.linear, program.lower, program.upper);
-  // An unsolved program is written, too, so that the comparison fails.
+  // A program that the solver could not solve is written, too. The comparison with cvxopt then
+  // fails.
   if (result.status == acc::QpSolver::Status::kOptimal && solver.multipliers().isZero(0))
     return false;
   Write(program, solver.solution());

@@ -25,7 +25,7 @@ int ExpectMinimum(const QuadraticProgram& program, const acc::QpSolver& solver) 
   const VectorXd& y = solver.multipliers();
   const VectorXd slope = program.hessian * x + program.linear;
   const VectorXd pull = program.constraints.transpose() * y;
-  // The rounding of the sums, relative to their terms.
+  // The rounding of the sums is relative to the largest terms of the sums.
   const double scale = 1 + Largest(program.hessian.cwiseAbs() * x.cwiseAbs()) +
                        Largest(program.linear) +
                        Largest(program.constraints.cwiseAbs().transpose() * y.cwiseAbs());
@@ -58,7 +58,8 @@ TEST(QpPropertyTest, RandomProgramsAreSolvedToTheirMinimum) {
   EXPECT_GT(with_active_limits, 1500);
 }
 
-// One solver solves all situations of a section, so most starting points are far from the minimum.
+// One solver solves all situations of an AccSection. It starts each from the solution of the
+// previous one, so most starting points are far from the minimum.
 TEST(QpPropertyTest, ProgramsOfTheAccAreSolvedToTheirMinimum) {
   Draw draw(2);
   int with_active_limits = 0;
@@ -93,14 +94,16 @@ TEST(QpPropertyTest, TheMinimumDoesNotDependOnTheStart) {
   }
 }
 
-// A row is a combination of two other rows, and its limit contradicts their limits (Farkas' lemma).
+// The test adds a row that is a combination of two other rows. The limit of the new row contradicts
+// the limits of the two rows (Farkas' lemma).
 TEST(QpPropertyTest, ContradictionsAreFound) {
   Draw draw(4);
   for (int i = 0; i < 1000; ++i) {
     QuadraticProgram program = RandomProgram(draw);
     const Index n = program.hessian.rows();
     const Index m = program.constraints.rows();
-    // GIVEN a row c = sum w_r c_r with w_r >= 0, so that c'x <= sum w_r upper_r
+    // GIVEN a new row c, the sum of two rows c_r with weights w_r > 0: each feasible x has c'x <=
+    // sum w_r upper_r
     const Index row = draw.Integer(0, m - 1);
     const Index other = draw.Integer(0, m - 1);
     const double weight = draw.Uniform(0.1, 2);

@@ -12,7 +12,7 @@
 
 namespace fogline {
 
-/// min 1/2 x'Hx + g'x subject to lower <= C x <= upper.
+/// The quadratic program: minimise 1/2 x'Hx + g'x subject to lower <= C x <= upper.
 struct QuadraticProgram {
   Eigen::MatrixXd hessian;
   Eigen::VectorXd linear;
@@ -23,9 +23,10 @@ struct QuadraticProgram {
   double Cost(const Eigen::VectorXd& x) const { return 0.5 * x.dot(hessian * x) + linear.dot(x); }
 };
 
-/// A program that is feasible by construction. The program has up to 20 variables, and up to three
+/// Draws a program that has a feasible point. The program has up to 20 variables, and up to three
 /// rows for each variable. Some rows are one-sided, equalities, or multiples of other rows. The
-/// unconstrained minimum is usually outside of the limits. Condition numbers are up to 1e4.
+/// unconstrained minimum is usually outside of the limits. The condition number of H is at most
+/// 1e4.
 inline QuadraticProgram RandomProgram(Draw& draw) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const Eigen::Index n = draw.Integer(1, 20);
@@ -58,7 +59,7 @@ inline QuadraticProgram RandomProgram(Draw& draw) {
   return program;
 }
 
-/// Parameters from the whole range that a person might choose.
+/// Random parameters of the ACC, from the whole range that a person might choose.
 inline AccSection RandomSection(Draw& draw) {
   AccSection section;
   section.headway_s = draw.Uniform(0.3, 3);
@@ -84,7 +85,8 @@ inline AccSection RandomSection(Draw& draw) {
 
 inline double RandomStep(Draw& draw) { return draw.LogUniform(0.02, 0.5); }
 
-/// Situations from calm to hopeless. The speed may be above the section's maximum.
+/// A random situation, from steady following to a collision that no braking can avoid. The speed
+/// may be above the section's maximum.
 inline acc::AccSituation RandomSituation(Draw& draw, const acc::AccProgram& program) {
   acc::AccSituation now;
   const double scale = draw.LogUniform(0.01, 1);

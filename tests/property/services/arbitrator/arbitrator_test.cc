@@ -16,7 +16,8 @@ namespace {
 constexpr auto kAbsolute = ConflictReading::kMeanOfAbsolute;
 constexpr auto kSigned = ConflictReading::kAbsoluteOfMean;
 
-// Draws a difference of about a metre. One of five steps has no value.
+// Draws a difference between the sensors, with a standard deviation of 1 m. With a probability of
+// 0.2 the step has no difference.
 std::optional<double> AnyDifference(const Random& random, std::int64_t step) {
   if (random.Uniform2(step, 0)[0] < 0.2) return std::nullopt;
   return random.Normal2(step, 1)[0];
@@ -85,7 +86,7 @@ TEST(ConflictWindowPropertyTest, MeanOfAbsoluteIsNeverBelowTheOtherReading) {
   for (int k = 0; k < 2000; ++k) {
     window.Push(AnyDifference(random, k));
     const double absolute = window.Conflict(kAbsolute);
-    ASSERT_GE(absolute * (1 + 1e-15), window.Conflict(kSigned));  // rounding
+    ASSERT_GE(absolute * (1 + 1e-15), window.Conflict(kSigned));  // the factor allows for rounding
     ASSERT_GE(window.Conflict(kSigned), 0);
   }
 }
@@ -126,7 +127,8 @@ TEST(ArbitratorPropertyTest, PassesOneOfTheTwoOffersOnAsTheThresholdSays) {
 }
 
 TEST(ArbitratorPropertyTest, ConstantConflictCrossesTheThresholdAtItsInverse) {
-  // z(th) = 1 + ln(th / (1 - th)) / 10: 0.861 m, 1 m, 1.139 m for the paper's thresholds.
+  // The DoC of a constant conflict z reaches the threshold th at z = 1 m + ln(th / (1 - th)) / 10.
+  // For the paper's thresholds this is 0.861 m, 1 m and 1.139 m.
   for (const double threshold : {0.2, 0.5, 0.8}) {
     const double z = 1 + std::log(threshold / (1 - threshold)) / 10;
     for (const double side : {-1.0, 1.0}) {

@@ -32,7 +32,7 @@ void Refresh(Messages& m, const Random& random, const header_t& header) {
   m.ego.header = m.radar.header = m.lidar.header = m.track.header = header;
   m.automation.header = m.driver.header = header;
   m.radar.valid = m.lidar.valid = random.Uniform2(header.step, 2)[0] < 0.9;
-  m.radar.range_m = 32 + radar_noise;  // so z is about 1.1 m, where the DoC is steep
+  m.radar.range_m = 32 + radar_noise;  // so the conflict z is about 1.1 m, where the DoC is steep
   m.lidar.range_m = 32 + lidar_noise;
   m.automation.acceleration_mps2 = -3 + 5 * automation;
   m.driver.acceleration_mps2 = -9 + 10 * driver;
@@ -159,7 +159,7 @@ TEST(FailsafePropertyTest, CommandsNothingUndefinedWhateverFails) {
       ++taken[arbitrator.decision()];
     }
   }
-  // Every decision must be frequent. Otherwise the test would prove little.
+  // Every decision must be frequent. Otherwise the test would prove little about this decision.
   for (const arbitrator::Decision decision :
        {arbitrator::Decision::kRegular, arbitrator::Decision::kAutomation,
         arbitrator::Decision::kHuman, arbitrator::Decision::kHold,

@@ -51,7 +51,7 @@ namespace fogline::test {
 namespace {
 
 // The number of allocations in random steps of the ACC, with and without a target, in situations
-// from calm to hopeless. The function also counts the steps in which the solver ran.
+// from steady following to an unavoidable collision. Also counts the steps in which the solver ran.
 long ControllerAllocations(int& solver_steps) {
   Draw draw(1);
   acc::AccController acc(AccSection{}, 0.1);
@@ -77,8 +77,8 @@ bool CheckController() {
   return made == 0 && solver_steps > 1000;
 }
 
-// Whether no step, including the first, allocates memory while a human drives a car uphill and
-// through fog.
+// Whether the models allocate no memory while a human drives a car uphill and through fog. The
+// first step counts, too.
 bool CheckModels() {
   models::LongitudinalVehicle car(models::kSedan, models::FrictionOf(Surface::kWet),
                                   models::GradeProfile({{0, 0}, {500, 0.05}}), 0.1);
@@ -123,7 +123,8 @@ long LoopAllocations(const Scenario& scenario, std::int64_t& steps) {
   return after_last - after_first;
 }
 
-// A driver with all weaknesses at once, who also reads HOST_COMMAND.
+// Whether a run allocates no memory after step 0 if the driver has all weaknesses together, and
+// also reads HOST_COMMAND.
 bool CheckHuman(Scenario scenario) {
   scenario.human.following = FollowingModel::kAccIdm;
   scenario.human.sight = Sight::kFog;
@@ -155,7 +156,8 @@ bool CheckLoop(const Shipped& shipped) {
   return clean;
 }
 
-/// A column of vehicles behind the host on a hill.
+/// Whether a run with a column of vehicles behind the host, on a hill, allocates no memory after
+/// step 0.
 bool CheckTraffic(const Shipped& shipped) {
   Scenario scenario = shipped.scenario;
   scenario.world.end_on_collision = false;
@@ -174,7 +176,8 @@ bool CheckTraffic(const Shipped& shipped) {
   return made == 0 && steps > 100;
 }
 
-// Drivers whom the car must ask to take over: some take over in time, some late, some never.
+// Whether runs with requests to take over allocate no memory after step 0. Some drivers take over
+// in time, some late, some never.
 bool CheckTakeOver(Scenario scenario) {
   scenario.arbitrator.take_over.mode = TakeOverMode::kRequested;
   scenario.arbitrator.take_over.time.mean_s = scenario.arbitrator.take_over.lead_s;

@@ -1,4 +1,4 @@
-// A closed loop that is restarted again and again computes the same as a new one.
+// A closed loop that was restarted any number of times computes the same run as a new one.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -28,7 +28,8 @@ void ChangeTraffic(Draw& draw, Scenario& scenario) {
   scenario.road.grade = {{0, draw.Uniform(-0.05, 0.05)}, {500, draw.Uniform(-0.05, 0.05)}};
 }
 
-/// Changes some parts of a scenario, such as those that differ between two rows of a sweep.
+/// Changes some parameters of a scenario at random, such as those that differ between the runs of a
+/// sweep.
 void Change(Draw& draw, Scenario& scenario) {
   scenario.seed = draw.Integer(0, 1000);
   scenario.steps = draw.Integer(1, 300);
@@ -39,7 +40,8 @@ void Change(Draw& draw, Scenario& scenario) {
   scenario.arbitrator.transfer.gate = draw.Chance(0.3);
   scenario.arbitrator.threshold = draw.Uniform(0, 1);
   scenario.arbitrator.window_steps = draw.Integer(1, 20);
-  // With short gaps the active-set solver has a state that a restart must clear.
+  // With short gaps the ACC needs its active-set solver. The solver has a state that a restart must
+  // clear.
   scenario.world.host_gap_m = draw.Uniform(8, 40);
   scenario.world.follower_gap_m = draw.Uniform(8, 40);
   if (draw.Chance(0.3)) scenario.acc.horizon_steps = draw.Integer(5, 40);

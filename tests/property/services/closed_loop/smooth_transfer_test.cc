@@ -1,5 +1,5 @@
-// Transfers in the whole loop: benefit and cost of smooth transfers, and the automation's return
-// without a bump.
+// Transfers in the closed loop of whole runs: benefit and cost of smooth transfers, and the return
+// to the automation without a jump of the command.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -16,8 +16,8 @@
 namespace fogline::test {
 namespace {
 
-// The limit of ISO 15622 above 20 m/s. ISO 15622 averages the jerk over 1 s; here every single step
-// must keep the limit.
+// The limit of the jerk in ISO 15622 at speeds above 20 m/s. ISO 15622 averages the jerk over 1 s;
+// here every single step must keep the limit.
 constexpr double kSmooth_mps3 = 2.5;
 
 Scenario Paper() { return LoadScenario(FOGLINE_SOURCE_DIR "/scenario/paper.json"); }
@@ -62,8 +62,8 @@ constexpr TransferProfile kProfiles[] = {TransferProfile::kLinear, TransferProfi
                                          TransferProfile::kJerkLimited};
 
 // At transfers in the paper's experiment the command jumps by only a few cm/s2 (0.3 to 0.4 m/s3).
-// So even abrupt transfers keep the limit. In this experiment a profile may cost at most three
-// points of SI.
+// So even abrupt transfers keep the limit kSmooth_mps3. In this experiment a profile may cost at
+// most three percentage points of SI.
 TEST(SmoothTransferProperty, EveryProfileIsSmoothInThePapersExperimentForThreePointsOfSafety) {
   for (const int seeds : {1, 40}) {
     Scenario scenario = Paper();
@@ -82,8 +82,8 @@ TEST(SmoothTransferProperty, EveryProfileIsSmoothInThePapersExperimentForThreePo
   }
 }
 
-// If the fog makes the automation brake, the command jumps by more than 1 m/s2 at the paper's
-// abrupt transfer.
+// If the fog makes the automation brake, the command jumps by more than 1 m/s2 at an abrupt
+// transfer, as in the paper. This is more than 10 m/s3 in a step of 0.1 s.
 TEST(SmoothTransferProperty, ALimitedCommandTakesTheJerkOutOfHandOversInDenseFogForNothing) {
   Scenario scenario = DenseFog();
   const Outcome abrupt = OutcomeOf(scenario, 20);
@@ -128,7 +128,8 @@ double Sigmoid(double progress) {
   return (logistic(10 * (progress - 0.5)) - logistic(-5.0)) / (logistic(5.0) - logistic(-5.0));
 }
 
-/// The human's authority by definition, from the time since the request last changed.
+/// Computes the human's authority as the profile defines it: from the authority when `human_wanted`
+/// last changed, and from the time since then.
 class Ramp {
  public:
   explicit Ramp(const Scenario& scenario)
@@ -164,8 +165,9 @@ class Ramp {
   int steps_ = 0;
 };
 
-/// The command by definition, from the mixed offers. Each change of the request starts the limit;
-/// the limit ends when the command has reached the mixed offers.
+/// Computes the command as the profile defines it, from the mixed offers. Each change of
+/// `human_wanted` starts the limits. They end when the command has reached the mixed offers and the
+/// time of the gate is over, or in an emergency.
 class Limit {
  public:
   explicit Limit(const Scenario& scenario)
@@ -206,7 +208,8 @@ class Limit {
   double gated_s_ = 0;
 };
 
-/// Numbers of steps in which a transfer to the human or back was in progress.
+/// Numbers of steps in which a transfer was in progress: to the human (`there`), and to the
+/// automation (`back`).
 struct UnderWay {
   int there = 0;
   int back = 0;
@@ -267,9 +270,10 @@ TEST(SmoothTransferProperty, EveryCommandOfARunIsTheOneThatItsProfileDefines) {
 }
 
 // The ACC plans from the real acceleration of the host, whichever side gave the last command. So in
-// every step of a return (a jump or a ramp) the ACC's offer is near the last command: the
-// difference is at most (1 - exp(-step/T_e)) times one change of u. The ACC's share of the new
-// command therefore makes no bump.
+// every step of a return (a jump or a ramp) the ACC's offer is near the last command. The
+// difference is at most (1 - exp(-h/T_e)) h max_jerk, with the step h and the engine's time
+// constant T_e, if the last command is within the ACC's limits. So the ACC's share of the new
+// command makes no jump.
 TEST(BumplessTransferProperty, TheAutomationReturnsFromTheAccelerationThatTheHostHas) {
   constexpr double kRounding = 1e-9;
   for (const TransferProfile profile : kAllProfiles) {

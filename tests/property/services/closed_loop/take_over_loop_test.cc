@@ -47,8 +47,9 @@ bool IsInTable(take_over::TakeOverState from, take_over::TakeOverState to) {
   });
 }
 
-// Checks the rules that a log shows: the state changes only as the table allows, each command comes
-// from the side that has authority, and the manoeuvre keeps its limits.
+// Checks the rules of take-overs in all commands of a run: the state changes only as the table
+// allows, each command comes from the side that has authority, and the minimal risk manoeuvre keeps
+// its limits.
 void ExpectTheRules(const Scenario& scenario, const Driven& driven) {
   const TakeOverSection& section = scenario.arbitrator.take_over;
   take_over::TakeOverState before = take_over::TakeOverState::kAutomated;
@@ -126,14 +127,17 @@ double LeftInTheFirstStep(const Scenario& scenario) {
   }
 }
 
-// In the first step of a transfer the new side has a share s of the control: on a ramp, the share
-// of the ramp's first step, otherwise 1. The command is (1 - s) times the old side's offer plus s
-// times the new side's offer. Profile jerk_limited also limits the change of the command from the
-// step before. A driver who ends a manoeuvre has full authority at once, without this limit.
+// In the first step of a transfer the new side has a share s of the control. If the profile is a
+// ramp (linear or sigmoid), s is the first value of the ramp, otherwise s = 1. The command is (1 -
+// s) times the old side's offer plus s times the new side's offer. Profile jerk_limited also limits
+// the change of the command from the step before. A driver who ends a manoeuvre has full authority
+// immediately, without this limit.
 TEST_F(TakeOverLoopTest, ATransferIsFeltInItsStepWhateverTheProfile) {
   for (const TransferProfile profile : {TransferProfile::kStep, TransferProfile::kLinear,
                                         TransferProfile::kSigmoid, TransferProfile::kJerkLimited}) {
-    std::array<int, 3> felt{};  // to the driver, from a manoeuvre to the driver, to the automation
+    // The numbers of transfers to the driver, from a manoeuvre to the driver, and to the
+    // automation.
+    std::array<int, 3> felt{};
     for (std::int64_t seed = 1; seed <= 40; ++seed) {
       Scenario scenario = Paper();
       scenario.seed = seed;

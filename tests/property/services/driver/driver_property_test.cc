@@ -1,4 +1,4 @@
-// The driver of the host in whole runs, with any human weaknesses.
+// Properties of the host's driver in whole runs, with random weaknesses of the driver.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -20,8 +20,8 @@ constexpr std::size_t kSteps = 100;
 
 // Sums over the seeds for each step.
 struct Ensemble {
-  std::vector<double> nees = std::vector<double>(kSteps);    // error' P^-1 error
-  std::vector<double> nis = std::vector<double>(kSteps);     // sum of nu^2 / S
+  std::vector<double> nees = std::vector<double>(kSteps);    // sum of error' P^-1 error, P reported
+  std::vector<double> nis = std::vector<double>(kSteps);     // sum of innovation^2 / variance
   std::vector<double> values = std::vector<double>(kSteps);  // number of terms in nis
   std::vector<Eigen::Vector3d> error =
       std::vector<Eigen::Vector3d>(kSteps, Eigen::Vector3d::Zero());
@@ -29,8 +29,8 @@ struct Ensemble {
       std::vector<Eigen::Vector3d>(kSteps, Eigen::Vector3d::Zero());
 };
 
-// A car whose position varies by some 15 m in these steps. The car stays ahead of the host, and so
-// near that the lateral offsets of the sensors have an effect.
+// A scenario in which the position of the car ahead varies by some 15 m in these steps. The car
+// stays ahead of the host, and so near that the lateral offsets of the sensors have an effect.
 Scenario GentleScenario() {
   Scenario scenario;
   scenario.fusion.jerk_density_m2ps5 = 0.02;
@@ -120,9 +120,9 @@ class ConsistencyTest : public ::testing::TestWithParam<Case> {
 TEST_P(ConsistencyTest, ErrorsHaveTheReportedCovariance) {
   const Ensemble sums = Simulate(World(), World(), GetParam().dropout);
   EXPECT_LE(NeesOutside(sums), MostNeesOutside());
-  // 3 is the dimension of the state. The means over other groups of a hundred seeds scatter by
-  // 0.06. For independent values they would scatter by 0.025. The tolerance is about three times
-  // 0.06.
+  // The expected mean is 3, the dimension of the state. The means over other groups of a hundred
+  // seeds scatter by 0.06. For independent values they would scatter by 0.025. The tolerance is
+  // about three times 0.06.
   EXPECT_NEAR(Mean(sums.nees), 3.0, 0.2);
 }
 

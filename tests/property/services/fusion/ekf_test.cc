@@ -82,8 +82,8 @@ TEST(EkfPropertyTest, BrakingOfTheHostLeavesTheEstimateOfThePrecedingCarAlone) {
   }
 }
 
-// Three corrections, by one value each, must equal the textbook's joint correction by all three
-// values.
+// Ekf corrects the state three times, by one value each. This must equal the textbook's joint
+// correction by all three values.
 TEST(EkfPropertyTest, SequentialCorrectionsEqualAJointOne) {
   const Scenario scenario;
   const FusionSection& f = scenario.fusion;
@@ -130,7 +130,8 @@ TEST(EkfPropertyTest, PredictionInTwoHalvesIsThePredictionOfTheWhole) {
   EXPECT_LT((whole.covariance() - half.covariance()).cwiseAbs().maxCoeff(), 1e-14);
 }
 
-// Joseph's form with whole matrices. Eigen adds three products in the order a + (b + c).
+// The covariance after a correction in Joseph's form, with whole 3x3 matrices. Ekf must equal it
+// bit by bit, so Ekf adds three products in Eigen's order, a + (b + c).
 Eigen::Matrix3d JosephForm(const Eigen::Matrix3d& p, const fusion::Ekf::Jacobian& jacobian,
                            double noise_variance) {
   const Eigen::RowVector3d h(jacobian(0), jacobian(1), 0);
@@ -150,11 +151,12 @@ TEST(EkfPropertyTest, PredictionAndCorrectionLeaveOutOnlyZeros) {
     fusion::Ekf ekf(t, density);
     ekf.Start({30, 1, 0.1}, Eigen::Vector3d(2, 3, 4).asDiagonal());
     for (std::int64_t k = 0; k < 30; ++k) {
-      // The expected values use whole matrices.
+      // The expected covariance and state after the prediction are computed with whole 3x3
+      // matrices.
       Eigen::Matrix3d f;
       f << 1, t, t * t / 2, 0, 1, t, 0, 0, 1;
       fusion::Ekf noise_alone(t, density);
-      noise_alone.Predict(0);  // from P = 0: Q
+      noise_alone.Predict(0);  // from P = 0 the prediction gives the process noise Q
       const Eigen::Matrix3d sum = f * ekf.covariance() * f.transpose() + noise_alone.covariance();
       const Eigen::Vector3d state = f * ekf.state() + Eigen::Vector3d(-t * t / 2, -t, 0) * 0.7;
       ekf.Predict(0.7);

@@ -32,8 +32,9 @@ class LeadSimulation {
     const double t = scenario.step_s;
     transition_ << 1, t, t * t / 2, 0, 1, t, 0, 0, 1;
     input_ << -t * t / 2, -t, 0;
-    // The integral of (v v') q over a step, v = [s^2/2, s, 1], by Gauss's rule of 3 points. The
-    // rule is exact, because the elements are polynomials of degree 4 at most.
+    // The process noise of a step: the integral of q v v' over the time s, with the jerk density q
+    // and v = [s^2/2, s, 1], by Gauss's rule of 3 points. The rule is exact, because the elements
+    // are polynomials of degree 4 at most.
     const double node = std::sqrt(0.6);
     Eigen::Matrix3d noise = Eigen::Matrix3d::Zero();
     for (const auto& [x, weight] :

@@ -88,7 +88,9 @@ struct Outcomes {
   double target;
 };
 
-// The log powers of the target, t + s X, and of the fog, f + s Y, are independent and normal:
+// The log powers of the target's echo, t + s X, and of the fog's echo, f + s Y, have independent
+// standard normal X and Y. An echo counts if its log power is above 0 and above the other one. With
+// the density phi and the distribution function Phi of the standard normal distribution:
 //   no echo  X < -t / s and Y < -f / s
 //   target   integral over x > -t / s of  phi(x) Phi((t + s x - f) / s)
 Outcomes OutcomesOf(const LidarBeamSection& beam, double gap_m, double visibility_m) {

@@ -72,7 +72,8 @@ TEST(TrafficProperty, KeepsItsOrderBehindThePapersHost) {
       for (std::size_t car = 0; car < 12; ++car) {
         const double rear_m = ahead_m - scenario.world.vehicle_length_m;
         ASSERT_LT(truth.follower_position_m[car], rear_m) << "seed " << seed << " car " << car;
-        // Positions are some hundred metres; each of three operations rounds by half an ulp.
+        // Positions are some hundred metres. Each of three operations rounds by half an ulp,
+        // together by less than 1e-12 m.
         ASSERT_NEAR(truth.follower_gap_m[car], rear_m - truth.follower_position_m[car], 1e-12);
         ahead_m = truth.follower_position_m[car];
       }
@@ -134,7 +135,8 @@ TEST(TrafficProperty, ObeysFrictionAndEngineAndNeverRollsBackwards) {
         ASSERT_GE(now.follower_position_m[car], before.follower_position_m[car]);
         ASSERT_GE(now.follower_acceleration_mps2[car], -own.braking - 1e-9);
         ASSERT_LE(now.follower_acceleration_mps2[car], own.traction + 1e-9);
-        // The reported acceleration is the change of speed, as for a point mass.
+        // The reported acceleration is the change of speed divided by the step, as for a point
+        // mass.
         ASSERT_NEAR(now.follower_acceleration_mps2[car],
                     (now.follower_speed_mps[car] - before.follower_speed_mps[car]) / 0.1, 1e-10);
       }

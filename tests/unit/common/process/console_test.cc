@@ -162,7 +162,7 @@ INSTANTIATE_TEST_SUITE_P(To, ConsoleTest, testing::Values(Pipe, Sockets),
 
 /// Prints a line from a background process of a terminal with `stty tostop`. Such a terminal stops
 /// background processes that write.
-/// @return the status of the process that prints it, as waitpid() gives it
+/// @return the status of the process that prints the line, as waitpid() gives it
 int StatusInBackground(const char* terminal) {
   setsid();
   const int own = open(terminal, O_RDWR);  // the controlling terminal, see setsid(2)

@@ -1,4 +1,4 @@
-// Every number of a scenario has a source that a person can read.
+// Tests that every number of a scenario has a source that a person can read.
 #include <cstddef>
 #include <string_view>
 #include <vector>

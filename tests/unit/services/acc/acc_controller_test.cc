@@ -14,7 +14,7 @@ namespace {
 
 using Solver = acc::AccController::Solver;
 
-// A car at 20 m/s has a safe distance of 33 m with the default section.
+// With the default AccSection, a car at 20 m/s has a safe distance of 33 m.
 constexpr double kSpeed = 20;
 constexpr double kSafe = 33;
 
@@ -56,7 +56,7 @@ TEST(AccControllerTest, AcceleratesWhenTheGapIsTooLarge) {
   TwoCars cars{.gap_m = kSafe + 5, .preceding_speed_mps = kSpeed, .speed_mps = kSpeed};
   const acc::AccController::Output output = acc.Step(cars.Sense());
   EXPECT_GT(output.acceleration_mps2, 0);
-  EXPECT_LT(output.control, 0);  // a positive u decelerates
+  EXPECT_LT(output.control, 0);  // a positive control decelerates
   const Trip trip = Drive(AccSection{}, cars, 50);
   EXPECT_GT(trip.fastest_mps, kSpeed);
   EXPECT_LT(trip.cars.gap_m, cars.gap_m);
@@ -200,7 +200,7 @@ TEST(AccControllerTest, FallsBackAtTheIterationLimit) {
   AccSection section;
   section.max_iterations = 1;
   acc::AccController acc(section, kStep_s);
-  // GIVEN a situation in which the hardest braking has many active limits
+  // GIVEN a situation for which one iteration is too few: hard braking reaches many limits
   const acc::AccController::Output output = acc.Step({.distance_m = 10,
                                                       .relative_speed_mps = -10,
                                                       .speed_mps = kSpeed,
@@ -214,8 +214,9 @@ TEST(AccControllerTest, FallsBackAtTheIterationLimit) {
 
 // The car may have any acceleration a when the automation takes over from a driver. In a step of h,
 // the acceleration of the ACC's model goes the share 1 - e^(-h/T_e) of the way from a to -K_e u,
-// the steady acceleration of the control u. -K_e u differs from a by at most h max_jerk_mps3, plus
-// the amount by which a is outside of the automation's limits.
+// the steady acceleration of the control u. (K_e is engine_gain, T_e is engine_time_constant_s.)
+// -K_e u differs from a by at most h max_jerk_mps3, plus the amount by which a is outside of the
+// automation's limits.
 TEST(AccControllerTest, TakesOverWithoutABump) {
   const AccSection section;
   const double share = -std::expm1(-kStep_s / section.engine_time_constant_s);

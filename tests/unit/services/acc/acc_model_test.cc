@@ -15,7 +15,9 @@ AccSection Section(double headway_s, double time_constant_s, double gain) {
   return section;
 }
 
-// Phi and Gamma in closed form: the integrals of a(t) = e^(-t/T) a(0) - K (1 - e^(-t/T)) u.
+// The model's matrices Phi and Gamma for a step of h, in closed form. They follow from the
+// integrals of a(t) = e^(-t/T) a(0) - K (1 - e^(-t/T)) u, with the engine's time constant T and
+// gain K.
 acc::DiscreteAccModel ClosedForm(const AccSection& section, double h) {
   const double tau = section.engine_time_constant_s;
   const double gain = section.engine_gain;
@@ -51,7 +53,7 @@ TEST(AccModelTest, SettlesAtMinusGainTimesControl) {
   EXPECT_GT(x(acc::kDeltaD), 0);
 }
 
-// The tolerance covers some roundings of the largest term.
+// The tolerance covers some roundings of the largest element of Phi.
 TEST(AccModelTest, DiscretisationEqualsTheIntegralsWrittenOut) {
   for (const double step_s : {0.001, 0.05, 0.1, 1.0}) {
     for (const double time_constant_s : {0.01, 0.46, 10.0}) {
@@ -72,7 +74,8 @@ TEST(AccModelTest, DiscretisationEqualsTheIntegralsWrittenOut) {
 TEST(AccModelTest, DiscretisationEqualsThePowerSeries) {
   const acc::AccModel model = acc::MakeAccModel(Section(1.5, 0.46, 0.732));
   const double h = 0.1;
-  // Phi = sum (A h)^i / i!, Gamma = sum A^i h^(i+1) / (i+1)! B; |A h| < 0.3, so 20 terms are exact.
+  // Phi = sum of (A h)^i / i!, and Gamma = sum of A^i h^(i+1) / (i+1)! B. The elements of A h are
+  // below 0.3, so the terms after the 20th are smaller than a rounding.
   Eigen::Matrix3d term = Eigen::Matrix3d::Identity();
   Eigen::Matrix3d phi = Eigen::Matrix3d::Zero();
   Eigen::Vector3d gamma = Eigen::Vector3d::Zero();

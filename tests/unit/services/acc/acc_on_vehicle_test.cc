@@ -18,8 +18,8 @@ struct Course {
   double largest_acceleration_mps2 = 0;
 };
 
-// A car follows a car ahead at 20 m/s for a minute. After 5 s the car ahead brakes to 12 m/s at 2
-// m/s2.
+// The course of a car that follows a car ahead for a minute, at 20 m/s in the beginning. After 5 s
+// the car ahead brakes to 12 m/s at 2 m/s2.
 Course FollowABrakingCar(const AccSection& section, VehicleModel model,
                          const models::VehicleParameters& car = models::kSedan) {
   acc::AccController acc(section, kStep_s, model);
@@ -58,10 +58,11 @@ TEST(AccOnVehicleTest, KeepsItsDistanceAlmostAsWellAsInAPointMass) {
          {models::kCompact, models::kSedan, models::kTruck}) {
       const Course real = FollowABrakingCar(section, VehicleModel::kLongitudinal, car);
       // Delay and lag together are half a second. In this time a braking of 2 m/s2 changes the gap
-      // by 0.25 m. The loss of gap adds up while the car brakes.
+      // by 0.25 m. The loss of gap grows while the car ahead brakes (4 s), so the tolerance is 2 m.
       EXPECT_GT(real.least_gap_m, ideal.least_gap_m - 2) << "headway " << headway_s;
       EXPECT_LT(real.largest_acceleration_mps2, 3.5) << "headway " << headway_s;
-      // In the end speed and gap are right, except for the dead band of the pedals.
+      // In the end speed and gap are right, except for a small error that the dead band of the
+      // pedals leaves.
       EXPECT_NEAR(real.last_speed_mps, 12, 0.1) << "headway " << headway_s;
       EXPECT_NEAR(real.last_gap_m, acc::SafeDistance(section, 12), 0.5) << "headway " << headway_s;
     }

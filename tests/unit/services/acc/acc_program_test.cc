@@ -68,7 +68,7 @@ TEST(AccProgramTest, CostIsTheSumOverTheHorizon) {
 }
 
 // The test compares the distances to the limits, limit - C z, because these have a physical
-// meaning.
+// meaning. C is the matrix of the constraints, and z is the plan.
 TEST(AccProgramTest, LimitsAreThoseOfThePredictedCar) {
   AccSection section = ShortSection();
   section.max_speed_mps = 21.5;
@@ -113,14 +113,14 @@ TEST(AccProgramTest, LeavesOutLimitsThatNoPlanCanReach) {
   VectorXd lower(30);
   VectorXd upper(30);
   program.Limits(kSituation, lower, upper);
-  // THEN only the limits of u and of the change of u remain
+  // THEN only the limits of the control u and of its change remain, in each of the six steps
   EXPECT_EQ((upper.array() < std::numeric_limits<double>::infinity()).count(), 12);
   EXPECT_EQ((lower.array() > -std::numeric_limits<double>::infinity()).count(), 12);
 }
 
 TEST(AccProgramTest, KeepsALimitOfTheGapThatOnlyThePresentAccelerationReaches) {
   // GIVEN a car that accelerates harder than the ACC may. Over the horizon of 0.6 s, its gap
-  // shrinks by 0.5 * 0.6^2 m per m/s2.
+  // shrinks by 0.5 * 0.6^2 m for each m/s2 of the acceleration.
   AccSection section = ShortSection();
   const double shrinks_s2 = 0.5 * 0.6 * 0.6;
   const double present = section.max_acceleration_mps2 + 3;
@@ -158,7 +158,8 @@ TEST(AccProgramTest, FallbackPlanApproachesItsDecelerationAtTheFastestChange) {
   double u = -0.5;
   std::vector<double> plan;
   for (int j = 0; j < 5; ++j) plan.push_back(u = program.FallbackControl(u));
-  // u changes by 5 * 0.1 / 0.5 in a step until it is 1.2 / 0.5.
+  // In a step the control u changes by jerk * step / gain = 5 * 0.1 / 0.5, until u is deceleration
+  // / gain = 1.2 / 0.5.
   const std::vector<double> expected{0.5, 1.5, 2.4, 2.4, 2.4};
   for (std::size_t j = 0; j < 5; ++j) EXPECT_NEAR(plan[j], expected[j], 1e-15);
 }

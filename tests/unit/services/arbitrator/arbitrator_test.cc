@@ -33,7 +33,8 @@ Scenario Missing(MissingLidar missing) {
   return scenario;
 }
 
-// The sum 32 + difference loses the last bits of the difference by rounding.
+// Tolerance of a difference between radar and LiDAR. The radar's range is the sum 32 + difference,
+// and its rounding loses the last bits of the difference.
 constexpr double kRoundingOfRange_m = 1e-14;
 
 TEST(ArbitratorTest, CopiesTheHeader) {
@@ -179,7 +180,7 @@ Scenario WithPolicy(std::string_view name) {
 
 TEST(ArbitratorTest, SharesTheCommandAsThePolicyBlendSays) {
   arbitrator::Arbitrator arbitrator(WithPolicy("blend"));
-  const arbitration_t& out = Step(arbitrator, Differing(1));  // DoC 1/2, half-way from 0.2 to 0.8
+  const arbitration_t& out = Step(arbitrator, Differing(1));  // half-way in blend's band [0.2, 0.8]
   EXPECT_EQ(out.lambda_human, 0.5);
   EXPECT_EQ(out.lambda_automation, 0.5);
   EXPECT_NEAR(out.acceleration_mps2, (kAutomation_mps2 + kHuman_mps2) / 2, 1e-15);
@@ -217,7 +218,8 @@ TEST(ArbitratorTest, LooksAroundForThePoliciesThatWantItAndForNoOther) {
   m.driver.readiness = 1;
   arbitrator::Arbitrator arbitrator(WithPolicy("adaptive"));
   EXPECT_EQ(Step(arbitrator, m).threshold, 0.5);
-  // WHEN the arbitrator gets this TRUTH THEN its threshold is lower, by 5 m/50 m and 0.5 s/5 s
+  // WHEN the arbitrator gets this TRUTH THEN its threshold is lower, by 5 m/50 m for the visibility
+  // and by 0.5 s/5 s for the follower's TTC
   arbitrator.SetOnDemandInput(truth);
   EXPECT_NEAR(Step(arbitrator, m).threshold, 0.3, 1e-15);
 }
@@ -232,7 +234,7 @@ TEST(ArbitratorTest, ADegreeOfConflictCanBeMadeOfAnyMeasure) {
   Messages m = Differing(0.5);
   m.radar.range_std_m = m.lidar.range_std_m = 0.1;
   const arbitration_t& out = Step(arbitrator, m);
-  EXPECT_NEAR(out.conflict_m, 12.5, 1e-9);  // 0.25/0.02
+  EXPECT_NEAR(out.conflict_m, 12.5, 1e-9);  // 0.5^2/(0.1^2 + 0.1^2)
   EXPECT_EQ(out.doc, conflict::DegreeOfConflict(out.conflict_m, 1, 6.63));
   EXPECT_EQ(out.mode, arbitration_t::HUMAN);
 }
@@ -295,7 +297,7 @@ TEST_F(SharedWithTheAskedTest, TheDriverIsAskedForAnyShareAndHasItAfterComing) {
     EXPECT_NEAR(out.acceleration_mps2, share * kHuman_mps2 + (1 - share) * kAutomation_mps2, 1e-12);
     EXPECT_FALSE(arbitrator_.must_ask());
   }
-  // A driver in state RECOVERING is available, so the driver gets each requested share at once.
+  // A driver in state RECOVERING is available, so the driver gets each requested share immediately.
   // Here the share is 0.
   EXPECT_EQ(RequestingNothing().lambda_human, 0);
   EXPECT_NEAR(Requesting(0.6).lambda_human, 0.6, 1e-12) << "without being asked again";

@@ -11,7 +11,7 @@
 namespace fogline::test {
 namespace {
 
-/// A person who may leave the seat and come back.
+/// A scenario with a person as the driver, who may leave the seat and come back.
 Scenario ComingBack() {
   Scenario scenario = FailsafeTakeOverTest::AskingAPerson();
   scenario.person.when_gone = WhenGone::kUntilBack;
@@ -83,7 +83,8 @@ TEST_F(FailsafeReturnTest, StopsAlsoWhenTheDriversMessagesAreLost) {
   EXPECT_EQ(Step().mode, arbitration_t::RECOVERING);
 }
 
-/// A person who overrides by the brake. A transfer without an override takes 5 s.
+/// A scenario with a person as the driver, who may override by the brake. A transfer without an
+/// override takes 5 s.
 Scenario Overriding(std::string_view policy = "traded") {
   Scenario scenario = FailsafeTakeOverTest::AskingAPerson();
   scenario.arbitrator.policy = FindPolicy(policy).value();
@@ -164,7 +165,7 @@ TEST_F(FailsafeSharedOverrideTest, LeavesTheAutomationNoShare) {
   }
 }
 
-/// The error of this scenario if the driver need not be asked.
+/// The error text for this scenario with take_over.mode kInstant: the car need not ask the driver.
 std::string ErrorIfInstant(Scenario scenario) {
   scenario.arbitrator.take_over.mode = TakeOverMode::kInstant;
   try {

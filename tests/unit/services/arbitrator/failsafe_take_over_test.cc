@@ -142,7 +142,7 @@ TEST_F(FailsafePersonTest, StopsWhenTheAutomationIsLostAndTheSeatIsEmpty) {
   EXPECT_EQ(Step().mode, arbitration_t::MINIMAL_RISK);
 }
 
-/// A person who need not be asked.
+/// A scenario with a person as the driver, whom the car need not ask.
 Scenario InstantPerson() {
   Scenario scenario = FailsafeTakeOverTest::AskingAPerson();
   scenario.arbitrator.take_over.mode = TakeOverMode::kInstant;

@@ -31,8 +31,8 @@ TEST(RequestDebouncerTest, BandLetsTheAutomationReturnOnlyBelowIt) {
   EXPECT_EQ(Step(debouncer, 0.49), 0);
 }
 
-// With DoC 0.9 against 0.5, L grows by ln 9 = 2.197 in a step. The third step exceeds ln 99 =
-// 4.595.
+// L is the evidence that Wald's test adds up. With a DoC of 0.9 and a threshold of 0.5, L grows by
+// ln 9 = 2.197 in a step. In the third step L exceeds Wald's upper bound ln 99 = 4.595.
 TEST(RequestDebouncerTest, SprtWaitsForEnoughEvidenceInEitherDirection) {
   arbitrator::RequestDebouncer debouncer(
       {.hysteresis = Hysteresis::kSprt, .sprt_alpha = 0.01, .sprt_beta = 0.01}, 0.1);
@@ -140,7 +140,9 @@ TEST(RequestDebouncerTest, ABandOfWhateverWidthGivesTheWheelBack) {
   }
 }
 
-// A posterior of 0.99 has the evidence ln(0.99/0.01) = 4.595 against 0.5, in every step.
+// A DoC that is a posterior probability contains the evidence of all steps, so the debouncer must
+// not add it up. A posterior above 0.99 exceeds Wald's upper bound ln(0.99/0.01) = 4.595 in its
+// first step; a posterior of 0.98 never does.
 TEST(RequestDebouncerTest, SprtDoesNotCountTheEvidenceOfAPosteriorTwice) {
   arbitrator::RequestDebouncer debouncer(
       {.hysteresis = Hysteresis::kSprt, .sprt_alpha = 0.01, .sprt_beta = 0.01}, 0.1, true);

@@ -13,11 +13,12 @@
 namespace fogline {
 namespace {
 
-/// How the automation drives with the track's distance after the human has handed back control.
+/// What a run shows after the first transfer back to the automation: the errors of the track's
+/// distance while the automation drives.
 struct AfterHandBack {
   int returns = 0;       // of authority to the automation
-  double wrong_s = 0;    // time in which this distance was wrong by more than 0.1 m
-  double largest_m = 0;  // largest error of this distance
+  double wrong_s = 0;    // time in which the distance was wrong by more than 0.1 m
+  double largest_m = 0;  // largest error of the distance
   bool automation_at_end = false;
 };
 
@@ -55,7 +56,8 @@ TEST(HandBackTest, ByTheFusionComesAsSoonAsTheDistanceIsRight) {
   EXPECT_LT(seen.largest_m, 0.2);
 }
 
-// In paper.json the radar differs from the track by 0.9 m without any fault.
+// In paper.json the radar differs from the track by 0.9 m without any fault. This difference must
+// not prevent the hand-back.
 TEST(HandBackTest, ByTheFusionHappensInThePapersExperiment) {
   for (const char* seed : {"/seed=1", "/seed=2", "/seed=3", "/seed=4", "/seed=5"}) {
     const AfterHandBack seen = Drive("paper.json", {seed, "/arbitrator/transfer/hand_back=fusion"});

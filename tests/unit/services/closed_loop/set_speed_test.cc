@@ -18,7 +18,7 @@ struct Chase {
   double min_ttc_s = 0;
 };
 
-/// The host of dense_fog.json, which the automation always drives.
+/// Runs dense_fog.json with policy "none", so the automation always drives the host.
 Chase Drive(std::vector<std::string> overrides) {
   overrides.emplace_back("/arbitrator/policy=none");
   const Scenario scenario =

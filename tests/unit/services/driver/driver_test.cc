@@ -158,7 +158,7 @@ TEST(DriverTest, MisjudgesWhatFogLeavesOfTheTruth) {
 
 TEST(DriverTest, RefusesAStepSoShortThatHeCannotRememberHisReactionTime) {
   Scenario scenario;
-  scenario.step_s = 0.003;  // 0.8 s are 266 steps
+  scenario.step_s = 0.003;  // the reaction time of 0.8 s is 266 steps
   EXPECT_NO_THROW(driver::Driver{scenario}) << "this driver has none";
   scenario.human.misjudges = true;
   const auto error = [&] { return test::ErrorOf([&] { const driver::Driver driver(scenario); }); };
@@ -290,7 +290,8 @@ TEST_F(AwarenessOfTheDriverTest, MakesHimErrMoreAndReactLater) {
     const truth_t truth = TruthOf(step);
     if (step > 0) awareness_.Step(models::DriverTask::kMonitors, scenario_.step_s);
     const double faded = 1 - awareness_.awareness();
-    // Without awareness, V_s and r_c grow as in SUMO's driver state, and T_r grows by 0.7 s.
+    // Without awareness, the errors of gap and approach grow as in SUMO's driver state, and the
+    // reaction time grows by 0.7 s.
     const models::Attention attention{.reaction_time_s = 0.8 + 0.7 * faded,
                                       .gap_error = 0.05 + 0.75 * 0.2 * faded,
                                       .approach_error_ps = 0.01 + 0.15 * 0.2 * faded};

@@ -58,8 +58,8 @@ TEST(TrafficTest, LetsEachCarFollowTheOneBeforeIt) {
       otherwise = undisturbed.Step(Platoon(3)).acceleration_mps2;
       ++truth.header.step;
     }
-    // THEN the third car brakes for the slower car, and the first car does not react to the slower
-    // car
+    // THEN the third car brakes for the slower car, and a first car with an ACC does not react to
+    // the slower car
     EXPECT_LT(now[2], otherwise[2] - 0.05);
     if (driver == FollowerDriver::kAcc) {
       EXPECT_EQ(now[0], otherwise[0]);
@@ -80,7 +80,7 @@ TEST(PersonTest, HoldsSafeWhatHisStyleHoldsSafe) {
                              {FollowerDriver::kHuman, FollowerStyle::kNormal},
                              {FollowerDriver::kHuman, FollowerStyle::kCautious}};
   const follower_command_t command = follower::Follower(scenario).Step(Platoon(3));
-  // T v + s_0 of each style at 20 m/s.
+  // T v + s_0 at v = 20 m/s, with the time gap T and the standstill gap s_0 of each style.
   EXPECT_DOUBLE_EQ(command.safe_distance_m[0], 1.25 * 20 + 1);
   EXPECT_DOUBLE_EQ(command.safe_distance_m[1], 1.45 * 20 + 2);
   EXPECT_DOUBLE_EQ(command.safe_distance_m[2], 1.75 * 20 + 4);
@@ -130,7 +130,7 @@ TEST(PersonTest, BrakesAsHardAsHisSafetyModelAsksInDanger) {
 TEST(PersonTest, IsRefusedWhereHisReactionTimeIsTooManySteps) {
   Scenario scenario = WithFollowers(3, FollowerDriver::kAcc);
   scenario.followers.cars = {{}, {FollowerDriver::kHuman, FollowerStyle::kCautious}};
-  scenario.step_s = 0.004;  // 1.1 s are 275 steps
+  scenario.step_s = 0.004;  // the reaction time of 1.1 s is 275 steps
   scenario.follower.horizon_steps = 5;
   EXPECT_EQ(test::ErrorOf([&] { follower::Follower follower(scenario); }),
             "/step_s: 0.004 s is too short for a person in following car 1: human driver: the "

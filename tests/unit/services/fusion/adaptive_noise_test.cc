@@ -9,7 +9,7 @@
 namespace fogline {
 namespace {
 
-constexpr double kAssumed = 0.04;  // R_0
+constexpr double kAssumed = 0.04;  // the assumed variance of the noise
 
 TEST(AdaptiveNoiseTest, IsTheAssumedOneUntilItLearns) {
   for (const NoiseAdaptation rule :

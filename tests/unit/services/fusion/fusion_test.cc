@@ -86,7 +86,7 @@ TEST(FusionTest, FirstLidarValueCorrectsTheRadarsStart) {
   Messages m = At(0, 40);
   m.lidar.range_m = 39;
   const track_t& track = Step(fusion, m);
-  // The weights are the inverse variances, 1 : 9.
+  // The weights of radar and LiDAR are the inverse variances, 1 : 9.
   EXPECT_NEAR(track.state[0], (40 + 9 * 39) / 10.0, kNear);
   EXPECT_NEAR(track.covariance[0][0], 0.009, kNear);
   EXPECT_EQ(track.innovation[2], -1);
@@ -101,7 +101,8 @@ TEST(FusionTest, StartsBesideTheLaneWithWhatTheTwoValuesSayOfTheDistance) {
   Messages m = At(0, 6.5, -1.2);
   m.lidar.valid = 0;
   const track_t& track = Step(fusion, m);
-  // The triangle of 2.5, 6 and 6.5 m: the cosine is 12/13.
+  // The lateral offset of 2.5 m, the distance of 6 m and the range of 6.5 m form a right triangle.
+  // The cosine of the direction to the target is 12/13.
   EXPECT_NEAR(track.state[0], 6.0, kNear);
   EXPECT_NEAR(track.state[1], -1.3, kNear);
   EXPECT_NEAR(track.covariance[0][0], 0.13 * 0.13, kNear);
@@ -323,7 +324,8 @@ TEST(FusionTest, LearnsTheNoiseFromTheResidualAfterTheCorrection) {
     Step(plain, At(k));
     Step(adapting, At(k));
   }
-  // GIVEN an innovation d of variance S = P + R
+  // GIVEN an innovation d of variance S = P + R, with the variance P of the predicted range and the
+  // assumed noise variance R
   Messages m = At(20);
   m.lidar.range_m = 31;
   Step(plain, m);

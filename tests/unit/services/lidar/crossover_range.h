@@ -9,8 +9,8 @@
 namespace fogline::test {
 
 /// Maximum range in fog of a target that a LiDAR detects up to R_c = `clear_range_m` in clear air.
-/// The maximum range R solves (R / R_c)^2 exp(2 alpha R) = 1, that is R exp(alpha R) = R_c. With
-/// Lambert's W, R = W(alpha R_c) / alpha.
+/// With alpha = `extinction_pm`, the maximum range R solves (R / R_c)^2 exp(2 alpha R) = 1, that is
+/// R exp(alpha R) = R_c. With Lambert's W, R = W(alpha R_c) / alpha.
 inline double AttenuatedRange_m(double clear_range_m, double extinction_pm) {
   if (extinction_pm == 0.0) return clear_range_m;
   return boost::math::lambert_w0(extinction_pm * clear_range_m) / extinction_pm;
@@ -19,7 +19,9 @@ inline double AttenuatedRange_m(double clear_range_m, double extinction_pm) {
 /// Range beyond which the echo of the fog is stronger than the echo of the target. At this range
 /// the ratio
 ///     rho = P_f / P_t = (pi beta / Gamma) J R^2 exp(2 alpha R)    (full overlap, R >= R2)
-/// is 1, so the range is AttenuatedRange_m of sqrt(Gamma / (pi beta J)).
+/// of the two powers is 1, so the range is AttenuatedRange_m of sqrt(Gamma / (pi beta J)). J is
+/// `fog_strength_pm`, Gamma `reflectivity`, beta `backscatter_pmsr`, and alpha `extinction_pm`. R2
+/// is the range from which transmitter and receiver overlap fully.
 inline double CrossoverRange_m(double fog_strength_pm, double reflectivity, double backscatter_pmsr,
                                double extinction_pm) {
   return AttenuatedRange_m(

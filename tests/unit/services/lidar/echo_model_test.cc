@@ -23,7 +23,8 @@ TEST(EchoModelTest, TheClearTargetIsAtTheThresholdAtItsClearRange) {
   LidarBeamSection beam;
   beam.target_reflectivity = beam.clear_reflectivity;
   const lidar::EchoModel model = Model(beam, 50.0);
-  // In clear air of 20 km the attenuation is 2 alpha R = 0.036.
+  // Clear air has a visibility of 20 km. Over the way to the target and back, it attenuates the
+  // echo by 2 alpha R = 0.036 (alpha: extinction coefficient, R: clear_range_m).
   EXPECT_NEAR(model.At(beam.clear_range_m, kClear_m).target,
               -2.0 * ExtinctionOf(kClear_m) * beam.clear_range_m, 1e-12);
 }

@@ -18,8 +18,8 @@ namespace {
 constexpr double kSpeedOfLight_mps = 299'792'458.0;
 constexpr double kBackscatterFactor = 0.046;  // beta times visibility, Hahner et al. 2021
 
-// Defaults of Hahner et al. 2021. Their Gamma of 1e-6 contains a factor 2/c. Without this factor
-// Gamma is 150.
+// Defaults of Hahner et al. 2021. Their reflectivity Gamma of 1e-6 contains a factor 2/c (c: speed
+// of light). Without this factor Gamma is 150.
 constexpr lidar::BeamOptics kHahner{
     .pulse_length_m = kSpeedOfLight_mps * 20e-9, .overlap_start_m = 0.9, .overlap_end_m = 1.0};
 constexpr double kHahnerReflectivity = 1e-6 * kSpeedOfLight_mps / 2.0;
@@ -93,7 +93,8 @@ TEST(FogBeamTest, CrossoverIsWhereTheRatioOfTheEchoesIsOne) {
   }
 }
 
-// The largest folded pulse over a grid of centres, by the trapezoidal rule.
+// The strongest echo of the fog in a grid of ranges. The echo at a range is the integral of the
+// pulse, centred there, times the channel gain, by the trapezoidal rule.
 lidar::FogPeak BruteForce(const lidar::BeamOptics& optics, double extinction_pm,
                           double centre_step_m) {
   constexpr int kPoints = 4000;
@@ -127,8 +128,8 @@ TEST(FogBeamTest, PeakMatchesBruteForceOverTheRangeOfParameters) {
           (optics.overlap_end_m - optics.overlap_start_m + 0.5 * optics.pulse_length_m) / 200.0;
       const lidar::FogPeak expected = BruteForce(optics, extinction_pm, step_m);
       const lidar::FogPeak peak = lidar::FindFogPeak(optics, extinction_pm);
-      // The tolerances are the errors of the grids at the kinks of the overlap: 0.3 % in J, two
-      // steps in r*.
+      // The tolerances are the errors of the grids at the kinks of the overlap: 0.3 % in the peak's
+      // strength, two steps in its range.
       EXPECT_NEAR(peak.strength_pm / expected.strength_pm, 1.0, 3e-3)
           << optics.pulse_length_m << " " << extinction_pm;
       EXPECT_NEAR(peak.range_m, expected.range_m, 2.0 * step_m)

@@ -118,8 +118,9 @@ TEST(LidarTest, SeesANearCarThroughThickFog) {
 }
 
 TEST(LidarTest, HasNoEchoAtAllOfAFarDarkCarInThinFog) {
-  // Car and fog are 2.4 and 2 standard deviations below the detection threshold. In a step, 8 of 15
-  // beams are above the threshold with a probability of 1e-9.
+  // The echoes of car and fog are 2.4 and 2 standard deviations below the detection threshold. The
+  // LiDAR has an echo if at least 8 of its 15 beams are above the threshold. The probability of
+  // this is about 1e-9 in a step.
   Scenario scenario = Exact(FogModel::kBeam);
   scenario.lidar.beam.target_reflectivity = 0.02;
   lidar::Lidar lidar(scenario);

@@ -36,12 +36,12 @@ struct ShortLog {
   std::optional<std::int64_t> done;
   /// If set, the scenario has two parts, and a TRUTH of this step comes between them.
   std::optional<std::int64_t> early;
-  /// If set, the log has this event on FOGLINE_GRAPH behind the scenario.
+  /// If set, the log has this event on FOGLINE_GRAPH after the scenario.
   std::optional<log_graph_t> graph;
   std::int64_t type_fingerprint = TypeFingerprint();
 };
 
-/// @return the position after the last event
+/// Writes a log with these contents. @return the number of its bytes and events
 inline log::LogHead WriteShortLog(const std::filesystem::path& file,
                                   const ShortLog& contents = {}) {
   log::EventLogWriter writer(file);

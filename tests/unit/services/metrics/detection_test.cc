@@ -85,7 +85,7 @@ TEST(DetectionTest, ALidarIsRightWithinItsToleranceMountingAndWithoutAValue) {
   scenario.lidar.bias_m = 0.5;
   scenario.lidar.lateral_offset_m = 1;
   auto run = ClearRun(4);
-  run[0].lidar_range_m = 30.5166620396 + 0.09;  // sqrt(901) + 0.5
+  run[0].lidar_range_m = 30.5166620396 + 0.09;  // sqrt(30^2 + 1) m + bias of 0.5 m
   run[1].lidar_range_m = 30.5166620396 - 0.09;
   run[2].lidar_range_m = std::numeric_limits<double>::quiet_NaN();
   run[3].lidar_range_m = 30.5166620396;

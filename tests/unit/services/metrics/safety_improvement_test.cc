@@ -22,7 +22,8 @@ TEST(SafetyImprovementTest, IsFiftyPercentWhereEveryShortfallIsHalved) {
 }
 
 TEST(SafetyImprovementTest, IsTheMeanOfTheStepsRatios) {
-  // 1 - 0/1 = 1, 1 - 3/2 = -1/2, 1 - 1/4 = 3/4: the mean is 5/12.
+  // The ratios 1 - traded/baseline of the steps are 1 - 0/1 = 1, 1 - 3/2 = -1/2 and 1 - 1/4 = 3/4.
+  // Their mean is 5/12.
   const auto baseline = FoggyRun({1, 2, 4});
   const auto traded = FoggyRun({0, 3, 1});
   EXPECT_NEAR(*metrics::SafetyImprovementPct(baseline, traded, 0), 100 * 5.0 / 12, 1e-12);

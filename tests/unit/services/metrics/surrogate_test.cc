@@ -44,8 +44,8 @@ TEST(SurrogateTest, DecelerationToAvoidACrashStopsTheClosingWithinTheGap) {
 }
 
 TEST(SurrogateTest, UrgentDecelerationGapIsWhatBothBrakingsLeave) {
-  // The car ahead needs 20^2/6.6 = 60.61 m to stop. The car behind needs 25 m during its reaction
-  // and then 25^2/6.6 = 94.70 m.
+  // Both cars brake with 3.3 m/s2. The car ahead needs 20^2/6.6 = 60.61 m to stop. The car behind
+  // needs 25 m during its reaction of 1 s, and then 25^2/6.6 = 94.70 m.
   EXPECT_NEAR(metrics::UrgentDecelerationGap({}, kClosing), 30 + 60.6061 - 94.6970 - 25, 1e-4);
   EXPECT_EQ(metrics::UrgentDecelerationGap({}, kFollowing), 10);
 }
@@ -58,7 +58,8 @@ TEST(SurrogateTest, CrashProbabilityIsThatOfATruncatedNormalDistribution) {
   section.madr_most_mps2 = 9;
   EXPECT_EQ(metrics::CrashProbability(section, 7), 0);
   EXPECT_NEAR(metrics::CrashProbability(section, 8), 0.5, 1e-12);
-  // (0.691462 - 0.158655)/0.682689, from tables of the normal distribution.
+  // The expected value is (0.691462 - 0.158655)/0.682689, from tables of the normal distribution:
+  // the probabilities of values below 0.5, below -1, and between -1 and 1 standard deviations.
   EXPECT_NEAR(metrics::CrashProbability(section, 8.5), 0.780453, 2e-6);
   EXPECT_EQ(metrics::CrashProbability(section, 9), 1);
   EXPECT_EQ(metrics::CrashProbability(section, std::numeric_limits<double>::infinity()), 1);
@@ -82,12 +83,14 @@ TEST(PairAccumulatorTest, KeepsTheWorstOfEachMeasure) {
 }
 
 TEST(PairAccumulatorTest, RssMarginIsTheGapBeyondTheSafeDistance) {
-  // 20 * 0.5 + 2 * 0.25/2 + 21^2/12 - 20^2/16 = 10 + 0.25 + 36.75 - 25 = 22 m.
+  // The safe distance by RssSafeDistance() is 20 * 0.5 + 2 * 0.25/2 + 21^2/12 - 20^2/16 = 10 + 0.25
+  // + 36.75 - 25 = 22 m.
   EXPECT_NEAR(*Collect({kFollowing}).min_rss_margin_m, 8, 1e-12);
 }
 
 TEST(PairAccumulatorTest, RssMarginWithTheParametersOfAdRssLibDoesNotDependOnTheScenario) {
-  // 20 * 1 + 3.5 * 1/2 + 23.5^2/8 - 20^2/16 = 20 + 1.75 + 69.03125 - 25 = 65.78125 m.
+  // The safe distance with these parameters is 20 * 1 + 3.5 * 1/2 + 23.5^2/8 - 20^2/16 = 20 + 1.75
+  // + 69.03125 - 25 = 65.78125 m.
   EXPECT_NEAR(*Collect({kFollowing}).min_rss_margin_ad_rss_m, 30 - 65.78125, 1e-12);
   MeasuresSection section;
   section.rss_response_s = 0;
@@ -97,7 +100,7 @@ TEST(PairAccumulatorTest, RssMarginWithTheParametersOfAdRssLibDoesNotDependOnThe
 }
 
 TEST(PairAccumulatorTest, IntegratesTheTimeBelowTheCriticalTimeToCollision) {
-  // TTC* is 2 s. The last step has no duration.
+  // The critical time to collision is 2 s. The last step has no duration.
   const metrics::PairMetrics m =
       Collect({CollidingWithin(3), CollidingWithin(2), CollidingWithin(1), CollidingWithin(1.5),
                kFollowing, CollidingWithin(1)});
@@ -111,8 +114,8 @@ TEST(PairAccumulatorTest, CrashPotentialIsTheMeanProbabilityOverTime) {
   section.madr_std_mps2 = 1;
   section.madr_least_mps2 = 7;
   section.madr_most_mps2 = 9;
-  // The probability for 100/(2 * 6.25) = 8 m/s2 is 1/2. One of the four steps with a duration
-  // requires this deceleration.
+  // The probability of a crash is 1/2 if the required deceleration is 10^2/(2 * 6.25) = 8 m/s2. One
+  // of the four steps with a duration requires this deceleration.
   const metrics::CarPair hard{.gap_m = 6.25, .speed_mps = 30, .lead_speed_mps = 20};
   EXPECT_NEAR(*Collect({kFollowing, hard, kFollowing, kFollowing, hard}, section).cpi, 0.125,
               1e-12);

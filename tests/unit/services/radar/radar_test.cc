@@ -91,8 +91,9 @@ TEST(RadarTest, ComparesItsMaximumRangeWithTheSlantRange) {
 }
 
 TEST(RadarTest, LosesRangeInHeavyRain) {
-  // 50 mm/h attenuate by 18.76 dB/km: 6.45 dB to 172 m and back, 6.49 dB to 173 m. A distance below
-  // 250 m gains 40 log10(250 / R): 6.50 dB at 172 m, 6.40 dB at 173 m.
+  // 50 mm/h attenuate by 18.76 dB/km: 6.45 dB to 172 m and back, 6.49 dB to 173 m. A distance R
+  // below the clear range of 250 m gains 40 log10(250 / R): 6.50 dB at 172 m, 6.40 dB at 173 m. So
+  // the radar detects the target at 172 m, and does not detect it at 173 m.
   Scenario scenario = Exact();
   scenario.fog.rain_mmph = 50.0;
   radar::Radar radar(scenario);

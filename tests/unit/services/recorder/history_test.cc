@@ -58,8 +58,8 @@ class HistoryTest : public testing::Test {
     WriteFront(log);
     for (std::int64_t step = 0; step < steps; ++step) WriteStep(log, step, step == steps - 1);
   }
-  /// The contents of the log, found from the end of the log. For comparison they are also read from
-  /// front to back.
+  /// What a reader finds in the log from its end. ReadFromFront() reads the log from front to back,
+  /// for comparison.
   log::Remains ReadFromEnd(std::int64_t tail = log::kTailBytes) const {
     return log::ReadRemains(file_, log::ReadFront(file_), {}, tail);
   }
@@ -172,8 +172,8 @@ TEST_F(HistoryTest, ReadsOfALongLogOnlyItsEndAndWhatItIsAskedFor) {
 }
 
 TEST_F(HistoryTest, SaysThatItLivesWhileItReadsALogThatDoesNotEndAsItShould) {
-  // GIVEN a log of 20 MB with foreign bytes behind its steps, so that the reader must read the
-  // whole log
+  // GIVEN a log of 20 MB with foreign bytes after its steps, so that the reader must read the whole
+  // log
   constexpr std::int64_t kSteps = 20'000;
   Write(kSteps);
   std::filesystem::resize_file(file_, std::filesystem::file_size(file_) + 2 * log::kTailBytes);

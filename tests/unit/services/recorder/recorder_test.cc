@@ -38,7 +38,7 @@ class RecorderTest : public testing::Test {
       script.Say(message);
     });
   }
-  /// Makes a recorder for a run with this progress.
+  /// Makes a recorder for a run. `progress` is the newest step that the world has begun.
   std::unique_ptr<recorder::Recorder> Record(Script& script, const std::string& name,
                                              recorder::Recorder::Existing existing,
                                              std::int64_t progress = -1) {
@@ -146,7 +146,7 @@ TEST_F(RecorderTest, AnswersAFloodOfRequestsWithABoundedNumberOfMessages) {
   AnswerAll(*recorder);
   const std::chrono::duration<double> took = Clock::now() - began;
   // The requests are for 32,000 messages. The recorder sends a step again after 2 ms at the
-  // earliest.
+  // earliest, so it sends each step at most 500 times in a second.
   EXPECT_GE(truths_.size(), static_cast<std::size_t>(runtime::kRingSteps));
   EXPECT_LE(static_cast<double>(truths_.size()), runtime::kRingSteps * (1 + 500 * took.count()));
 }

@@ -88,7 +88,7 @@ TEST(LeaderFrictionTest, AllowsOnARiseWhatTheRiseAdds) {
   Scenario scenario = OnIce(LeadProfile::kEmergencyBrake);
   scenario.lead.emergency_brake.deceleration_mps2 = 2.0;
   EXPECT_NE(Refusal(scenario), "");
-  scenario.road.grade = {{0.0, -0.05}, {500.0, 0.1}};  // g (0.15 + 0.1) / sqrt(1.01) = 2.44
+  scenario.road.grade = {{0.0, -0.05}, {500.0, 0.1}};  // g (mu + grade) / sqrt(1 + grade^2) = 2.44
   EXPECT_EQ(Refusal(scenario), "");
   const world::LeaderFriction friction(scenario, models::GradeProfile(scenario.road.grade));
   EXPECT_NEAR(friction.Limited(-2.0, 0.0), -9.80665 * 0.10 / std::sqrt(1.0025), 1e-12);

@@ -1,4 +1,4 @@
-// The world with several following cars, and with cars that are more than a point mass.
+// The world with several following cars, and with cars of the vehicle model `longitudinal`.
 #include <cmath>
 #include <stdexcept>
 #include <string>
@@ -128,7 +128,7 @@ TEST(WorldVehicleTest, BrakesOnIceNoHarderThanItsTyresHold) {
   world.Start(1);
   for (int k = 0; k < 30; ++k) {
     const truth_t& truth = Truth(world.Step(HostCommand(-6), FollowerCommand(-6)));
-    // The braking is mu g, plus less than 0.2 m/s2 of drag at 20 m/s.
+    // The tyres brake with at most mu g (mu = 0.15 on ice). Drag adds less than 0.2 m/s2 at 20 m/s.
     ASSERT_GE(truth.host_acceleration_mps2, -0.15 * models::kGravity_mps2 - 0.2);
   }
 }

@@ -20,7 +20,7 @@ namespace {
 using testing::HasSubstr;
 using testing::StartsWith;
 
-/// A verb that ends in the way that its argument names.
+/// Adds a verb that ends in the way that its argument names.
 void AddEnd(CLI::App& app, Action& action) {
   CLI::App* verb = app.add_subcommand("end", "Ends in one way or another");
   const auto how = std::make_shared<std::string>();

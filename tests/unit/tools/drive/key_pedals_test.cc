@@ -57,7 +57,7 @@ TEST_F(KeyPedalsTest, MovesALittleAtATapRestsAndGoesBack) {
 
 TEST_F(KeyPedalsTest, MovesOnWhileATerminalRepeatsAKey) {
   Type(PedalKey::kThrottle);
-  Pass(milliseconds(660));  // the delay of X11
+  Pass(milliseconds(660));  // X11's delay before the first repetition
   for (int i = 0; i < 25; ++i) {
     Type(PedalKey::kThrottle);
     Pass(milliseconds(40));

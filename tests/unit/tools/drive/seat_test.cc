@@ -76,7 +76,7 @@ TEST_F(InputMakerTest, IsNotDueMoreOftenThanASeatMaySend) {
 
 TEST_F(InputMakerTest, CutsLongNamesAtAWholeCharacterAndLongListsOfAxes) {
   const std::string long_name =
-      std::string(63, 'x') + "\xc3\xa4";  // 65 bytes, the last two are one
+      std::string(63, 'x') + "\xc3\xa4";  // 65 bytes; the last two are one character
   InputMaker maker(5, 99, driver_input_t::EVDEV, long_name);
   const driver_input_t& input = maker.Make({.axes = std::vector<double>(40, 0.5)}, now_);
   EXPECT_EQ(input.device, std::string(63, 'x'));

@@ -38,7 +38,7 @@ TEST(KeyParserTest, FindsTheButtons) {
                           TerminalKey::kGiveBack, TerminalKey::kGiveBack));
 }
 
-// Delete sends ESC [ 3 ~, Ctrl-left ESC [ 1 ; 5 D, the arrow left ESC [ D.
+// The key Delete sends ESC [ 3 ~, Ctrl-left sends ESC [ 1 ; 5 D, and the left arrow sends ESC [ D.
 TEST(KeyParserTest, IgnoresOtherKeys) {
   EXPECT_THAT(Keys({"AB\x1b[3~\x1b[1;5D\x1b[Dxyz\n"}), IsEmpty());
   EXPECT_THAT(Keys({"\x1b[3~g"}), ElementsAre(TerminalKey::kGiveBack));

@@ -83,7 +83,7 @@ TEST(ProcessGroupTest, KillsOneOfItsProcesses) {
   EXPECT_EQ(exits[0].pid, killed);
   EXPECT_TRUE(exits[0].killed);
   EXPECT_TRUE(IsAlive(other));
-  group.Kill(getpid());  // not a process of the group
+  group.Kill(getpid());  // this process is not in the group, so it goes on
 }
 
 TEST(ProcessGroupTest, EndsWithItsProcesses) {

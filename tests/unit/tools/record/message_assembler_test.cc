@@ -1,4 +1,4 @@
-// Messages are put together from packets in any order.
+// Tests that messages are put together from packets in any order.
 #include "tools/record/message_assembler.h"
 
 #include <gtest/gtest.h>

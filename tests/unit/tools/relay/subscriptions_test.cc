@@ -65,7 +65,8 @@ TEST(SubscriptionsTest, AreLimitedInNumber) {
 }
 
 TEST(SubscriptionsTest, AreLimitedInLengthTogether) {
-  // A compiled expression takes up to a few hundred times its length in memory.
+  // A compiled expression takes up to a few hundred times its length in memory. So the relay limits
+  // the length of all expressions together.
   relay::Subscriptions wanted(1000);
   const std::string longest(250, 'A');
   int added = 0;
@@ -128,8 +129,8 @@ TEST(SubscriptionsTest, GiveUpExpressionsThatTakeExponentialTime) {
 }
 
 TEST(SubscriptionsTest, GiveUpManySlowExpressionsAsOne) {
-  // GIVEN slow expressions. Boost alone completes each search, because Boost allows more visits for
-  // long expressions
+  // GIVEN slow expressions. Boost's own limit ends none of these searches, because Boost allows
+  // more visits for long expressions
   relay::Subscriptions wanted(1000);
   for (int i = 0; i < 100; ++i) wanted.Add("(a|aa)+b" + std::string(240, 'c'));
   // WHEN a name is matched with all of them, THEN the search ends before the last expression
@@ -137,7 +138,8 @@ TEST(SubscriptionsTest, GiveUpManySlowExpressionsAsOne) {
 }
 
 /// This expression is so slow that some tens of names like SlowName() take a tenth of a second.
-/// Boost completes the search, because it allows more visits for a long expression.
+/// Boost's own limit does not end the search, because Boost allows more visits for a long
+/// expression.
 const std::string kSlow = "(a|aa)+b" + std::string(240, 'c');
 std::string SlowName(int i) { return std::string(20, 'a') + std::to_string(i); }
 
@@ -156,7 +158,7 @@ int NamesUntilTheEnd(relay::Subscriptions& wanted, int first, TimePoint now) {
 TEST(SubscriptionsTest, SpendABudgetOnNewNamesThatFillsAgain) {
   relay::Subscriptions wanted(kLimit);
   ASSERT_EQ(wanted.Add(kSlow), "");
-  // GIVEN more and more new names. Boost alone completes the search for each of these names
+  // GIVEN more and more new names. Boost's own limit does not end the search for any single name
   const int stood = NamesUntilTheEnd(wanted, 0, TimePoint{});
   EXPECT_GT(stood, 1);
   EXPECT_LT(stood, 1000) << "all of them together are";

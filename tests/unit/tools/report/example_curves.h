@@ -18,7 +18,8 @@ inline stats::Summary ExampleSummary(double mean, double deviation) {
           .p95 = mean + 1.6 * deviation};
 }
 
-/// Thresholds 0.01 to 0.99. All runs up to 0.2 are equal, and so are all runs from 0.85 on.
+/// Thresholds 0.01 to 0.99. All points up to 0.2 have equal values, and all points from 0.85 on
+/// have equal values.
 inline report::ReportCurves ExampleCurves() {
   report::ReportCurves curves{
       .scenario_title = "Traded control in fog",

@@ -14,7 +14,7 @@ namespace {
 
 using nlohmann::json;
 
-/// A column of a run. The function looks in all places in which the page may store it.
+/// A column of a run. The run has only the column's index in the page's list of all columns.
 json ColumnOf(const json& page, std::size_t run, const std::string& name) {
   return page["columns"][page["runs"][run]["columns"][name].get<std::size_t>()];
 }

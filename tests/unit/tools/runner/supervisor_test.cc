@@ -45,7 +45,8 @@ class SupervisorTest : public testing::Test {
     options.say = [this](const std::string& line) { said_.push_back(line); };
     supervisor_.emplace(bus_, *coordinator_, std::move(options));
   }
-  /// Does the work of a runner until the condition holds.
+  /// Does the work of a runner until the condition holds, for at most 40 s. @return whether the
+  /// condition holds
   template <class Condition>
   bool PlayUntil(const Condition& condition) {
     const TimePoint end = Clock::now() + std::chrono::seconds(40);

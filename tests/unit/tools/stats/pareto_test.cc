@@ -21,8 +21,8 @@ std::vector<std::size_t> FrontOf(const std::vector<stats::TradeOff>& points) {
 TEST(ParetoFrontTest, IsEmptyWithoutPoints) { EXPECT_THAT(FrontOf({}), IsEmpty()); }
 
 TEST(ParetoFrontTest, HasThePublishedThresholdsButTheLast) {
-  // The paper's thresholds 0.2, 0.5 and 0.8: the third threshold gives less safety than the second
-  // for the same engagement.
+  // The points are those of the paper's thresholds 0.2, 0.5 and 0.8. The third threshold gives less
+  // safety than the second for the same engagement, so it is not on the front.
   EXPECT_THAT(FrontOf({{100, 100}, {0, 80.79}, {0, 10.23}}), ElementsAre(1, 0));
 }
 

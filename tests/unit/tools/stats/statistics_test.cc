@@ -41,7 +41,7 @@ TEST(StatisticsTest, HasNoSpreadWhereAllValuesAreEqual) {
 }
 
 TEST(StatisticsTest, GivesTheDeviationOfASample) {
-  // The squared distances from 5 have the sum 32; n - 1 = 7.
+  // The mean is 5, the squared distances from it have the sum 32, and n - 1 is 7.
   const stats::Summary summary = SummaryOf({2, 4, 4, 4, 5, 5, 7, 9});
   EXPECT_DOUBLE_EQ(*summary.mean, 5.0);
   EXPECT_DOUBLE_EQ(*summary.deviation, std::sqrt(32.0 / 7.0));

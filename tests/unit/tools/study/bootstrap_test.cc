@@ -84,8 +84,9 @@ TEST(FromReplicatesTest, CoversAMeanInNearlyNineteenOfTwentyExperiments) {
     const study::Estimate estimate = study::FromReplicates(kRuns, 0, std::move(replicates));
     covered += estimate.low <= 0 && 0 <= estimate.high ? 1 : 0;
   }
-  // A bootstrap of 40 runs is a little narrow: its level is 0.93. The expected number in 200
-  // experiments is 186, with a deviation of 3.6. The bounds are three deviations away.
+  // The intervals of a bootstrap of 40 runs are a little too narrow: they contain the mean with a
+  // probability of 0.93, not 0.95. The expected number in 200 experiments is 186, with a deviation
+  // of 3.6. The bounds are three deviations away.
   EXPECT_GE(covered, 175);
   EXPECT_LE(covered, 197);
 }

@@ -88,7 +88,7 @@ TEST(ComparisonTest, TestsEveryMeasureOfWholeRuns) {
 
 TEST(ComparisonTest, ARunThatCollidesIsLessSafeThanOneThatDoesNot) {
   // GIVEN four seeds. With the first seed both runs collide, with the second seed one run. The runs
-  // of the third seed have equal safety, those of the fourth seed have not
+  // of the third seed have equal safety, and the runs of the fourth seed have different safety
   const std::size_t measures = study::ComparedMetrics().size();
   std::vector<double> values(2 * measures * 4, 0.0);
   const auto set = [&](std::size_t variant, std::string_view measure, std::array<double, 4> of) {

@@ -13,7 +13,8 @@ namespace fogline {
 namespace {
 
 TEST(EstimateTest, IsTheMeanWithStudentsIntervalOfTheValuesThatAreThere) {
-  // Mean 2, deviation 1, t of 2 degrees of freedom 4.302653: 2 +- 4.302653/sqrt(3).
+  // The three values have mean 2 and standard deviation 1. Student's t with 2 degrees of freedom is
+  // 4.302653, so the interval is 2 +- 4.302653/sqrt(3).
   const study::Estimate estimate = study::EstimateOf(std::array{1.0, kNoNumber, 2.0, 3.0});
   EXPECT_EQ(estimate.n, 3);
   EXPECT_EQ(estimate.mean, 2);

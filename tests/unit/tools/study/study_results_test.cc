@@ -78,7 +78,7 @@ TEST(VehicleStudyTest, NamesTheHardestAccelerationOfAnyRun) {
   double hardest = 0;
   for (const auto& row : RowsOf(result, "vehicle.csv")) {
     if (row.at("measure") != "max_abs_acceleration_mps2") continue;
-    hardest = std::max(hardest, NumberIn(row, "mean"));  // of one run
+    hardest = std::max(hardest, NumberIn(row, "mean"));  // of one run, because there is one seed
   }
   ASSERT_GT(hardest, 0);
   EXPECT_NE(result.section.method.find(
@@ -113,7 +113,8 @@ TEST(ThresholdStudyTest, AQuarterOfItsSituationsHasNoFog) {
                     study::MixedHuman::kDrawn, study::MixedRadar::kDrawn, {"/steps=250"});
   const auto clear = std::ranges::count_if(mixed.members.front().shortfall_m,
                                            [](double m) { return std::isnan(m); });
-  // The number is binomial, with a standard deviation of 8.7.
+  // The number of situations without fog is binomial, with a standard deviation of 8.7. The
+  // tolerance is four standard deviations.
   EXPECT_NEAR(static_cast<double>(clear), kSituations / 4.0, 4 * 8.7);
 }
 

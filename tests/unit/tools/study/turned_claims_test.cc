@@ -41,7 +41,7 @@ void KeepNamed(const std::set<std::string>& names, std::vector<Named>& all) {
   std::erase_if(all, [&](const Named& one) { return !names.contains(one.name); });
 }
 
-/// The runs of the cells that the claims of a study compare.
+/// The runs of all cases with all variants that the claims of a study compare.
 study::Comparison RunClaims(study::StudyDesign design) {
   std::set<std::string> cases;
   std::set<std::string> variants;

@@ -42,7 +42,8 @@ TEST(SweepThresholdsTest, DoesNotDependOnTheNumberOfThreadsByABit) {
 }
 
 TEST(SweepThresholdsTest, EngagesTheHumanAlwaysAtZeroAndHasNoSafetyToGainAtOne) {
-  // DoC is a logistic function, so it is above 0 and below 1.
+  // DoC is a logistic function, so it is above 0 and below 1. With threshold 0 the human always
+  // drives, and with threshold 1 never.
   const std::vector<sweep::ThresholdRow> rows = Sweep({0, 1}, 2);
   EXPECT_EQ(rows[0].rhe_pct.Result().mean, 100.0);
   EXPECT_EQ(rows[1].rhe_pct.Result().mean, 0.0);

@@ -21,7 +21,7 @@ std::uint32_t NumberOf(runtime::Bytes bytes) {
   return number;
 }
 
-/// Reads the ring from a place to its end. @return the numbers of the messages
+/// Reads the ring from `place` to the end of the ring. @return the numbers of the messages
 std::vector<std::uint32_t> ReadFrom(const MessageRing& ring, std::uint64_t& place) {
   std::vector<std::uint32_t> numbers;
   while (place < ring.end()) {

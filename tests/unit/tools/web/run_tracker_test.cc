@@ -51,7 +51,7 @@ constexpr TimePoint kBegin{};
 TEST(RunTrackerTest, ShowsARunWhenAllPartsOfItsScenarioAreThere) {
   RunTracker tracker;
   Speaker runner(tracker, 5);
-  // In any order, and with repetitions.
+  // The parts come in any order, and some parts come twice.
   runner.Part(2, kBegin);
   runner.Part(0, kBegin);
   runner.Part(0, kBegin);

@@ -123,7 +123,8 @@ TEST_P(EveryPolicyProperty, AuthoritiesSumToOneAndTheCommandLiesBetweenTheOffers
       ASSERT_GE(out.threshold, 0);
       ASSERT_LE(out.threshold, 1);
       ASSERT_EQ(out.mode == arbitration_t::HUMAN, out.lambda_human >= 0.5);
-      // With the gate of transfers, the limit of the gate also extends the range of the command.
+      // The command lies between the offers and the previous command. The gate replaces a command
+      // beyond the gate's limit by this limit, which may be outside of this range.
       const TransferSection& transfer = scenario.arbitrator.transfer;
       const double gate_mps2 = transfer.gate ? transfer.gate_acceleration_mps2 : kInfinity;
       const auto [low, high] =
@@ -212,7 +213,9 @@ TEST(TransferProperty, ARampChangesAuthorityNoFasterThanItsSteepestPart) {
         .profile = sigmoid ? TransferProfile::kSigmoid : TransferProfile::kLinear,
         .duration_s = draw.Uniform(0.5, 5)};
     const double step_s = draw.Uniform(0.02, 0.2);
-    // S'(1/2) = k/4 / (1 - 2 s(-k/2)), with k = 10.
+    // The largest slope of the ramp: 1 if it is linear, S'(1/2) for the sigmoid S of
+    // services/arbitrator/transfer.h. S'(1/2) = k/4 / (1 - 2 s(-k/2)), with k = 10 and s(x) = 1/(1
+    // + e^-x).
     const double steepest = sigmoid ? 2.5 / (1 - 2 / (1 + std::exp(5.0))) : 1;
     arbitrator::Transfer transfer(section, step_s);
     double previous = 0;
@@ -254,9 +257,10 @@ TEST(RequestDebouncerProperty, NoTwoTransfersAreNearerThanTheLeastStay) {
   EXPECT_GT(transfers, 1000);
 }
 
-// Wald's test keeps the error rates that its parameters allow, if the DoC really is the probability
-// of a conflict. For a reading x from N(m, 1) or N(-m, 1), both equally likely, P(human | x) = 1/(1
-// + e^(-2mx)).
+// Wald's sequential test (hysteresis `sprt`) keeps the error rates that its parameters allow, if
+// the DoC really is the probability of a conflict. Here a reading x comes from N(m, 1) with a
+// conflict, and from N(-m, 1) without. If both are equally likely, the probability of a conflict is
+// 1/(1 + e^(-2mx)).
 TEST(RequestDebouncerProperty, SprtErrsNoMoreOftenThanItsParametersSay) {
   constexpr int kTests = 20'000;
   constexpr double kMean = 0.3;
@@ -266,8 +270,8 @@ TEST(RequestDebouncerProperty, SprtErrsNoMoreOftenThanItsParametersSay) {
     for (int test = 0; test < kTests; ++test) {
       arbitrator::RequestDebouncer debouncer(
           {.hysteresis = Hysteresis::kSprt, .sprt_alpha = alpha, .sprt_beta = alpha}, 0.1);
-      // GIVEN no conflict WHEN Wald's test runs until its first decision, or for 60 steps THEN it
-      // decides for the human in about a share alpha of the tests at most
+      // GIVEN no conflict WHEN Wald's test runs until its first decision, or for 60 steps THEN at
+      // most about a share alpha of the tests decides for the human
       for (int k = 0; k < 60; ++k) {
         const double x = random.Normal2(test, static_cast<std::uint32_t>(k))[0] - kMean;
         const double doc = 1 / (1 + std::exp(-2 * kMean * x));
@@ -279,7 +283,8 @@ TEST(RequestDebouncerProperty, SprtErrsNoMoreOftenThanItsParametersSay) {
         if (before != 0 && debouncer.evidence() == 0) break;  // decided for the automation
       }
     }
-    // Wald's bound is alpha/(1 - beta). The tolerance is four standard deviations of the count.
+    // Wald's bound for this share is alpha/(1 - beta); here beta = alpha. The tolerance is four
+    // standard deviations of the count.
     const double bound = alpha / (1 - alpha);
     EXPECT_LE(errors, kTests * bound + 4 * std::sqrt(kTests * bound)) << alpha;
     EXPECT_GT(errors, 0) << alpha;

@@ -1,4 +1,4 @@
-// The witness of the conflict measures: the filter's prediction, reconstructed from messages.
+// Properties of policies::Witness: the filter's prediction of the range, computed from messages.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -26,10 +26,12 @@ Scenario With(NoiseAdaptation rule, double radar_offset_m = 0, double lidar_offs
   return scenario;
 }
 
-/// H P- H' of the first range of a step, computed from the messages so far. H P- H' is the variance
-/// S of the range's innovation minus the noise R. R follows the filter's rule, which uses the
-/// innovation d and the residual e. Without lateral offsets, e = d R / S and H P+ H' = (S - R) R /
-/// S. With lateral offsets the rule `innovation` is still exact.
+/// Computes the variance of the filter's prediction of the first range in a step (H P- H' in
+/// services/fusion/README.md), from the messages so far. It is the variance S of the range's
+/// innovation minus the noise variance R. R follows the filter's rule for adaptive noise, which
+/// uses the innovation d or the residual e. The class uses e = d R / S and, for the variance after
+/// the correction, (S - R) R / S. Both hold only without lateral offsets of the sensors. The rule
+/// `innovation` does not need them, so it is also exact with lateral offsets.
 class ByRecursion {
  public:
   explicit ByRecursion(const Scenario& scenario)
@@ -80,7 +82,8 @@ void ExpectTheFiltersPrediction(const Scenario& scenario) {
         ++predictions;
         const double measured = step.radar.valid ? step.radar.range_m : step.lidar.range_m;
         EXPECT_DOUBLE_EQ(seen.range_m, measured - track.innovation[value]);
-        // Witness and recursion both subtract numbers of the size of S.
+        // Witness and ByRecursion compute the variance as a difference of numbers of the size of S.
+        // So the rounding is relative to S.
         const double rounding = 1e-9 * std::max(1.0, track.innovation_variance[value]);
         ASSERT_NEAR(seen.std_m * seen.std_m, recursion.Variance(track, value), rounding)
             << "seed " << seed << ", step " << k;

@@ -20,8 +20,8 @@ struct Interval {
   double high;
 };
 
-/// Clopper & Pearson 1934: the probabilities that are compatible with `count` events in kDraws
-/// draws.
+/// The interval of the probabilities that are compatible with `count` events in kDraws draws
+/// (Clopper & Pearson 1934).
 Interval Confidence(std::int64_t count) {
   const auto k = static_cast<double>(count);
   const auto n = static_cast<double>(kDraws);
@@ -87,7 +87,8 @@ TEST(TakeOverLateTest, HappensAsOftenAsTheParameterSaysWhateverTheModel) {
   }
 }
 
-// SUMO repeats each negative draw. For a request of 20 s, 15 % of the draws are negative.
+// The model `sumo` draws again if a take-over time is negative. For a lead time of 20 s, 15 % of
+// the draws are negative.
 TEST(TakeOverLateTest, IsWhatTheDistributionHasOfItForTheLongestRequest) {
   for (const TakeOverModel model : {TakeOverModel::kLogNormalByLead, TakeOverModel::kSumo}) {
     const TakeOverParameters given{.model = model, .late_probability = 0.1};

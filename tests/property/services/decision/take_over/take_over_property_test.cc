@@ -1,5 +1,5 @@
-// The fallback under random sequences of events. The tests compare its states with its table, and
-// its commands and its log with an independent computation.
+// The state machine of take-overs under random sequences of events. The tests compare its states
+// with its table, and its commands and its log with an independent computation.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -40,9 +40,9 @@ void ExpectTheTable(const take_over::TakeOverRow* row, take_over::TakeOverState 
       << "from " << take_over::InfoOf(before).name << " to " << take_over::InfoOf(after).name;
 }
 
-/// Expects that a change of state has its effect in its own step. The new state's controller must
-/// give the applied command. The old state's controller must have wanted another command for the
-/// same inputs. If both states have the same controller, this controller must give the command.
+/// Expects that a change of state changes the command in the same step. `applied_mps2` must be the
+/// command of the new state's controller. The old state's controller must want another command for
+/// the same inputs. If both states have the same controller, this controller must give the command.
 ///
 /// Only the change to the harder stage of the manoeuvre may have its effect later. The jerk limit,
 /// or the limit shortly before standstill, may allow less deceleration than the softer stage wants.
@@ -151,8 +151,9 @@ class Sequence {
   }
 
   /// Draws other offers until the controllers of the old and of the new state want different
-  /// commands. With equal commands the change would have no effect. The function gives up after 30
-  /// draws, because both stages of the manoeuvre may be at the jerk limit for any offers.
+  /// commands. With equal commands the change of state would have no effect. The function gives up
+  /// after 30 draws: with any offers, both stages of the manoeuvre may want the acceleration that
+  /// the jerk limit allows.
   void LetTheControllersDiffer(const take_over::TakeOverRow& row) {
     constexpr double kPlain_mps2 = 0.01;
     const take_over::Authority old_authority = take_over::AuthorityOf(row.state);
@@ -198,7 +199,7 @@ class Sequence {
   }
 
   /// Notes the first step in which the driver's command differs from the last command before the
-  /// driver.
+  /// transfer to the driver.
   void NoteTheDriver(take_over::TakeOverState before, std::int64_t step,
                      const take_over::TakeOverOutcome& out) {
     if (out.state == kDemand && before == kAutomated) effective_.reset();

@@ -1,7 +1,7 @@
-// Random events for the fallback, and an independent computation of its states and commands. The
-// computation uses the inputs, and does not call services/decision/take_over/take_over.cc. Both
-// share only the code for the drawn take-over time and for the course of a manoeuvre. This shared
-// code has tests of its own.
+// Random events for the state machine of take-overs, and an independent computation of its events
+// and commands. The computation does not call services/decision/take_over/take_over.cc. Both share
+// only the code for the drawn take-over time and for the course of a manoeuvre. This shared code
+// has tests of its own.
 #pragma once
 
 #include <algorithm>
@@ -17,7 +17,7 @@
 
 namespace fogline::test {
 
-/// Rounding of sums of seconds and of accelerations.
+/// Tolerance for the rounding of sums of seconds and of accelerations.
 inline constexpr double kTolerance = 1e-9;
 
 /// The random numbers of one sequence. No other object draws from them.
@@ -62,7 +62,8 @@ inline Scenario AnyScenario(Dice& dice) {
 }
 
 /// Random inputs of the state machine: offers, engagement requests, cars ahead, and the motion of
-/// the host. The host's brake may fail for a while.
+/// the host. At first the host may keep its speed whatever the command is, as if its brakes had
+/// failed.
 class Events {
  public:
   Events(Dice& dice, const Scenario& scenario)
@@ -91,8 +92,8 @@ class Events {
     return inputs_;
   }
 
-  /// Draws other offers, which have no influence on the events. A person's offer may be an
-  /// override, so this offer stays.
+  /// Draws new offers of the automation and of a simulated driver. These offers do not influence
+  /// the events. A person's offer may be an override, so it is not drawn again.
   void OtherOffers() {
     const bool eager = dice_.Chance(0.5);
     inputs_.automation_mps2 =
@@ -120,7 +121,7 @@ class Events {
   Dice& dice_;
   double step_s_;
   bool person_;
-  double liveliness_ = 0;  // how often a person does something
+  double liveliness_ = 0;  // probability of each action of a person in a step
   bool brakes_;
   double danger_;
   track_t track_{};
@@ -128,7 +129,7 @@ class Events {
 };
 
 /// The independent computation. It finds the events of a step, and the command of each source, from
-/// the inputs alone.
+/// the inputs and from the state machine's earlier states.
 class Witness {
  public:
   explicit Witness(const Scenario& scenario)
@@ -165,7 +166,8 @@ class Witness {
         stage_ && Since(step, *stage_ + 1) + kTolerance >= overdue_s_);
     if (!requested_) return events;
     const double t = Since(step, *requested_);
-    // A person may answer until the step of the deadline. A drawn time is compared directly.
+    // A person may answer up to the step of the deadline. A drawn take-over time is compared with
+    // lead_s itself.
     const double answer_s = answers_now ? t : time_s_;
     const bool in_time = person_.drives ? answer_s < section_.lead_s + step_s_ - kTolerance
                                         : answer_s <= section_.lead_s;
@@ -175,8 +177,8 @@ class Witness {
     return events;
   }
 
-  /// The command of `authority` in this step. For a manoeuvre, call this function once per step
-  /// only.
+  /// The command of the controller of `authority` in this step. For kComfort and kHard the function
+  /// advances the manoeuvre, so call it only once in a step.
   double Source(take_over::Authority authority, const take_over::TakeOverInputs& inputs) {
     const double least =
         std::min(section_.comfort_deceleration_mps2, section_.emergency_deceleration_mps2);
@@ -259,8 +261,9 @@ class Witness {
  private:
   static constexpr double kNever_s = std::numeric_limits<double>::infinity();
 
-  /// Whether a person brakes harder than the car, and beyond the threshold. The pedal map is
-  /// progressive, with the power 1.5 and a full brake of 8 m/s2.
+  /// Whether a person is ready, brakes harder than the car, and brakes at least as hard as the
+  /// override threshold. A brake pedal at the position p in [0, 1] gives 0.5 m/s2 + 8 m/s2 p^1.5,
+  /// at most 8 m/s2.
   bool Overrides(const take_over::TakeOverInputs& inputs) const {
     if (!person_.drives || person_.override_by == OverrideBy::kNone) return false;
     const double threshold_mps2 = std::max(-0.5 - 8 * std::pow(person_.override_pedal, 1.5), -8.0);
@@ -275,7 +278,7 @@ class Witness {
             step_s_};
   }
 
-  /// Makes the answers of a person count from this step on.
+  /// Makes the answers of a person count from the next step on.
   void Await() {
     awaits_ = person_.drives;
     answered_ = false;

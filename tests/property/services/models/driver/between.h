@@ -3,7 +3,7 @@
 
 namespace fogline {
 
-/// @param u in [0, 1]
+/// Returns the number at the share `u` of the way from `low` to `high`. @param u in [0, 1]
 inline double Between(double low, double high, double u) { return low + (high - low) * u; }
 
 }  // namespace fogline

@@ -57,8 +57,8 @@ TEST(IdmPropertyTest, EquilibriumGapNeedsNoAcceleration) {
     const double v = 0.99 * driver.desired_speed_mps * u;
     const double ratio = std::pow(v / driver.desired_speed_mps, driver.exponent);
     const double gap = (driver.standstill_m + v * driver.headway_s) / std::sqrt(1 - ratio);
-    // The tolerance is the rounding of terms of size 1, which cancel and are then multiplied by
-    // a_max.
+    // The tolerance is the rounding of terms of size 1, which cancel and are then multiplied by the
+    // maximum acceleration.
     ASSERT_NEAR(models::Idm(driver).Acceleration(v, v, gap), 0, 1e-14);
   });
 }
@@ -93,8 +93,9 @@ TEST(IdmPropertyTest, LargerGapNeverMeansLessAcceleration) {
 }
 
 TEST(IdmPropertyTest, FasterDriverNeverAcceleratesMore) {
-  // Where v T + v dv / (2 sqrt(a b)) is negative, s* does not depend on the speed. So only the
-  // free-road term depends on the speed.
+  // Where v T + v dv / (2 sqrt(a b)) is negative, the IDM's desired gap s* does not depend on the
+  // speed v. Then only the free-road term (v/v0)^exponent depends on v. At low speeds rounding may
+  // hide its change, so the strict comparison needs more than 5 m/s.
   ForManySituations([](const DriverSection& driver, Situation s, double u) {
     const models::Idm idm(driver);
     const double slow = idm.Acceleration(s.speed_mps, s.preceding_speed_mps, s.gap_m);

@@ -40,8 +40,8 @@ TEST(OrnsteinUhlenbeckProperty, KeepsVarianceOneAndForgetsExponentially) {
   for (const std::int64_t steps : {0, 1, 3, 10, 40}) {
     const Moments m = After(steps, 2.0, 0.25);
     const double correlation = std::exp(-0.125 * static_cast<double>(steps));
-    // The standard deviations of the estimates are 1 / sqrt(n), sqrt(2 / n), sqrt((1 +
-    // correlation^2) / n).
+    // The standard deviations of the estimated mean, variance and covariance are 1 / sqrt(n),
+    // sqrt(2 / n) and sqrt((1 + correlation^2) / n).
     EXPECT_NEAR(m.mean, 0, kDeviations / std::sqrt(n)) << steps;
     EXPECT_NEAR(m.variance, 1, kDeviations * std::sqrt(2 / n)) << steps;
     EXPECT_NEAR(m.covariance, correlation,

@@ -59,11 +59,12 @@ TEST(LongitudinalVehicleProperty, NeverMakesEnergyAndNeverGoesBackwards) {
       ASSERT_GE(next.position_m, motion.position_m);
       const double path_m = next.position_m - motion.position_m;
 
-      // The engine's energy; the power of the engine limits this energy.
+      // The energy from the engine in this step; the power of the engine limits this energy.
       const double engine_j = car.traction_n() * path_m;
       ASSERT_LE(engine_j, vehicle.power_w * step_s * (1 + 1e-2));
       // Kinetic energy of car and wheels, and potential energy. The path may be flatter in its
-      // middle than at its ends: the grade changes by up to 0.2 in 40 m.
+      // middle than at its ends, because the grade changes by up to 0.2 in 40 m. So `grade` is a
+      // lower bound.
       const double kinetic_j =
           0.5 * vehicle.rotating_mass_factor * vehicle.mass_kg *
           (next.speed_mps * next.speed_mps - motion.speed_mps * motion.speed_mps);
@@ -84,7 +85,7 @@ TEST(LongitudinalVehicleProperty, NeverMakesEnergyAndNeverGoesBackwards) {
   }
 }
 
-// The commands that begin at 0, 4, 8, ... s. The coarsest step divides 4 s.
+// Commands that begin at 0, 4, 8, ... s. 4 s is a multiple of every step of these tests.
 using Commands = std::array<double, 6>;
 
 struct Error {

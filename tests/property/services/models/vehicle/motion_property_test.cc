@@ -1,4 +1,4 @@
-// Properties of the exact integration, on random motions.
+// Properties of the exact integration of a car's motion, on random motions.
 #include <cmath>
 #include <random>
 
@@ -11,7 +11,8 @@ namespace {
 
 constexpr int kCases = 20'000;
 
-// Random motions, including those of cars: 0 to 60 m/s, -12 to 12 m/s2, steps up to 2 s.
+// Random motions, from a range that contains those of cars: 0 to 60 m/s, -12 to 12 m/s2, steps up
+// to 2 s.
 class Cases {
  public:
   double Speed() { return Between(0.0, 60.0); }

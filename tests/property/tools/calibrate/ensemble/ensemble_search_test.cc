@@ -17,11 +17,12 @@ namespace {
 
 using Shares = std::vector<double>;
 
-// The target is met within this radius of a minimum. Two minima are at least kApart apart.
+// A point meets the target within this radius of a minimum. Two minima are at least kApart apart.
 constexpr double kRadius = 0.02;
 constexpr double kApart = 0.3;
 
-/// Four minima in three fields. The function for the fresh seeds does not have the last minimum.
+/// Four minima, as shares of the ranges of three fields. The function for the fresh seeds does not
+/// have the last minimum.
 const std::array<Shares, 4> kMinima{
     {{0.2, 0.2, 0.8}, {0.8, 0.7, 0.2}, {0.25, 0.8, 0.3}, {0.75, 0.2, 0.5}}};
 
@@ -36,8 +37,8 @@ std::size_t NearestMinimum(const Shares& point, std::size_t minima) {
   return nearest;
 }
 
-/// The squared distance from the nearest of the first `minima` minima, in radii. Small waves add
-/// local minima.
+/// The square of the distance (in units of kRadius) from the nearest of the first `minima` minima,
+/// plus small waves, which add local minima.
 double Value(const Shares& point, std::size_t minima) {
   const double off = calibrate::ShareDistance(point, kMinima[NearestMinimum(point, minima)]);
   const double wave = 0.1 * (1 - std::cos(200 * off));

@@ -157,7 +157,8 @@ TEST_F(RecordedLeadTest, NeedsARecordingThatSpansTheRun) {
 }
 
 TEST_F(RecordedLeadTest, SpeaksOfTimesAsPeopleWriteThem) {
-  // 10 s + 8 * 0.1 s is 10.799999999999999 s in binary, 10 s + 3 * 0.1 s 10.300000000000001 s.
+  // In binary, 10 s + 8 * 0.1 s is 10.799999999999999 s, and 10 s + 3 * 0.1 s is 10.300000000000001
+  // s. The error text has 10.8 s and 10.3 s.
   for (const auto& [steps, end] : {std::pair{"9", "10.8"}, {"4", "10.3"}}) {
     EXPECT_THAT(
         ErrorOf("t,v\n10,1\n10.1,1\n", {"/step_s=0.1", std::string("/steps=") + steps}),

@@ -31,7 +31,7 @@ Claims ClaimsOf(std::string_view name) {
   static const std::map<std::string_view, Claims> kLess{
       {"doc", {.zero_for_equal = false}},  // the score is 0.00005
       {"nis_signed", {.sides = Sides::kLidarShort}},
-      {"dempster_bins", {.zero_for_equal = false}},  // a known defect of k
+      {"dempster_bins", {.zero_for_equal = false}},  // Dempster's k is above 0: a known defect
       {"cusum", {.sides = Sides::kLidarShort}},
       {"sprt", {.sides = Sides::kLidarShort, .zero_for_equal = false}},  // the score is below 0
       {"lidar_modes", {.zero_for_equal = false}},                        // a small probability
@@ -113,8 +113,8 @@ TEST(EveryMeasureTest, TellsALidarThatIsLongAsItClaims) {
       if (ClaimsOf(row.name).sides == Sides::kLidarShort) {
         EXPECT_LE(longer, After(row, kSteps, LidarShortBy(0))) << error_m;
       } else if (row.name == "lidar_modes") {
-        // The score of lidar_modes rises with errors of both signs. But the fog return r* is on one
-        // side of the car only, so the scores for the two signs differ.
+        // The score of lidar_modes rises with errors of both signs. But the distance r* of the
+        // fog's echo is on one side of the car only, so the scores for the two signs differ.
         EXPECT_GT(longer, After(row, kSteps, LidarShortBy(0))) << error_m;
       } else {
         EXPECT_NEAR(longer, After(row, kSteps, LidarShortBy(error_m)), kRounding) << error_m;
@@ -161,8 +161,8 @@ TEST(EveryMeasureTest, RisesWithAMissingValueThatCountsAsConflict) {
     const double before = measure->Step(LidarShortBy(0));
     double after = before;
     for (int i = 0; i < kSteps; ++i) after = measure->Step(WithoutLidar(LidarShortBy(0)));
-    // The rise may be as small as 0.1: on consonant beliefs, d_J is at most 0.8, and unequal
-    // precision alone already gives 0.7.
+    // The rise may be as small as 0.1: on consonant beliefs, Jousselme's distance is at most 0.8,
+    // and unequal precision of the sensors alone already gives 0.7.
     EXPECT_GT(after, before + 0.1);
   }
 }

@@ -42,8 +42,8 @@ inline conflict::Evidence WithoutRadar(conflict::Evidence evidence) {
   return evidence;
 }
 
-// The difference d is standard normal plus a shift. The variance S of both sensors together is 1
-// m2.
+// Evidence in which the difference radar - LiDAR, in m, is standard normal plus a shift. The
+// variances of both sensors add up to 1 m2.
 inline conflict::Evidence UnitNoise(const Random& random, std::int64_t step, double shift_m = 0) {
   return LidarShortBy(random.Normal2(step, 0)[0] + shift_m, 0.6, 0.8);
 }

@@ -28,7 +28,7 @@ std::string WithPolicy(std::string_view name) {
   return R"({"version": 1, "arbitrator": {"policy": ")" + std::string(name) + R"("}})";
 }
 
-/// The parts of a view that a test can change.
+/// The parts of an ArbitratorView that a test can change.
 struct Situation {
   double doc = 0.6;
   double threshold = 0.5;
@@ -200,7 +200,7 @@ TEST(PoliciesTest, AdaptiveKeepsItsThresholdWithinItsLimits) {
 }
 
 TEST(PoliciesTest, BayesWeighsTheExpectedCosts) {
-  Situation calm;  // C_h = 1, C_a = 1
+  Situation calm;  // in bayes.h: C_h = 1, C_a = 1
   EXPECT_EQ(Decide("bayes", calm).threshold, 0.5);
   Situation unready = calm;
   unready.driver.readiness = 0;  // C_h = 4
@@ -208,12 +208,12 @@ TEST(PoliciesTest, BayesWeighsTheExpectedCosts) {
   Situation fog = calm;
   fog.surroundings.visibility_m = 80;  // C_h = 1.5
   EXPECT_EQ(Decide("bayes", fog).threshold, 1.5 / 2.5);
-  fog.surroundings.visibility_m = 10;  // the factor is limited to 2: C_h = 2
+  fog.surroundings.visibility_m = 10;  // near_m/MOR is limited to 1: C_h = 2
   EXPECT_EQ(Decide("bayes", fog).threshold, 2.0 / 3);
   Situation followed = calm;
   followed.surroundings = {.followed = true, .follower_gap_m = 32, .follower_speed_mps = 24};
   EXPECT_EQ(Decide("bayes", followed).threshold, 1 / 3.5);  // TTC 8 s: C_a = 1 + 3/2
-  followed.surroundings.follower_gap_m = 4;  // TTC 1 s, the factor is limited to 1: C_a = 1 + 3
+  followed.surroundings.follower_gap_m = 4;  // TTC 1 s, near_ttc/TTC is limited to 1: C_a = 4
   EXPECT_EQ(Decide("bayes", followed).threshold, 1.0 / 5);
 }
 
@@ -221,7 +221,8 @@ TEST(PoliciesTest, BayesWeighsTheExpectedCosts) {
 
 TEST(TimeUntilHardBrakingTest, IsThatOfHandWorkedCases) {
   constexpr double kNever = std::numeric_limits<double>::infinity();
-  // At 10 m/s and 3 m/s2 the last safe gap is 100/6 m. 50 m are 33.3 m more.
+  // The follower needs 100/6 m to brake from 10 m/s at 3 m/s2. The gap is 50 m. So the follower may
+  // drive the other 33.3 m at 10 m/s before it has to brake.
   EXPECT_NEAR(policies::TimeUntilHardBraking(50, 10, 0, 3), (50 - 100.0 / 6) / 10, 1e-12);
   EXPECT_EQ(policies::TimeUntilHardBraking(10, 10, 0, 3), 0) << "too near already";
   EXPECT_EQ(policies::TimeUntilHardBraking(0, -1, 0, 3), 0) << "touching";

@@ -126,7 +126,7 @@ TEST(TakeOverLogTest, HasTransfersAndNoRequestsWhereTheDriverNeedNotBeAsked) {
 TEST(TakeOverLogTest, DoesNotCountAnUnrequestedInputForTheLastRequest) {
   take_over::TakeOverLog log;
   Add(log, Command(0, arbitration_t::REQUEST));
-  Add(log, Command(1, arbitration_t::HUMAN));  // the automation has failed
+  Add(log, Command(1, arbitration_t::HUMAN));  // the automation has failed, so the human drives
   Add(log, Command(2, arbitration_t::HUMAN, 2));
   EXPECT_THAT(log.requests(), ElementsAre(take_over::TakeOverRequest{.requested = 0}));
   EXPECT_THAT(log.entries(), SizeIs(4));

@@ -19,7 +19,8 @@ TEST_F(TakeOverTest, AsksAndHandsOverToADriverWhoAnswers) {
   EXPECT_EQ(out.acceleration_mps2, -0.7);
 }
 
-// The fourth time of a request, the time of the first effective input, comes from TakeOverLog.
+// A TakeOverRequest also has the time of the first effective input. TakeOverLog determines this
+// time.
 TEST_F(TakeOverTest, KeepsTheTimesOfARequest) {
   Begin(Answering(2.05));
   inputs_.human_wanted = false;
@@ -72,7 +73,7 @@ TEST_F(TakeOverTest, StaysLockedInStandstillForEveryDriver) {
 TEST_F(TakeOverTest, StopsHardAtOnceWhenACollisionIsNear) {
   Begin(Answering(2));
   Step();
-  track_ = Ahead(14.9, 10);  // 1.49 s
+  track_ = Ahead(14.9, 10);  // time to collision 1.49 s
   EXPECT_EQ(Step().state, kMrmEmergency);
   EXPECT_NEAR(take_over_->outcome().acceleration_mps2, -0.25, 1e-12) << "2.5 m/s3, one step";
   for (int k = 0; k < 16; ++k) Step();

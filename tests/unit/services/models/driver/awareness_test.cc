@@ -33,8 +33,8 @@ TEST(AwarenessTest, MakesErrorsAndReactionTimesOfWhatIsMissing) {
   EXPECT_EQ(aware.ApproachError_ps(), 0);
   const models::Awareness half({}, 0.5);
   EXPECT_NEAR(half.ReactionTime_s(), 1.15, 1e-12);
-  EXPECT_NEAR(half.GapError(), 0.075, 1e-12);          // 0.75 * 0.2 * 0.5
-  EXPECT_NEAR(half.ApproachError_ps(), 0.015, 1e-12);  // 0.15 * 0.2 * 0.5
+  EXPECT_NEAR(half.GapError(), 0.075, 1e-12);          // 0.75 * 0.2 * missing awareness 0.5
+  EXPECT_NEAR(half.ApproachError_ps(), 0.015, 1e-12);  // 0.15 * 0.2 * missing awareness 0.5
 }
 
 TEST(AwarenessTest, RefusesATimeConstantOfNothing) {

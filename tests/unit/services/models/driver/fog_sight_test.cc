@@ -21,7 +21,8 @@ TEST(FogSightTest, SeesABlackOutlineAsFarAsTheVisibilityAndAGreyOneLess) {
   FogSightParameters black;
   black.contrast = 1;
   EXPECT_NEAR(models::FogSight(black).OutlineRange(50), 50, 1e-9);
-  // ln 10 / ln 20 = 0.769.
+  // With contrast 0.5 and its threshold 0.05, the range is ln(0.5/0.05)/ln 20 = 0.769 of the
+  // visibility.
   EXPECT_NEAR(models::FogSight(FogSightParameters{}).OutlineRange(50), 0.7686 * 50, 0.005);
 }
 
@@ -95,7 +96,8 @@ TEST(FogSightTest, OverlooksClosingInBelowTheAngularThreshold) {
   EXPECT_EQ(sight.Perceive(BehindABrakingCar(20, 30, 18.49), 1000).ahead->speed_mps, 18.49);
   EXPECT_EQ(sight.Perceive(BehindABrakingCar(20, 30, 18.49), 1000).ahead->acceleration_mps2, -1);
   EXPECT_EQ(sight.Perceive(BehindABrakingCar(20, 30, 21.51), 1000).ahead->speed_mps, 21.51);
-  // Only the lamps are visible, at 45 m: 1.3 dv / 45^2 = 0.003 at dv = 4.67 m/s.
+  // At 45 m only the lamps are visible, which are 1.3 m apart. So the driver sees that the gap
+  // closes if 1.3 dv / 45^2 > 0.003 rad/s, which is dv > 4.67 m/s.
   EXPECT_EQ(sight.Perceive(BehindABrakingCar(20, 45, 15.34), 50).ahead->speed_mps, 20);
   EXPECT_EQ(sight.Perceive(BehindABrakingCar(20, 45, 15.32), 50).ahead->speed_mps, 15.32);
 }

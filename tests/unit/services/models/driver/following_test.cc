@@ -42,12 +42,13 @@ TEST(FollowingTest, IidmIsAsWorkedByHand) {
   driver.standstill_m = 2;
   driver.exponent = 4;
   const models::Following iidm(FollowingModel::kIidm, driver);
-  // s* = 12 m, so z = 2, and the acceleration is 1 - z^2 = 1 - 4.
+  // The desired gap s* is 12 m, so its ratio to the gap is z = 2, and the acceleration is 1 - z^2 =
+  // -3.
   EXPECT_NEAR(iidm.Acceleration(Behind(10, 6, 10)), -3, kNear);
   // z = 1/2 and a_free = 1 - 1/16 = 15/16, so the acceleration is 15/16 (1 - 2^(-32/15)).
   EXPECT_NEAR(iidm.Acceleration(Behind(10, 24, 10)), 0.9375 * (1 - std::exp2(-32.0 / 15)), kNear);
-  // Above v_0: -2 (1 - (1/2)^2) = -1.5. With s* = 42 m at a gap of 21 m, z = 2, so the car brakes
-  // by 3 m/s2 more.
+  // Above the desired speed, the acceleration on a free road is -2 (1 - (1/2)^2) = -1.5. With s* =
+  // 42 m at a gap of 21 m, z = 2, so the car brakes by 3 m/s2 more.
   EXPECT_NEAR(iidm.Acceleration({.speed_mps = 40}), -1.5, kNear);
   EXPECT_NEAR(iidm.Acceleration(Behind(40, 1000, 40)), -1.5, kNear);
   EXPECT_NEAR(iidm.Acceleration(Behind(40, 21, 40)), -4.5, kNear);
@@ -73,7 +74,8 @@ TEST(FollowingTest, AccIdmTakesACutInCoolly) {
   const models::Situation cut_in = Behind(20, 6, 22);
   const double improved = models::Following(FollowingModel::kIidm, driver).Acceleration(cut_in);
   ASSERT_LT(improved, -5);
-  // THEN a_CAH is 0, as for any steady faster car ahead, and b limits the reaction
+  // THEN the heuristic a_CAH (following.h) is 0, as for any steady faster car ahead, and the
+  // comfortable deceleration limits the reaction
   for (const double c : {0.5, 0.99, 1.0}) {
     EXPECT_NEAR(models::Following(FollowingModel::kAccIdm, driver, c).Acceleration(cut_in),
                 (1 - c) * improved + c * 2 * std::tanh(improved / 2), kNear);
@@ -81,13 +83,13 @@ TEST(FollowingTest, AccIdmTakesACutInCoolly) {
 }
 
 TEST(FollowingTest, AccIdmBrakesForACarThatWillStandAsItsHeuristicSays) {
-  // v = 20, v_l = 20, s = 20, a_lead = -4: v_l (v - v_l) = 0 <= 160, so a_CAH = -1600 / 560 =
-  // -2.857. The IIDM with s* = 32 m gives 0.73 (1 - 2.56) = -1.139. The model uses the IIDM,
-  // because -1.139 is the greater of both.
+  // The symbols are those of following.h. With v = v_l = 20 m/s, s = 20 m and a_lead = -4 m/s2, v_l
+  // (v - v_l) = 0 <= 160, so a_CAH = -1600 / 560 = -2.857. The IIDM with s* = 32 m gives 0.73 (1 -
+  // 2.56) = -1.139. The model uses the IIDM, because -1.139 is larger than -2.857.
   DriverSection driver;
   const models::Following acc(FollowingModel::kAccIdm, driver);
   EXPECT_NEAR(acc.Acceleration(Behind(20, 20, 20, -4)), 0.73 * (1 - 2.56), kNear);
-  // With s = 8: z = 4, the IIDM is at its limit of -9, and a_CAH = -1600 / 464 = -3.448.
+  // With s = 8 m, z is 4, the IIDM is at its limit of -9 m/s2, and a_CAH = -1600 / 464 = -3.448.
   const double heuristic = -1600.0 / 464;
   const double b = driver.comfortable_deceleration_mps2;
   const double cool = heuristic + b * std::tanh((-9 - heuristic) / b);

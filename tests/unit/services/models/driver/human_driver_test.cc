@@ -44,7 +44,8 @@ TEST(HumanDriverTest, RemembersBetweenStepsInProportion) {
   models::HumanDriver driver(late, AnyModel(), AnyErrors(), kStep_s);
   driver.Step(0, AcceleratingBehind(20, 0, 40, 20));
   driver.Step(1, AcceleratingBehind(20, 0, 36, 18));
-  // 0.175 s before 0.2 s is a quarter of the way from step 0 to step 1.
+  // The driver reacts to the situation 0.175 s before step 2, which is at 0.2 s. This time is a
+  // quarter of the way from step 0 to step 1.
   EXPECT_NEAR(driver.Step(2, AcceleratingBehind(20, 0, 30, 10)),
               AnyModel().Acceleration(AcceleratingBehind(20, 0, 39, 19.5)), 1e-9);
 }

@@ -13,8 +13,9 @@ namespace {
 constexpr double kFreeRoad_m = 1e9;
 
 TEST(IdmTest, BrakesAsWorkedByHand) {
-  // a = 0.73, b = 1.67, v_0 = 33.33, T = 1.5, s_0 = 2: s* = 32 + 40 / (2 sqrt(1.2191)) = 50.1137 m,
-  // a = 0.73 (1 - 0.12965 - 1.56961). The tolerance is half a unit of the last digit.
+  // With the default parameters a = 0.73, b = 1.67, v_0 = 33.33, T = 1.5 and s_0 = 2 (idm.h), the
+  // desired gap is s* = 32 + 40 / (2 sqrt(1.2191)) = 50.1137 m, and the acceleration is 0.73 (1 -
+  // 0.12965 - 1.56961). The tolerance is half a unit of the last digit.
   EXPECT_NEAR(models::Idm(DriverSection()).Acceleration(20, 18, 40), -0.5105, 5e-5);
 }
 

@@ -9,8 +9,9 @@ namespace fogline {
 namespace {
 
 TEST(TakeOverTimeTest, KnowsHowOftenALogNormalDriverIsLate) {
-  // For a mean of 2.7 s and a deviation of 1.45 s: s^2 = ln 1.2884 = 0.2534, mu = 0.9933 - 0.1267 =
-  // 0.8666. 95 % are within e^(0.8666 + 1.6449 * 0.5034) = 5.445 s.
+  // The time has a mean of 2.7 s and a standard deviation of 1.45 s. So its logarithm has the
+  // variance ln 1.2884 = 0.2534 = 0.5034^2 and the mean 0.9933 - 0.1267 = 0.8666. 95 % of the times
+  // are below e^(0.8666 + 1.6449 * 0.5034) = 5.445 s.
   EXPECT_NEAR(models::TakeOverTime({}, 5.445).LateProbability(), 0.05, 5e-4);
   EXPECT_NEAR(models::TakeOverTime({}, std::exp(0.8666)).LateProbability(), 0.5, 5e-4);
 }
@@ -39,7 +40,8 @@ TEST(TakeOverTimeTest, HasSumosNumbersForTenSecondsAndFivePercent) {
 }
 
 TEST(TakeOverTimeTest, OverdrawsSumosPromiseForLongLeadTimes) {
-  // For 60 s: mean 15.49 s, deviation 27.06 s. SUMO repeats the 28 % of draws that are negative.
+  // For a lead time of 60 s the mean is 15.49 s and the standard deviation 27.06 s. SUMO repeats
+  // the 28 % of draws that are negative. So more than the promised 5 % are late.
   const models::TakeOverTime sumo({.model = TakeOverModel::kSumo}, 60);
   EXPECT_NEAR(sumo.LateProbability(), 0.05 / 0.7165, 1e-4);
 }

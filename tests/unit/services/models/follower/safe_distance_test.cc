@@ -12,9 +12,9 @@ models::Situation Behind(double speed_mps, double gap_m, double lead_mps, double
 }
 
 TEST(SafeDistanceTest, RssIsAsWorkedByHand) {
-  // 20 + 1.75 + 23.5^2 / 8 - 400 / 16.
+  // With the default parameters: 20 + 1.75 + 23.5^2 / 8 - 400 / 16 m.
   EXPECT_NEAR(models::RssSafeDistance({}, 20, 20), 65.78125, 1e-9);
-  // 10 + 0.25 + 21^2 / 12 - 400 / 16.
+  // With these parameters: 10 + 0.25 + 21^2 / 12 - 400 / 16 m.
   const models::RssParameters tuned{
       .response_s = 0.5, .acceleration_mps2 = 2, .least_braking_mps2 = 6, .most_braking_mps2 = 8};
   EXPECT_NEAR(models::RssSafeDistance(tuned, 20, 20), 22, 1e-9);
@@ -23,8 +23,9 @@ TEST(SafeDistanceTest, RssIsAsWorkedByHand) {
 TEST(SafeDistanceTest, RssIsNeverNegative) { EXPECT_EQ(models::RssSafeDistance({}, 0, 40), 0); }
 
 TEST(SafeDistanceTest, ProactiveFuzzyIsAsWorkedByHand) {
-  // Both cars drive at 20 m/s: 15 + 50 - 28.571 + 2 = 38.429 m are safe, and 15 + 33.333 - 28.571 =
-  // 19.762 m are unsafe. A gap of 2 m at standstill is added to both.
+  // Both cars drive at 20 m/s. By the equations of the header, d_safe = 15 + 50 - 28.571 + 2 =
+  // 38.429 m and d_unsafe = 15 + 33.333 - 28.571 = 19.762 m. The gap of 2 m at standstill is added
+  // to both.
   EXPECT_EQ(models::ProactiveFuzzy({}, Behind(20, 40.43, 20)), 0);
   EXPECT_EQ(models::ProactiveFuzzy({}, Behind(20, 21.76, 20)), 1);
   EXPECT_NEAR(models::ProactiveFuzzy({}, Behind(20, 2 + 0.5 * (38.4286 + 19.7619), 20)), 0.5, 1e-5);
@@ -32,8 +33,8 @@ TEST(SafeDistanceTest, ProactiveFuzzyIsAsWorkedByHand) {
 }
 
 TEST(SafeDistanceTest, CriticalFuzzyIsAsWorkedByHand) {
-  // At a closing speed of 10 m/s, 7.5 + 100 / 8 = 20 m are safe, and 7.5 + 100 / 12 = 15.833 m are
-  // unsafe.
+  // At a closing speed of 10 m/s, d_safe = 7.5 + 100 / 8 = 20 m and d_unsafe = 7.5 + 100 / 12 =
+  // 15.833 m.
   EXPECT_EQ(models::CriticalFuzzy({}, Behind(20, 20, 10)), 0);
   EXPECT_EQ(models::CriticalFuzzy({}, Behind(20, 15.83, 10)), 1);
   EXPECT_NEAR(models::CriticalFuzzy({}, Behind(20, 0.5 * (20 + 15.83333), 10)), 0.5, 1e-6);
@@ -45,8 +46,8 @@ TEST(SafeDistanceTest, CriticalFuzzyIsAsWorkedByHand) {
 }
 
 TEST(SafeDistanceTest, CriticalFuzzyCountsOnComfortableBrakingAtMost) {
-  // The car closes at 10 m/s and brakes at 8 m/s2. The model counts only 4 m/s2 of this braking:
-  // 8.5 * 0.75 + 7^2 / 8 = 12.5 m are safe.
+  // The car closes at 10 m/s and brakes at 8 m/s2. The model counts only 4 m/s2 of this braking, so
+  // d_safe = 8.5 * 0.75 + 7^2 / 8 = 12.5 m.
   EXPECT_EQ(models::CriticalFuzzy({}, Behind(20, 12.5, 10, -8)), 0);
   EXPECT_GT(models::CriticalFuzzy({}, Behind(20, 12.4, 10, -8)), 0);
 }

@@ -20,8 +20,9 @@ TEST(MinimalRiskTest, BuildsTheBrakeUpAtTheJerkLimitAndHoldsIt) {
   }
 }
 
-// At v = r^2/(2 j) + r h/2 = 0.3 m/s, r(v) of minimal_risk.h is 1 m/s2. So the brake is released in
-// exactly 5 time steps, by j h = 0.2 m/s2 in each step.
+// r(v) of minimal_risk.h is the braking that can still be released until the car stands. With the
+// jerk limit j and the time step h, r(v) is 1 m/s2 at v = r^2/(2 j) + r h/2 = 0.3 m/s. So the brake
+// is released in exactly 5 time steps, by j h = 0.2 m/s2 in each step.
 TEST(MinimalRiskTest, ReleasesTheBrakeStepByStepSoThatTheCarRestsWithoutIt) {
   models::MinimalRisk manoeuvre(kLimits, kStep_s);
   manoeuvre.Begin(-1.0);

@@ -40,7 +40,8 @@ TEST(ActuatorTest, ComesToTheSameForceWithAnyStep) {
 }
 
 TEST(ActuatorTest, ReportsTheMeanOverTheStep) {
-  // Without delay: 1 - (tau / h)(1 - e^(-h / tau)) = e^-1 for h = tau.
+  // Without delay, the mean force over a step h is 1 - (tau / h)(1 - e^(-h / tau)), with the lag
+  // tau. This is e^-1 for h = tau.
   models::Actuator lag(0, 0.1, 0.1);
   EXPECT_NEAR(lag.Step(1), std::exp(-1), kRounding);
   // Without lag, the demand takes effect at 0.03 s of a step of 0.1 s.

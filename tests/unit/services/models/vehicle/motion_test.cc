@@ -44,12 +44,13 @@ TEST(ContactTest, OfConstantSpeedsIsGapOverClosingSpeed) {
 }
 
 TEST(ContactTest, IsTheFirstRootOfTheParabola) {
-  // 6 - 5 t + t^2 = (t - 2) (t - 3): without the contact at 2 s, the cars would separate at 3 s.
+  // The gap is 6 - 5 t + t^2 = (t - 2) (t - 3). The cars touch at 2 s. Without the contact, they
+  // would separate at 3 s.
   EXPECT_DOUBLE_EQ(models::TimeToContact(6.0, 20.0, 2.0, 25.0, 0.0, 10.0).value(), 2.0);
 }
 
 TEST(ContactTest, HappensWhenTheGapOpensFirst) {
-  // 8 + 2 t - 3 t^2 = (2 - t) (4 + 3 t).
+  // The gap is 8 + 2 t - 3 t^2 = (2 - t) (4 + 3 t).
   EXPECT_DOUBLE_EQ(models::TimeToContact(8.0, 30.0, -6.0, 28.0, 0.0, 4.0).value(), 2.0);
 }
 

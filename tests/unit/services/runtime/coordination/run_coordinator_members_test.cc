@@ -175,8 +175,8 @@ TEST_F(ExternalDriverTest, IsFreeAtOnceWhenItLeaves) {
 /// from the clock.
 class StrayWordTest : public ExternalDriverTest {
  protected:
-  /// Publishes a STATUS of this process every 100 ms. The process is the driver, or another process
-  /// that takes the driver's role.
+  /// For this time, publishes a STATUS of the process `who` every 100 ms. The process is the
+  /// driver, or another process that takes the driver's role.
   void SpeakFor(milliseconds time, status_t& who) {
     for (const TimePoint end = Clock::now() + time; Clock::now() < end;) {
       Say(who);

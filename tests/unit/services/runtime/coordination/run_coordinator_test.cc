@@ -296,7 +296,7 @@ TEST_F(RunCoordinatorTest, EndsOnlyWhenTheRecorderHasToldWhatItHasWrittenOfTheLa
   role(Role::kWorld).state = status_t::DONE;
   SayStatus(Role::kWorld);
   EXPECT_EQ(coordinator_.phase(), runtime::RunCoordinator::Phase::kRunning);
-  // WHEN the report of the recorder was lost, THEN the runner asks for this report
+  // WHEN the recorder's STATUS of the last step was lost, THEN the runner requests this STATUS
   PollUntil(coordinator_, Clock::now() + milliseconds(40));
   script_.bus().Drain();
   ASSERT_FALSE(requests.empty());

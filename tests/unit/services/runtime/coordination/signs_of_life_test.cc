@@ -6,7 +6,7 @@ namespace fogline {
 namespace {
 
 constexpr Duration kEvery = milliseconds(200);
-// Probability that a living process is wrongly regarded as hanging.
+// In these tests, a process counts as hanging if ChanceOfLife() is below this value.
 constexpr double kUnlikely = 1e-6;
 
 TimePoint At(std::int64_t ms) { return TimePoint(std::chrono::hours(5)) + milliseconds(ms); }

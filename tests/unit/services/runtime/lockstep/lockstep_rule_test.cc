@@ -46,7 +46,7 @@ TEST_F(LockstepRuleTest, CatchesUpManyStepsAtATimeAndInSilence) {
   constexpr std::int64_t kProgress = 200;
   script_.SayRun(run_t::GO, kProgress);
   script_.Poll(node_);
-  // GIVEN a node that requests at once all steps that its ring can hold
+  // GIVEN a node that requests, with one message, all steps for which its ring has room
   ASSERT_EQ(requests_.size(), 1U);
   EXPECT_EQ(requests_[0].header.step, 0);
   EXPECT_EQ(requests_[0].count, runtime::kRingSteps - 1);

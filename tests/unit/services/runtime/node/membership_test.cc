@@ -145,7 +145,7 @@ TEST_F(MembershipOfADriverTest,
 
 TEST_F(MembershipOfADriverTest, LeavesARunThatHasAnotherDriverWhenItsRunnerSaysSo) {
   // GIVEN a driver with --run-id, and a RUN that names another driver. The driver cannot know
-  // whether this RUN comes from a log that is played, so it does not leave at once
+  // whether this RUN comes from a log that is played, so it does not leave immediately
   script_.SayRun(run_t::GO, -1);
   const std::vector<std::string> parts = runtime::SplitScenario(script_.text());
   run_t taken = Script::WithDriver(
@@ -312,7 +312,7 @@ TEST_F(ExternalRoleTest, HoldsItsOwnPauseAgainstNoRunner) {
 }
 
 TEST_F(ExternalRoleTest, WaitsAsLongAsTheRunOfARunnerThatHasStartedIt) {
-  // GIVEN a process that the kernel ends when its parent ends
+  // GIVEN a process that the kernel ends when its parent ends, as the runner starts its processes
   int before = 0;
   ASSERT_EQ(prctl(PR_GET_PDEATHSIG, &before), 0);
   ASSERT_EQ(prctl(PR_SET_PDEATHSIG, SIGKILL), 0);

@@ -133,7 +133,8 @@ TEST_F(OutputsOfADriverTest, AnswersAFloodOfRequestsWithAFewMessages) {
   const TimePoint began = Clock::now();
   for (int i = 0; i < kRequests; ++i) script_.AskFor("DRIVER_COMMAND", 0, 1'000'000'000);
   const std::chrono::duration<double> took = Clock::now() - began;
-  // The requests are for 12,800 messages. The role sends each step at most once per millisecond.
+  // The requests are for 12,800 messages. The role sends each step at most once per millisecond, so
+  // at most 1000 times in a second.
   EXPECT_GE(commands_.size(), static_cast<std::size_t>(runtime::kRingSteps));
   EXPECT_LE(static_cast<double>(commands_.size()), runtime::kRingSteps * (1 + 1000 * took.count()));
 }

@@ -23,7 +23,7 @@ std::optional<std::int64_t> Read(const std::string& text) {
   CLI::App app;
   std::optional<std::int64_t> run_id;
   runtime::AddRunIdOption(app, "--run-id", run_id, "the run");
-  app.parse(std::vector<std::string>{text, "--run-id"});  // in reverse order
+  app.parse(std::vector<std::string>{text, "--run-id"});  // CLI11 expects the reverse order
   return run_id;
 }
 

@@ -25,7 +25,8 @@ TEST(CulpritTest, BlamesTheProducerOfEachChannelThatIsLostAlone) {
   });
 }
 
-// Without a sensor there is no track, and without a track no command.
+// Without a sensor there is no track, and without a track no command. So the producer of the lost
+// sensor's channel is the culprit.
 TEST(CulpritTest, BlamesTheMostUpstreamOfSeveral) {
   const auto lost = Lost<lidar_t, track_t, accel_command_t>();
   EXPECT_EQ(runtime::FindCulprit(lost, {}), (runtime::Culprit{Role::kLidar, IndexOf<lidar_t>()}));

@@ -133,10 +133,12 @@ TEST(InputHealthTest, MeasuresTheRateAndLetsItFallInSilence) {
   health.Arrived(0, At(0));
   EXPECT_EQ(health.RateHz(At(50)), 0);
   for (std::int64_t k = 1; k < 40; ++k) health.Arrived(k, At(100 * k));
-  // 15 intervals of 0.1 s; the tolerance is the rounding of one division.
+  // The rate is that of the last 15 intervals, which last 0.1 s each. The tolerance is the rounding
+  // of one division.
   EXPECT_NEAR(health.RateHz(At(3900)), 10, 1e-12);
   EXPECT_NEAR(health.RateHz(At(4000)), 10, 1e-12);
-  // 16 intervals in 1.5 s + 1.7 s.
+  // In silence, the time since the last step counts as one more interval: 16 intervals in 1.5 s +
+  // 1.7 s.
   EXPECT_NEAR(health.RateHz(At(3900 + 1700)), 5, 1e-12);
 }
 

@@ -153,7 +153,7 @@ TEST_F(RealtimeHorizonTest, TheRecorderAsksForStepsOfWhichItHasHeardNothingButTh
   Pass(20);
   // WHEN the runner reports that the run has reached step 10
   script_.SayRun(run_t::GO, 10, kFastSpeed);
-  // THEN the recorder asks for all missing steps at once
+  // THEN the recorder asks for all missing steps in one request
   const auto asked = [&] {
     return std::ranges::any_of(requests, [](const resend_t& request) {
       return request.channel == ChannelOf<truth_t>().name && request.header.step == 1 &&

@@ -1,5 +1,5 @@
 // The times at which the roles of a run in real time compute, and the inputs that they use.
-// Messages arrive at once. Poll() gets the time as its argument. A period is so long that the
+// Messages arrive without delay. Poll() gets the time as its argument. A period is so long that the
 // duration of the test itself does not matter.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -191,7 +191,7 @@ TEST_F(DeadlineRuleTest, WaitsNotForWhatIsLostButForWhatComesAgain) {
   // GIVEN a driver whose input is LOST
   Say<ego_t, radar_t, lidar_t, track_t, accel_command_t>(0);
   script_.PollUpTo(node_, At(1.22));
-  // THEN the arbitrator decides the next step at once
+  // THEN the arbitrator decides the next step without waiting for the driver
   Say<ego_t, radar_t, lidar_t, track_t, accel_command_t>(1);
   script_.PollUpTo(node_);
   EXPECT_THAT(StepsOf(commands_), ElementsAre(0, 1));
@@ -235,7 +235,7 @@ TEST_F(TickRuleTest, MakesUpForNoTickOfAPauseAndLeavesNoneOutThatIsHardlyOver) {
   // GIVEN a world that wakes a little after tick 3
   script_.Poll(node_, At(3.05));
   script_.PollUpTo(node_, At(3.06));
-  // THEN ticks 1 and 2 are missed, and the world begins the next step at once
+  // THEN ticks 1 and 2 are missed, and the world begins the next step immediately
   EXPECT_THAT(StepsOf(truths_), ElementsAre(0, 1));
   EXPECT_EQ(Status(node_).ticks_missed, 2);
   // AND the times of the ticks have not changed
@@ -251,8 +251,8 @@ TEST_F(TickRuleTest, LetsTheOthersFinishTheStepInWhichTheMachineStoodStill) {
   // GIVEN a world that wakes just before tick 3, when no role has answered yet
   script_.Poll(node_, At(2.999));
   EXPECT_THAT(StepsOf(truths_), ElementsAre(0));
-  // WHEN the other roles answer THEN the next step begins at once. Tick 3 begins no step, because
-  // tick 3 comes too soon after this step.
+  // WHEN the other roles answer THEN the next step begins immediately. Tick 3 begins no step,
+  // because tick 3 comes too soon after this step.
   Say<arbitration_t, follower_command_t>(0);
   script_.PollUpTo(node_, At(2.9995));
   EXPECT_THAT(StepsOf(truths_), ElementsAre(0, 1));

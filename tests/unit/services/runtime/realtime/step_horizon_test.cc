@@ -57,8 +57,8 @@ TEST_F(StepHorizonTest, ForgetsThePausesOfTheWorldAndAStepThatNeverWas) {
   Hear(0, 10);
   horizon_.Heard(40, At(1000));
   EXPECT_EQ(horizon_.Newest(At(1000)), 40 + kSlack);
-  // The horizon does not forget step 40 at once, because all other messages might be late. In this
-  // case step 40 would be the only step in time.
+  // The horizon does not forget step 40 immediately, because all other messages might be late. In
+  // this case step 40 would be the only step in time.
   Hear(10, kRemembered - 4, 5);
   EXPECT_GT(horizon_.Newest(At(7000)), 90 + kSlack);
   Hear(10 + kRemembered, kRemembered + 20, 5);

@@ -128,8 +128,8 @@ TEST_F(SeatGateTest, RefusesWhatASeatSendsTooOften) {
   EXPECT_NE(Newest(), -1) << "the seat still drives";
 }
 
-// Otherwise the messages of another seat would use up the number of messages that the driving seat
-// may send.
+// The messages of another seat must not use up the number of messages that the driving seat may
+// send.
 TEST_F(SeatGateTest, DoesNotCountTheFloodOfASecondSeatForTheFirst) {
   gate_.Take(Input(1, 0), now_);
   for (int i = 0; i < 10'000; ++i) gate_.Take(Input(2, i), now_);

@@ -102,8 +102,8 @@ TEST(LcmUrlTest, ARelayOfThisMachineHasAnAddressOfOneOfItsInterfaces) {
   EXPECT_GT(tried, 0);
 }
 
-// A program that was built without the types that no role sends, such as beacon_t, can take part in
-// a run.
+// The fingerprint does not include the types that no role sends, such as beacon_t. So a program
+// that was built without these types can take part in a run.
 TEST(TypeFingerprintTest, IsOfTheHeaderAndTheTypesOfAllChannelsInTheOrderOfTheirNames) {
   std::map<std::string, std::int64_t> hashes{{header_t::getTypeName(), header_t::getHash()}};
   std::apply(

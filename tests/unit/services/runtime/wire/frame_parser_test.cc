@@ -170,7 +170,8 @@ TEST(FrameParserTest, GivesNothingMoreAfterAnError) {
 }
 
 TEST(FrameParserTest, SurvivesBytesThatAreChangedAtRandom) {
-  // Every frame of the parser is within the limits, and lies within the input.
+  // The test expects that every frame from the parser is within these limits, and lies within the
+  // input.
   const Limits limits{.channel = 63, .pattern = 64, .payload = 6000};
   std::mt19937_64 engine(20'260'101);
   const auto below = [&engine](std::size_t n) { return static_cast<std::size_t>(engine() % n); };

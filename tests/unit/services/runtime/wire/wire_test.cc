@@ -58,7 +58,8 @@ TEST(WireTest, RefusesAnArrayThatClaimsMoreElementsThanTheMessageHasBytes) {
   }
 }
 
-// A process decodes all messages of a channel into one object.
+// A process decodes all messages of a channel into the same object. No element of an earlier
+// message may stay in this object.
 TEST(WireTest, ForgetsTheElementsOfTheMessageBefore) {
   follower_command_t command{};
   command.num_followers = 1;

@@ -1,4 +1,5 @@
-// The sets in scenario/ensemble load, are distinct, and meet the published table.
+// Tests that the sets of parameters in scenario/ensemble can be loaded, are distinct, and meet the
+// published table.
 #include <cstddef>
 #include <filesystem>
 #include <sstream>

@@ -53,7 +53,7 @@ std::string FileWith(int messages, std::size_t bytes) {
 
 constexpr std::size_t kMagicBytes = 8;
 constexpr std::size_t kRecordHead = 9;    // opcode and length
-constexpr std::size_t kFooterBytes = 20;  // its content
+constexpr std::size_t kFooterBytes = 20;  // without opcode and length
 
 /// The number of records of each kind outside of chunks.
 std::map<int, int> RecordsOf(std::string_view file) {

@@ -53,8 +53,9 @@ TEST(CompareDetectionTest, HasTheUncertaintyOfTheThresholdInItsIntervals) {
   const double threshold = study::ThresholdFinder(clear).Threshold(kArlZero_s);
   EXPECT_NEAR(delay.mean, threshold / 0.1, 0.011);
   // All runs in fog are equal, so only the threshold can vary. The threshold is the quantile of the
-  // greatest scores that a share q of 60 runs exceeds, with a deviation of sqrt(q (1 - q)/60). For
-  // runs of 100 s with an alarm at 50 s, (100 - 50 q)/q = 400, so q = 2/9.
+  // greatest scores that a share q of 60 runs exceeds, with a deviation of sqrt(q (1 - q)/60). A
+  // run lasts 50 s if it has an alarm, else 100 s. So ARL0 is (100 - 50 q)/q = 400 s, and q = 2/9.
+  // The score in fog grows by 0.1 in a second, so the delay is the threshold divided by 0.1.
   const double deviation_s = std::sqrt(2.0 / 9 * 7.0 / 9 / kSeeds) / 0.1;
   // The ends of the interval are two of the 60 scores, 2 * 1.96 * sqrt(60 q (1 - q)) = 12.6 places
   // apart. A sum of this many spacings has a deviation of 28 %, because the deviation of each

@@ -37,7 +37,7 @@ study::Claim ClaimWith(double mean, double half, Sign sign = Sign::kLess, double
           .hindrance = {}};
 }
 
-/// A claim that certainly holds in each of `sets` sets.
+/// A claim that certainly holds in each of `sets` sets of parameters.
 study::ClaimInSets InSets(std::size_t sets, std::string_view says = kHelps) {
   return {.quoted = {.study = "policy", .says = says},
           .sets = std::vector<study::Claim>(sets, ClaimWith(-1, 0.1))};
@@ -114,7 +114,7 @@ TEST(RobustnessTest, HolmCountsAllClaimsInAllSets) {
   study::ClaimInSets claim = InSets(1);
   claim.sets[0] = ClaimWith(-1, 1 * 1.984 / 2.5);
   EXPECT_THAT(OutcomesOf(claim), ElementsAre(InSet::kHolds));
-  // WHEN it is one of four comparisons of two claims in two sets, all equally uncertain
+  // WHEN this difference is one of four: two claims in two sets, all equally uncertain
   claim.sets.push_back(claim.sets[0]);
   const std::vector<study::ClaimInSets> two{claim, claim};
   const auto judged = study::JudgeInSets(two);

@@ -12,7 +12,8 @@
 namespace fogline {
 namespace {
 
-/// A string of ACCs in fog that begins after 20 s. @param more overrides of dense_fog.json
+/// The outcome of a string of cars with ACCs, in fog that begins after 20 s. @param more overrides
+/// of dense_fog.json
 study::StringOutcome RunString(std::vector<std::string> more) {
   more.insert(more.end(), {"/fog/start_s=20", "/steps=350"});
   const std::array kinds{

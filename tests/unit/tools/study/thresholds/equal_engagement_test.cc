@@ -40,10 +40,12 @@ TEST(BestAtTest, HasNoPlaceBeyondTheCurve) {
 }
 
 TEST(InterpolationErrorTest, IsThatOfTheNeighboursAtThePlace) {
-  // 40 % lies between 100 % and 20 %: three quarters of the way from -50 to 20 is 2.5. The true
-  // gain is 10, so the error is 7.5.
-  // 20 % lies between 40 % and 0 %: half of the way from 10 to 22 is 16. The true gain is 20, so
-  // the error is 4.
+  // The error at a point is the difference between its gain and the gain that its two neighbours
+  // give.
+  // RHE 40 % lies between 100 % and 20 %: three quarters of the way from -50 to 20 is 2.5. The gain
+  // of the point is 10, so the error is 7.5.
+  // RHE 20 % lies between 40 % and 0 %: half of the way from 10 to 22 is 16. The gain of the point
+  // is 20, so the error is 4.
   EXPECT_NEAR(study::InterpolationErrorAt(kCurve, *study::BestAt(kCurve, 30)), 7.5, 1e-12);
   EXPECT_NEAR(study::InterpolationErrorAt(kCurve, *study::BestAt(kCurve, 10)), 4, 1e-12);
   EXPECT_NEAR(study::InterpolationErrorAt(kCurve, *study::BestAt(kCurve, 5)), 3, 1e-12);
@@ -101,8 +103,8 @@ TEST(AgainstFixedTest, FindsASmallDifferenceUnderTheLargeOneOfTheSituations) {
 
 TEST(AgainstFixedTest, KnowsThatTheEngagementIsAnEstimateToo) {
   // The rule's own RHE has a deviation of 20 points over 200 situations, so its mean has a
-  // deviation of 1.4 points. On the line of the fixed rules, one point of RHE changes the gain by
-  // one point.
+  // deviation of 1.4 points. On the line of the fixed rules, one point more RHE is one point less
+  // gain. So the uncertainty of the RHE alone is 1.4 points of gain.
   Rule low = MakeRule(80, 0);
   Rule high = MakeRule(10, 0);
   Rule rule = MakeRule(40, 0);

@@ -69,7 +69,8 @@ class ServerLimitsTest : public ::testing::Test {
     boost::asio::post(context_, [&] { counts.set_value(server_->counts()); });
     return counts.get_future().get();
   }
-  /// Waits until a count has this value. @return whether it has
+  /// Waits until a count has this value. @return false if the count does not reach the value in
+  /// time
   bool Waits(std::int64_t ServerCounts::*count, std::int64_t value) {
     const TimePoint end = Clock::now() + kPatience;
     while (Counts().*count != value && Clock::now() < end) {
@@ -77,7 +78,7 @@ class ServerLimitsTest : public ::testing::Test {
     }
     return Counts().*count == value;
   }
-  /// A connection that sends nothing. @param host its own address
+  /// A connection that sends nothing. @param host the client's own address
   tcp::socket Connect(const std::string& host = "127.0.0.1") {
     tcp::socket socket(own_);
     socket.open(tcp::v4());

@@ -72,7 +72,8 @@ TEST(DescriptionTest, NamesTheChannelsOfTheGraphByTheirPlaces) {
   EXPECT_EQ(channels[ChannelNamed("RESEND")]["from"], "everyone");
 }
 
-/// Whether every schema in a schema has exactly one type, which Foxglove's readers demand.
+/// Expects that a schema, and every schema in it, has exactly one type. Foxglove's readers demand
+/// this.
 void ExpectOneType(const Json& schema) {
   ASSERT_TRUE(schema["type"].is_string()) << schema;
   if (schema["type"] == "array") ExpectOneType(schema["items"]);

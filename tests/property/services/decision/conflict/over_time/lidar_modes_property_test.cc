@@ -1,5 +1,5 @@
-// Checks that the posterior of the LiDAR's modes is a probability. In a world that follows the
-// model, the LiDAR is deceived in a share p of the steps with posterior p.
+// Checks the posterior probability that the LiDAR is deceived. In sequences that follow the model
+// of the LiDAR's modes, the LiDAR must be deceived in a share p of the steps with posterior p.
 #include "services/decision/conflict/over_time/lidar_modes.h"
 
 #include <algorithm>
@@ -58,7 +58,8 @@ class Lidar {
         break;
     }
     if (stray < model_.stray_share) return anywhere_m;
-    // The distribution Beta(2, 20) has mean 1/11 and variance 40/(22^2 23).
+    // The model adds the echo's scatter in the fog and the noise, and takes the sum as normal. The
+    // scatter has the distribution Beta(2, 20), with mean 1/11 and variance 40/(22^2 23).
     const double scatter_m2 = model_.fog_scatter_m * model_.fog_scatter_m * 40 / (22 * 22 * 23);
     return model_.fog_return_m + model_.fog_scatter_m / 11 +
            std::sqrt(scatter_m2 + kLidarStd_m * kLidarStd_m) * noise;
@@ -69,8 +70,8 @@ class Lidar {
   conflict::LidarMode mode_ = conflict::LidarMode::kClean;
 };
 
-/// All steps with a posterior in one interval: the sum of the posteriors, and the number of steps
-/// in which the LiDAR is deceived. The expected values of sum and number are equal.
+/// All steps with a posterior in one interval: the sum of the posteriors (`said`), and the number
+/// of steps in which the LiDAR is deceived (`were_so`). Both have the same expected value.
 struct Claims {
   double said = 0;
   double variance = 0;  // variance of the number of deceived steps
@@ -82,7 +83,7 @@ TEST(LidarModesPropertyTest, SayTheShareOfStepsInWhichTheLidarIsDeceived) {
   // GIVEN many LiDARs with a fog return near the car, so that all probabilities occur
   conflict::ConflictParameters model;
   model.fog_return_m = 40;
-  constexpr std::array kEdges{0.02, 0.5, 0.98};  // most steps are almost certain
+  constexpr std::array kEdges{0.02, 0.5, 0.98};  // in most steps the posterior is near 0 or 1
   std::array<Claims, kEdges.size() + 1> claims{};
   for (std::int64_t sequence = 0; sequence < kSequences; ++sequence) {
     Lidar lidar(model, Random(sequence, Stream::kLidar));

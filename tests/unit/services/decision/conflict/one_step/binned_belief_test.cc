@@ -19,7 +19,7 @@ TEST(BinnedBeliefTest, HasTheTabulatedValues) {
   struct Row {
     double d_m, dempster, jousselme, pignistic, correlation, cosine;
   };
-  // Bins of 0.5 m, eta = 0.95, standard deviations 0.4 m and 0.05 m.
+  // Bins of 0.5 m, reliability 0.95 of both sensors, standard deviations 0.4 m (radar) and 0.05 m.
   constexpr std::array<Row, 4> kTable{{{0, .547, .138, .20, .03, .03},
                                        {0.5, .680, .390, .48, .39, .39},
                                        {1, .855, .572, .85, .86, .86},
@@ -39,14 +39,16 @@ TEST(BinnedBeliefTest, HasTheTabulatedValues) {
 }
 
 TEST(BinnedBeliefTest, TheFrameResemblesABinByItsShareOfIt) {
-  // GIVEN: four bins. The radar is on an edge, m = (.4, .4, 0, 0). The LiDAR is inside of a bin,
-  // (0, 0, .8, 0). Each sensor has the mass 0.2 on the frame.
+  // GIVEN: four bins. The radar's range is on an edge, so its masses on the bins are (.4, .4, 0,
+  // 0). The LiDAR's range is inside of a bin: (0, 0, .8, 0). Each sensor has the mass 0.2 on the
+  // frame, which is the set of all bins.
   conflict::ConflictParameters parameters;
   parameters.frame_bins = 4;
   parameters.radar_reliability = 0.8;
   parameters.lidar_reliability = 0.8;
   const conflict::BinnedPair pair = conflict::PairOnBins(Differing(0.75, 0.01, 0.01), parameters);
-  // THEN: D(bin, frame) = 1/4 makes c11 = .32 + .04 + .08, c22 = .64 + .04 + .08, c12 = .04 + .08
+  // THEN: Jousselme's matrix has D(bin, frame) = 1/4, so the products of the masses are c11 = .32 +
+  // .04 + .08 (radar, radar), c22 = .64 + .04 + .08 (LiDAR, LiDAR) and c12 = .04 + .08
   EXPECT_NEAR(conflict::CorrelationConflict(pair), 1 - .12 / std::sqrt(.44 * .76), 1e-12);
   EXPECT_NEAR(conflict::JousselmeDistance(pair), std::sqrt((.44 + .76 - .24) / 2), 1e-12);
   EXPECT_NEAR(conflict::CosineConflict(pair), 1 - .04 / std::sqrt(.36 * .68), 1e-12);
@@ -85,7 +87,7 @@ TEST(BinnedBeliefTest, UnequalReliabilityIsADifferenceOfPignisticProbability) {
   conflict::ConflictParameters parameters;
   parameters.lidar_reliability = 0.55;
   // GIVEN: two equal readings, WHEN: the reliability of one reading is lower by 0.4, THEN: 0.4 of
-  // its belief is spread over all 500 bins. The readings have belief in some 24 of these bins, so
+  // its belief is spread over all 500 bins. The readings have belief in about 24 of these bins, so
   // the distance is a little less than 0.4.
   const conflict::BinnedPair pair = conflict::PairOnBins(Differing(0, 0.2, 0.2), parameters);
   EXPECT_NEAR(conflict::PignisticDistance(pair), 0.4, 0.02);

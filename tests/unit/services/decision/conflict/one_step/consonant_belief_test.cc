@@ -27,7 +27,8 @@ TEST(ConsonantConflictTest, HasTheTabulatedValues) {
 }
 
 TEST(ConsonantConflictTest, AgreesWithAPlainSumOverBothIntervals) {
-  // P(s1 Y1 + s2 Y2 < d), by the midpoint rule over the distributions of Y1 and Y2.
+  // The conflict is the probability P(s1 Y1 + s2 Y2 < d). Y1 and Y2 have Maxwell's distribution,
+  // and the sum goes over small cells of Y1.
   constexpr int kParts = 4000;
   constexpr double kReach = 8;
   for (const auto& [s1, s2] : {std::pair{0.4, 0.05}, std::pair{0.3, 0.3}, std::pair{0.02, 2.0}}) {
@@ -57,7 +58,8 @@ TEST(ConsonantConflictTest, IsTheSameWhicheverSensorIsThePreciseOne) {
 }
 
 TEST(ConsonantPignisticTest, IsTheTotalVariationOfTheGaussians) {
-  // Half of the integral of |p1 - p2|, from the differences of the distributions in small cells.
+  // The distance is half of the integral of |p1 - p2|, with the densities p1 and p2 of the two
+  // readings. The test adds up the differences of their probabilities in small cells.
   constexpr double kCell_m = 1e-3;
   for (const auto& [s1, s2] : {std::pair{0.4, 0.05}, std::pair{0.3, 0.3}, std::pair{0.1, 1.0}}) {
     for (const double d : {0.0, 0.2, 1.0, 3.0}) {
@@ -83,7 +85,8 @@ TEST(ConsonantPignisticTest, IsContinuousWhereThePrecisionsAreEqual) {
 }
 
 TEST(ConsonantBeliefsTest, LevelsStandForTheDensity) {
-  // The test integrates the plausibilities pl(x) = 1 - F(|x - mu|/s) directly.
+  // The test integrates the product of both readings' plausibilities pl(x) = 1 - F(|x - mu|/s). F
+  // is Maxwell's distribution, mu the reading, and s its standard deviation.
   const auto plausibility = [](double y) { return 1 - conflict::MaxwellBelow(y); };
   const conflict::ConsonantBeliefs beliefs(kLevels);
   for (const double d : {0.0, 0.5, 1.0}) {

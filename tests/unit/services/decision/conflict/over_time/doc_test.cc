@@ -28,7 +28,7 @@ TEST(DocTest, HasTheTabulatedValues) {
 }
 
 TEST(DocTest, MeanAndVarianceOfItsConflictWithoutFaultAreTheQuotedOnes) {
-  constexpr double kStd_m = 0.4;  // of d
+  constexpr double kStd_m = 0.4;  // of the difference radar - LiDAR
   constexpr int kWindow = 8;
   constexpr int kWindows = 4000;
   const Random random(2, Stream::kRadar);
@@ -54,7 +54,8 @@ TEST(DocTest, MeanAndVarianceOfItsConflictWithoutFaultAreTheQuotedOnes) {
 }
 
 TEST(DocTest, AStepBiasCrossesTheCentreAfterTheQuotedShareOfTheWindow) {
-  // n = N (1 - z0)/(b - z0), z0 = 0.32 m: N/14 for a bias of 10 m, 0.6 N for a bias of 1.5 m.
+  // In a window of N steps with the conflict z0 = 0.32 m, a bias b raises the conflict to the
+  // centre of 1 m after n = N (1 m - z0)/(b - z0) steps: N/14 for a bias of 10 m, 0.6 N for 1.5 m.
   constexpr int kWindow = 140;
   constexpr double kFloor_m = 0.32;
   for (const auto& [bias_m, share] : {std::pair{10.0, 1.0 / 14}, std::pair{1.5, 0.6}}) {

@@ -27,7 +27,8 @@ TEST(LidarModesTest, OneStepIsBayesRuleWorkedByHand) {
   conflict::LidarModes modes(parameters);
   // GIVEN: a clean LiDAR, WHEN: there is no echo
   const auto& posterior = modes.Step(WithoutLidar(At(30, 30)));
-  // THEN: c = (.99, .005, .005), Lambda = (.02, .1, .98)
+  // THEN: the modes clean, fog return and dropout have the predicted probabilities (.99, .005,
+  // .005), and in these modes "no echo" has the likelihoods (.02, .1, .98)
   const double sum = .99 * .02 + .005 * .1 + .005 * .98;
   EXPECT_NEAR(Of(posterior, conflict::LidarMode::kClean), .99 * .02 / sum, 1e-12);
   EXPECT_NEAR(Of(posterior, conflict::LidarMode::kFogReturn), .005 * .1 / sum, 1e-12);
@@ -35,7 +36,8 @@ TEST(LidarModesTest, OneStepIsBayesRuleWorkedByHand) {
 }
 
 TEST(LidarModesTest, FogIsLikeliestAtTheMeanOfItsScatter) {
-  // GIVEN: an echo at r* + 10 m E[Beta(2, 20)], which the clean mode cannot produce
+  // GIVEN: an echo at the mean distance of the fog's echoes, r* + 10 m E[Beta(2, 20)] with r* = 3.5
+  // m. The clean mode cannot produce this echo.
   const double fog_m = 3.5 + 10 * 2.0 / 22;
   conflict::LidarModes modes({});
   const auto& posterior = modes.Step(At(200, fog_m));

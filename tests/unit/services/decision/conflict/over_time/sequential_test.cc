@@ -15,7 +15,8 @@ struct RunLength {
   double standard_error;  // of the mean
 };
 
-// The number of steps until a CUSUM of either sign exceeds the threshold, with noise of S = 1 m2.
+// The mean number of steps, over `runs` runs, until a CUSUM of either sign exceeds the threshold.
+// The difference of the sensors has a variance of 1 m2.
 RunLength TwoSidedRunLength(double threshold, double shift_m, int runs) {
   const Random random(3, Stream::kRadar);
   conflict::Cusum up({});
@@ -40,7 +41,8 @@ RunLength TwoSidedRunLength(double threshold, double shift_m, int runs) {
   return {mean, std::sqrt((squares / runs - mean * mean) / runs)};
 }
 
-// The draws are deterministic. A bound of 3.3 standard errors is the 99.9 % confidence interval.
+// The tolerances are 3.3 standard errors, the 99.9 % confidence interval. The random numbers are
+// the same in each run of the tests, so a test that passes always passes.
 constexpr double kConfidence = 3.3;
 
 TEST(CusumTest, MeanRunLengthToAFalseAlarmIsTheQuotedOne) {
@@ -115,7 +117,7 @@ TEST(SprtTest, ErrsNoMoreOftenThanItsParametersSay) {
   const conflict::SprtBounds bounds =
       conflict::WaldBounds(parameters.sprt_alpha, parameters.sprt_beta);
   const Random random(4, Stream::kRadar);
-  // The share of tests that decide for the conflict.
+  // The share of the kTests tests that decide for the conflict.
   const auto accepted = [&](double shift_m) {
     conflict::Sprt measure(parameters);
     std::int64_t step = 0;

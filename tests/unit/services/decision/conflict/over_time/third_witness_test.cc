@@ -46,7 +46,7 @@ TEST_P(EveryBlameTest, FallsOnNoSensorWithoutAWitness) {
   conflict::Evidence evidence = LidarShortBy(5);
   evidence.prediction = {};
   EXPECT_EQ(Make(GetParam())->Step(evidence), conflict::Blame{});
-  // also if the steps before had a prediction
+  // This also holds if the steps before had a prediction.
   const auto measure = Make(GetParam());
   for (int i = 0; i < 3; ++i) EXPECT_GT(measure->Step(LidarShortBy(5)).lidar, 0.8);
   EXPECT_EQ(measure->Step(evidence), conflict::Blame{});
@@ -95,7 +95,7 @@ TEST(NisBlameTest, AWindowAddsUpWhatSingleStepsCannotTell) {
   conflict::NisBlame blame(parameters);
   double last = 0;
   for (int i = 0; i < 9; ++i) last = blame.Step(LidarShortBy(std::hypot(kLidarStd_m, 0.1))).lidar;
-  EXPECT_NEAR(last, std::erf(3 / std::sqrt(2.0)), 1e-12);  // T = 1 * sqrt(9)
+  EXPECT_NEAR(last, std::erf(3 / std::sqrt(2.0)), 1e-12);  // the statistic is 1 * sqrt(9)
 }
 
 TEST(NisBlameTest, ALidarThatIsShortAndThenSilentIsNotExcusedByTheSilence) {

@@ -52,7 +52,8 @@ TEST(BacklogTest, KeepsMoreThanTheKernelInItsOrder) {
   const Ends ends;
   Backlog backlog(ends.receiver(), kMost, &IsWanted);
   constexpr int kPackets = 2000;
-  // The test takes no packet yet, so without the thread the sender would wait in vain.
+  // The test takes no packet yet, so without the backlog's thread the kernel's buffer would stay
+  // full, and Send() would fail.
   for (int i = 0; i < kPackets; ++i) ASSERT_TRUE(ends.Send("packet " + std::to_string(i)));
   for (int i = 0; i < kPackets; ++i) ASSERT_EQ(Next(backlog), "packet " + std::to_string(i));
   EXPECT_FALSE(backlog.Take());

@@ -48,7 +48,7 @@ TEST(MessageSocketTest, ReceivesWhatLcmSends) {
 
 TEST(MessageSocketTest, TakesOnlyWholeMessagesOfFoglinesSize) {
   const std::string url = runtime::FreshMulticastUrl();
-  runtime::MessageSocket socket(url, {});  // the kernel drops nothing
+  runtime::MessageSocket socket(url, {});  // without channels, so the kernel drops nothing
   constexpr std::size_t kMost = runtime::kMaxMessageBytes + runtime::kSignatureBytes;
   for (const std::string& packet :
        {""s, "LC02"s, "LC01\0\0\0\1A\0data"s, "LC02\0\0\0\1no end"s,

@@ -73,7 +73,8 @@ TEST(SortScoresTest, PutsTheRunsIntoBatchesInTurn) {
 }
 
 TEST(RunInFogTest, ComparesEachSeedWithTheClearAirOfItsBatch) {
-  // GIVEN clear air whose scores are below every score in fog in batch 0, and above in batch 1
+  // GIVEN clear air whose scores in batch 0 are below every score in fog, and in batch 1 above
+  // every score in fog
   const std::size_t detectors = study::AllDetectors().size();
   const std::vector<study::SortedBatches> clear(detectors, {{-1e300}, {1e300}});
   const std::vector<study::Gathered> gathered =
