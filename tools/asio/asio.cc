@@ -1,3 +1,3 @@
-// The functions of Boost.Asio and Boost.Beast, compiled once for all tools.
+// Compiles the functions of Boost.Asio and Boost.Beast. All tools link the result.
 #include <boost/asio/impl/src.hpp>
 #include <boost/beast/src.hpp>

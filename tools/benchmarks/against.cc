@@ -1,5 +1,5 @@
-// Compares this build with the build of another commit. It uses only the command line, which is the
-// same in both builds.
+// Compares this build with the build of another commit. It uses only the command line of `fogline`,
+// because both builds have the same command line.
 #include <nlohmann/json.hpp>
 
 #include "tools/benchmarks/comparisons.h"
@@ -26,8 +26,8 @@ double RowsPerSecond(const Tree& tree, int rows) {
   return rows / nlohmann::json::parse(result.out)["wall_s"].get<double>();
 }
 
-/// Microseconds of a step of a run of nine processes. They are computed from a long and a short
-/// run, so that the cost of starting processes cancels out.
+/// Microseconds of a step of a run of nine processes. The result is the difference between a long
+/// and a short run, because both include the same cost of starting processes.
 double MicrosecondsPerStep(const Tree& tree, int steps) {
   constexpr int kShort = 100;
   const std::filesystem::path log = ScratchFolder() / "against.lcm";
@@ -40,7 +40,7 @@ double MicrosecondsPerStep(const Tree& tree, int steps) {
   return 1e6 * (seconds(kShort + steps) - seconds(kShort)) / steps;
 }
 
-/// Milliseconds from the start of the program to its end, without work.
+/// Milliseconds of `fogline --version`, from the start of the program to its end.
 double StartMilliseconds(const Tree& tree) {
   constexpr int kStarts = 20;
   double wall_s = 0;

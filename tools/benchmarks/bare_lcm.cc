@@ -28,7 +28,8 @@ namespace {
 constexpr unsigned kPayloadBytes = 120;
 using Payload = std::array<std::uint8_t, kPayloadBytes>;
 
-// Steps before the measurement starts. Every process joins the network during these steps.
+// Number of steps before the measurement starts. Every process joins the network during these
+// steps.
 constexpr int kWarmUpSteps = 200;
 // A bare network does not send lost messages again. So the first process repeats a step's messages
 // if it has received no message for this time.
@@ -70,7 +71,7 @@ class BareProcess {
     }
   }
 
-  /// Answers messages forever.
+  /// Answers messages until the process is killed.
   [[noreturn]] void Follow() {
     while (lcm_handle(lcm_) == 0) {
     }
@@ -150,8 +151,8 @@ std::vector<BareRole> BareGraph() {
 }
 
 double BareNetworkStepSeconds(const std::vector<BareRole>& roles, int steps) {
-  // The same kind of URL as in a run of Fogline: with a private port, and with a receive buffer
-  // that is large enough for bursts.
+  // The URL has a private port, and a receive buffer that is large enough for bursts, as in a run
+  // of Fogline.
   const std::string url = runtime::Bus(runtime::FreshMulticastUrl()).url();
   Children children;
   for (std::size_t i = 1; i < roles.size(); ++i) children.Start(url, roles[i]);

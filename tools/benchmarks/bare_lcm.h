@@ -1,6 +1,6 @@
 // Measures the cost of LCM itself, with processes that only receive and send, and with a reader of
-// logs. These processes and this reader use only LCM's own library. The benchmarks compare
-// Fogline's lockstep and log reading with them.
+// logs. They use only LCM's own library. The benchmarks compare Fogline's lockstep and log reading
+// with them.
 #pragma once
 
 #include <filesystem>
@@ -23,7 +23,7 @@ std::vector<BareRole> BareRing(int hops);
 /// graph.
 std::vector<BareRole> BareGraph();
 
-/// Seconds per step of a network of bare processes over udpm. This process is the first role. It
+/// Seconds per step of a network of bare processes over udpm. This process takes the first role. It
 /// begins a step when all its inputs of the previous step have arrived.
 double BareNetworkStepSeconds(const std::vector<BareRole>& roles, int steps);
 

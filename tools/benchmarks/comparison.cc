@@ -8,7 +8,7 @@
 namespace fogline::benchmarks {
 namespace {
 
-/// Linear interpolation between the two nearest values.
+/// Quantile of `sorted` at `share`, with linear interpolation between the two nearest values.
 double Quantile(const std::vector<double>& sorted, double share) {
   const double place = share * static_cast<double>(sorted.size() - 1);
   const auto below = static_cast<std::size_t>(place);

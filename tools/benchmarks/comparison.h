@@ -1,5 +1,5 @@
-// Measures two ways to do one thing, in one run and in alternating rounds. So a disturbance of the
-// machine affects both ways. The result is the ratio of each round.
+// Measures two ways to do the same work, in one run and in alternating rounds. So a disturbance of
+// the machine affects both ways. Each round gives the ratio of the two results.
 #pragma once
 
 #include <functional>

@@ -11,16 +11,16 @@ namespace fogline::benchmarks {
 /// How long the measurements take.
 enum class Effort { kQuick, kFull };
 
-/// The lockstep over udpm and memq, compared with bare LCM over udpm and memq.
+/// The lockstep over udpm and over memq, each compared with bare LCM over the same transport.
 std::vector<Comparison> LockstepComparisons(Effort effort);
 
 /// Runs in one process, compared with other programs for the same purpose.
 std::vector<Comparison> PeerComparisons(Effort effort);
 
-/// Sweeps and logs: cores, memory, reading speed.
+/// Sweeps and logs: effect of a second core, memory of a sweep, and speed of reading a log.
 std::vector<Comparison> DataComparisons(Effort effort);
 
-/// This build, compared with that of another commit.
+/// This build compared with the build of another commit.
 /// @param folder the other commit's sources in folder/source, its build in folder/build
 std::vector<Comparison> AgainstComparisons(Effort effort, const std::filesystem::path& folder);
 

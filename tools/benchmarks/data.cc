@@ -18,8 +18,8 @@ ProgramResult Sweep(int rows, int jobs) {
                      ScratchFolder() / ("sweep-" + std::to_string(rows) + ".csv")});
 }
 
-/// Rows per second. A row is a run and its paired run without traded control. This function removes
-/// the files of earlier sweeps first, because a sweep would resume an earlier one.
+/// Rows of a sweep per second. A row is a run and its paired run without traded control. This
+/// function removes the files of earlier sweeps first.
 double SweepRowsPerSecond(int rows, int jobs) {
   for (const auto& entry : std::filesystem::directory_iterator(ScratchFolder())) {
     if (entry.path().filename().string().starts_with("sweep-")) {

@@ -23,7 +23,7 @@ struct Cost {
   double memory_mb;
 };
 
-/// A quantity that grows: its sizes, and the work of a size.
+/// One quantity that grows: its sizes, the work of a size, and the number of pieces of this work.
 struct Trial {
   Growth growth;
   std::vector<std::int64_t> sizes;
@@ -193,8 +193,8 @@ void DrawGrowth(const std::vector<Growth>& all, const std::filesystem::path& cha
       << "set grid\nset border 3\nset tics nomirror\n"
       << "set yrange [0:*]\nset key off\n";
   for (std::size_t i = 0; i < all.size(); ++i) {
-    // Sizes that differ by decades need a logarithmic axis. Other sizes have a linear axis, because
-    // linear growth is a straight line on it.
+    // Sizes that differ by decades need a logarithmic axis. Other sizes have a linear axis, on
+    // which linear growth is a straight line.
     constexpr std::int64_t kDecades = 100;
     const bool wide = all[i].points.back().size >= kDecades * all[i].points.front().size;
     out << (wide ? "set logscale x\nset format x '10^{%L}'\n"

@@ -32,7 +32,7 @@ struct Growth {
   double beyond_linear = 0;
 };
 
-/// Measures all sizes once in each round, so that a disturbance does not affect one size alone.
+/// Measures all sizes once in each round. So a disturbance of the machine affects all sizes.
 /// @throws std::runtime_error if a program fails
 std::vector<Growth> MeasureGrowth(Effort effort, int rounds);
 

@@ -1,8 +1,8 @@
 // Compares the cost of the lockstep with the cost of LCM itself.
 //
-// Which chain of bare LCM processes is a fair reference? A step of Fogline sends nine messages.
-// Five of these messages must follow one another: TRUTH, RADAR (or LIDAR), TRACK, ACC_COMMAND,
-// HOST_COMMAND. So the shortest possible step is a message that goes round a ring of five
+// Which bare LCM processes are a fair reference? A step of Fogline sends nine messages. Five of
+// these messages must follow one another: TRUTH, RADAR (or LIDAR), TRACK, ACC_COMMAND,
+// HOST_COMMAND. So a step takes at least as long as one message that goes round a ring of five
 // processes. The goal refers to this ring. The ring is a hard reference, because it sends four
 // messages fewer and wakes five processes instead of nine. On a machine with few cores, waking
 // processes is most of the work. LCM's multicast wakes every process for every message on the
@@ -50,8 +50,8 @@ double RunSeconds(const Options& options, int steps, const Options& launcher = {
   return nlohmann::json::parse(RunProgram(command).out)["wall_s"];
 }
 
-/// Microseconds per step. They are computed from a long and a short run, so that the cost of the
-/// start and the end of a run cancels out.
+/// Microseconds per step. The result is the difference between a long and a short run, because both
+/// include the same cost of the start and the end of a run.
 double LockstepStepMicros(const Options& options, int steps, const Options& launcher = {}) {
   constexpr int kShort = 500;
   const double more_s =
@@ -95,8 +95,8 @@ Comparison SignedOverUdpm(int steps) {
   return comparison;
 }
 
-/// Steps per second of a run whose driver is a program of its own. "--lcm-url URL" follows the
-/// driver's command.
+/// Steps per second of a run whose driver is a program of its own. @param driver the command of
+/// this program, to which "--lcm-url URL" is added
 double StepsPerSecondWith(const std::string& driver, int steps) {
   const std::string url = runtime::FreshMulticastUrl();
   const Options beside{"sh", "-c",
@@ -127,7 +127,7 @@ Comparison DriverInPython(int steps) {
 
 std::vector<Comparison> LockstepComparisons(Effort effort) {
   const int steps = effort == Effort::kFull ? 10'000 : 3'000;
-  constexpr int kMemqFactor = 5;  // memq is faster at least by this factor
+  constexpr int kMemqFactor = 5;  // memq is at least this much faster, so its runs have more steps
   const int messages = StepMessages();
   return {
       OverUdpm(steps, "udpm", "ring of 5 bare LCM processes (longest path of a step)",

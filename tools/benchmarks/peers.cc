@@ -1,5 +1,5 @@
-// Compares runs in one process with two other programs for the same purpose: a GNU Octave script of
-// the paper, and SUMO with three cars. The files of both programs are in tests/campaign/peers.
+// Compares Fogline's runs in one process with two other programs for the same purpose: a GNU Octave
+// script of the paper, and SUMO with three cars. The files of both are in tests/campaign/peers.
 #include <cstdint>
 #include <fstream>
 #include <stdexcept>
@@ -62,8 +62,8 @@ double SumoSeconds(int steps) {
       .wall_s;
 }
 
-/// Updates of single cars per second. They are computed from a long and a short run, so that the
-/// cost of loading cancels out.
+/// Updates of single cars by SUMO per second. The result is the difference between a long and a
+/// short run, because both include the same cost of loading.
 double SumoUpdatesPerSecond(int steps) {
   constexpr int kShort = 1'000;
   return kCars * steps / (SumoSeconds(kShort + steps) - SumoSeconds(kShort));

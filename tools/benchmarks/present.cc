@@ -20,7 +20,8 @@ std::string CpuModel() {
   return "unknown CPU";
 }
 
-/// Three significant digits, with separators between thousands: 0.0123, 4.56, 78.9, 12,300.
+/// The number with three significant digits, and separators between thousands: 0.0123, 4.56, 78.9,
+/// 12,300.
 std::string Rounded(double value) {
   constexpr double kWhole = 100;
   if (std::abs(value) < kWhole) return fmt::format("{:#.3g}", value);

@@ -1,4 +1,4 @@
-// Programs that a benchmark runs, and the folder for their files.
+// Runs programs for a benchmark, and gives the folder for their files.
 #pragma once
 
 #include <chrono>
@@ -23,7 +23,7 @@ struct ProgramResult {
 /// text contains the last line of its stderr
 ProgramResult RunProgram(const std::vector<std::string>& command);
 
-/// A folder for the files of this process. The end of the process removes the folder.
+/// A folder for the files of this process. It is removed when the process ends.
 const std::filesystem::path& ScratchFolder();
 
 /// Wall-clock seconds that `work` takes.

@@ -11,7 +11,7 @@
 namespace fogline::benchmarks {
 namespace {
 
-/// Copies of the messages of a step.
+/// Copies of the messages of one step.
 struct Recorded {
   truth_t truth;
   ego_t ego;
@@ -38,7 +38,7 @@ const Scenario& Paper() {
   return scenario;
 }
 
-/// A scenario with a physical fog model and a LiDAR with many beams.
+/// A scenario with the beam fog, a physical fog model in which the LiDAR has several beams.
 const Scenario& DenseFog() {
   static const Scenario scenario = LoadScenario("scenario/dense_fog.json");
   return scenario;
@@ -62,7 +62,8 @@ const std::vector<Recorded>& HardSteps(const Scenario& scenario) {
   return steps;
 }
 
-/// Measures the time of `call` on each recorded step in turn, and then starts again.
+/// Measures the time of `call` on one recorded step after the other. After the last step it starts
+/// again with the first one.
 template <class Call>
 void Replay(benchmark::State& state, const std::vector<Recorded>& steps, Call&& call) {
   if (steps.empty()) return state.SkipWithError("no such step in the recorded run");

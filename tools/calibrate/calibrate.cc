@@ -11,12 +11,14 @@
 namespace fogline::calibrate {
 namespace {
 
-// The search in the whole range gets this share of the evaluations.
+// Share of the evaluations that the search in the whole range gets. The search around the best
+// point gets the others.
 constexpr double kGlobalPart = 0.6;
-// A table with at most this objective meets the target: each number differs by at most 0.001
-// points.
+// A table with at most this objective meets the target: with weights of 1, each number differs by
+// at most 0.001 points from the target.
 constexpr double kMet = 1e-6;
-// To find its sensitivity, a field is changed by this share of its range in both directions.
+// To find the sensitivity of the table to a field, the field is changed by this share of its range
+// in both directions.
 constexpr double kHalfStep = 0.005;
 
 /// One search. It evaluates points and keeps the best one. A point gives each field as a share of

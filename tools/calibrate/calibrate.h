@@ -1,5 +1,5 @@
-// Finds the values of a scenario's free fields with which the scenario's table is nearest to a
-// target. Also finds the influence of each field on the table.
+// Finds the values of a scenario's free fields with which the scenario's table of SI and RHE is
+// nearest to a target table. Also finds the influence of each field on the table.
 #pragma once
 
 #include <functional>
@@ -22,10 +22,11 @@ struct Calibration {
   bool interrupted = false;
 };
 
-/// Starts at the scenario's own values. A value outside its bounds is moved to the bound. Searches
-/// first in the whole range, then around the best point. The search ends early when the table meets
-/// the target. The result depends only on the problem and on the number of evaluations. The result
-/// is empty if `go_on` returned false before the first evaluation was complete.
+/// Searches for the values with the smallest objective. It starts at the scenario's own values. A
+/// value outside its bounds is moved to the bound. The first part of the search is in the whole
+/// range, and the second part around the best point. The search ends early when the table meets the
+/// target. The result depends only on the problem and on the number of evaluations. The result is
+/// empty if `go_on` returned false before the first evaluation was complete.
 /// @param max_evaluations at least 1
 /// @throws InputError if the scenario can run at no evaluated point
 std::optional<Calibration> Calibrate(const Objective& objective, int max_evaluations,
@@ -37,13 +38,13 @@ struct Change {
   std::optional<double> rhe_pct;
 };
 
-/// For each free field, the change of each row.
+/// For each free field, the change of each row of the table.
 using SensitivityTable = std::vector<std::vector<Change>>;
 
-/// Central differences at `values`. A number is changed by half a percent of its range in both
-/// directions. An integer is changed by one in both directions, and the difference is scaled to a
-/// change by 1 %. At a bound the difference is one-sided. The result is empty if `go_on` returned
-/// false.
+/// The sensitivity of the table to each free field, by central differences at `values`. A number is
+/// changed by half a percent of its range in both directions. An integer is changed by one in both
+/// directions, and the difference is scaled to a change by 1 % of the range. At a bound the
+/// difference is one-sided. The result is empty if `go_on` returned false.
 std::optional<SensitivityTable> Sensitivities(const Objective& objective,
                                               const std::vector<double>& values, const GoOn& go_on);
 

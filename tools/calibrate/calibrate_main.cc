@@ -152,7 +152,8 @@ CalibrationProblem MakeProblem(const CalibrateArguments& arguments) {
   return problem;
 }
 
-/// Whether a file has the form of a scenario. The scenario's values may be invalid.
+/// Whether a file looks like a scenario: a JSON object with a version. The scenario's values may be
+/// invalid.
 bool IsScenario(const std::filesystem::path& file) {
   const FileText read = ReadFile(file, kMaxFileBytes);
   DiagnosticList diagnostics;
@@ -161,9 +162,9 @@ bool IsScenario(const std::filesystem::path& file) {
   return object != nullptr && FindMember(*object, "version") != nullptr;
 }
 
-/// The text of the scenario file for a file in `folder`. The text contains the overrides. Relative
-/// paths in the text are changed, so that they lead to the same files from `folder`. Everything
-/// else is unchanged.
+/// The text of the scenario file, with the overrides, for a new file in `folder`. Relative paths in
+/// the text are changed, so that they lead to the same files from `folder`. Everything else is
+/// unchanged.
 std::string TextIn(const std::filesystem::path& folder, const CalibrateArguments& arguments,
                    const Scenario& scenario) {
   namespace fs = std::filesystem;
@@ -190,7 +191,7 @@ std::string TextIn(const std::filesystem::path& folder, const CalibrateArguments
 std::string PrepareOut(const CalibrateArguments& arguments, const Scenario& scenario) {
   RefuseToReplace(arguments.out, "--out", arguments.force, "scenario", IsScenario);
   RequireWritable(arguments.out, "--out");
-  // A text for stdout or a pipe has no folder of its own.
+  // stdout and pipes have no folder, so relative paths then start from the current folder.
   const std::filesystem::path folder = IsReplaceable(arguments.out)
                                            ? std::filesystem::absolute(arguments.out).parent_path()
                                            : std::filesystem::current_path();

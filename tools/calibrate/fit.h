@@ -15,10 +15,10 @@ struct Findings {
   std::optional<SensitivityTable> sensitivities;  // empty if the search was interrupted
 };
 
-/// A row as `fogline table --json` prints it, with the target added.
+/// A row of the table in the form of `fogline table --json`, with the target added.
 nlohmann::ordered_json RowJson(const TargetRow& target, const TableRow& row);
 
-/// Values, residuals and sensitivities as tables.
+/// Values, residuals (differences from the target) and sensitivities as tables.
 std::string FindingsText(const CalibrationProblem& problem, const Findings& findings);
 
 /// The findings as JSON. "rows" has the rows of `fogline table --json`, each with the target added.

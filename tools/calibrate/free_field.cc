@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::string_view kForm =
     "neither /pointer=lowest:highest nor /pointer=lowest:highest:log";
-// A linear range is divided into at least 10^5 values.
+// Digits to which a value is rounded. A linear range has at least 10^5 rounded values.
 constexpr int kLinearDigits = 5;
 constexpr int kLogarithmicDigits = 6;
 

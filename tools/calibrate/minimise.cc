@@ -7,14 +7,14 @@
 namespace fogline::calibrate {
 namespace {
 
-// A search around its start begins with steps of this share of each range. It ends when its steps
-// are as small as the rounding of the values.
+// First and smallest step of a search around its start, as shares of each range. The search ends
+// when its steps are as small as the rounding of the values.
 constexpr double kFirstStep = 0.05;
 constexpr double kSmallestStep = 1e-6;
 
-// DIRECT-L (Gablonsky & Kelley 2001) divides the range and uses no random numbers. Subplex (Rowan
-// 1990) tolerates jumps of the objective. A jump occurs where the human drives one time step more
-// or less.
+// Chooses the algorithm. DIRECT-L (Gablonsky & Kelley 2001) divides the whole range and uses no
+// random numbers. Subplex (Rowan 1990) searches around a start, and tolerates jumps of the
+// objective. A jump occurs where the human drives one time step more or less.
 nlopt::algorithm AlgorithmFor(Reach reach) {
   return reach == Reach::kWholeRange ? nlopt::GN_DIRECT_L : nlopt::LN_SBPLX;
 }

@@ -17,12 +17,13 @@ namespace fogline::calibrate {
 namespace {
 
 // Residual, in points, of a seed whose runs do not have the measure. The value is the largest
-// magnitude of a published SI, because a published SI is in [-1000, 100] %.
+// magnitude of a published SI, which is in [-1000, 100] %.
 constexpr double kMissingResidualPts = 1000;
 
 double Square(double x) { return x * x; }
 
-/// Squared residual of the mean. A seed without the measure counts with kMissingResidualPts.
+/// Squared residual of a measure, as a mean over the seeds. Seeds with the measure count with the
+/// squared residual of their mean. The other seeds count with the square of kMissingResidualPts.
 double Residual(const stats::Statistics& reached, const std::optional<double>& target,
                 std::int64_t seeds) {
   if (!target) return 0;

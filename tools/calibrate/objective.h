@@ -22,8 +22,8 @@ struct CalibrationProblem {
   std::vector<FreeField> fields;
   std::vector<TargetRow> target;
   sweep::SeedRange seeds;
-  /// `rhe_weight` is the weight of a squared residual of RHE. `spread_weight` is the weight of the
-  /// variance of SI over the seeds. The weight of a squared residual of SI is 1.
+  /// `rhe_weight` is the weight of a squared residual of RHE, w_r. `spread_weight` is the weight of
+  /// the variance of SI over the seeds, w_s. The weight of a squared residual of SI is 1.
   double rhe_weight = 1;
   double spread_weight = 0.01;
   /// Whether the gaps are computed from the other fields (steady_start.h).
@@ -54,27 +54,28 @@ struct Evaluation {
 /// Called from time to time during the work; it returns false to stop the work.
 using GoOn = std::function<bool()>;
 
-/// The objective
+/// The objective of the search
 ///
-///   J = sum over rows of (mean SI - SI*)^2 + w_s var SI + w_r (mean RHE - RHE*)^2
+///   J = sum over rows of [(mean SI - SI*)^2 + w_s var SI + w_r (mean RHE - RHE*)^2]
 ///
-/// in square points; a star marks the target's values. Every evaluation uses the same seeds (common
-/// random numbers), so J changes only with the fields. A seed without SI counts with a residual of
-/// 1000 points, the largest magnitude of SI. So values of fields that prevent all compromised
-/// safety do not make J small.
+/// in square points. SI* and RHE* are the target's values; w_s and w_r are spread_weight and
+/// rhe_weight of the problem. Every evaluation uses the same seeds (common random numbers), so J
+/// changes only with the fields. A seed without SI counts with a residual of 1000 points, the
+/// largest magnitude of a published SI. So values of fields that prevent all compromised safety do
+/// not make J small.
 class Objective {
  public:
   /// @throws InputError if the scenario's policy does not use the threshold, or if a free field is
   /// also a derived field
   explicit Objective(CalibrationProblem problem);
 
-  /// The table with these values of the free fields, each within its bounds. The result is empty if
-  /// `go_on` returned false.
+  /// The table with these values of the free fields, and its objective. Each value must be within
+  /// its bounds. The result is empty if `go_on` returned false.
   std::optional<Evaluation> Evaluate(std::span<const double> values, const GoOn& go_on) const;
 
   /// The values of the free fields at a point that gives them as shares of their ranges.
   std::vector<double> ValuesAt(std::span<const double> shares) const;
-  /// The scenario with these values. @throws InputError as StartSteadily()
+  /// The problem's scenario with these values. @throws InputError as StartSteadily()
   Scenario With(std::span<const double> values) const;
   /// All fields that With() sets: the free fields, then the derived fields. @throws InputError as
   /// With()

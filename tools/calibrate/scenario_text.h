@@ -13,7 +13,7 @@ namespace fogline::calibrate {
 /// @pre `text` and `json` are JSON; every index in the pointer belongs to an existing item
 std::string WithValue(std::string_view text, std::string_view pointer, std::string_view json);
 
-/// `text` with the value of an override "/pointer=value". A value that is not JSON is plain text.
+/// `text` changed by an override "/pointer=value". A value that is not JSON becomes a JSON string.
 std::string WithOverride(std::string_view text, std::string_view override_text);
 
 }  // namespace fogline::calibrate

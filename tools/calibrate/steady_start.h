@@ -26,9 +26,11 @@ inline constexpr std::array<std::string_view, 3> kSteadyFields{
 /// Sets the gaps so that automation, human and follower do not accelerate at step 0 in clear air.
 /// All cars have the host's speed v.
 ///
-/// - The host's gap is the equilibrium of the driver's IDM: (s_0 + v T) / sqrt(1 - (v/v_0)^delta).
-/// - The ACC's standstill gap d_0 makes the ACC's desired gap, d_r = T_hw v + d_0, equal to the
-///   fused distance. The fused distance is the host's gap plus TrackOffset().
+/// - The host's gap is the equilibrium gap of the driver's IDM (services/models/driver/idm.h),
+///   (s_0 + v T) / sqrt(1 - (v/v_0)^delta), with the standstill gap s_0, the time gap T, the
+///   desired speed v_0 and the exponent delta.
+/// - The ACC's standstill gap d_0 makes the ACC's desired gap, T_hw v + d_0 with the time gap T_hw,
+///   equal to the fused distance. The fused distance is the host's gap plus TrackOffset().
 /// - The follower's gap is the desired gap of the follower's own ACC.
 ///
 /// Values are rounded to 0.1 mm.

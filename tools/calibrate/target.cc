@@ -26,8 +26,8 @@ std::optional<double> AsNumber(const JsonValue& value) {
   return std::nullopt;
 }
 
-/// Reads a number of a target row into the field of a published row. Both kinds of rows have the
-/// same ranges. A missing number becomes NaN.
+/// Reads a number of a target row into `field`, a field of a published row (scenario), because both
+/// kinds of rows have the same fields and ranges. A missing number becomes NaN.
 void ReadField(const JsonObject& object, const Field& field, DiagnosticList& diagnostics) {
   const auto& [value, spec] = *field.As<NumberField>();
   *value = std::nan("");
@@ -82,8 +82,8 @@ std::vector<TargetRow> ReadRows(const JsonValue& root, DiagnosticList& diagnosti
   return target;
 }
 
-/// Throws all diagnostics. Each diagnostic has its position in the file, but no hint about the
-/// fields of scenarios.
+/// Throws all diagnostics as one error. Each has its position in the file, but no hint about the
+/// fields of scenarios, because the file is no scenario.
 [[noreturn]] void Throw(DiagnosticList& diagnostics, const std::vector<Source>& sources) {
   std::string text;
   try {

@@ -1,4 +1,4 @@
-// The action of a verb of `fogline`, and its end.
+// The action of a verb of `fogline`, and the exception with which an action reports a failed check.
 #pragma once
 
 #include <functional>
@@ -11,7 +11,7 @@ namespace fogline::cli {
 /// Action of the chosen verb; returns the exit code (common/exit_code.h).
 using Action = std::function<int()>;
 
-/// Ends a verb with kCheckFailed.
+/// An action that throws this ends with the exit code kCheckFailed, and its text is printed.
 class CheckFailed : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

@@ -55,16 +55,17 @@ log::LogOfRun PrepareLog(const std::filesystem::path& log, bool force) {
   if (std::filesystem::exists(log, ignored) && !std::filesystem::is_regular_file(log, ignored)) {
     throw InputError(fmt::format("{}: error: --log: not a file", PathText(log)));
   }
-  // For the recorder, /dev/stdout and /proc/self/fd/1 are other files than for this process.
+  // /dev/stdout and /proc/self/fd/1 name another file in the recorder's process than in this
+  // process.
   if (!IsReplaceable(log)) {
     throw InputError(fmt::format(
         "{}: error: --log: this path names an open file of this process; name a file to write",
         PathText(log)));
   }
   if (const std::string older = log::TakeBackOlder(log, "--log"); !older.empty()) Complain(older);
-  // The lock makes the file if the file is missing. If two runs start at once, only one of them
-  // gets the lock, and this need not be the run that made the file. Even --force does not replace a
-  // file that another run is writing.
+  // The lock makes the file if the file is missing. If two runs start at the same time, only one of
+  // them gets the lock. This need not be the run that made the file, so the size decides whether
+  // the file is new. Even --force does not replace a file that another run is writing.
   auto lock = std::make_unique<FileLock>(log, FileLock::Kind::kOwn, "--log", "run");
   if (std::filesystem::is_empty(log, ignored)) return {log, std::move(lock)};
   if (!force) {
@@ -168,7 +169,7 @@ std::string Cell(std::string_view name, std::optional<double> value, std::string
   return value ? report::MetricText(name, *value, unit) : "-";
 }
 
-/// A line of column names, then one line for each following car.
+/// A table: a line of column names, then one line for each following car.
 std::string FollowersText(const std::vector<metrics::FollowerMetrics>& followers) {
   std::string text = fmt::format("  {:<10}", "follower");
   metrics::VisitFollowerMetrics(metrics::FollowerMetrics(),

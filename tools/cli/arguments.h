@@ -60,14 +60,15 @@ class ScenarioArguments {
   std::string seed_;  // checked together with all other fields
 };
 
-/// Prepares a log file for writing. The function refuses a log that another run is writing, and a
-/// non-empty file if `force` is false. Even with `force`, it refuses a file that is not an event
-/// log. It also refuses a folder that RequireFolderOf() refuses. If a killed run has left an older
-/// log of this name, the function restores the older log and says so on stderr.
+/// Prepares a log file for writing. The function refuses a log that another run is writing. It
+/// refuses a non-empty file if `force` is false, and a file that is not an event log even if
+/// `force` is true. It also refuses a folder that RequireFolderOf() refuses. If a killed run has
+/// left an older log of this name, the function restores the older log and says so on stderr.
 /// @throws InputError
 log::LogOfRun PrepareLog(const std::filesystem::path& log, bool force);
 
-/// The log "logs/STEM-N.lcm" with the first number N that is free, from 1 on.
+/// Makes the log "logs/STEM-N.lcm" with the first free number N, from 1 on. STEM is the scenario
+/// file's name without its extension.
 log::LogOfRun FreshLog(const std::filesystem::path& scenario_file);
 
 /// Calls `work(log)` for each log. If a log cannot be read, the error is printed on stderr, and the
@@ -86,8 +87,8 @@ bool ForEachReadable(const std::vector<std::filesystem::path>& logs, const Work&
   return readable;
 }
 
-/// The seeds of --seeds. If the user gives a single number and may have meant a count, the function
-/// explains the meaning on stderr.
+/// The seeds of --seeds. A single number is one seed. If the number is above 1, the user may have
+/// meant a count, so the function explains on stderr how to write a range.
 /// @throws InputError
 sweep::SeedRange ReadSeeds(const std::string& text);
 
@@ -103,8 +104,8 @@ void PrintJson(const std::string& text);
 /// @throws InputError
 void RefuseJsonBeside(const std::filesystem::path& document, std::string_view option, bool json);
 
-/// Prints a verb's text about its result: on stdout, or on stderr if the verb's document goes to
-/// stdout.
+/// Prints a verb's text about its result. It goes to stdout, or to stderr if the verb's document
+/// goes to stdout.
 void PrintBeside(const std::filesystem::path& document, std::string_view text);
 
 /// A build as 16 hexadecimal digits; null for an unknown build.
@@ -119,15 +120,16 @@ class NetworkArguments {
   /// The network to observe, by the rule that every program uses (lcm_url.h).
   /// @throws InputError if other processes cannot observe the network of the URL
   std::string Url() const;
-  /// Whether the verb should follow announced runs, because the command line names no network.
+  /// Whether the verb should follow announced runs. It does so if the command line names no
+  /// network.
   bool Follows() const { return url_.empty(); }
 
  private:
   std::string url_;
 };
 
-/// {"name": value, ...} of a run's measures, as part of a larger JSON text. With more than one
-/// following car, "followers" is the list of their measures.
+/// The measures of a run as a JSON object {"name": value, ...}, to be put into a larger JSON text.
+/// With more than one following car, "followers" is the list of their measures.
 std::string MetricsJson(const runner::ExperimentResult& result);
 
 /// The measures of a run as lines "name  value unit". If there is more than one following car, a
@@ -137,7 +139,8 @@ std::string MetricsText(const runner::ExperimentResult& result);
 /// The figures of a run in real time, and its fallbacks, as JSON and as text.
 nlohmann::ordered_json RealtimeJson(const log::RealtimeFigures& figures);
 std::string RealtimeText(const log::RealtimeFigures& figures);
-/// "  with real-time priority: world, radar", a line for each list that is not empty.
+/// A line for each list of roles that is not empty, such as "  with real-time priority: world,
+/// radar".
 std::string PriorityText(const log::RealtimePriority& priority);
 
 }  // namespace fogline::cli

@@ -30,7 +30,7 @@ struct ExitMeanings {
   bool interruptible = false;
 };
 
-/// Puts the exit codes in front of the text that footer() sets for a help text.
+/// Puts the exit codes before the text that is set by footer().
 void ShowExitCodes(CLI::App& command, const ExitMeanings& meanings = {});
 
 /// The help of `app`, or of one of its verbs.

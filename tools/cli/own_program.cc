@@ -26,7 +26,7 @@ void AddOwnPrograms(CLI::App& app, Action&) {
 void BecomeOwnProgram(int argc, char** argv) {
   if (argc < 2) return;
   const bool help = argc == 3 && std::string_view(argv[1]) == "help";
-  // At least one word comes after the verb, so the cursor is not at the verb.
+  // With argc > 3, at least one word comes after the verb, so the cursor is not at the verb.
   const bool completes = argc > 3 && std::string_view(argv[1]) == kComplete;
   const std::string verb = argv[help || completes ? 2 : 1];
   const auto is_verb = [&](const OwnProgram& program) { return program.verb == verb; };

@@ -1,5 +1,6 @@
-// Verbs that are separate programs beside `fogline`: they take long to build, and `fogline` itself
-// does not need their libraries. `fogline VERB ...` does the same as `PROGRAM ...`.
+// Verbs that are separate programs in the folder of `fogline`. They take long to build, and
+// `fogline` itself does not need their libraries. `fogline VERB ...` does the same as `PROGRAM
+// ...`.
 #pragma once
 
 #include <array>
@@ -25,7 +26,8 @@ inline constexpr OwnProgram kExperiment{"experiment", "fogline-experiment",
 inline constexpr OwnProgram kView{"view", "fogline-web", "Show a run or a log in a browser"};
 inline constexpr std::array kOwnPrograms{kCalibrate, kStudy, kExperiment, kView};
 
-/// Adds these verbs to the list of verbs, for help and spelling hints. These verbs get no action.
+/// Adds these verbs to the list of verbs, for the help text and for spelling hints. They get no
+/// action.
 void AddOwnPrograms(CLI::App& app, Action& action);
 
 /// Replaces this process by the program of the verb argv[1], or argv[2] after "help". The function

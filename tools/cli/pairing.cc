@@ -5,7 +5,7 @@
 namespace fogline::cli {
 namespace {
 
-/// The part of a scenario that two runs of a pair have in common.
+/// The text of a scenario without its section `arbitrator`. Two runs of a pair have the same text.
 std::string CommonPart(Scenario scenario) {
   scenario.arbitrator = {};
   return PrintScenario(scenario);

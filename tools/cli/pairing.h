@@ -11,7 +11,8 @@
 
 namespace fogline::cli {
 
-/// The scenario of the paired run: lambda_A is always 1, and everything else is the same.
+/// The scenario of the paired run. Its policy is `none`, so the automation always drives.
+/// Everything else is the same.
 Scenario WithoutTradedControl(Scenario scenario);
 
 /// The results that need the paired run. All of them are empty if there is no paired run.

@@ -30,8 +30,8 @@ std::string VerbsWith(const CLI::App& app, const std::string& option) {
   return verbs;
 }
 
-/// The value for `field` from the words "--threshold=0.8", or "--threshold" and "0.8"; "VALUE" if
-/// the words contain no value.
+/// The value that the user wanted to give to `field`, from the words "--threshold=0.8", or from
+/// "--threshold" and "0.8"; "VALUE" if the words contain no value.
 std::string ValueFor(const Field& field, const std::vector<std::string>& words) {
   const std::string& option = words.front();
   if (const std::size_t at = option.find('='); at != std::string::npos) {
@@ -72,7 +72,7 @@ std::string FieldHint(const std::string& option, const std::vector<std::string>&
   return hint;
 }
 
-/// A hint for a word such as "-run.lcm", which may be meant as a file. "" if the word looks like
+/// A hint for a word such as "-run.lcm", which may be the name of a file. "" if the word looks like
 /// options.
 std::string FileHint(const std::string& word) {
   const bool is_name = !word.starts_with("--") && word.find_first_of("./") != std::string::npos;
@@ -158,7 +158,7 @@ std::string Refusal(const CLI::App& app, const CLI::ParseError& error) {
   const bool is_verb = !verbs.empty() && !(is_extra && verbs.front()->remaining().empty());
   const CLI::App& command = is_verb ? *verbs.front() : app;
   const std::vector<std::string> misfits = command.remaining();
-  // An argument may be missing because its word was taken for an option.
+  // The verb may lack an argument because the argument's word was taken for an option.
   const bool is_missing =
       error.get_exit_code() == static_cast<int>(CLI::ExitCodes::RequiredError) && is_verb;
   const bool is_misfit = !misfits.empty() && (verbs.empty() || is_extra || is_missing);

@@ -8,14 +8,14 @@
 
 namespace fogline::cli {
 
-/// The beginning of every message: "fogline VERB" if the verb is known, otherwise "fogline".
+/// The beginning of every error message: "fogline VERB" if the verb is known, otherwise "fogline".
 std::string CommandName(const CLI::App& app);
 
 /// The error for a command line that has words but no verb, such as `fogline levitate --help`; ""
 /// for any other command line.
 std::string UnknownVerb(const CLI::App& app);
 
-/// An error text, such as `no verb "tabel"; did you mean "table"?`
+/// The error text for an unknown verb, such as `no verb "tabel"; did you mean "table"?`
 std::string NoSuchVerb(const CLI::App& app, const std::string& word);
 
 /// Makes every option and argument of the verbs of `app` refuse an empty text. An empty text often
@@ -27,7 +27,8 @@ void RefuseEmptyTexts(CLI::App& app);
 /// CLI11 would take the next word as the value of --log.
 std::vector<std::string> SeparateEmptyValues(const std::vector<std::string>& words);
 
-/// A refused command line as one line: "fogline VERB: error: ... (see fogline VERB --help)".
+/// The error message, in one line, for a refused command line: "fogline VERB: error: ... (see
+/// fogline VERB --help)".
 std::string Refusal(const CLI::App& app, const CLI::ParseError& error);
 
 }  // namespace fogline::cli

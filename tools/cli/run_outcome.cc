@@ -64,7 +64,7 @@ std::string VerificationText(const replay::Verification& verification) {
   return text;
 }
 
-/// Deviations of a run, and parts that were not checked; "" if there are none.
+/// Lines about deviations of a run and about parts that were not checked; "" if there are none.
 std::string RemarksText(const RunOutcome& outcome) {
   const runner::ExperimentResult& result = outcome.result;
   std::string text;

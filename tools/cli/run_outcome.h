@@ -17,15 +17,15 @@ struct RunOutcome {
   std::filesystem::path file;  // the file with the scenario
   std::int64_t steps = 0;      // steps of the scenario; a collision ends a run earlier
   runner::ExperimentResult result;
-  std::optional<std::int64_t> resumed;  // number of steps that the log already had
-  bool computed = true;                 // whether this process computed the other steps
+  std::optional<std::int64_t> resumed;  // steps that the log already had, for --resume
+  bool computed = true;                 // whether this process computed any steps
 };
 
 nlohmann::ordered_json ToJson(const RunOutcome& outcome);
 /// Several lines, the most important line first.
 std::string ToText(const RunOutcome& outcome);
 
-/// Prints the outcome of a run on stdout, and what is wrong with it on stderr.
+/// Prints the outcome of a run on stdout, and the reason of a failure on stderr.
 /// @param verb for the text of an error
 /// @return the exit code
 /// @throws std::runtime_error if the log of a run in real time lacks published messages

@@ -25,7 +25,7 @@ class TableRows {
   }
 
   /// @param seed index of the seed in the range of seeds
-  /// @param row the run without traded control has row 0, that of the first threshold has row 1
+  /// @param row 0 for the run without traded control, 1 for the first threshold, and so on
   void Add(std::int64_t seed, std::size_t row, runner::ExperimentResult result) {
     runs_[seed].emplace(row, std::move(result));
     while (!runs_.empty() && runs_.begin()->first == next_ &&

@@ -14,8 +14,9 @@
 namespace fogline::cli {
 namespace {
 
-// The shortest step in wall-clock time. In this time nine processes must send and receive the
-// messages of a step. The signs of life of these processes must arrive within 64 steps.
+// The shortest step of a run in real time, in seconds of wall-clock time. In this time nine
+// processes must send and receive the messages of a step. The signs of life of these processes must
+// arrive within 64 steps.
 constexpr double kMinPeriodS = 0.005;
 
 // The names of the roles that may be external. The recorder may not: the runner reads the result
@@ -28,7 +29,8 @@ std::vector<std::string> ExternalRoleNames() {
   return names;
 }
 
-/// Refuses the recorder, and says why. The check against the list of names would not say why.
+/// Checks a name in --external: refuses the recorder, and says why. The check against the list of
+/// names would not say why.
 std::string RefuseRecorder(const std::string& role) {
   return role == NameOf(Role::kRecorder) ? "recorder: the run's result is read from its own log"
                                          : "";
@@ -116,7 +118,7 @@ void TransportArguments::Apply(runner::ExperimentOptions& options) const {
   options.wait = duration_cast<Duration>(std::chrono::duration<double>(wait_s_));
   options.traffic = traffic_;
   if (traffic_.key_file.empty()) options.traffic.key_file = options.hosts.key_file;
-  // A wrong key is refused even for a run that has no messages to sign.
+  // A wrong key is refused even if the run signs no messages.
   runtime::KeyOf(options.traffic);
   if (options.transport == "direct" && !traffic_.faults.empty()) {
     throw InputError("error: --faults: a run with --transport direct has no messages");

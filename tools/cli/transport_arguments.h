@@ -13,12 +13,12 @@
 namespace fogline::cli {
 
 /// The options --transport, --lcm-url, --external, --wait, --same-build, --verify, --key, --faults,
-/// and those of roles on other machines.
+/// and the options that start roles on other machines.
 class TransportArguments {
  public:
-  /// @param transport default transport. If `transport` is direct, but roles are on other machines,
-  ///     the default is udpm. If the default starts the roles as processes, and $LCM_DEFAULT_URL is
-  ///     set, its URL is the default instead.
+  /// @param transport default transport. If it is direct, but roles are on other machines, the
+  /// default is udpm. If the default starts the roles as processes, and $LCM_DEFAULT_URL is set,
+  /// this URL is the default instead.
   TransportArguments(CLI::App& verb, std::string transport);
 
   /// Sets the transport, the options of its traffic, and the roles that are started elsewhere.

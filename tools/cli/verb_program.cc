@@ -27,7 +27,8 @@ namespace {
 
 constexpr const char* kNoStdout = "standard output cannot be written (a full disk?)";
 
-/// Runs a verb and prints the verb's error, if any. @return the exit code of the verb
+/// Runs the action of a verb, and prints the verb's error, if any. @return the exit code of the
+/// verb
 int Run(const CLI::App& app, const Action& action) {
   const std::string name = CommandName(app);
   try {

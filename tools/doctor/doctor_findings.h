@@ -27,7 +27,7 @@ struct Finding {
 };
 using Findings = std::vector<Finding>;
 
-/// "ok", "warning" or "problem".
+/// Name of a level: "ok", "warning" or "problem".
 std::string_view NameOf(Finding::Level level);
 
 /// Examines route, multicast, socket filter and receive buffer, or the relay of a tcpq:// URL.

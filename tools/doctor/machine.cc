@@ -1,4 +1,4 @@
-// The machine: clocks, processors, disk.
+// Examines the machine: clocks, real-time priority, processors, disk.
 #include <pwd.h>
 #include <sched.h>
 #include <sys/mman.h>
@@ -102,7 +102,7 @@ void ExaminePriority(const std::filesystem::path& programs, Findings& findings) 
 void ExamineWakeUp(Findings& findings) {
   constexpr int kSleeps = 200;
   constexpr Duration kSleep = milliseconds(1);
-  constexpr double kTooLateMs = 5;  // a run in real time counts such a tick as late
+  constexpr double kTooLateMs = 5;  // a run in real time counts a step that begins so late as late
   const Priority priority;
   std::vector<double> late_ms;
   TimePoint due = Clock::now();

@@ -1,4 +1,4 @@
-// The network that LCM uses: route, multicast, buffers.
+// Examines the network that LCM uses: route, multicast, buffers.
 #include <netinet/in.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -97,8 +97,9 @@ bool ExamineRoute(const std::string& group, int ttl, Findings& findings) {
   return true;
 }
 
-/// Sends a message back and forth between two connections. @return the time that the message took;
-/// zero if it was lost
+/// Sends a message from `here` to `there` and back.
+/// @param back is set to true by a subscription of `here` when the message comes back
+/// @return the time for both ways; zero if the message was lost
 Duration RoundTrip(runtime::Bus& here, runtime::Bus& there, bool& back) {
   constexpr Duration kLimit = milliseconds(300);
   const std::vector<std::uint8_t> message(runtime::kHeaderEnd);
@@ -136,8 +137,8 @@ std::vector<double> RoundTripsUs(const std::string& url) {
   return times_us;
 }
 
-/// Sends real LCM messages to the group and port of the URL, because a firewall may pass only this
-/// port.
+/// Examines whether this machine receives its own multicast messages. It sends real LCM messages to
+/// the group and port of the URL, because a firewall may pass only this port.
 void ExamineLoopback(const std::string& url, const std::string& group, int ttl,
                      Findings& findings) {
   constexpr std::uint16_t kLcmPort = 7667;
@@ -188,8 +189,9 @@ void ExamineReceiveBuffer(int wanted, Findings& findings) {
                    wanted)});
 }
 
-/// Sends a fragment and then a message to a socket that has the filter of a Bus. @return the
-/// beginning of the first datagram that the socket receives; "" if it receives none
+/// Sends a fragment and then a whole message to a socket that has the filter of a Bus. The filter
+/// should refuse the fragment. @return the beginning of the first datagram that the socket
+/// receives; "" if it receives none
 std::string FilteredFirst() {
   constexpr std::string_view kFragment("LC03\0\0\0\1\0\0\0\0\0\0\0\0\0\0\0\1A\0", 22);
   constexpr std::string_view kMessage("LC02\0\0\0\1A\0", 10);
@@ -203,7 +205,7 @@ std::string FilteredFirst() {
   ssize_t received = 0;
   if (bind(receiver, here, size) == 0 && getsockname(receiver, here, &size) == 0 &&
       runtime::AttachFilter(receiver, runtime::AnyChannelFilter())) {
-    // The socket sends to itself; on one machine a datagram arrives at once.
+    // The socket sends to itself, and on one machine a datagram arrives immediately.
     sendto(receiver, kFragment.data(), kFragment.size(), 0, here, size);
     sendto(receiver, kMessage.data(), kMessage.size(), 0, here, size);
     received = recv(receiver, magic.data(), magic.size(), 0);

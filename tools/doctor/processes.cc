@@ -1,5 +1,5 @@
-// Processes of Fogline on this machine, from /proc (proc(5)): runs, and roles that run by
-// themselves.
+// Examines the processes of Fogline on this machine, from /proc (proc(5)): runs, and roles that
+// were started by themselves.
 #include <unistd.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// The programs that a run and its observers need.
+// Examines the programs that a run and its observers need.
 #include <lcm/lcm.h>
 #include <unistd.h>
 

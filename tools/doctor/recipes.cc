@@ -12,7 +12,8 @@
 namespace fogline::doctor {
 namespace {
 
-/// systemd-networkd reads one file for each interface. A drop-in beside this file adds the route.
+/// Shell lines that add the route with systemd-networkd, which reads one file for each interface. A
+/// file in the folder "FILE.d" beside this file adds the route.
 std::string NetworkdScript(const std::string& interface) {
   const std::string route =
       "[Route]\n"
@@ -37,7 +38,8 @@ std::string NetworkdScript(const std::string& interface) {
       interface, route);
 }
 
-/// ifupdown calls the scripts of this folder for each interface that comes up.
+/// Shell lines that add the route with ifupdown, which calls the scripts of this folder for each
+/// interface that comes up.
 std::string IfupdownScript(const std::string& interface) {
   return fmt::format(
       "cat >/etc/network/if-up.d/fogline <<'END'\n"
@@ -92,7 +94,7 @@ std::vector<Recipe> PriorityRecipes(const std::string& user, const std::string& 
 }
 
 std::string InterfaceToOthers() {
-  // An address of the network for documentation (RFC 5737): only a default route leads to it.
+  // An address that is reserved for documentation (RFC 5737), so only a default route leads to it.
   const std::string usual =
       runtime::RouteInterface(runtime::KernelTable("/proc/net/route"), "192.0.2.1");
   if (!usual.empty() && usual != "lo") return usual;

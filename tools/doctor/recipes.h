@@ -13,14 +13,14 @@ struct Recipe {
   std::string script;  // lines of sh for root, ready to paste, each with its line feed
 };
 
-/// Adds the multicast route over an interface.
+/// Recipes that add the multicast route over an interface.
 std::vector<Recipe> RouteRecipes(const std::string& interface);
 
-/// Lets a firewall of nftables pass a multicast group and port, and IGMP.
+/// Recipes that let a firewall of nftables pass a multicast group and port, and IGMP.
 std::vector<Recipe> FirewallRecipes(const std::string& group, std::uint16_t port);
 
-/// Permits real-time priority and locked memory for a user. @param programs folder of the roles'
-/// programs
+/// Recipes that permit real-time priority and locked memory for a user. @param programs folder of
+/// the roles' programs
 std::vector<Recipe> PriorityRecipes(const std::string& user, const std::string& programs);
 
 /// The interface that probably leads to other machines. This is the interface of the default route,

@@ -1,4 +1,4 @@
-// Other processes on the network: runs, and roles that wait for a run.
+// Examines other processes on the network: runs, and roles that wait for a run.
 #include <algorithm>
 #include <set>
 
@@ -56,8 +56,8 @@ void ReportWaiting(const runtime::WaitingRoles& waiting, Findings& findings) {
   }
 }
 
-/// Reports machines whose messages arrive here, although ttl=0. With ttl=0 no message leaves this
-/// machine, so the other machines do not hear it.
+/// Reports machines whose messages arrive here, although ttl=0 in the URL. With ttl=0 no message
+/// leaves this machine, so the other machines do not hear this machine.
 void ExamineReach(const std::string& url, const watch::TrafficView& view,
                   const runtime::WaitingRoles& waiting, Findings& findings) {
   const auto address = runtime::ParseMulticastUrl(url);

@@ -1,5 +1,5 @@
-// Examines whether two machines hear each other. A doctor runs on each machine, and tells the other
-// doctor which doctor it hears.
+// Examines whether two machines hear each other. `fogline doctor --with` (a doctor) runs on each
+// machine, and tells the other doctor which doctor it hears.
 #include <ifaddrs.h>
 #include <netdb.h>
 #include <netinet/in.h>
@@ -32,11 +32,12 @@ using Level = Finding::Level;
 
 constexpr std::string_view kChannel = "FOGLINE_DOCTOR";
 constexpr Duration kSayEvery = milliseconds(100);
-// In this time this doctor sends 30 messages. So even on a network that loses most messages, the
-// other doctor receives one which says that the other doctor was heard.
+// If the other doctor is heard, but does not say within this time that it hears this doctor, it
+// does not hear this doctor. In this time this doctor sends 30 messages, so at least one arrives
+// even on a network that loses most messages.
 constexpr Duration kAnswers = milliseconds(3000);
-// A doctor that knows the result continues to send for this time, so that the other doctor learns
-// the result, too.
+// A doctor that knows the result continues to send for this time. So the other doctor learns the
+// result, too.
 constexpr Duration kLinger = milliseconds(1500);
 
 /// The IPv4 addresses of a name; empty if the name cannot be resolved.
@@ -82,7 +83,7 @@ class Conversation {
     own_.version = runtime::VersionText();
     own_.type_fingerprint = TypeFingerprint();
     own_.waiting_for = host_;
-    // A random number, so that no other doctor has it, even on a machine of the same name.
+    // A random number, so that no other doctor has this number, even on a machine of the same name.
     std::random_device random;
     own_.instance = static_cast<std::int64_t>(random()) << 31 | random() >> 1;
     bus_.Subscribe(kChannel, [this](runtime::Bytes bytes) { Hear(bytes); });
@@ -152,7 +153,7 @@ class Conversation {
   std::vector<std::uint8_t> buffer_;
 };
 
-/// The finding about what the two machines hear.
+/// The finding about whether each of the two machines hears the other one.
 Finding Judge(const Conversation& talk, const std::string& url, const std::string& host,
               Duration limit) {
   const std::string here = HostName();

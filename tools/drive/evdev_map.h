@@ -23,7 +23,7 @@ inline constexpr double kDeadZone = 0.03;
 /// A pedal: an axis, and its direction.
 struct PedalAxis {
   int code = -1;          // ABS_...
-  bool inverted = false;  // greatest value when the pedal is released
+  bool inverted = false;  // largest value when the pedal is released
 
   /// Travel in [0, 1] at this value.
   double Travel(int value, const AxisRange& range) const {

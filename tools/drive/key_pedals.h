@@ -12,8 +12,9 @@ namespace fogline::drive {
 
 enum class PedalKey : std::uint8_t { kThrottle, kBrake };
 
-/// While its key is down, a pedal moves down with key_press_ps. Otherwise it moves back with
-/// key_release_ps. Only the newest key counts, because a driver has one foot for both pedals.
+/// Moves two pedals by keys. While its key is down, a pedal moves down at the rate key_press_ps
+/// (shares of its travel per second). Otherwise it moves back at the rate key_release_ps. Only the
+/// newest key counts, because a driver has one foot for both pedals.
 ///
 /// A terminal reports only characters, and does not report that a key goes up. The first character
 /// comes when the key goes down. Further characters come while the key stays down; the second one

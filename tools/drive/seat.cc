@@ -18,7 +18,7 @@ namespace fogline::drive {
 namespace {
 
 // Longest wait of the thread for its device or a message. In this time the pedals of keys move by
-// at most a fifth of their travel (key_press_ps at most 20).
+// at most a fifth of their travel, because key_press_ps is at most 20 per second.
 constexpr Duration kTick = milliseconds(10);
 
 /// The text that the person sees for a mode of HOST_COMMAND. A mode without a text has "".
@@ -100,7 +100,7 @@ Seat::~Seat() {
 void Seat::Run(const std::string& url, std::int64_t run_id,
                const runtime::TrafficOptions& traffic) {
   runtime::Bus bus(url);
-  // --faults applies only to the messages of roles.
+  // --faults applies only to the messages of roles, and a seat is not a role.
   runtime::Apply({.key_file = traffic.key_file, .faults = ""}, Role::kRunner, bus);
   InputMaker maker(run_id, runtime::DrawSeatInstance(), source_->kind(), source_->name());
   bus.Subscribe(ChannelOf<truth_t>().name, [&](runtime::Arrival& arrival) {

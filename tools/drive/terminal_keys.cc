@@ -28,7 +28,7 @@ RawTerminal::RawTerminal() {
   }
 }
 
-// A program in the background may restore the terminal only while SIGTTOU is blocked.
+// If this program is in the background, tcsetattr() stops it by SIGTTOU. So the signal is blocked.
 RawTerminal::~RawTerminal() {
   sigset_t blocked;
   sigset_t mask;

@@ -28,7 +28,7 @@ class KeyParser {
         continue;
       }
       if (state_ == State::kSequence) {
-        // A sequence ends with a letter or ~; digits and ; may come before.
+        // A sequence ends with a letter or ~. Digits and ; may come before this character.
         if ((c >= '0' && c <= '9') || c == ';') continue;
         state_ = State::kPlain;
         if (c == 'A') use(TerminalKey::kThrottle);
@@ -46,9 +46,9 @@ class KeyParser {
   State state_ = State::kPlain;
 };
 
-/// A terminal that gives each character at once and does not show it. The destructor restores the
-/// terminal. Ctrl-C and Ctrl-Z still send signals. So after Ctrl-C the program ends in its usual
-/// way.
+/// A terminal that gives each character immediately and does not show it. The destructor restores
+/// the terminal. Ctrl-C and Ctrl-Z still send signals. So after Ctrl-C the program ends in its
+/// usual way.
 class RawTerminal {
  public:
   /// @throws InputError if standard input is not a terminal, or if the program is in the background
@@ -63,8 +63,8 @@ class RawTerminal {
 
 class TerminalKeys final : public PedalSource {
  public:
-  /// A terminal does not report that a key goes up. So a button counts as down for this time. With
-  /// steps of at most this length, the driver's newest input then has the button in at least one
+  /// A terminal does not report that a key goes up. So a button counts as down for this time. If
+  /// steps are not longer than this time, the driver's newest input has the button in at least one
   /// step.
   static constexpr Duration kButton = milliseconds(300);
 

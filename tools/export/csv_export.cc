@@ -94,7 +94,7 @@ std::vector<std::filesystem::path> CsvFiles(const std::filesystem::path& folder)
 
 bool IsCsvExport(const std::filesystem::path& file) {
   if (file.filename() != kScenarioFile) return IsChannel(file);
-  // Scenarios that are not exports also begin with this text. So the files beside scenario.json
+  // Scenarios that are not exports may begin with the same text. So the files beside scenario.json
   // must be exports, too.
   if (!BeginsWith(file, "{\n  \"version\": ")) return false;
   const std::vector<std::filesystem::path> files = CsvFiles(file.parent_path());
@@ -119,7 +119,8 @@ std::vector<std::filesystem::path> WriteCsv(const RunTables& tables,
   const bool has_scenario = !tables.scenario.empty();
   if (has_scenario) add(folder / kScenarioFile).Write(tables.scenario + '\n');
   files.Finish();
-  // A file that was not written here is from an older export of another log.
+  // A file that was not written in this call is from an older export of another log, so it is
+  // removed.
   std::vector<std::filesystem::path> others = CsvFilesOfSomeLogs(folder);
   others.push_back(folder / kScenarioFile);
   for (const std::filesystem::path& file : others) {

@@ -30,7 +30,7 @@ constexpr const char* kHeader = "MATLAB 5.0 MAT-file, Fogline";
 // MAT-files have sizes of 32 bits, and readers interpret these sizes as signed numbers.
 constexpr std::size_t kMaxBytes = std::numeric_limits<std::int32_t>::max();
 constexpr std::string_view kHeaderStruct = "header";
-// Only in the struct of a channel that lacks messages: 1 for a message, 0 for a gap.
+// Name of a field that only a channel with missing messages has: 1 for a message, 0 for a gap.
 constexpr const char* kHeard = "heard";
 
 using Variable = Matio::Variable;
@@ -70,14 +70,14 @@ Variable StructOf(const char* name, const std::vector<std::string>& names) {
   return Variable(Matio::Get().create_struct(name, size.size(), size.data(), pointers.data()));
 }
 
-/// 1 for each message of a channel, 0 for each gap.
+/// The field `heard`: 1 for each message of a channel, 0 for each gap.
 FieldTable HeardOf(const ChannelTable& table) {
   std::vector<std::int8_t> heard(table.messages, 1);
   for (const std::size_t row : table.gaps) heard[row] = 0;
   return {.name = kHeard, .values = std::move(heard)};
 }
 
-/// The struct of a channel. The names of the header's fields have no prefix "header.".
+/// The struct of a channel. In its struct `header`, the names of fields have no prefix "header.".
 Variable StructOf(const ChannelTable& table) {
   const std::string prefix = std::string(kHeaderStruct) + '.';
   std::vector<std::string> of_header;

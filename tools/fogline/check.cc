@@ -35,7 +35,8 @@ nlohmann::ordered_json ToJson(const Diagnostic& diagnostic) {
           {"rule", diagnostic.rule},     {"message", diagnostic.message}};
 }
 
-/// Checks a file. Prints the scenario with --print, nothing with --json, otherwise "FILE: ok".
+/// Checks the file of a scenario or, with --lab, of a laboratory. Prints the scenario with --print,
+/// nothing with --json, otherwise "FILE: ok".
 /// @throws ScenarioError with the mistakes of the file
 void CheckFile(const std::string& file, const CheckOptions& options) {
   if (options.lab) {

@@ -71,7 +71,8 @@ std::size_t FindColumn(const std::vector<std::string_view>& header, const std::s
   throw InputError(fmt::format("{}:{}: error: {}", PathText(file), line, why));
 }
 
-/// @throws InputError for the first value of the column outside [least, most]
+/// Checks that all values of a column are in [least, most].
+/// @throws InputError that names the first other value
 void RequireBetween(double least, double most, const std::string& column,
                     const std::vector<CsvNumber>& numbers, const std::filesystem::path& file,
                     const std::string& text) {

@@ -27,7 +27,7 @@ struct DiffArguments {
   bool json = false;
 };
 
-/// "log.lcm", or "run 4711 of log.lcm" if the user has chosen a run.
+/// Name of a run for the user: "log.lcm", or "run 4711 of log.lcm" if the user has chosen a run.
 std::string NameOf(const std::filesystem::path& log, std::optional<std::int64_t> run_id) {
   return run_id ? fmt::format("run {} of {}", *run_id, PathText(log)) : PathText(log);
 }

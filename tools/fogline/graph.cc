@@ -75,7 +75,7 @@ std::string TableOfChannels() {
   return table;
 }
 
-/// Replaces a table in a page. @return whether the page has a table with this head
+/// Replaces a table in a Markdown page. @return whether the page has a table with this head
 bool ReplaceTable(std::string& page, std::string_view head, const std::string& table) {
   const std::size_t begin = page.find(head);
   if (begin == std::string::npos) return false;
@@ -85,7 +85,8 @@ bool ReplaceTable(std::string& page, std::string_view head, const std::string& t
   return true;
 }
 
-/// Replaces the tables in a page. @throws InputError if the page has no such table
+/// Replaces the tables of roles and channels in a Markdown page.
+/// @throws InputError if the page has neither table
 void PutInto(const std::filesystem::path& file) {
   constexpr std::size_t kMostBytes = 10 << 20;
   FileText page = ReadFile(file, kMostBytes);

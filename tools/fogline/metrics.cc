@@ -36,8 +36,8 @@ struct MetricsArguments {
   bool json = false;
 };
 
-/// Refuses to replace a file that is not a table of take-overs: "--take-overs *.lcm" must not
-/// destroy a log.
+/// Refuses to replace a file that is not a table of take-overs. For example, a shell changes
+/// "--take-overs *.lcm" into names of logs, and no log may be replaced.
 /// @throws InputError
 void RequireTakeOverTable(const std::filesystem::path& file) {
   std::error_code ignored;

@@ -41,7 +41,7 @@ log::RunLog ReadRun(const ReplayArguments& arguments) {
   return reader.run();
 }
 
-/// @throws InputError if the log does not determine the commands of one of the roles
+/// @throws InputError if the log lacks data that one of the roles needs to be computed again
 void RefuseOthers(const std::filesystem::path& log, const std::vector<replay::RoleCheck>& roles,
                   const log::RunLog& run) {
   const bool all = std::ranges::all_of(

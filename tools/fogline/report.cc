@@ -74,7 +74,8 @@ constexpr std::array kFigureOptions{
                  &ReportArguments::pdf},
 };
 
-/// Refuses to replace a file that is not an HTML page: "-o *.lcm" must not destroy a log.
+/// Refuses to replace a file that is not an HTML page. For example, a shell changes "-o *.lcm" into
+/// names of logs, and no log may be replaced.
 /// @throws InputError
 void RefuseToReplaceOther(const std::filesystem::path& output) {
   if (!IsReplaceable(output)) return;
@@ -109,7 +110,8 @@ std::string NameOf(const ArbitratorSection& arbitrator) {
   return name + fmt::format("threshold {:g}", arbitrator.threshold);
 }
 
-/// Names that distinguish the runs: by the drivers, then by the seed, then by the log.
+/// Names of the runs: policy and threshold, then the seed if the seeds differ, then the log if two
+/// names are still equal.
 std::vector<std::string> NamesOf(std::span<const runner::LoggedRun> runs) {
   const bool with_seed = !HaveOneSeed(runs);
   std::vector<std::string> names;
@@ -146,8 +148,9 @@ std::vector<report::ReportMetric> MetricsOf(const metrics::RunMetrics& measures,
   return out;
 }
 
-/// The table, from the logs alone. It has one row for each run that has a paired run with SI. The
-/// result is nullopt if no run has such a pair.
+/// The table of SI and RHE, computed only from the logs. It has one row for each run with an SI. A
+/// run has an SI if the logs contain its paired run without traded control, and safety is
+/// compromised there. The result is nullopt if no run has an SI.
 std::optional<report::ReportTable> TableOf(std::span<const runner::LoggedRun> runs,
                                            std::span<const cli::Pairing> pairs) {
   const bool one_seed = HaveOneSeed(runs);
@@ -202,7 +205,7 @@ std::vector<report::ReportMetric> MetricsOf(const runner::ExperimentResult& resu
   return out;
 }
 
-/// The content of a run on the page. PageOf() moves the samples out of `run`.
+/// The content of a run on the report's page. May move the samples out of `run`.
 report::ReportRun PageOf(runner::LoggedRun& run, const std::string& name,
                          const metrics::PairedMetrics& paired) {
   return {.name = name,

@@ -211,8 +211,7 @@ int Resume(RunArguments& arguments) {
     throw InputError(fmt::format("{}: error: --resume: {}", PathText(options.log), run.note));
   }
   outcome.result = std::move(run.result);
-  // A log without a seal: an earlier runner ended after the last step, but before it sealed the
-  // log.
+  // If the log has all steps but no seal, an earlier runner ended before it sealed the log.
   const bool to_seal = !run.seal;
   auto& verification = outcome.result.verification;
   if (options.verify.value_or(to_seal)) {
@@ -224,8 +223,9 @@ int Resume(RunArguments& arguments) {
   return Print(arguments, outcome);
 }
 
-/// Makes the run. If the run fails while it is shown, the error is printed at once, so that the
-/// user can read it beside the log. @return the exit code
+/// Makes a new run or continues one. If the run fails while a browser shows it, the error is
+/// printed immediately. So the user can read the error while the browser shows the log.
+/// @return the exit code
 int RunShown(RunArguments& arguments, processes::RunViewer& viewer) {
   try {
     return arguments.resume.empty() ? RunNew(arguments) : Resume(arguments);

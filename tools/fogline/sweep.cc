@@ -155,8 +155,8 @@ int RunSweepVerb(const SweepArguments& arguments) {
     throw Interrupted(fmt::format("interrupted after {} rows; call it again to go on", rows));
   }
   const double wall_s = std::chrono::duration<double>(Clock::now() - began).count();
-  // Each unit computes one more run than it has rows: the paired run without traded control. The
-  // rate does not count this run.
+  // A unit consists of the rows that share a paired run without traded control. The rate does not
+  // count the paired runs.
   const int cores = std::min(arguments.jobs, sweep::AllCores());
   const double rate = wall_s > 0 ? static_cast<double>(rows) / wall_s / cores : 0;
   if (arguments.json) {

@@ -68,7 +68,7 @@ struct TableArguments {
 runner::ExperimentOptions OptionsOf(const TableArguments& arguments) {
   runner::ExperimentOptions options;
   options.samples = true;
-  options.progress = false;  // there is one bar for all runs
+  options.progress = false;  // there is one progress bar for all runs
   arguments.transport.Apply(options);
   const bool elsewhere = !options.external.empty() || !options.hosts.empty();
   if (elsewhere && arguments.jobs.value_or(1) > 1) {

@@ -1,5 +1,5 @@
-// The part of `fogline host`: starts roles on this machine for a runner on another machine, which
-// sends orders on stdin.
+// The agent of `fogline host`: starts roles on this machine for a runner on another machine. The
+// runner sends orders, which arrive on stdin.
 #pragma once
 
 #include <functional>

@@ -15,7 +15,8 @@ namespace {
 
 // Five seconds of ssh's ConnectTimeout, and time for the login on a busy machine.
 constexpr Duration kGreetLimit = milliseconds(20'000);
-// The check sends messages for some milliseconds. A machine without a route reports this at once.
+// The check sends messages for some milliseconds, and a machine without a route reports this
+// immediately. The limit is long enough for a busy machine.
 constexpr Duration kCheckLimit = milliseconds(20'000);
 // The file of a key has 64 digits and a line feed.
 constexpr std::size_t kMaxKeyBytes = 1024;

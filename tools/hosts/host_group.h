@@ -18,7 +18,7 @@ class HostGroup {
   explicit HostGroup(const RunPlan& plan);
 
   /// ADDRESS:PORT at which the relay of the run must listen; port 0: any free port.
-  /// @throws std::runtime_error if the machines see this one at different addresses
+  /// @throws std::runtime_error if the other machines see this machine at different addresses
   std::string RelayPlace() const;
   /// Gives the key to every machine, and lets it examine its way to the network of the run.
   /// @param silence time without a message of the runner after which a machine ends its roles

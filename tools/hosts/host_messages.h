@@ -1,12 +1,13 @@
-// The keys of the messages between a runner and `fogline host` (json_lines.h). Both have the same
-// version, which the first message shows.
+// The keys of the messages between a runner and `fogline host` (json_lines.h). Both programs must
+// have the same version. The first message of `fogline host` contains its version.
 #pragma once
 
 #include "common/clock.h"
 
 namespace fogline::hosts {
 
-// From the machine to the runner.
+// Keys of messages from the machine to the runner. "with:" means that the same message has the keys
+// of the next lines, too.
 inline constexpr const char* kHello = "fogline_host";  // version and message types; with:
 inline constexpr const char* kHost = "host";           //   name of the machine
 inline constexpr const char* kRunner = "runner";       //   address of the runner's machine, or ""
@@ -18,7 +19,7 @@ inline constexpr const char* kHow = "how";             //   how it ended
 inline constexpr const char* kKilled = "killed";       //   whether a signal ended it
 inline constexpr const char* kLines = "lines";         //   the last lines that it printed
 
-// From the runner to the machine.
+// Keys of messages from the runner to the machine.
 inline constexpr const char* kCheck = "check";      // URL of the network to examine; with:
 inline constexpr const char* kKey = "key";          //   the key, as in its file; "": none
 inline constexpr const char* kSilence = "silence";  // limit of time without a message, in s
@@ -31,8 +32,9 @@ inline constexpr const char* kPid = "pid";
 // A sign of life. The machine answers with a list of [process id, context switches].
 inline constexpr const char* kAlive = "alive";
 
-/// The interval between two signs of life of the runner. The runner counts a process as hanging
-/// after a second or two, and must know its context switches twice in this time.
+/// The interval between two signs of life of the runner. The runner decides after one or two
+/// seconds without a STATUS whether a process hangs. In this time it must learn the number of
+/// context switches of the process twice.
 inline constexpr Duration kAliveEvery = milliseconds(250);
 
 }  // namespace fogline::hosts

@@ -41,7 +41,7 @@ void JsonLines::Flush() {
       to_send_.erase(0, static_cast<std::size_t>(sent));
     } else if (sent == 0 || errno == EAGAIN || errno == EWOULDBLOCK) {
       return;
-    } else if (errno != EINTR) {  // no reader; Read() finds the end after the last lines
+    } else if (errno != EINTR) {  // no process reads; Read() will find the end
       to_send_.clear();
     }
   }

@@ -38,7 +38,7 @@ class RemoteHost : public processes::RolePlace {
   /// Waits for the result. @throws std::runtime_error with the problems of that machine;
   /// Interrupted
   void EndCheck(TimePoint end);
-  /// The address of this machine, as that machine sees it; "" if unknown.
+  /// The address of the runner's machine, as the other machine sees it; "" if unknown.
   const std::string& own_address() const { return own_address_; }
 
   const std::string& host() const override { return host_; }

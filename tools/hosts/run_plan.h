@@ -30,7 +30,7 @@ struct RunPlan {
                                        // as the others see it
   std::string url;                     // network of the laboratory; "": the file names none
   std::string key_file;                // key of the laboratory; "": the file names none
-  std::vector<std::string> words;      // the options that make this plan, for another command line
+  std::vector<std::string> words;      // options for this plan in the command that resumes the run
 
   bool empty() const { return places.empty(); }
 };
@@ -47,7 +47,7 @@ struct PlanWords {
 /// The role with this name.
 std::optional<Role> RoleNamed(std::string_view name);
 
-/// Why no role with this name can run on another machine; "" if one can.
+/// The reason why a role with this name cannot run on another machine; "" if it can.
 std::string WhyNoRemoteRole(std::string_view name);
 
 /// The machine of "HOST" or "HOST:FOLDER", where FOLDER begins with / or ~/.
@@ -58,8 +58,8 @@ HostPlan ReadHost(std::string_view text, std::string_view where);
 /// @return what is wrong with the destination; "" if it is good
 std::string WhyNoDestination(std::string_view destination);
 
-/// Makes the plan of a run. If a machine of the laboratory has the name in --on, the role runs on
-/// this machine. --on takes precedence over the role's place in the laboratory's file.
+/// Makes the plan of a run. --on takes precedence over the role's place in the laboratory's file.
+/// HOST in --on may be the name of a machine in this file.
 /// @throws InputError
 RunPlan MakePlan(const PlanWords& words);
 

@@ -23,12 +23,12 @@ namespace fogline::hosts {
 namespace {
 
 constexpr Duration kLookEvery = milliseconds(10);
-// How long the destructor waits for ssh.
+// Time for which the destructor waits until ssh ends.
 constexpr Duration kFarewell = milliseconds(500);
 
 // ssh(1): "exits with the exit status of the remote command or with 255 if an error occurred".
 constexpr int kSshFailed = 255;
-// What a POSIX shell returns if there is no such program.
+// Exit code of a POSIX shell that does not find the program.
 constexpr int kNoProgram = 127;
 
 // The name ($0) of the shell that starts ssh. The shell puts this name before its own errors, so

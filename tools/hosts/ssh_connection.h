@@ -34,9 +34,10 @@ class SshConnection {
   /// start.
   void Keep(const std::string& line) { printed_.Append(line + "\n"); }
 
-  /// The last lines that were printed.
+  /// The last lines that ssh and `fogline host` have printed on stderr, and the lines of Keep().
   std::vector<std::string> TakeLines() { return printed_.Take(); }
-  /// How the connection ended, and what to do about it, in one line. @pre not open()
+  /// How the connection ended and, if a remedy is known, what the user can do; in one line.
+  /// @pre not open()
   /// @param lines the last lines that were printed
   std::string HowItEnded(const std::vector<std::string>& lines) const;
   /// Closes the connection, and kills ssh if it does not end within `limit`.

@@ -49,7 +49,7 @@ class LineReader {
   ///     stdout
   bool Has(std::size_t count, Duration limit);
   const std::vector<std::string>& lines() const { return lines_; }
-  /// Whether the child has closed its stdout; a child does this at its end at the latest.
+  /// Whether the child has closed its stdout. The system closes it when the child ends.
   bool ended() const { return ended_; }
 
  private:

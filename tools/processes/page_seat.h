@@ -1,5 +1,5 @@
-// The participant's page of `fogline drive`: fogline-web with a seat, as a child. The destructor
-// ends it.
+// The page on which a person drives (`fogline drive`). A child process shows it: fogline-web with a
+// seat. The destructor ends the child.
 #pragma once
 
 #include <cstdint>
@@ -21,9 +21,9 @@ bool WaitForPerson(std::int64_t run_id, const std::string& url,
 
 class PageSeat {
  public:
-  /// Starts the page of this run on this network. Returns when it can be opened.
+  /// Starts fogline-web for this run on this network. Returns when the page can be opened.
   /// @param more arguments of fogline-web, such as --listen ADDRESS
-  /// @throws std::runtime_error if there is no page; Interrupted
+  /// @throws std::runtime_error if fogline-web cannot show the page; Interrupted
   PageSeat(std::int64_t run_id, const std::string& url, const runtime::TrafficOptions& traffic,
            const std::vector<std::string>& more);
 
@@ -35,8 +35,8 @@ class PageSeat {
   /// @return false if the user has interrupted this program
   /// @throws std::runtime_error if fogline-web ends
   bool WaitForPerson();
-  /// Whether fogline-web runs. It ends by itself only if it fails. Prints an error once in this
-  /// case.
+  /// Whether fogline-web runs. It ends by itself only if it fails. The first call after such an end
+  /// prints an error.
   bool Runs();
 
  private:

@@ -15,14 +15,15 @@ namespace {
 
 // fogline-web listens after about 50 ms. A run waits for it no longer than this limit.
 constexpr Duration kPageLimit = milliseconds(1000);
-// fogline-web reads a long log before it listens. The run does not wait: it is over then.
+// fogline-web reads the log before it listens, which may take seconds. The run is over then, so
+// this does not delay the run.
 constexpr Duration kLogLimit = milliseconds(10'000);
 constexpr Duration kLookEvery = milliseconds(50);  // interval between checks of a wait
 
 }  // namespace
 
 RunViewer::~RunViewer() {
-  late_ = {};  // its thread reads addresses of fogline-web, so it ends first
+  late_ = {};  // ends the thread, which uses web_, before web_ is destroyed
 }
 
 void RunViewer::ShowNetwork(const std::string& url) {
@@ -71,7 +72,7 @@ bool RunViewer::TakeAddress(Duration limit) {
 
 /// Starts a thread that waits for the address, because the thread of the run must not wait for it.
 void RunViewer::TakeAddressLater() {
-  const SignalsBlocked blocked;  // signals are for the thread of the run
+  const SignalsBlocked blocked;  // only the thread of the run handles signals
   late_ = std::jthread([this](const std::stop_token& stop) {
     while (!stop.stop_requested() && !WasInterrupted() && web_.prints()) {
       if (TakeAddress(kLookEvery)) return;

@@ -13,8 +13,8 @@
 
 namespace fogline::processes {
 
-/// The port in the address of a page, such as "7680" in "http://127.0.0.1:7680/". Without an
-/// address, "0", which means any free port.
+/// The port in the address of a page of fogline-web, such as "7680" in "http://127.0.0.1:7680/".
+/// Without an address, "0", which means any free port.
 std::string PortOf(const std::string& address);
 
 /// A fogline-web process, or none. The destructor ends the process.
@@ -44,7 +44,7 @@ class WebChild {
   const std::string& how_it_ended() const { return how_it_ended_; }
   /// Ends fogline-web with SIGTERM, and returns when it has ended. After 2 s it is killed.
   void End();
-  /// Kills fogline-web, and returns at once. Runs() becomes false when the process has ended.
+  /// Kills fogline-web. Does not wait for its end; Runs() becomes false when the process has ended.
   void Kill() const;
 
  private:

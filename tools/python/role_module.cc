@@ -1,7 +1,8 @@
-// fogline_lab._runtime: a class in Python as a role of a run. The process runs the same code as the
-// process of every other role (services/runtime/process/service.h). Only PythonRole calls Python.
-// This module contains no role's name: kGraph says which messages a role reads and writes. Python
-// gets and returns the bytes of messages. fogline_lab.messages decodes and encodes them.
+// The Python module fogline_lab._runtime: lets a class in Python take part in a run as a role. The
+// process runs the same code as the process of every other role
+// (services/runtime/process/service.h). Only PythonRole calls Python. This module contains no
+// role's name: kGraph says which messages a role reads and writes. Python gets and returns the
+// bytes of messages. fogline_lab.messages decodes and encodes them.
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 

@@ -1,4 +1,4 @@
-// Writes events into a log, or into one log after another.
+// Writes events into one log, or into several logs one after another.
 #pragma once
 
 #include <cstdint>

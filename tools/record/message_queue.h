@@ -20,7 +20,7 @@ class MessageQueue {
   /// Successive events in the format of a log; the number of each event is 0.
   using Chunk = std::vector<std::uint8_t>;
 
-  /// For the thread that receives.
+  /// Adds a message. Called by the thread that receives.
   void Put(const Message& message) {
     {
       const std::lock_guard lock(mutex_);
@@ -33,7 +33,7 @@ class MessageQueue {
     }
     filled_.notify_one();
   }
-  /// Called after the last message.
+  /// Says that no more messages will come. Called by the thread that receives.
   void Close() {
     {
       const std::lock_guard lock(mutex_);
@@ -42,8 +42,8 @@ class MessageQueue {
     filled_.notify_one();
   }
 
-  /// For the thread that writes. Waits for messages, but no longer than `until`.
-  /// @return all messages that wait
+  /// Called by the thread that writes. Waits for messages, but no longer than `until`.
+  /// @return all messages in the queue, which is empty afterwards
   std::vector<Chunk> Take(TimePoint until) {
     std::unique_lock lock(mutex_);
     filled_.wait_until(lock, until, [this] { return closed_ || !chunks_.empty(); });

@@ -89,7 +89,7 @@ void Recording::Listen(TimePoint now, Duration longest) {
   if (sources_.size() < 2) return;
   try {
     Drain(*sources_.back(), now);
-  } catch (const std::runtime_error& error) {  // its relay has ended
+  } catch (const std::runtime_error& error) {  // the network's relay has ended
     options_.say(fmt::format("leaves {}: {}", followed_url_, error.what()));
     LeaveFollowed();
   }

@@ -1,4 +1,4 @@
-// Records the traffic of an LCM network in event logs, without taking part in it.
+// Records the traffic of an LCM network in event logs. Publishes no messages itself.
 #pragma once
 
 #include <atomic>
@@ -38,9 +38,9 @@ struct RecordingOptions {
   std::function<void(const std::string&)> say = [](const std::string&) {};
 };
 
-/// One thread receives and another one writes. The queue between them has no limit, so neither a
-/// burst nor a slow disk loses a message. Messages are lost only if this process gets no processor
-/// time until the socket's buffer is full. These losses are counted.
+/// A recording. One thread receives messages, and another thread writes them. The queue between
+/// them has no limit, so neither a burst nor a slow disk loses a message. Messages are lost only if
+/// this process gets no processor time until the socket's buffer is full. These losses are counted.
 class Recording {
  public:
   /// Begins the log and opens the network. @throws InputError, std::runtime_error

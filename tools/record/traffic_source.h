@@ -1,4 +1,4 @@
-// All messages on an LCM network, as they come.
+// Source of all messages on an LCM network, in the order of their arrival.
 #pragma once
 
 #include <cstdint>
@@ -26,7 +26,8 @@ class TrafficSource {
   TrafficSource(const TrafficSource&) = delete;
   TrafficSource& operator=(const TrafficSource&) = delete;
 
-  /// Passes the messages that have come, at most some thousands at a time.
+  /// Calls `use` with each message that has come. One call of Drain() handles at most some
+  /// thousands of messages.
   /// @throws std::runtime_error if the network is lost
   virtual void Drain(TimePoint now, const Use& use) = 0;
   /// A line for the user when the connection to the network is cut off or comes back; "" if neither

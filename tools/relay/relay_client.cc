@@ -19,7 +19,8 @@ namespace {
 namespace asio = boost::asio;
 using boost::system::error_code;
 
-// A client has to send its magic within this time after it connects.
+// A client has to send its magic (the first bytes of the tcpq protocol) within this time after it
+// connects.
 constexpr std::chrono::seconds kGreetingLimit(5);
 
 std::string AddressOf(const boost::asio::ip::tcp::socket& socket) {
@@ -29,9 +30,9 @@ std::string AddressOf(const boost::asio::ip::tcp::socket& socket) {
   return fmt::format("{}:{}", peer.address().to_string(), peer.port());
 }
 
-/// Acknowledges received data at once. LCM's client sends a message in five pieces, and waits for
-/// the acknowledgement of the first piece before it sends the second piece. The kernel delays an
-/// acknowledgement by up to 40 ms unless this option is set again after each read.
+/// Acknowledges received data immediately. LCM's client sends a message in five pieces, and waits
+/// for the acknowledgement of the first piece before it sends the second piece. The kernel delays
+/// an acknowledgement by up to 40 ms unless this option is set again after each read.
 void AcknowledgeAtOnce(boost::asio::ip::tcp::socket& socket) {
   const int on = 1;
   setsockopt(socket.native_handle(), IPPROTO_TCP, TCP_QUICKACK, &on, sizeof(on));

@@ -25,8 +25,8 @@ constexpr std::size_t kSpareBytes = 256;
 constexpr double kBudgetS = 0.1;
 constexpr double kRefillPerS = kBudgetS / 10;
 // Processor time for each name that is not charged to the budget. Tens of simple expressions take
-// no longer. So many new names do not disconnect a client with simple expressions. The relay needs
-// about the same time to receive a name.
+// no longer, so new names do not use the budget of a client with a few simple expressions. The
+// relay needs about the same time to receive a name.
 constexpr double kFreeS = 50e-6;
 
 double ProcessorTimeS() {

@@ -9,11 +9,12 @@
 
 namespace fogline::replay {
 
-/// A difference. Its values have the shortest form that distinguishes any two values.
+/// A field in which two messages differ. Its two values are printed in the shortest form that
+/// distinguishes any two numbers.
 struct Difference {
   std::int64_t step = 0;
   std::string channel;
-  std::string field;  // "name[index]"; or a text in parentheses
+  std::string field;  // "name[index]"; or a reason in parentheses, such as "(message)": missing
   std::string a;
   std::string b;
 };

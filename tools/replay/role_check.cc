@@ -52,7 +52,8 @@ std::vector<runtime::OtherBuild> OtherBuildsIn(const log::RunLog& run) {
     if (place >= std::ssize(says.build_id)) continue;
     const runtime::BuildId build = says.build_id[static_cast<std::size_t>(place)];
     const runtime::BuildId ours = runtime::BuildIdOf(processes::ProgramOf(info.role));
-    // If all roles of a run were in one process, each role has the build of this process's program.
+    // If one process made the whole run, the seal has the build of its program for each role. This
+    // program may be the same one.
     if (build != runtime::kUnknownBuild && (build == ours || build == runtime::OwnBuildId()))
       continue;
     others.push_back({.role = info.role, .pid = 0, .host = "", .build = build, .ours = ours});

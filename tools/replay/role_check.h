@@ -30,7 +30,7 @@ std::vector<RoleCheck> MakeRoleChecks(const log::RunLog& run, const log::DriverI
 /// @throws InputError for a step that cannot be computed; the error text lacks the name of the log
 void CheckRoles(log::RunLogReader& reader, std::vector<RoleCheck>& roles);
 
-/// Result of the check of a run's own log.
+/// Result of computing the steps of a run again from its log.
 struct Verification {
   struct LeftOut {
     Role role;
@@ -54,7 +54,8 @@ struct Verification {
 /// program in the folder of this program. The list is empty for a log without a complete seal.
 std::vector<runtime::OtherBuild> OtherBuildsIn(const log::RunLog& run);
 
-/// @param others roles of another build; this program lacks their algorithms
+/// Computes the steps of a run again from its log, and compares them with the log.
+/// @param others roles of another build; they are left out, because their algorithms may differ
 Verification VerifyRun(const std::filesystem::path& log, const log::RunLog& run,
                        const std::vector<runtime::OtherBuild>& others);
 

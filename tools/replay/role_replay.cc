@@ -64,7 +64,8 @@ class ReplayOf final : public RoleReplay {
     (std::make_index_sequence<N>{});
   }
 
-  /// Reads input I of a step. As in the role's process, it comes from this step or the one before.
+  /// Reads input I of a step. As in the role's process, the input comes from this step or, if its
+  /// sender computes after this role, from the previous step.
   template <std::size_t I>
   void Read(std::int64_t step, const log::StepMessages& messages, const log::StepMessages& before) {
     using M = std::tuple_element_t<I, AllInputs>;

@@ -1,5 +1,5 @@
-// The files of the page, as texts in the program. assets.cmake writes the definitions. The texts of
-// uPlot are empty if its package of npm was missing.
+// The files of the HTML pages of reports and studies, as texts in the program. assets.cmake writes
+// the definitions. The texts of uPlot are empty if its package of npm was missing.
 #pragma once
 
 #include <string_view>

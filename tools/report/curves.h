@@ -1,4 +1,5 @@
-// Content of the figures of the curves over thresholds, for the page and for the figure files.
+// Content of the figures of the curves over thresholds, for the report's HTML page and for the
+// figure files.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +12,8 @@
 namespace fogline::report {
 
 /// A point in the plane of mean RHE and mean SI. Thresholds with equal RHE and equal SI share one
-/// point.
+/// point. The front is the Pareto front: no other point has at least as much SI with at most as
+/// much RHE.
 struct FrontPoint {
   double rhe_pct = 0;
   double si_pct = 0;
@@ -34,7 +36,8 @@ std::vector<std::size_t> LabelOrder(const ReportCurves& curves, std::span<const 
 /// The seeds as text, such as "seeds 1 to 200" or "seed 7".
 std::string SeedsText(const ReportCurves& curves);
 
-/// The figures' frames on the page, a slider for the threshold, and all values as a table.
+/// HTML of the section of these curves: frames of the figures, a slider for the threshold, and all
+/// values as a table.
 std::string CurvesContent(const ReportCurves& curves);
 
 /// JSON text with the data that the page's script draws.

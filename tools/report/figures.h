@@ -1,4 +1,5 @@
-// The table of figures. The page and the figure files for papers are drawn from this table.
+// The table of figures. The report's HTML page and the figure files for papers are drawn from this
+// table.
 #pragma once
 
 #include <array>

@@ -27,7 +27,7 @@ std::string_view ValueOf(std::string_view name,
 
 std::string EscapeHtml(std::string_view text) {
   std::string escaped(text);
-  boost::replace_all(escaped, "&", "&amp;");  // first, because the other texts contain "&"
+  boost::replace_all(escaped, "&", "&amp;");  // first, because the next lines insert "&"
   boost::replace_all(escaped, "<", "&lt;");
   boost::replace_all(escaped, ">", "&gt;");
   boost::replace_all(escaped, "\"", "&quot;");

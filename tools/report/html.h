@@ -1,4 +1,4 @@
-// Escapes and formats text for the page.
+// Escapes and formats text for the HTML pages of reports and studies.
 #pragma once
 
 #include <initializer_list>

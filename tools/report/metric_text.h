@@ -1,5 +1,5 @@
-// Formats a measure's number for a reader, on the page and in a terminal. JSON and CSV have all
-// digits.
+// Formats a measure's number for a reader, on the report's HTML page and in a terminal. JSON and
+// CSV have all digits.
 #pragma once
 
 #include <string>

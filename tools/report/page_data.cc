@@ -30,7 +30,7 @@ double Rounded(double value) {
   return std::round(value * kGrid) / kGrid + 0.0;  // + 0.0 changes -0.0 into 0.0
 }
 
-/// Columns as JSON texts, each text stored once.
+/// Columns as JSON texts. A text that occurs several times is stored only once.
 class ColumnPool {
  public:
   std::size_t Place(const std::vector<double>& values) {

@@ -1,4 +1,4 @@
-// Data for the page's script: figures and runs as JSON.
+// Data for the script of the report's HTML page: figures and runs as JSON.
 #pragma once
 
 #include <optional>

@@ -9,9 +9,10 @@
 
 namespace fogline::report {
 
-/// Plain text, "" without runs. Runs that differ only in their arbitrator belong to one situation
-/// and share a sentence. More than three situations are summarised in one sentence. Every number
-/// comes from the samples. Only the safety improvement is the run's `si_pct`.
+/// The description as plain text; "" without runs. Runs that differ only in their arbitrator belong
+/// to one situation and share a sentence. More than three situations are summarised in one
+/// sentence. All numbers are computed from the samples, except for the safety improvement: it is
+/// the run's `si_pct`.
 std::string StoryOf(std::span<const ReportRun> runs);
 
 }  // namespace fogline::report

@@ -60,8 +60,9 @@ struct StudyClaim {
 /// The state as "holds", "fails" or "open".
 std::string_view Text(ClaimState state);
 
-/// Content of one study. Every text may contain any characters; the library escapes it. A reader
-/// sees question, answer, claims, first figure and first table at once. The other parts are folded.
+/// Content of one study. Every text may contain any characters; the library escapes it. The page
+/// shows question, answer, claims, first figure and first table. A reader must unfold the other
+/// parts.
 struct StudySection {
   std::string name;  // such as "policy"
   std::string title;

@@ -49,7 +49,7 @@ std::string EffectCell(const std::optional<double>& value) {
   return fmt::format("<td>{}</td>", DataElement(value.value_or(stats::kMissing), kDecimals));
 }
 
-/// Cells for our own value, and for its standard deviation if there is one.
+/// Cells for the value of our runs, and for its standard deviation if there is one.
 std::string OwnCells(double value, const std::optional<double>& deviation) {
   const std::string spread =
       deviation ? fmt::format("± {}", DataElement(*deviation, kPercentDecimals)) : "";
@@ -74,7 +74,8 @@ std::string RowOf(const ReportTable::Row& row, bool with_seed) {
       EffectCell(row.without.mean_compromised_safety_m), EffectCell(row.without.slow_down_mps));
 }
 
-/// Mean, standard deviation, half of the confidence interval, and percentiles.
+/// Cells for mean, standard deviation, half of the 95 % confidence interval, 5th and 95th
+/// percentile.
 std::string SummaryCells(const stats::Summary& summary) {
   std::string cells;
   for (const std::optional<double>& value :

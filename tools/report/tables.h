@@ -1,4 +1,4 @@
-// The tables of the page, as HTML.
+// The tables of the report's page, as HTML.
 #pragma once
 
 #include <cstddef>
@@ -10,11 +10,11 @@
 
 namespace fogline::report {
 
-/// The reproduced table next to the published table.
+/// The table of SI and RHE at each threshold: the values of our runs beside the published values.
 std::string ThresholdTable(const ReportTable& table);
 
-/// All values of the curves, one row for each threshold. `points` shows which thresholds are on the
-/// front.
+/// All values of the curves, one row for each threshold. `points` says which thresholds are on the
+/// Pareto front.
 std::string CurveTable(const ReportCurves& curves, std::span<const FrontPoint> points);
 
 /// Every measure that any run has: one row for each measure, one column for each run.

@@ -45,9 +45,9 @@ constexpr Duration kLookEvery = milliseconds(20);
 // A process without a STATUS for this long counts as hanging. A living process sends ten STATUS
 // messages in this time.
 constexpr Duration kHangLimit = milliseconds(2000);
-// In real time the limit is half of kHangLimit, because other roles continue without the messages
-// of a hanging process long before. The limit still covers five STATUS messages, because a lost
-// STATUS is not sent again.
+// In real time the limit is half of kHangLimit: other roles do not wait for a hanging process, so
+// it must be restarted soon. The limit still covers five STATUS messages, because a lost STATUS is
+// not sent again.
 constexpr Duration kRealtimeHangLimit = milliseconds(1000);
 
 /// The builds of the runner's own programs; a role that is started elsewhere may have another
@@ -122,7 +122,7 @@ void RunInMemory(runtime::Bus& bus, runtime::RunCoordinator& coordinator, std::i
     const TimePoint now = Clock::now();
     TimePoint next = coordinator.Poll(now);
     for (const auto& role : roles) next = std::min(next, role->node().Poll(now));
-    // All messages that wait are handled before the next actions by the clock.
+    // Handles all messages that wait. Only then the roles act on the time again (Poll()).
     if (bus.Wait(next - Clock::now())) bus.Drain();
     progress.Show(coordinator.step());
     TellLoggedStep(coordinator, options);
@@ -213,9 +213,9 @@ ProcessNews RunAsProcesses(runtime::Bus& bus, runtime::RunCoordinator& coordinat
   return {.restarts = supervisor.restarts(), .priority = priority.found()};
 }
 
-/// The reports of a run's recorders about the log. All recorders but the last one have ended. In
-/// real time, a recorder may remove the end of the log that an earlier recorder wrote. So only the
-/// last report counts.
+/// What each recorder process of a run has last reported about the log (in STATUS). All of them
+/// except the last one have ended. In real time, a recorder may remove the end of the log that an
+/// earlier recorder wrote. So only the report of the last recorder counts then.
 std::vector<log::WrittenLog> WrittenBy(const runtime::RunCoordinator& coordinator, bool realtime) {
   std::vector<log::WrittenLog> written;
   for (const status_t& status : LastWords(coordinator, Role::kRecorder)) {
@@ -259,7 +259,8 @@ BusRun RunOnBus(const Scenario& scenario, const ExperimentOptions& options,
   }
   runtime::Bus bus(relay ? relay->url() : UrlOf(options.transport, hosts != nullptr));
   const bool in_memory = bus.url().starts_with("memq");
-  // Roles on other machines wait for a silent runner as long as roles that a person has started.
+  // If the runner is silent, roles on other machines wait for it for the same time as roles that a
+  // person has started: the stall limit plus kGone.
   if (hosts) {
     hosts->Check(bus.url(), options.traffic, options.stall_limit + runtime::RunnerWatch::kGone);
   }

@@ -216,7 +216,7 @@ LoggedRun ReadOwnLog(const LogKeeper& keeper, const std::filesystem::path& log, 
     keeper.Check(run.written);
   } catch (const std::runtime_error&) {
     try {
-      read();  // the error for a log of another run is clearer
+      read();  // throws a clearer error for a log of another run
     } catch (const InputError&) {
     }
     throw;
@@ -282,7 +282,7 @@ ExperimentResult RunLogged(const Scenario& scenario, const ExperimentOptions& op
 void CheckPossible(const Scenario& scenario, const std::filesystem::path& file) {
   try {
     const closed_loop::ClosedLoop parts(scenario);
-    // SUMO reads its network and its routes only when a run begins.
+    // SUMO reads its network and its routes only when a run begins. So the world is started here.
     if (scenario.lead.profile == LeadProfile::kSumo) world::World(scenario).Start(0);
   } catch (const InputError& error) {
     // The text is "/pointer: message", or only a message if no single field is the cause.

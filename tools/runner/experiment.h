@@ -72,7 +72,8 @@ struct ExperimentOptions {
   /// Called with the same values after on_network, immediately before the roles are started.
   std::function<void(std::int64_t run_id, const std::string& url)> on_run =
       [](std::int64_t, const std::string&) {};
-  /// Called when the first step of the log is written to the operating system, and perhaps again.
+  /// Called when the log's first step was handed to the operating system. May be called several
+  /// times.
   std::function<void()> on_logged_step = [] {};
 };
 
@@ -107,8 +108,9 @@ struct ExperimentResult {
   std::optional<log::RealtimeFigures> realtime;       // only for a run in real time
 };
 
-/// Constructs every part of a run once, without a step. It finds fields whose values are valid one
-/// by one, but invalid together, before any process starts.
+/// Checks whether a run of this scenario is possible, before any process starts. For this it
+/// constructs every part of a run, without a step. So it finds fields whose values are valid one by
+/// one, but invalid together.
 /// @param file name of the scenario for the user
 /// @throws ScenarioError with the rule "impossible"
 void CheckPossible(const Scenario& scenario, const std::filesystem::path& file);

@@ -69,7 +69,7 @@ log::EventLogReader LogKeeper::Open() const {
   }
   try {
     return log::EventLogReader(log_);
-  } catch (const InputError& error) {  // the run itself has made and read this file
+  } catch (const InputError& error) {  // no mistake of the user: the run made this file
     throw std::runtime_error(error.what());
   }
 }

@@ -26,7 +26,7 @@ class LogKeeper {
   /// Remembers the identity of the log file at the start of the run, if there is a file.
   explicit LogKeeper(std::filesystem::path log);
 
-  /// @param written the last report of each of the run's recorders
+  /// @param written for each recorder of the run, the part of the log that it has last reported
   /// @throws std::runtime_error if the log was removed, another file has replaced it, or its bytes
   ///     differ
   void Check(const std::vector<log::WrittenLog>& written) const;

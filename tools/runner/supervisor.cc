@@ -123,7 +123,7 @@ void Supervisor::StartAgain(Child& child, TimePoint now) {
 
 void Supervisor::OnExit(const processes::RolePlace::Exit& exit, TimePoint now) {
   const auto child = std::ranges::find(children_, exit.role, &Child::role);
-  if (exit.pid != child->pid) return;  // its start was reported too late
+  if (exit.pid != child->pid) return;  // a process whose start was reported too late
   const std::string& host = child->place->name();
   const std::string how = child->killed_for.empty() ? exit.how : child->killed_for;
   child->death = fmt::format("{} {}", how, coordinator_.Where());
@@ -160,7 +160,7 @@ void Supervisor::KillIfItHangs(Child& child, TimePoint now) {
   if (!InSight(child) || silent < limit / 2 || !child.killed_for.empty()) return;
   if (!child.activity) child.activity = child.place->ActivityOf(child.pid);
   if (silent < limit) return;
-  // A process that still runs may be alive although its messages are lost.
+  // A process with new context switches still runs. It may work, and its messages may be lost.
   const bool runs = child.place->ActivityOf(child.pid) != child.activity;
   const std::string& host = child.place->name();
   if (runs && !met && !host.empty()) {
@@ -243,8 +243,8 @@ std::vector<Restarts> Supervisor::restarts() const {
                           .count = child->policy.restarts(),
                           .last = child->death});
     } else {
-      // If the newest process has come late, the run may have ended before its predecessor had been
-      // silent long enough to count as ended.
+      // If the newest process of the role has come late, the run may have ended before the process
+      // before it had been silent long enough to count as ended.
       const bool late = member.rival && member.status && member.heard < member.rival_since;
       const int elsewhere = member.replaced + (late ? 1 : 0);
       if (elsewhere == 0) continue;

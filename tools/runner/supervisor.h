@@ -22,8 +22,9 @@ namespace fogline::runner {
 
 class Supervisor {
  public:
-  /// Time in which a process that sends no STATUS does not count as hanging while it works. A
-  /// process sends none while it prepares for the run, for example while SUMO loads its network.
+  /// Longest time without a STATUS of a process that prepares for the run and has context switches.
+  /// Such a process does not count as hanging: it sends no STATUS, for example while SUMO loads its
+  /// network.
   static constexpr Duration kPrepareLimit = milliseconds(60'000);
 
   struct Options {
@@ -78,7 +79,8 @@ class Supervisor {
   /// The processes that have ended since the last call.
   std::vector<processes::RolePlace::Exit> Collect();
   void OnExit(const processes::RolePlace::Exit& exit, TimePoint now);
-  /// Whether the machine of the process answers. Stores why it does not, for an error text.
+  /// Whether the machine of the process answers. If it does not answer, stores the reason for an
+  /// error text.
   bool InSight(Child& child);
   void Hinder(Child& child, const std::string& why);
   void KillIfItHangs(Child& child, TimePoint now);

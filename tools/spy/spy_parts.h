@@ -17,7 +17,7 @@ std::filesystem::path InPath(const std::string& program);
 /// The Java of JAVA_HOME, or the shell's Java if JAVA_HOME is not set; "" if there is no Java.
 std::filesystem::path JavaProgram();
 
-/// Whether a Java can open windows. The Java of the headless package cannot open windows.
+/// Whether a Java can open windows. The Java of Debian's headless packages cannot open windows.
 bool OpensWindows(const std::filesystem::path& java);
 
 /// The reason why a window cannot be opened on a screen; "" if no reason was found. The screen of

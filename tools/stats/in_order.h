@@ -17,8 +17,8 @@
 
 namespace fogline::stats {
 
-/// Units in progress for each thread: enough to keep all threads busy while the slowest unit delays
-/// the delivery.
+/// Units in progress for each thread: enough to keep all threads busy while one slow unit delays
+/// the delivery of the units after it.
 inline constexpr int kUnitsPerJob = 4;
 
 /// Computes the units from `begin` up to, but not including, `end` on `jobs` threads.
@@ -50,8 +50,8 @@ void ComputeInOrder(std::int64_t begin, std::int64_t end, int jobs, const MakeWo
     }
     return std::make_shared<Batch>(Batch{next++, std::nullopt, nullptr});
   };
-  // The exception of a unit is thrown when the unit is delivered. So the result does not depend on
-  // `jobs`.
+  // The exception of a unit is thrown when the unit is delivered, in order. So the same units are
+  // delivered before it for every value of `jobs`.
   const auto work = [&](Item batch) {
     if (!go_on) return batch;
     try {

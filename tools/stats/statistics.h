@@ -11,8 +11,8 @@ namespace fogline::stats {
 /// Marks a number that does not exist: nothing was measured, or nothing can be computed.
 inline constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
-/// Mean and spread of a sample, in the unit of its values. nullopt means too few values: the mean
-/// needs one value, each other member needs two.
+/// Mean and spread of a sample, in the unit of its values. nullopt means that there are too few
+/// values: the mean needs one value, and each other statistic needs two.
 struct Summary {
   std::int64_t count = 0;
   std::optional<double> mean;

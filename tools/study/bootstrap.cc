@@ -9,7 +9,8 @@ namespace fogline::study {
 
 void Resampling::Draw(std::int64_t replicate, std::vector<double>& weights) const {
   weights.assign(runs_, 0.0);
-  // The draws are fixed, like a table of random numbers. Only the runs are random.
+  // The draws have a fixed seed, so each call gives the same draws, like a table of random numbers.
+  // Only the results of the runs are random.
   const Random random(0, stream_);
   const auto runs = static_cast<double>(runs_);
   const auto take = [&](double u) {

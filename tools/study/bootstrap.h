@@ -1,4 +1,5 @@
-// Intervals for statistics other than a plain mean, by resampling the runs (Efron 1979).
+// Confidence intervals for statistics other than a plain mean. They come from resamples of the runs
+// (bootstrap, Efron 1979).
 #pragma once
 
 #include <cstddef>
@@ -11,12 +12,13 @@
 
 namespace fogline::study {
 
-/// Number of replicates for an interval. With this number, the error of the interval's ends is at
-/// most a tenth of the interval's width.
+/// Number of replicates (resamples of the runs) for an interval. With this number, the error of the
+/// interval's ends is at most a tenth of the interval's width.
 inline constexpr std::int64_t kReplicates = 1000;
 
-/// Resamples runs. A replicate draws as many runs as there are, with replacement. The draws are the
-/// same on every machine. Two statistics computed with the same weights are paired, run by run.
+/// Makes replicates of a set of runs. A replicate draws as many runs as there are, with
+/// replacement. The draws are the same on every machine. Two statistics computed with the same
+/// weights are paired, run by run.
 class Resampling {
  public:
   Resampling(std::size_t runs, Stream stream) : runs_(runs), stream_(stream) {}
@@ -30,12 +32,12 @@ class Resampling {
   Stream stream_;
 };
 
-/// Weighted mean of the values that are not NaN; NaN if all values are NaN.
+/// Weighted mean of the values that are not NaN; NaN if these values have no weight.
 double WeightedMean(std::span<const double> values, std::span<const double> weights);
 
 /// Estimate with the value `value` over n runs, and the interval from the 2.5th to the 97.5th
-/// percentile of its replicates (Efron & Tibshirani 1993, 13.3). There is no interval for fewer
-/// than two runs, or if a replicate has no value.
+/// percentile of its replicates (Efron & Tibshirani 1993, 13.3). There is no interval if there are
+/// fewer than two runs or no replicates, or if the value or a replicate is NaN.
 Estimate FromReplicates(std::int64_t n, double value, std::vector<double> replicates);
 
 }  // namespace fogline::study

@@ -23,7 +23,7 @@ struct Claim {
   Sign sign = Sign::kLess;
   Estimate difference;
   double margin = 0;        // for kEqual: the largest difference that is too small to matter
-  std::optional<double> p;  // p-value of a test of the sign without an interval, such as McNemar's
+  std::optional<double> p;  // p-value of a test without an interval, such as McNemar's
   std::string hindrance;    // why the difference cannot support the claim; "" if it can
 };
 

@@ -14,9 +14,9 @@
 
 namespace fogline::study {
 
-/// A difference of compromised safety that is too small to matter, m. The value is our choice. It
-/// is an eighth of the effect of the fog in paper.json, 0.015 m, and far less than a driver
-/// notices.
+/// A difference of compromised safety that is too small to matter, m. The value is our choice. In
+/// paper.json, the effect of the fog is 0.015 m, about eight times as much. A driver notices only
+/// far larger differences.
 inline constexpr double kNoShortfall_m = 0.002;
 
 /// The names of a case and of a variant.
@@ -42,17 +42,17 @@ struct PlannedClaim {
   double level = 0;   // in the unit of the measure
 };
 
-/// The claim that a measure's mean difference a - b has this sign.
+/// The claim that a measure's mean difference, cell `a` minus cell `b`, has this sign.
 PlannedClaim PairClaim(std::string says, CellName a, CellName b, std::string_view measure,
                        Sign sign, double margin = 0);
 /// The claim that a measure's mean differs from `level` with this sign.
 PlannedClaim LevelClaim(std::string says, CellName cell, std::string_view measure, Sign sign,
                         double level);
 
-/// The claim with the numbers of the runs, paired seed by seed. For the measure "collided" the
-/// p-value of a claim on two cells comes from McNemar's exact test (1947). A claim on another
-/// measure of two cells cannot hold if pairs of runs end early, because sums and means over time
-/// then lack the steps after the end.
+/// Makes the claim from the numbers of the runs, paired seed by seed. For the measure "collided"
+/// the p-value of a claim on two cells comes from McNemar's exact test (1947). A claim on another
+/// measure of two cells cannot hold if a run of a pair ends early (Comparison::PairsCutShort()),
+/// because sums and means over time then lack the steps after the end.
 /// @throws std::out_of_range if there is no such case, variant or measure
 Claim ClaimOf(const Comparison& comparison, const PlannedClaim& planned);
 std::vector<Claim> ClaimsOf(const Comparison& comparison, std::span<const PlannedClaim> planned);
@@ -61,8 +61,8 @@ std::vector<Claim> ClaimsOf(const Comparison& comparison, std::span<const Planne
 double PValueOf(const Claim& claim);
 
 /// Checks the claims of one study together. A claim holds if the difference has the claimed sign
-/// and the p-value adjusted by Holm is below 5 %. Otherwise the claim fails, or is open if
-/// `few_runs` is true.
+/// and the p-value adjusted by Holm is below 5 %. Otherwise the claim fails. If `few_runs` is true
+/// (fewer seeds than the study's default), it is open instead.
 std::vector<report::StudyClaim> CheckClaims(std::span<const Claim> claims, bool few_runs);
 
 /// "study policy: 2 of 9 claims fail:", then a line for each failed claim; "" if no claim fails.

@@ -50,13 +50,13 @@ void RequireNamesWithoutCommas(const std::vector<Named>& all) {
   }
 }
 
-/// Whether the variant is the run without traded control. Each case has this run, even without such
-/// a variant.
+/// Whether the variant has no traded control. Each case has a run without traded control, even if
+/// it has no such variant.
 bool IsWithoutTradedControl(const StudyVariant& variant) {
   return variant.overrides.size() == 1 && variant.overrides.front() == kWithoutTradedControl;
 }
 
-/// The scenarios of the cells, case by case. The first scenario of a case is that of its run
+/// The scenarios of the cells, case by case. The first scenario of a case belongs to its run
 /// without traded control. A variant without traded control has no scenario of its own.
 std::vector<Scenario> ScenariosOf(const StudyContext& context, const std::vector<StudyCase>& cases,
                                   const std::vector<StudyVariant>& variants) {
@@ -283,8 +283,8 @@ report::StudyFigure Comparison::FigureOf(std::string_view measure, std::string i
       .y_label = info.unit.empty() ? NameForReaders(measure)
                                    : fmt::format("{} ({})", NameForReaders(measure), info.unit),
       .log_y = report::IsTimeToCollision(measure)};
-  // Maximum available deceleration (MADR, Cunto & Saccomanno 2008): no car brakes harder. So a
-  // larger value of the measure means a collision.
+  // The maximum available deceleration (MADR, Cunto & Saccomanno 2008): no car brakes harder. If a
+  // car needs more than this to avoid a collision, it collides. So the figure ends at this value.
   if (measure.ends_with("drac_mps2")) figure.most = MeasuresSection{}.madr_most_mps2;
   const std::size_t series = cases_on_axis ? variants_.size() : cases_.size();
   const std::size_t places = cases_on_axis ? cases_.size() : variants_.size();

@@ -119,10 +119,11 @@ class Comparison {
   /// cases are on the x axis and each variant is a series.
   report::StudyFigure FigureOf(std::string_view measure, std::string id, std::string title,
                                bool cases_on_axis = false) const;
-  /// A row with means and intervals for each of these cells.
+  /// A table with one row for each of these cells. A row has the mean and the interval of each
+  /// measure.
   report::StudyTable TableOf(std::string caption, std::string kind, std::span<const NamedCell> rows,
                              std::span<const std::string_view> measures) const;
-  /// One row for each variant of a case, or for each case of a variant.
+  /// Tables with one row for each variant of a case, and with one row for each case of a variant.
   report::StudyTable TableOfCase(std::size_t test_case,
                                  std::span<const std::string_view> measures) const;
   report::StudyTable TableOfVariant(std::size_t variant,

@@ -18,7 +18,8 @@ struct StudyDesign {
   std::vector<PlannedClaim> claims;
 };
 
-/// @param paper the scenario of paper.json, because a calibrated radar depends on its offset
+/// @param paper the scenario of paper.json. The cases with a calibrated radar need its radar's
+/// offset.
 StudyDesign PolicyDesign(const Scenario& paper);
 StudyDesign TakeOverDesign();
 StudyDesign TransferDesign();

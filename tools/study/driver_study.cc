@@ -53,7 +53,7 @@ std::vector<StudyCase> Densities() {
   return cases;
 }
 
-/// The main drivers with realistic noise.
+/// Two drivers in dense fog and two drivers in bias fog, with realistic noise.
 std::vector<StudyCase> NoisyDrivers() {
   const std::vector<std::string> misjudges{"/human/misjudges=true"};
   std::vector<StudyCase> cases{{std::string(kPaperName), "dense_fog.json", {}},
@@ -73,8 +73,8 @@ constexpr std::array<std::string_view, 8> kDriverTable{"si_pct",
                                                        "max_abs_jerk_mps3",
                                                        "min_follower_ttc_s"};
 
-/// A measure as a function of the visibility: without traded control, and with each of the two
-/// drivers.
+/// A figure of a measure as a function of the visibility. It has a series without traded control,
+/// and a series for each of the two drivers of Densities() with traded control.
 report::StudyFigure OverDensity(const Comparison& comparison, std::string_view measure,
                                 std::string id, std::string title) {
   report::StudyFigure figure{

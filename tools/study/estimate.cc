@@ -40,7 +40,8 @@ class Collection {
   std::int64_t infinite_ = 0;
 };
 
-/// P(T > distance / standard error), where T has Student's t distribution.
+/// P(T > distance / standard error), where T has Student's t distribution with n - 1 degrees of
+/// freedom.
 double ProbabilityAbove(const Estimate& estimate, double distance) {
   constexpr double kHalfLevel = 0.025;  // probability beyond each end of the interval
   if (!estimate.has_interval() || estimate.infinite > 0 || estimate.n < 2) return 1;

@@ -1,4 +1,4 @@
-// A mean over runs with its interval, and the verdict that the interval permits.
+// A mean over runs with its interval, and the verdict on the sign that the interval permits.
 #pragma once
 
 #include <cstdint>

@@ -13,8 +13,8 @@
 namespace fogline::study {
 namespace {
 
-/// Makes the smallest time to collision infinite instead of missing, if the pair of cars existed
-/// but its gap never shrank.
+/// Makes the smallest time to collision infinite instead of missing, if both cars existed but the
+/// gap between them never shrank.
 void KeepInfinite(metrics::PairMetrics& pair) {
   const bool there = pair.tet_s.has_value();
   if (there && !pair.min_ttc_s) pair.min_ttc_s = std::numeric_limits<double>::infinity();

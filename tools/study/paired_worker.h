@@ -15,14 +15,16 @@ namespace fogline::study {
 /// The measures of a run in the order of ComparedMetrics(); NaN for a missing measure.
 using RunValues = std::vector<double>;
 
-/// Computes the values of runs. Only one thread may use a worker. A worker keeps its buffers.
+/// Computes the values of runs. Only one thread may use a worker. A worker keeps its buffers
+/// between calls, because allocating them again would take time.
 class PairedWorker {
  public:
   /// Runs all `scenarios` with this seed. The first scenario has no traded control. The other runs
   /// are paired with its run. The result does not contain the first run.
   std::vector<RunValues> Compute(std::span<const Scenario> scenarios, std::int64_t seed);
   /// The measures of the last run without traded control, paired with itself. They equal the
-  /// measures of a second run of this scenario. @param scenario the first one of the last Compute()
+  /// measures of a second run of this scenario, so such a run is not needed. @param scenario the
+  /// first one of the last Compute()
   RunValues OfBaseline(const Scenario& scenario) const;
 
  private:

@@ -18,7 +18,7 @@ inline constexpr std::string_view kWithRealisticNoise = " with realistic noise";
 const std::vector<std::string>& RealisticNoise();
 /// The case with the overrides of RealisticNoise() added.
 StudyCase WithRealisticNoise(StudyCase one);
-/// Explains realistic noise in the method of a study.
+/// Text that explains realistic noise, for the method of a study.
 std::string RealisticNoiseText();
 
 }  // namespace fogline::study

@@ -40,7 +40,7 @@ struct StudyContext {
   /// The context of one part of the study. The part begins when `before` of the study's `all` units
   /// are done.
   StudyContext Part(std::int64_t before, std::int64_t all) const;
-  /// @throws StudyStopped
+  /// Calls `progress`. @throws StudyStopped if it returns false
   void Show(std::int64_t done, std::int64_t total) const;
 };
 
@@ -57,14 +57,14 @@ struct StudyResult {
   std::int64_t runs = 0;
 };
 
-/// One study.
+/// A row of the table Studies().
 struct Study {
   std::string_view name;
   std::string_view title;
   std::string_view question;
   sweep::SeedRange seeds;  // default of --seeds
   StudyResult (*run)(const StudyContext& context);
-  bool needs_sets = false;  // the parameter sets of scenario/ensemble
+  bool needs_sets = false;  // whether it reads the parameter sets of scenario/ensemble
 };
 
 /// The table of all studies, in the order of `fogline study all`. The command line, its help and

@@ -53,7 +53,7 @@ struct Made {
 // the study ends.
 constexpr std::int64_t kMostSeeds = 100'000;
 
-/// @throws InputError
+/// @throws InputError if there are more than kMostSeeds
 void RequireFew(const sweep::SeedRange& seeds, const std::string& text) {
   if (seeds.count() <= kMostSeeds) return;
   throw InputError(fmt::format("error: --seeds {}: more than {} seeds", text, kMostSeeds));
@@ -84,7 +84,7 @@ std::string Names() {
   return names + std::string(kAll);
 }
 
-/// @throws InputError
+/// The study with this name, or all studies. @throws InputError if there is no such study
 std::vector<const Study*> Chosen(const std::string& name) {
   if (name == kAll) {
     std::vector<const Study*> all;

@@ -45,7 +45,7 @@ struct Ground {
   std::string_view name;
   std::string_view file;
   std::vector<std::string> overrides;
-  bool is_dense;  // whether the cars need more than a little of their engines and brakes
+  bool is_dense;  // whether the fog is so dense that the cars accelerate and brake noticeably
   bool brakes;    // whether the cars must brake hard
 };
 
@@ -87,7 +87,7 @@ std::vector<StudyCase> VehicleCases() {
   return cases;
 }
 
-/// Sedan and truck on every ground with realistic noise.
+/// Sedan and truck in every Ground, with realistic noise.
 std::vector<StudyCase> NoisyCars() {
   std::vector<StudyCase> noisy = VehicleCases();
   std::erase_if(noisy, [](const StudyCase& one) {
@@ -167,7 +167,7 @@ report::StudyTable VehicleMainTable(const Comparison& comparison) {
   return comparison.TableOf("Traded control", "case", rows, kVehicleTable);
 }
 
-/// Largest magnitude of a host's acceleration in any run.
+/// Largest magnitude of the host's acceleration in all runs.
 double HardestOf(const Comparison& comparison) {
   double hardest = 0;
   for (std::size_t c = 0; c < comparison.cases().size(); ++c) {

@@ -1,4 +1,4 @@
-// Description of a sweep file: grid, seeds, scenario, and the shard that the file has. The
+// Description of a sweep file: grid, seeds, scenario, and the shard whose rows the file has. The
 // description is in "FILE.json" beside the sweep file. A sweep recognises its own file by the
 // description, and a merge recognises the shards of one sweep.
 #pragma once

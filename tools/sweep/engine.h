@@ -18,8 +18,8 @@ namespace fogline::sweep {
 /// Result of a row of a sweep.
 struct SweepRow {
   metrics::RunMetrics measures;
-  /// Measures of this run and its paired run together; empty for a run that is its own pair, and if
-  /// the paired run has no compromised safety.
+  /// Measures of this run and its paired run together. They are empty for a run that is its own
+  /// pair, or if the paired run has no compromised safety.
   metrics::PairedMetrics paired;
   /// The effect of the fog in the paired run without traded control; empty for a run that is its
   /// own pair.
@@ -33,7 +33,7 @@ SweepRow RunPaired(closed_loop::ReusedLoop& loop, const Scenario& scenario,
                    std::span<const metrics::Sample> baseline);
 
 /// Computes units of a plan, one after another. Only one thread may use a worker. A worker keeps
-/// its buffers.
+/// its buffers from unit to unit.
 class SweepWorker {
  public:
   explicit SweepWorker(const SweepPlan& plan) : plan_(plan), scenario_(plan.base()) {}

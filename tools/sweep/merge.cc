@@ -75,8 +75,8 @@ void RequireSum(RowChecker& checker, const std::string& line, const std::filesys
                       : "the row has no checksum; run its sweep again to compute the row again"));
 }
 
-/// Copies the rows of a shard. Also copies the header if the shard is the first one. @return false
-/// if the shard has rows but no checksums
+/// Copies the rows of a shard, and also the header if the shard is the first one. @return false if
+/// the shard has rows but no checksums
 bool Copy(const ShardFile& shard, std::string& header, AtomicFile& out, AtomicFile* sums) {
   std::ifstream in(shard.path, std::ios::binary);
   RowChecker checker(shard.path);

@@ -13,8 +13,8 @@ namespace {
 /// Largest number of points of an axis "first:last:count".
 constexpr std::int64_t kMaxPoints = 1'000'000;
 
-/// Largest number of rows of a sweep. More rows would take one core for years. The product of this
-/// limit and the number of a shard is far within 64 bits.
+/// Largest number of rows of a sweep. More rows would take one core for years. ShardBegin()
+/// multiplies the rows by the number of a shard, and this product is far within 64 bits.
 constexpr std::int64_t kMaxRows = 100'000'000'000;
 
 /// Largest number of shards of a sweep.
@@ -37,7 +37,7 @@ std::vector<std::string_view> Split(std::string_view text, char separator) {
 }
 
 /// The values of "first:last:count"; empty if the text has another form. Values are printed with
-/// fifteen decimal digits, so 0.3 is printed as 0.3 and not as 0.30000000000000004.
+/// fifteen significant digits, so 0.3 is printed as 0.3 and not as 0.30000000000000004.
 std::vector<std::string> Spaced(std::string_view text) {
   const std::vector<std::string_view> parts = Split(text, ':');
   double first = 0;
@@ -155,7 +155,8 @@ SweepPlan::SweepPlan(Scenario base, std::vector<Axis> axes, SeedRange seeds, std
   if (left == 0) {
     throw InputError(fmt::format("error: the sweep has more than {} rows", kMaxRows));
   }
-  // The last axis of a kind varies fastest.
+  // stride_ is the number of rows between two values of an axis, among the axes of its kind
+  // (arbitrator or other). The last axis of a kind varies fastest.
   stride_.resize(axes_.size());
   for (std::size_t i = axes_.size(); i-- > 0;) {
     std::int64_t& points = inner_[i] ? inner_points_ : outer_points_;

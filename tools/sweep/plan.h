@@ -42,7 +42,7 @@ struct SeedRange {
 /// @throws InputError
 SeedRange ParseSeeds(const std::string& text);
 
-/// Part `index` of `count` equal parts, counted from 1.
+/// Part `index` of a sweep that is divided into `count` equal parts; `index` counts from 1.
 struct Shard {
   std::int64_t index = 1;
   std::int64_t count = 1;
@@ -76,7 +76,7 @@ class SweepPlan {
   void Configure(std::int64_t unit, std::int64_t row, Scenario& scenario) const;
   /// The value of every axis in a row, in the order in which the axes were given.
   std::vector<std::string_view> ValuesOf(std::int64_t unit, std::int64_t row) const;
-  /// A row for messages: "/arbitrator/threshold=0.5, seed 7".
+  /// Name of a row for messages, such as "/arbitrator/threshold=0.5, seed 7".
   std::string NameOf(std::int64_t unit, std::int64_t row) const;
   std::int64_t SeedOf(std::int64_t unit) const { return seeds_.first + unit % seeds_.count(); }
 

@@ -21,8 +21,8 @@ std::string SumLine(std::string_view row);
 /// Number of bytes of the line of a row.
 inline constexpr std::int64_t kSumLineBytes = 9;
 
-/// Whether a file has only checksums of rows. A kill or a power cut may leave a part of the last
-/// line. This part counts as a line.
+/// Whether a file has only checksums of rows. The last line may be incomplete, because a kill or a
+/// power cut may leave only a part of it.
 bool IsSums(const std::filesystem::path& file);
 
 /// Checks the rows of a file in their order.

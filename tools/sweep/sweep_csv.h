@@ -1,7 +1,7 @@
-// The file of a sweep: a CSV that grows row by row in a defined order. Beside it are FILE.json,
-// which describes the sweep, and FILE.sums with checksums of its rows. A killed sweep continues at
-// the end of its file. A pipe or device gets only the rows, and a sweep into it cannot be
-// continued.
+// The file of a sweep: a CSV file that grows row by row in a defined order. Beside it are
+// FILE.json, which describes the sweep, and FILE.sums with checksums of its rows. A killed sweep
+// continues at the end of its file. A pipe or device gets only the rows, and a sweep into it cannot
+// be continued.
 #pragma once
 
 #include <cstdint>

@@ -32,7 +32,7 @@ class Results {
   ///     of this one
   Results(const PlanFile& plan, std::filesystem::path folder);
 
-  /// Creates the folder, and keeps the experiment's file in it. @throws InputError
+  /// Creates the folder, and copies the experiment's file into it. @throws InputError
   void Create() const;
 
   const std::filesystem::path& folder() const { return folder_; }

@@ -87,7 +87,7 @@ class Session {
     if (record.story.state == TrialState::kBroken) {
       throw std::runtime_error(fmt::format("{}: {}", PathText(path), record.story.note));
     }
-    // The network may have lost facts. Adds these facts to the log.
+    // The network may have lost facts of the run. AddFacts() adds the facts that the log lacks.
     AddFacts(path, record.story, facts, key());
     record.story = ReadStory(path);
   }
@@ -156,7 +156,8 @@ class Session {
     });
   }
 
-  /// Adds facts after the last fact of the log. The log has all of them or none.
+  /// Adds facts after the last fact of the log. Even after a crash, the log has all of them or
+  /// none.
   void Add(TrialRecord& record, std::vector<trial_t> facts) const {
     const auto& known = record.story.facts;
     std::int64_t next = known.empty() ? 0 : known.back().sequence + 1;

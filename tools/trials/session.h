@@ -1,6 +1,6 @@
-// The trials of one participant: runs each trial that is not done, asks the questions after it, and
-// writes the answers into its log. If a session was killed, the next session begins with the first
-// trial that is not done.
+// A session: it makes the trials of one participant that are not done, asks the questions after
+// each trial, and writes the answers into the trial's log. If a session was killed, the next
+// session begins with the first trial that is not done.
 #pragma once
 
 #include <cstdint>

@@ -27,7 +27,7 @@ Tables MakeTables(const PlanFile& plan, const Results& results);
 /// Whether the file is one of these tables, or empty.
 bool IsTrialTable(const std::filesystem::path& file);
 
-/// "2026-11-23T15:04:05Z". @param unix_us microseconds since 1970 (UTC)
+/// A time as text, such as "2026-11-23T15:04:05Z". @param unix_us microseconds since 1970 (UTC)
 std::string UtcText(std::int64_t unix_us);
 
 }  // namespace fogline::trials

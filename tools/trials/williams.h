@@ -9,10 +9,10 @@
 namespace fogline::trials {
 
 /// Orders of the conditions 0 to conditions - 1, one for each participant of a block. In all orders
-/// together, each condition is equally often at each place, and each pair of neighbours (first,
-/// then) appears equally often. With an even number of conditions, the orders are one Latin square.
-/// With an odd number above 1, they are two Latin squares, one after the other, and each pair of
-/// neighbours appears twice: one square cannot balance them.
+/// together, each condition is equally often at each place, and each ordered pair of neighbours
+/// appears equally often. With an even number of conditions, the orders are one Latin square. With
+/// an odd number above 1, one Latin square cannot balance the pairs. Then the orders are two Latin
+/// squares, one after the other, and each pair appears twice.
 std::vector<std::vector<std::size_t>> WilliamsDesign(std::size_t conditions);
 
 }  // namespace fogline::trials

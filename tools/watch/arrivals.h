@@ -1,5 +1,5 @@
-// Arrivals of messages of one kind: count, rate, jitter, bandwidth. The caller passes times and
-// sizes as arguments.
+// Statistics of the arrivals of messages, for example on one channel: count, rate, jitter,
+// bandwidth. The caller passes times and sizes as arguments.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,8 @@
 
 namespace fogline::watch {
 
-/// Statistics of arrivals at the end of an interval of observation.
+/// Statistics of arrivals at the end of an interval of observation. A gap is the time between two
+/// successive arrivals.
 struct ArrivalView {
   std::int64_t messages = 0;            // number since the first message
   double rate_hz = 0;                   // messages of the interval / its length

@@ -52,7 +52,7 @@ void FollowedNetwork::Open() {
 std::unique_ptr<PacketTap> FollowedNetwork::Tap(const std::string& url) {
   try {
     return PacketTap::Open(url, senders_);
-  } catch (const std::runtime_error& error) {  // without it only the counts are missing
+  } catch (const std::runtime_error& error) {  // without a tap, losses are not counted
     tap_trouble_ = error.what();
     return nullptr;
   }

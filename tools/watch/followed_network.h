@@ -21,8 +21,8 @@ namespace fogline::watch {
 
 class FollowedNetwork {
  public:
-  /// Interval at which Handle() must be called at least. After a flood of messages, messages may
-  /// wait that poll() does not report.
+  /// Longest time between two calls of Handle(). After very many messages, poll() may not report
+  /// the messages that still wait.
   static constexpr Duration kLookEvery = milliseconds(50);
 
   /// @param follows whether to follow announced runs

@@ -26,12 +26,12 @@ class StepSequence {
   void Add(std::int64_t step, TimePoint now);
   Counts counts() const;
 
-  /// Only the recorder can repeat a step that is older than the newest step by this many steps.
+  /// Number of the newest steps that are remembered. Only the recorder can repeat an older step.
   static constexpr std::int64_t kWindow = runtime::kRingSteps;
   /// No run has this many steps. Below this limit, the arithmetic of this class does not overflow.
   static constexpr std::int64_t kMaxStep = std::int64_t{1} << 62;
-  /// A step that is further ahead than this counts only when its successor follows at once. The
-  /// rule and the number (MAX_DROPOUT) are from the algorithm for sequence numbers of RTP (RFC
+  /// A step that is further ahead than this counts only if the next message has the following step.
+  /// The rule and the number (MAX_DROPOUT) are from the algorithm for sequence numbers of RTP (RFC
   /// 3550, appendix A.1). The skipped steps are not counted as lost, because it is unknown whether
   /// they were ever sent.
   static constexpr std::int64_t kMaxJump = 3000;

@@ -90,7 +90,7 @@ bool Terminal::Read() {
     keys_.Take({bytes.data(), static_cast<std::size_t>(size)});
     return true;
   }
-  // poll() reports stdin as readable forever after the end of stdin.
+  // After the end of stdin, poll() reports stdin as readable forever. So fd() must then return -1.
   if (size == 0 || (errno != EINTR && errno != EAGAIN)) has_keys_ = false;
   return false;
 }

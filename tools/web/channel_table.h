@@ -21,8 +21,8 @@ struct KnownChannel {
   std::string type;  // "": unknown, because it is not a type of Fogline
 };
 
-/// The number of each channel. A channel of the graph has its place in kChannels. Other channels
-/// get the next numbers in the order of their first messages.
+/// The number of each channel. The number of a channel of the graph is its index in kChannels.
+/// Other channels get the next numbers in the order of their first messages.
 class ChannelTable {
  public:
   /// Limit for the other channels, because any program on the network can invent names.

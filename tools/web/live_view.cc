@@ -189,8 +189,8 @@ void LiveView::Pump(std::uint64_t id) {
     return client.CutOff(CloseCode::kTryAgainLater,
                          fmt::format("does not read; {} bytes wait for it", behind));
   }
-  // A client of Foxglove's protocol may have subscribed to none of these messages. Then the next
-  // messages follow at once.
+  // A client of Foxglove's protocol may have subscribed to none of these messages. Then the queue
+  // stays empty, and the loop goes on with the next messages.
   while (client.waiting() == 0 && viewer.place < ring_.end()) {
     const std::string_view messages = ring_.From(viewer.place);
     if (viewer.history) {

@@ -41,7 +41,7 @@ class LiveView final : public View {
   static constexpr Duration kHealthEvery = milliseconds(250);
 
   /// Listens while the context runs.
-  /// @throws InputError, std::runtime_error as runtime::Bus()
+  /// @throws InputError, std::runtime_error like runtime::Bus()
   LiveView(boost::asio::io_context& context, LiveOptions options);
 
   /// Sets the server whose counts (viewers, cut off, refused) the clients get in `health`. The
@@ -63,7 +63,7 @@ class LiveView final : public View {
   const RunTracker& tracker() const { return tracker_; }
 
  private:
-  /// A client, and its place in the ring: the end of the messages that it has got.
+  /// A client, and its place in ring_: the position behind the last message that was sent to it.
   struct Viewer {
     Client* client = nullptr;
     std::uint64_t place = 0;
@@ -71,8 +71,8 @@ class LiveView final : public View {
     std::int64_t sent = 0;                      // number of messages of the history so far
     std::optional<foxglove::Session> foxglove;  // set if the client speaks Foxglove's protocol
   };
-  /// Number of statistics, each over one second. They end in turn, so every health message has the
-  /// numbers of a whole second.
+  /// Number of statistics, each over one second. One of them ends every 250 ms, so every health
+  /// message has the numbers of a whole second.
   static constexpr std::size_t kTurns = 4;
 
   void Hear(std::string_view channel, runtime::Bytes bytes);

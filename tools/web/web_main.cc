@@ -150,8 +150,8 @@ std::string ReadToken() {
       "error: --tokens-on-stdin: a line is no token: 16 to 128 letters, digits, - and _");
 }
 
-/// @throws InputError if --listen names no address, a line of stdin is not a token, or both are
-///     equal
+/// @throws InputError if --listen names no address, a line of stdin is not a token, or both tokens
+///     are equal
 ServerOptions OptionsOf(const ViewArguments& arguments) {
   ServerOptions options{
       .port = arguments.port, .origins = arguments.origins, .seat = arguments.seat};

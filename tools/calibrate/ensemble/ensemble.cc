@@ -70,8 +70,7 @@ ParameterEnsemble FindEnsemble(const Objective& searched, const Objective& fresh
   if (!ran && !refusal.empty()) throw InputError(refusal);
   ParameterEnsemble ensemble{
       .sets = {}, .counts = points.counts, .interrupted = points.interrupted};
-  // The tables of the found points are computed even after an interrupt, because this takes only a
-  // moment.
+  // The tables of the found points are computed even after an interrupt, because this is quick.
   const GoOn always = [] { return true; };
   for (const std::vector<double>& point : points.points) {
     const std::vector<double> values = searched.ValuesAt(point);

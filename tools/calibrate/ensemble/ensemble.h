@@ -22,14 +22,14 @@ struct ParameterEnsemble {
   bool interrupted = false;
 };
 
-/// Distance of a table from its target: the root of the objective, in points. The objective
-/// includes the weighted spread over the seeds.
+/// Distance of a table from its target: the square root of the objective, in points. The objective
+/// also contains the weighted variance of SI over the seeds.
 double TableDistance(const Evaluation& evaluation);
 
-/// The values as shares of their ranges.
+/// The values of the free fields as shares of the fields' ranges, in [0, 1].
 std::vector<double> SharesOf(const CalibrationProblem& problem, const std::vector<double>& values);
 
-/// Least distance between two of the sets; 1 for a single set.
+/// Least distance (ShareDistance()) between two of the sets; 1 for a single set.
 double LeastDistance(const CalibrationProblem& problem, const std::vector<ParameterSet>& sets);
 
 /// The problem with the seeds `fresh` instead of the seeds of the search.

@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kTableName = "sets.csv";
 
-/// The files of sets in a folder.
+/// The scenario files of sets ("set-1.json" and so on) in a folder.
 std::vector<fs::path> SetsIn(const fs::path& folder) {
   static const std::regex name("set-[1-9][0-9]*\\.json");
   std::vector<fs::path> sets;

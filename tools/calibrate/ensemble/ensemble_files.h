@@ -10,7 +10,7 @@
 namespace fogline::calibrate {
 
 /// The text of a scenario file in the folder `from`, changed for the folder `to`: a relative path
-/// in $schema leads to the same file from there.
+/// in $schema is changed, so that it leads to the same file from `to`.
 std::string WithSchemaIn(const std::filesystem::path& to, const std::filesystem::path& from,
                          std::string text);
 

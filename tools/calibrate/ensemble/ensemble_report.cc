@@ -25,7 +25,7 @@ std::string SeedsText(const Objective& objective) {
   return fmt::format("{}:{}", seeds.first, seeds.last);
 }
 
-/// "1 point", "0.5 points".
+/// The text of a number of points, such as "1 point" or "0.5 points".
 std::string PointsText(double points) {
   return fmt::format("{:g} point{}", points, points == 1 ? "" : "s");
 }
@@ -66,7 +66,7 @@ void AddFields(const EnsembleReport& report, std::vector<QuantityLine>& lines) {
   }
 }
 
-/// Adds the numbers of the tables over the seeds of one objective.
+/// Adds the lines for the numbers of the tables (SI, RHE) over the seeds of one objective.
 void AddTables(const EnsembleReport& report, const Objective& objective,
                Evaluation ParameterSet::*tables, std::vector<QuantityLine>& lines) {
   const auto add = [&](std::string name, std::string_view unit, const auto& value_of) {

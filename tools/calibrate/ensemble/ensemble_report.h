@@ -20,7 +20,7 @@ struct EnsembleReport {
   std::string command;   // command that finds the same ensemble again
 };
 
-/// "set-3.json" for index 2.
+/// Name of the file of the set with this index: "set-3.json" for index 2.
 std::string SetFileName(std::size_t index);
 
 /// `text`, the text of the scenario's file, with the title and the description of a set. Title and

@@ -16,8 +16,9 @@ namespace {
 // to 1999 belong to studies.
 constexpr Stream kStarts{2000};
 
-// A search ends at this share of the largest allowed distance. The other half is a margin, because
-// the means over the fresh seeds differ a little.
+// A search ends at this share of the largest allowed distance (EnsembleRules::within). The other
+// half of this distance is a margin, because the distance over the fresh seeds is a little
+// different.
 constexpr double kEnough = 0.5;
 
 double Squared(double x) { return x * x; }
@@ -85,7 +86,8 @@ class PointSearch {
     return best;
   }
 
-  /// Adds the result of a search to the points, or counts the reason why it is not added.
+  /// Adds the point that a search has found to the result, or counts the reason why it is not
+  /// added.
   void Judge(const Valued& best) {
     EnsembleCounts& counts = result_.counts;
     if (best.value > Squared(rules_.within)) {

@@ -15,8 +15,8 @@ namespace fogline::calibrate {
 /// Input of a search. A point gives each field as a share of the field's range, in [0, 1].
 struct Landscape {
   std::size_t fields = 0;
-  /// Squared distance from the target over the seeds of the search, and over fresh seeds. The
-  /// result nullopt stops the search.
+  /// Squared distance of a point's table from the target: over the seeds of the search, and over
+  /// fresh seeds. The result nullopt stops the search.
   FunctionOfShares searched;
   FunctionOfShares fresh;
   /// Returns the point with the rounded values that a file contains. Each function has the same
@@ -59,8 +59,9 @@ struct PointEnsemble {
 /// Called after each evaluation, with the number of points so far.
 using EnsembleProgress = std::function<void(int found, const EnsembleCounts& counts)>;
 
-/// Root mean square of the differences of the shares: 0 for equal points, at most 1. For two random
-/// points the mean of its square is 1/6, so a typical distance is 0.41 for any number of fields.
+/// Distance of two points: the root mean square of the differences of their shares. It is 0 for
+/// equal points, and at most 1. For two random points the mean of its square is 1/6, so a typical
+/// distance is 0.41 for any number of fields.
 double ShareDistance(std::span<const double> a, std::span<const double> b);
 
 /// Points of a Latin hypercube (McKay, Beckman & Conover 1979): in each field, each of `points`

@@ -17,7 +17,7 @@ bool TakesMore(const CLI::Option& option) {
   return option.get_items_expected_max() > 1 && option.get_allow_extra_args();
 }
 
-/// The part of a command line before the cursor.
+/// The part of a command line before the cursor, read word by word.
 class CommandLine {
  public:
   explicit CommandLine(const CLI::App& app) : app_(app), command_(&app) {}
@@ -106,7 +106,7 @@ class CommandLine {
   const CLI::App* command_;                // the program, or the chosen verb
   const CLI::Option* awaiting_ = nullptr;  // the option that may take the next word
   bool has_value_ = false;                 // whether this option has a value already
-  bool only_arguments_ = false;            // after "--"
+  bool only_arguments_ = false;            // true after "--"
   std::size_t arguments_ = 0;              // arguments of the command so far
 };
 

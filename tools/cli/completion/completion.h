@@ -1,6 +1,7 @@
-// Completion of command lines in a shell. The shell's script (cmake/package/completion) calls
-// `fogline --complete WORD...` with the words of the command line up to the cursor. The suggestions
-// come from the definitions of the command line, so they always fit the program.
+// Suggests words while a command line is typed in a shell (completion). The shell's script
+// (cmake/package/completion) calls `fogline --complete WORD...` with the words of the command line
+// up to the cursor. The suggestions come from the definitions of the command line, so they always
+// fit the program.
 #pragma once
 
 #include <string>
@@ -25,7 +26,7 @@ struct Completion {
   std::string files;  // pattern of files that may also stand there, such as "*.json"; "": no files
 };
 
-/// The words and files that may stand in place of the last word.
+/// The words and files that may replace the word at the cursor.
 /// @param words of the command line without the program's name; the last one is the word at the
 ///     cursor, which may be empty
 Completion Complete(const CLI::App& app, const std::vector<std::string>& words);

@@ -64,15 +64,15 @@ void Add(std::string_view word, std::string_view meaning, std::string_view begun
     completion.words.push_back({std::string(word), std::string(meaning)});
 }
 
-/// The words of a list such as "world, radar" or "world,radar".
+/// The words of a list that is separated by commas or blanks, such as "world, radar".
 std::vector<std::string> WordsOf(std::string text) {
   std::ranges::replace(text, ',', ' ');
   std::istringstream words(text);
   return {std::istream_iterator<std::string>(words), {}};
 }
 
-/// The names that an option's check allows, or that its description lists; empty if neither has
-/// names. CLI11 shows the check CLI::IsMember as "TEXT:{world,radar}".
+/// The names that an option's check allows, or that its description lists; empty if neither of them
+/// has names. CLI11 shows the check CLI::IsMember as "TEXT:{world,radar}".
 std::vector<std::string> NamesIn(const CLI::Option& option) {
   constexpr std::string_view kList = "One of ";
   const std::string type = option.get_type_name();
@@ -86,7 +86,7 @@ std::vector<std::string> NamesIn(const CLI::Option& option) {
                                         : std::vector<std::string>();
 }
 
-/// The pointer of a field as a user may type it: index 0 replaces the `*` for all items of a list.
+/// The pointer of a field as a user may type it: index 0 replaces each `*` (all items of a list).
 std::string Typed(std::string pointer) {
   std::ranges::replace(pointer, '*', '0');
   return pointer;
@@ -94,7 +94,7 @@ std::string Typed(std::string pointer) {
 
 /// Adds the pointers that begin with `begun`, up to the end of their next segment: "/arbitrator/"
 /// for "/arb".
-/// @param end what follows the pointer of a field, such as "="
+/// @param end the text after the pointer of a complete field, such as "="
 void AddPointers(const std::string& begun, std::string_view end, Completion& completion) {
   for (const Field& field : Catalogue()) {
     const std::string pointer = Typed(field.pointer);
@@ -108,8 +108,8 @@ void AddPointers(const std::string& begun, std::string_view end, Completion& com
   }
 }
 
-/// Adds the named values of a field. @param begun "/pointer=" and the text of values so far,
-/// separated by commas
+/// Adds the named values of a field. @param begun "/pointer=" and the text typed so far, which may
+/// have several values, separated by commas
 void AddFieldValues(const std::string& begun, Completion& completion) {
   const std::size_t equals = begun.find('=');
   const Field* field = FindField(begun.substr(0, equals));
@@ -140,7 +140,7 @@ void AddOfKind(Kind kind, const CLI::App& app, const std::string& begun, Complet
       return;
     case Kind::kPlace:
       for (const RoleInfo& info : kRoles) {
-        // The recorder runs on the machine of the run.
+        // The recorder always runs on the machine where the run was started.
         if (info.role == Role::kRecorder) continue;
         Add(std::string(info.name) + "=", info.purpose, begun, completion);
       }

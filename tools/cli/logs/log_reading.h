@@ -1,5 +1,5 @@
 // The options of verbs that can read a log with gaps, a log of several runs, or a log without its
-// scenario. Also the texts of such verbs about such a log.
+// scenario. Also the messages that these verbs print about such a log.
 #pragma once
 
 #include <cstdint>
@@ -38,11 +38,11 @@ void AddRunOption(CLI::App& verb, std::optional<std::int64_t>& run_id);
 /// Prints on stderr why a log is not complete, and which other runs it has.
 void SayAboutLog(const std::filesystem::path& log, const log::RunLog& run);
 
-/// {"first_step": 0, "steps": 1, "messages": {"RADAR": 1}, "gaps": [{"first_step": 394,
-/// "last_step": 394, "channels": ["RADAR"]}], "gaps_left_out": 0}
+/// The gaps of a log as JSON: {"first_step": 0, "steps": 1, "messages": {"RADAR": 1}, "gaps":
+/// [{"first_step": 394, "last_step": 394, "channels": ["RADAR"]}], "gaps_left_out": 0}
 nlohmann::ordered_json GapsJson(const log::LogGaps& gaps);
 
-/// The names of the measures of a run that are unknown, because its log has gaps: "rhe_pct,
+/// The names of the measures of a run that are unknown because its log has gaps, such as "rhe_pct,
 /// transfers"; "" if all are known.
 std::string UnknownMeasures(const runner::ExperimentResult& result);
 

@@ -11,15 +11,16 @@
 
 namespace fogline::cli {
 
-/// {"outcome": "taken_over", "requested_s": 2.1, ...}; null for a measure without a value.
+/// The measures of one request: {"outcome": "taken_over", "requested_s": 2.1, ...}. null stands for
+/// a measure without a value.
 nlohmann::ordered_json TakeOverJson(const metrics::TakeOverMeasures& measures);
 
-/// Adds "take_overs" and "input_latency" to the JSON object of a run. Without a request, and
-/// without a person who drives, the object does not change.
+/// Adds "take_overs" and "input_latency" to the JSON object of a run. The object does not change if
+/// the run has neither a request nor a person who drives.
 void AddTakeOvers(const runner::ExperimentResult& result, nlohmann::ordered_json& json);
 
-/// "taken over; reaction time 2.00 s; take-over time 2.10 s; ...": the outcome, and the measures
-/// that have a value, without the time of the request.
+/// The outcome of a request and the measures that have a value, without the time of the request:
+/// "taken over; reaction time 2.00 s; take-over time 2.10 s; ...".
 std::string TakeOverLine(const metrics::TakeOverMeasures& measures);
 
 /// The measures of a run as lines: a line for each request, lines "name value unit" for its

@@ -60,7 +60,7 @@ std::string Descriptor(const web::LcmTypes& types, const web::LcmStruct& type) {
   return text;
 }
 
-/// Adds the structs of all members, then the struct itself.
+/// Adds to `collected` the structs of all members, then the struct itself.
 void Collect(const web::LcmTypes& types, const web::LcmStruct& type,
              std::vector<const web::LcmStruct*>& collected) {
   if (std::ranges::find(collected, &type) != collected.end()) return;

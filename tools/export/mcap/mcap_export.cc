@@ -99,8 +99,8 @@ class Exporter {
     }
   }
 
-  /// Adds the messages of this run outside of steps, up to the first event after `utime`; nullopt:
-  /// all of them.
+  /// Adds the messages of this run that belong to no step, up to the first one that was logged
+  /// after `utime`. nullopt: all of them.
   void AddEventsUntil(std::optional<std::int64_t> utime) {
     while (true) {
       if (!event_) event_ = events_.Next();
@@ -144,7 +144,7 @@ class Exporter {
            (runtime::LooksSigned(bytes) && translate(runtime::WithoutSignature(bytes)));
   }
 
-  /// Adds a channel and its schema, unless the file has them.
+  /// Adds a channel and its schema if the file does not have them yet.
   void Add(std::size_t channel) {
     if (ids_[channel]) return;
     const web::LcmStruct& type = TypeOf(channel);
@@ -187,7 +187,7 @@ class Exporter {
 }  // namespace
 
 bool IsMcapExport(const std::filesystem::path& file) {
-  // The beginning of what Writer() writes: the magic, and a Header without a profile.
+  // The beginning of a file that Writer writes: the magic, and a Header without a profile.
   std::string content;
   PutString("", content);
   PutString(kLibrary, content);

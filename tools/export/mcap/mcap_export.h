@@ -10,11 +10,11 @@ namespace fogline::mcap {
 /// Whether WriteMcap() has written the file, judged by its beginning.
 bool IsMcapExport(const std::filesystem::path& file);
 
-/// Writes the complete file or nothing, in memory that does not grow with the messages of the log.
-/// Each channel of the log becomes a channel of the file, with the messages of the run. RUN is left
-/// out: the scenario is the attachment scenario.json. Both times of a message are its simulated
-/// time, and its sequence is its step. The metadata record "fogline" has the run's id, digest,
-/// steps, seed and title. Equal logs give equal files.
+/// Writes the complete file or nothing. The memory that it needs does not grow with the messages of
+/// the log. Each channel of the log becomes a channel of the file, with the messages of the run.
+/// RUN is left out, because the scenario is the attachment scenario.json. log_time and publish_time
+/// of a message are its simulated time, and its sequence is its step. The metadata record "fogline"
+/// has the run's id, digest, steps, seed and title. Equal logs give equal files.
 /// @throws InputError if `log` is not a log, or has messages that do not fit their channel, or if
 ///     `file` cannot be created; std::runtime_error when the disk is full; Interrupted
 /// @return the facts about the run in the log

@@ -12,7 +12,7 @@
 
 namespace fogline::mcap {
 
-/// Section "Opcodes".
+/// Kinds of records (section "Opcodes").
 enum class Opcode : std::uint8_t {
   kHeader = 0x01,
   kFooter = 0x02,
@@ -31,7 +31,7 @@ enum class Opcode : std::uint8_t {
   kDataEnd = 0x0f,
 };
 
-/// Section "Magic": the first and the last bytes of a file.
+/// The first and the last bytes of a file (section "Magic").
 inline constexpr std::string_view kMagic("\x89MCAP0\r\n", 8);
 
 using web::PutLittleEndian;
@@ -42,7 +42,7 @@ inline void PutString(std::string_view text, std::string& to) {
   to += text;
 }
 
-/// Type Map<string, string>.
+/// Appends a value of type Map<string, string>.
 inline void PutMap(const std::map<std::string, std::string>& map, std::string& to) {
   std::string pairs;
   for (const auto& [key, value] : map) {
@@ -52,7 +52,7 @@ inline void PutMap(const std::map<std::string, std::string>& map, std::string& t
   PutString(pairs, to);
 }
 
-/// Type Map<uint16, uint64>.
+/// Appends a value of type Map<uint16, uint64>.
 inline void PutMap(const std::map<std::uint16_t, std::uint64_t>& map, std::string& to) {
   std::string pairs;
   for (const auto& [key, value] : map) {

@@ -70,8 +70,8 @@ class Translator {
     return true;
   }
 
-  /// Appends several numbers as one field, without tags between the numbers. A byte of `bytes` is
-  /// such a number, too.
+  /// Appends several numbers as one field, without tags between the numbers. An array of bytes is
+  /// also such a field.
   bool Packed(const web::LcmMember& member, std::uint32_t number, std::size_t count,
               std::string& to) {
     std::string numbers;

@@ -13,8 +13,8 @@
 namespace fogline::mcap {
 namespace {
 
-/// A chunk is complete when it has at least this size. A reader decompresses a whole chunk for one
-/// message, and chunks of 1 MiB compress nearly as well as larger ones.
+/// A chunk is complete when it has at least this size. A reader must decompress a whole chunk for
+/// one message, so chunks should be small. Chunks of 1 MiB compress nearly as well as larger ones.
 constexpr std::size_t kChunkBytes = 1 << 20;
 constexpr std::string_view kCompression = "zstd";
 
@@ -37,7 +37,7 @@ Writer::Writer(Sink sink, std::string_view library)
   if (compressor_ == nullptr) throw std::bad_alloc();
   Put(kMagic);
   std::string header;
-  PutString("", header);  // profile: none of the registry
+  PutString("", header);  // profile: none
   PutString(library, header);
   Put(Opcode::kHeader, header);
 }
@@ -233,7 +233,7 @@ void Writer::Finish() {
   Put(kMagic);
 }
 
-/// Sections "Summary Section" and "Summary Offset Section", and the Footer.
+/// Writes the sections "Summary Section" and "Summary Offset Section", and the Footer.
 void Writer::PutSummary() {
   crc_ = 0;
   const std::uint64_t summary_start = offset_;

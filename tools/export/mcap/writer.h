@@ -1,7 +1,7 @@
 // Writes an MCAP file (mcap.dev/spec, version 0): chunks that zstd compresses, an index of the
 // messages of each chunk, and a summary. With the summary, a reader finds the messages of a time
-// without reading the whole file. Attachments and metadata are written at once. In memory the
-// writer keeps one chunk, and 100 bytes for each chunk that was written.
+// without reading the whole file. Attachments and metadata are written immediately. The writer
+// keeps one chunk in memory, and 100 bytes for each chunk that was written.
 #pragma once
 
 #include <cstddef>
@@ -35,8 +35,8 @@ class Writer {
  public:
   using Sink = std::function<void(std::string_view)>;
 
-  /// Writes magic and Header. @param sink takes the bytes of the file. An exception of `sink`
-  /// reaches the caller.
+  /// Writes the beginning of the file (magic and Header). @param sink takes the bytes of the file.
+  /// An exception of `sink` reaches the caller.
   /// @param library the program that writes the file
   Writer(Sink sink, std::string_view library);
   ~Writer();
@@ -53,7 +53,8 @@ class Writer {
   void Write(ChannelId channel, const Message& message);
   void AddAttachment(std::string_view name, std::string_view media_type, std::string_view data);
   void AddMetadata(std::string_view name, const std::map<std::string, std::string>& metadata);
-  /// Writes the rest: the last chunk, Data End, the summary with its offsets, Footer and magic.
+  /// Completes the file: writes the last chunk, Data End, the summary with its offsets, Footer and
+  /// magic.
   void Finish();
 
  private:
@@ -64,7 +65,8 @@ class Writer {
     bool any = false;
     void Add(std::uint64_t time);
   };
-  /// Type Array<Tuple<Timestamp, uint64>>: log_time, and offset in the uncompressed chunk.
+  /// Entries of a Message Index, of type Array<Tuple<Timestamp, uint64>>: log_time of a message,
+  /// and its offset in the uncompressed chunk.
   using Entries = std::vector<std::pair<std::uint64_t, std::uint64_t>>;
 
   void Put(std::string_view bytes);

@@ -97,10 +97,10 @@ struct DriveArguments {
   bool quiet = false;
 };
 
-/// Whether the person drives at the page.
+/// Whether the person drives in the browser, at the page of fogline-web.
 bool AtPage(const DriveArguments& arguments) { return !arguments.keys && arguments.device.empty(); }
 
-/// @return nullptr if the person drives at the page
+/// @return the device of the person; nullptr if the person drives at the page of fogline-web
 /// @throws InputError if the device cannot be used
 std::unique_ptr<drive::PedalSource> MakeSource(const DriveArguments& arguments,
                                                const PersonSection& person) {
@@ -109,8 +109,8 @@ std::unique_ptr<drive::PedalSource> MakeSource(const DriveArguments& arguments,
   return std::make_unique<drive::EvdevDevice>(arguments.device, arguments.names, person);
 }
 
-/// Opens the page of a run, and waits until the person is ready.
-/// @throws Interrupted, std::runtime_error if there is no page
+/// Starts the page of a run, and waits until the person presses "Begin" on the page.
+/// @throws std::runtime_error if the page cannot be shown; Interrupted
 std::unique_ptr<processes::PageSeat> OpenPage(const DriveArguments& arguments, std::int64_t run_id,
                                               const std::string& url) {
   std::vector<std::string> more;
@@ -149,7 +149,7 @@ int Drive(DriveArguments& arguments) {
                           .result = runner::RunExperiment(scenario, options),
                           .resumed = std::nullopt};
   seat.reset();            // restores the terminal
-  if (page) page->Runs();  // prints a message if the page has failed
+  if (page) page->Runs();  // prints a message if fogline-web has failed
   return cli::PrintOutcome(outcome, arguments.json, "drive");
 }
 

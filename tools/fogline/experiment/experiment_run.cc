@@ -130,7 +130,7 @@ trials::SessionOptions SessionOf(const RunTrialsArguments& arguments, const Expe
   return options;
 }
 
-/// The first condition in which the participant drives; nullptr if there is none.
+/// The first condition of the experiment in which the participant drives; nullptr if there is none.
 const ConditionSection* DrivenCondition(const trials::PlanFile& plan) {
   for (const auto* list : {&plan.plan.practice, &plan.plan.conditions}) {
     for (const ConditionSection& condition : *list) {
@@ -140,8 +140,10 @@ const ConditionSection* DrivenCondition(const trials::PlanFile& plan) {
   return nullptr;
 }
 
-/// @throws InputError if the participant drives in a condition, but without a page and a device;
-///     std::runtime_error if this build has no page
+/// Checks that the participant can drive if a condition needs this: at a page, with keys or with a
+/// device.
+/// @throws InputError if --no-page is given without keys or device; std::runtime_error if this
+///     build has no page
 void CheckSeat(const RunTrialsArguments& arguments, const trials::PlanFile& plan) {
   const std::string no_page(web::WhyNoPage());
   const bool has_seat = !arguments.no_page && no_page.empty();

@@ -10,7 +10,8 @@
 
 namespace fogline {
 
-/// A file that the command line names. @throws InputError if it cannot be read
+/// Returns `file`, which the command line names with `option`.
+/// @throws InputError if the file cannot be read
 const std::filesystem::path& Named(const std::filesystem::path& file, std::string_view option);
 
 /// A Java that can open windows. @throws std::runtime_error that names the missing package

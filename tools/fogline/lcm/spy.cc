@@ -57,7 +57,7 @@ struct SpyArguments {
   fs::path jars;
 };
 
-/// @throws InputError, std::runtime_error that says how to build the types
+/// The jar of the message types. @throws InputError; std::runtime_error that says how to build it
 fs::path TypesOf(const SpyArguments& arguments) {
   if (!arguments.types.empty()) return Named(arguments.types, "--types");
   const auto programs = fs::read_symlink("/proc/self/exe").parent_path();

@@ -25,7 +25,7 @@ class LiveRoles {
 
   /// The roles whose messages are recorded, in the order of kRoles.
   std::vector<Role> roles() const;
-  /// Joins a run with all roles. @throws like runtime::Bus()
+  /// Lets all these roles join a run. @throws like runtime::Bus()
   void Join(std::int64_t run_id, const std::string& url);
 
  private:

@@ -21,7 +21,8 @@ RecordedMessages::RecordedMessages(const std::filesystem::path& log,
     std::vector<runtime::Bytes>& row = messages_.emplace_back();
     for (const std::size_t channel : channels_) {
       const runtime::Bytes message = (*messages)[channel];
-      // Readers would refuse a message of another version of its type.
+      // Readers would refuse a message of another version of its type. So such a message counts as
+      // missing.
       const bool fits = message.size() >= runtime::kHeaderEnd &&
                         runtime::ReadInt64(message, 0) == runtime::FingerprintOf(channel);
       row.push_back(fits ? message : runtime::Bytes());

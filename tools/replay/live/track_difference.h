@@ -14,7 +14,7 @@ namespace fogline::replay {
 struct StateDifference {
   std::string_view name;   // such as "distance_m"
   double largest = 0;      // largest absolute difference
-  std::int64_t step = -1;  // step of the largest; -1: none compared
+  std::int64_t step = -1;  // step of the largest difference; -1: no step was compared
   double rms = 0;
 };
 

@@ -73,7 +73,8 @@ class Streams {
 
 /// A running gnuplot. gnuplot reads the script as a file and not as typed input, so that it ends at
 /// the first error. gnuplot does not report a failed write. On a full disk it would write a part of
-/// the picture, and end without an error. So its standard output is a pipe.
+/// the picture, and end without an error. So gnuplot writes into a pipe, and this program writes
+/// the file.
 class Gnuplot {
  public:
   /// @param script, words standard input and standard error
@@ -135,8 +136,8 @@ class Gnuplot {
   std::array<char, kWorthACall> buffer_{};
 };
 
-/// Settings of gnuplot for a format. Letters and lines have the same share of the picture in all
-/// formats.
+/// Settings of gnuplot for a format. Relative to the picture, letters and lines have the same size
+/// in all formats.
 struct FormatRow {
   FigureFormat format;
   std::string_view suffix;
@@ -151,7 +152,8 @@ struct FormatRow {
 constexpr double kInches = 1.0 / 200;  // makes a PDF figure 8 inches wide
 constexpr std::array kFormats{
     FormatRow{FigureFormat::kPng, "png", "pngcairo", 1, "sans", 1, 2, 1},
-    // A font size of 1 is 4/3 units of length in the cairo terminals, and 1 unit in svg.
+    // A font size of 1 is 4/3 units of length in the cairo terminals, and 1 unit in svg. So the
+    // font of svg is scaled by 4/3.
     FormatRow{FigureFormat::kSvg, "svg", "svg", 1, "sans-serif", 4.0 / 3, 2, 0.7},
     FormatRow{FigureFormat::kPdf, "pdf", "pdfcairo", kInches, "sans", 0.36, 1.44, 1},
 };

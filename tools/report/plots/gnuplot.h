@@ -21,14 +21,16 @@ inline constexpr double kWidth = 1600;
 /// A figure's file name: figure-NAME with the suffix of the format.
 std::string FigureFile(FigureFormat format, std::string_view name);
 
-/// Commands for a picture of this format, kWidth wide: in pixels for a PNG file, in 1/200 inch for
-/// a PDF file. Point sizes are multiplied by the format's `point_scale`.
+/// Commands for a picture of this format, kWidth wide: in pixels for PNG and SVG, in 1/200 inch for
+/// PDF. The commands set gnuplot's variable `point_scale`, by which point sizes must be multiplied
+/// in this format.
 std::string Terminal(FigureFormat format, double height);
 
 /// Commands for axes and grid.
 extern const std::string_view kAxes;
 
-/// Position of a plot in its picture, as shares from the lower left corner.
+/// Edges of a plot in its picture, as shares of the picture's width and height, from the lower left
+/// corner.
 struct Place {
   double left;
   double right;
@@ -41,8 +43,8 @@ struct Place {
 /// cuts off text outside the picture, and the available font depends on the machine.
 inline constexpr double kRoomLeft = 185;   // for values and the y axis's name
 inline constexpr double kRoomBelow = 135;  // for values and the x axis's name
-inline constexpr double kRoomRight = 45;   // for half of the last value
-inline constexpr double kRoomOfKey = 115;  // for three lines
+inline constexpr double kRoomRight = 45;   // for half of the last number on the x axis
+inline constexpr double kRoomOfKey = 115;  // for a key of three lines, above the plots
 
 /// Commands that set the position of the next plot.
 std::string Margins(const Place& place);

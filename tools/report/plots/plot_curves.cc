@@ -1,4 +1,4 @@
-// Figures A and B as files for a paper.
+// Figures A (SI and RHE over thresholds) and B (the Pareto front) as files for a paper.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -35,7 +35,8 @@ std::string Transparent(std::string_view colour, std::string_view alpha) {
   return fmt::format("#{}{}", alpha, colour.substr(1));
 }
 
-/// Mean, ends of its confidence interval, and percentiles.
+/// Cells of a gnuplot data block: mean, ends of its 95 % confidence interval, 5th and 95th
+/// percentile.
 std::string Cells(const stats::Summary& of) {
   const double mean = of.mean.value_or(stats::kMissing);
   const double half = of.ci95.value_or(stats::kMissing);
@@ -52,7 +53,7 @@ std::string CurvesBlock(const ReportCurves& curves) {
   return block + "EOD\n";
 }
 
-/// Threshold, SI and RHE of the published rows.
+/// A gnuplot data block with threshold, SI and RHE of the published rows.
 std::string PublishedBlock(const ReportCurves& curves) {
   std::string block = "$published << EOD\n";
   for (const PublishedRow& row : curves.published) {
@@ -62,7 +63,7 @@ std::string PublishedBlock(const ReportCurves& curves) {
   return block + "EOD\n";
 }
 
-/// RHE, SI, and whether the point is on the front.
+/// A gnuplot data block with RHE, SI, and 1 for a point on the front.
 std::string PointsBlock(const std::vector<FrontPoint>& points) {
   std::string block = "$points << EOD\n";
   for (const FrontPoint& point : points) {
@@ -98,7 +99,8 @@ std::string Labels(const ReportCurves& curves, const std::vector<FrontPoint>& po
   return commands;
 }
 
-/// The two bands of a measure whose mean is in `column`.
+/// Parts of a plot command: the bands of a measure whose mean is in `column`. The light band is
+/// from the 5th to the 95th percentile, the dark band is the confidence interval.
 std::string Bands(int column, std::string_view colour) {
   return fmt::format(
       "$curves using 1:{}:{} with filledcurves fillcolor rgb '{}' fillstyle solid noborder "

@@ -58,13 +58,13 @@ class Layout {
             top / height_};
   }
 
-  /// Middle of all panels, measured from below.
+  /// Height of the middle of all panels, as a share of the picture's height from below.
   double Middle() const { return (1 + (kRoomBelow - above_) / height_) / 2; }
 
   Place PlaceOfKey() const { return {0, 1, 1 - kRoomOfKey / height_, 1}; }
 
  private:
-  static constexpr double kLeastHeight = 1000;  // like the following lengths in the unit of kWidth
+  static constexpr double kLeastHeight = 1000;  // in the unit of kWidth, like the next three
   static constexpr double kName = 50;
   static constexpr double kRowGap = 75;
   static constexpr double kColumnGap = 64;

@@ -1,5 +1,5 @@
-// The claims of study `conflict` on the delays of two detectors. Study `ensemble` examines these
-// claims with other parameters.
+// The claims of study `conflict` that compare the delays of two detectors. Study `ensemble`
+// examines these claims with other parameters.
 #pragma once
 
 #include <span>
@@ -12,7 +12,8 @@
 
 namespace fogline::study {
 
-/// A claim that the delay of detector `a` differs from that of detector `b`.
+/// A claim that the delay of detector `a` differs from the delay of detector `b`, with the sign of
+/// a - b.
 struct DelayStatement {
   std::string_view says;  // without a capital letter at its beginning
   std::string_view a;
@@ -27,8 +28,8 @@ std::span<const DelayStatement> DelayStatements();
 /// noise.
 std::string SaysOf(const DelayStatement& statement, std::string_view noise);
 
-/// The statements that are not by definition, in bias fog with the usual noise, with `overrides` of
-/// paper.json. The thresholds and the means are those of RunDelays().
+/// The claims of all DelayStatements() that do not hold by definition. The runs have bias fog, the
+/// usual noise, and `overrides` of paper.json. Thresholds and means come from RunDelays().
 /// @throws InputError, StudyStopped
 std::vector<Claim> RunDelayClaims(const StudyContext& context,
                                   const std::vector<std::string>& overrides);

@@ -21,23 +21,23 @@ struct ScoreRecord {
 using ScoreRecords = std::vector<ScoreRecord>;
 /// Adds a score if it is a record.
 void AddScore(double score, double time_s, ScoreRecords& records);
-/// Time at which a threshold is first reached; nullopt if it is never reached.
+/// Time in s at which a threshold is first reached; nullopt if it is never reached.
 std::optional<double> FirstAlarm(const ScoreRecords& records, double threshold);
 
 /// Scores of a detector in a run in clear air, after the warm-up.
 struct ClearRun {
   ScoreRecords records;
-  std::vector<double> scores;  // at regular intervals of steps; empty if they are not needed
+  std::vector<double> scores;  // of every kClearStride-th step; empty if they are not needed
   double duration_s = 0;
 };
 
 /// Count of alarms in runs in clear air; each run ends at its first alarm.
 struct AlarmCount {
   std::int64_t alarms = 0;
-  double time_s = 0;  // total time at risk of all runs
+  double time_s = 0;  // total time of all runs until their alarm or end
 
-  /// Mean time to a false alarm (ARL0), s, for an exponential distribution. Runs without an alarm
-  /// are censored at their end. The mean time is infinite if no run has an alarm.
+  /// Mean time to a false alarm (ARL0), s, if the times have an exponential distribution. Runs
+  /// without an alarm are censored at their end. The mean time is infinite if no run has an alarm.
   double ArlZero_s() const;
   /// Exact 95 % bounds of this mean time (chi-square; Garwood 1936).
   std::pair<double, double> ArlZeroBounds_s() const;
@@ -72,8 +72,8 @@ class ThresholdFinder {
 /// the area under the ROC (Mann & Whitney 1947). @param clear sorted
 double AreaUnderRoc(std::span<const double> fog, std::span<const double> clear);
 
-/// Share of scores in fog above a threshold. At most a share `false_positives` of the scores in
-/// clear air are above that threshold. @param clear sorted
+/// Share of scores in fog above a threshold. The threshold is the lowest one for which at most a
+/// share `false_positives` of the scores in clear air are above it. @param clear sorted
 double TruePositives(std::span<const double> fog, std::span<const double> clear,
                      double false_positives);
 

@@ -8,7 +8,8 @@
 namespace fogline::study {
 namespace {
 
-/// Shows the Degree of Conflict, the three fastest measures, and the slowest one.
+/// Selects the series that the page shows at first: the Degree of Conflict, the three measures with
+/// the shortest delays, and the detector with the longest delay.
 void ShowTelling(report::StudyFigure& figure, const ConflictSet& set) {
   constexpr std::size_t kSoonest = 3;
   std::vector<std::size_t> ranked = Ranked(set);
@@ -21,7 +22,7 @@ void ShowTelling(report::StudyFigure& figure, const ConflictSet& set) {
   if (!ranked.empty()) figure.series[ranked.back()].shown = true;
 }
 
-/// A quantity of every measure as a function of the visibility.
+/// A figure of a quantity of every measure as a function of the visibility.
 report::StudyFigure OverVisibility(const ConflictSet& set, std::string id, std::string title,
                                    std::string y_label, Estimate DetectorOutcome::*value) {
   report::StudyFigure figure{.id = std::move(id),
@@ -35,7 +36,7 @@ report::StudyFigure OverVisibility(const ConflictSet& set, std::string id, std::
   for (std::size_t m = 0; m < ComparedMeasures().size(); ++m) {
     report::StudySeries& series = figure.series.emplace_back();
     series.name = Detectors()[m].name;
-    // The densest fog is last in a set and first on the axis.
+    // The outcomes of a set end with the densest fog, but the axis begins with it.
     for (auto outcome = set.outcomes.rbegin(); outcome != set.outcomes.rend(); ++outcome) {
       AddPoint(series, outcome->condition.visibility_m, outcome->detectors[m].*value);
     }

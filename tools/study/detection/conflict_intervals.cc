@@ -46,7 +46,7 @@ Detection DetectionAt(const DetectorRuns& runs, double threshold, std::span<cons
   return detection;
 }
 
-/// The replicates of one detector.
+/// The detection by one detector in each replicate (resample of the runs).
 struct Replicates {
   std::vector<Detection> of;
 
@@ -88,7 +88,7 @@ std::vector<double> Differences(std::vector<double> a, std::span<const double> b
   return a;
 }
 
-/// Computes a replicate of every detector.
+/// Computes the detection by every detector, in all runs or in a resample of the runs.
 class Resampler {
  public:
   Resampler(std::span<const DetectorRuns> detectors, const DetectionRule& rule)

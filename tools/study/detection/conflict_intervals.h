@@ -23,16 +23,16 @@ struct DetectorRuns {
 struct DetectionRule {
   double arl_zero_s = 0;                   // mean time to a false alarm at the thresholds
   double missed_s = 0;                     // delay that is used for an undetected fog
-  std::vector<std::size_t> ranked;         // the visibilities over which delays are averaged
+  std::vector<std::size_t> ranked;         // indices of the visibilities whose delays are averaged
   std::optional<std::size_t> reference{};  // detector that is subtracted in differences
   int jobs = 1;
 };
 
-/// Detection in fog at a threshold.
+/// Results of a detector in fog, with one threshold.
 struct DetectionMeans {
   struct InFog {
     Estimate delay_s;
-    Estimate detection;  // probability
+    Estimate detection;  // probability that the fog is detected
   };
   std::vector<InFog> by_visibility;
   Estimate delay_s;  // mean over the ranked visibilities; NaN if no visibility is ranked
@@ -49,12 +49,13 @@ struct DetectionComparison {
 Estimate DelayDifference(const DetectionComparison& a, const DetectionComparison& b);
 
 /// Detection by each of `detectors`. Means use the thresholds from all runs in clear air. Intervals
-/// come from a bootstrap of clear air and fog at once. The bootstrap resamples the runs in clear
-/// air, and finds a threshold from the resampled runs. The bootstrap also resamples the seeds in
-/// fog, with the same draws for all visibilities and detectors. Detectors with equally many runs in
-/// clear air have the same draws of these runs, too. If all or nearly all replicates have the same
-/// detection, the interval of Clopper and Pearson is wider than the bootstrap's interval, and is
-/// used instead.
+/// come from a bootstrap over the runs in clear air and the runs in fog. Each replicate resamples
+/// the runs in clear air, and finds a threshold from the resampled runs. It also resamples the
+/// seeds in fog, with the same draws for all visibilities and detectors. Detectors with equally
+/// many runs in clear air have the same draws of these runs, too. For the probability of detection,
+/// each end of the interval is the wider one of two ends: that of the bootstrap, and that of the
+/// exact interval of Clopper and Pearson. So the interval is not too narrow if all or nearly all
+/// replicates have the same detection.
 std::vector<DetectionComparison> CompareDetection(std::span<const DetectorRuns> detectors,
                                                   const DetectionRule& rule);
 

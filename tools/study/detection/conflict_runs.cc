@@ -13,11 +13,11 @@ constexpr std::array<std::string_view, 2> kFogModels{"bias", "beam"};
 /// Runs in clear air, by detector.
 using ClearRuns = std::vector<std::vector<ClearRun>>;
 
-/// All runs of a set.
+/// All runs of a ConflictSet.
 struct SetRuns {
   ClearRuns calibration;  // runs from which thresholds are found
   ClearRuns validation;   // further runs, in which false alarms are counted again
-  ClearRuns long_air;     // used instead of `calibration` if a condition ranks detectors
+  ClearRuns long_air;     // used instead of `calibration` if a condition of the set ranks detectors
   std::vector<std::vector<std::vector<ScoreRecords>>> fog;  // by detector, visibility, seed
 
   /// The runs from which the threshold of a detector is found.
@@ -51,7 +51,7 @@ void RunLongClearAir(const StudyContext& context, const Traffic& clear_air, Clea
   }
 }
 
-/// Adds AUC and ROC, which need no threshold.
+/// Adds AUC and ROC of every detector to the outcome of a condition. They need no threshold.
 void AddRoc(std::span<const Gathered> gathered, ConflictOutcome& outcome) {
   const std::vector<double> doc = gathered.front().auc.Result();
   for (const Gathered& one : gathered) {
@@ -163,7 +163,7 @@ void AddDetected(std::span<const ScoreRecords> records, double threshold,
   detector.delay_if_detected_s /= static_cast<double>(detector.detected);
 }
 
-/// Finds the conditions that rank detectors, at the current thresholds.
+/// Sets for each condition whether it ranks detectors (Telling), at the current thresholds.
 void SetTelling(const StudyContext& context, const SetRuns& runs, ConflictSet& set) {
   const Scenario paper = context.Load("paper.json", {});
   const double window_s = static_cast<double>(paper.arbitrator.window_steps) * paper.step_s;

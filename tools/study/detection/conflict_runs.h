@@ -27,9 +27,9 @@ inline constexpr double kArlZero_s = 600;
 /// If the mean time to a false alarm at a threshold is at most this multiple of kArlZero_s, the two
 /// times count as equal.
 inline constexpr double kLoosest = 1.5;
-/// Number of runs in clear air for each seed, for the thresholds of quick and of slow detectors.
-/// These numbers apply if a condition of the set ranks detectors. Otherwise there is one run for
-/// each seed.
+/// Number of runs in clear air for each seed, for the thresholds of quick detectors and of slow
+/// detectors (detector_bank.h). These numbers apply if a condition of the set ranks detectors.
+/// Otherwise there is one run for each seed.
 inline constexpr std::int64_t kQuickClearAir = 100;
 inline constexpr std::int64_t kSlowClearAir = 5;
 /// First seeds in clear air. They are far from the seeds in fog, and from each other. So the runs
@@ -63,10 +63,10 @@ struct DetectorThreshold {
 /// the results that need no threshold. The intervals take into account that thresholds are
 /// estimates (conflict_intervals.h).
 struct DetectorOutcome {
-  Estimate delay_s;  // kFog_s for an undetected fog
+  Estimate delay_s;  // mean delay; an undetected fog counts as kFog_s
   Estimate delay_minus_doc_s;
   std::int64_t detected = 0;       // number of seeds with an alarm in fog
-  Estimate detection;              // probability
+  Estimate detection;              // probability that the fog is detected
   double delay_if_detected_s = 0;  // mean delay of the alarms; NaN without an alarm
   Estimate auc;
   Estimate auc_minus_doc;
@@ -107,7 +107,7 @@ struct ConflictSet {
   Estimate Difference(std::size_t a, std::size_t b) const;
 };
 
-/// All sets, by fog model, then by noise. @throws InputError, StudyStopped
+/// Runs all sets, and returns them by fog model, then by noise. @throws InputError, StudyStopped
 std::vector<ConflictSet> RunConflictSets(const StudyContext& context);
 
 /// A detector in bias fog with the usual noise. Its delay is a mean over all of kVisibilities_m.

@@ -18,7 +18,8 @@ inline constexpr double kFog_s = 11;
 /// The noise in figures, in most claims and for the ROC.
 inline constexpr std::string_view kUsualNoise = "near-range";
 
-/// Noise of the sensors; the filter has matching parameters.
+/// Standard deviations of the measured ranges, m. The filter assumes these values, but at least
+/// 0.04 m for the radar.
 struct ConflictNoise {
   std::string_view name;
   double radar_m;

@@ -1,5 +1,6 @@
 // Study `conflict`: compares every measure of conflict as a detector of fog, at an equal rate of
-// false alarms. It also finds the part of the Degree of Conflict that causes its advantage.
+// false alarms. It also finds the part of the Degree of Conflict (window, sign or sigmoid) that
+// causes its advantage.
 #include <algorithm>
 
 #include <fmt/format.h>
@@ -49,7 +50,8 @@ std::vector<Claim> ConflictClaims(std::span<const ConflictSet> sets) {
   return claims;
 }
 
-/// The conditions of this kind, such as "beam, near-range noise (75 m, 50 m)".
+/// The conditions for which TellingOf() has this result, such as "beam, near-range noise (75 m, 50
+/// m)".
 std::string ConditionsText(std::span<const ConflictSet> sets, Telling telling) {
   std::string text;
   for (const ConflictSet& set : sets) {

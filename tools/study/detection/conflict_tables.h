@@ -13,12 +13,13 @@
 
 namespace fogline::study {
 
-/// "bias, near-range noise".
+/// Name of a set, such as "bias, near-range noise".
 std::string NameOfSet(const ConflictSet& set);
 /// The names of all detectors that count as this detector.
 std::string NamesOf(const ConflictSet& set, std::size_t detector);
-/// The detectors that have a threshold, the shortest mean delay first. Of the detectors with the
-/// same alarms, the list has only one.
+/// The detectors that have a threshold, the shortest mean delay first. If no condition of the set
+/// ranks detectors, they are in the order of Detectors(). Of the detectors with the same alarms,
+/// the list has only one.
 std::vector<std::size_t> Ranked(const ConflictSet& set);
 
 /// Detectors, in order from the distance of a single step to the Degree of Conflict. Each detector
@@ -40,7 +41,8 @@ report::StudyTable TableOfConditions(std::span<const ConflictSet> sets);
 /// A table of mean delays from fog to alarm. It has one row for each measure that uses a single
 /// step. Its columns are the measure as it is, with window, with sign, and with both.
 report::StudyTable TableOfOptions(const ConflictSet& set);
-/// A table of every detector of a set, in order of rank.
+/// A table of the detectors of a set, in the order of Ranked(). Detectors with the same alarms
+/// share a row. The detectors without a threshold come last.
 report::StudyTable TableOfDetectors(const ConflictSet& set);
 
 /// Figures of delay, AUC and ROC of the measures. Only the tables have the combinations with window

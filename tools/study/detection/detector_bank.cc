@@ -37,8 +37,8 @@ conflict::Evidence EvidenceOfDifference(double difference_m) {
           .prediction = {.valid = true, .range_m = kRange_m, .std_m = kStd_m}};
 }
 
-/// Whether the score of a step depends on this step alone. Such a score does not depend on whether
-/// a conflict or an agreement of the sensors came before.
+/// Whether the score of a step depends on this step alone. The test: the score must be the same
+/// after a conflict of the sensors as after an agreement.
 bool IsOfOneStep(const conflict::ConflictMeasureRow& row) {
   constexpr int kSteps = 50;  // more than any window
   constexpr double kConflict_m = 3;

@@ -19,14 +19,14 @@
 namespace fogline::study {
 
 /// Parameters of the measures in a scenario. The width of bins and the shift of the SPRT depend on
-/// the noise of the scenario's sensors, as their defaults depend on the default noise. The width of
-/// bins is the larger standard deviation of the two sensors. The SPRT tests for the same shift as
-/// the CUSUM: 2 kappa standard deviations of the difference. Fixed parameters would be tuned to
-/// only one of several noises.
+/// the noise of the scenario's sensors. Fixed parameters would be tuned to only one of several
+/// noises. The width of bins is the larger standard deviation of the two sensors, but at least
+/// ConflictParameters::smallest_std_m. The SPRT tests for the same shift as the CUSUM: 2
+/// cusum_kappa standard deviations of the difference of the sensors.
 conflict::ConflictParameters DetectorParameters(const Scenario& scenario);
 
-/// The measure abs(d) in m, with d = radar - LiDAR - offset. Window, known sign and sigmoid turn
-/// this measure into the Degree of Conflict.
+/// The measure abs(d) in m, with d = radar - LiDAR - known mounting offset. Window, known sign and
+/// sigmoid turn this measure into the Degree of Conflict.
 inline constexpr std::string_view kDistance = "distance";
 
 /// The rows of ConflictMeasures(), then `distance`.

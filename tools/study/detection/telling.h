@@ -16,11 +16,11 @@ struct AlarmTimes {
 };
 
 /// For each detector, the index of the detector that it counts as. Detectors with the same alarms
-/// in all compared runs count as the detector of them that has the most runs. The further runs of
-/// two detectors are compared if both have equally many, because then they are the same runs.
+/// in all compared runs count as one of them, the one with the most runs. The further runs of two
+/// detectors are compared only if both have equally many, because then they are the same runs.
 std::vector<std::size_t> OneOfEqualAlarms(std::span<const AlarmTimes> detectors);
 
-/// The result of a condition for the ranking of detectors.
+/// Whether a condition ranks detectors; if not, the reason.
 enum class Telling {
   kRanks,
   kAllAtOnce,  // nine of ten detectors alarm at about the same time as the first detector
@@ -35,7 +35,7 @@ struct DelayAndShare {
   double share;
 };
 /// @param shortest_s delays that differ by less than this time count as the same time
-/// @return kRanks without detectors
+/// @return kRanks if there are no detectors
 Telling TellingOf(std::span<const DelayAndShare> detectors, double shortest_s);
 
 }  // namespace fogline::study

@@ -1,4 +1,4 @@
-// The three ways in which a LiDAR fails in fog, and the two humans. Studies run each of their
+// The three ways in which a LiDAR fails in fog, and two human drivers. Studies run each of their
 // variants with each of these ways and each of these humans.
 #pragma once
 
@@ -26,7 +26,7 @@ struct FogMode {
 
 /// Bias (paper.json), near echo (dense_fog.json), missing echo.
 const std::vector<FogMode>& FogModes();
-/// Explains the modes in the method of a study.
+/// Text that explains the modes, for the method of a study.
 std::string_view FogModesText();
 
 /// Overrides for a human who sees the fog, misjudges distances and loses awareness.
@@ -37,7 +37,7 @@ struct HumanCase {
   std::vector<std::string> overrides;
 };
 const std::vector<HumanCase>& BothHumans();
-/// Explains the two humans in the method of a study.
+/// Text that explains the two humans, for the method of a study.
 std::string_view HumansText();
 
 }  // namespace fogline::study

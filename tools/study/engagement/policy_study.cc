@@ -16,8 +16,8 @@
 namespace fogline::study {
 namespace {
 
-/// Every policy of the table, and further rules: fusion that handles wrong sensors without a human,
-/// hand-back by the fusion, and a driver who must be asked to take over.
+/// Every policy of policies::Policies(), and further rules: fusion that handles wrong sensors
+/// without a human, hand-back by the fusion, and a driver who must be asked to take over.
 std::vector<StudyVariant> EveryRule() {
   std::vector<StudyVariant> variants;
   for (const policies::PolicyRow& row : policies::Policies()) {
@@ -73,7 +73,7 @@ constexpr std::array<std::string_view, 14> kPolicyTable{"si_pct",
                                                         "wrong_human_s",
                                                         "wrong_automation_s"};
 
-/// The rules of the first table.
+/// The rules of the first table (PolicyMainTable()).
 constexpr std::array<std::string_view, 10> kMain{"none",
                                                  "none + gate",
                                                  "none + adaptive noise",
@@ -96,7 +96,8 @@ std::vector<std::string> MainCases() {
   return names;
 }
 
-/// A quantity by rule, with a series for each case. At first the page shows only the main cases.
+/// A figure of a measure by rule, with a series for each case. At first the page shows only the
+/// main cases.
 report::StudyFigure ByRule(const Comparison& comparison, std::string_view measure, std::string id,
                            std::string title) {
   report::StudyFigure figure = comparison.FigureOf(measure, std::move(id), std::move(title));
@@ -107,7 +108,7 @@ report::StudyFigure ByRule(const Comparison& comparison, std::string_view measur
   return figure;
 }
 
-/// Mean compromised safety of the main rules in the main cases.
+/// The first table: mean compromised safety of the main rules in the main cases.
 report::StudyTable PolicyMainTable(const Comparison& comparison) {
   report::StudyTable table{
       .caption = fmt::format("Mean compromised safety in fog (m), means over {} seeds [95 % "

@@ -122,7 +122,8 @@ constexpr std::array<std::string_view, 9> kTakeOverTable{"si_pct",
                                                          "human_time_s",
                                                          "transfers_pmin"};
 
-/// A quantity over the time to take over, with a series for each behaviour of the automation.
+/// A figure of a measure over the mean time to take over, with a series for each behaviour of the
+/// automation.
 report::StudyFigure OverLatency(const Comparison& comparison, std::string_view test_case,
                                 std::string_view measure, std::string id) {
   report::StudyFigure figure{
@@ -178,7 +179,7 @@ report::StudyTable TakeOverMainTable(const Comparison& comparison, std::string_v
       }
     }
   };
-  // Without traded control no human drives.
+  // Without traded control no human drives, so one row is enough for both humans.
   add_row("no traded control", kPerfectHuman, [](std::string_view) { return kNoTradedControl; });
   for (const int latency_s : kLatencies_s) {
     const auto variant_of = [&](std::string_view meanwhile) {

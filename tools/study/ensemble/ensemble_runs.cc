@@ -39,13 +39,13 @@ struct Ensemble {
   }
 };
 
-/// The name of a case with a set: "set 3: bias fog".
+/// The name of a case with a parameter set: "set 3: bias fog".
 std::string NameWith(const EnsembleSet& set, std::string_view test_case) {
   return fmt::format("{}: {}", set.name, test_case);
 }
 
-/// The case with the parameters of a set. The overrides of the case come after those of the set, so
-/// the overrides of the case prevail.
+/// The case with the parameters of a set. The overrides of the case come after the overrides of the
+/// set, so the overrides of the case prevail.
 StudyCase CaseWith(const Ensemble& ensemble, const EnsembleSet& set, StudyCase one) {
   one.name = NameWith(set, one.name);
   std::vector<std::string> overrides = ensemble.Overrides(set, one.file);
@@ -61,7 +61,8 @@ PlannedClaim ClaimWith(const EnsembleSet& set, PlannedClaim claim) {
   return claim;
 }
 
-/// The design of a study that consists of one comparison, for a set.
+/// The design of a study for one parameter set. All claims of such a study come from one
+/// comparison.
 StudyDesign DesignOf(const Ensemble& ensemble, std::string_view study, const EnsembleSet& set) {
   if (study == "policy") {
     const auto overrides = ensemble.Overrides(set, "paper.json");
@@ -85,7 +86,8 @@ const Named& NamedIn(const std::vector<Named>& all, std::string_view name) {
   return *std::ranges::find(all, name, &Named::name);
 }
 
-/// Claims of one study on common cases and seeds, which share their runs.
+/// Claims of one study that are decided by the same runs. The runs have all cases, variants and
+/// seeds that these claims need.
 struct SharedRuns {
   std::string_view study;
   std::int64_t one_of = 1;
@@ -107,8 +109,9 @@ struct SharedRuns {
   }
 };
 
-/// The claim with its numbers. If runs end in collisions, a claim on safety is replaced by a claim
-/// on seeds: for fewer or more seeds, the run of the first cell is the less safe one.
+/// The claim with its numbers. If runs end in collisions, a claim on safety becomes a claim on
+/// numbers of seeds. It compares the seeds in which the run of the first cell is less safe with the
+/// seeds in which the run of the second cell is less safe.
 Claim SafetyWithCollisions(const Comparison& comparison, const PlannedClaim& planned) {
   Claim claim = ClaimOf(comparison, planned);
   if (claim.hindrance.empty() || planned.measure != kShortfall || planned.sign == Sign::kEqual) {
@@ -125,7 +128,7 @@ Claim SafetyWithCollisions(const Comparison& comparison, const PlannedClaim& pla
   return claim;
 }
 
-/// Runs the cells of all sets, and adds their claims to `result`.
+/// Runs the cells of `shared` with all parameter sets, and adds the claims to `result`.
 void RunShared(const Ensemble& ensemble, const StudyContext& part, const SharedRuns& shared,
                EnsembleRuns& result) {
   std::vector<StudyDesign> designs;
@@ -151,7 +154,7 @@ void RunShared(const Ensemble& ensemble, const StudyContext& part, const SharedR
   }
 }
 
-/// Runs the string of cars of a claim with all sets.
+/// Runs the string of cars of a claim with all parameter sets.
 void RunStringOf(const Ensemble& ensemble, const StudyContext& part, std::size_t quoted,
                  EnsembleRuns& result) {
   const std::vector<StudyCase> kinds = StringKinds();
@@ -195,7 +198,7 @@ void RunMixOf(const Ensemble& ensemble, const StudyContext& part, const Ensemble
   result.runs += static_cast<std::int64_t>(kFixedRules.size() + 1) * mixed.situations;
 }
 
-/// Runs the detectors with a set, and adds the claims on their delays.
+/// Runs the detectors with one set of parameters, and adds the claims on their delays.
 void RunDelaysOf(const Ensemble& ensemble, const StudyContext& part, const EnsembleSet& set,
                  EnsembleRuns& result) {
   AddClaims(kConflictStudy, set, RunDelayClaims(part, ensemble.Overrides(set, "paper.json")),
@@ -204,15 +207,15 @@ void RunDelaysOf(const Ensemble& ensemble, const StudyContext& part, const Ensem
   result.runs += of_seed * part.seeds.count();
 }
 
-/// A part of the runs.
+/// A part of the runs of this study, with seeds and progress of its own.
 struct Job {
   std::int64_t one_of = 1;
   std::int64_t times = 1;
-  std::int64_t units = 0;  // of its progress, for each seed
+  std::int64_t units = 0;  // of the job's progress, for each seed
   std::function<void(const StudyContext& part, EnsembleRuns& result)> run;
 
-  /// The seeds of the job, from the first seed of `all` on. Their number is that of `all`, times
-  /// `times`, divided by `one_of`, but at least 1.
+  /// The seeds of the job, from the first seed of `all` on. The number of seeds is all.count() *
+  /// times / one_of, but at least 1.
   sweep::SeedRange Seeds(sweep::SeedRange all) const {
     all.last = all.first + std::max<std::int64_t>(1, all.count() * times / one_of) - 1;
     return all;

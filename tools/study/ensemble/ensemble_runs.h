@@ -19,7 +19,8 @@ struct EnsembleRuns {
 
 /// Runs the cells that the claims compare, and no other cells of the claims' studies. All sets have
 /// the same seeds.
-/// @throws InputError, StudyStopped; std::out_of_range if a study makes no such claim
+/// @throws InputError, StudyStopped; std::out_of_range if a quoted claim does not exist in its
+/// study
 EnsembleRuns RunEnsemble(const StudyContext& context, std::span<const EnsembleSet> sets,
                          std::span<const QuotedClaim> quoted);
 

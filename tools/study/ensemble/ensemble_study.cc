@@ -1,5 +1,5 @@
-// Study `ensemble`: whether the findings of the other studies hold with every parameter set that
-// meets the paper's table.
+// Study `ensemble`: examines whether the findings of the other studies hold with every parameter
+// set that meets the paper's table.
 #include <algorithm>
 #include <cmath>
 
@@ -107,7 +107,8 @@ report::StudyTable OutcomeTable(std::span<const EnsembleSet> sets,
   return table;
 }
 
-/// The first comparison of each finding in each set, as a share of the largest one.
+/// A figure of the first comparison of each finding: the difference in each parameter set, divided
+/// by the largest difference in any set.
 report::StudyFigure SetsFigure(std::span<const EnsembleSet> sets,
                                std::span<const ClaimInSets> claims) {
   report::StudyFigure figure{

@@ -68,7 +68,8 @@ std::vector<std::string> OverridesOf(const EnsembleSet& set, const std::filesyst
         !field.is_derived && stated.contains(nlohmann::json::json_pointer(field.pointer));
     if (!keeps) overrides.push_back(fmt::format("{}={}", field.pointer, field.value));
   }
-  // The set's own standstill gap includes the error of the fused distance in paper.json.
+  // The set's own standstill gap includes the error of the fused distance in paper.json. The
+  // sensors of another file have no offset, so this gap is computed again.
   if (!is_paper) {
     const double standstill_m = StandstillWithoutOffset(LoadScenario(file, overrides));
     overrides.push_back(fmt::format("/acc/standstill_m={:.4f}", standstill_m));

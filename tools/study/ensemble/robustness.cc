@@ -15,7 +15,8 @@ namespace {
 
 constexpr double kSurelyBelow = 0.05;
 
-/// Whether the difference is on the claimed side of 0 or of a bound, and the p-value of its side.
+/// Whether the difference is on the claimed side of 0 or of a bound, and the p-value of the side on
+/// which the difference is.
 struct OneSide {
   bool is_claimed;
   double p;
@@ -33,7 +34,7 @@ bool IsAtLowerBound(const Claim& claim, Bound bound) {
   return bound == Bound::kBoth ? claim.difference.mean < 0 : bound == Bound::kBelow;
 }
 
-/// The difference from this bound.
+/// The claim's difference minus its bound: -margin if `is_lower`, otherwise +margin.
 Estimate FromBound(const Claim& claim, bool is_lower) {
   return Moved(claim.difference, is_lower ? claim.margin : -claim.margin);
 }

@@ -1,4 +1,4 @@
-// Whether a finding holds with every parameter set.
+// Decides whether a finding holds with every parameter set.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,8 @@
 
 namespace fogline::study {
 
-/// The bounds that a finding needs of a claim that two values are equal.
+/// A claim that two values are equal bounds their difference on both sides. A finding may need only
+/// one of these bounds.
 enum class Bound {
   kBoth,   // the magnitude of the difference is at most the margin
   kBelow,  // the difference is at least -margin
@@ -37,16 +38,15 @@ struct ClaimInSets {
 /// The verdict on a claim after the runs with one set.
 enum class InSet {
   kHolds,
-  kOpposite,   // the difference has the other sign; of a claim that two things are equal: they
-               // differ
-  kUndecided,  // the difference is too small for these runs, or its runs end early
+  kOpposite,   // the difference has the other sign; for Sign::kEqual: it is beyond the margin
+  kUndecided,  // the difference is too small for this number of runs, or runs end early
 };
 /// "holds", "opposite" or "undecided".
 std::string_view Text(InSet outcome);
 
 struct JudgedInSet {
   InSet outcome = InSet::kUndecided;
-  double p = 1;       // of the sign that the difference has in the runs
+  double p = 1;       // p-value of the sign that the difference has in the runs
   double p_holm = 1;  // adjusted for all claims in all sets
 };
 
@@ -54,10 +54,10 @@ struct JudgedInSet {
 /// @return for each claim its outcomes, in the order of the sets
 std::vector<std::vector<JudgedInSet>> JudgeInSets(std::span<const ClaimInSets> claims);
 
-/// A claim that does not hold in some sets. The study's author writes it after the runs.
+/// A claim that does not hold in some parameter sets. The study's author enters it after the runs.
 struct KnownException {
   std::string_view says;
-  std::vector<int> sets;  // numbers from 1
+  std::vector<int> sets;  // numbers of the sets, from 1
   InSet outcome = InSet::kOpposite;
 };
 
@@ -102,10 +102,10 @@ std::string SetsText(std::span<const int> numbers, std::size_t sets);
 /// author states, and then ExaminedPart::why. For side claims the verb is "hold".
 std::string SentenceOf(const ExaminedFinding& finding, Part part, std::size_t sets);
 
-/// The claim that a part of a finding has the verdicts that its author states. Its difference is
-/// that of the decided claim with the largest p-value. Its sign is the sign that the runs show for
-/// this claim. If any outcome in the runs differs from the author's, the claim has a hindrance,
-/// which names claim, set and outcome.
+/// The claim that a part of a finding has the verdicts that its author states. Its difference and
+/// its sign come from the least certain comparison: of all that are not undecided, the one with the
+/// largest p-value. If any outcome in the runs differs from the author's, the claim has a
+/// hindrance, which names claim, set and outcome.
 /// @param claims the claims of this part of the finding, in their order
 /// @param judged the outcomes of these claims
 Claim ClaimOnPart(const ExaminedFinding& finding, Part part, std::span<const ClaimInSets> claims,

@@ -117,7 +117,7 @@ std::vector<PlannedClaim> NoisyClaimsOnFirst() {
                 "beam fog: aggressive human", Sign::kLess)};
 }
 
-/// The kinds of followers that differ most, without and with traded control.
+/// A table of the kinds of followers that differ most, without and with traded control.
 report::StudyTable FollowersMainTable(const Comparison& comparison) {
   std::vector<NamedCell> rows;
   for (const std::string_view name :
@@ -132,8 +132,8 @@ report::StudyTable FollowersMainTable(const Comparison& comparison) {
                             kFollowerTable);
 }
 
-/// A quantity as a function of the place in the string, for the strings behind one variant of the
-/// host.
+/// A figure of a quantity as a function of the place in the string, for the strings behind one
+/// variant of the host.
 report::StudyFigure ByPlace(std::span<const StringOutcome> strings, std::string_view variant,
                             std::string id, std::string title, std::string y_label,
                             std::vector<double> CarInString::*values) {

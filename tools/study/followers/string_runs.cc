@@ -24,7 +24,7 @@ constexpr double kBefore_s = 1;
 constexpr double kLeastBraking_mps2 = 0.01;
 
 // Overrides that start the fog later. So the cars behind the host reach steady gaps before the fog,
-// with any time gaps. The fog lasts as long as in the file.
+// even with long time gaps. The fog lasts as long as in the file.
 const std::vector<std::string> kLater{"/fog/start_s=60", "/steps=1200"};
 
 /// Result of one run.

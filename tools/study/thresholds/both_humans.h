@@ -15,7 +15,7 @@
 
 namespace fogline::study {
 
-/// The mix of situations with one human and one radar.
+/// Runs of the mix of situations (threshold_mix.h) with one human and one radar.
 struct HumanMix {
   MixedHuman human;
   MixedRadar radar;

@@ -34,8 +34,8 @@ double GainAt(std::span<const CurvePoint> curve, double rhe_pct) {
   return place ? place->gain : stats::kMissing;
 }
 
-/// Distance of a point of the curve from the straight line between its neighbours. nullopt at the
-/// ends of the curve, and where the RHE is constant, because nothing is interpolated there.
+/// Distance in gain of a point of the curve from the straight line between its neighbours. nullopt
+/// at the ends of the curve, and if the RHE of the point is not between the RHEs of its neighbours.
 std::optional<double> OffTheOthers(std::span<const CurvePoint> curve, std::size_t point) {
   if (point == 0 || point + 1 >= curve.size()) return std::nullopt;
   const std::array neighbours{curve[point - 1], curve[point + 1]};

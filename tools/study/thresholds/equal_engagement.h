@@ -1,5 +1,5 @@
-// Compares rules at equal redundant engagement. Fixed thresholds form a curve of gain over RHE. A
-// rule is compared with the point of the curve that has the rule's RHE.
+// Compares rules at equal redundant human engagement (RHE). Fixed thresholds form a curve of gain
+// over RHE. A rule is compared with the point of the curve that has the rule's RHE.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,7 @@
 
 namespace fogline::study {
 
-/// Mean cost and mean gain of a fixed threshold.
+/// Mean RHE (the cost) and mean gain, such as SI, of a fixed threshold.
 struct CurvePoint {
   double rhe_pct;
   double gain;
@@ -26,8 +26,8 @@ struct CurvePlace {
 };
 
 /// The place with this RHE on the curve. The curve is straight between its points. If several
-/// places have this RHE, the result is the place with the largest gain. All thresholds that are
-/// never reached in clear air have the same RHE. nullopt if the RHE is beyond the curve.
+/// places have this RHE, the result is the place with the largest gain. This occurs: all thresholds
+/// that are never reached in clear air have the same RHE. nullopt if the RHE is beyond the curve.
 /// @param curve at least one point, in order of threshold
 std::optional<CurvePlace> BestAt(std::span<const CurvePoint> curve, double rhe_pct);
 

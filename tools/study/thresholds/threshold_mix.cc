@@ -28,7 +28,8 @@ struct Range {
   double Log(double u) const { return least * std::pow(most / least, u); }
 };
 
-// The mix is our choice. Each range contains the value of paper.json, whose leader has amplitude 0.
+// The mix is our choice. Each range contains the value of paper.json. There the leader's amplitude
+// is 0.
 constexpr double kClearShare = 0.25;
 constexpr Range kVisibility_m{40, 300};
 constexpr Range kBias_m{0.03, 0.5};  // of fog model bias; paper.json has 0.216

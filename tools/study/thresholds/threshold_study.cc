@@ -24,7 +24,7 @@ namespace {
 /// Comparisons of the members with the curve of fixed thresholds, in the order of
 /// MixedRuns::members. The comparisons of members on the curve itself are empty.
 struct Beside {
-  std::vector<AtEqualEngagement> si;         // in points
+  std::vector<AtEqualEngagement> si;         // in percentage points
   std::vector<AtEqualEngagement> shortfall;  // in m; less is better
   std::vector<CurvePoint> curve;             // for SI
   std::size_t fixed = 0;                     // number of members on the curve; they come first
@@ -211,7 +211,7 @@ std::string ThresholdCsv(const MixedRuns& mixed, const Beside& beside) {
   return csv;
 }
 
-/// The rules of the first table.
+/// The rules of the first table of the study.
 constexpr std::array<std::string_view, 9> kTelling{
     "fixed 0.3",    "fixed 0.5", "fixed 0.8",        "fixed 0.99",       "adaptive 0.5",
     "adaptive 0.7", "bayes 1",   "availability 0.5", "availability 0.98"};

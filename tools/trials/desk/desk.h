@@ -1,4 +1,5 @@
-// A desk: the interface of a session to its people, in a terminal or in pages of a browser.
+// A desk: the interface of a session to participant and experimenter, in a terminal or in pages of
+// a browser.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +19,7 @@ struct Next {
   Trial trial;
   std::int64_t of = 1;           // number of trials, or of practice runs
   double not_before_s = 0;       // a break: least time until the run begins
-  bool seat = false;             // the participant drives, at the seat of the page
+  bool seat = false;             // the participant drives, at the seat in the browser
   std::string for_experimenter;  // the condition and its seed; never shown to the participant
 };
 
@@ -45,7 +46,8 @@ class Desk {
   virtual void RunGoesOn() = 0;
   /// Called when the run has ended, also if it broke off.
   virtual void RunEnded() = 0;
-  /// The answers to all items, in their order. @param after the run that they are about
+  /// Asks the questions of a questionnaire. @return the answers to all items, in the order of the
+  /// items @param after the run that the questions are about
   /// @throws as WaitForBegin()
   virtual std::vector<Answer> Ask(const Next& after, const QuestionnaireSection& questionnaire) = 0;
   /// Called when the participant has made all trials.

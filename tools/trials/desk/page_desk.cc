@@ -41,7 +41,8 @@ constexpr Duration kWakeEvery = milliseconds(50);
 // Time limit for closing all connections at the end.
 constexpr milliseconds kEndLimit(600);
 
-/// The files of a page. Its main file is at "/". The files of only the other page are not included.
+/// The files of a page. Its main file is at "/". Files that only the other page needs are not
+/// included.
 std::vector<web::Asset> FilesOf(std::string_view main, std::string_view script) {
   std::vector<web::Asset> files;
   for (web::Asset asset : web::TrialAssets()) {
@@ -91,7 +92,7 @@ std::string AddressOf(const PageOptions& options) {
   return options.listen.empty() ? "127.0.0.1" : options.listen;
 }
 
-/// A port of this address, and the option that names it.
+/// An address with a port, and the option that sets the port.
 struct Place {
   std::string address;
   std::uint16_t port;  // 0: any free port
@@ -106,7 +107,8 @@ struct Place {
   throw InputError(fmt::format("error: {} {}: {}", place.option, place.port, why));
 }
 
-/// @throws as CannotListen() if the address is not of this machine, or the port is not free
+/// Starts a server. @throws as CannotListen() if the address is not of this machine, or the port is
+/// not free
 std::unique_ptr<web::Server> Listen(asio::io_context& context, const Place& place,
                                     std::span<const web::Asset> files, web::View& view) {
   try {
@@ -120,7 +122,8 @@ std::unique_ptr<web::Server> Listen(asio::io_context& context, const Place& plac
   }
 }
 
-/// Checks that fogline-web can listen there. This check comes before the participant begins.
+/// Checks that fogline-web can listen at this place. This check comes before the participant
+/// begins.
 /// @throws as CannotListen()
 void RequireFree(asio::io_context& context, const Place& place) {
   using asio::ip::tcp;
@@ -139,8 +142,8 @@ RunPageOptions ForRuns(const PageOptions& options) {
 
 }  // namespace
 
-/// Both servers in a thread of their own. The session's thread waits for the messages that the
-/// servers receive.
+/// The servers of both pages, in a thread of their own. The session's thread waits for the messages
+/// that the servers receive.
 class PageDesk::Pages {
  public:
   explicit Pages(const PageOptions& options)
@@ -200,7 +203,7 @@ class PageDesk::Pages {
     }
   }
 
-  /// @throws Interrupted
+  /// Waits until this time. @throws Interrupted
   void WaitUntil(TimePoint end) {
     while (Clock::now() < end) {
       ThrowIfInterrupted();
@@ -220,7 +223,7 @@ class PageDesk::Pages {
   std::string participant_address() const { return participant_->access().Url(); }
   std::string experimenter_address() const { return experimenter_->access().Url(); }
 
-  /// @throws as RunPage::Show()
+  /// Shows the run in both pages. @throws as RunPage::Show()
   void ShowRun(std::int64_t run_id, const std::string& url, RunPage::Seat seat) {
     run_page_.Show(run_id, url, seat);
     Set([&](PageState& state) {

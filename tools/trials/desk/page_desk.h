@@ -36,7 +36,7 @@ class PageDesk final : public Desk {
   explicit PageDesk(const PageOptions& options);
   ~PageDesk() override;
 
-  /// Such as "http://127.0.0.1:40001/#token=...".
+  /// The address of a page with its token, such as "http://127.0.0.1:40001/#token=...".
   std::string participant_address() const;
   std::string experimenter_address() const;
 

@@ -25,8 +25,8 @@ struct PageMessage {
   std::string text;             // kMarker
 };
 
-/// The state of a session, as its pages see it. Each state has a number. A page sends the number
-/// with its answer, so an answer to an earlier state is recognised.
+/// The state of a session, as its pages see it. Each state has a number. A page sends this number
+/// with its answer. So PageState recognises an answer to an earlier state.
 class PageState {
  public:
   /// @param number of the first state. It must be larger than the numbers of earlier sessions,

@@ -29,7 +29,8 @@ void TopScreen::Show(TopView view) {
 void TopScreen::Build() {
   rows_ = TopRows(view_, orders_);
   if (!used_) {
-    // New rows may come above the row that was first before.
+    // Until a key is pressed, the cursor is at the first row, also if new rows come above the old
+    // first row.
     cursor_ = 0;
     return Move(0);
   }

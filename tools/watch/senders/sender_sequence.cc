@@ -66,15 +66,15 @@ void SenderSequence::Advance(const runtime::LcmPacket& packet, std::int64_t ahea
   progressed_ = now;
   Miss(incomplete ? ahead : ahead - 1);
   std::erase_if(partial_, [this](const Partial& p) { return AgeOf(p.number) >= kWindow; });
-  // Own drops before a first fragment cannot explain a later gap. If the first fragment is missing,
-  // this process may have dropped it, so its drops still count.
+  // Packets that this process dropped before a first fragment cannot explain a later gap. If the
+  // first fragment is missing, this process may have dropped it, so these drops still count.
   if (packet.First()) unexplained_ = 0;
   if (!Completes(packet)) return;
   whole_[0] = true;
   ++counts_.received;
 }
 
-/// Counts the `count` messages before the newest one as missing. If this process has dropped
+/// Counts the `count` messages before the newest message as missing. If this process has dropped
 /// packets, the oldest of these messages count as missed_here, at most one for each dropped packet.
 /// The other messages count as lost.
 void SenderSequence::Miss(std::int64_t count) {

@@ -44,7 +44,7 @@ class SenderSequence {
   /// the numbers went ahead, the numbers between count as lost. If they went back, the sender has
   /// begun again, and no message counts as lost.
   static constexpr std::int64_t kMaxJump = 3000;
-  /// Largest number of messages that can be lost at once. A larger step ahead also means that the
+  /// Largest number of successive messages that can be lost. If the numbers go ahead by more, the
   /// sender has begun again, because no sender sends so many messages of which none arrives.
   static constexpr std::int64_t kMaxLost = 1'000'000;
   /// If a known number comes after this time without a newer message, the sender may have begun
@@ -83,7 +83,7 @@ class SenderSequence {
   std::optional<runtime::LcmPacket> doubtful_;  // waits for its successor; its channel is not kept
   TimePoint progressed_{};                      // when newest_ grew last
   std::int64_t dropped_ = 0;                    // value of `dropped` at the last packet
-  std::int64_t unexplained_ = 0;  // own drops since the last gap; they may explain the next gap
+  std::int64_t unexplained_ = 0;  // packets dropped here since the last gap (may explain the next)
 };
 
 }  // namespace fogline::watch

@@ -8,7 +8,8 @@
 namespace fogline::web {
 namespace {
 
-/// The place in kChannels for each place in kStepNames, and the reverse.
+/// The index in kChannels for each index in kStepNames (kChannelOfRow), and the reverse
+/// (kRowOfChannel).
 constexpr std::array<std::size_t, log::kStepChannels> kChannelOfRow = [] {
   std::array<std::size_t, log::kStepChannels> channels{};
   std::size_t row = 0;

@@ -1,5 +1,5 @@
-// The place of each message in a log, by step and channel, so that any step can be shown at once.
-// The index also has the run's description and its events.
+// The place of each message in a log, by step and channel. So any step can be shown without reading
+// the log from its beginning. The index also has the run's description and its events.
 #pragma once
 
 #include <array>

@@ -17,7 +17,8 @@
 namespace fogline::web {
 namespace {
 
-// Offset of utime: the fingerprint comes first, then header_t with run_id, step and utime.
+// Offset of utime in bytes. Before it a message has the fingerprint, run_id and step, of 8 bytes
+// each.
 constexpr std::size_t kUtimeOffset = 24;
 
 /// The channel of a series.

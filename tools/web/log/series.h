@@ -19,7 +19,7 @@ struct SeriesPoint {
   double value = 0;
 };
 
-/// All points of the steps from `from` to `to`, if there are at most 2 `points` steps. Otherwise
+/// All points of the steps from `from` to `to`, if there are at most 2 * `points` steps. Otherwise
 /// the steps are divided into `points` buckets of nearly equal length. Each bucket gives its
 /// smallest and its largest value, in the order of time, so no peak is lost. A bucket without a
 /// value gives one point with NaN.

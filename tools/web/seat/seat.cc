@@ -75,7 +75,7 @@ std::optional<driver_input_t> Seat::Look(TimePoint now) {
   if (client_ && now - heard_at_ >= kSilent) silent_ = true;
   if (!silent_) return std::nullopt;
   // When a client becomes silent while its person is present, the first message of the empty seat
-  // is sent at once.
+  // is sent immediately.
   if (!message_.present && now - sent_at_ < runtime::kInputEvery) return std::nullopt;
   return EmptySeat(now);
 }

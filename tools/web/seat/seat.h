@@ -1,5 +1,5 @@
-// The rules of the seat at the page: which client drives, and which messages the run gets. The
-// class has no sockets and reads no clock.
+// The rules of the seat: which client of the page /drive drives, and which messages the run gets.
+// The class has no sockets and reads no clock.
 //
 // One client has the seat. Each input of this client becomes a DRIVER_INPUT. If no client has the
 // seat, or the client with the seat is silent, a DRIVER_INPUT every kInputEvery says that no person

@@ -1,4 +1,4 @@
-// An input of the participant's page, read from a text frame (fogline.drive.v1 in docs/view.md).
+// An input of the page /drive, read from a text frame (fogline.drive.v1 in docs/view.md).
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,7 @@ struct SeatInput {
   std::int32_t buttons = 0;   // bits of driver_input_t
   std::int8_t device_kind = 0;
   std::string device;
-  std::optional<double> latency_ms;  // the newest measurement
+  std::optional<double> latency_ms;  // newest measured input latency
 };
 
 /// A frame that is refused, with the reason for its sender and for stderr.
@@ -31,8 +31,8 @@ struct BadSeatFrame {
 
 using SeatFrame = std::variant<SeatInput, BadSeatFrame>;
 
-/// The longest time in ms that a page may report: an hour. For a longer time a page reports this
-/// one.
+/// The longest time in ms that a page may report: an hour. For a longer time a page reports an
+/// hour.
 inline constexpr double kMostSeatTime_ms = 3'600'000;
 
 /// Reads a frame. Never throws: a wrong text becomes a BadSeatFrame.

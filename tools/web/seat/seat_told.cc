@@ -24,7 +24,7 @@ constexpr std::array kScenarioFields{"/person/key_press_ps", "/person/key_releas
                                      "/person/override_by", "/world/vehicle_length_m",
                                      "/arbitrator/take_over/lead_s"};
 
-/// The fields of HOST_COMMAND that the page shows.
+/// The fields of HOST_COMMAND that the page /drive shows.
 arbitration_t Shown(const arbitration_t& message) {
   arbitration_t shown{};
   shown.header = message.header;
@@ -33,7 +33,7 @@ arbitration_t Shown(const arbitration_t& message) {
   return shown;
 }
 
-/// The fields of DRIVER_COMMAND from which the page measures the latency of an input.
+/// The fields of DRIVER_COMMAND from which the page /drive measures the latency of an input.
 driver_command_t Shown(const driver_command_t& message) {
   driver_command_t shown{};
   shown.header = message.header;

@@ -1,4 +1,4 @@
-// The frames about a run for the page of the seat: only data that the page shows to the person who
+// The frames about a run for the page /drive: only data that the page shows to the person who
 // drives. A participant of an experiment can read everything that the browser receives. So the
 // frames must not show the condition of the trial.
 #pragma once

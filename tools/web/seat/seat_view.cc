@@ -55,7 +55,7 @@ void SeatView::Publish(const driver_input_t& message) {
     bus_.reset();
     try {
       Open();
-    } catch (const std::exception& error) {  // the network of another run
+    } catch (const std::exception& error) {  // the new network cannot be opened
       lines_.Print(fmt::format("DRIVER_INPUT cannot be sent: {}", error.what()));
     }
   }

@@ -44,7 +44,7 @@ class Access {
   };
   explicit Access(Rules rules);
 
-  /// Whether a file of the page may be sent. The files are not secret.
+  /// Whether a file of a page may be sent. The files are not secret.
   Verdict OfPage(const RequestOrigin& request) const;
   /// Whether a WebSocket may be opened.
   Verdict OfWebSocket(const RequestOrigin& request) const;

@@ -1,4 +1,4 @@
-// The files of the page, built into the program (embed.cmake writes them).
+// The files of the pages of fogline-web, built into the program (embed.cmake writes them).
 #pragma once
 
 #include <span>
@@ -6,7 +6,7 @@
 
 namespace fogline::web {
 
-/// A file of the page. A browser asks for it by its path.
+/// A file of a page. A browser requests it by its path.
 struct Asset {
   std::string_view path;   // such as "/index.html" or "/page.js"
   std::string_view type;   // the media type, such as "text/html; charset=utf-8"
@@ -14,7 +14,7 @@ struct Asset {
   std::string_view bytes;  // the content of the file
 };
 
-/// All files of the page; empty if the page could not be built, because packages of npm were
+/// The files of all pages; empty if the pages could not be built, because packages of npm were
 /// missing.
 std::span<const Asset> Assets();
 

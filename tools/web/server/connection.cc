@@ -181,7 +181,8 @@ void BeastConnection::HandleRequest() {
     }
     if (TakePlace()) return Upgrade();
   }
-  // If no viewer has room, the page is refused, too: without a WebSocket it would show nothing.
+  // If all places of viewers are taken, the page for viewers is refused, too: without a WebSocket
+  // it would show nothing.
   const bool may_drive = access().rules().seat && !opens && MayBeOfDrivePage(PathOf(from.target));
   if (IsFull() && !may_drive && access().OfPage(from) == Verdict::kAllowed) {
     return Refuse(kUnavailable, fmt::format("{} viewers are connected already", limits().viewers),
@@ -312,7 +313,7 @@ void BeastConnection::TakeFrame() {
                     socket_->got_binary());
   }
   buffer_.clear();
-  Read();  // a client that is being closed must still answer
+  Read();  // also reads the last frame of a client that is being closed
 }
 
 void BeastConnection::Send(OutgoingFrame frame) {

@@ -8,7 +8,7 @@
 namespace fogline::web {
 
 /// A token bucket: it is full at the beginning, each frame takes one token, and it fills up again
-/// at a constant rate. So a client may send `frames` frames at once, and then `frames` a second.
+/// at a constant rate. So a client may send `frames` frames together, and then `frames` a second.
 class FrameBudget {
  public:
   static constexpr double kFrames = 200;

@@ -25,7 +25,7 @@ struct HttpAnswer {
   unsigned status = 200;
   /// The headers that depend on the request, except Date, Server and Content-Length.
   std::vector<std::pair<std::string_view, std::string>> headers;
-  std::string_view body;  // a file of the page, or `text`
+  std::string_view body;  // a file of a page, or `text`
   std::string text;       // one line for a person
   Verdict verdict = Verdict::kAllowed;
 };
@@ -46,7 +46,7 @@ HttpAnswer Refusal(unsigned status, std::string text);
 std::string_view PathOf(std::string_view target);
 
 /// Whether a path may belong to the participant's page or to one of its files. Returns false only
-/// for the paths of the other page and of the WebSocket. The two pages share all other files.
+/// for the paths of the page for viewers and of the WebSocket. The two pages share all other files.
 bool MayBeOfDrivePage(std::string_view path);
 
 }  // namespace fogline::web

@@ -1,4 +1,4 @@
-// A server for browsers: the files of the page by HTTP, and WebSockets. It has one thread, and
+// A server for browsers: the files of the pages by HTTP, and WebSockets. It has one thread, and
 // nothing blocks it. The server does not use runs or logs: a View does.
 //
 // Every limit protects the other clients and the memory of this process. A client that exceeds a
@@ -84,7 +84,7 @@ class View {
 /// Limits of a server. Tests make them smaller.
 struct ServerLimits {
   std::size_t viewers = 64;  // WebSockets, without the place that is kept for a client that drives
-  // A browser opens at most 6 connections for a page at a time.
+  // Limit for the number of callers. A browser opens at most 6 connections for a page at a time.
   std::size_t callers = 64;
   std::size_t callers_of_one = 32;  // from one address
   // Time in which a request must come, and in which its answer must be read.

@@ -10,7 +10,7 @@
 
 namespace fogline::web {
 
-/// The members of a message, in their order.
+/// The members of a message as a JSON object, in their order.
 ///
 /// Integers beyond 2^53, such as a run's id, become decimal strings, because JavaScript would round
 /// them. Numbers that are infinite or NaN become null. A boolean is true if its byte is not 0.

@@ -1,4 +1,5 @@
-// The description of message types as JSON: for the page, and as JSON schemas.
+// The description of message types as JSON, for the pages of fogline-web, and as JSON schemas for
+// Foxglove's protocol.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>

@@ -34,8 +34,8 @@ constexpr std::array kUnits = std::to_array<std::pair<std::string_view, std::str
     {"_hz", "Hz"},
 });
 
-// Adds a byte to a hash. lcm-gen computes with int64_t, so its right shift keeps the sign. It adds
-// characters as signed numbers.
+// Adds a byte to a hash in the same way as lcm-gen. lcm-gen computes with int64_t, so its right
+// shift keeps the sign. It adds characters as signed numbers.
 std::int64_t HashByte(std::int64_t hash, std::int64_t byte) {
   const std::uint64_t mixed =
       (static_cast<std::uint64_t>(hash) << 8) ^ static_cast<std::uint64_t>(hash >> 55);

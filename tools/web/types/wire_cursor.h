@@ -12,8 +12,8 @@
 
 namespace fogline::web {
 
-/// The largest possible size of an LCM message: a message in fragments has a size of 32 bits (LCM,
-/// udpm_util.h).
+/// The largest possible size of an LCM message, in bytes. In a message in fragments, the size is a
+/// number of 32 bits (LCM, udpm_util.h).
 inline constexpr std::size_t kLargestMessage = 0xffff'ffff;
 
 /// The values of a struct's members that are lengths, by LcmMember::length_slot.

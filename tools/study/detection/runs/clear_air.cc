@@ -11,7 +11,7 @@ namespace {
 /// Runs by detector.
 using RunsByDetector = std::vector<std::vector<ClearRun>>;
 
-/// Adds a run of each detector.
+/// Makes one run, and adds it to the runs of each detector.
 void AddClearRun(SensorBench& bench, std::int64_t seed, bool keeps_scores,
                  RunsByDetector& by_detector) {
   for (std::vector<ClearRun>& runs : by_detector) runs.emplace_back();

@@ -18,7 +18,7 @@ inline constexpr double kClearRun_s = 115;
 /// Length of the warm-up, s. At its end, the windows are full, and the filter's track has settled.
 inline constexpr double kWarmUp_s = 5;
 /// In clear air, every kClearStride-th step counts for ROC and AUC. The stride is longer than the
-/// windows of 8 steps, so that the counted steps are nearly independent.
+/// windows of 8 steps. So the counted steps are nearly independent.
 inline constexpr std::int64_t kClearStride = 10;
 
 /// Called when a unit of the runs is done; may throw StudyStopped.
@@ -32,8 +32,9 @@ struct ClearAirPlan {
   bool keeps_scores = false;           // whether to keep the scores of every kClearStride-th step
 };
 
-/// The runs by detector, in the order of the plan. The runs of a detector are in order of their
-/// seeds. Calls `show` after the runs for each of the study's seeds. @throws as `show`
+/// Makes the runs of the plan. The result has the runs of each detector, in the order of the plan's
+/// detectors. The runs of a detector are in order of their seeds. Calls `show` after the runs for
+/// each of the study's seeds. @throws what `show` throws
 std::vector<std::vector<ClearRun>> RunClearAir(const StudyContext& context, const Traffic& traffic,
                                                const ClearAirPlan& plan, const ShowUnit& show);
 

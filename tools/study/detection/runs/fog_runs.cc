@@ -8,8 +8,8 @@
 namespace fogline::study {
 namespace {
 
-// Fog of at least this level counts as fog in ROC and AUC. Weaker fog counts neither as fog nor as
-// clear air.
+// Fog of at least this level (truth_t::fog_level, 0 to 1) counts as fog in ROC and AUC. Weaker fog
+// counts neither as fog nor as clear air.
 constexpr double kFogLevel = 0.5;
 
 std::size_t BatchOf(std::int64_t unit) { return static_cast<std::size_t>(unit % kBatches); }

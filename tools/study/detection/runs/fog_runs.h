@@ -11,8 +11,8 @@
 
 namespace fogline::study {
 
-/// Number of batches of the runs in clear air and in fog. AUC and ROC compare runs of the same
-/// batch.
+/// Number of batches of the runs in clear air and in fog. AUC and ROC compare each run in fog with
+/// the runs in clear air of the same batch.
 inline constexpr std::int64_t kBatches = 10;
 /// False positive rates for the ROC: shares of the steps in clear air.
 inline constexpr std::array kFalsePositives{0.001, 0.002, 0.005, 0.01, 0.02,
@@ -24,8 +24,8 @@ using SortedBatches = std::vector<std::vector<double>>;
 /// The sorted scores of every detector. @param by_detector runs that have kept scores
 std::vector<SortedBatches> SortScores(std::span<const std::vector<ClearRun>> by_detector);
 
-/// Means over the runs of each batch. Batches are independent of each other, because each has its
-/// own runs in fog and in clear air.
+/// Means of a value over the runs of each batch. Batches are independent of each other, because
+/// each has its own runs in fog and in clear air.
 class BatchMeans {
  public:
   explicit BatchMeans(std::size_t batches) : sums_(batches, 0.0), counts_(batches, 0.0) {}
@@ -54,12 +54,13 @@ struct Gathered {
 };
 
 /// Runs every detector in this traffic with the study's seeds. Calls `show` after each run.
-/// @param clear_scores by detector @throws as `show`
+/// @param clear_scores by detector
+/// @throws what `show` throws
 std::vector<Gathered> RunInFog(const StudyContext& context, const Traffic& traffic,
                                std::span<const SortedBatches> clear_scores, const ShowUnit& show);
 
 /// The records of some detectors in this traffic, by detector and seed. Calls `show` after each
-/// run. @param detectors indices in Detectors() @throws as `show`
+/// run. @param detectors indices in Detectors() @throws what `show` throws
 std::vector<std::vector<ScoreRecords>> RecordsInFog(const StudyContext& context,
                                                     const Traffic& traffic,
                                                     std::span<const std::size_t> detectors,

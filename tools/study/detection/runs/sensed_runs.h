@@ -36,7 +36,8 @@ Traffic TrafficOf(const Scenario& scenario);
 class SensorBench {
  public:
   /// @param traffic must outlive the bench
-  /// @param detectors indices in Detectors(). If all these detectors are quick, there is no filter.
+  /// @param detectors indices in Detectors(). Quick detectors need no filter. So if all are quick,
+  /// there is none.
   SensorBench(const Traffic& traffic, std::span<const std::size_t> detectors);
 
   /// Calls `visit(truth, scores)` after each step, with the scores in the order of the detectors.
