@@ -39,7 +39,7 @@ class AtomicFile {
   /// under the final name. @throws std::runtime_error when the disk is full
   void Close();
 
-  /// Removes the old file of this name.
+  /// Removes the old file of this name, if there is one.
   /// @throws std::runtime_error
   void RemoveOld();
 
@@ -70,10 +70,11 @@ class AtomicFiles {
   /// Adds a file. The reference is valid for the lifetime of this object. @throws as AtomicFile()
   AtomicFile& Add(std::filesystem::path file) { return files_.emplace_back(std::move(file)); }
 
-  /// Removes all old files before the first new one gets its name. So the folder never contains a
-  /// new file beside an old one, even if the process is killed. The last file is removed first and
-  /// gets its name last. So a folder that contains the last file contains all files. Writes to
-  /// pipes and devices can fail, so they come before the removal of files.
+  /// Finishes all files as AtomicFile::Finish() does, but removes all old files before the first
+  /// new one gets its name. So the folder never contains a new file beside an old one, even if the
+  /// process is killed. The file that was added last is removed first, and gets its name last. So a
+  /// folder that contains this file contains all files. Writes to pipes and devices can fail, so
+  /// they come before the removal of files.
   /// @throws std::runtime_error, Interrupted
   void Finish();
 

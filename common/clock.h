@@ -1,5 +1,5 @@
-// Wall-clock time, for waiting and for the repair of lost messages. No result of a run may depend
-// on this time.
+// Time of a clock that is never set (CLOCK_MONOTONIC), for waits, for the repair of lost messages
+// and for runs in real time. No result of a run in lockstep may depend on this time.
 #pragma once
 
 #include <chrono>

@@ -24,8 +24,8 @@ std::vector<std::string_view> CsvHeader(std::string_view text);
 /// "tabs". The result is "" if the header line has no such separator.
 std::string_view ForeignSeparator(std::span<const std::string_view> header);
 
-/// Called for each cell that is not a finite number, for each row that lacks a cell, and for empty
-/// lines between rows.
+/// Function that gets the faults of a file: each cell that is not a finite number, each row that
+/// lacks a cell, and empty lines between rows.
 using CsvRefuse = std::function<void(std::uint32_t offset, std::string message)>;
 
 /// Returns the numbers of each column in `columns` (indices into the header), from top to bottom.

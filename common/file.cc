@@ -26,7 +26,8 @@ namespace {
 // A folder with more entries gets no suggestion, because the search would take too long.
 constexpr std::size_t kMostEntries = 10'000;
 
-// Longest wait for data from a pipe. A remote shell answers within this time.
+// Longest wait for data from a pipe. A command on another machine, as in <(ssh HOST COMMAND),
+// usually begins to answer within this time.
 constexpr int kPipeLimit_ms = 5000;
 
 // While a pipe has no room, WriteAll() calls `stop` at this interval. A person does not notice a

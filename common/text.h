@@ -29,8 +29,8 @@ std::string EscapeLines(std::string_view text);
 /// The name of a file, escaped for a terminal.
 std::string PathText(const std::filesystem::path& file);
 
-/// `text` with '?' in place of each byte other than ASCII letters, digits, signs and spaces. Use
-/// this function for text of unknown encoding from the network.
+/// `text` with '?' in place of each byte other than ASCII letters, digits, punctuation and spaces.
+/// Use this function for text of unknown encoding from the network.
 std::string Printable(std::string_view text);
 
 /// The text as a JSON string: in double quotes, with control characters escaped.

@@ -131,7 +131,7 @@ class Stderr {
 
   ssize_t PutOnce(std::string_view text) const {
     if (is_socket_) return send(fd_, text.data(), text.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
-    // If poll() reports room in a pipe, the pipe takes at least this many bytes at once.
+    // If poll() reports room in a pipe, the pipe takes at least this many bytes in one write.
     const std::size_t piece = asks_first_ ? std::size_t{_POSIX_PIPE_BUF} : text.size();
     return write(fd_, text.data(), std::min(text.size(), piece));
   }

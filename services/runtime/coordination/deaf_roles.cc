@@ -19,8 +19,9 @@ constexpr int kDeafPeriods = 5;
 constexpr Duration kSteady = milliseconds(600);
 // A network that loses 30 % of all messages loses this many in a row with probability 6e-6.
 constexpr std::int64_t kSureMessages = 10;
-// A role may be ahead of the last known step of its producer by this many steps. The producer's
-// STATUS arrives within 100 ms, which is the time of five steps at 50 Hz.
+// A role counts as ahead of its producer if it is more than this many steps beyond the step that
+// follows from the producer's STATUS and the time since then. The producer may be further than
+// that, because its STATUS takes up to 100 ms to arrive, which is the time of five steps at 50 Hz.
 constexpr std::int64_t kAhead = 5;
 
 }  // namespace
@@ -46,8 +47,8 @@ void DeafRoles::Heard(Role role, const status_t& status, TimePoint now) {
     const Duration age =
         std::chrono::microseconds(std::clamp<std::int64_t>(status.input_age_us[i], 0, kMaxStep));
     // The role measures the age of an input on its own clock. The age grows until a message comes,
-    // and does not depend on the time at which the STATUS is read. An input that never came has no
-    // age.
+    // and does not depend on the time at which the STATUS is read. Until its first message
+    // (INPUT_AWAITED) an input has no age, so the time since the role's previous STATUS is used.
     const bool awaited = status.input_state[i] == status_t::INPUT_AWAITED;
     const Duration silent = awaited ? since : std::max(Duration::zero(), age - ear.age);
     const Role from = kChannels[channel].from;

@@ -1,7 +1,7 @@
 // Finds the deaf roles of a run in real time by their STATUS. A deaf role is alive and sends its
 // STATUS. But it has received no message on one of its input channels for a long time, although the
-// producer of this channel publishes. A deaf role does not recover by itself. A role does not count
-// as deaf if the network only loses many messages for a while.
+// producer of this channel publishes. A deaf role does not recover by itself. A network that loses
+// many messages for a while does not make a role deaf.
 #pragma once
 
 #include <array>
@@ -37,11 +37,11 @@ class DeafRoles {
   /// Forgets everything about the role, because its process is dead.
   void Forget(Role role) { speakers_[static_cast<std::size_t>(role)] = {}; }
 
-  /// The input that the role has missed for the longest time; nullopt if this time is too short to
-  /// call the role deaf.
+  /// Returns the input that the role has missed for the longest time; nullopt if the role is not
+  /// deaf.
   std::optional<Deafness> Of(Role role) const { return Missing(role, limit_); }
-  /// Like Of(), but for a run that is over. Half of the time is enough, because no further message
-  /// will come.
+  /// Like Of(), but for a run that is over. Half of the time limit of Of() is enough, because no
+  /// further message will come.
   std::optional<Deafness> AtTheEnd(Role role) const { return Missing(role, limit_ / 2); }
 
  private:
@@ -62,8 +62,9 @@ class DeafRoles {
   };
 
   std::optional<Deafness> Missing(Role role, Duration limit) const;
-  /// Whether the producer has published enough messages since the last message that came. Even a
-  /// bad network would not lose all of so many messages.
+  /// Whether the producer has published so many messages since the last one that came that even a
+  /// bad network would not lose all of them: kSureMessages, or half of the messages that are due in
+  /// the missed time if these are fewer.
   bool IsSure(const Ear& ear, Role from) const;
   /// Whether the role's STATUS messages show that the role computes one step after another.
   bool Computes(Role role, TimePoint now) const;

@@ -1,6 +1,7 @@
 // Processes that send on a run's network but are not part of the run (foreign peers). They are
-// roles of another run, or processes that are left over from an earlier run. Their messages are
-// refused. This class only records which processes they are.
+// roles of another run, processes that are left over from an earlier run, or processes that claim a
+// role which another process of this run has. Their messages are refused. This class only records
+// which processes they are.
 #pragma once
 
 #include <cstdint>
@@ -22,8 +23,8 @@ struct ForeignPeer {
 std::string Describe(const ForeignPeer& peer);
 
 /// The foreign processes that sent the most STATUS messages. A flood of invented names does not
-/// fill the memory, and does not hide a process that continues to send. If there are too many
-/// processes, the process with the fewest STATUS messages is forgotten first.
+/// fill the memory, and does not hide a process that continues to send. If a process comes after
+/// kMaxWatched others, the process with the fewest STATUS messages is forgotten.
 class ForeignPeers {
  public:
   /// The largest number of processes that are reported.
@@ -33,15 +34,15 @@ class ForeignPeers {
   /// before its process is forgotten.
   static constexpr std::size_t kMaxWatched = 1024;
 
-  /// Counts a STATUS of another run. A STATUS whose role does not exist is ignored. Host names are
-  /// shortened and made safe to print.
+  /// Counts a STATUS of a foreign process. A STATUS whose role does not exist is ignored. Host
+  /// names are shortened and made safe to print.
   void Hear(const status_t& status);
 
   /// The processes that sent the most STATUS messages, at most kMax, in the order of their first
   /// STATUS.
   std::vector<ForeignPeer> known() const;
-  /// A line "ignored: ..." for each process, and one more line if there were more than kMax
-  /// processes; "" if there are none.
+  /// A line "ignored: ..." for each process of known(), and one more line if there were more than
+  /// kMax processes; "" if there were no foreign processes.
   std::string Text() const;
 
  private:

@@ -1,6 +1,6 @@
-// Decides when a dead role is started again. The first restart comes soon. If the run makes no
-// progress after a restart, the wait before the next restart is longer. The number of restarts in a
-// run is limited.
+// Decides when a role whose process has ended is started again. The first restart comes after 10
+// ms. If the run makes no progress after a restart, the wait before the next restart is longer. The
+// number of restarts in a run is limited.
 #pragma once
 
 #include <algorithm>
@@ -21,7 +21,7 @@ class RestartPolicy {
   explicit RestartPolicy(int limit) : limit_(limit) {}
 
   /// Notes that the role's process has ended while the run was at this step.
-  /// @return how long to wait before the restart; nullopt if there is no further restart
+  /// @return how long to wait before the restart; nullopt if the role has had all its restarts
   std::optional<Duration> OnDeath(std::int64_t step) {
     if (restarts_ >= limit_) return std::nullopt;
     const bool helped = restarts_ == 0 || step > step_;
@@ -31,8 +31,8 @@ class RestartPolicy {
     return wait_;
   }
 
-  /// Notes that the role could not be started. A failed try does not count as a restart. The tries
-  /// end when the run's stall timeout ends the run.
+  /// Notes that a process for the role could not be started. A failed try does not count as a
+  /// restart. The tries end when the run's stall timeout ends the run.
   /// @return how long to wait before the next try
   Duration OnFailedStart() { return wait_ = std::min(2 * wait_, kLongest); }
 

@@ -22,9 +22,10 @@ constexpr Duration kRepeatEvery = milliseconds(200);
 constexpr Duration kPartsEvery = milliseconds(10);
 // If the recorder's report of the last step was lost, the runner asks for it at this interval.
 constexpr Duration kAskRecorderEvery = milliseconds(5);
-// In real time, a role may be two steps ahead of the runner's count of periods. One step is needed
-// because a tick may be late by less than a period. The other step is needed because a world that
-// starts takes its first step at once.
+// In real time, a STATUS is refused if its step is more than this many steps above the number of
+// periods since the run began. One step is needed because a world that is started again takes its
+// first step immediately, and not a period after the last step of the process before it. The other
+// step is a margin.
 constexpr std::int64_t kEarly = 2;
 
 std::optional<Role> RoleNamed(std::string_view name) {
@@ -238,8 +239,9 @@ void RunCoordinator::OnStatus(const status_t& heard) {
     return Fail(fmt::format("{} (pid {} on {}) was built with other message types", status.role,
                             status.pid, status.host));
   }
-  // Each instance is compared with its own last step. So a process that was started again and
-  // catches up counts as progress, although the role's process before it had reached a later step.
+  // Each instance is compared with its own last step. So the steps of a process that was started
+  // again and catches up count as progress, although the role's process before it had reached a
+  // later step.
   if (member.status && status.header.step > member.status->header.step) progressed_ = now;
   progress_ = std::max(progress_, status.header.step);
   signs_of_life_.Heard(*role, member.status ? status.sequence - member.status->sequence - 1 : 0,
@@ -303,8 +305,8 @@ void RunCoordinator::OnResend(Bytes bytes) {
 }
 
 void RunCoordinator::Announce(std::size_t part, std::int64_t answer_to) {
-  // A run in real time that has started does not wait for all roles. A late role joins at once if
-  // RUN says GO.
+  // A run in real time that has started does not wait for missing roles. RUN then says GO even if a
+  // role is missing, so a late role begins to compute as soon as it has joined.
   const bool go = ready_ || (options_.realtime && phase_ == Phase::kRunning);
   Announce(go ? run_t::GO : run_t::PREPARE, part, answer_to);
 }

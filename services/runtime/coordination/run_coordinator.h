@@ -78,8 +78,8 @@ class RunCoordinator {
 
   Phase phase() const { return phase_; }
   /// The error that ended the run; "" if phase() is not kFailed. The first line names the error.
-  /// More lines may follow: the last lines that a dead process printed, what is wrong with keys and
-  /// signatures, and the messages that could not be sent.
+  /// More lines may follow: the last lines that a dead process printed, roles that two processes
+  /// claim, what is wrong with keys and signatures, and the messages that could not be sent.
   const std::string& error() const { return error_; }
   /// Last step that is known to have begun; -1: none.
   std::int64_t step() const { return progress_; }
@@ -103,8 +103,9 @@ class RunCoordinator {
   const ForeignPeers& foreign_peers() const { return foreign_peers_; }
   /// The expected builds of the roles.
   const RoleBuilds& builds() const { return options_.builds; }
-  /// Whether the run goes on after the final loss of this role. A run in lockstep needs every role.
-  /// A run in real time needs only the world (the road) and the recorder (the log).
+  /// Whether the run goes on if this role has ended and is not started again. A run in lockstep
+  /// needs every role. A run in real time needs only the world, which moves the cars, and the
+  /// recorder, which writes the log.
   bool GoesOnWithout(Role role) const {
     return options_.realtime && phase_ == Phase::kRunning && role != Role::kWorld &&
            role != Role::kRecorder;
@@ -113,15 +114,16 @@ class RunCoordinator {
   void Stop();
   /// Ends the run with an error from outside, such as the death of a process.
   void Fail(std::string error);
-  /// Notes that a process that the runner has started is dead and will be started again. From now
-  /// on, late messages of that process are ignored, and another instance may take the role.
+  /// Notes that a process that the runner has started is dead. From now on, late messages of that
+  /// process are ignored. The role is free for the next process that the runner starts
+  /// (Launched()).
   /// @param host the machine of the process, as STATUS names it; "": this machine
   void MarkDead(Role role, std::int32_t pid, TimePoint now, const std::string& host = "");
-  /// Stores the reason why the role cannot be started again or watched at present. The error
-  /// message of a stall contains this reason.
+  /// Stores the reason why the role cannot be started again or watched at present. Error messages
+  /// about a stall, or about roles that are not ready, contain this reason.
   /// @param why the reason; "" if there is none
   void Hinder(Role role, std::string why);
-  /// Notes that the runner has started the role again, as this process.
+  /// Notes that the runner has started the role as this process, for the first time or again.
   void Launched(Role role, std::int32_t pid, TimePoint now, const std::string& host = "");
   /// Calls `handler` for every STATUS that is accepted. A STATUS that comes after a newer STATUS of
   /// the same process is not accepted.
@@ -137,7 +139,7 @@ class RunCoordinator {
     std::int32_t pid = 0;
     bool operator==(const Process&) const = default;
   };
-  /// A role's process as its STATUS describes it.
+  /// What the coordinator knows about the processes of a role, most of it from their STATUS.
   struct Member {
     std::optional<status_t> status;  // last STATUS of the accepted instance
     TimePoint heard{};
@@ -147,8 +149,9 @@ class RunCoordinator {
     std::optional<status_t> rival;  // another instance that claims this role
     TimePoint rival_since{};
     TimePoint rival_heard{};
-    // The last process that was refused. This process has claimed the role for so long that it must
-    // have received a RUN that names the other process.
+    // The last process that was refused the role. A role that the runner has started is refused to
+    // any other process immediately. An external role is refused to a second process that still
+    // claims it although it must have received a RUN that names the first process.
     std::optional<status_t> refused;
     // `undead` is the time at which an instance that counts as dead began to send again;
     // `undead_heard` is the time of its last STATUS.
@@ -166,7 +169,8 @@ class RunCoordinator {
   static constexpr Duration kSilent = milliseconds(1000);
 
   /// Whether each role that is not ready prepares for the run: its last STATUS was WAITING, and the
-  /// role has been silent since then. Such a role may, for example, load the network of SUMO.
+  /// role has been silent for at least kSilent since then. Such a role may, for example, load the
+  /// network of SUMO. False if some role has sent no STATUS at all.
   bool AllPrepare(TimePoint now) const;
   void Refuse(RefusalCounter kind) { ++(own_.*kind); }
   void OnStatus(const status_t& heard);
@@ -181,14 +185,16 @@ class RunCoordinator {
   void OnFailure(Role role, const status_t& status);
   void OnResend(Bytes bytes);
   bool AllReady(TimePoint now) const;
-  /// Whether this role is missing, so that the run cannot begin or go on.
+  /// Whether this role is missing: it is not ready, or it is an external role that is silent during
+  /// the run.
   bool Lacks(Role role, TimePoint now) const;
   bool IsExternal(Role role) const;
   /// The process with this pid on `host`; "" is this machine.
   Process ProcessOn(const std::string& host, std::int32_t pid) const {
     return {.host = host.empty() ? host_ : host, .pid = pid};
   }
-  /// Whether to accept the STATUS; false if it comes from a dead or second instance of the role.
+  /// Whether to accept the STATUS; false if it comes from a dead or second instance of the role, or
+  /// from a process that leaves the run.
   bool Admit(Role role, const status_t& status, TimePoint now);
   /// Does the work of Admit() for a process that is not the role's current process.
   bool AdmitOther(Role role, const status_t& status, TimePoint now);

@@ -14,7 +14,8 @@ namespace {
 // process comes more than this time after the replacement, the replaced process is alive.
 constexpr Duration kOnItsWay = milliseconds(100);
 // A process that has lost its role leaves the run within this time. In this time, five RUN messages
-// say that another process has the role (Membership).
+// say that another process has the role, and the process then leaves (Membership in
+// node/membership.h).
 constexpr Duration kLeaves = milliseconds(1000);
 
 }  // namespace
@@ -69,8 +70,8 @@ bool RunCoordinator::Admit(Role role, const status_t& status, TimePoint now) {
 
 void RunCoordinator::OnUndead(Role role, const status_t& status, TimePoint now) {
   Member& member = members_[static_cast<std::size_t>(role)];
-  // Messages that the process sent before its death may come late. Later messages show that the
-  // process is not dead.
+  // Messages that the process sent before its end may come up to kOnItsWay late. Messages that come
+  // after this time show that the process has not ended.
   if (!IsExternal(role) || !member.status || status.state == status_t::LEFT ||
       HeldAgainst(member.replaced_at, now) <= kOnItsWay) {
     return;

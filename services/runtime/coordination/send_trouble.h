@@ -8,7 +8,7 @@
 
 namespace fogline::runtime {
 
-/// The failed sends of one process.
+/// The failed sends of a role, over all its processes, or of the runner.
 struct SendTrouble {
   std::string role;
   std::int64_t count = 0;

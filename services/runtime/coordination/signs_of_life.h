@@ -26,7 +26,7 @@ class SignsOfLife {
     lost_ += std::max<std::int64_t>(0, lost);
     Since(role, now);
   }
-  /// Notes that messages of the role can come from `now` on.
+  /// Notes that a process of the role was started, so its messages can come from `now` on.
   void Since(Role role, TimePoint now) {
     since_[static_cast<std::size_t>(role)] = {.time = now, .heard = heard_, .lost = lost_};
   }
@@ -45,7 +45,8 @@ class SignsOfLife {
     const auto lost = static_cast<double>(lost_ - last.lost);
     // The share of lost messages is the larger of two estimates. The first estimate compares the
     // number of received messages with the least number of messages that the other roles have sent.
-    // The second estimate uses the number of messages that are known to be lost.
+    // The second estimate uses the number of messages that are known to be lost, because their
+    // sequence numbers are missing.
     const double share_lost =
         std::max(1 - heard / (static_cast<double>(others) * signs), lost / (heard + lost));
     return std::pow(std::clamp(share_lost, 0.0, 1.0), signs);

@@ -13,7 +13,8 @@
 namespace fogline::runtime {
 namespace {
 
-// The runner and the listener read the same clock, but the clock may be set between the two
+// A beacon says when its run began. The listener accepts a beginning that is up to this much in the
+// future. Runner and listener read the same clock, but this clock may be set back between the two
 // readings.
 constexpr std::int64_t kClockSlack_us = 1'000'000;
 
@@ -61,7 +62,7 @@ bool Announcements::Take(Bytes bytes, TimePoint now, std::int64_t wall_us) {
     return entry.announcement.run_id == beacon.header.run_id;
   });
   if (known != entries_.end()) {
-    // A run does not change its URL or its runner.
+    // A run does not change its URL or its runner, so a beacon with other values is refused.
     const Announcement& run = known->announcement;
     if (run.url != beacon.url || run.pid != beacon.pid || run.began_us != beacon.began_us) {
       return false;

@@ -16,8 +16,8 @@ namespace fogline::runtime {
 
 /// The channel of beacon_t. The channel is not in kGraph, because no run uses the channel.
 inline constexpr std::string_view kBeaconChannel = "FOGLINE_BEACON";
-/// The interval at which a run announces itself. The interval is short, so that a person finds the
-/// run without a long wait.
+/// The interval at which a run announces itself. The interval is short, so that a person who starts
+/// a program finds the run without a long wait.
 inline constexpr Duration kBeaconEvery = milliseconds(500);
 
 /// A run as its beacon describes it. Its texts are safe to print.

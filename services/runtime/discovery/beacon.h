@@ -20,7 +20,7 @@ namespace fogline::runtime {
 /// run itself are verified.
 class Beacon {
  public:
-  /// Announces nothing in three cases:
+  /// Makes the beacons of `run`. Nothing is sent in three cases:
   /// - The run is at the meeting address itself.
   /// - Programs must not follow a beacon to the run's URL (MayBeAnnounced()).
   /// - The meeting address is not a multicast group, or has no route.

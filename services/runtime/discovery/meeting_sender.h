@@ -25,7 +25,8 @@ class MeetingSender {
   void Publish(std::string_view channel, Bytes bytes);
 
  private:
-  // LCM itself in place of a Bus: if LCM only sends, it starts no thread and no self-test.
+  // The sender uses LCM directly and not a Bus, because LCM starts no thread and no self-test if it
+  // only sends.
   _lcm_t* lcm_ = nullptr;
 };
 

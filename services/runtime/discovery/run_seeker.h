@@ -26,13 +26,13 @@ class RunSeeker {
 
   /// Whether the role has gone to the network of an announced run.
   bool Tries() const { return tried_.has_value(); }
-  /// Whether the announced run is over, or the role has received nothing from this run for
-  /// kSilentLimit. The role then goes back to the meeting address.
+  /// Whether the announced run is over, or the role has tried for longer than kSilentLimit to join
+  /// it. The role then goes back to the meeting address. Call it while the role has not joined.
   bool InVain(TimePoint now);
   /// Gives up the run that was tried last: Look() does not return this run for the time kTryAgain.
   /// In this time the role can join a run at the meeting address itself. The exclusion ends earlier
-  /// if an announcement says that the run does not wait for the role. If the run waits for the role
-  /// after that, the role has become free again.
+  /// if an announcement says that the run does not wait for the role: if a later announcement says
+  /// that the run waits for the role, the role has become free again.
   void GiveUp(TimePoint now);
   /// From now on, Look() does not return this run, because the role already takes part in it.
   void Ignore(std::int64_t run_id) { own_ = run_id; }

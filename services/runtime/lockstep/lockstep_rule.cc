@@ -3,8 +3,8 @@
 namespace fogline::runtime {
 namespace {
 
-// If a role is asked for a step that it has not computed yet, the role asks for its own inputs. The
-// constant is the shortest time after the role's last request for inputs.
+// If a role is asked for a step that it has not computed yet, the role asks for its own inputs. It
+// does so only if its last request for inputs is at least this old.
 constexpr Duration kMinBetweenAsks = milliseconds(2);
 
 }  // namespace
@@ -109,7 +109,7 @@ TimePoint LockstepRule::Repair(TimePoint now) {
   if (expected_ < next() || FirstMissing() == nullptr) return now + OwnStatus::kHeartbeat;
   const TimePoint ask_at = retry_.Wait(now);
   // A role that catches up gets old inputs only on request. If it has not asked for the inputs of
-  // this step yet, it asks at once.
+  // this step yet, it asks immediately.
   if (CatchingUp() && next() > asked_) {
     AskForMissing(now);
     retry_.AskedForMany(now);
@@ -139,7 +139,8 @@ StepRange LockstepRule::Lacking(const Input& input, std::int64_t first, std::int
     while (first <= last && input.ring.Has(last)) --last;
     return {.first = first, .count = last - first + 1};
   }
-  // Asks only for the first gap: the steps after it may be on their way.
+  // Asks only for the first missing step and the missing steps directly after it. Later missing
+  // steps may still be on their way.
   std::int64_t count = 0;
   while (first + count <= last && !input.ring.Has(first + count)) ++count;
   return {.first = first, .count = count};

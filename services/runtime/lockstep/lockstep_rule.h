@@ -5,9 +5,9 @@
 // loss below 100 % only costs time.
 //
 // Catching up. RUN says which step the world has reached. A node that joins late, for example
-// because its predecessor was killed, computes all steps from step 0 on, and asks for the inputs of
-// many steps at a time. The recorder sends old inputs, and the producers send the newest inputs.
-// The node does not publish old outputs, because the recorder has them.
+// because the role's earlier process was killed, computes all steps from step 0 on, and asks for
+// the inputs of many steps at a time. The recorder sends old inputs, and the producers send the
+// newest inputs. The node does not publish old outputs, because the recorder has them.
 //
 // The role that begins the steps (the world) also waits for GO, keeps to the pace, and stays at
 // most kMaxAhead steps ahead of the log on disk (step_gate.h).
@@ -47,7 +47,8 @@ class LockstepRule final : public FireRule {
   std::int64_t FirstNeeded(const Input& input) const;
   /// Computes every step that can be computed.
   void Advance(TimePoint now);
-  /// Does what is due at the gate. @return the latest time for the next call
+  /// Does the work that is due for gate_: asks for the recorder's STATUS, or reports DONE. @return
+  /// the latest time for the next call
   TimePoint PollGate(TimePoint now);
   TimePoint Repair(TimePoint now);
   void AskForMissing(TimePoint now);

@@ -21,14 +21,15 @@ class RetryTimer {
     return ask_at_;
   }
 
-  /// Notes that the node asks now. AskedInVain() makes the next interval a quarter longer.
+  /// Notes that the node asks now. AskedInVain(), called after it, sets the time of the next
+  /// request: the interval becomes a quarter longer.
   void Asked(TimePoint now) { asked_ = now; }
   void AskedInVain(TimePoint now) {
     wait_ = std::min(wait_ + wait_ / 4, kLongest);
     ask_at_ = now + wait_;
   }
-  /// Notes that the node has asked for many steps at once. Each step that comes (Arrived()) delays
-  /// the next request.
+  /// Notes that the node has asked for many steps in one request. Each step that comes (Arrived())
+  /// delays the next request.
   void AskedForMany(TimePoint now) {
     wait_ = kShortest;
     ask_at_ = now + wait_;
@@ -37,8 +38,8 @@ class RetryTimer {
 
   /// Notes that the step has been computed.
   void Computed(TimePoint now) {
-    // The duration of a step with a repair does not show how long a step usually takes (Karn &
-    // Partridge 1987).
+    // The duration of a step with a repair does not show how long a step usually takes, so it is
+    // left out of the average (Karn & Partridge 1987).
     if (computed_ != TimePoint{} && asked_ < computed_) {
       const Duration took = now - computed_;
       step_time_ += (took - step_time_) / (took < step_time_ ? kDown : kUp);

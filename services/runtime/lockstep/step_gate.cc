@@ -7,7 +7,7 @@ namespace {
 
 constexpr Duration kFirstRetryInterval = milliseconds(20);
 constexpr Duration kMaxRetryInterval = milliseconds(500);
-// A step is due after this time (three years) at the latest, even at the slowest pace.
+// A step is due at most this long (three years) after the start, even at the slowest pace.
 constexpr double kLongest_s = 1e8;
 
 }  // namespace
@@ -23,7 +23,7 @@ StepGate::StepGate(Bus& bus, status_t& own) {
     // If the recorder has failed, the step that it reports may not be on disk.
     if (status->role != NameOf(Role::kRecorder) || status->state == status_t::FAILED) return;
     // If no process of the world has begun this step in this run yet, the recorder cannot have the
-    // step.
+    // step, so the STATUS is refused.
     if (status->header.step > std::max(own.header.step, begun_before_)) {
       ++own.out_of_window;
       return;
@@ -42,7 +42,8 @@ void StepGate::OnGo(const run_t& run, TimePoint now) {
   if (started_) return;
   started_ = true;
   pace_ = std::max(0.0, run.pace);
-  // A world that joins late computes the old steps at once and then continues at the pace.
+  // A world that joins late computes the old steps without waiting, and keeps to the pace only from
+  // there on.
   start_ = now;
   start_ -= Due(std::max<std::int64_t>(0, run.progress)) - now;
 }

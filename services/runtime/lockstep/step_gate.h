@@ -20,7 +20,7 @@ class StepGate {
   StepGate(Bus& bus, status_t& own);
 
   void Configure(const Scenario& scenario, std::int64_t run_id);
-  /// Notes that an earlier process of the world has begun this step.
+  /// Notes that this step has begun in the run, for example in an earlier process of the world.
   void BegunBefore(std::int64_t step) { begun_before_ = std::max(begun_before_, step); }
   void OnGo(const run_t& run, TimePoint now);
   bool started() const { return started_; }

@@ -1,6 +1,6 @@
 // The inputs of a role: the channels that the role reads, and the last steps of each channel. A
-// message is refused if it is of another run, or of a step that the run does not have. The rule
-// decides about all other messages.
+// message is refused if it is of another run, of another type, or of a step that the run does not
+// have. The rule (fire_rule.h) decides which other messages are stored.
 #pragma once
 
 #include <cstdint>
@@ -59,7 +59,7 @@ class Inputs {
   /// different bytes.
   /// @return true if the message is new and valid; the input has then stored the message
   bool Keep(std::size_t input, std::int64_t step, Arrival& arrival, StepRing::Verdict verdict);
-  /// Stores a message from the log that a predecessor of this process has written.
+  /// Stores a message that the recorder has read from the log of an earlier recorder process.
   void Remember(std::size_t input, std::int64_t step, Bytes bytes);
 
  private:

@@ -12,7 +12,8 @@ namespace {
 
 // The role asks for a missing part of the scenario at this interval.
 constexpr Duration kPartRetry = milliseconds(20);
-// The shortest time between two answers to announcements (PREPARE) that are repeated.
+// The runner repeats PREPARE until all roles are ready. A role that is ready answers with its
+// STATUS, but not more often than at this interval.
 constexpr Duration kAnnouncedRetry = milliseconds(20);
 // If the runner is silent for this time, a role that has not received the whole scenario yet leaves
 // the run and looks for another run.
@@ -53,8 +54,9 @@ TimePoint Membership::Poll(TimePoint now) {
 
 void Membership::CheckSends(TimePoint now) {
   const Bus::FailedSends& failed = parts_.bus.failed_sends();
-  // A role without a run only sends notices that it waits. In real time the other roles go on
-  // without this role, and the runner decides how long this role may be silent.
+  // A role without a run only sends notices that it waits, so it does not fail. A role in real time
+  // does not fail either: the other roles go on without it, and the runner decides how long it may
+  // be silent.
   if (own_.left() || !run_.id || run_.realtime || !failed.since ||
       !runner_.Stalled(*failed.since, now))
     return;
@@ -71,7 +73,8 @@ void Membership::OnRun(Bytes bytes) {
     OnOtherRun(run, now);
     return own_.Refuse(&status_t::foreign);
   }
-  // A RUN from a played log has no sequence number. A role does not join a run by such a RUN.
+  // A RUN from a played log has the sequence number 0. A role does not join a run because of such a
+  // RUN.
   if (!run_.id && run.sequence < 1) return own_.Refuse(&status_t::foreign);
   const status_t& own = own_.message();
   if (!run_.id && SeatIn(run, own.role, own.instance) != Seat::kFree) {

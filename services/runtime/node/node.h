@@ -27,7 +27,8 @@ class Node {
   Node(const Node&) = delete;
   Node& operator=(const Node&) = delete;
 
-  /// Does what is due (repair, status). Call it after every Bus::Wait().
+  /// Does what is due, such as the requests for missing inputs, the next step, or the STATUS. Call
+  /// it after every Bus::Wait().
   /// @return the latest time for the next call
   TimePoint Poll(TimePoint now);
 

@@ -11,7 +11,8 @@ namespace {
 // All roles receive each answer. If another role asks for the same step within this time, that role
 // gets no second answer. The role has received the first answer, or will ask again.
 constexpr Duration kAnswerHolds = milliseconds(1);
-// Requests for the newest kNewest steps are always answered, because the run waits for these steps.
+// Answers with the newest kNewest steps do not count for the rate limit, because the run waits for
+// these steps.
 constexpr std::int64_t kNewest = 2;
 
 /// The requests that a role can answer: requests for its own channels. The recorder can answer
@@ -49,8 +50,8 @@ void Outputs::Publish(std::size_t channel, std::int64_t step, Bytes bytes) {
     if (output.channel != channel) continue;
     output.ring.Store(step, bytes);
     output.answered[RingSlot(step)] = {};
-    // A step that is old enough to be on disk is not published, because the recorder answers
-    // requests for this step. In real time every output is published.
+    // A step that is so old that it is on disk is not published, because the recorder answers
+    // requests for it. In real time every output is published.
     if (parts_.run.realtime || step > parts_.run.progress - 2 * kMaxAhead) {
       parts_.bus.Publish(output.topic, bytes);
     }

@@ -1,5 +1,6 @@
 // The outputs of a role. This class publishes each step once, stores the last steps, and answers
-// requests for them. It does not publish a step if the recorder answers requests for the step.
+// requests for them. In lockstep, it does not publish a step that is so old that the recorder
+// answers requests for it.
 #pragma once
 
 #include <array>
@@ -26,10 +27,11 @@ class Outputs {
   Outputs(Parts& parts, Role role, Work& work, const std::unique_ptr<FireRule>& rule);
 
   /// Publishes the output of a step on one of the role's channels (an index in kChannels), and
-  /// stores the output. If the recorder answers requests for the step, the output is only stored.
+  /// stores the output. In lockstep, the output of a step that the recorder already has is only
+  /// stored.
   /// @throws std::runtime_error if the output is too large
   void Publish(std::size_t channel, std::int64_t step, Bytes bytes);
-  /// The limit for answers to requests for older steps.
+  /// The limit for answers to requests for steps before the two newest ones, and for STATUS.
   RateLimiter& limiter() { return limiter_; }
 
  private:

@@ -1,6 +1,6 @@
-// A rate limiter (token bucket) for the requests that a process answers: it allows a burst and then
-// a fixed number per second. So a flood of RESEND gets a limited number of answers, and the run
-// goes on.
+// A rate limiter (token bucket) for the requests that a process answers: it allows a burst of
+// answers, and then a fixed number of answers per second. So a flood of RESEND gets a limited
+// number of answers, and the run goes on.
 #pragma once
 
 #include <algorithm>

@@ -16,7 +16,7 @@ class Steps {
 
   /// The step to compute next. It uses each input's message of step next() - lag.
   std::int64_t next() const { return next_; }
-  /// Notes that a predecessor has computed the steps before this one.
+  /// Notes that an earlier process of this role has computed the steps before `step`.
   void StartAt(std::int64_t step) {
     next_ = step;
     own_.message().header.step = step - 1;

@@ -23,7 +23,7 @@ class Work {
   Work(const Work&) = delete;
   Work& operator=(const Work&) = delete;
 
-  /// The role's part in the run.
+  /// The role's node, which does everything except this work.
   virtual Node& node() = 0;
   /// Prepares for a run. Called when the whole scenario has come.
   /// @return the rule that decides when steps are computed
@@ -39,8 +39,8 @@ class Work {
   /// Called before every STATUS. The role finishes the work that the STATUS reports as done. For
   /// example, the recorder flushes its log.
   virtual void BeforeStatus() {}
-  /// Called once when the role's part in its run ends (OwnStatus::left()). OwnStatus::Release()
-  /// does not call this function.
+  /// Called exactly once, when the role's part in its run ends (OwnStatus::left()).
+  /// OwnStatus::Release() does not call this function.
   virtual void OnLeave() {}
   /// Called when another process asks for a STATUS that shows at least this step.
   virtual void OnStatusAsked(std::int64_t /*step*/) {}

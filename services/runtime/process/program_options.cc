@@ -17,7 +17,7 @@ void AddRunIdOption(CLI::App& app, const std::string& name, std::optional<std::i
                     const std::string& help) {
   app.add_option(name, run_id, help)
       ->check(CLI::Range(std::int64_t{1}, std::numeric_limits<std::int64_t>::max()))
-      ->check([](const std::string& text) {  // CLI11 takes the nearest number that fits
+      ->check([](const std::string& text) {  // CLI11 changes a number that is too large
         return ParseNumber<std::int64_t>(text)
                    ? std::string()
                    : text + " is no id: a whole number from 1 to 9223372036854775807";

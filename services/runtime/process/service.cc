@@ -27,8 +27,8 @@ constexpr int kWorldPriority = 2;
 constexpr int kPriority = 1;
 // If a network cannot be joined, the process tries again at this interval.
 constexpr Duration kTryAgain = milliseconds(500);
-// A process of a run that waits for its network tries to join the network at this interval. The
-// interval is short, because the whole run may wait for this process.
+// A process with --run-id whose network cannot be reached yet tries to join the network at this
+// interval. The interval is short, because the whole run may wait for this process.
 constexpr Duration kLookEvery = milliseconds(50);
 
 struct Arguments {
@@ -105,7 +105,7 @@ class Service {
     work_ = make_(*bus, run_id);
     bus_ = std::move(bus);
     starts_over_ = false;
-    preferred_ = false;  // the new bus may start a further thread
+    preferred_ = false;  // the new bus may start a further thread, which has no priority yet
   }
 
   /// Joins the network for the first time. A process with the option --run-id was started by a
@@ -176,8 +176,8 @@ class Service {
     return true;
   }
 
-  /// Goes to the network of a run that waits for the role. Goes back if no message of that run
-  /// comes.
+  /// Goes to the network of a run that waits for the role. Goes back to the meeting address if the
+  /// role cannot join that run (RunSeeker::InVain()).
   /// @throws std::runtime_error after the time of --wait
   void Seek(TimePoint now) {
     LimitWait(now);
@@ -257,7 +257,8 @@ class Service {
     if (warned_) Say(trouble);
   }
 
-  /// Prints once for each run on this network that has no place for the role.
+  /// Prints a line about each run on this network that has no place for the role, once for each
+  /// such run.
   void NameTheFullRun() {
     if (!news().full || std::exchange(full_, news().full) == news().full) return;
     Say(fmt::format("run {} on {} has its {} already; waiting for another run", *full_, bus_->url(),
@@ -286,7 +287,7 @@ class Service {
   bool starts_over_ = false;
   std::optional<std::int64_t> full_;  // the last run that NameTheFullRun() has named
   bool warned_ = false;
-  bool preferred_ = false;  // whether the threads of this run have asked for priority
+  bool preferred_ = false;  // whether the process has asked for priority since it joined this bus
   bool said_not_preferred_ = false;
 };
 

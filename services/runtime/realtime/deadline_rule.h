@@ -2,7 +2,7 @@
 // as soon as it has all inputs that are not lost. It also waits for a lost input if messages of
 // this input come again. At its deadline, a fixed time after the world's tick, the role decides
 // with the inputs that it has. The deadline is so early that the command still reaches the world in
-// time. If the next step has already begun, the role decides at once.
+// time. If the next step has already begun, the role decides immediately.
 #pragma once
 
 #include "services/runtime/node/fire_rule.h"
@@ -24,7 +24,7 @@ class DeadlineRule final : public FireRule {
  private:
   /// Decides the steps that are due. @return the latest time for the next call
   TimePoint Fire(TimePoint now);
-  /// Decides a step at once, with the inputs that have come.
+  /// Decides a step immediately, with the inputs that have come.
   void Decide(std::int64_t step, TimePoint now);
 
   Parts& parts_;

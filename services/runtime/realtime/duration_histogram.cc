@@ -5,8 +5,9 @@
 
 namespace fogline::runtime {
 
-// A duration, rounded down, is m 2^e us with m in [64, 128). Below 64 us, e is 0 and m is the
-// duration. The cell is 64 e + m.
+// The cell of a duration. Rounded down to a multiple of 2^e us, the duration is m 2^e us, with the
+// exponent e >= 0 and m in [64, 128). Below 64 us, e is 0 and m is the duration in us. The index of
+// the cell is 64 e + m.
 std::size_t DurationHistogram::CellOf(std::int64_t us) {
   const auto value = static_cast<std::uint64_t>(us);
   const auto width = static_cast<int>(std::bit_width(value));

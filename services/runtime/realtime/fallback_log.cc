@@ -46,7 +46,7 @@ const Fallback* FallbackLog::Add(const status_t& status) {
   if (role == kRoles.size() || kRoles[role].role == Role::kRecorder) return nullptr;
   if (status.header.utime / step_us_ >= steps_ - 1) return nullptr;
   Known& known = roles_[role];
-  known.lost.reset();  // forgets what this process or its predecessor reported before
+  known.lost.reset();  // forgets what the role's earlier STATUS reported
   known.utime = status.header.utime;
   std::string lost;
   std::string back;
@@ -96,9 +96,11 @@ bool FallbackLog::IsSilent(const Known& known, std::int64_t utime) const {
   return static_cast<double>(utime) - static_cast<double>(known.utime) > silent_us_;
 }
 
-// `status` names the first of the role's own lost inputs. The last STATUS of each other role says
-// which lost inputs keep that role from publishing. No lost input keeps the world from publishing.
-// Only lost channels of the world keep the arbitrator from publishing.
+// Returns the name of the role that stopped publishing; "" if no input is lost or stale. The search
+// begins with the first lost (or else stale) input of the role, which `status` names. The last
+// STATUS of each other role says which lost inputs keep that role from publishing. No lost input
+// keeps the world from publishing. Only lost channels of the world keep the arbitrator from
+// publishing.
 std::string FallbackLog::Culprit(const status_t& status) const {
   const std::size_t channel = ChannelNamed(status.waiting_for);
   if (channel == kNumChannels) return "";

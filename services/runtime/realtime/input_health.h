@@ -22,9 +22,9 @@ namespace fogline::runtime {
 /// The age is the time since the last new step arrived, or since the beginning. The limits are
 /// inclusive: an age of exactly `stale` is OK. An input is OK again after `recover_steps` new
 /// steps. Each of these steps except the first must come within `stale` after the previous step.
-/// Together, the steps must take at least the time that they take at the normal rate. So an input
-/// does not recover while its sender sends a backlog after a stop. The input recovers when the
-/// sender sends at its normal rate again.
+/// Together, the steps must take at least recover_steps - stale_periods periods, which is nearly
+/// the time that they take at the normal rate. So an input does not recover while its sender sends
+/// a backlog after a stop. The input recovers when the sender sends at its normal rate again.
 ///
 /// The loss of an input is detected `lost` periods after its last step. This is at most `lost`
 /// periods after the end of the sender, plus the time until the receiver calls Update() (see

@@ -2,10 +2,11 @@
 // by age (input_health.h), computes a step that is due, and keeps the statistics of the role.
 //
 // A message that comes after the end of its step is late: it is counted and never used. A message
-// of a step that cannot be under way is refused (step_horizon.h). An input on demand has no state.
+// of a step that cannot be under way is refused (step_horizon.h). An input on demand is not judged
+// and has no state.
 //
-// STATUS reports the state of each input, the culprit, and how punctual the role is. A change of a
-// state is reported at once.
+// STATUS reports the state of each input, the culprit, and how punctual the role is. When a state
+// changes, a STATUS is sent immediately.
 #pragma once
 
 #include <algorithm>
@@ -35,7 +36,7 @@ class RealtimeWatch {
 
   /// Decides what to do with an input's message of a step, and counts the message if it is late.
   StepRing::Verdict Judge(std::size_t input, std::int64_t step, Bytes bytes);
-  /// Notes that an input has a new message of a step (Inputs::Keep()).
+  /// Notes that an input has a new message of a step, which Inputs::Keep() has stored.
   void Heard(std::size_t input, std::int64_t step, TimePoint time);
   /// Calls Judge(), Inputs::Keep() and Heard(), for a rule that does nothing else between these
   /// calls.
@@ -62,7 +63,8 @@ class RealtimeWatch {
 
   /// The inputs that a step needs: all inputs except the inputs on demand.
   std::span<const Input> awaited() const { return parts_.inputs.all().first(health_.size()); }
-  /// The input that brings the world's ticks; the number of inputs if no input brings them.
+  /// The index of the input that brings the world's ticks; the number of inputs if no input brings
+  /// them.
   std::size_t tick_input() const { return tick_input_; }
   /// The first step up to `newest` that may still be computed.
   std::int64_t Oldest(std::int64_t newest) const {

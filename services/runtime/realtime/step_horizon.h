@@ -21,7 +21,7 @@ namespace fogline::runtime {
 class StepHorizon {
  public:
   /// @param period of the steps on the wall clock, above 0
-  /// @param slack steps by which the world can be ahead of the best proof
+  /// @param slack steps by which the world can be ahead of the bound that the best proof gives
   /// @param remembered a proof counts for this time at least, and for twice this time at most. In
   ///     every interval of this length, at least one proof must come without delay.
   StepHorizon(Duration period, std::int64_t slack, Duration remembered)
@@ -113,9 +113,10 @@ class RunHorizon {
   /// STATUS messages, of which some may be lost.
   static constexpr Duration kHearsay = milliseconds(1000);
   /// How long a message (kHeardPeriods, in periods) or a report of the runner (kToldFor) limits the
-  /// newest possible step. A message may come late because it was sent again. Messages that have
-  /// left their producer's ring of kRingSteps steps are not sent again. The runner reports old
-  /// progress while it receives no STATUS. In a run that goes on, this lasts less than a minute.
+  /// newest possible step. A message may come late because it was sent again. A message that has
+  /// left its producer's ring of kRingSteps steps is not sent again, so no message comes later than
+  /// that. The runner reports old progress while it receives no STATUS. In a run that goes on, this
+  /// lasts less than a minute.
   static constexpr std::int64_t kHeardPeriods = kRingSteps;
   static constexpr Duration kToldFor = milliseconds(60'000);
   /// After this many periods without a newer step, the runner's progress alone limits the steps.

@@ -4,9 +4,9 @@
 // Step k is due k periods after the start, on a grid that does not drift. While the process or its
 // machine is held up, ticks pass without a step. Only the last of these ticks begins a step. If the
 // whole machine was held up, the other roles may not have finished the previous step. The late tick
-// then waits a moment for these roles, and the next tick keeps a distance from the late tick.
-// Simulated time is counted in steps. So simulated time stops while the world's process is stopped,
-// and no step is ever left out. Missed ticks are counted.
+// then waits up to 3 ms for these roles, and the next tick comes at least a quarter of a period
+// after the late one. Simulated time is counted in steps. So simulated time stops while the world's
+// process is stopped, and no step is ever left out. Missed ticks are counted.
 //
 // A world that is started again continues after the last TRUTH that the recorder has.
 #pragma once
@@ -23,8 +23,8 @@ namespace fogline::runtime {
 
 class TickRule final : public FireRule {
  public:
-  /// Takes over after the step of `truth`. Computes the steps that are known to be under way, but
-  /// does not publish them.
+  /// Function with which a restarted world continues after the step of `truth`. It computes the
+  /// steps that are known to be under way, but does not publish them.
   using TakeOver = std::function<void(const truth_t& truth)>;
 
   TickRule(Parts& parts, const Scenario& scenario, StepGate& gate, TakeOver take_over);

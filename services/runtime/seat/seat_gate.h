@@ -9,11 +9,12 @@
 
 namespace fogline::runtime {
 
-/// A seat has the driver while its newest message is less than `deadman` old and says that a person
-/// is present. While a seat has the driver, the messages of other seats are refused. When this seat
-/// is silent, or its person has left, the next message of a person at any seat counts.
+/// A seat has the driver, which means that its messages are used, while its newest message is less
+/// than `deadman` old and says that a person is present. In this time the messages of other seats
+/// are refused. When this seat is silent, or its person has left, the next message of a person at
+/// any seat counts.
 ///
-/// The class reads no clock. So tests can give it any times.
+/// The class reads no clock: its caller passes the time.
 class SeatGate {
  public:
   explicit SeatGate(Duration deadman) : deadman_(deadman) {}
@@ -32,7 +33,8 @@ class SeatGate {
     return nullptr;
   }
 
-  /// The newest input; nullptr if no person is there. The pointer is valid until the next Take().
+  /// The newest message of the seat that has the driver; nullptr if no seat has the driver. The
+  /// pointer is valid until the next Take().
   const driver_input_t* Newest(TimePoint now) const {
     const bool there = newest_ && newest_->present != 0 && now - heard_ < deadman_;
     return there ? &*newest_ : nullptr;

@@ -27,7 +27,7 @@ namespace {
 
 /// Whether a socket of this machine receives UDP messages on the port. The kernel delivers a
 /// multicast message to every socket on the message's port, even if the socket has joined another
-/// group.
+/// group. So a run needs a port that no other socket uses.
 bool IsTaken(std::uint16_t port) {
   const int probe = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
   if (probe < 0) return false;  // the caller's own socket will report the error
@@ -280,7 +280,7 @@ void Bus::Drain() {
   RequireNoHandler();
   for (int i = 0; i < kDrained; ++i) {
     if (waiting_ > 0) {
-      Handle();  // needs no system call and no reading of the clock
+      Handle();  // memq; without the reading of the clock in Wait()
     } else if (!Wait(Duration::zero())) {
       return;
     }

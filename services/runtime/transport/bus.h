@@ -4,8 +4,8 @@
 //
 // With udpm a bus reads its socket itself, because LCM's thread costs a second wake-up for each
 // message. Messages then wait in the kernel's buffer and, on request, in a backlog (KeepBacklog()).
-// LCM only sends. With mpudpm, memq, and a udpm URL whose options Fogline does not know, LCM also
-// receives.
+// LCM then only sends. With mpudpm, memq, and a udpm URL whose options Fogline does not know, LCM
+// also receives.
 #pragma once
 
 #include <cstdint>
@@ -80,7 +80,7 @@ class Bus {
   /// the bus always has a backlog. A handler may call this function.
   /// @throws std::runtime_error if the kernel grants no thread or no descriptor
   void KeepBacklog();
-  /// From now on, the bus receives messages as over a bad network.
+  /// From now on, the bus simulates a bad network for the messages that it receives (faults.h).
   void Impair(const Faults& faults) { faults_ = faults; }
 
   /// Calls `handler` from Wait() for every message on exactly this channel. Handlers of one channel
@@ -95,7 +95,8 @@ class Bus {
   void SetSampleRate(std::string_view channel, double share);
 
   /// Calls `watcher` from Wait() for every message on any channel, except messages that are too
-  /// large for Fogline. Also starts a backlog (KeepBacklog()). May be called once at most.
+  /// large for Fogline. Also starts a backlog (KeepBacklog()). SubscribeAll() may be called once at
+  /// most.
   using Watcher = std::function<void(std::string_view channel, Bytes)>;
   void SubscribeAll(Watcher watcher);
   /// Whether LCM receives the messages. LCM then stores the name of every channel from which a

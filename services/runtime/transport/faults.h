@@ -55,7 +55,7 @@ class Faults {
 
  private:
   enum class Draw : std::uint8_t { kLossOrDuplicate, kReorderOrTruncate, kFlip, kPlaces };
-  /// Two uniform random numbers for the message that has just come.
+  /// Two uniform random numbers in (0, 1) for the message that has just come.
   std::array<double, 2> Uniform2(Draw draw) const;
 
   FaultRates rates_;

@@ -28,7 +28,7 @@ class LoadShedder {
     count_ = 0;
     const double share = std::clamp(per_second_ / sent, kLeast, 1.0);
     // A change costs a system call, so the share stays the same if it differs from the wanted share
-    // by less than a fifth.
+    // by less than a fifth. Only a change to 1 (all messages) is always made.
     if (share > 0.8 * share_ && share < 1.2 * share_ && !(share == 1 && share_ < 1)) {
       return std::nullopt;
     }

@@ -25,7 +25,7 @@ namespace {
 constexpr Duration kAnswerLimit = milliseconds(5000);
 constexpr Duration kStallLimit = milliseconds(5000);
 // The limit in place of kAnswerLimit for a try to connect to a relay again. A relay that was
-// started again answers at once.
+// started again answers immediately.
 constexpr Duration kSecondAnswerLimit = milliseconds(200);
 // The client stores at most this many bytes from the relay while the relay accepts no data.
 constexpr std::size_t kMaxReceived = 64 << 20;

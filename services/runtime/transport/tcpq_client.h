@@ -30,15 +30,15 @@ class ConnectionLost : public std::runtime_error {
 ///
 /// Readable() restores a lost connection as soon as the relay is back. One call never waits longer
 /// than its `timeout`. All messages are lost until the connection is restored. If the relay is not
-/// back after kTries tries, Readable() throws ConnectionLost once. After that, Readable() only
-/// waits, so that the process can end a run properly.
+/// back after kTries tries, Readable() throws ConnectionLost a single time. After that, Readable()
+/// only waits, so that the process can end a run properly.
 class Client {
  public:
   using Handler = std::function<void(Bytes)>;
 
   /// The interval and the number of tries to restore a lost connection: 10 s in all. A killed relay
-  /// of a run is started again within a second, if the machine can start a process. A person needs
-  /// more time to restart a relay than any role waits.
+  /// of a run is started again within a second, if the machine can start a process. More tries
+  /// would not help: a person needs more time to restart a relay than any role waits.
   static constexpr Duration kTryEvery = milliseconds(50);
   static constexpr int kTries = 200;
 

@@ -44,7 +44,7 @@ std::optional<Role> ProducerOf(std::string_view channel, Bytes payload) {
     for (const RoleInfo& info : kRoles) {
       if (info.name == name) return info.role;
     }
-    return Role::kRunner;  // a STATUS with an unknown role; the runner itself sends no STATUS
+    return Role::kRunner;  // unknown role: no role may send this, and the runner sends no STATUS
   }
   if (channel == ChannelOf<resend_t>().name) return std::nullopt;
   const auto* found = std::ranges::find(kChannels, channel, &ChannelInfo::name);

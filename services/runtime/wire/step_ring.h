@@ -31,7 +31,8 @@ inline constexpr std::size_t RingSlot(std::int64_t step) {
   return static_cast<std::size_t>(step % kRingSteps);
 }
 
-/// Ring of messages. Buffers are reused: once they have grown, nothing is allocated.
+/// Ring of messages. Buffers are reused: when they have reached the size of the messages, nothing
+/// is allocated.
 class StepRing {
  public:
   /// What to do with a message that arrives.

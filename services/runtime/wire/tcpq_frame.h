@@ -30,7 +30,8 @@ enum class FrameType : std::uint32_t { kPublish = 1, kSubscribe = 2, kUnsubscrib
 /// The largest parts of a frame, in bytes. A longer part is refused before it is read.
 struct Limits {
   std::size_t channel = kLongestChannel;
-  // The cost of matching a subscription grows with the square of the length of its pattern.
+  // The cost of matching a channel with a pattern grows with the square of the pattern's length, so
+  // patterns must be short.
   std::size_t pattern = 256;
   std::size_t payload = 4 << 20;
 };

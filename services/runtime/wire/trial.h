@@ -10,15 +10,15 @@
 
 namespace fogline::runtime {
 
-/// Largest length in bytes of the title of an experiment, of a unit, and of the name of a
-/// condition, a questionnaire or an item.
+/// Largest length in bytes of the title of an experiment, of the unit of an answer, and of the name
+/// of a condition, a questionnaire or an item of a questionnaire.
 inline constexpr std::size_t kMostTrialNameBytes = 100;
 /// Longest text of a marker or of an answer, in bytes. A TRIAL with such a text fits into one
 /// datagram.
 inline constexpr std::size_t kMostTrialTextBytes = 500;
-/// A recorder logs at most kMostTrialFactsPerSecond TRIAL messages in a second, and at most
-/// kMostTrialFactsAtOnce at once. Our choice: a person causes fewer messages, and a flood of
-/// messages cannot fill the memory or the disk.
+/// A recorder logs at most kMostTrialFactsPerSecond TRIAL messages in a second, after a burst of at
+/// most kMostTrialFactsAtOnce. Our choice: a person causes fewer messages, and a flood of messages
+/// cannot fill the memory or the disk.
 inline constexpr double kMostTrialFactsPerSecond = 20;
 inline constexpr double kMostTrialFactsAtOnce = 40;
 

@@ -83,7 +83,7 @@ void Backlog::Receive(const std::stop_token& stop) {
       continue;
     }
     // There is no packet, or recv() has reported an error of the network. recv() reports such an
-    // error only once.
+    // error only once, so the next call can succeed.
     std::array<pollfd, 2> waited{pollfd{.fd = socket_, .events = POLLIN, .revents = 0},
                                  pollfd{.fd = end_, .events = POLLIN, .revents = 0}};
     poll(waited.data(), waited.size(), -1);

@@ -17,7 +17,7 @@
 namespace fogline::runtime {
 namespace {
 
-/// @throws std::system_error with errno unless the call has succeeded
+/// @throws std::system_error with errno if the call has not succeeded
 void Require(bool succeeded, const std::string& url) {
   if (!succeeded) throw std::system_error(errno, std::generic_category(), url);
 }

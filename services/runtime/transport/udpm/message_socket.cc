@@ -68,7 +68,7 @@ std::optional<Bytes> MessageSocket::NextPacket() {
   // MSG_TRUNC: the size is that of the whole packet, even if the packet is too large.
   const ssize_t size = recv(socket(), buffer_.data(), buffer_.size(), MSG_TRUNC);
   // There is no packet, or recv() has reported an error of the network. recv() reports such an
-  // error only once.
+  // error only once, so the next call can succeed.
   if (size < 0) return std::nullopt;
   const auto bytes = static_cast<std::size_t>(size);
   return Bytes(buffer_.data(), bytes <= buffer_.size() ? bytes : 0);

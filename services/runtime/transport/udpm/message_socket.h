@@ -1,8 +1,8 @@
 // Receives the messages of a udpm:// network in the thread of the caller.
 //
-// LCM receives in a separate thread. For each message this thread wakes up, writes into a pipe,
-// and the pipe wakes the caller. The lockstep of nine processes on two cores waits for such
-// wake-ups most of the time.
+// LCM receives in a separate thread. For each message this thread wakes up, writes into a pipe, and
+// the pipe wakes the caller. A run in lockstep with nine processes on two cores spends most of its
+// time on such wake-ups.
 #pragma once
 
 #include <array>
