@@ -18,8 +18,8 @@ namespace fogline {
 // Every role that computes messages, in the order of evaluation within a step. A row is
 // ROLE(folder, Class, purpose). The role is the class fogline::FOLDER::CLASS of
 // services/FOLDER/FOLDER.h, its name is FOLDER, its program is fogline-FOLDER, and its value is
-// Role::kCLASS. services/closed_loop/algorithms.h checks that each row has a folder, and each
-// folder a row.
+// Role::kCLASS. services/closed_loop/algorithms.h checks that each row has a folder, and that each
+// folder of a role has a row.
 #define FOGLINE_ROLES(ROLE)                                                         \
   ROLE(world, World, "moves the cars and is the clock of the run")                  \
   ROLE(radar, Radar, "measures range and range rate; fog hardly affects it")        \
@@ -175,9 +175,9 @@ struct ChannelInfo {
   std::string_view what;
   RoleSet on_demand;
 
-  /// Whether the recorder logs the channel in every run: every kStep channel, and RUN, so that a
-  /// log contains its scenario. In real time, the recorder also logs STATUS, DRIVER_INPUT and
-  /// TRIAL. For these three channels the result is false.
+  /// Whether the recorder logs the channel in every run. The result is true for every kStep
+  /// channel, and for RUN, because a log must contain its scenario. In real time, the recorder also
+  /// logs STATUS, DRIVER_INPUT and TRIAL. For these three channels the result is false.
   constexpr bool Logged() const { return pace == Pace::kStep || name == "RUN"; }
 };
 

@@ -8,8 +8,8 @@
 
 namespace fogline {
 
-/// Sets the number, integer, flag or choice at a JSON pointer. The field may lie in an item of a
-/// list; the scenario must then have this item.
+/// A field of a scenario, named by its JSON pointer, which can be set: a number, an integer, a flag
+/// or a choice. The field may lie in an item of a list; the scenario must then have this item.
 class FieldAssignment {
  public:
   /// @throws InputError if the pointer names no such field

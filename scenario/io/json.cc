@@ -180,7 +180,8 @@ class TreeBuilder final : public nlohmann::json_sax<nlohmann::json> {
     return &(open_.back()->As<JsonObject>()->back().value = std::move(node));
   }
 
-  // To find the end of a number, the lexer reads one more byte, except at the end of the text.
+  // To find the end of a number, the lexer reads one more byte, except at the end of the text. So
+  // the number ends before this byte.
   template <class T>
   bool PutNumber(T value) {
     if (Put(value) == nullptr) return false;

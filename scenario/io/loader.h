@@ -1,4 +1,4 @@
-// Reads, checks, prints and explains scenarios. All mistakes of a scenario are reported at once.
+// Reads, checks, prints and explains scenarios. All mistakes of a scenario are reported together.
 #pragma once
 
 #include <filesystem>

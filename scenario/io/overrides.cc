@@ -15,7 +15,8 @@ namespace {
 
 constexpr std::string_view kExample = "must be /pointer=value, such as /arbitrator/threshold=0.8";
 
-// "fog.model=beam" and "fog/model=beam" mean "/fog/model=beam".
+// A hint for an override without the slash at its beginning, or with dots: for "fog/model=beam" and
+// "fog.model=beam" it suggests "/fog/model". "" if there is no such field.
 std::string FormHint(std::string_view text) {
   std::string pointer = fmt::format("/{}", text.substr(0, text.find('=')));
   std::replace(pointer.begin(), pointer.end(), '.', '/');

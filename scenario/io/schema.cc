@@ -138,7 +138,8 @@ Json::json_pointer PlaceOf(std::string_view pointer) {
 void AddNeed(Json& object, std::string_view section, const NeedSpec& need) {
   Json any_of = Json::array();
   for (const std::string_view field : need.fields) {
-    // minLength applies to texts only, and minItems to lists only.
+    // JSON schema applies minLength only to texts, and minItems only to lists. So both may stand
+    // here for a field of either type.
     any_of.push_back(
         {{"required", {field}}, {"properties", {{field, {{"minLength", 1}, {"minItems", 1}}}}}});
   }

@@ -11,7 +11,7 @@
 
 namespace fogline {
 
-/// MPC-based ACC, of the host and of the following cars.
+/// Parameters of the MPC-based ACC of the host, or of the following cars (services/acc).
 struct AccSection {
   FOGLINE_FIELD(double, headway_s, 1.5, {0, 10, "s"},
                 "Time gap T_hw, bumper to bumper, in d_r = T_hw v + d_0.",
@@ -79,7 +79,7 @@ struct AccSection {
   bool operator==(const AccSection&) const = default;
 };
 
-/// Human driver: Intelligent Driver Model (Treiber, Hennecke & Helbing 2000).
+/// Parameters of the human driver: Intelligent Driver Model (Treiber, Hennecke & Helbing 2000).
 struct DriverSection {
   FOGLINE_FIELD(double, max_acceleration_mps2, 0.73, {0.05, 10, "m/s2"},
                 "Largest acceleration a_max.", "Treiber et al. 2000: 0.73");
@@ -124,7 +124,8 @@ constexpr auto ChoicesOf(MissingLidar) {
        {"conflict", "counts as a difference of missing_conflict_m"}});
 }
 
-/// Arbitrator of Sourav & Cheng 2024: DoC = 1 / (1 + exp(-slope (z - centre))).
+/// Parameters of the arbitrator of Sourav & Cheng 2024. With measure `doc`, DoC = 1 / (1 +
+/// exp(-doc_slope_per_m (z - doc_centre_m))), with the conflict z over the window.
 struct ArbitratorSection {
   FOGLINE_FIELD(Policy, policy, Policy::kTraded, "Rule that decides who drives the host.");
   FOGLINE_FIELD(double, threshold, 0.5, {0, 1}, "DoC_th: below it the automation drives.",

@@ -100,7 +100,8 @@ struct TransferSection {
 
 /// Policy adaptive: a threshold that moves with the situation,
 /// clip(threshold + readiness_gain (1 - A) - visibility_gain_m / MOR - closing_gain_s max(0, 1/TTC
-/// of the follower) - braking_gain_s2pm max(0, host's braking), least, most).
+/// of the follower) - braking_gain_s2pm max(0, host's braking), least, most). A is the driver's
+/// readiness, MOR the visibility, and TTC the time to collision.
 struct AdaptiveSection {
   FOGLINE_FIELD(double, readiness_gain, 0.4, {0, 10},
                 "Increase of the threshold for a driver without readiness.",
@@ -122,12 +123,13 @@ struct AdaptiveSection {
                 "our choice, because with a threshold near 1 the human would never drive");
 };
 
-/// Policy bayes: the human drives while P(conflict) > C_h / (C_h + C_a). C_h = human_cost +
+/// Policy bayes: the human drives while P(conflict) >= C_h / (C_h + C_a). C_h = human_cost +
 /// unready_cost (1 - A) + blind_cost min(1, near_m / MOR) is the expected cost of a human who
 /// drives. C_a = automation_cost + follower_cost min(1, near_ttc_s / TTC of the follower) is the
-/// expected cost of an automation that uses a wrong distance. P(conflict) is the DoC. With the
-/// paper's slope, the DoC rises steeply at its centre. With measure lidar_modes and measure_scale
-/// probability, the DoC is a posterior probability.
+/// expected cost of an automation that uses a wrong distance. A is the driver's readiness, MOR the
+/// visibility, and TTC the time to collision. P(conflict) is the DoC. With the paper's slope, the
+/// DoC rises steeply at its centre. With measure lidar_modes and measure_scale probability, the DoC
+/// is a posterior probability.
 struct BayesSection {
   FOGLINE_FIELD(
       double, human_cost, 1.0, {1e-6, 1e6}, "Cost of any human engagement.",
@@ -154,10 +156,11 @@ struct BayesSection {
 };
 
 /// Policy availability: like traded, but the driver gets authority only if a take-over is possible
-/// in time. The take-over time must end before the follower has to brake harder than comfort_mps2.
-/// The policy uses the 95th percentile of the take-over time, and adds time if the driver's
-/// readiness is below 1. Otherwise the automation keeps authority. In both cases the automation
-/// uses only the sensor that is not to blame, as with policy isolate.
+/// in time. The take-over time must end before the follower has to brake harder than comfort_mps2,
+/// and before horizon_s. The policy uses the 95th percentile of the take-over time, and adds time
+/// if the driver's readiness is below 1. If the take-over would come too late, the automation
+/// continues to drive. Whenever the automation drives, it does not use the sensor that is to blame,
+/// as with policy isolate.
 struct AvailabilitySection {
   FOGLINE_FIELD(double, comfort_mps2, 3.0, {0.5, 10, "m/s2"},
                 "Braking that a follower must not exceed (DRAC).",

@@ -97,7 +97,7 @@ inline constexpr int kLastFieldLine = 500;
 /// overload of VisitFieldsUpTo() for the field's line. This overload calls the overload of the
 /// nearest field above, and then visits its own field. So VisitFieldsUpTo(visitor,
 /// SourceLine<kLastFieldLine>()) visits all fields of the section in their order. Line numbers are
-/// the same wherever the header is included.
+/// the same wherever the header is included, so all source files get the same overloads.
 #define FOGLINE_FIELD(type, name, default_value, ...)                                         \
   static_assert(__LINE__ <= ::fogline::kLastFieldLine, "split this file or raise the limit"); \
   template <class Visitor>                                                                    \

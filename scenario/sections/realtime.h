@@ -7,7 +7,8 @@
 
 namespace fogline {
 
-/// Health of inputs (services/runtime/realtime/input_health.h).
+/// Limits that decide whether an input is OK, STALE or LOST
+/// (services/runtime/realtime/input_health.h).
 struct HealthSection {
   FOGLINE_FIELD(double, stale_periods, 1.5, {1.1, 100, "periods"},
                 "An input without a new step for this time is STALE: its last value holds.",
@@ -30,7 +31,7 @@ struct HealthSection {
                 "way to the vehicle");
 };
 
-/// Minimal risk manoeuvre (services/models/minimal_risk/minimal_risk.h).
+/// Limits of the minimal risk manoeuvre (services/models/minimal_risk/minimal_risk.h).
 struct MinimalRiskSection {
   FOGLINE_FIELD(double, deceleration_mps2, 1.0, {0.5, 4, "m/s2"}, "Strongest braking.",
                 "UN R157, 5.5.1: at most 4.0; Autoware's comfortable stop: 1.0; above 1.5 the "

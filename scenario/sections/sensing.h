@@ -7,7 +7,7 @@
 
 namespace fogline {
 
-/// 77 GHz radar at the host's front.
+/// Parameters of the 77 GHz radar at the host's front.
 struct RadarSection {
   FOGLINE_FIELD(double, bias_m, 0.954, {-10, 10, "m"},
                 "Mounting offset that calibration has not removed. It is added to every range.",
@@ -78,7 +78,7 @@ struct LidarBeamSection {
       "Hahner et al. 2021, noise variant 4: 10 m");
 };
 
-/// LiDAR.
+/// Parameters of the host's LiDAR.
 struct LidarSection {
   FOGLINE_FIELD(double, bias_m, 0.0, {-10, 10, "m"},
                 "Mounting offset that calibration has not removed. It is added to every range.",
@@ -105,7 +105,7 @@ constexpr auto ChoicesOf(NoiseAdaptation) {
        {"residual", "by the squared residual, plus the variance of the estimate"}});
 }
 
-/// Extended Kalman filter.
+/// Parameters of the extended Kalman filter that fuses radar and LiDAR (services/fusion).
 struct FusionSection {
   FOGLINE_FIELD(
       double, jerk_density_m2ps5, 1.0, {1e-6, 1e3, "m2/s5"},

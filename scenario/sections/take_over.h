@@ -41,11 +41,11 @@ struct TakeOverParameters {
       "SUMO's ToC device: 0.05");
 };
 
-/// Least time in s between a request to take over and the minimal risk manoeuvre, unless the
-/// situation is severe (UN R157, 5.4.4.1). No scenario can set a shorter time.
+/// Least time in s between a request to take over and the minimal risk manoeuvre, if the situation
+/// is not severe (UN R157, 5.4.4.1). No scenario can set a shorter time.
 inline constexpr double kLeastLead_s = 10.0;
 
-/// Emergency fallback: request, escalation, minimal risk manoeuvre.
+/// Parameters of a take-over on request: request, escalation, minimal risk manoeuvre.
 struct TakeOverSection {
   FOGLINE_FIELD(TakeOverMode, mode, TakeOverMode::kInstant, "Whether the driver must be asked.");
   FOGLINE_FIELD(double, lead_s, 10.0, {kLeastLead_s, 20, "s"},

@@ -50,7 +50,7 @@ struct RoadSection {
                 "Slope, linear between places. Without places the road is level.");
 };
 
-/// One car, or all cars of a kind.
+/// The vehicle of the host, or of all following cars.
 struct VehicleSection {
   FOGLINE_FIELD(VehicleModel, model, VehicleModel::kPointMass,
                 "How an acceleration becomes motion.");

@@ -9,10 +9,11 @@
 
 namespace fogline::acc {
 
-/// Offers the automation's acceleration a_A in every step, also while the human drives. The ACC
-/// uses the host's own odometry and the track of the preceding car, never the truth. The ACC does
-/// not decide about authority. A track that has become too uncertain, because the sensors gave no
-/// values, is not used.
+/// The algorithm of the role `acc`. It offers the automation's acceleration a_A in every step, also
+/// while the human drives. It uses the host's own odometry and the track of the preceding car,
+/// never the truth. It does not decide which side drives. It does not use a track whose distance
+/// has a standard deviation above acc.max_track_std_m. A track becomes so uncertain if the sensors
+/// give no values.
 class Acc {
  public:
   /// @throws InputError if the weights of scenario.acc make an ill-conditioned problem.

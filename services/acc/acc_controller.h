@@ -16,17 +16,20 @@
 namespace fogline::acc {
 
 /// Model predictive adaptive cruise control: keeps the safe distance d_r = T_hw v + d_0 to the
-/// preceding car. The inputs are distances and speeds. The controller uses no sensors, no messages
-/// and no authority.
+/// preceding car (symbols: acc_model.h). The inputs are distance, speeds and acceleration. The
+/// controller uses no sensors, no messages and no authority.
 ///
-/// The unconstrained optimum is linear in the situation, so its gain is computed once. If the plan
-/// of this gain meets every limit, the controller uses this plan. Otherwise the controller solves
-/// the quadratic program. A point mass applies a command at once, so its command is the model's
-/// acceleration one step ahead. The command starts from the car's actual acceleration, so the
-/// command is continuous after a take-over. A longitudinal vehicle has its own lag, in place of the
-/// model's lag. The command of this vehicle is -K_e u, the steady acceleration that u causes.
-/// Before each step, the difference between the last command and the vehicle's acceleration is
-/// limited to T_e jerk_max. On a ramp at the jerk limit, the model's engine has this difference.
+/// The unconstrained optimum is linear in the situation, so its gain is computed only in the
+/// constructor. If the plan of this gain meets every limit, the controller uses this plan.
+/// Otherwise the controller solves the quadratic program.
+///
+/// A point mass applies a command without delay, so its command is the model's acceleration one
+/// step ahead. The command starts from the car's actual acceleration, so the command is continuous
+/// after a take-over. A longitudinal vehicle has its own lag, in place of the model's lag. The
+/// command of this vehicle is -K_e u, the steady acceleration that the control u causes. Before
+/// each step, the difference between the last command and the vehicle's acceleration is limited to
+/// T_e max_jerk_mps3. While the command changes at the jerk limit, the acceleration of the model's
+/// engine lags behind the command by this difference.
 class AccController {
  public:
   struct Input {
@@ -45,7 +48,7 @@ class AccController {
   };
 
   struct Output {
-    double acceleration_mps2;  // C x(k+1) of a point mass, -K_e u(k) of a vehicle
+    double acceleration_mps2;  // command: C x(k+1) of a point mass, -K_e u(k) of a vehicle
     double control;            // u(k); a positive u decelerates
     double safe_distance_m;    // d_r at the own speed
     Solver solver;
@@ -66,8 +69,9 @@ class AccController {
   void Restart(const AccSection& section, double step_s,
                VehicleModel vehicle = VehicleModel::kPointMass);
 
-  /// u_0, ..., u_{N-1} of the last step with kUnconstrained or kActiveSet. If Step() did not need
-  /// the whole plan, plan() computes it.
+  /// The plan u_0, ..., u_{N-1} of the last step, if its solver was kUnconstrained or kActiveSet;
+  /// after kFallback the result has no meaning. If Step() did not need the whole plan, plan()
+  /// computes it.
   std::span<const double> plan();
 
  private:

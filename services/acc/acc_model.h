@@ -12,20 +12,22 @@ namespace fogline::acc {
 /// own acceleration in m/s2.
 enum AccState : Eigen::Index { kDeltaD = 0, kDeltaV = 1, kOwnAcceleration = 2 };
 
-/// x' = A x + B u, y = C x, while the preceding car keeps its speed:
+/// The matrices of the model x' = A x + B u, y = C x, with the control u. The preceding car keeps
+/// its speed:
 ///
 ///     A = [0 1 -T_hw; 0 0 -1; 0 0 -1/T_e]    B = [0; 0; -K_e/T_e]    C = [0 0 1]
 ///
-/// as printed by Sourav & Cheng, RTSS 2024. Because of the sign of B, a positive u decelerates, and
-/// a constant u causes the steady acceleration -K_e u. (Takahama & Akasaka 2018, the source of this
-/// model, have +K_e/T_e.)
+/// as printed by Sourav & Cheng, RTSS 2024. T_hw, d_0, T_e and K_e are headway_s, standstill_m,
+/// engine_time_constant_s and engine_gain of AccSection. Because of the sign of B, a positive u
+/// decelerates, and a constant u causes the steady acceleration -K_e u. (Takahama & Akasaka 2018,
+/// the source of this model, have +K_e/T_e.)
 struct AccModel {
   Eigen::Matrix3d a;     // 3x3, A
   Eigen::Vector3d b;     // 3x1, B
   Eigen::RowVector3d c;  // 1x3, C
 };
 
-/// x(k+1) = Phi x(k) + Gamma u(k).
+/// The matrices of the model in steps: x(k+1) = Phi x(k) + Gamma u(k).
 struct DiscreteAccModel {
   Eigen::Matrix3d phi;
   Eigen::Vector3d gamma;
@@ -34,11 +36,11 @@ struct DiscreteAccModel {
 /// The AccModel with the parameters of `section`.
 AccModel MakeAccModel(const AccSection& section);
 
-/// The discrete model, exact for a u that is constant over each step (zero-order hold; Van Loan
-/// 1978): exp([A B; 0 0] h) = [Phi Gamma; 0 1].
+/// The discrete model for steps of h = `step_s`. It is exact for a u that is constant over each
+/// step (zero-order hold; Van Loan 1978): exp([A B; 0 0] h) = [Phi Gamma; 0 1].
 DiscreteAccModel Discretise(const AccModel& model, double step_s);
 
-/// d_r = T_hw v + d_0, in m.
+/// The safe distance d_r = T_hw v + d_0 at the own speed v, in m.
 inline double SafeDistance(const AccSection& section, double speed_mps) {
   return section.headway_s * speed_mps + section.standstill_m;
 }

@@ -133,7 +133,7 @@ void AccProgram::Limits(const AccSituation& now, Eigen::VectorXd& lower,
   const Reach reach = ReachOf(now);
   const double settled = SettledSpeed(now);
   const double preceding_mps = now.speed_mps + now.state(kDeltaV);
-  double previous = now.previous_control;  // u before u_0; in later steps it is an unknown
+  double previous = now.previous_control;  // u before u_0; for u_1, ... it is an unknown, see C
   double control = now.previous_control;   // u of the fall-back plan
   double fallback = settled;
   Eigen::Vector3d free = now.state;  // the state if every u were 0
@@ -172,7 +172,8 @@ bool AccProgram::IsWithinLimits(const AccSituation& now, std::span<const double>
   for (std::size_t j = 1; j < controls.size(); ++j) {
     violated |= bits(largest_change - std::abs(controls[j] - controls[j - 1]));
   }
-  // If an element of the situation is not a number, every control is not a number.
+  // If an element of the situation is not a number, every control is not a number. So checking the
+  // first change is sufficient.
   if (violated < 0 || std::isnan(first_change)) return false;
   const Reach reach = ReachOf(now);
   return (!reach.speed || SpeedsAreWithinLimits(now, controls)) &&

@@ -27,14 +27,18 @@ struct AccSituation {
 ///     limits of u         -a_max / K_e <= u_j <= -a_min / K_e
 ///     of its change       |u_j - u_{j-1}| <= h jerk_max / K_e
 ///     of the speed        w_j <= max(v_max, w_j under the fall-back plan)
-///     no reversing        w_j >= -s / (1 s)
+///     no reversing        w_j >= -s / (1 second)
 ///     of the gap          d_j >= d_min - s (N + 1 - j) / N
 ///
-/// w = v + T_e a is the speed at which the car settles if u is 0 from now on; w' = -K_e u. Because
-/// T_e v' = w - v, the speed stays below v_max while w stays below v_max, also between the steps.
-/// In the same way, the speed stays at or above 0 while w stays at or above 0. (Limits on v_j
-/// itself would be less cautious. But u acts on v with a delay, so with such limits the optimum
-/// would oscillate from step to step.)
+/// delta_d, delta_v and a are the elements of the state, and T_e and K_e are parameters
+/// (acc_model.h). The weights w_d to w_s, and a_min, a_max, jerk_max, v_max and d_min, are fields
+/// of AccSection. d_j is the gap, and v_j the own speed, after j steps.
+///
+/// w = v + T_e a is the speed at which the car settles if u is 0 from now on; its time derivative
+/// is w' = -K_e u. Because T_e v' = w - v, the speed stays below v_max while w stays below v_max,
+/// also between the steps. In the same way, the speed stays at or above 0 while w stays at or above
+/// 0. (Limits on v_j itself would be less cautious. But u acts on v with a delay, so with such
+/// limits the optimum would oscillate from step to step.)
 ///
 /// The fall-back plan approaches the section's fall-back deceleration (as far as the limits of u
 /// allow it) at the fastest allowed change of u. The fall-back plan meets the first three limits in
@@ -55,8 +59,9 @@ class AccProgram {
   Eigen::Index horizon() const { return horizon_; }
   const DiscreteAccModel& model() const { return model_; }
 
-  /// Cost 1/2 z'Hz + (G p)'z + constant, where p = [x(k); u_{-1}]. H is (N+1) x (N+1). The first
-  /// row and column of H belong to s, and are zero except on the diagonal. G is (N+1) x 4.
+  /// The matrices H and G of the cost 1/2 z'Hz + (G p)'z + constant, where p = [x(k); u_{-1}] is
+  /// the situation. H is (N+1) x (N+1). The first row and column of H belong to s, and are zero
+  /// except on the diagonal. G is (N+1) x 4.
   const Eigen::MatrixXd& hessian() const { return hessian_; }
   const Eigen::MatrixXd& gradient() const { return gradient_; }
 
@@ -70,8 +75,8 @@ class AccProgram {
   bool IsWithinLimits(const AccSituation& now, std::span<const double> controls) const;
 
   /// Whether the bounds of a plan prove that IsWithinLimits() is true for this plan. If the result
-  /// is false, IsWithinLimits() may still be true. The result does not depend on rounding, which is
-  /// far below kTolerance.
+  /// is false, IsWithinLimits() may still be true. If the result is true, rounding cannot make
+  /// IsWithinLimits() false, because rounding is far below kTolerance.
   /// @param largest_control upper bound of every |u_j| of the plan
   /// @param largest_change upper bound of every |u_j - u_{j-1}|, with u_{-1} = now.previous_control
   bool IsCertainlyWithinLimits(const AccSituation& now, double largest_control,

@@ -88,10 +88,11 @@ QpSolver::Result QpSolver::Solve(const Eigen::VectorXd& linear, const Eigen::Vec
   return result;
 }
 
-// Step 0 of the paper, but from the last active set instead of an empty set. The function finds the
-// minimum at which the limits of this set are equalities. The function drops limits with negative
-// multipliers. Let N = Q R be the normals of the limits, y = L'x, and y0 the unconstrained minimum.
-// Then y = y0 + Q t with R't = b - N'y0, and R lambda = t.
+// Step 0 of the method of Goldfarb & Idnani (qp.h), but from the last active set instead of an
+// empty set. The function finds the minimum at which the limits of this set are equalities. The
+// function drops limits with negative multipliers. Let N = Q R be the normals of the limits, b the
+// values of the limits, y = L'x, and y0 the y of the unconstrained minimum. Then y = y0 + Q t with
+// R't = b - N'y0, and the multipliers are the lambda with R lambda = t.
 void QpSolver::StartFromActiveSet(const Eigen::VectorXd& linear, const Eigen::VectorXd& lower,
                                   const Eigen::VectorXd& upper) {
   scaled_.noalias() = inverse_factor_.triangularView<Eigen::Lower>() * -linear;
@@ -127,7 +128,8 @@ double QpSolver::Value(Index row) const {
   return rows_.col(row).segment(span.begin, span.size).dot(x_.segment(span.begin, span.size));
 }
 
-// Step 1 of the paper.
+// Returns the limit that is violated most (step 1 of the method); `violation` is 0 if no limit is
+// violated by more than the tolerance.
 QpSolver::Limit QpSolver::MostViolated(const Eigen::VectorXd& lower,
                                        const Eigen::VectorXd& upper) const {
   Limit worst{.row = 0, .side = 1, .violation = 0};
@@ -144,7 +146,8 @@ QpSolver::Limit QpSolver::MostViolated(const Eigen::VectorXd& lower,
   return worst;
 }
 
-// Step 2 of the paper: a step towards `limit`, as long as all multipliers stay non-negative.
+// Step 2 of the method: a step towards `limit`, which ends where a multiplier would become
+// negative.
 QpSolver::StepKind QpSolver::Step(Limit& limit, double& multiplier) {
   const double norm = SplitNormal(limit);
   auto fall = dual_direction_.head(active_);
@@ -210,7 +213,8 @@ void QpSolver::Add(const Limit& limit, double multiplier, double norm) {
   ++active_;
 }
 
-// Removes a column from R and rotates the remaining columns back into a triangle.
+// Drops an active limit: removes its column from R, and rotates the remaining columns back into a
+// triangle.
 void QpSolver::Drop(Index position) {
   --active_;
   for (Index i = position; i < active_; ++i) {

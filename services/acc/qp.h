@@ -50,13 +50,14 @@ class QpSolver {
     std::int64_t iterations = 0;  // steps of the method; each adds or drops one limit
   };
 
-  /// `hessian` is n x n, symmetric; `constraints` (C) is m x n, without rows of zeros.
+  /// @param hessian H, n x n, symmetric
+  /// @param constraints C, m x n, without rows of zeros
   /// @throws std::domain_error if `hessian` is not positive definite to working precision.
   QpSolver(const Eigen::MatrixXd& hessian, const Eigen::MatrixXd& constraints,
            const Options& options);
 
-  /// `linear` (g) has n entries, `lower` and `upper` have m entries; an infinite limit has no
-  /// effect.
+  /// Solves the problem with this linear term g and these limits. `linear` has n entries, `lower`
+  /// and `upper` have m entries; an infinite limit has no effect.
   Result Solve(const Eigen::VectorXd& linear, const Eigen::VectorXd& lower,
                const Eigen::VectorXd& upper);
 
@@ -79,7 +80,7 @@ class QpSolver {
   struct Limit {
     Eigen::Index row;
     double side;       // 1: lower, -1: upper
-    double violation;  // amount by which it is violated
+    double violation;  // amount by which the limit is violated
   };
 
   // The part of a row of C between its outermost nonzeros.
@@ -120,7 +121,7 @@ class QpSolver {
   Eigen::VectorXd dual_direction_;    // n, decrease of lambda_ per unit of step
   Eigen::VectorXd primal_direction_;  // n, change of x_ per unit of step
 
-  Eigen::VectorXd scaled_;       // n, L'x at the start
+  Eigen::VectorXd scaled_;       // n, L'x at the start of Solve()
   Eigen::VectorXd x_;            // n
   Eigen::VectorXd multipliers_;  // m
 };

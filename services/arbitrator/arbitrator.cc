@@ -75,7 +75,7 @@ const arbitration_t& Arbitrator::Choose(const ego_t& ego, const track_t& track,
   out_.threshold = request.threshold;
   const double wanted = debouncer_.Step(request, out_.doc, !recovery_ || recovery_->recovered());
   Transfer::Offers offers{automation.acceleration_mps2, driver.acceleration_mps2};
-  // The paper's driver is always ready, and so gets the wanted authority at once.
+  // The paper's driver is always ready, and so gets the wanted authority without a request.
   granted_ = wanted;
   if (take_over_ && !Ask(wanted, ego, track, driver, offers)) return out_;
   const Transfer::State state = transfer_.Step(granted_, offers, ego.acceleration_mps2);
@@ -143,8 +143,8 @@ bool Arbitrator::Ask(double wanted, const ego_t& ego, const track_t& track,
     offers.automation_mps2 = asked.acceleration_mps2;
     eased_mps2_ = std::max(0.0, asked.acceleration_mps2);
   }
-  // A driver who overrides has the whole authority at once. A driver who ends a manoeuvre also has
-  // the whole authority at once, because the automation is off.
+  // A driver who overrides has the whole authority from this step on. The same holds for a driver
+  // who ends a minimal risk manoeuvre, because the automation is then off.
   if (manoeuvre_ran || take_over_->overridden()) {
     transfer_.Overrule(
         {.lambda_human = 1, .acceleration_mps2 = sent_mps2_.value_or(ego.acceleration_mps2)});

@@ -1,6 +1,6 @@
-// Decides in every step which side drives the host. Except in a manoeuvre and in emergency braking,
-// the command depends only on the accelerations that automation and human offer. The arbitrator
-// does not judge these offers.
+// Decides in every step which side drives the host. Except in a minimal risk manoeuvre and in
+// emergency braking, the command is computed only from the accelerations that automation and human
+// offer. The arbitrator does not judge these offers.
 //
 //     radar, LiDAR -> ConflictMeter -> DoC                        conflict_meter.h
 //     DoC, situation -> policy -> engagement request              services/decision/policies
@@ -27,7 +27,9 @@
 
 namespace fogline::arbitrator {
 
-/// With the defaults the arbitrator is the traded control of Sourav & Cheng 2024:
+/// The algorithm of the role `arbitrator`. With the defaults of the scenario, it is the traded
+/// control of Sourav & Cheng 2024, which weights the accelerations a_A of the automation and a_H of
+/// the human:
 ///
 ///     lambda_A = 1 if 0 <= DoC < threshold, else 0        lambda_H = 1 - lambda_A
 ///     a = lambda_H a_H + lambda_A a_A
@@ -48,7 +50,7 @@ class Arbitrator {
                             const track_t& track, const accel_command_t& automation,
                             const driver_command_t& driver);
 
-  /// First part of a Step(): adds the sensors' values to the conflict.
+  /// First part of a Step(): adds the sensors' values to the measure of conflict.
   void Observe(const radar_t& radar, const lidar_t& lidar, const track_t& track) {
     meter_.Observe(radar, lidar, track);
     if (recovery_) recovery_->Observe(radar, lidar, track);
@@ -64,15 +66,15 @@ class Arbitrator {
   void Guard(const ego_t& ego, const track_t& track, arbitration_t& command);
 
   /// Whether the last decision wants the human to drive, also while the transfer is still in
-  /// progress. For a driver who must be asked: whether the driver has taken over and has at least
-  /// half of the authority.
+  /// progress. If the driver must be asked: whether the driver has taken over, and should have at
+  /// least half of the authority at the end of the transfer.
   bool wants_human() const { return granted_ >= kMainAuthority; }
   /// Whether the driver must be asked and has not taken over.
   bool must_ask() const {
     return take_over_ && take_over_->outcome().authority != take_over::Authority::kHuman;
   }
-  /// Whether a request to take over is pending, or the host is in a manoeuvre that TakeOver has
-  /// begun. This manoeuvre needs only the odometry as input.
+  /// Whether a request to take over is pending, or the host is in a minimal risk manoeuvre that
+  /// TakeOver has begun. In both cases the command does not depend on the driver's acceleration.
   bool asks() const {
     return must_ask() && take_over_->outcome().state != take_over::TakeOverState::kAutomated;
   }
@@ -80,8 +82,8 @@ class Arbitrator {
   /// Sets whether the automation is available. Only an available automation gets authority back
   /// from a driver who was asked.
   void SetAutomationThere(bool there) { automation_there_ = there; }
-  /// Call this function if the command that was sent is not the command of the last decision. The
-  /// next command then continues from the command that was sent.
+  /// Tells the arbitrator the command that was sent, if it is not the command of the last decision.
+  /// The next command then continues from the command that was sent.
   void Overrule(const arbitration_t& sent);
 
  private:
@@ -90,8 +92,9 @@ class Arbitrator {
   policies::EngagementRequest OwnRequest(const ego_t& ego, const track_t& track,
                                          const accel_command_t& automation,
                                          const driver_command_t& driver);
-  /// Passes an engagement request to TakeOver, for a human who must be asked. @return false if the
-  /// host is in a manoeuvre
+  /// For a driver who must be asked: passes the engagement request to TakeOver. Then sets granted_
+  /// and the automation's offer, or sets the command of a minimal risk manoeuvre. @return false if
+  /// the host is in such a manoeuvre
   bool Ask(double wanted, const ego_t& ego, const track_t& track, const driver_command_t& driver,
            Transfer::Offers& offers);
 
@@ -106,9 +109,9 @@ class Arbitrator {
   policies::Surroundings surroundings_;
   std::optional<take_over::TakeOver> take_over_;  // only for a driver who must be asked
   std::optional<models::Aeb> aeb_;                // only for a host that has emergency braking
-  double max_track_variance_m2_;  // a track that is more uncertain starts no emergency braking
-  double easing_per_step_;        // m/s2; decrease of an acceleration per step after a request
-  double eased_mps2_ = 0;         // upper limit of the automation's acceleration after a request
+  double max_track_variance_m2_;                  // emergency braking ignores a track above this
+  double easing_per_step_;                        // m/s2; decrease of eased_mps2_ per step
+  double eased_mps2_ = 0;                         // limit of the automation's offer after a request
   bool automation_there_ = true;
   double granted_ = 0;               // lambda_H at the end of the transfer
   std::optional<double> sent_mps2_;  // command of the previous step

@@ -1,6 +1,6 @@
-// The process that decides which side drives the host. The process reads RADAR, LIDAR, ACC_COMMAND,
-// DRIVER_COMMAND and more, and sends HOST_COMMAND. Only HOST_COMMAND tells the world how the host
-// moves.
+// The process that decides which side drives the host. The process reads HOST_EGO, RADAR, LIDAR,
+// TRACK, ACC_COMMAND and DRIVER_COMMAND, and sends HOST_COMMAND. Only HOST_COMMAND tells the world
+// how the host moves.
 #include "services/arbitrator/arbitrator.h"
 #include "services/arbitrator/failsafe_arbitrator.h"
 #include "services/runtime/process/service.h"

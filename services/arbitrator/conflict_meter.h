@@ -22,8 +22,9 @@ class ConflictMeter {
   /// probability
   explicit ConflictMeter(const Scenario& scenario);
 
-  /// Adds the values of a step. `track` is for measures that need a prediction as witness. `track`
-  /// is used only if it belongs to the same step as `radar`.
+  /// Adds the values of a step. `track` gives the range that the filter has predicted, for measures
+  /// that compare the sensors with this prediction. `track` is used only if it belongs to the same
+  /// step as `radar`.
   void Observe(const radar_t& radar, const lidar_t& lidar, const track_t& track) {
     conflict::Evidence evidence{
         .radar = policies::StatedBy(radar), .lidar = policies::StatedBy(lidar), .prediction = {}};

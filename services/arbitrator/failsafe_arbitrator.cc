@@ -7,10 +7,9 @@
 namespace fogline::arbitrator {
 namespace {
 
-// The automation can drive if three inputs are available: its command, the track from which the
-// command is computed, and values of both sensors in pairs of one step. Without pairs there is no
-// Degree of Conflict, so the arbitrator cannot judge the automation. The result is the worst state
-// of these inputs.
+// Availability of the automation: the worst state of three inputs. These are its command, the track
+// from which the command is computed, and values of both sensors in pairs of one step. Without
+// pairs there is no Degree of Conflict, so the arbitrator cannot judge the automation.
 Offer AutomationOffer(const ArbitratorInputs& inputs, InputState pairs) {
   return std::max({OfferOf(inputs.radar.state), OfferOf(inputs.lidar.state), OfferOf(pairs),
                    OfferOf(inputs.track.state), OfferOf(inputs.automation.state)});
@@ -56,7 +55,7 @@ const arbitration_t& FailsafeArbitrator::Step(const header_t& header,
     case Decision::kRegular:
       break;
     case Decision::kAutomation:
-      if (arbitrator_.asks()) break;  // the regular decision needs no driver here
+      if (arbitrator_.asks()) break;  // here the regular decision does not need the driver
       Drive(arbitration_t::AUTOMATION, inputs.automation.newest->acceleration_mps2);
       break;
     case Decision::kHuman:
@@ -85,9 +84,9 @@ void FailsafeArbitrator::Regular(const ArbitratorInputs& inputs, Offer automatio
                             UsableOrNone(inputs.automation), UsableOrNone(inputs.driver));
 }
 
-// A person may be gone although the driver's process sends its messages: the seat is empty or
-// silent. The readiness is then 0. At the start of the run, the first input of the person may not
-// have come yet.
+// Availability of the human. A person may be gone although the driver's process sends its messages:
+// the seat is empty or silent. The readiness is then 0. At the start of the run, the first input of
+// the person may not have come yet, so the result is kNotYet until person_due_step_.
 Offer FailsafeArbitrator::HumanOffer(std::int64_t step, const ArbitratorInputs& inputs) const {
   const Offer offer = OfferOf(inputs.driver.state);
   const bool absent = person_ && offer == kThere && inputs.driver.newest->readiness <= 0;
@@ -101,7 +100,8 @@ Decision FailsafeArbitrator::Judge(std::int64_t step, const ArbitratorInputs& in
   if (arbitrator_.in_manoeuvre()) return Decision::kRegular;
   if (demanded_) return Decision::kMinimalRisk;
   const Offer automation = AutomationOffer(inputs, pairs);
-  // If the automation has failed, there is no time to ask the driver.
+  // If the automation has failed, there is no time to ask the driver. So a driver who has not taken
+  // over counts as gone.
   const bool unasked = automation == kGone && arbitrator_.must_ask();
   const Offer human = unasked ? kGone : HumanOffer(step, inputs);
   const bool disputed = pairs_.has_pair() && arbitrator_.wants_human();

@@ -37,20 +37,22 @@ class FailsafeArbitrator {
   }
   void SetOnDemandInput(const truth_t& truth) { arbitrator_.SetOnDemandInput(truth); }
 
-  /// The host's command for the step of `header`. Call Step() once per decision; steps may be
-  /// skipped. The result is valid until the next call. In the minimal risk manoeuvre, `mode` is
-  /// MINIMAL_RISK and both authorities are 0. The conflict comes from the last pairs of sensor
-  /// values, even if these are old.
+  /// Returns the host's command for the step of `header`. Call Step() once per decision; steps may
+  /// be skipped. The result is valid until the next call. In the minimal risk manoeuvre that this
+  /// class begins, `mode` is MINIMAL_RISK and both authorities are 0. The conflict is computed from
+  /// the last pairs of sensor values, even if these are old.
   const arbitration_t& Step(const header_t& header, const ArbitratorInputs& inputs);
 
-  /// Starts the manoeuvre at the next step, independently of the inputs. Call DemandMinimalRisk()
-  /// if the vehicle, or an earlier instance of this role, is already in a manoeuvre.
+  /// Starts the minimal risk manoeuvre at the next step, independently of the inputs. Call
+  /// DemandMinimalRisk() if the vehicle, or an earlier instance of this role, is already in such a
+  /// manoeuvre.
   void DemandMinimalRisk() { demanded_ = true; }
 
   /// Text about the fallback that replaces the arbitrator's regular decision; "" if there is no
   /// fallback.
   std::string_view fallback() const { return FallbackText(decision_); }
-  /// Cars that are in a minimal risk manoeuvre that no command ends, as bits of status_t.
+  /// status_t::HOST if the host is in a minimal risk manoeuvre, or has stopped after it, and no
+  /// command ends this state; otherwise 0.
   std::int8_t minimal_risk() const { return IsLocked(out_.mode) ? status_t::HOST : std::int8_t{0}; }
   /// The decision of the last step.
   Decision decision() const { return decision_; }

@@ -24,11 +24,12 @@ constexpr Offer OfferOf(InputState state) {
   return state == InputState::kLost ? kGone : kNotYet;
 }
 
-/// Whether the human would drive after the regular decision (kDisputed). The values are bits, too.
+/// The regular decision: the human would drive (kDisputed), or the automation (kCalm). The values
+/// are bits, too.
 enum Conflict : std::uint8_t { kCalm = 1, kDisputed = 2, kAnyConflict = kCalm | kDisputed };
 
 enum class Decision : std::uint8_t {
-  kRegular,      // both can drive, as in lockstep
+  kRegular,      // both can drive: the decision as in lockstep
   kAutomation,   // the human cannot drive, and there is no conflict
   kHuman,        // the automation cannot drive
   kHold,         // an input has not arrived yet, so the last command is repeated

@@ -8,10 +8,10 @@
 
 namespace fogline::arbitrator {
 
-/// The Degree of Conflict compares the sensors with each other, over a window of less than a
-/// second. The filter has a longer memory. When the sensors agree again, the filter's track may
-/// still be metres away from both sensors. This class compares the track with the sensors. With d
-/// the track's distance, r_i the range of sensor i and y_i its lateral offset, a step agrees if
+/// Compares the track with the sensors, because the Degree of Conflict compares only the sensors
+/// with each other, over a window of less than a second. The filter has a longer memory. So when
+/// the sensors agree again, the filter's track may still be metres away from both sensors. Let d be
+/// the track's distance, r_i the range of sensor i, and y_i its lateral offset. A step agrees if
 ///
 ///     |r_i - sqrt(d^2 + y_i^2)| <= hand_back_error_m     for each sensor i that has a value,
 ///

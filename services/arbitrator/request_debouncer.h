@@ -8,13 +8,13 @@
 
 namespace fogline::arbitrator {
 
-/// Turns the policy's engagement request of every step into the wanted authority. The scenario's
-/// hysteresis delays the result of the comparison of DoC and threshold:
+/// Computes the wanted authority of the human in every step from the policy's engagement request.
+/// The scenario's hysteresis delays the result of the comparison of DoC and threshold:
 ///
 ///     none  the human is wanted while DoC >= threshold
 ///     band  the human is wanted from DoC >= threshold until
 ///           DoC < threshold - min(band, threshold/2):
-///           so a DoC of 0 always returns authority, also if the threshold changes
+///           so a DoC of 0 always gives the automation the authority, also if the threshold changes
 ///     sprt  Wald's test (1945) of log odds: L += logit(DoC) - logit(threshold);
 ///           the human is wanted from L >= ln((1 - beta)/alpha) on,
 ///           the automation from L <= ln(beta/(1 - alpha)) on;
@@ -27,13 +27,14 @@ namespace fogline::arbitrator {
 /// of all steps. Then L = logit(DoC) - logit(threshold), so that evidence does not count twice.
 ///
 /// With hand_back fusion, a return to the automation also waits until the track has recovered
-/// (fusion_recovery.h). A firm request is never delayed.
+/// (fusion_recovery.h). A request that is `firm` (policies::EngagementRequest) is never delayed.
 class RequestDebouncer {
  public:
   /// @param posterior whether the DoC is a posterior probability of all evidence so far
   RequestDebouncer(const TransferSection& section, double step_s, bool posterior = false);
 
-  /// Wanted authority of the human in this step, in [0, 1]. Call Step() once per decision.
+  /// Returns the wanted authority of the human in this step, in [0, 1]. Call Step() once per
+  /// decision.
   /// @param recovered whether the track has recovered; has an effect only with hand_back fusion
   double Step(const policies::EngagementRequest& request, double doc, bool recovered = true) {
     if (request.firm) return request.lambda_human;

@@ -15,8 +15,8 @@
 
 namespace fogline::arbitrator {
 
-/// The newest pair and its health. HealthSection gives the limits; here they count steps instead of
-/// periods of time.
+/// The newest pair of values, and its state (OK, STALE, ...). HealthSection gives the limits; here
+/// they count steps instead of periods of time.
 class SensorPairs {
  public:
   explicit SensorPairs(const HealthSection& section);
@@ -24,7 +24,7 @@ class SensorPairs {
   /// Takes the newest message of each sensor; nullptr if no message has come. A message that was
   /// already taken has no effect. Call Update() once per decision.
   /// @param step at which the arbitrator decides
-  /// @return the health of the pair
+  /// @return the state of the pair
   InputState Update(std::int64_t step, const radar_t* radar, const lidar_t* lidar);
 
   bool has_pair() const { return pair_step_ >= 0; }
@@ -52,7 +52,7 @@ class SensorPairs {
 
   InputState state_ = InputState::kAwaited;
   std::int64_t began_ = -1;   // step of the first decision
-  std::int64_t in_time_ = 0;  // consecutive decisions with a pair in time
+  std::int64_t in_time_ = 0;  // consecutive decisions with a pair that is not STALE by its age
 };
 
 }  // namespace fogline::arbitrator

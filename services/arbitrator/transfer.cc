@@ -17,7 +17,7 @@ constexpr double kSteepness = 10;
 
 double Logistic(double x) { return 1 / (1 + std::exp(-x)); }
 
-// S maps [0, 1] to itself.
+// S(p) of transfer.h; it maps [0, 1] to [0, 1].
 double Sigmoid(double progress) {
   static const double kLowest = Logistic(-kSteepness / 2);
   return (Logistic(kSteepness * (progress - 0.5)) - kLowest) / (1 - 2 * kLowest);

@@ -11,7 +11,7 @@ namespace fogline::arbitrator {
 /// Moves the human's authority lambda_H towards the wanted authority, and computes the command
 /// a = lambda_H a_H + lambda_A a_A. Profiles:
 ///
-///     step          lambda_H is the wanted authority at once (as in the paper)
+///     step          lambda_H is the wanted authority without delay (as in the paper)
 ///     linear        lambda_H moves by at most step/duration
 ///     sigmoid       lambda_H = S(p), p moves by at most step/duration,
 ///                   S(p) = (s(k (p - 1/2)) - s(-k/2))/(s(k/2) - s(-k/2)), s the logistic function
@@ -19,8 +19,8 @@ namespace fogline::arbitrator {
 ///
 /// With every profile, the gate limits the command itself for gate_s after the beginning of a
 /// transfer. The gate also limits the change of the command until the command reaches a. A transfer
-/// begins when the wanted authority passes kMainAuthority. Braking that is harder than yield_mps2
-/// ends both limits at once.
+/// begins when the wanted authority passes kMainAuthority. If a is below -yield_mps2, both limits
+/// end immediately.
 ///
 /// If lambda_H is 0 or 1 and no limit applies, the command is the offer of the side with authority,
 /// bit by bit. services/arbitrator/README.md describes the return to the automation.
@@ -44,7 +44,7 @@ class Transfer {
     return Smooth(wanted, offers, applied_mps2);
   }
 
-  /// Call this function if other code has decided authority and command of this step. Later steps
+  /// Sets authority and command of this step to values that other code has decided. Later steps
   /// continue from `actual`.
   void Overrule(const State& actual);
 

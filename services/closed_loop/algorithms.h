@@ -19,8 +19,8 @@ FOGLINE_ROLES(FOGLINE_DECLARE_ROLE)
 #undef FOGLINE_DECLARE_ROLE
 }  // namespace fogline
 
-// services/CMakeLists.txt makes this file: the headers of all folders services/NAME that have
-// NAME_main.cc, and kRoleFolders, the names of these folders.
+// services/CMakeLists.txt makes the next header. It includes the headers of all folders
+// services/NAME that have NAME_main.cc, and defines kRoleFolders, the names of these folders.
 #include "services/role_folders.h"
 
 namespace fogline::closed_loop {

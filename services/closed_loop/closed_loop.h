@@ -181,7 +181,8 @@ class ClosedLoop {
   Roles::Type roles_;
 };
 
-/// Runs one scenario after another. Only one thread may use an object.
+/// A ClosedLoop for one run after another, with the same or other scenarios. Only one thread may
+/// use an object.
 class ReusedLoop {
  public:
   /// Computes one run; ClosedLoop::Run() describes `visit`. @throws the exceptions of ClosedLoop's

@@ -16,10 +16,10 @@
 
 namespace fogline::driver {
 
-/// By default, the driver is the driver of Sourav & Cheng 2024: the Intelligent Driver Model on the
-/// ground truth. The driver perceives the truth perfectly and without delay, also in fog. The
-/// scenario sets the readiness. Each switch of scenario section `human` replaces a part of this
-/// driver by a more realistic model (services/models/driver).
+/// The algorithm of the role `driver`. By default, it is the driver of Sourav & Cheng 2024: the
+/// Intelligent Driver Model on the ground truth. The driver perceives the truth perfectly and
+/// without delay, also in fog. The scenario sets the readiness. Each switch of scenario section
+/// `human` replaces a part of this driver by a more realistic model (services/models/driver).
 class Driver {
  public:
   /// @throws InputError if a step is so short that the reaction time is more than 254 steps

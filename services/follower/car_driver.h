@@ -10,7 +10,8 @@
 
 namespace fogline::follower {
 
-/// The emergency braking of a following car; nullopt if the cars have no emergency braking.
+/// The emergency braking of a following car; nullopt if the following cars have no emergency
+/// braking.
 inline std::optional<models::Aeb> AebOf(const FollowersSection& followers) {
   if (!followers.aeb.enabled) return std::nullopt;
   return models::Aeb(followers.aeb);

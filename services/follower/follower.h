@@ -12,10 +12,11 @@
 
 namespace fogline::follower {
 
-/// Drives the following cars. The driver of each car is the same ACC as in the host (acc_driver.h),
-/// or a person (person.h). Each driver receives the truth: the gap, and the speeds of both cars.
-/// The following cars represent the traffic that a host endangers if it slows down for no reason.
-/// The following cars are not part of the host's automation.
+/// The algorithm of the role `follower`: it drives the following cars. The driver of each car is
+/// the same ACC as in the host (acc_driver.h), or a person (person.h). Each driver receives the
+/// truth: the gap, and the speeds of both cars. The following cars represent the traffic that a
+/// host endangers if it slows down for no reason. The following cars are not part of the host's
+/// automation.
 class Follower {
  public:
   /// @throws InputError if the weights of scenario.follower make an ill-conditioned problem, or a

@@ -5,8 +5,9 @@
 
 namespace fogline::fusion {
 
-/// One correction of the filter by a value z with Jacobian H. P- and P+ are the covariance right
-/// before and after this correction.
+/// One correction of the filter by a value z. h(x) is the value that a state x predicts, and H its
+/// Jacobian. x- and P- are state and covariance right before this correction, x+ and P+ right after
+/// it.
 struct CorrectionTrace {
   double innovation = 0;          // d = z - h(x-)
   double predicted_variance = 0;  // H P- H'
@@ -14,7 +15,8 @@ struct CorrectionTrace {
   double corrected_variance = 0;  // H P+ H'
 };
 
-/// The variance R of the value's noise. After each correction:
+/// Estimates the variance R of the value's noise. After each correction, with the forgetting factor
+/// a:
 ///
 ///     innovation  R <- max(R_0, a R + (1 - a) (d^2 - H P- H'))       Mehra 1972
 ///     residual    R <- max(R_0, a R + (1 - a) (e^2 + H P+ H'))       Mohamed & Schwarz 1999;
@@ -23,11 +25,11 @@ struct CorrectionTrace {
 /// If the R of the filter is right, both terms in brackets have the mean R. The variance of d is S
 /// = H P- H' + R, the variance of e is R^2 / S, and H P+ H' is R - R^2 / S.
 ///
-/// R never falls below the assumed variance R_0, for three reasons. The term of the innovation may
-/// be negative. A wrong sensor with a steady error shifts the estimate towards its own values. The
-/// innovations of this sensor are then small. Without the limit, the filter would give this sensor
-/// more and more weight. And the assumed variance covers errors that are not white, such as a
-/// constant offset.
+/// R never falls below the assumed variance R_0, for three reasons. First, the term of rule
+/// `innovation` may be negative. Second, a wrong sensor with a steady error shifts the estimate
+/// towards its own values, so the innovations of this sensor become small. Without the limit, the
+/// filter would give this sensor more and more weight. Third, the assumed variance covers errors
+/// that are not white, such as a constant offset.
 class AdaptiveNoise {
  public:
   /// @param assumed_variance R_0, above 0

@@ -20,8 +20,8 @@ void Ekf::Start(const State& state, const Covariance& covariance) {
   SetCovariance(covariance);
 }
 
-// F has ones on its diagonal and zeros below it. The function leaves out these factors. The sums
-// have the order a + (b + c), as in Correct().
+// F, the matrix of the prediction in ekf.h, has ones on its diagonal and zeros below it. The
+// function leaves out these factors. The sums have the order a + (b + c), as in Correct().
 void Ekf::Predict(double host_acceleration_mps2) {
   const double t = step_s_;
   const double half_t2 = t * t / 2;

@@ -13,7 +13,7 @@ namespace fogline::fusion {
 namespace {
 
 // The filter starts only from a range of more than this many lateral offsets. At a smaller range,
-// the distance ahead is too uncertain. At 2 offsets, the cosine is 0.87.
+// the distance ahead is too uncertain. At 2 offsets, the distance is 0.87 times the range.
 constexpr double kStartRangePerOffset = 2.0;
 
 constexpr double Square(double x) { return x * x; }
@@ -77,9 +77,10 @@ const track_t& Fusion::Step(const ego_t& ego, const radar_t& radar, const lidar_
   return out_;
 }
 
-// Starts with the state that exactly explains the radar's two values. The covariance comes from the
-// noise of these values: P = J^-1 R J^-T, J the Jacobian of both values. The values contain no
-// acceleration.
+// Starts with the state that exactly explains the radar's two values. The covariance follows from
+// the noise of these values: P = J^-1 R J^-T, with the Jacobian J of both values and the diagonal
+// matrix R of their variances. The values contain no acceleration, so its variance is a parameter
+// of the scenario.
 bool Fusion::StartFromRadar(const radar_t& radar) {
   const std::optional<double> distance = StartDistance(radar.range_m, radar_offset_m_);
   const std::int8_t usage = distance ? track_t::USED : track_t::GATED;

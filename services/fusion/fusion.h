@@ -1,6 +1,6 @@
 // Fuses radar and LiDAR into one estimate of the car ahead. The fusion knows the geometry of the
 // sensors, but does not know whether there is fog. So the fusion also uses the LiDAR's wrong values
-// in fog, unless gating refuses them. The experiment studies this weakness.
+// in fog, if its gate does not refuse them. The experiment studies this weakness.
 #pragma once
 
 #include <array>

@@ -10,8 +10,8 @@
 
 namespace fogline::lidar {
 
-/// Powers as ln(P / P_min), where P_min is the detection threshold. An echo above 0 is detected.
-/// The value is minus infinity if there is no echo.
+/// Powers of the echoes of target and fog, as ln(P / P_min), where P_min is the detection
+/// threshold. An echo above 0 is detected. The value is minus infinity if there is no echo.
 struct EchoPowers {
   double target;
   double fog;
@@ -20,15 +20,17 @@ struct EchoPowers {
 
 class EchoModel {
  public:
-  /// For extinctions from `from_pm` to `to_pm` in 1/m. At an extinction outside of this interval,
-  /// the fog's echo has the shape that it has at the nearer end.
+  /// Makes the table for extinctions from `from_pm` to `to_pm` in 1/m. At an extinction outside of
+  /// this interval, the fog's echo has the shape that it has at the nearer end.
   EchoModel(const LidarBeamSection& beam, double from_pm, double to_pm);
 
   /// Echoes of a target at `range_m` in air of this visibility (both > 0 m):
   ///     P_t / P_min = (Gamma / Gamma_c) (R_c / R)^2 xi(R) exp(-2 alpha R)
   ///     P_f / P_min = (pi beta / Gamma_c) R_c^2 J
-  /// A target nearer than r* hides the fog behind it. The fog's echo then lies at R, with J scaled
-  /// by g(R)/g(r*). Up to R1 the beam is blind, and there is no echo.
+  /// R is `range_m`. A target with the reflectivity Gamma_c = clear_reflectivity at the range R_c =
+  /// clear_range_m has the power P_min in clear air (LidarBeamSection). fog_beam.h has the other
+  /// symbols. A target nearer than r* hides the fog behind it. The fog's echo then lies at R, with
+  /// J scaled by g(R)/g(r*). Up to R1 the beam is blind, and there is no echo.
   EchoPowers At(double range_m, double visibility_m) const;
 
   /// Power of an echo at `range_m`, relative to the power of the target in clear air at this
@@ -50,7 +52,7 @@ class EchoModel {
 
   BeamOptics optics_;
   double log_target_m2_;    // ln(Gamma / Gamma_c R_c^2)
-  double log_backscatter_;  // ln(pi beta V / Gamma_c R_c^2); beta V is constant
+  double log_backscatter_;  // ln(pi beta V / Gamma_c R_c^2), V: visibility; beta V is constant
   double from_pm_;
   double to_pm_;
   std::array<LogPeak, kNodes> peaks_;  // at equally spaced extinctions

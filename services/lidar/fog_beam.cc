@@ -20,8 +20,8 @@ constexpr double kSecondsPerNanosecond = 1e-9;
 constexpr unsigned kQuadratureNodes = 20;
 constexpr int kPeakBits = 14;
 
-// sin^2 pulse folded with g, over the pulse length that ends at `end_m`. The integral has two
-// pieces, because g has a kink at R2.
+// The integral of J (fog_beam.h) for R' = `end_m`: the sin^2 pulse folded with g. The integral has
+// two pieces, because g has a kink at R2.
 double FoldedPulse(const BeamOptics& optics, double extinction_pm, double end_m) {
   const auto integrand = [&](double r) {
     const double wave = std::sin(pi * (end_m - r) / optics.pulse_length_m);
@@ -36,8 +36,8 @@ double FoldedPulse(const BeamOptics& optics, double extinction_pm, double end_m)
   return sum;
 }
 
-// Range at which g is largest: d/dr ln g = 1 / (r - R1) - 2 / r - 2 alpha = 0 below R2, or R2
-// itself. The root of 2 alpha r^2 + (1 - 2 alpha R1) r - 2 R1 = 0 is computed in a form that is
+// Range at which g is largest: the r with d/dr ln g = 1 / (r - R1) - 2 / r - 2 alpha = 0, but at
+// most R2. The root of 2 alpha r^2 + (1 - 2 alpha R1) r - 2 R1 = 0 is computed in a form that is
 // also valid for alpha = 0.
 double StrongestGainRange(const BeamOptics& optics, double extinction_pm) {
   const double start_m = optics.overlap_start_m;

@@ -2,7 +2,7 @@
 // Pure functions after Rasshofer, Spies & Spies, Adv. Radio Sci. 9 (2011) 49-60, and Hahner et al.,
 // ICCV 2021 (arXiv 2108.05249). The received power is the pulse folded with the channel:
 //
-//   sin^2 pulse of half-power width tau, as long as L = c tau in range
+//   sin^2 pulse of half-power width tau; its length in range is L = c tau (c: speed of light)
 //   g(r) = xi(r) exp(-2 alpha r) / r^2    overlap xi of transmitter and receiver, extinction alpha
 //   target at R:  P_t = K (Gamma / pi) g(R)                                  Gamma: reflectivity
 //   fog before R: P_f = K beta J                                     beta: backscatter in 1/(m sr)

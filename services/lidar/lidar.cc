@@ -79,8 +79,8 @@ std::optional<Lidar::Echo> Lidar::ModalEcho(const truth_t& truth, double target_
   return PlainEchoAt(target_m, 0.0);
 }
 
-// The echo has the range that model beam gives for an echo of the fog. If the car is so near that
-// the beam is blind, the car hides the fog.
+// The echo has the range that fog model `beam` gives for an echo of the fog. If the car is so near
+// that the beam is blind, the car hides the fog, and the echo has the car's range.
 Lidar::Echo Lidar::NearEcho(const truth_t& truth, double target_m) const {
   const LidarBeamSection& beam = lidar_.beam;
   if (target_m <= beam.overlap_start_m) {
@@ -102,8 +102,8 @@ std::optional<Lidar::Echo> Lidar::MedianEcho(const truth_t& truth, double target
   // reported range is always the range of one echo.
   const auto median = echoes_.begin() + static_cast<std::ptrdiff_t>((echoes_.size() - 1) / 2);
   std::nth_element(echoes_.begin(), median, echoes_.end());
-  // The variance of the time of arrival has a part proportional to 1 / SNR. At the detection
-  // threshold this part equals the constant part.
+  // The variance of the time of arrival has a constant part, and a part proportional to 1 / SNR. At
+  // the detection threshold (log_power 0) both parts are equal.
   const double jitter = std::sqrt(1.0 + std::exp(-median->log_power));
   return Echo{.range_m = median->range_m,
               .range_std_m = lidar_.range_std_m * jitter,

@@ -26,10 +26,10 @@ namespace fogline::lidar {
 ///            steps                                       (services/lidar/fog_modes.h)
 /// On each beam the echo powers of target and fog are lognormal and independent. The stronger of
 /// these two echoes is the beam's echo if its power exceeds the detection threshold. The fog's echo
-/// lies at r* plus a Beta(2, 20) distributed scatter, never behind the target. At least half of the
-/// beams must have an echo. So a single beam and the LiDAR have the same range at which they detect
-/// with probability 1/2, for any number of beams. A minority of the beams cannot determine the
-/// result.
+/// lies behind r* (fog_beam.h) by fog_range_scale_m times a random number with the distribution
+/// Beta(2, 20), but never behind the target. At least half of the beams must have an echo. So a
+/// single beam and the LiDAR have the same range at which they detect with probability 1/2, for any
+/// number of beams. A minority of the beams cannot determine the result.
 class Lidar {
  public:
   /// Indices of the random numbers of stream kLidar within a step.

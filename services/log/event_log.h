@@ -41,9 +41,9 @@ struct WrittenLog {
   std::uint32_t checksum = 0;
 };
 
-/// A killed recorder leaves at most kRingSteps incomplete steps and a torn event after the last
-/// complete step. The recorder has not reported these bytes. All these bytes lie within the last
-/// kTailBytes of the log. The 128 KiB of each channel have space for 87 of its largest messages.
+/// Size of the end of a log, in bytes, that contains everything after the last complete step. A
+/// killed recorder leaves at most kRingSteps incomplete steps and a torn event there, which it has
+/// not reported. The 128 KiB of each channel have space for 87 of its largest messages.
 inline constexpr std::int64_t kTailBytes = static_cast<std::int64_t>(kNumChannels) * (128 << 10);
 
 /// Appends events to a new file, or continues an old file after a given LogHead.

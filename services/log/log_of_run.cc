@@ -90,7 +90,7 @@ LogOfRun::~LogOfRun() {
   } else if (!older_.empty()) {
     std::filesystem::remove(older_, ignored);
   } else if (in_vain) {
-    // A link to the log is not removed.
+    // If path_ is a symbolic link, the log is removed, but not the link.
     std::filesystem::remove(std::filesystem::canonical(path_, ignored), ignored);
   }
 }

@@ -46,8 +46,8 @@ class LogOfRun {
 };
 
 /// Looks for the older log that a killed run has left beside `log`. If that run has written no step
-/// into `log`, the function restores the older log. A run that ends normally without a step leaves
-/// the same files.
+/// into `log`, the function restores the older log. The files are then the same as after a run that
+/// ended normally without a step.
 /// @param option the command line option that names the log, such as "--log"
 /// @param patience how long to wait until the processes of the killed run have ended
 /// @return one line that says what was found; "" if there is no older log

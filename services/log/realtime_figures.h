@@ -65,7 +65,7 @@ class RealtimeAccumulator {
   /// Adds the next STATUS of the log.
   void Add(const status_t& status);
   void Add(RealtimePriority priority) { priority_ = std::move(priority); }
-  /// Adds the next step of the log. `there` has the channels of its messages.
+  /// Adds the next step of the log. `there` has the channels of which the step has a message.
   void AddStep(const runtime::ChannelSet& there);
 
   RealtimeFigures Result() const;

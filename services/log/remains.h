@@ -19,7 +19,7 @@ struct LogFront {
   bool realtime = false;
   std::int64_t type_fingerprint = 0;
   LogHead head;  // the part with scenario and graph; step 0 follows
-  // In lockstep: whether each step has its wall clock. Known if the log has step 0.
+  // In lockstep: whether the log has the wall clock of each step. Known if the log has step 0.
   bool wall_clock = false;
 
   /// Number of events of each step in lockstep.
@@ -50,9 +50,9 @@ Remains ReadRemains(const std::filesystem::path& file, const LogFront& front,
                     const std::function<void(std::int64_t steps)>& alive = {},
                     std::int64_t tail = kTailBytes);
 
-/// An interrupted run leaves some incomplete steps, a torn event or a seal after the complete steps
-/// of its log. For a log in lockstep, this function describes any other bytes after the complete
-/// steps; "" if there are no other bytes.
+/// Describes bytes after the complete steps of a log in lockstep that no interrupted run leaves; ""
+/// if there are no such bytes. An interrupted run leaves only some incomplete steps, a torn event
+/// or a seal.
 /// @throws InputError if the file is not an event log
 std::string OddEnd(const std::filesystem::path& file, const LogFront& front,
                    const Remains& remains);

@@ -192,7 +192,8 @@ class RunLogReader::Assembler {
     run_.events = reader_.head();
     const std::string alteration = Alteration();
     run_.altered = !alteration.empty();
-    // In real time, the TRUTH message that has `last` may be missing.
+    // In real time, the TRUTH message that has `last` may be missing. Then the number of steps
+    // shows that the run has ended.
     if (realtime_ && (run_.steps == steps_ || run_.steps == end_)) last_ = true;
     const bool whole = pending_.empty() && !run_.gaps.Any() && !tail_;
     run_.ended = last_ && whole && run_.has_scenario && conflict_.empty() &&

@@ -33,9 +33,9 @@ struct RunLog {
   std::int64_t steps = 0;        // number of complete steps
   // Digest of the complete steps; "" if the log has gaps and they were read (ReadOptions::gaps).
   std::string digest;
-  // Whether these conditions are met: the scenario is known, the log ends with the last step of the
-  // run, the log was not changed after it was sealed, no event is torn, and no two messages of one
-  // step and channel differ. In lockstep, the log must also have all messages.
+  // Whether the log has the whole run, up to its end: the scenario is known, the log ends with the
+  // last step of the run, the log was not changed after it was sealed, no event is torn, and no two
+  // messages of one step and channel differ. In lockstep, the log must also have all messages.
   bool ended = false;
   // Whether `ended` is true and, in real time, no published message is known to be missing.
   bool complete = false;

@@ -7,8 +7,9 @@
 
 namespace fogline::metrics {
 
-/// ISO 15622 limits the jerk of an ACC as an average over 1 s. The magnitude of that average at
-/// time t is the change of the acceleration over the last second:
+/// Computes the jerk of a car as an average over 1 s, because ISO 15622 limits this average for an
+/// ACC. The magnitude of the average at time t is the change of the acceleration over the last
+/// second:
 ///
 ///     |a(t) - a(t - 1 s)| / 1 s
 ///
@@ -26,8 +27,8 @@ class AveragedJerk {
     double time_s;
     double acceleration_mps2;
   };
-  /// A second has at most 1000 steps, because a step lasts at least 0.001 s (Scenario::step_s). A
-  /// ring buffer keeps only the points of the last second.
+  /// Size of the ring buffer, which keeps only the points of the last second. A second has at most
+  /// 1000 steps, because a step lasts at least 0.001 s (Scenario::step_s).
   static constexpr std::size_t kMostPoints = 1002;
 
   const Point& Oldest() const { return points_[begin_]; }

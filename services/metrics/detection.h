@@ -18,8 +18,8 @@ struct DetectionMetrics {
   /// weighted by the human's authority.
   double wrong_human_s = 0;
   /// Time of the automation, s, weighted by its authority, while the track is wrong (TrackJudge).
-  /// So this time is 0 for a policy that does not use the deceived LiDAR. This time is above 0 for
-  /// a policy that returns authority before the filter has settled.
+  /// So this time is 0 for a policy that does not use the deceived LiDAR. It is above 0 for a
+  /// policy that lets the automation drive again before the track is right again.
   double wrong_automation_s = 0;
   /// Time from the first step in which the LiDAR is deceived to the next step with an alarm, s. The
   /// time is 0 if the alarm has already begun, for example if fog raises the Degree of Conflict

@@ -11,7 +11,7 @@ namespace fogline::metrics {
 
 /// A field is nullopt if the run has no step in fog, or no following car.
 struct FogEffect {
-  /// Mean of CS over the steps in fog, m.
+  /// Mean compromised safety CS of the first following car over the steps in fog, m.
   std::optional<double> mean_compromised_safety_m;
   /// Largest drop of the host's speed in fog below its speed in the first step in fog, m/s.
   std::optional<double> slow_down_mps;

@@ -54,24 +54,24 @@ struct RunMetrics {
   std::optional<double> collision_time_s;
 
   /// Redundant human engagement: share of the steps in clear air in which the human is engaged, %.
-  /// Sourav & Cheng 2024 define this measure differently. With their definition, the 0 % that they
-  /// print beside an SI of 80.79 % would be impossible. Engaged means lambda_H > 0, as
+  /// This definition is our interpretation. With the words of Sourav & Cheng 2024, the 0 % that
+  /// they print beside an SI of 80.79 % would be impossible. Engaged means lambda_H > 0, as
   /// HumanIsEngaged() in services/host_modes.h. In traded control an engaged human drives. In
   /// shared control, an engaged human may have only a small part of the authority.
   std::optional<double> rhe_pct;
   /// Time during which the human is engaged, s. This time ends when the last step begins, because
   /// the command of the last step is never carried out.
   double human_time_s = 0;
-  /// Number of hand-overs in either direction. A hand-over is a change of HumanDrives(lambda_H)
-  /// (services/host_modes.h) from one step to the next. `fogline events` lists the same hand-overs,
+  /// Number of transfers, in either direction. A transfer is a change of HumanDrives(lambda_H)
+  /// (services/host_modes.h) from one step to the next. `fogline events` lists the same transfers,
   /// in the same steps.
   std::int64_t transfers = 0;
-  /// Hand-overs per minute of the run, 1/min; nullopt for a run without duration.
+  /// Transfers per minute of the run, 1/min; nullopt for a run without duration.
   std::optional<double> transfers_pmin;
-  /// Least time between two hand-overs, s; nullopt with fewer than two hand-overs.
+  /// Least time between two transfers, s; nullopt with fewer than two transfers.
   std::optional<double> min_dwell_s;
-  /// Largest change of the commanded acceleration from the step before a hand-over to the step of
-  /// the hand-over, m/s2; 0 without a hand-over.
+  /// Largest change of the commanded acceleration from the step before a transfer to the step of
+  /// the transfer, m/s2; 0 without a transfer.
   double max_handover_jump_mps2 = 0;
   /// Largest |jerk| of the host within `handover_s` after a change of the authorities, m/s3;
   /// nullopt without a change. For a ramp of the authorities, the interval lasts from the ramp's
@@ -80,7 +80,8 @@ struct RunMetrics {
   /// Largest |jerk| of the host in the same intervals, averaged over 1 s (AveragedJerk), m/s3. The
   /// averaged second may begin before the change.
   std::optional<double> max_handover_jerk_1s_mps3;
-  /// Time in which the wrong side drives, time from deception to alarm, false alarms.
+  /// Time in which the wrong side drives, time from the LiDAR's deception to the alarm, and false
+  /// alarms.
   DetectionMetrics detection;
 
   /// Largest applied |acceleration| of the host, m/s2. Step 0 has no applied acceleration.

@@ -15,7 +15,8 @@
 
 namespace fogline::metrics {
 
-/// The mean of (without - with)/without over steps, in %. The ratio of one step can be far below 0,
+/// The mean over steps of (without - with)/without, in %. `without` and `with` are the compromised
+/// safety of the step without and with traded control. The ratio of one step can be far below 0,
 /// but never above 1.
 class MeanImprovement {
  public:
@@ -116,7 +117,8 @@ struct PairedMetrics {
   /// SI over a longer interval, %. The interval begins with the first step in fog. The interval
   /// ends with the last step in which one of the runs is in fog or has a wrong track
   /// (UntilRecovery). Only steps with CS_baseline > floor count. si_pct uses only steps in fog. But
-  /// at the end of the fog the automation returns, and the filter may not have settled.
+  /// after the end of the fog the automation drives again, and the track may still be wrong. So
+  /// traded control can affect the safety also in these steps.
   std::optional<double> si_until_recovery_pct;
   /// SI with other choices, %, in the order of kSafetyChoices. `fogline table` shows them.
   std::array<std::optional<double>, kSafetyChoices.size()> other_si_pct;

@@ -10,7 +10,8 @@
 
 namespace fogline::metrics {
 
-/// A car and the car ahead of it at one moment.
+/// A car and the car ahead of it at one moment. The formulas below have the symbols d (gap), v
+/// (speed of the car behind) and v_l (speed of the car ahead).
 struct CarPair {
   double gap_m;
   double speed_mps;       // speed of the car behind
@@ -28,8 +29,9 @@ double TimeToCollision(const CarPair& pair);
 double DecelerationToAvoidCrash(const CarPair& pair);
 
 /// Possibility index for collision with urgent deceleration in m, d + (v_l^2 - v^2)/(2 b) - v t_r.
-/// PICUD is the gap that remains if the car ahead brakes now and the car behind brakes after its
-/// reaction time (Uno et al. 2002). A value below 0 is dangerous.
+/// PICUD is the gap that remains if the car ahead brakes now with b = picud_braking_mps2, and the
+/// car behind brakes as hard after its reaction time t_r = picud_reaction_s (Uno et al. 2002). A
+/// value below 0 is dangerous.
 double UrgentDecelerationGap(const MeasuresSection& section, const CarPair& pair);
 
 /// Probability that a car's maximum available deceleration is below `drac_mps2`. The maximum
@@ -45,8 +47,8 @@ double CompromisedSafety(double safe_distance_m, double gap_m);
 struct PairMetrics {
   /// Least time to collision, s.
   std::optional<double> min_ttc_s;
-  /// Time exposed: time during which the time to collision is at most TTC*, s (Minderhoud & Bovy
-  /// 2001).
+  /// Time exposed: time during which the time to collision TTC is at most TTC* = critical_ttc_s, s
+  /// (Minderhoud & Bovy 2001).
   std::optional<double> tet_s;
   /// Time integrated: the integral of TTC* - TTC over the time exposed, s2 (Minderhoud & Bovy
   /// 2001).

@@ -6,7 +6,8 @@ namespace fogline::radar {
 
 enum class Polarization { kHorizontal, kVertical };
 
-/// Rain's specific attenuation is k R^alpha dB/km at R mm/h.
+/// Coefficients of the specific attenuation by rain: k R^alpha in dB/km, at the rain rate R in
+/// mm/h.
 struct RainCoefficients {
   double k;
   double alpha;
@@ -17,12 +18,13 @@ struct RainCoefficients {
 /// depends on the drops, so published formulas differ by a factor of two.
 double LiquidWater_gpm3(double visibility_m);
 
-/// K_l in (dB/km) / (g/m3): ITU-R P.840-8, equations 2 to 11. These equations describe Rayleigh
-/// absorption by droplets. They take the permittivity of water from the double Debye model, and are
-/// valid up to 200 GHz.
+/// Specific attenuation by fog per liquid water, K_l in (dB/km) / (g/m3): ITU-R P.840-8, equations
+/// 2 to 11. These equations describe Rayleigh absorption by droplets. They take the permittivity of
+/// water from the double Debye model, and are valid up to 200 GHz.
 double FogCoefficient(double frequency_ghz, double temperature_c);
 
-/// ITU-R P.838-3, equations 2 and 3, valid from 1 to 1000 GHz, for a horizontal path.
+/// The coefficients for rain: ITU-R P.838-3, equations 2 and 3, valid from 1 to 1000 GHz, for a
+/// horizontal path.
 RainCoefficients RainCoefficientsOf(double frequency_ghz, Polarization polarization);
 
 /// Specific attenuation in dB/km by rain of this rate: ITU-R P.838-3, equation 1.

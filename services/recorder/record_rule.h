@@ -1,10 +1,10 @@
 // The recorder's rule in real time: the world does not wait for the recorder. The recorder writes
-// steps in order as soon as they are complete. The recorder asks for a missing message as long as
-// the producer can still have the message. A step that stays incomplete is written without the
-// missing messages. RUN tells the recorder that a step is under way, even if no message of the step
-// has come. Each STATUS, each DRIVER_INPUT and each TRIAL is also written into the log, after the
-// step in which it came, because the states of the roles, the acts of a person and the facts of a
-// trial are part of the record.
+// steps in order as soon as they are complete. The recorder asks for a missing message while the
+// producer can still have it. A step that stays incomplete is written without the missing messages.
+// RUN tells the recorder that a step is under way, even if no message of the step has come. Each
+// STATUS, each DRIVER_INPUT and each TRIAL is also written into the log, after the step in which it
+// came, because the states of the roles, the acts of a person and the facts of a trial are part of
+// the record.
 #pragma once
 
 #include <array>
@@ -26,8 +26,8 @@ class RecordRule final : public runtime::FireRule {
   void OnInput(std::size_t input, std::int64_t step, runtime::Arrival& arrival) override;
   TimePoint Poll(TimePoint now) override;
   void OnProgress() override;
-  /// Counts as late only messages that the log lacks, because `unlogged_messages` is computed from
-  /// this count.
+  /// Writes the figures of this rule into STATUS. Only messages that the log lacks count as late,
+  /// because `unlogged_messages` (RealtimeFigures) is computed from this count.
   void WriteStatus(TimePoint now) override;
 
   /// Calls `use` once for each STATUS, DRIVER_INPUT and TRIAL that came in this step or before.

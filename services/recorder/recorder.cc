@@ -24,8 +24,9 @@ constexpr double kNoLimit = 1e9;
 // A request within this time after an answer gets no second answer, because the role that asks
 // receives the first answer.
 constexpr Duration kAnswerHolds = milliseconds(2);
-// The last STATUS is sent this number of times, because the runner cannot ask a recorder that has
-// left. If a third of all messages is lost, all six messages are lost in only one of 700 cases.
+// The last STATUS is sent this number of times, because a recorder that has left the run cannot
+// answer a request for its STATUS. If a third of all messages is lost, all six messages are lost in
+// only one of 700 cases.
 constexpr int kLastWords = 6;
 // The largest number of old steps that are sent between two reads of new messages.
 constexpr int kStepsAtOnce = 4;
@@ -77,7 +78,8 @@ bool Recorder::Resume() {
   }
   const log::Remains remains = ReadOwnRemains(front);
   if (!front.parts.Complete()) return false;
-  // All steps of a log in lockstep have the same events.
+  // All steps of a log in lockstep have the same events. So the old steps decide whether the new
+  // steps have a wall clock.
   if (!parts_.run.realtime && remains.steps > 0) wall_clock_ = front.wall_clock;
   log_.emplace(file_, remains.head);
   log::LogFront continued = front;

@@ -21,13 +21,13 @@ class RecordRule;
 
 class Recorder final : public runtime::Work {
  public:
-  /// Whether the recorder replaces an existing file, or continues it.
+  /// What the recorder does with an existing file.
   enum class Existing { kReplace, kResume };
   /// Whether the log has the wall clock of each step. In real time the log always has it.
   enum class WallClock { kNo, kYes };
 
-  /// With kReplace and a run id, an existing file is replaced at once. With kReplace and no run id,
-  /// the file is replaced as soon as a run has been found.
+  /// With kReplace and a run id, the constructor replaces an existing file. With kReplace and no
+  /// run id, the recorder replaces the file as soon as it has found a run.
   /// @throws InputError if the file cannot be written
   Recorder(runtime::Bus& bus, std::optional<std::int64_t> run_id, const std::filesystem::path& file,
            Existing existing = Existing::kReplace, WallClock wall_clock = WallClock::kNo);
@@ -66,7 +66,7 @@ class Recorder final : public runtime::Work {
   /// Answers some of the requests. @return the time of the next call
   TimePoint AnswerSome(TimePoint now);
   void AnswerStep(const AskedSteps::Asked& asked, TimePoint now);
-  /// Publishes a requested message again, unless the rate limiter refuses.
+  /// Publishes a requested message again, if the rate limiter allows it.
   void Answer(std::string_view channel, runtime::Bytes bytes, TimePoint now);
 
   runtime::Node node_;

@@ -17,7 +17,7 @@
 
 namespace fogline::world {
 
-/// One car:
+/// The fallback of one car, which depends on the state of the input with its commands:
 ///
 ///     input          | acceleration of the car
 ///     ---------------|---------------------------------------------------------
@@ -34,7 +34,7 @@ class CarFallback {
   double Step(InputState state, std::optional<double> command_mps2, double speed_mps,
               double applied_mps2);
 
-  /// Begins the minimal risk manoeuvre, unless it has begun already.
+  /// Begins the minimal risk manoeuvre, if it has not begun yet.
   void BeginMinimalRisk(double applied_mps2) { minimal_risk_.Begin(applied_mps2); }
   bool in_minimal_risk() const { return minimal_risk_.begun(); }
 
@@ -43,8 +43,9 @@ class CarFallback {
   std::optional<double> last_mps2_;
 };
 
-/// The host and the following cars. The results are the inputs of World::Step(). Each following car
-/// has its own fallback. If messages lack the acceleration of one car, only this car stops.
+/// The fallback of the host and of the following cars. The results are the inputs of World::Step().
+/// Each following car has its own fallback. If messages lack the acceleration of one car, only this
+/// car stops.
 ///
 /// If the arbitrator has commanded the host's minimal risk manoeuvre, the vehicle stays in the
 /// manoeuvre. The vehicle follows the arbitrator's commands while they continue the manoeuvre. If
@@ -60,11 +61,11 @@ class VehicleFallback {
   void Step(const truth_t& now, const Heard<arbitration_t>& host,
             const Heard<follower_command_t>& followers);
 
-  /// Puts the host into the manoeuvre, because the host was in the manoeuvre under an earlier
-  /// process.
+  /// Begins the host's minimal risk manoeuvre, because the host was in this manoeuvre under an
+  /// earlier process of the world.
   void ResumeHost(const truth_t& now) { host_.BeginMinimalRisk(now.host_acceleration_mps2); }
-  /// Puts all following cars into the manoeuvre, because this process does not know which cars the
-  /// earlier process had in the manoeuvre.
+  /// Begins the minimal risk manoeuvre of all following cars, because this process does not know
+  /// which of them were in the manoeuvre under the earlier process.
   void ResumeFollowers(const truth_t& now);
 
   /// The command that the host carries out. While the vehicle stops by itself, the mode is

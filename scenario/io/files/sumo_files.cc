@@ -13,7 +13,7 @@
 namespace fogline {
 namespace {
 
-constexpr std::size_t kMostBytes = kMaxTextLength;  // a character has one byte at least
+constexpr std::size_t kMostBytes = kMaxTextLength;  // so at most kMaxTextLength characters
 
 /// Appends a line in pieces of at most kMostBytes bytes. @return false if a piece would be longer
 bool AppendLine(std::string_view line, std::vector<std::string>& lines) {

@@ -8,7 +8,7 @@ namespace fogline::conflict {
 struct StatedRange {
   bool valid = false;  // false: no value in this step; other fields have no meaning
   double range_m = 0;  // m
-  double std_m = 0;    // m, above 0; nominal: a std_m that grew with the bias would hide conflict
+  double std_m = 0;    // m, above 0; the nominal value, because a larger one would hide conflict
 };
 
 /// The evidence of one step: two sensors, and a third witness.
@@ -44,8 +44,9 @@ struct Blame {
   friend bool operator==(const Blame&, const Blame&) = default;
 };
 
-/// Finds the sensor that is wrong. The values of radar and LiDAR alone are not sufficient for this.
-/// The rules of ConflictMeasure (no clock, no shared state, no allocation in Step) apply.
+/// A measure that finds the sensor that is wrong. The values of radar and LiDAR alone are not
+/// sufficient for this, so these measures use the prediction, too. The rules of ConflictMeasure (no
+/// clock, no shared state, no allocation in Step) apply.
 class BlameMeasure {
  public:
   virtual ~BlameMeasure() = default;

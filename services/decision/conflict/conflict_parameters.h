@@ -7,24 +7,24 @@
 
 namespace fogline::conflict {
 
-/// Modes of a LiDAR: it measures the range of the car, or the range of the fog or another object,
-/// or it has no echo.
+/// Modes of a LiDAR: it measures the range of the car (kClean), or the range of the fog or of
+/// another object (kFogReturn), or it almost never has an echo (kDropout).
 enum class LidarMode { kClean, kFogReturn, kDropout };
 inline constexpr int kLidarModes = 3;
 
 struct ConflictParameters {
   // ---- Difference ----
 
-  /// Mean of radar - LiDAR without a fault, m, any finite value. This offset of the mounting points
-  /// remains after calibration. Every measure except `doc` subtracts the offset. The paper defines
-  /// `doc` without an offset.
+  /// Mean of radar - LiDAR without a fault, m, any finite value. It is the offset of the mounting
+  /// points that remains after calibration. Every measure except `doc` subtracts the offset. The
+  /// paper defines `doc` without an offset.
   double offset_m = 0;
   /// Rule for a step without radar or LiDAR value, for every measure except the measures of LiDAR
   /// modes. Such a step repeats the last difference, is skipped, or counts as a difference of
   /// `missing_conflict_m`.
   MissingLidar missing = MissingLidar::kHold;
-  /// With rule conflict, a missing value counts as this difference, m, above 0. The scenario's
-  /// section `arbitrator` has the same default.
+  /// With the rule `conflict`, a missing value counts as this difference, m, above 0. The
+  /// scenario's section `arbitrator` has the same default.
   double missing_conflict_m = 10;
   /// Standard deviations, m, above 0, for a missing value that counts as conflict before the sensor
   /// has stated a standard deviation. Sources: Continental ARS408 far range; Velodyne VLP-16.
@@ -36,29 +36,31 @@ struct ConflictParameters {
 
   // ---- DoC (Sourav & Cheng 2024) ----
 
-  double doc_slope_pm = 10;                                        // 1/m, above 0; paper
-  double doc_centre_m = 1;                                         // m; paper
+  double doc_slope_pm = 10;                                        // 1/m, above 0; from the paper
+  double doc_centre_m = 1;                                         // m; from the paper
   ConflictReading doc_reading = ConflictReading::kMeanOfAbsolute;  // the paper does not state it
 
   // ---- Windows ----
 
-  /// Steps of the windows of DoC and windowed NIS, at least 1. The default is the window of
-  /// paper.json.
+  /// Number of steps in the windows of DoC and windowed NIS (nis.h), at least 1. The default is the
+  /// window of paper.json.
   int window_steps = 8;
   /// Number of steps that the GLR test looks back for a jump, at least 1; 20 steps are 2 s at 10
   /// Hz. Basseville & Nikiforov 1993, 2.4.3, also limit this number, because of the computing cost.
   int glr_window_steps = 20;
-  /// Steps of the signed mean from which the NIS blame is computed, at least 1. With 1, the blame
-  /// follows the NIS of the step.
+  /// Number of steps whose mean residual gives the NIS blame (third_witness.h), at least 1. With 1,
+  /// the blame depends only on the NIS of the step.
   int blame_window_steps = 1;
 
   // ---- Beliefs on bins ----
 
   /// Width of a bin, m, above 0. The default is about the largest standard deviation.
   double bin_width_m = 0.5;
-  /// Number of bins of the frame, at least 2. The default of 500 bins covers 250 m.
+  /// Number of bins of the frame (all ranges that are possible), at least 2. The default of 500
+  /// bins of 0.5 m covers 250 m.
   int frame_bins = 500;
-  /// Reliability eta of each sensor (Shafer 1976, discounting), in (0, 1).
+  /// Reliability eta of each sensor, in (0, 1): the mass that stays on the bins (Shafer 1976,
+  /// discounting).
   double radar_reliability = 0.95;
   double lidar_reliability = 0.95;
 
@@ -70,12 +72,12 @@ struct ConflictParameters {
 
   // ---- Sequential tests ----
 
-  /// CUSUM reference value kappa in standard deviations of d, at least 0. kappa is half of the
-  /// shift that the test detects best (Page 1954).
+  /// CUSUM reference value kappa in standard deviations of the difference, at least 0. kappa is
+  /// half of the shift that the test detects best (Page 1954).
   double cusum_kappa = 0.5;
-  /// Upper limit of the sum in standard deviations, above any threshold in use. Without this limit,
-  /// the sum would grow during a long fog bank, and fall below the threshold only long after the
-  /// fog bank.
+  /// Upper limit of the CUSUM in standard deviations, above any threshold in use. Without this
+  /// limit, the sum would grow during a long fog bank, and fall below the threshold only long after
+  /// the fog bank.
   double cusum_ceiling = 50;
   /// SPRT: shift delta that the test distinguishes from no shift, m, above 0. The default is half
   /// the centre of the DoC.
@@ -90,9 +92,9 @@ struct ConflictParameters {
 
   // ---- LiDAR modes (IMM, Blom & Bar-Shalom 1988) ----
 
-  /// Probability of mode j in the next step given mode i in this step, in the order of LidarMode.
-  /// The rows add up to 1; each entry is above 0. Our choice: at 10 Hz, mode clean lasts 10 s on
-  /// average, and the other modes last 1 s.
+  /// Probability of mode j in the next step given mode i in this step (row i, column j), in the
+  /// order of LidarMode. The rows add up to 1; each entry is above 0. Our choice: at 10 Hz, mode
+  /// clean lasts 10 s on average, and the other modes last 1 s.
   std::array<std::array<double, kLidarModes>, kLidarModes> mode_transition{
       {{0.99, 0.005, 0.005}, {0.05, 0.9, 0.05}, {0.05, 0.05, 0.9}}};
   /// Probability of an echo in each mode, in (0, 1). Our choice.
@@ -101,8 +103,8 @@ struct ConflictParameters {
   /// is 4.0 m at a visibility of 600 m, and 3.1 m at a visibility of 20 m
   /// (services/lidar/fog_beam.h).
   double fog_return_m = 3.5;
-  /// Length in m, above 0. A fog echo lies beyond r* by this length times a random number of
-  /// Beta(2, 20) (Hahner et al. 2021).
+  /// Length in m, above 0. A fog echo lies beyond r* by this length times a random number with the
+  /// distribution Beta(2, 20) (Hahner et al. 2021).
   double fog_scatter_m = 10;
   /// Share of fog returns that can be anywhere in the LiDAR's range, in (0, 1). Such an echo may be
   /// a mixture of the echoes of car and fog. Our choice.

@@ -10,14 +10,16 @@
 
 namespace fogline::conflict {
 
-/// d = radar - LiDAR, above 0 if the LiDAR's range is too short, as in fog.
+/// The difference d = radar - LiDAR of a step, with the standard deviations of both ranges. d is
+/// above 0 if the LiDAR's range is too short, as in fog.
 struct Disagreement {
   double difference_m;
   double radar_std_m;
   double lidar_std_m;
 
-  /// S = s1^2 + s2^2, m2: the variance of d if both sensors have the stated noise. The filter's
-  /// prediction cancels in d, so its covariance is not in S.
+  /// S = s1^2 + s2^2, m2, with the standard deviations s1 and s2 of radar and LiDAR: the variance
+  /// of d if both sensors have the stated noise. The filter's prediction is not used for d, so its
+  /// covariance is not in S.
   double variance_m2() const { return radar_std_m * radar_std_m + lidar_std_m * lidar_std_m; }
   /// d/sqrt(S): standard normal without a fault.
   double standardised() const;
@@ -25,7 +27,7 @@ struct Disagreement {
 
 class DisagreementSource {
  public:
-  /// Whether `offset_m` is subtracted from the difference.
+  /// Treatment of ConflictParameters::offset_m: it is subtracted from the difference, or not.
   enum class Offset { kSubtracted, kKept };
 
   explicit DisagreementSource(const ConflictParameters& parameters,
@@ -35,7 +37,7 @@ class DisagreementSource {
   /// the rule:
   ///   hold      the last measured disagreement; before the first one nullopt
   ///   skip      nullopt
-  ///   conflict  d = missing_conflict_m with the last stated standard deviations
+  ///   conflict d = missing_conflict_m, with the last stated standard deviations
   std::optional<Disagreement> Next(const Evidence& evidence);
   void Reset();
 

@@ -1,4 +1,4 @@
-// The last values of a measure.
+// A window with the values of the last steps, for measures of conflict.
 #pragma once
 
 #include <cstddef>
@@ -8,8 +8,9 @@
 namespace fogline::conflict {
 
 /// The values of the last W steps. A step without a value adds an empty entry. Every entry, also an
-/// empty one, leaves the window after W steps. A measure computes the whole sum again in every
-/// step, so its result depends only on the contents of the window.
+/// empty one, leaves the window after W steps. A measure computes its sum again from all entries in
+/// every step. So its result depends only on the contents of the window, and not on the rounding of
+/// earlier steps.
 class Window {
  public:
   /// @param steps W, at least 1

@@ -7,11 +7,16 @@
 
 namespace fogline::policies {
 
-/// DoC_th(k) = clip(DoC_th + k_A (1 - A) - k_M/MOR - k_C/TTC - k_B max(0, -a), least, most) with
-/// the driver's readiness A, the visibility MOR, the follower's time to collision TTC and the
-/// host's acceleration a. The threshold is higher for a driver who is not ready, and lower if the
-/// fog is dense, if the follower is close, or if the host already brakes. The formula is ours; the
-/// paper suggests such a threshold (future work 3).
+/// The human drives if the DoC is at least this threshold of step k:
+///
+///     DoC_th(k) = clip(DoC_th + k_A (1 - A) - k_M/MOR - k_C/TTC - k_B max(0, -a), least, most)
+///
+/// with the driver's readiness A, the visibility MOR, the follower's time to collision TTC and the
+/// host's acceleration a. The gains k_A, k_M, k_C, k_B and the limits least, most are fields of the
+/// scenario (AdaptiveSection); DoC_th on the right is the scenario's threshold. The threshold is
+/// higher for a driver who is not ready, and lower if the fog is dense, if the follower is close,
+/// or if the host already brakes. The formula is ours; the paper suggests such a threshold (future
+/// work 3).
 class Adaptive final : public EngagementPolicy {
  public:
   static constexpr bool kNeedsSurroundings = true;

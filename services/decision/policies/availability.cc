@@ -14,10 +14,12 @@ constexpr double kPercentile = 0.95;  // percentile of take-over times, after Ma
 
 }  // namespace
 
-// With the limit c, the equation (w + b t)^2 = 2 c (s - w t - b t^2/2) is A t^2 + B t + C = 0. The
-// code below computes A, B and C. B^2 - 4 A C = 4 c (b + c)(w^2 + 2 b s) is above 0 if the gap s
-// and the host's braking b are above 0. So the time is always finite if the host brakes. If the
-// host is faster (w < 0), the larger root comes after the moment at which the speeds are equal.
+// Let c be the limit; availability.h has the other symbols. The equation (w + b t)^2 = 2 c (s - w t
+// - b t^2/2) is A t^2 + B t + C = 0. The code below computes A, B and C. B^2 - 4 A C = 4 c (b +
+// c)(w^2 + 2 b s) is above 0 if the gap s and the host's braking b are above 0. So the time is
+// always finite if the host brakes. The result is the larger root. If the host is faster (w < 0),
+// this root comes after the moment at which the speeds are equal, when the follower first has to
+// brake.
 double TimeUntilHardBraking(double gap_m, double closing_mps, double host_braking_mps2,
                             double limit_mps2) {
   constexpr double kNever = std::numeric_limits<double>::infinity();

@@ -11,17 +11,17 @@ namespace fogline::policies {
 ///
 ///     DRAC(t) = (w + b t)^2 / (2 (s - w t - b t^2/2)) = limit
 ///
-/// with gap s and closing speed w. The time is 0 if the follower already has to brake so hard, and
-/// infinite if the follower never has to brake so hard.
+/// with s = `gap_m` and w = `closing_mps`. The time is 0 if DRAC is already at the limit or above
+/// it, or if `gap_m` is not above 0. The time is infinite if DRAC never reaches the limit.
 double TimeUntilHardBraking(double gap_m, double closing_mps, double host_braking_mps2,
                             double limit_mps2);
 
-/// The paper's rule, if the driver is available. A driver who already drives is available. Any
-/// other driver is available if the take-over time is less than the time until the follower has to
-/// brake harder than comfort_mps2. The take-over time here is the 95th percentile of its
-/// distribution plus unready_s (1 - A). If the driver is not available, the automation keeps
-/// authority, and the sensor to blame is not used. Marberger et al. 2018 define availability as the
-/// time budget minus the required time.
+/// The paper's rule, if the driver is available. A driver who already drives is available, and so
+/// is a driver in a host without a follower. Any other driver is available if the take-over time is
+/// less than the time until the follower has to brake harder than comfort_mps2, and less than
+/// horizon_s. The take-over time here is the 95th percentile of its distribution, plus unready_s
+/// times (1 minus the driver's readiness). If the driver is not available, the automation continues
+/// to drive. Marberger et al. 2018 define availability as the time budget minus the required time.
 ///
 /// The fusion never uses the sensor that is to blame, as in policy Isolate. The fusion does not
 /// know whether the driver is available. While the driver drives, the track is not used. When the

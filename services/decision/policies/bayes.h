@@ -7,12 +7,14 @@
 
 namespace fogline::policies {
 
-/// The human drives while P C_a >= (1 - P) C_h. This condition is equivalent to P >= C_h/(C_h +
-/// C_a). The quotient is the threshold of the step. P is the probability that the automation is
-/// deceived; the policy uses the DoC as P. The DoC is a probability with measure lidar_modes and
-/// measure_scale probability (services/decision/conflict/over_time/lidar_modes.h). With the paper's
-/// z, the DoC is only a steep function of the conflict. The expected costs depend on the readiness
-/// A, the visibility MOR and the follower's time to collision TTC:
+/// The human drives while P C_a >= (1 - P) C_h, with the expected costs C_a and C_h below. This
+/// condition is equivalent to P >= C_h/(C_h + C_a). The quotient is the threshold of the step. P is
+/// the probability that the automation is deceived; the policy uses the DoC as P. The DoC is a
+/// probability with measure lidar_modes and measure_scale probability
+/// (services/decision/conflict/over_time/lidar_modes.h). With the paper's z, the DoC is only a
+/// steep function of the conflict. The expected costs depend on the driver's readiness A, the
+/// visibility MOR and the follower's time to collision TTC. All other words are fields of the
+/// scenario (BayesSection):
 ///
 ///     C_h = human + unready (1 - A) + blind min(1, near_m/MOR)      of a human who drives
 ///     C_a = automation + follower min(1, near_ttc/TTC)              of a deceived automation

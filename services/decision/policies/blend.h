@@ -7,8 +7,9 @@
 
 namespace fogline::policies {
 
-/// lambda_H = clip((DoC - from)/width, 0, 1): both drive, the human in proportion to the conflict.
-/// The reported threshold is the DoC at which the human has half of the authority.
+/// The human's authority is lambda_H = clip((DoC - from)/width, 0, 1). Both sides drive, and the
+/// human's share grows with the conflict. `from` and `width` are fields of BlendSection. The
+/// reported threshold is the DoC at which the human has half of the authority.
 class Blend final : public EngagementPolicy {
  public:
   static constexpr bool kShares = true;

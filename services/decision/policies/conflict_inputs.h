@@ -10,11 +10,12 @@
 
 namespace fogline::policies {
 
-/// Parameters of the measures from section `arbitrator` and its `transfer`. All other parameters
-/// have the defaults of services/decision/conflict/conflict_parameters.h.
+/// The parameters of the measures that `section` (section `arbitrator` of the scenario, with its
+/// `transfer`) states. All other parameters have the defaults of
+/// services/decision/conflict/conflict_parameters.h.
 conflict::ConflictParameters ConflictParametersOf(const ArbitratorSection& section);
 
-/// The rows that the scenario has chosen.
+/// The row of a measure, for a choice of the scenario.
 const conflict::ConflictMeasureRow& RowOf(MeasureChoice choice);
 const conflict::BlameMeasureRow& RowOf(BlameChoice choice);
 
@@ -26,11 +27,11 @@ inline conflict::StatedRange StatedBy(const lidar_t& lidar) {
   return {.valid = lidar.valid != 0, .range_m = lidar.range_m, .std_m = lidar.range_std_m};
 }
 
-/// The filter's prediction before the filter used the values of the step. The predicted range is
-/// the measured value minus the innovation. The variance of the prediction is the innovation's
-/// variance minus the sensor noise that the filter assumes. The prediction is computed from the
-/// radar's value, or from the LiDAR's value in a step without radar value. The prediction is not
-/// valid in the step that starts a track, and in a step without any value.
+/// Computes the range that the filter predicted before it used the values of the step. The
+/// predicted range is the measured value minus the innovation. The variance of the prediction is
+/// the innovation's variance minus the sensor noise that the filter assumes. The prediction is
+/// computed from the radar's value, or from the LiDAR's value in a step without radar value. The
+/// prediction is not valid in the step that starts a track, and in a step without any value.
 ///
 /// If the filter estimates the noise itself (fusion.adaptive_noise), TRACK does not contain the
 /// noise that the filter has used. The variance is then predicted from the covariance of the
@@ -40,12 +41,13 @@ class Witness {
  public:
   explicit Witness(const Scenario& scenario);
 
-  /// Call this function in the order of steps; steps may be missing.
+  /// The predicted range with its standard deviation. Call this function in the order of steps;
+  /// steps may be missing.
   conflict::StatedRange Prediction(const track_t& track, const radar_t& radar,
                                    const lidar_t& lidar);
 
  private:
-  /// How the filter uses the range of a sensor.
+  /// What is needed to undo the filter's use of a sensor's range.
   struct Sensor {
     std::size_t value;  // index in track_t's arrays
     double noise_m2;    // variance of the noise that the filter assumes

@@ -10,8 +10,8 @@
 namespace fogline::policies {
 
 /// Excludes the sensor with the larger blame if this blame is at least blame_threshold. The
-/// scenario chooses the measure of blame. Both sensors are never excluded together. The witness is
-/// the filter's prediction.
+/// scenario chooses the measure of blame. If both blames are equal, no sensor is excluded. So at
+/// least one sensor is always used.
 class Isolation {
  public:
   explicit Isolation(const ArbitratorSection& section)

@@ -5,7 +5,7 @@
 
 namespace fogline::policies {
 
-/// lambda_A = 1 in every step.
+/// The automation drives in every step (lambda_A = 1).
 class None final : public EngagementPolicy {
  public:
   static constexpr Rule kRule = Rule::kNever;

@@ -14,7 +14,7 @@ struct PolicyRow {
   std::string_view name;  // name in the scenario (scenario/sections/decision.h)
   bool selects_sensors;   // whether the policy selects sensors in the fusion
   Rule rule;              // how the policy decides in the arbitrator
-  bool uses_threshold;    // whether the scenario's threshold changes its decisions
+  bool uses_threshold;    // whether the scenario's threshold affects the decisions
   bool needs_true_gap;
   bool needs_surroundings;
   bool shares;

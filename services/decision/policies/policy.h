@@ -28,7 +28,7 @@ struct SensorSelection {
 /// Inputs of a policy in the fusion, before the filter uses the values of the step.
 struct FusionView {
   const conflict::Evidence& evidence;
-  /// From the host's front bumper to the preceding car, for policies with kNeedsTrueGap.
+  /// True gap between the host and the preceding car; only for policies with kNeedsTrueGap.
   std::optional<double> true_gap_m;
 };
 
@@ -70,13 +70,13 @@ struct EngagementRequest {
   bool firm = true;
 };
 
-/// The paper's rule with this threshold: the human drives unless DoC < threshold. So the human also
-/// drives if the DoC is NaN.
+/// The request of the paper's rule with this threshold: the human drives unless DoC < threshold. So
+/// the human also drives if the DoC is NaN.
 inline EngagementRequest Compare(double doc, double threshold) {
   return {.lambda_human = doc < threshold ? 0.0 : 1.0, .threshold = threshold, .firm = false};
 }
 
-/// The automation drives at any conflict.
+/// The request of a policy whose automation drives at any conflict.
 inline EngagementRequest StayAutomated(double threshold) {
   return {.lambda_human = 0, .threshold = threshold, .firm = true};
 }
@@ -110,8 +110,8 @@ class EngagementPolicy {
 
   virtual ~EngagementPolicy() = default;
 
-  /// Decision in the fusion, once per step, after the prediction if there is a track. The fusion
-  /// calls this function only if the policy overrides it.
+  /// The sensors that the fusion uses in this step. The fusion calls this function only if the
+  /// policy overrides it, once per step, after the filter's prediction if there is a track.
   virtual SensorSelection SelectSensors(const FusionView& /*view*/) { return {}; }
 
   /// The policy's decision in the arbitrator. Called once per decision, and only with Rule::kOwn.

@@ -5,7 +5,8 @@
 
 namespace fogline::policies {
 
-/// lambda_A = 1 if 0 <= DoC < DoC_th, else 0 (Sourav & Cheng 2024).
+/// The automation drives (lambda_A = 1) if 0 <= DoC < DoC_th, else the human drives (Sourav & Cheng
+/// 2024). DoC_th is the scenario's threshold.
 class Traded final : public EngagementPolicy {
  public:
   static constexpr Rule kRule = Rule::kThreshold;

@@ -14,7 +14,8 @@
 namespace fogline::take_over {
 namespace {
 
-// TakeOverTime uses the draws from 0 to 99 of a step.
+// Index of the random number that decides whether the driver is absent. TakeOverTime uses the draws
+// from 0 to 99 of a step.
 constexpr std::uint32_t kAbsenceDraw = 100;
 
 constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
@@ -23,8 +24,8 @@ MinimalRiskSection LimitsOf(const TakeOverSection& section) {
   return {.deceleration_mps2 = section.emergency_deceleration_mps2, .jerk_mps3 = section.jerk_mps3};
 }
 
-/// a_P: a person overrides only with an acceleration of at most this value; nullopt if no person
-/// can override.
+/// Returns a_P in m/s2: a person overrides only with an acceleration of at most a_P. nullopt if no
+/// person can override.
 std::optional<double> OverrideOf(const PersonSection& person) {
   if (!person.drives || person.override_by == OverrideBy::kNone) return std::nullopt;
   const models::PedalResponse pedals(person);
@@ -132,7 +133,8 @@ void TakeOver::TakeAuthority(const TakeOverRow& row, std::int64_t step) {
   awaits_answer_ = false;
 }
 
-// The manoeuvre begins from the person's command, also if there has been a manoeuvre before.
+// For a person who has the authority and is gone: prepares a new manoeuvre, which begins from the
+// person's last command. So an earlier manoeuvre of this run has no effect on it.
 void TakeOver::LoseAuthority() {
   request_.reset();
   awaits_answer_ = true;
@@ -140,7 +142,8 @@ void TakeOver::LoseAuthority() {
   manoeuvre_ = models::MinimalRisk(LimitsOf(section_), step_s_);
 }
 
-// Draws the modelled driver's answer once. Later events do not change the answer.
+// Begins a request, and draws the time of the modelled driver's answer. Later events do not change
+// this time.
 void TakeOver::Ask(std::int64_t step) {
   request_ = TakeOverRequest{.requested = step};
   in_time_ = false;

@@ -1,5 +1,5 @@
 // Take-over on request: the policy's engagement request for the human becomes a request to the
-// driver. If the driver answers late or never, a manoeuvre stops the car.
+// driver. If the driver answers late or never, a minimal risk manoeuvre stops the car.
 #pragma once
 
 #include <cstdint>
@@ -25,7 +25,7 @@ struct TakeOverInputs {
   double speed_mps = 0;            // speed of the host
   double applied_mps2 = 0;         // last sent command; at first the applied acceleration
   const track_t* track = nullptr;  // nullptr if no preceding car is known
-  // Inputs of a person who drives; always false for the model of a driver.
+  // Inputs whether a person's answer is awaited who drives; always false for the model of a driver.
   bool acknowledged = false;  // the driver answers now
   bool gives_back = false;    // the driver wants the automation to drive
 };
@@ -46,7 +46,9 @@ inline constexpr double kStandstill_mps = 0.01;
 /// reduce a comfortable 1.5 m/s2 by half.
 inline constexpr double kOverdueFactor = 2.0;
 
-/// Runs the state machine of take_over_table.h. t is the time in s since the request:
+/// The state machine of take_over_table.h, with these conditions and decelerations. t is the time
+/// in s since the request, T the time from the request to the driver's answer, a_A and a_H the
+/// offers of automation and driver, a' the last sent command, h the step, and j = jerk_mps3:
 ///
 ///     acknowledgement  t >= T, if T <= lead_s. T is drawn in the step of the request
 ///                      (take_over_time.h). With absent_probability, T is infinite.
@@ -55,14 +57,14 @@ inline constexpr double kOverdueFactor = 2.0;
 ///                      and readiness >= required_readiness
 ///     escalation       t >= escalation_s
 ///     deadline         t >= lead_s
-///     easing           a = min(a_A, max(-slow_down_mps2, a' - j h)), a' the last sent command
+///     easing a = min(a_A, max(-slow_down_mps2, a' - j h))
 ///     manoeuvre        services/models/minimal_risk with jerk j and the decelerations
 ///                      clip(-a_A, comfort, emergency) and emergency of its two stages
 ///
 /// So the manoeuvre brakes at least as hard as the automation would, up to the emergency's
 /// deceleration. A driver who is not absent is late if and only if T > lead_s. Between
 /// acknowledgement and transfer the automation drives for at least one step. Only a driver who
-/// answers during the manoeuvre gets authority at once.
+/// overrides, or who answers during the manoeuvre, gets authority without such a step.
 ///
 /// If the scenario has a person who drives, no random number is drawn: T is the time of the first
 /// step after the request in which the person answers. A return to the automation has a further
@@ -93,7 +95,8 @@ class TakeOver {
   bool in_manoeuvre() const { return out_.authority >= Authority::kComfort; }
   /// Whether a manoeuvre has begun in this run, even if the driver has ended this manoeuvre.
   bool manoeuvred() const { return manoeuvre_.begun(); }
-  /// Whether the driver has the authority because of an override.
+  /// Whether the driver got the authority last by an override; false again after a return to the
+  /// automation.
   bool overridden() const { return overridden_; }
 
  private:

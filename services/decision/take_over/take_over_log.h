@@ -26,7 +26,7 @@ struct TakeOverEntry {
   std::int64_t utime = 0;
   std::int8_t from = 0;  // mode before the event
   std::int8_t to = 0;
-  bool transfer = false;  // whether the main authority changes (as in the measures)
+  bool transfer = false;  // whether the driving side changes, as in the measures
   std::string_view logged;
 };
 
@@ -36,14 +36,16 @@ struct TakeOverEntry {
 /// @param person section of the scenario of this run
 std::string_view TextOf(const TakeOverEntry& entry, const PersonSection& person);
 
-/// Reads commands in the order of steps; some commands may be missing.
+/// Collects the events and the requests of a run from its commands (HOST_COMMAND), in the order of
+/// steps. Some commands may be missing.
 ///
-/// The state says whether the driver has a share of the authority, and lambda_H is this share. The
-/// share may be 0 at first, and may grow later. So there are two different events. First, the
-/// driver gets a share. Second, lambda_H passes kMainAuthority: this is the transfer. If both
-/// events happen in one step, one entry covers both. The driver's input is effective if it changes
-/// the command by at least kEffectiveInput_mps2. This change is lambda_H (a_H - a), where a is the
-/// command before the driver got this share. The automation's part of the command does not count.
+/// The mode of a command says whether the driver has a share of the authority, and lambda_H is this
+/// share. The share may be 0 at first, and may grow later. So there are two different events.
+/// First, the driver gets a share. Second, lambda_H passes kMainAuthority: this is the transfer. If
+/// both events happen in one step, one entry covers both. The driver's input is effective if it
+/// changes the command by at least kEffectiveInput_mps2. This change is lambda_H (a_H - a), where a
+/// is the command before the driver got this share. The automation's part of the command does not
+/// count.
 ///
 /// The modes of emergency braking hide the state. Until these modes end, the last state before the
 /// emergency braking counts. In a run without requests, the state of the side with more authority

@@ -24,8 +24,8 @@ enum class TakeOverState : std::uint8_t {
   kMrmFailed,     // the brake does not bring the car to a standstill
 };
 
-/// Conditions of a step. Several conditions may be true in one step. The first row of the table
-/// that applies then decides.
+/// Conditions of a step that can change the state. Several conditions may be true in one step. Then
+/// the first row of the table that applies decides.
 enum class TakeOverEvent : std::uint8_t {
   kWanted,        // the policy wants the human to drive
   kCalm,          // the policy does not want the human to drive
@@ -55,7 +55,7 @@ enum class TakeOverGuard : std::uint8_t {
 /// Which side has authority. The authority determines the applied acceleration.
 enum class Authority : std::uint8_t {
   kAutomation,  // the automation's offer
-  kEasing,      // the automation's offer, limited to -slow_down_mps2 after a ramp
+  kEasing,      // the automation's offer, at most a ramp down to -slow_down_mps2
   kHuman,       // the human's offer
   kComfort,     // no side: the manoeuvre with comfort_deceleration_mps2
   kHard,        // no side: the manoeuvre with emergency_deceleration_mps2
@@ -92,7 +92,7 @@ using Row = TakeOverRow;
 ///     does not drive off, because driving off (5.5.4) is a new run.
 ///   - The manoeuvre never returns from its second stage to its first stage (Autoware's
 ///     mrm_handler).
-///   - A driver who brakes harder than the car overrides at once, with or without a request
+///   - A driver who brakes harder than the car overrides without delay, with or without a request
 ///     (6.3). A car that stands after a manoeuvre stays locked.
 inline constexpr std::array kTakeOverTable{
     //  state          event          guard   next           authority    logged

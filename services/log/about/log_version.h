@@ -11,15 +11,16 @@ namespace fogline::log {
 
 /// The writer of a log.
 struct LogVersion {
-  /// Such as "Fogline 0.1.0"; "" if the version is not known. The seal contains the version. For a
-  /// log without a seal, the version is known if the table of released versions (log_version.cc)
-  /// has the log's message types.
+  /// Name and version of the writer, such as "Fogline 0.1.0"; "" if the version is not known. The
+  /// seal contains the version. For a log without a seal, the version is known if the table of
+  /// released versions (log_version.cc) has the log's message types.
   std::string writer;
   /// Whether the message types of the writer differ from those of this build.
   bool other_types = false;
 
-  /// Such as "written by Fogline 0.1.0 with other message types; this is Fogline 0.2.0"; "" if the
-  /// log has the version of this build, or if the version is not known.
+  /// A remark for an error message, such as "written by Fogline 0.1.0 with other message types;
+  /// this is Fogline 0.2.0". "" if the log has the message types of this build, and its version is
+  /// the version of this build or not known.
   std::string Text() const;
 };
 

@@ -38,12 +38,13 @@ struct LogGaps {
   std::int64_t Messages() const;
   /// Adds a step that lacks the messages of these channels. Steps come in order.
   void Add(std::int64_t step, const std::bitset<kNumChannels>& channels);
-  /// Such as "2 messages of 2 steps are missing (RADAR 1, LIDAR 1), first: step 394 lacks RADAR";
-  /// "" if no message is missing. The text does not contain the steps before `first`.
+  /// A remark on all gaps, such as "2 messages of 2 steps are missing (RADAR 1, LIDAR 1), first:
+  /// step 394 lacks RADAR"; "" if no message is missing. The text does not contain the steps before
+  /// `first`.
   std::string Text() const;
 };
 
-/// "RADAR, LIDAR"
+/// The names of these channels, such as "RADAR, LIDAR".
 std::string NamesOfChannels(const std::bitset<kNumChannels>& channels);
 
 }  // namespace fogline::log

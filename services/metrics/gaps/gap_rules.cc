@@ -16,7 +16,8 @@ Channels Of() {
   return channels;
 }
 
-/// Measures that need every step, and the channels that they are computed from.
+/// A measure that needs every step, the channels that it is computed from, and whether it also
+/// needs the beginning of the run.
 struct NeedsEveryStep {
   std::string_view measure;
   Channels channels;

@@ -16,15 +16,16 @@ struct Lack {
   bool Any() const { return beginning || channels.any(); }
 };
 
-/// Whether a measure (a name of VisitMetrics()) is known. A measure is known if the log has all its
-/// messages. Extremes and means over steps are always known: they are computed from the steps that
-/// the log has. Sums over time, counts, and differences between steps are unknown if one of their
-/// messages is missing. A measure that depends on the beginning of the run is unknown if the
-/// beginning is missing.
+/// Whether a measure (a name of VisitMetrics()) is known. The table in gap_rules.cc lists the
+/// measures that need every step, such as sums over time, counts, shares of time, and differences
+/// between steps. Such a measure is unknown if one of its messages is missing. If it also depends
+/// on the beginning of the run, it is unknown if the beginning is missing. All other measures, such
+/// as extremes, are always known: they are computed from the steps that the log has.
 bool IsKnown(std::string_view measure, const Lack& lack);
 
-/// Whether the measures of requests to take over are known. These measures need every step of the
-/// run.
+/// Whether the measures of requests to take over are known. These measures need every TRUTH,
+/// HOST_COMMAND, TRACK and DRIVER_COMMAND from the first step of the log on. If the beginning of
+/// the run is missing, they are known for the requests in the log.
 bool AreTakeOversKnown(const Lack& lack);
 
 }  // namespace fogline::metrics

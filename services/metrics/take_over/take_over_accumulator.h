@@ -16,9 +16,9 @@
 
 namespace fogline::metrics {
 
-/// Reads the steps of a run in order; steps may be missing. TakeOverLog gives the times of a
-/// request, so `fogline events` lists the same times. The memory grows with the number of requests,
-/// and not with the length of the run.
+/// Collects the measures from the steps of a run, in order; steps may be missing. TakeOverLog gives
+/// the times of a request, so `fogline events`, which also uses TakeOverLog, lists the same times.
+/// The memory grows with the number of requests, and not with the length of the run.
 class TakeOverAccumulator {
  public:
   /// Adds a step.

@@ -10,7 +10,7 @@ namespace fogline::metrics {
 
 /// How a request to take over ended.
 enum class TakeOverEnd : std::uint8_t {
-  kOpen,           // the run ended first
+  kOpen,           // the run ended before the request did
   kTakenOver,      // the driver got a share of the authority before any manoeuvre
   kTakenOverLate,  // the driver ended a minimal risk manoeuvre
   kMinimalRisk,    // a minimal risk manoeuvre, and the driver did not take over
@@ -21,8 +21,8 @@ enum class TakeOverEnd : std::uint8_t {
 /// Name of an outcome for JSON and CSV, such as "taken_over".
 std::string_view NameOf(TakeOverEnd end);
 
-/// Measures of one request. A time begins with the step of the request, unless its comment names
-/// another beginning. A field is empty if its event has not happened, or if no step is relevant for
+/// Measures of one request. A time counts from the step of the request if its comment names no
+/// other beginning. A field is empty if its event has not happened, or if no step is relevant for
 /// the measure.
 ///
 /// The *judged interval* begins with the step of the request. It ends with the first step in which

@@ -10,9 +10,9 @@ namespace fogline::metrics {
 ///
 ///     e_0 = (b_r/s_r^2 + b_l/s_l^2) / (1/s_r^2 + 1/s_l^2)
 ///
-/// b are the offsets (bias_m), s the standard deviations of range that the filter assumes. A steady
-/// filter over both ranges has this error exactly. Lateral offsets cause no error, because the
-/// filter knows them.
+/// b_r and b_l are the offsets (bias_m) of radar and LiDAR, s_r and s_l the standard deviations of
+/// their ranges that the filter assumes. A steady filter over both ranges has this error exactly.
+/// Lateral offsets cause no error, because the filter knows them.
 double ErrorOfOffsets(const Scenario& scenario);
 
 /// In clear air, a steady filter measures the distance d + e_0 if the true gap is d. The values d

@@ -14,14 +14,15 @@ enum class DriverTask {
   kDrives,    // the driver drives, or has been asked to drive and may still take over
 };
 
-/// Awareness A in [0, 1], integrated exactly from step to step:
+/// Awareness A in [0, 1], integrated exactly from step to step, with the target A_mon = monitoring,
+/// the time constant tau = fading_s and the rate r = recovery_ps of AwarenessParameters:
 ///
 ///     monitors:  dA/dt = (A_mon - A) / tau            drives:  dA/dt = r, up to 1
 ///
-/// The reaction time is T_r0 + k (1 - A). The size of the errors follows SUMO's driver state. The
-/// factor of the relative gap error is 0.75. The factor of the closing speed's error is 0.15 per
-/// second, times the gap. Each factor is multiplied by a random process with standard deviation 0.2
-/// (1 - A).
+/// The reaction time is reaction_time_s + slow_reaction_time_s (1 - A). The size of the errors
+/// follows SUMO's driver state (MSDriverState). The factor of the relative gap error is 0.75. The
+/// factor of the closing speed's error is 0.15 per second, times the gap. Each factor is multiplied
+/// by a random process with standard deviation 0.2 (1 - A).
 class Awareness {
  public:
   /// @throw std::invalid_argument for a parameter out of its range.
@@ -60,7 +61,7 @@ class Awareness {
   double ApproachError_ps() const { return kSumoApproach_ps * kSumoDeviation * (1.0 - awareness_); }
 
  private:
-  // Defaults of MSDriverState.
+  // Defaults of SUMO's MSDriverState.
   static constexpr double kSumoDeviation = 0.2;
   static constexpr double kSumoGap = 0.75;
   static constexpr double kSumoApproach_ps = 0.15;

@@ -10,16 +10,20 @@ namespace fogline::models {
 
 enum class Seen { kOutline, kLamps, kNothing };
 
-/// With extinction sigma = ln 20 / visibility (services/visibility.h):
+/// What the driver sees at the gap d, with the speeds v of the own car and v_l of the car ahead,
+/// and the extinction sigma = ln 20 / visibility (services/visibility.h):
 ///
 ///     outline:  C_0 e^(-sigma d) >= eps           up to d_o = ln(C_0 / eps) / sigma (Koschmieder)
 ///     lamps:    I e^(-sigma d) / d^2 >= E_t       up to d_l                       (Allard 1876)
 ///     closing:  W |v - v_l| / d^2 > threshold
 ///
-/// If the closing is not visible, the driver perceives v_l = v and acceleration 0 of the car ahead.
-/// The perceived distance is d up to a share of d_o, and kappa d from d_o on. Between these
-/// distances the factor grows linearly from 1 to kappa. d_l = (2 / sigma) W_0(sigma / 2 sqrt(I /
-/// E_t)) with Lambert's W.
+/// FogSightParameters has the other symbols: contrast C_0, contrast_threshold eps,
+/// lamp_intensity_cd I, illuminance_threshold_lx E_t, angular_rate_threshold_radps (threshold), and
+/// lamp_distance_factor kappa. W is body_width_m if the outline is visible, and lamp_separation_m
+/// if only the lamps are visible. If the closing is not visible, the driver perceives v_l = v and
+/// acceleration 0 of the car ahead. The perceived distance is d up to clear_share d_o, and kappa d
+/// from d_o on. Between these distances the factor grows linearly from 1 to kappa. d_l = (2 /
+/// sigma) W_0(sigma / 2 sqrt(I / E_t)) with Lambert's W.
 class FogSight {
  public:
   /// @throw std::invalid_argument for a parameter out of its range.

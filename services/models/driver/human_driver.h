@@ -26,8 +26,9 @@ struct Attention {
 ///     s_est   = s e^(V_s w_s)                  w_s, w_l: Ornstein-Uhlenbeck of variance 1
 ///     v_l,est = v_l - s r_c w_l
 ///
-/// The driver acts on the situation at the time t - T_r, interpolated linearly between two steps.
-/// A driver who anticipates assumes that the own acceleration and the closing speed have been
+/// s is the gap, v the own speed, v_l the speed of the car ahead, and a the own acceleration. The
+/// driver acts on the situation at the time t - T_r, interpolated linearly between two steps. A
+/// driver who anticipates assumes that the own acceleration and the closing speed have been
 /// constant since then:
 ///
 ///     v'   = v + T_r a             s' = s_est - T_r (v - v_l,est)

@@ -16,9 +16,10 @@ namespace fogline::models {
 ///     by lead:     log-normal with mean m and P(T > t) = P(late):
 ///                  s = z - sqrt(z^2 - 2 ln(t / m))
 ///
-/// SUMO (MSDevice_ToC) draws again if a value is negative. After 100 negative values, SUMO takes
-/// the mean. So P(T > t) is larger than P(late) for a lead time of minutes. SUMO itself has a table
-/// for (t - m) / z.
+/// mean, std and P(late) are mean_s, std_s and late_probability of TakeOverParameters. Z is a
+/// standard normal number, and z is the same number in both last rows. SUMO (MSDevice_ToC) draws
+/// again if a value is negative. After 100 negative values, SUMO takes the mean. So P(T > t) is
+/// larger than P(late) for a lead time of minutes. SUMO itself has a table for (t - m) / z.
 class TakeOverTime {
  public:
   /// @param lead_s t, above 0

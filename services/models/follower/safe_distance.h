@@ -16,8 +16,8 @@ struct RssParameters {
   double most_braking_mps2 = 8.0;   // b_max of the car ahead, above 0
 };
 
-/// In m: d_min = max(0, v rho + a_acc rho^2 / 2 + (v + rho a_acc)^2 / (2 b_min) - v_l^2 / (2
-/// b_max))
+/// Safe distance of RSS in m, with the own speed v and the speed v_l of the car ahead:
+///     d_min = max(0, v rho + a_acc rho^2 / 2 + (v + rho a_acc)^2 / (2 b_min) - v_l^2 / (2 b_max))
 double RssSafeDistance(const RssParameters& rss, double speed_mps, double lead_speed_mps);
 
 /// Fuzzy safety model (Mattas, Makridis, Botzoris, Kriston, Minarini, Papadopoulos, Re, Rognelund &
@@ -34,7 +34,8 @@ struct FuzzyParameters {
 
 /// Proactive fuzzy surrogate PFS. PFS assumes that the car ahead brakes with b_l. PFS is 0 if
 /// comfortable braking is then sufficient, and 1 if hard braking is not sufficient. Between these
-/// cases, PFS is linear in the distance s - d_1:
+/// cases, PFS is linear in the distance s - d_1, from 0 at d_safe to 1 at d_unsafe. s is the gap, v
+/// the own speed, and v_l the speed of the car ahead:
 ///
 ///     d_safe   = v rho + v^2 / (2 b_c) - v_l^2 / (2 b_l) + d_2
 ///     d_unsafe = v rho + v^2 / (2 b_h) - v_l^2 / (2 b_l)

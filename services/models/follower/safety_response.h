@@ -44,7 +44,8 @@ class SafetyResponse {
   SafetyResponse(SafetyModel model, double step_s, const ResponseParameters& response = {},
                  const RssParameters& rss = {}, const FuzzyParameters& fuzzy = {});
 
-  /// Deceleration in this step in m/s2, 0 if none. Call Step() once per step.
+  /// Deceleration of the response in this step in m/s2; 0 if there is no response. Call Step() once
+  /// per step.
   double Step(const Situation& seen);
 
   /// Whether the model saw danger in the last step.

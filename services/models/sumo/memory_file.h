@@ -7,8 +7,8 @@
 
 namespace fogline::sumo {
 
-/// The file exists as long as the object. After the end of the process, even after a kill, no file
-/// remains.
+/// A file in memory, which exists until the object is destroyed. After the end of the process, even
+/// after a kill, no file remains.
 class MemoryFile {
  public:
   /// A file with these lines. @throws std::system_error

@@ -1,4 +1,4 @@
-// SUMO's simulation with the cars of Fogline in it. The file is part of the module that
+// SUMO's simulation with the cars of Fogline in it. This file is part of the module that
 // services/models/traffic/load_sumo.h loads.
 #pragma once
 
@@ -15,8 +15,8 @@
 
 namespace fogline::sumo {
 
-/// SUMO has one simulation in a process. So a second object waits in Begin() until the run of the
-/// first object has ended.
+/// The traffic of one run, moved by SUMO. A process can have only one simulation of SUMO. So a
+/// second object waits in Begin() until the run of the first object has ended.
 class SumoTraffic final : public models::Traffic {
  public:
   explicit SumoTraffic(const models::TrafficSetup& setup) : setup_(setup) {}

@@ -29,11 +29,11 @@ struct LeaderInTraffic {
   double rear_m = 0;  // position of its rear bumper
   double speed_mps = 0;
   double acceleration_mps2 = 0;
-  bool changed = false;  // whether this is another car than in the step before
+  bool changed = false;  // whether another car was ahead in the step before
 };
 
-/// All functions take the cars of Fogline in the order from the front: the host, then the following
-/// cars.
+/// The other simulator during a run. All functions take the cars of Fogline in the order from the
+/// front: the host, then the following cars.
 class Traffic {
  public:
   virtual ~Traffic() = default;

@@ -19,6 +19,10 @@ inline constexpr double kAirDensity_kgpm3 = 1.225;
 ///
 ///     m_eff dv/dt = F_t - F_b - 1/2 rho c_d A v^2 - m g c_r cos(theta) - m g sin(theta)
 ///
+/// F_t is the traction, F_b the force of the brakes, rho the density of air, and x the position.
+/// VehicleParameters has the other symbols; a_traction and a_brake below are max_traction_mps2 and
+/// max_brake_mps2.
+///
 /// - A controller turns the commanded acceleration a into a force, F = m_eff a + resistances, for
 ///   the expected speed in the middle of the step. So the car follows a steady command exactly if
 ///   no limit is reached and the demand is outside the pedals' dead band (pedals.h).

@@ -37,7 +37,8 @@ Motion Advance(const Motion& from, double acceleration_mps2, double duration_s) 
 std::optional<double> TimeToContact(double gap_m, double ahead_speed_mps,
                                     double ahead_acceleration_mps2, double behind_speed_mps,
                                     double behind_acceleration_mps2, double duration_s) {
-  // Most gaps are longer than what the car behind can drive. The factor 2 covers rounding.
+  // In most cases the gap is longer than the way that the car behind can drive, so there is no
+  // contact. The factor 2 covers rounding.
   const double fastest_mps =
       behind_speed_mps + std::max(0.0, behind_acceleration_mps2) * duration_s;
   if (gap_m > 2.0 * fastest_mps * duration_s) return std::nullopt;

@@ -10,8 +10,8 @@ namespace fogline::conflict {
 namespace {
 
 // Largest number of bins of one belief. The bins cover 6 standard deviations on each side if the
-// standard deviation is at most 5 bin widths. With a larger standard deviation, the outermost bins
-// contain the probability beyond these bins.
+// standard deviation is at most 5 bin widths. With a larger standard deviation, the bins cover
+// less, and the outermost bins contain the remaining probability.
 constexpr std::int64_t kMostBins = 64;
 constexpr double kReach = 6;  // standard deviations; the probability outside is 2e-9
 
@@ -27,7 +27,7 @@ struct Bins {
   }
 };
 
-// Bin i is [i width, (i + 1) width).
+// The probabilities of a Gaussian on a grid in which bin i is [i width, (i + 1) width).
 Bins OnBins(double mean_m, double std_m, double width_m) {
   const auto bin_of = [&](double x_m) {
     return static_cast<std::int64_t>(std::floor(x_m / width_m));
@@ -46,7 +46,8 @@ Bins OnBins(double mean_m, double std_m, double width_m) {
   return bins;
 }
 
-// c_ab, the product of two bodies under Jousselme's D. `common` is the sum of m_a m_b over bins.
+// c_ab = sum over A, B of m_a(A) m_b(B) D(A, B), with Jousselme's D. `common` is the sum of m_a m_b
+// over the bins, and n the number of bins of the frame.
 double JaccardProduct(double common, double eta_a, double eta_b, double n) {
   const double theta_a = 1 - eta_a;
   const double theta_b = 1 - eta_b;

@@ -9,8 +9,10 @@
 
 namespace fogline::conflict {
 
-/// Sums over two bodies of evidence m1, m2, sufficient for all measures below. Focal sets are the
-/// single bins and the whole frame Theta of n bins. Theta has the mass 1 - eta.
+/// Sums over two bodies of evidence m1 and m2, sufficient for all measures below. m1 and m2 give a
+/// mass to each focal set. The focal sets are the single bins, and the whole frame Theta of n bins.
+/// The mass of Theta is 1 - eta, where eta is the sensor's reliability. BetP1 and BetP2 are the
+/// pignistic probabilities: the mass of Theta is divided equally among the bins.
 struct BinnedPair {
   double common = 0;         // sum over bins of m1 m2
   double square_1 = 0;       // sum over bins of m1^2
@@ -23,30 +25,30 @@ struct BinnedPair {
 };
 
 /// Radar (1) and LiDAR (2) on bins of `bin_width_m`: m({bin}) = eta P(bin), m(Theta) = 1 - eta
-/// (Shafer's discounting), where P is the sensor's Gaussian. The radar's reading is an edge of the
-/// grid, so that the pair depends only on the difference. The sign of the difference has no effect.
-/// A reading within a bin and a reading on an edge give different evidence, even with equal
-/// precision. So a measure is larger at the next multiple of the width. Between two multiples it
-/// may fall while the difference grows.
+/// (Shafer's discounting), where P is the sensor's Gaussian. The radar's reading is put on an edge
+/// of the grid, so the pair depends only on the difference of the readings. The sign of the
+/// difference has no effect. A reading within a bin and a reading on an edge give different
+/// evidence, even with equal precision. So a measure is larger at the next multiple of the width.
+/// Between two multiples it may fall while the difference grows.
 BinnedPair PairOnBins(const Disagreement& disagreement, const ConflictParameters& parameters);
 
 /// Dempster's conflict k = sum of m1(A) m2(B) over disjoint A, B, in [0, 1] (Dempster 1967). k has
 /// a known defect: it is above 0 for equal evidence.
 double DempsterConflict(const BinnedPair& pair);
 
-/// d_J = sqrt((m1 - m2)' D (m1 - m2)/2), D(A, B) = |A and B|/|A or B|, in [0, 1] (Jousselme,
-/// Grenier & Bosse 2001).
+/// Jousselme's distance d_J = sqrt((m1 - m2)' D (m1 - m2)/2), in [0, 1]. D(A, B) = |A and B|/|A or
+/// B| for the focal sets A and B (Jousselme, Grenier & Bosse 2001).
 double JousselmeDistance(const BinnedPair& pair);
 
-/// difBetP = max over A of |BetP1(A) - BetP2(A)|, which is half the sum over single bins, in [0, 1]
-/// (Liu 2006).
+/// difBetP = max over all sets A of bins of |BetP1(A) - BetP2(A)|, in [0, 1] (Liu 2006). This
+/// maximum is half the sum of |BetP1 - BetP2| over the single bins.
 double PignisticDistance(const BinnedPair& pair);
 
-/// 1 - m1.m2/(|m1| |m2|), in [0, 1] (Wen 2008).
+/// 1 - m1.m2/(|m1| |m2|), in [0, 1]: 1 minus the cosine of the angle between m1 and m2 (Wen 2008).
 double CosineConflict(const BinnedPair& pair);
 
-/// 1 - r, r = c12/sqrt(c11 c22), c_ab = sum of m_a(A) m_b(B) |A and B|/|A or B|, in [0, 1] (Jiang
-/// 2016): the cosine under Jousselme's D.
+/// 1 - r, with r = c12/sqrt(c11 c22) and c_ab = sum over A, B of m_a(A) m_b(B) D(A, B), in [0, 1]
+/// (Jiang 2016). r is the cosine of the angle between m1 and m2 in the metric of Jousselme's D.
 double CorrelationConflict(const BinnedPair& pair);
 
 }  // namespace fogline::conflict

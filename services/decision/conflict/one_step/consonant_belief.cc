@@ -24,14 +24,14 @@ double Overlap(double distance, double a, double b) {
   return std::max(0.0, std::min(a, distance + b) - std::max(-a, distance - b));
 }
 
-// Probability of [low, high] under N(0, s1^2), minus its probability under N(d, s2^2).
+// Probability of the interval [low, high] under N(0, s1^2), minus its probability under N(d, s2^2).
 double Excess(double low, double high, double d, double s1, double s2) {
   return NormalBelow(high / s1) - NormalBelow(low / s1) -
          (NormalBelow((high - d) / s2) - NormalBelow((low - d) / s2));
 }
 
-// Several measures need the same products in a step. So each thread keeps the most recent products,
-// as many as the measures need in one step.
+// Key of a value of JaccardProduct(). Several measures need the same products in a step. So each
+// thread keeps the most recent products (RecentProducts), as many as the measures need in one step.
 struct ProductKey {
   int levels = 0;
   double distance_m = 0;
@@ -72,8 +72,9 @@ double MaxwellBelow(double y) {
 }
 
 double ConsonantConflict(const Disagreement& disagreement) {
-  // The integral is over the intervals of the narrow belief, because F of the wide belief varies
-  // slowly over these intervals. Beyond 9 standard deviations the integral of f is 1e-16.
+  // The integral is over the intervals of the narrower belief, because F of the wider belief varies
+  // slowly over these intervals. The integral ends at y = 9, because beyond it the integral of f is
+  // only 1e-16.
   constexpr double kReach = 9;
   constexpr int kNodes = 30;
   const double d = std::abs(disagreement.difference_m);
@@ -103,7 +104,7 @@ double ConsonantPignisticDistance(const Disagreement& disagreement) {
 }
 
 ConsonantBeliefs::ConsonantBeliefs(int levels) : levels_(std::clamp(levels, 1, kMostLevels)) {
-  const boost::math::chi_squared squares(3);  // y is the length of a vector of 3 normal numbers
+  const boost::math::chi_squared squares(3);  // y^2 is a sum of 3 squared normal numbers
   for (int i = 0; i < levels_; ++i) {
     const double share = (i + 0.5) / levels_;
     half_widths_[static_cast<std::size_t>(i)] = std::sqrt(boost::math::quantile(squares, share));

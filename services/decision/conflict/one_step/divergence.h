@@ -1,9 +1,10 @@
-// Distances between two Gaussian readings N(x1, s1^2), N(x2, s2^2), with d = x1 - x2 and S = s1^2 +
-// s2^2. The normalised square of the difference is NIS = d^2/S, for a chi-square test (Bar-Shalom,
-// Li & Kirubarajan 2001, section 5.4). The Bhattacharyya distance is D_B = d^2/(4 S) + ln(S/(2 s1
-// s2))/2, at least 0 (Bhattacharyya 1943). If the precisions differ, the second term of D_B is
-// above 0 even at d = 0. Unequal precision would then look like conflict, so only the first term is
-// used. The Hellinger distance is H = sqrt(1 - exp(-D_B)), in [0, 1].
+// Distances between two Gaussian readings N(x1, s1^2) and N(x2, s2^2): the ranges x1 and x2 of
+// radar and LiDAR with their standard deviations. d = x1 - x2, and S = s1^2 + s2^2. The normalised
+// square of the difference is NIS = d^2/S, for a chi-square test (Bar-Shalom, Li & Kirubarajan
+// 2001, section 5.4). The Bhattacharyya distance is D_B = d^2/(4 S) + ln(S/(2 s1 s2))/2, at least 0
+// (Bhattacharyya 1943). If s1 and s2 differ, the second term of D_B is above 0 even at d = 0.
+// Different precisions would then look like conflict, so only the first term is used. The Hellinger
+// distance is H = sqrt(1 - exp(-D_B)), in [0, 1].
 #pragma once
 
 #include "services/decision/conflict/disagreement.h"

@@ -1,4 +1,4 @@
-// Measures of a single step.
+// Measures of conflict that use only the values of a single step.
 #pragma once
 
 #include <optional>
@@ -9,8 +9,8 @@
 namespace fogline::conflict {
 
 /// A measure that depends only on the disagreement of the step. Score is a function
-/// double(Disagreement). A skipped step scores 0. With rule `hold`, a step with a missing value
-/// before the first measured value also scores 0.
+/// double(Disagreement). A skipped step has the score 0. With the rule `hold`, a step with a
+/// missing value before the first measured difference also has the score 0.
 template <class Score>
 class Momentary final : public ConflictMeasure {
  public:

@@ -7,7 +7,7 @@
 
 namespace fogline::conflict {
 
-/// DoC = 1 / (1 + exp(-slope (z - centre))), in [0, 1].
+/// DoC = 1 / (1 + exp(-slope (z - centre))), in [0, 1], where z is `conflict_m`.
 double DegreeOfConflict(double conflict_m, double slope_per_m, double centre_m);
 
 /// The differences radar - LiDAR of the last W steps; z >= 0 is their average. Before step W, the

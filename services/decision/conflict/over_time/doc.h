@@ -8,9 +8,10 @@ namespace fogline::conflict {
 
 /// DoC = 1/(1 + exp(-slope (z - centre))) of the windowed z, in [0, 1] (Sourav & Cheng 2024;
 /// services/decision/conflict/over_time/degree_of_conflict.h). If z is the mean of absolute
-/// differences, the expected z without a fault is sqrt(2 S/pi). Only this measure has a scale in
-/// metres. The offset of the sensors is not subtracted. A skipped step adds an empty entry to the
-/// window.
+/// differences, the expected z without a fault and without an offset is sqrt(2 S/pi), with the
+/// variance S of the difference (disagreement.h). Only this measure uses the difference in metres;
+/// the others divide it by its standard deviation. The offset of the sensors is not subtracted. A
+/// skipped step adds an empty entry to the window.
 class Doc final : public ConflictMeasure {
  public:
   explicit Doc(const ConflictParameters& parameters);
@@ -20,7 +21,7 @@ class Doc final : public ConflictMeasure {
 
   /// First half of a Step(): adds the step to the window.
   void Observe(const Evidence& evidence);
-  /// Second half of a Step(): z of the window, in m.
+  /// The conflict z of the window, in m. Second half of a Step(), which computes the DoC from z.
   double conflict_m() const { return window_.Conflict(reading_); }
 
  private:

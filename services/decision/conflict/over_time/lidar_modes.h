@@ -9,19 +9,25 @@
 
 namespace fogline::conflict {
 
-/// Posterior probabilities of LiDAR modes that change as a Markov chain, as in the IMM (Blom &
-/// Bar-Shalom 1988). Here the modes are modes of measurement, not of motion:
+/// Posterior probabilities mu_j of LiDAR modes that change as a Markov chain, as in the IMM
+/// (interacting multiple model, Blom & Bar-Shalom 1988). Here the modes are modes of measurement,
+/// not of motion. p_ij is the probability of mode j after mode i, and Lambda_j the likelihood of
+/// the step's LiDAR value in mode j:
 ///
 ///     c_j = sum_i p_ij mu_i        mu_j = c_j Lambda_j / sum
 ///
 /// The reference range r is the radar's range, or the predicted range if the radar has no value.
 /// The likelihood of an echo at z is Lambda_j = P_echo,j times
 ///     clean       N(r - z; offset, S)
-///     fog return  (1 - e) N(z; r* + E, s_z^2 + V) + e/R     E, V: mean, variance of a Beta(2, 20)
+///     fog return  (1 - e) N(z; r* + E, s_z^2 + V) + e/R
 ///     dropout     1/R                                       an echo can be anywhere
-/// with share e of stray echoes over the range R. The likelihood of no echo is 1 - P_echo,j. A
-/// missing LiDAR value is evidence of a mode, so the rule for missing values does not apply. If
-/// there is an echo but no reference range, only the Markov chain advances.
+/// N(x; mean, variance) is a Gaussian density. S is the variance of r - z, and s_z the standard
+/// deviation that the LiDAR states. E and V are the mean and the variance of fog_scatter_m times a
+/// random number with the distribution Beta(2, 20). e is the share of stray echoes, which lie
+/// anywhere in the range R (conflict_parameters.h has r* and all other numbers). The likelihood of
+/// no echo is 1 - P_echo,j. A missing LiDAR value is evidence of a mode, so the rule for missing
+/// values does not apply. If there is an echo but no reference range, only the Markov chain
+/// advances.
 class LidarModes {
  public:
   using Probabilities = std::array<double, kLidarModes>;  // order of LidarMode; add up to 1
@@ -38,7 +44,7 @@ class LidarModes {
   Probabilities probabilities_{1, 0, 0};
 };
 
-/// P(fog return or dropout), in [0, 1].
+/// Measure `lidar_modes`: the probability of a fog return or a dropout, in [0, 1].
 class LidarModeConflict final : public ConflictMeasure {
  public:
   explicit LidarModeConflict(const ConflictParameters& parameters) : modes_(parameters) {}

@@ -12,14 +12,14 @@ double Mean(const Window& window);
 /// sum / sqrt(n) of the n values of a window; 0 if it is empty.
 double StandardisedMean(const Window& window);
 
-/// Mean of NIS over the window, at least 0. N times this mean is chi-square with N degrees of
-/// freedom.
+/// Mean of NIS (divergence.h) over the window, at least 0. Without a fault, n times the mean of n
+/// values is chi-square with n degrees of freedom.
 using WindowedNis = Windowed<NormalisedSquare, Mean, &ConflictParameters::window_steps>;
 
-/// T = sum u_i / sqrt(n) with u = d/sqrt(S) over the n differences of the window, any real number.
-/// Without a fault, T is standard normal. While S is constant, T is mean(d) sqrt(n/S). T is above 0
-/// if the LiDAR's range is too short, and below 0 if this range is too long. T detects a constant
-/// bias best.
+/// T = sum u_i / sqrt(n) over the n differences of the window, any real number. u = d/sqrt(S) is
+/// the standardised difference of a step (disagreement.h). Without a fault, T is standard normal.
+/// While S is constant, T is mean(d) sqrt(n/S). T is above 0 if the LiDAR's range is too short, and
+/// below 0 if this range is too long. T detects a constant bias best.
 using SignedNis =
     Windowed<&Disagreement::standardised, StandardisedMean, &ConflictParameters::window_steps>;
 

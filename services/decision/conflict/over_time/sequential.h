@@ -5,8 +5,9 @@
 
 namespace fogline::conflict {
 
-/// Cumulative sum of u = d/sqrt(S) (Page 1954). The sum is one-sided, because fog shortens the
-/// LiDAR's range:
+/// Cumulative sum g of the standardised difference u = d/sqrt(S) of each step (Page 1954;
+/// disagreement.h). The sum is one-sided, because fog shortens the LiDAR's range. The value g+
+/// after a step is
 ///
 ///     g+ = min(ceiling, max(0, g + u - kappa)),        in [0, ceiling]
 ///
@@ -33,7 +34,7 @@ class Cusum final : public ConflictMeasure {
 ///
 ///     max over j of (sum from j to now of u_i)^2/(2 n_j),        at least 0
 ///
-/// over the n_j differences since step j, which lies in the window.
+/// over the n_j differences u_i since step j, which lies in the window.
 double LargestJump(const Window& standardised);
 using Glr =
     Windowed<&Disagreement::standardised, LargestJump, &ConflictParameters::glr_window_steps>;
@@ -48,11 +49,13 @@ SprtBounds WaldBounds(double alpha, double beta);
 
 /// SPRT of the hypothesis "the LiDAR's range is too short by delta" against "the range is correct":
 ///
-///     L+ = L + (delta/S)(d - delta/2),        in [accept_agreement, ceiling accept_conflict]
+///     L+ = L + (delta/S)(d - delta/2), clamped to [accept_agreement, ceiling accept_conflict]
 ///
-/// At the lower bound, the test accepts agreement and begins again. So L never falls below this
-/// bound. The two bounds are a hysteresis with known error probabilities. A score of at least
-/// accept_conflict accepts the conflict. A skipped step does not change L.
+/// d is the difference of the step and S its variance (disagreement.h); ceiling is sprt_ceiling.
+/// The score is L. If L is at least accept_conflict, the test accepts the conflict. If L is
+/// accept_agreement, the test accepts agreement. L never falls below this bound, so later evidence
+/// of conflict has an effect without delay. The two bounds are a hysteresis with known error
+/// probabilities. A skipped step does not change L.
 class Sprt final : public ConflictMeasure {
  public:
   explicit Sprt(const ConflictParameters& parameters);

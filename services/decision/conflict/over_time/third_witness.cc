@@ -9,7 +9,8 @@
 namespace fogline::conflict {
 namespace {
 
-// 1 - d_J/sqrt(c11), d_J^2 = c11 - c12.
+// Similarity 1 - d_J/sqrt(c11) of two beliefs, with d_J^2 = c11 - c12. `square` is c11, and
+// `product` is c12.
 double Similarity(double product, double square) {
   return 1 - std::sqrt(std::max(0.0, square - product) / square);
 }
@@ -96,7 +97,8 @@ Support DengSupport(const BeliefProducts& products) {
 }
 
 Support MurphySupport(const BeliefProducts& products) {
-  // |m_i - (m_j + m_k)/2|^2 = 3/2 c11 - c_ij - c_ik + c_jk/2, and d_J^2 is half of this.
+  // d_J^2 between belief i and the average of j and k is half of |m_i - (m_j + m_k)/2|^2 = 3/2 c11
+  // - c_ij - c_ik + c_jk/2.
   const auto support = [square = products.square](double to_one, double to_other, double between) {
     const double distance = (1.5 * square - to_one - to_other + between / 2) / 2;
     return 1 - std::sqrt(std::clamp(distance / square, 0.0, 1.0));
@@ -106,7 +108,8 @@ Support MurphySupport(const BeliefProducts& products) {
 }
 
 Support MutualSupport(const BeliefProducts& products) {
-  // |a - b|^2 = |a|^2 + |b|^2 - 2 |a| |b| cos, and all lengths are sqrt(c11).
+  // Law of cosines: |a - b|^2 = |a|^2 + |b|^2 - 2 |a| |b| cos. All lengths are sqrt(c11), so cos =
+  // c_ab/c11.
   const double square = products.square;
   return Credibility(products.radar_lidar / square, products.radar_prediction / square,
                      products.lidar_prediction / square);

@@ -1,6 +1,6 @@
-// Finds the sensor that is wrong. The values of radar and LiDAR alone cannot show this, so a third
-// value, the witness, is needed. The witness is the filter's prediction of the range from all
-// earlier steps.
+// Measures that find the sensor that is wrong. The values of radar and LiDAR alone cannot show
+// this, so a third value, the witness, is needed. The witness is the filter's prediction of the
+// range from all earlier steps.
 //
 // Without a fault, the radar's range differs from the LiDAR's range by the known offset offset_m.
 // All measures here first subtract this offset from the radar's range. Without a prediction there
@@ -19,10 +19,12 @@
 
 namespace fogline::conflict {
 
-/// T of one sensor against the prediction: sum of u_i/sqrt(n) over the last n residuals
-/// u = (z - prediction)/sqrt(s^2 + s_p^2), with n at most blame_window_steps. If n is 1, T^2 is the
-/// NIS. The prediction's error correlates the residuals of several steps, so T of a long window
-/// scatters more than a standard normal number.
+/// The statistic T that compares one sensor with the prediction: T = (sum of u_i)/sqrt(n) over the
+/// last n residuals, with n at most blame_window_steps. The residual is u = (z -
+/// prediction)/sqrt(s^2 + s_p^2), with the sensor's range z and the standard deviations s of the
+/// sensor and s_p of the prediction. If n is 1, T^2 is the NIS. The prediction's error correlates
+/// the residuals of several steps, so T of a long window scatters more than a standard normal
+/// number.
 class SensorResidual {
  public:
   /// @param nominal_std_m standard deviation to use before the sensor has stated one
@@ -48,9 +50,9 @@ class SensorResidual {
   Window residuals_;
 };
 
-/// Blame = P(chi-square with one degree of freedom < T^2) = erf(abs(T)/sqrt(2)). Blame is 1 minus
-/// the smallest significance level at which the test of T would reject the sensor. For a sensor
-/// without fault, blame is uniformly distributed over [0, 1].
+/// Blame of a sensor = P(chi-square with one degree of freedom < T^2) = erf(abs(T)/sqrt(2)), with T
+/// of SensorResidual. It is 1 minus the p-value of the test that the sensor has no fault. If the
+/// sensor has no fault and T is standard normal, the blame is uniformly distributed over [0, 1].
 class NisBlame final : public BlameMeasure {
  public:
   explicit NisBlame(const ConflictParameters& parameters);
@@ -80,8 +82,8 @@ class NisWitness final : public ConflictMeasure {
   NisBlame blame_;
 };
 
-/// Products c under Jousselme's D of three consonant beliefs: the square, which is the same for
-/// each belief, and the product of each pair.
+/// Products c of three consonant beliefs (ConsonantBeliefs::JaccardProduct()): the product of a
+/// belief with itself, which is equal for all beliefs, and the product of each pair.
 struct BeliefProducts {
   double square;
   double radar_lidar;
@@ -103,16 +105,18 @@ Support DengSupport(const BeliefProducts& products);
 /// Murphy 2000 averages the evidence. Here the support of a body is 1 - d_J/sqrt(c11). d_J is the
 /// distance of the body from the average of the two other bodies.
 Support MurphySupport(const BeliefProducts& products);
-/// Deng's support with another similarity: Sim is the cosine of the angle between two bodies as
-/// vectors under Jousselme's metric, by the law of cosines. This formula is our interpretation of
-/// the published description of Zhang et al. 2014 (vector space, cosine theorem, degree of mutual
-/// support, an extension of Deng's rule). The authors' equations were not available.
+/// Deng's support with another similarity: Sim is the cosine of the angle between two bodies of
+/// evidence. The bodies are vectors in the metric of Jousselme's distance, and the law of cosines
+/// gives the angle. This formula is our interpretation of the published description of Zhang et al.
+/// 2014 (vector space, cosine theorem, degree of mutual support, an extension of Deng's rule). The
+/// authors' equations were not available.
 Support MutualSupport(const BeliefProducts& products);
 
 /// Blame = 1 - support/support0, at least 0. support0 is the support that the sensor would have
 /// with the same precisions if all three means were equal. So different precisions alone do not
-/// cause blame. For a missing value, rule hold gives the last blame, and rule skip gives no blame.
-/// Rule conflict gives all the blame to the sensor without value.
+/// cause blame. For a missing value, the rule `hold` gives the last blame, and the rule `skip`
+/// gives no blame. The rule `conflict` gives a blame of 1 to each sensor without a value, and 0 to
+/// the other sensor.
 class BeliefBlame final : public BlameMeasure {
  public:
   using SupportFunction = Support (*)(const BeliefProducts&);

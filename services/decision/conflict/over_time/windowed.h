@@ -1,4 +1,4 @@
-// Measures of the last steps.
+// Measures of conflict that use a window of the last steps.
 #pragma once
 
 #include <functional>
@@ -9,10 +9,10 @@
 
 namespace fogline::conflict {
 
-/// A measure of the last steps. kValue computes a number from the Disagreement of each step, and
-/// kScore computes the score from the Window of these numbers. Both functions return double.
-/// `kSteps` is the parameter with the length of the window. A skipped step adds an empty entry to
-/// the window. An empty window has score 0.
+/// A measure that uses a window of the last steps. kValue computes a number from the Disagreement
+/// of each step, and kScore computes the score from the Window of these numbers. Both functions
+/// return double. `kSteps` is the parameter with the length of the window. A skipped step adds an
+/// empty entry to the window. An empty window has score 0.
 template <auto kValue, auto kScore, int ConflictParameters::*kSteps>
 class Windowed final : public ConflictMeasure {
  public:
