@@ -21,8 +21,8 @@ constexpr std::int64_t kAcknowledgeEvery = runtime::kMaxAhead / 4;
 constexpr double kAnswersPerSecond = 30'000;
 constexpr double kAnswersAtOnce = 3'000;
 constexpr double kNoLimit = 1e9;
-// A request within this time after an answer gets no second answer, because the role that asks
-// receives the first answer.
+// All roles receive each answer. So a request within this time after an answer gets no second
+// answer: the role that asks has received the first one, or asks again.
 constexpr Duration kAnswerHolds = milliseconds(2);
 // The last STATUS is sent this number of times, because a recorder that has left the run cannot
 // answer a request for its STATUS. If a third of all messages is lost, all six messages are lost in

@@ -100,7 +100,8 @@ Seat::~Seat() {
 void Seat::Run(const std::string& url, std::int64_t run_id,
                const runtime::TrafficOptions& traffic) {
   runtime::Bus bus(url);
-  // --faults applies only to the messages of roles, and a seat is not a role.
+  // The messages of a seat have no --faults, because a seat is not a part of the run. It signs as
+  // the runner (DRIVER_INPUT in services/graph.h).
   runtime::Apply({.key_file = traffic.key_file, .faults = ""}, Role::kRunner, bus);
   InputMaker maker(run_id, runtime::DrawSeatInstance(), source_->kind(), source_->name());
   bus.Subscribe(ChannelOf<truth_t>().name, [&](runtime::Arrival& arrival) {

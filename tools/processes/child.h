@@ -25,7 +25,8 @@ namespace fogline::processes {
 pid_t StartChild(const std::filesystem::path& program, const std::vector<std::string>& arguments,
                  int output, int error_output = -1, int input = -1);
 
-/// A pipe whose ends no child inherits. The destructor closes the ends that are not -1.
+/// A pipe. A child has none of its ends open, except an end that StartChild() makes its stdin,
+/// stdout or stderr. The destructor closes the ends that are not -1.
 struct Pipe {
   /// @throws std::runtime_error
   Pipe();

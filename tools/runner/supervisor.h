@@ -45,8 +45,9 @@ class Supervisor {
   /// Starts every role. @throws std::runtime_error
   Supervisor(runtime::Bus& bus, runtime::RunCoordinator& coordinator, Options options);
 
-  /// Finds processes that have ended or hang, and restarts processes whose delay is over. Call it
-  /// every few tens of milliseconds.
+  /// Finds processes that have ended, and kills processes that hang or are deaf. Starts a process
+  /// of a role again when the wait of its RestartPolicy is over. Call it every few tens of
+  /// milliseconds.
   void Look(TimePoint now);
 
   /// Sends STOP until every process has left, but only for a limited time. The destructor kills the

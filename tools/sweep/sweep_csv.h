@@ -18,10 +18,11 @@ namespace fogline::sweep {
 class SweepFile {
  public:
   /// Opens the file of a shard. The file is new, or the same sweep has written a part of it. An
-  /// incomplete end of the file is cut off. With `force` an existing file is replaced.
-  /// @throws InputError if the file exists and is not of the same sweep, if another process is
-  ///     writing it, if it cannot be written, or as RefuseForeignSideFiles(); std::runtime_error
-  ///     when the disk is full
+  /// incomplete end of the file is cut off. With `force` the file of any sweep is replaced, but a
+  /// file that is not a sweep's is never replaced.
+  /// @throws InputError if the file is not of a sweep or (without `force`) not of this sweep, if
+  /// another process is writing it, if it cannot be opened, or as RefuseForeignSideFiles();
+  /// std::runtime_error if a write fails
   SweepFile(const std::filesystem::path& file, const SweepPlan& plan, const Shard& shard,
             bool force);
 

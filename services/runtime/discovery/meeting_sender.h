@@ -25,8 +25,8 @@ class MeetingSender {
   void Publish(std::string_view channel, Bytes bytes);
 
  private:
-  // The sender uses LCM directly and not a Bus, because LCM starts no thread and no self-test if it
-  // only sends.
+  // The sender uses LCM directly and not a Bus. A Bus always opens a socket that receives, and
+  // tests that its own messages come back. LCM does neither if it is only used to send.
   _lcm_t* lcm_ = nullptr;
 };
 

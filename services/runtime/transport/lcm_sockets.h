@@ -58,8 +58,8 @@ class LcmSockets {
   bool refused_ = false;
 };
 
-/// Joins a group on loopback. The call also succeeds if the socket is already in this group on
-/// loopback, because the route leads over loopback.
+/// Joins a group on loopback. If the route to the group leads over loopback, an earlier join has
+/// already put the socket into the group on loopback. The call then succeeds, too.
 /// @return whether the socket is in the group; if it is not, errno says why
 bool JoinOnLoopback(int socket, const in_addr& group);
 

@@ -1,5 +1,6 @@
 // Runs that start roles on other machines. A script in place of ssh enters a simulated machine, so
-// no server is needed. tests/campaign/ssh_hosts_test.cc has the same tests with OpenSSH, and more.
+// no server is needed. tests/campaign/ssh_hosts_test.cc repeats some of these tests with OpenSSH,
+// and has further tests.
 #include "tests/integration/hosts/hosts_fixture.h"
 
 #include <gmock/gmock-more-matchers.h>
@@ -27,8 +28,8 @@ class EnteredHostsTest : public HostsTest {
     if (IsSkipped() || HasFatalFailure()) return;
     lab_.emplace(2);
     std::ofstream script(folder_.File("enter"));
-    // The last argument is the command that ssh would get. SSH_CONNECTION has a value such as sshd
-    // sets.
+    // The last argument is the command that ssh would get. The script sets SSH_CONNECTION, as sshd
+    // does.
     script << "for command; do :; done\nexport SSH_CONNECTION='10.76.67.1 1 10.76.67.2 22'\nexec";
     for (const std::string& word : (*lab_)[1].On({"sh", "-c"})) script << " '" << word << "'";
     script << " \"$command\"\n";

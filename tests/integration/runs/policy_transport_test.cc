@@ -1,5 +1,5 @@
-// Every policy has one digest on all transports. Two processes, arbitrator and fusion, use the
-// policy. Each process has its own instance of the policy.
+// With each policy, a run has the same digest on all transports. A policy that selects sensors is
+// used by two roles, arbitrator and fusion. Each role has its own instance of it.
 #include <string>
 #include <string_view>
 #include <vector>

@@ -296,7 +296,8 @@ TEST_F(SweepTest, VariesTheFieldsOfAListsItems) {
 }
 
 TEST_F(SweepTest, NamesTheFirstRowThatCannotBeComputedAndKeepsThoseBefore) {
-  // GIVEN two weights. The second weight gives the ACC an ill-conditioned problem
+  // GIVEN two values of the weight of the distance. With the second value the problem of the ACC is
+  // ill-conditioned
   const Words sweep = kShort + Words{"--set",   "/step_s=1",
                                      "--set",   "/acc/horizon_steps=60",
                                      "--set",   "/acc/headway_s=0",

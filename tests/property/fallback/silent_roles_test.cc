@@ -63,7 +63,8 @@ class Braking {
 class SilentRolesTest : public testing::TestWithParam<const char*> {
  protected:
   // For every kBetweenDeaths-th step, runs the scenario with these roles silent from this step on.
-  // Calls check(step, moment) for every moment of the run.
+  // Calls check(death, moment) for each step of each run. `death` is the step from which on the
+  // roles are silent.
   template <class Check>
   void ForEachDeath(std::initializer_list<Role> roles, Check&& check) {
     for (std::int64_t death = 0; death < scenario_.steps - 10; death += kBetweenDeaths) {

@@ -92,8 +92,8 @@ std::string Typed(std::string pointer) {
   return pointer;
 }
 
-/// Adds the pointers that begin with `begun`, up to the end of their next segment: "/arbitrator/"
-/// for "/arb".
+/// Adds the fields whose pointers begin with `begun` and have no further "/". The pointer of a
+/// section or of a list ends with "/": "/arb" is completed to "/arbitrator/".
 /// @param end the text after the pointer of a complete field, such as "="
 void AddPointers(const std::string& begun, std::string_view end, Completion& completion) {
   for (const Field& field : Catalogue()) {

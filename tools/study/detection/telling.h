@@ -15,9 +15,10 @@ struct AlarmTimes {
   std::vector<double> further;  // in runs that only some detectors have; empty for other detectors
 };
 
-/// For each detector, the index of the detector that it counts as. Detectors with the same alarms
-/// in all compared runs count as one of them, the one with the most runs. The further runs of two
-/// detectors are compared only if both have equally many, because then they are the same runs.
+/// For each detector, the index of the detector that stands for it, which may be the detector
+/// itself. Detectors with the same alarms in all compared runs count as one of them, the one with
+/// the most runs. The further runs of two detectors are compared only if both have equally many,
+/// because then they are the same runs.
 std::vector<std::size_t> OneOfEqualAlarms(std::span<const AlarmTimes> detectors);
 
 /// Whether a condition ranks detectors; if not, the reason.

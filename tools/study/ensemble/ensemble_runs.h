@@ -17,8 +17,8 @@ struct EnsembleRuns {
   std::int64_t runs = 0;
 };
 
-/// Runs the cells that the claims compare, and no other cells of the claims' studies. All sets have
-/// the same seeds.
+/// Runs only the cases and variants of a study that the claims compare. Claims of one study that
+/// have a case in common run all their cases with all their variants. All sets have the same seeds.
 /// @throws InputError, StudyStopped; std::out_of_range if a quoted claim does not exist in its
 /// study
 EnsembleRuns RunEnsemble(const StudyContext& context, std::span<const EnsembleSet> sets,

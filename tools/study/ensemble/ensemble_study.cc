@@ -52,7 +52,8 @@ std::vector<Placed> Places() {
   return places;
 }
 
-/// "holds"; "opposite (3 hold, 1 opposite, 2 undecided)" for several claims that do not all hold.
+/// The verdict on a part of a finding in one set, such as "holds". If the part has several claims
+/// and not all hold, their numbers follow: "opposite (3 hold, 1 opposite, 2 undecided)".
 std::string VerdictText(const Placed& placed, const JudgedClaims& judged, std::size_t set) {
   std::vector<InSet> outcomes;
   for (std::size_t c = placed.first; c < placed.end(); ++c) {

@@ -1,4 +1,5 @@
-// Tests that every number of a scenario has a source that a person can read.
+// Tests that every number of a scenario names its source (a paper, or our choice with a reason),
+// and that the explanation of the field shows the source.
 #include <cstddef>
 #include <string_view>
 #include <vector>

@@ -138,7 +138,7 @@ TEST(AccProgramTest, KeepsALimitOfTheGapThatOnlyThePresentAccelerationReaches) {
 }
 
 TEST(AccProgramTest, KeepsTheLimitsOfAGapThatIsTooSmallAndOpens) {
-  // GIVEN a gap below the smallest gap, behind a car that drives away at 10 m/s
+  // GIVEN a gap below min_gap_m, behind a car that is 10 m/s faster
   AccSection section = ShortSection();
   const acc::AccSituation now{.state = {0, 10, 0}, .speed_mps = 21, .previous_control = 0};
   section.min_gap_m = acc::SafeDistance(section, now.speed_mps) + 0.5;

@@ -32,7 +32,7 @@ struct ShortLog {
   /// Whether the log has the message of this channel and step. By default it has all messages.
   std::function<bool(std::string_view channel, std::int64_t step)> has =
       [](std::string_view, std::int64_t) { return true; };
-  /// If set, the log has a STATUS of the world that says DONE after this step.
+  /// If set, the log ends with a STATUS of the world that has this step and the state DONE.
   std::optional<std::int64_t> done;
   /// If set, the scenario has two parts, and a TRUTH of this step comes between them.
   std::optional<std::int64_t> early;

@@ -34,7 +34,8 @@ models::GradeProfile AnyHill(const Random& random, std::int64_t index) {
                                {300, Between(-0.1, 0.1, d)}});
 }
 
-// Commands far beyond the abilities of any car. A command often stays the same for some steps.
+// Commands from -12 to 6 m/s2. Many of them are beyond the abilities of the car. Each command lasts
+// for 7 steps.
 double AnyCommand(const Random& random, std::int64_t index, std::int64_t step) {
   const auto [a, b] = random.Uniform2(index * kSteps + step / 7, 3);
   return b < 0.2 ? 0 : Between(-12, 6, a);

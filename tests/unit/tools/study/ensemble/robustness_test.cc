@@ -61,7 +61,7 @@ study::ExaminedFinding Finding(std::vector<study::KnownException> exceptions = {
           .side = {}};
 }
 
-/// The claim on the heading of a finding.
+/// The claim that the heading of a finding has the verdicts that its author states (ClaimOnPart()).
 study::Claim OnFinding(const study::ExaminedFinding& finding, const study::ClaimInSets& claim) {
   const auto all = std::span(&claim, 1);
   return study::ClaimOnPart(finding, study::Part::kHeading, all, study::JudgeInSets(all));
