@@ -24,8 +24,8 @@ struct Lack {
 bool IsKnown(std::string_view measure, const Lack& lack);
 
 /// Whether the measures of requests to take over are known. These measures need every TRUTH,
-/// HOST_COMMAND, TRACK and DRIVER_COMMAND from the first step of the log on. If the beginning of
-/// the run is missing, they are known for the requests in the log.
+/// HOST_COMMAND, TRACK and DRIVER_COMMAND, and the beginning of the run: a request or a fog may
+/// have begun before the first step of the log.
 bool AreTakeOversKnown(const Lack& lack);
 
 }  // namespace fogline::metrics
