@@ -4,6 +4,8 @@
 #include <chrono>
 #include <cmath>
 #include <csignal>
+#include <fstream>
+#include <string>
 #include <thread>
 
 #include <fmt/format.h>
@@ -43,22 +45,43 @@ bool LoseInput(SoakedRun& run, Random& random, const Limits&) {
   return true;
 }
 
-/// Stops the processes of a run, until the destructor lets them continue.
+/// Whether a process is stopped by a signal.
+bool IsStopped(pid_t process) {
+  std::string state;
+  std::ifstream status(fmt::format("/proc/{}/status", process));
+  for (std::string word; status >> word;) {
+    if (word == "State:") status >> state;
+  }
+  return state == "T";
+}
+
+/// Stops the processes of a run. Processes that are stopped already stay so. The destructor lets
+/// those continue that still stand still.
 class Held {
  public:
-  explicit Held(const SoakedRun& run) : processes_(run.Processes()) { SignalAll(SIGSTOP); }
-  ~Held() { SignalAll(SIGCONT); }
+  explicit Held(const SoakedRun& run) {
+    Hold(run.Processes());
+    Hold(run.Processes());  // the runner may have started a role before it was stopped
+  }
+  ~Held() {
+    for (const pid_t process : processes_) kill(process, SIGCONT);
+  }
   Held(const Held&) = delete;
   Held& operator=(const Held&) = delete;
 
   const std::vector<pid_t>& processes() const { return processes_; }
 
  private:
-  void SignalAll(int signal) const {
-    for (const pid_t process : processes_) kill(process, signal);
+  void Hold(const std::vector<pid_t>& processes) {
+    for (const pid_t process : processes) {
+      if (IsStopped(process)) continue;
+      if (std::ranges::find(processes_, process) != processes_.end()) continue;
+      kill(process, SIGSTOP);
+      processes_.push_back(process);
+    }
   }
 
-  const std::vector<pid_t> processes_;
+  std::vector<pid_t> processes_;
 };
 
 /// Executes the shell command `begin` on a machine, waits for `seconds`, and executes the shell
