@@ -31,6 +31,8 @@ void DetectionAccumulator::Pass(double duration_s) {
 }
 
 void DetectionAccumulator::Add(const Sample& sample) {
+  // A log that begins late with an alarm may lack the beginning of this alarm.
+  const bool began_before = !begun_ && sample.step > 0;
   if (begun_) Pass(sample.time_s - time_s_);
   const bool deceived = IsDeceived(sample);
   const bool alarm = sample.doc >= sample.threshold;
@@ -41,7 +43,7 @@ void DetectionAccumulator::Add(const Sample& sample) {
   if (alarm && onset_s_ && !metrics_.deception_to_alarm_s) {
     metrics_.deception_to_alarm_s = sample.time_s - *onset_s_;
   }
-  if (alarm && !alarm_ && quiet_) ++false_alarms_;
+  if (alarm && !alarm_ && quiet_ && !began_before) ++false_alarms_;
   alarm_ = alarm;
   time_s_ = sample.time_s;
   begun_ = true;

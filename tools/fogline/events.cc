@@ -35,6 +35,7 @@ struct RunEvents {
   log::RunLog run;
   take_over::TakeOverLog log;
   std::vector<metrics::TakeOverMeasures> measures;  // one for each of log.requests()
+  std::string unknown;  // the requests without measures (UnknownTakeOvers())
 };
 
 RunEvents ReadEvents(const std::filesystem::path& file, const log::ReadOptions& options) {
@@ -51,9 +52,11 @@ RunEvents ReadEvents(const std::filesystem::path& file, const log::ReadOptions& 
     events.log.Add(command, offered ? std::optional(driver.acceleration_mps2) : std::nullopt);
   }
   events.run = reader.run();
-  if (!events.log.requests().empty()) {
-    events.measures =
-        runner::MeasureLoggedRun(file, events.run.scenario, options).result.take_overs;
+  if (!events.log.requests().empty() || events.run.gaps.Any() || events.log.BeganInRequest()) {
+    runner::LoggedRun measured = runner::MeasureLoggedRun(file, events.run.scenario, options);
+    measured.result.lack.beginning_of_request = events.log.BeganInRequest();
+    events.unknown = cli::UnknownTakeOvers(measured);
+    events.measures = std::move(measured.result.take_overs);
   }
   return events;
 }
@@ -181,11 +184,9 @@ void PrintText(const std::filesystem::path& file, const RunEvents& events) {
 /// Prints on stderr what a log lacks, and which results are unknown for this reason.
 void SayAbout(const std::filesystem::path& file, const RunEvents& events) {
   cli::SayAboutLog(file, events.run);
-  const bool unknown = events.run.gaps.Any() && events.measures.empty();
-  if (unknown && !events.log.requests().empty()) {
-    Complain(fmt::format("{}: unknown, because messages are missing: the measures of take-overs",
-                         PathText(file)));
-  }
+  if (events.unknown.empty()) return;
+  Complain(
+      fmt::format("{}: unknown, because messages are missing: {}", PathText(file), events.unknown));
 }
 
 nlohmann::ordered_json ToJson(const std::filesystem::path& file, const RunEvents& events) {
@@ -196,6 +197,7 @@ nlohmann::ordered_json ToJson(const std::filesystem::path& file, const RunEvents
                               {"events", EventsJson(events)},
                               {"requests", RequestsJson(events)}};
   if (events.run.gaps.Any()) json["gaps"] = cli::GapsJson(events.run.gaps);
+  if (!events.unknown.empty()) json["unknown_take_overs"] = events.unknown;
   if (events.run.realtime) {
     const nlohmann::ordered_json figures = cli::RealtimeJson(*events.run.realtime);
     for (const char* key : {"fallbacks", "fallbacks_left_out", "priority"}) {
@@ -239,6 +241,8 @@ void AddEvents(CLI::App& app, cli::Action& action) {
       "and their escalation, acknowledgements, transfers, first effective inputs, manoeuvres,\n"
       "collision warnings and emergency braking. In a run in real time it also lists the\n"
       "fallbacks of the roles. Where the log lacks commands of the host, the list says so.\n"
+      "If the log lacks the beginning of the run, the list begins with the state in the first\n"
+      "command of the log.\n"
       "Then lists the times of each request, from the start of the run, and its outcome and\n"
       "measures (services/metrics/README.md defines them). With the mode instant\n"
       "of take_over the driver is not asked, so there are no requests and acknowledgements.\n\n"

@@ -66,8 +66,8 @@ void SayAbout(const runner::LoggedRun& run, const cli::Pairing& pair) {
   cli::SayAboutLog(run.result.log, run);
   std::string unknown = cli::UnknownMeasures(run.result);
   if (pair.unknown) unknown += (unknown.empty() ? "" : ", ") + std::string("si_pct");
-  if (!metrics::AreTakeOversKnown(run.result.lack)) {
-    unknown += (unknown.empty() ? "" : ", ") + std::string("the measures of take-overs");
+  if (const std::string take_overs = cli::UnknownTakeOvers(run); !take_overs.empty()) {
+    unknown += (unknown.empty() ? "" : ", ") + take_overs;
   }
   if (unknown.empty()) return;
   Complain(fmt::format("{}: unknown, because messages are missing: {}", PathText(run.result.log),
@@ -103,6 +103,9 @@ int RunMetrics(const MetricsArguments& arguments) {
                                  {"seed", run.result.seed},        {"steps", run.result.steps},
                                  {"complete", run.complete},       {"digest", DigestJson(run)}};
       if (run.gaps.Any()) row["gaps"] = cli::GapsJson(run.gaps);
+      if (const std::string unknown = cli::UnknownTakeOvers(run); !unknown.empty()) {
+        row["unknown_take_overs"] = unknown;
+      }
       metrics::VisitPairedMetrics(
           pairs[i].measures,
           [&row](std::string_view name, const std::optional<double>& value, std::string_view,

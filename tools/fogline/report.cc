@@ -223,7 +223,8 @@ report::ReportRun PageOf(runner::LoggedRun& run, const std::string& name,
           .measures = MetricsOf(run.result),
           .si_pct = paired.si_pct,
           .si_until_recovery_pct = paired.si_until_recovery_pct,
-          .take_overs = run.result.take_overs};
+          .take_overs = run.result.take_overs,
+          .unknown_take_overs = cli::UnknownTakeOvers(run)};
 }
 
 report::ReportCurves ComputeCurves(const ReportArguments& arguments) {

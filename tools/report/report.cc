@@ -136,6 +136,11 @@ std::string RequestsSection(std::span<const ReportRun> runs) {
         "from the request until the driver has recovered, the automation drives again, or the car "
         "stands after a minimal risk manoeuvre.</p>\n";
   }
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    if (runs[i].unknown_take_overs.empty()) continue;
+    content += fmt::format("<p class=\"note\">{}: unknown, because messages are missing: {}.</p>\n",
+                           EscapeHtml(RunName(runs, i)), EscapeHtml(runs[i].unknown_take_overs));
+  }
   return Section("take-overs", "Take-overs", content);
 }
 

@@ -151,6 +151,7 @@ class MessageMeasures {
   void PutInto(LoggedRun& run) const {
     run.result.followers = followers_.Result();
     run.result.take_overs = take_overs_.Result();
+    run.result.lack.beginning_of_request = take_overs_.BeganInRequest();
     AddPersonMeasures(seats_, run);
   }
 
@@ -168,6 +169,7 @@ LoggedRun ReadSteps(const std::filesystem::path& log, const log::ReadOptions& op
   LoggedRun logged;
   MessageMeasures measures;
   metrics::SampleDecoder decoder;
+  bool first = true;
   log::RunLogReader reader(log, options);
   while (const log::StepMessages* messages = reader.Next()) {
     if (reader.InTail()) continue;
@@ -184,6 +186,7 @@ LoggedRun ReadSteps(const std::filesystem::path& log, const log::ReadOptions& op
                       "message types?",
                       PathText(log), reader.step()));
     }
+    if (std::exchange(first, false)) logged.result.lack.beginning = sample->step > 0;
     use(*sample);
     measures.Add(*messages, decoder);
   }
@@ -194,9 +197,8 @@ LoggedRun ReadSteps(const std::filesystem::path& log, const log::ReadOptions& op
   logged.result.log = log;
   logged.result.realtime = logged.realtime;
   for (std::size_t i = 0; i < kNumChannels; ++i) {
-    logged.result.lack.channels[i] = logged.gaps.messages[i] > 0;
+    logged.result.lack.channels[i] = logged.gaps.Lacks(i);
   }
-  logged.result.lack.beginning = logged.gaps.first > 0;
   measures.PutInto(logged);
   if (!metrics::AreTakeOversKnown(logged.result.lack)) logged.result.take_overs.clear();
   return logged;

@@ -40,6 +40,13 @@ bool IsUnanswered(std::int8_t mode) {
          mode == arbitration_t::REQUEST_URGENT;
 }
 
+/// Whether only a run with requests has this command: its mode is a state of a request, or the
+/// driver has less than half of the authority.
+bool ShowsRequests(const arbitration_t& command) {
+  if (command.mode == arbitration_t::HUMAN) return !HumanDrives(command.lambda_human);
+  return command.mode != arbitration_t::AUTOMATION && StateOf(command.mode) != nullptr;
+}
+
 }  // namespace
 
 std::string_view NameOfMode(std::int8_t mode) {
@@ -67,11 +74,44 @@ std::string_view TextOf(const TakeOverEntry& entry, const PersonSection& person)
 }
 
 void TakeOverLog::Add(const arbitration_t& command, std::optional<double> human_mps2) {
+  if (!last_) Begin(command);
+  if (hidden_ && command.mode != arbitration_t::EMERGENCY_BRAKING) Reveal(command);
+  asks_ = asks_ || ShowsRequests(command);
   arbitration_t decided = command;
   decided.mode = DecidedMode(command);
   AddDecided(decided, human_mps2);
   AddEmergency(command);
   last_sent_ = command.mode;
+}
+
+void TakeOverLog::Begin(const arbitration_t& command) {
+  const bool late = command.header.step > 0;
+  const std::int8_t mode = late ? command.mode : std::int8_t{arbitration_t::AUTOMATION};
+  entries_.push_back(
+      {.step = command.header.step,
+       .utime = command.header.utime,
+       .from = mode,
+       .to = mode,
+       .first = true,
+       .logged = late ? "first command of the log" : "activation of the automation"});
+  last_sent_ = mode;
+  if (!late) return;
+  hidden_ = true;
+  last_ = command;
+}
+
+void TakeOverLog::Reveal(const arbitration_t& command) {
+  hidden_ = false;
+  last_->mode = DecidedMode(command);
+  began_in_request_ =
+      last_->mode != arbitration_t::AUTOMATION && last_->mode != arbitration_t::HUMAN;
+  // Emergency braking hides no manoeuvre, so the manoeuvre begins in this step.
+  if (!InEmergency(last_sent_) || !InMinimalRisk(command.mode)) return;
+  entries_.push_back({.step = command.header.step,
+                      .utime = command.header.utime,
+                      .from = last_sent_,
+                      .to = command.mode,
+                      .logged = "manoeuvre begins"});
 }
 
 std::vector<TakeOverEntry> TakeOverLog::TakeEntries() {
@@ -80,8 +120,8 @@ std::vector<TakeOverEntry> TakeOverLog::TakeEntries() {
 }
 
 std::int8_t TakeOverLog::DecidedMode(const arbitration_t& command) const {
-  if (!InEmergency(command.mode)) return command.mode;
-  if (last_ && (!requests_.empty() || unasked_)) return last_->mode;
+  if (hidden_ || !InEmergency(command.mode)) return command.mode;
+  if (last_ && asks_) return last_->mode;
   return HumanDrives(command.lambda_human) ? arbitration_t::HUMAN : arbitration_t::AUTOMATION;
 }
 
@@ -106,13 +146,6 @@ void TakeOverLog::AddEmergency(const arbitration_t& command) {
 }
 
 void TakeOverLog::AddDecided(const arbitration_t& command, std::optional<double> human_mps2) {
-  if (!last_) {
-    entries_.push_back({.step = command.header.step,
-                        .utime = command.header.utime,
-                        .from = arbitration_t::AUTOMATION,
-                        .to = arbitration_t::AUTOMATION,
-                        .logged = "activation of the automation"});
-  }
   const std::int8_t from = last_ ? last_->mode : arbitration_t::AUTOMATION;
   const bool human = HumanDrives(command.lambda_human);
   const bool transfer = last_ && human != HumanDrives(last_->lambda_human);

@@ -19,14 +19,16 @@ std::string_view NameOfMode(std::int8_t mode);
 
 /// An event of a step. If a driver's input became effective, or lambda_H passed one half on a ramp,
 /// `from` and `to` are the same mode. If emergency braking or its warning begins or ends, `from`
-/// and `to` are the modes of the commands. For other events, `from` and `to` are the modes that the
-/// commands would have without emergency braking.
+/// and `to` are the modes of the commands; so are those of the first entry if the log begins late.
+/// For other events, `from` and `to` are the modes that the commands would have without emergency
+/// braking.
 struct TakeOverEntry {
   std::int64_t step = 0;
   std::int64_t utime = 0;
   std::int8_t from = 0;  // mode before the event
   std::int8_t to = 0;
   bool transfer = false;  // whether the driving side changes, as in the measures
+  bool first = false;     // whether this is the entry of the first command
   std::string_view logged;
 };
 
@@ -38,6 +40,10 @@ std::string_view TextOf(const TakeOverEntry& entry, const PersonSection& person)
 
 /// Collects the events and the requests of a run from its commands (HOST_COMMAND), in the order of
 /// steps. Some commands may be missing.
+///
+/// If the commands of the first steps are missing, the earlier events are unknown. The first entry
+/// then says which mode the first command has. A request that may be open in this command is not
+/// one of the requests, because the step of the request is unknown (BeganInRequest()).
 ///
 /// The mode of a command says whether the driver has a share of the authority, and lambda_H is this
 /// share. The share may be 0 at first, and may grow later. So there are two different events.
@@ -59,6 +65,9 @@ class TakeOverLog {
   /// Removes the entries so far, for a caller that needs only the requests of a long run.
   void DropEntries() { entries_.clear(); }
   const std::vector<TakeOverRequest>& requests() const { return requests_; }
+  /// Whether a request may have been open before the first command: this command is not of step 0,
+  /// and the first mode that emergency braking does not hide is neither AUTOMATION nor HUMAN.
+  bool BeganInRequest() const { return began_in_request_; }
   /// The mode of the last command without emergency braking; AUTOMATION before the first command.
   std::int8_t mode() const { return last_ ? last_->mode : arbitration_t::AUTOMATION; }
   /// Removes the entries so far, and all requests except the last request, which may still change.
@@ -67,6 +76,8 @@ class TakeOverLog {
 
  private:
   std::int8_t DecidedMode(const arbitration_t& command) const;
+  void Begin(const arbitration_t& command);
+  void Reveal(const arbitration_t& command);
   void AddDecided(const arbitration_t& command, std::optional<double> human_mps2);
   void AddEmergency(const arbitration_t& command);
   void Change(const arbitration_t& command, std::int8_t from, bool transfer);
@@ -84,6 +95,10 @@ class TakeOverLog {
   // Whether the driver has, or had, authority without an open request. Two events lead to this: an
   // override, and the absence of a person who had taken over.
   bool unasked_ = false;
+  bool asks_ = false;  // whether a command has shown that this is a run with requests
+  // The first command is not of step 0, and emergency braking has hidden the state since then.
+  bool hidden_ = false;
+  bool began_in_request_ = false;
   std::vector<TakeOverEntry> entries_;
   std::vector<TakeOverRequest> requests_;
 };

@@ -24,6 +24,12 @@ std::int64_t LogGaps::Messages() const {
   return std::accumulate(messages.begin(), messages.end(), std::int64_t{0});
 }
 
+bool LogGaps::Lacks(std::size_t channel) const {
+  const bool in_first =
+      first > 0 && !gaps.empty() && gaps.front().first == first && gaps.front().channels[channel];
+  return messages[channel] > (in_first ? 1 : 0);
+}
+
 void LogGaps::Add(std::int64_t step, const std::bitset<kNumChannels>& channels) {
   ++steps;
   for (std::size_t i = 0; i < kNumChannels; ++i) messages[i] += channels[i] ? 1 : 0;
@@ -45,8 +51,9 @@ std::string LogGaps::Text() const {
     if (messages[i] == 0) continue;
     counts += fmt::format("{}{} {}", counts.empty() ? "" : ", ", kChannels[i].name, messages[i]);
   }
-  return fmt::format("{} message{} of {} step{} missing ({}), first: {}", Messages(),
-                     Messages() == 1 ? "" : "s", steps, steps == 1 ? " is" : "s are", counts,
+  return fmt::format("{} of {} step{} {} missing ({}), first: {}",
+                     Messages() == 1 ? "1 message" : fmt::format("{} messages", Messages()), steps,
+                     steps == 1 ? "" : "s", Messages() == 1 ? "is" : "are", counts,
                      gaps.front().Text());
 }
 

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <bitset>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -36,6 +37,9 @@ struct LogGaps {
   /// Whether the log lacks its first steps, or a message of a later step.
   bool Any() const { return first > 0 || steps > 0; }
   std::int64_t Messages() const;
+  /// Whether a step lacks the message of this channel (an index of kChannels). The first step of a
+  /// log that begins late does not count: a logger usually begins in the middle of a step.
+  bool Lacks(std::size_t channel) const;
   /// Adds a step that lacks the messages of these channels. Steps come in order.
   void Add(std::int64_t step, const std::bitset<kNumChannels>& channels);
   /// A remark on all gaps, such as "2 messages of 2 steps are missing (RADAR 1, LIDAR 1), first:

@@ -68,8 +68,7 @@ bool IsKnown(std::string_view measure, const Lack& lack) {
 }
 
 bool AreTakeOversKnown(const Lack& lack) {
-  return !lack.beginning &&
-         (Of<truth_t, arbitration_t, track_t, driver_command_t>() & lack.channels).none();
+  return (Of<truth_t, arbitration_t, track_t, driver_command_t>() & lack.channels).none();
 }
 
 }  // namespace fogline::metrics

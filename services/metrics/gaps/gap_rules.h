@@ -12,8 +12,8 @@ namespace fogline::metrics {
 struct Lack {
   std::bitset<kNumChannels> channels;  // the channels that lack a message after the first step
   bool beginning = false;              // whether the first steps are missing
-
-  bool Any() const { return beginning || channels.any(); }
+  // Whether a request to take over may have been open before the first HOST_COMMAND of the log.
+  bool beginning_of_request = false;
 };
 
 /// Whether a measure (a name of VisitMetrics()) is known. The table in gap_rules.cc lists the
@@ -24,8 +24,9 @@ struct Lack {
 bool IsKnown(std::string_view measure, const Lack& lack);
 
 /// Whether the measures of requests to take over are known. These measures need every TRUTH,
-/// HOST_COMMAND, TRACK and DRIVER_COMMAND, and the beginning of the run: a request or a fog may
-/// have begun before the first step of the log.
+/// HOST_COMMAND, TRACK and DRIVER_COMMAND from the first step of the log on. If the log lacks the
+/// beginning of a request, the measures of this request are unknown, and those of later requests
+/// are known.
 bool AreTakeOversKnown(const Lack& lack);
 
 }  // namespace fogline::metrics

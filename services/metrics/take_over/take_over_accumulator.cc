@@ -1,6 +1,7 @@
 #include "services/metrics/take_over/take_over_accumulator.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "services/decision/take_over/take_over.h"
 #include "services/graph.h"
@@ -46,11 +47,9 @@ std::string_view NameOf(TakeOverEnd end) {
 // earlier commands.
 void TakeOverAccumulator::Add(const truth_t& truth, const arbitration_t* command,
                               const track_t* track, std::optional<double> human_mps2) {
-  if (truth.fog_present == 0) {
-    fog_speed_mps_.reset();
-  } else if (!fog_speed_mps_) {
-    fog_speed_mps_ = truth.host_speed_mps;
-  }
+  const bool first = !late_;
+  if (first) late_ = truth.header.step > 0;
+  AddFog(truth, first);
   // Step 0 does not count, because no acceleration was applied before it.
   std::optional<double> jerk_mps3;
   if (truth.header.step > 0) {
@@ -62,6 +61,13 @@ void TakeOverAccumulator::Add(const truth_t& truth, const arbitration_t* command
   }
   if (command != nullptr) AddCommand(truth, *command, human_mps2);
   if (track != nullptr) excludes_ = ExcludesASensor(*track);
+}
+
+void TakeOverAccumulator::AddFog(const truth_t& truth, bool first) {
+  const bool was_foggy = std::exchange(foggy_, truth.fog_present != 0);
+  const bool began_before = first && *late_;
+  if (!foggy_) fog_speed_mps_.reset();
+  if (foggy_ && !was_foggy && !began_before) fog_speed_mps_ = truth.host_speed_mps;
 }
 
 void TakeOverAccumulator::AddDriving(std::int64_t utime) {
@@ -84,6 +90,7 @@ void TakeOverAccumulator::AddMotion(const truth_t& truth, std::optional<double> 
   Raise(request.max_deceleration_mps2, std::max(0.0, deceleration_mps2));
   if (deceleration_mps2 > 0) judged_->deceleration_mps2.Add(deceleration_mps2);
   if (jerk_mps3) Raise(request.max_abs_jerk_1s_mps3, *jerk_mps3);
+  if (!jerk_mps3 && *late_) judged_->jerk_unknown = true;
   Look(truth);
 }
 
@@ -105,13 +112,14 @@ void TakeOverAccumulator::Begin(const truth_t& truth) {
   requests_.push_back(
       {.requested_s = Seconds(requested_us_), .speed_at_request_mps = truth.host_speed_mps});
   judged_.emplace().last_us = requested_us_;
+  judged_->fog_unknown = foggy_ && !fog_speed_mps_;
   Look(truth);
 }
 
 void TakeOverAccumulator::Look(const truth_t& truth) {
   TakeOverMeasures& request = requests_.back();
   request.judged_s = Seconds(truth.header.utime - requested_us_);
-  if (!request.speed_at_fog_mps) request.speed_at_fog_mps = fog_speed_mps_;
+  if (!request.speed_at_fog_mps && !judged_->fog_unknown) request.speed_at_fog_mps = fog_speed_mps_;
   // The measures that depend on the duration of a step are not used.
   judged_->pair.Add({truth.host_gap_m, truth.host_speed_mps, truth.preceding_speed_mps}, 0);
 }
@@ -150,6 +158,7 @@ void TakeOverAccumulator::Finish(const Judged& judged, TakeOverMeasures& measure
   const PairMetrics pair = judged.pair.Result();
   measures.min_ttc_s = pair.min_ttc_s;
   measures.min_time_gap_s = pair.min_time_gap_s;
+  if (judged.jerk_unknown) measures.max_abs_jerk_1s_mps3.reset();
   measures.mean_deceleration_mps2 = judged.deceleration_mps2.Value();
   measures.automation_drove_s = Seconds(judged.automation_us);
   measures.sensor_excluded_s = Seconds(judged.excluded_us);

@@ -32,10 +32,15 @@ class TakeOverAccumulator {
 
   /// The measures of each request so far, in order of time.
   std::vector<TakeOverMeasures> Result() const;
+  /// Whether the log may lack the beginning of a request (TakeOverLog::BeganInRequest). Result()
+  /// does not contain this request.
+  bool BeganInRequest() const { return log_.BeganInRequest(); }
 
  private:
   /// Values of the judged interval, while it lasts.
   struct Judged {
+    bool fog_unknown = false;   // there is fog at the request, and the log lacks its beginning
+    bool jerk_unknown = false;  // the log begins less than 1 s before a step of the interval
     Mean deceleration_mps2;
     // Only TTC and time gap are used. These two measures do not depend on the section.
     PairAccumulator pair{MeasuresSection{}};
@@ -47,6 +52,8 @@ class TakeOverAccumulator {
     std::int64_t last_us = 0;
   };
 
+  /// @param first whether this is the first step
+  void AddFog(const truth_t& truth, bool first);
   void AddMotion(const truth_t& truth, std::optional<double> jerk_mps3);
   void AddCommand(const truth_t& truth, const arbitration_t& command,
                   std::optional<double> human_mps2);
@@ -63,7 +70,10 @@ class TakeOverAccumulator {
 
   take_over::TakeOverLog log_;
   AveragedJerk jerk_;
-  std::optional<double> fog_speed_mps_;  // speed when the present fog began; empty in clear air
+  std::optional<bool> late_;  // whether the log lacks the first steps; empty before the first step
+  bool foggy_ = false;
+  // Speed when the present fog began. Empty in clear air, and if the log lacks this step.
+  std::optional<double> fog_speed_mps_;
   std::vector<TakeOverMeasures> requests_;
   std::int64_t requested_us_ = 0;  // time of the last request
   std::optional<Judged> judged_;   // of the last request

@@ -53,7 +53,8 @@ struct TakeOverMeasures {
   /// Speed of the host in the step of the request, m/s.
   double speed_at_request_mps = 0;
   /// Speed of the host in the first step of a fog, m/s. If there is fog at the request, this fog
-  /// counts. Otherwise the first fog that begins in the judged interval counts.
+  /// counts. Otherwise the first fog that begins in the judged interval counts. Empty if the log
+  /// begins in this fog.
   std::optional<double> speed_at_fog_mps;
   /// Largest applied deceleration of the host in the judged interval, m/s2; 0 if it never slows
   /// down.
@@ -62,7 +63,7 @@ struct TakeOverMeasures {
   /// down, m/s2.
   std::optional<double> mean_deceleration_mps2;
   /// Largest |jerk| of the host in the judged interval, averaged over 1 s (AveragedJerk), m/s3. The
-  /// averaged second may begin before the request.
+  /// averaged second may begin before the request. Empty if the log begins later than this second.
   std::optional<double> max_abs_jerk_1s_mps3;
   /// Smallest time to collision and smallest time gap of the host in the judged interval, s
   /// (PairMetrics).

@@ -5,7 +5,6 @@
 #include <csignal>
 #include <filesystem>
 #include <fstream>
-#include <functional>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -18,6 +17,7 @@
 #include "services/log/remains.h"
 #include "services/runtime/transport/bus.h"
 #include "services/runtime/wire/wire.h"
+#include "tests/integration/logs/gap_fixture.h"
 #include "tests/support/command.h"
 
 namespace fogline::test {
@@ -34,49 +34,6 @@ std::vector<std::string> LinesOf(const std::string& file) {
   for (std::string line; std::getline(text, line);) lines.push_back(line);
   return lines;
 }
-
-class GapTest : public testing::Test {
- protected:
-  GapTest() {
-    const Outcome run = RunCommand({Program("fogline"), "run", "scenario/paper.json", "--transport",
-                                    "direct", "--quiet", "--log", whole_});
-    EXPECT_EQ(run.code, 0) << run.err;
-  }
-
-  /// A copy of a log without its seal and without some messages.
-  std::string Without(const std::function<bool(std::string_view channel, std::int64_t step)>& lost,
-                      const std::string& name = "gaps.lcm") const {
-    const std::string copy = folder_.File(name);
-    log::EventLogReader reader(whole_);
-    log::EventLogWriter writer(copy);
-    while (const auto event = reader.Next()) {
-      const std::int64_t step = runtime::ReadInt64(event->data, runtime::kStepOffset);
-      if (event->channel == "FOGLINE_SEAL" || lost(event->channel, step)) continue;
-      writer.Write(event->channel, event->utime, event->data);
-    }
-    return copy;
-  }
-  std::string WithoutOne(const std::string& channel) const {
-    return Without(
-        [&](std::string_view of, std::int64_t step) { return of == channel && step == 394; });
-  }
-
-  static Outcome Fogline(const Words& words) {
-    Words command{Program("fogline")};
-    command.insert(command.end(), words.begin(), words.end());
-    return RunCommand(command);
-  }
-  static nlohmann::json Json(const Words& words, int code) {
-    Words command = words;
-    command.emplace_back("--json");
-    const Outcome outcome = Fogline(command);
-    EXPECT_EQ(outcome.code, code) << outcome.err;
-    return nlohmann::json::parse(outcome.out);
-  }
-
-  const ScratchFolder folder_;
-  const std::string whole_ = folder_.File("whole.lcm");
-};
 
 TEST_F(GapTest, MetricsAreThoseOfTheWholeLogIfTheMissingMessageIsOfNoMeasure) {
   const std::string log = WithoutOne("RADAR");

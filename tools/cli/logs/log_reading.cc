@@ -75,4 +75,14 @@ std::string UnknownMeasures(const runner::ExperimentResult& result) {
   return names;
 }
 
+std::string UnknownTakeOvers(const runner::LoggedRun& run) {
+  if (run.scenario.arbitrator.take_over.mode != TakeOverMode::kRequested) return "";
+  const metrics::Lack& lack = run.result.lack;
+  if (!metrics::AreTakeOversKnown(lack)) return "the measures of take-overs";
+  if (lack.beginning_of_request) {
+    return "the measures of a request that may have begun before the log";
+  }
+  return "";
+}
+
 }  // namespace fogline::cli

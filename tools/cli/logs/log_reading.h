@@ -46,4 +46,8 @@ nlohmann::ordered_json GapsJson(const log::LogGaps& gaps);
 /// transfers"; "" if all are known.
 std::string UnknownMeasures(const runner::ExperimentResult& result);
 
+/// The requests to take over of a run whose measures are unknown, such as "the measures of
+/// take-overs"; "" if the measures of all requests are known, or if the run cannot have requests.
+std::string UnknownTakeOvers(const runner::LoggedRun& run);
+
 }  // namespace fogline::cli

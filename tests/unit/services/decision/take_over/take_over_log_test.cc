@@ -2,57 +2,18 @@
 
 #include <cstdint>
 #include <optional>
-#include <string_view>
-#include <vector>
 
 #include <gmock/gmock-more-matchers.h>
 #include <gtest/gtest.h>
 
-#include "services/host_modes.h"
+#include "tests/unit/services/decision/take_over/logged_commands.h"
 
-namespace fogline {
+namespace fogline::test {
 namespace {
 
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 using ::testing::SizeIs;
-
-arbitration_t Command(std::int64_t step, std::int8_t mode, double acceleration_mps2 = 0) {
-  arbitration_t command{};
-  command.header.step = step;
-  command.header.utime = step * 100'000;
-  command.mode = mode;
-  command.acceleration_mps2 = acceleration_mps2;
-  command.lambda_human = HumanDrives(mode) ? 1 : 0;
-  return command;
-}
-
-/// A command in which the human has the authority `lambda_human`.
-arbitration_t Shared(std::int64_t step, std::int8_t mode, double lambda_human,
-                     double acceleration_mps2 = 0) {
-  arbitration_t command = Command(step, mode, acceleration_mps2);
-  command.lambda_human = lambda_human;
-  return command;
-}
-
-/// Adds the command of a side that drives alone. The offer of this side equals the command.
-void Add(take_over::TakeOverLog& log, const arbitration_t& command) {
-  log.Add(command, command.acceleration_mps2);
-}
-
-std::vector<std::int64_t> Transfers(const take_over::TakeOverLog& log) {
-  std::vector<std::int64_t> steps;
-  for (const take_over::TakeOverEntry& entry : log.entries()) {
-    if (entry.transfer) steps.push_back(entry.step);
-  }
-  return steps;
-}
-
-std::vector<std::string_view> Texts(const take_over::TakeOverLog& log) {
-  std::vector<std::string_view> texts;
-  for (const take_over::TakeOverEntry& entry : log.entries()) texts.push_back(entry.logged);
-  return texts;
-}
 
 TEST(TakeOverLogTest, TellsARequestFromItsBeginningToTheDriversFirstInput) {
   take_over::TakeOverLog log;
@@ -176,12 +137,6 @@ TEST(TakeOverLogTest, GivesAModeThatIsNoneANameOfItsOwn) {
 }
 
 // ---- emergency braking --------------------------------------------------------------------------
-
-arbitration_t Emergency(std::int64_t step, std::int8_t mode, double lambda_human = 0) {
-  arbitration_t command = Command(step, mode, -9);
-  command.lambda_human = lambda_human;
-  return command;
-}
 
 TEST(TakeOverLogTest, NamesBeginAndEndOfEmergencyBraking) {
   take_over::TakeOverLog log;
@@ -324,4 +279,4 @@ TEST(TakeOverLogTest, TakesAnOverrideBehindEmergencyBrakingForTheSame) {
 }
 
 }  // namespace
-}  // namespace fogline
+}  // namespace fogline::test

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -35,10 +36,9 @@ struct HostStep {
   bool without_track = false;
 };
 
-/// The measures of a run of these steps.
-std::vector<TakeOverMeasures> Measured(const std::vector<HostStep>& steps) {
+/// The measures of a run of these steps. @param k the first step
+metrics::TakeOverAccumulator Accumulated(const std::vector<HostStep>& steps, std::int64_t k = 0) {
   metrics::TakeOverAccumulator accumulator;
-  std::int64_t k = 0;
   for (const HostStep& step : steps) {
     truth_t truth{};
     truth.header.step = k;
@@ -57,7 +57,11 @@ std::vector<TakeOverMeasures> Measured(const std::vector<HostStep>& steps) {
     accumulator.Add(truth, step.without_command ? nullptr : &command,
                     step.without_track ? nullptr : &track, step.offer_mps2);
   }
-  return accumulator.Result();
+  return accumulator;
+}
+
+std::vector<TakeOverMeasures> Measured(const std::vector<HostStep>& steps) {
+  return Accumulated(steps).Result();
 }
 
 std::vector<TakeOverMeasures> MeasuredModes(const std::vector<std::int8_t>& modes) {
@@ -277,6 +281,39 @@ TEST(TakeOverAccumulatorTest, GoesWithoutTheCommandsOfAStepThatHasNone) {
   ASSERT_THAT(requests, SizeIs(1));
   EXPECT_EQ(requests[0].reaction_time_s, 1.0);
   EXPECT_EQ(requests[0].min_time_gap_s, 0.5) << "the situation of this step counts";
+}
+
+TEST(TakeOverAccumulatorTest, LeavesOutARequestThatBeganBeforeTheLog) {
+  const auto late = Accumulated({{.mode = arbitration_t::REQUEST},
+                                 {.mode = arbitration_t::HANDOVER},
+                                 {.mode = arbitration_t::RECOVERING},
+                                 {.mode = arbitration_t::HUMAN},
+                                 {},
+                                 {.mode = arbitration_t::REQUEST},
+                                 {.mode = arbitration_t::HANDOVER}},
+                                4);
+  EXPECT_TRUE(late.BeganInRequest());
+  ASSERT_THAT(late.Result(), SizeIs(1));
+  EXPECT_EQ(late.Result()[0].requested_s, 4.5);
+  EXPECT_EQ(late.Result()[0].reaction_time_s, 0.5);
+}
+
+TEST(TakeOverAccumulatorTest, DoesNotKnowTheSpeedAtTheBeginningOfAFogThatTheLogLacks) {
+  const std::vector<HostStep> steps{{.speed_mps = 21, .fog = true},
+                                    {.mode = arbitration_t::REQUEST, .speed_mps = 22, .fog = true},
+                                    {.mode = arbitration_t::REQUEST},
+                                    {.mode = arbitration_t::REQUEST, .speed_mps = 23, .fog = true},
+                                    {},
+                                    {.mode = arbitration_t::REQUEST, .speed_mps = 24, .fog = true}};
+  const auto speeds = [&](std::int64_t first) {
+    std::vector<std::optional<double>> found;
+    for (const TakeOverMeasures& request : Accumulated(steps, first).Result()) {
+      found.push_back(request.speed_at_fog_mps);
+    }
+    return found;
+  };
+  EXPECT_EQ(speeds(0), (std::vector<std::optional<double>>{21, 24}));
+  EXPECT_EQ(speeds(7), (std::vector<std::optional<double>>{std::nullopt, 24}));
 }
 
 TEST(TakeOverMeasuresTest, AreNamedWithTheirUnits) {

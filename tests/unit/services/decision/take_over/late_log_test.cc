@@ -1,0 +1,98 @@
+// TakeOverLog of a log that lacks the first commands of its run.
+#include "services/decision/take_over/take_over_log.h"
+
+#include <gmock/gmock-more-matchers.h>
+#include <gtest/gtest.h>
+
+#include "tests/unit/services/decision/take_over/logged_commands.h"
+
+namespace fogline::test {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+
+TEST(LateTakeOverLogTest, HasNoRequestThatBeganBeforeTheFirstCommand) {
+  take_over::TakeOverLog log;
+  Add(log, Command(7, arbitration_t::REQUEST));
+  Add(log, Command(8, arbitration_t::HANDOVER));
+  Add(log, Command(9, arbitration_t::RECOVERING, -3));
+  Add(log, Command(10, arbitration_t::RECOVERING, -4));
+  Add(log, Command(11, arbitration_t::HUMAN));
+  Add(log, Command(12, arbitration_t::AUTOMATION));
+  EXPECT_THAT(log.requests(), IsEmpty());
+  EXPECT_TRUE(log.BeganInRequest());
+  EXPECT_THAT(Texts(log),
+              ElementsAre("first command of the log", "acknowledgement", "transfer to the driver",
+                          "first effective input of the driver", "driver recovered",
+                          "return to automation"));
+  EXPECT_EQ(take_over::NameOfMode(log.entries()[0].from), "DEMAND");
+  EXPECT_TRUE(log.entries()[0].first);
+  EXPECT_FALSE(log.entries()[1].first);
+  Add(log, Command(20, arbitration_t::REQUEST));
+  EXPECT_THAT(log.requests(), ElementsAre(take_over::TakeOverRequest{.requested = 20}));
+}
+
+TEST(LateTakeOverLogTest, KnowsTheStateOfALateLogWhenEmergencyBrakingHidesItNoLonger) {
+  take_over::TakeOverLog log;
+  Add(log, Emergency(7, arbitration_t::EMERGENCY_BRAKING));
+  Add(log, Emergency(8, arbitration_t::EMERGENCY_BRAKING));
+  EXPECT_FALSE(log.BeganInRequest());
+  Add(log, Command(9, arbitration_t::REQUEST_URGENT));
+  EXPECT_TRUE(log.BeganInRequest());
+  Add(log, Emergency(10, arbitration_t::EMERGENCY_BRAKING));
+  Add(log, Command(11, arbitration_t::REQUEST_URGENT));
+  EXPECT_THAT(log.requests(), IsEmpty());
+  EXPECT_THAT(Texts(log), ElementsAre("first command of the log", "emergency braking ends",
+                                      "emergency braking begins", "emergency braking ends"));
+}
+
+TEST(LateTakeOverLogTest, HasARequestOfALateLogAfterAWarning) {
+  take_over::TakeOverLog log;
+  Add(log, Emergency(7, arbitration_t::COLLISION_WARNING));
+  Add(log, Command(8, arbitration_t::REQUEST));
+  EXPECT_FALSE(log.BeganInRequest());
+  EXPECT_THAT(log.requests(), ElementsAre(take_over::TakeOverRequest{.requested = 8}));
+}
+
+TEST(LateTakeOverLogTest, HasAManoeuvreOfALateLogAfterEmergencyBraking) {
+  take_over::TakeOverLog log;
+  Add(log, Emergency(7, arbitration_t::EMERGENCY_BRAKING));
+  Add(log, Command(8, arbitration_t::MRM_EMERGENCY));
+  EXPECT_TRUE(log.BeganInRequest());
+  EXPECT_THAT(Texts(log), ElementsAre("first command of the log", "manoeuvre begins",
+                                      "emergency braking ends"));
+}
+
+TEST(LateTakeOverLogTest, SeesThatARunHasRequestsInALateLogThatBeginsWithTheDriver) {
+  take_over::TakeOverLog log;
+  Add(log, Command(7, arbitration_t::HUMAN));
+  Add(log, Command(8, arbitration_t::MRM_COMFORT));
+  Add(log, Command(9, arbitration_t::RECOVERING));
+  Add(log, Emergency(10, arbitration_t::EMERGENCY_BRAKING, 1));
+  Add(log, Command(11, arbitration_t::RECOVERING));
+  EXPECT_THAT(Texts(log),
+              ElementsAre("first command of the log", "comfortable manoeuvre",
+                          "driver ends manoeuvre", "first effective input of the driver",
+                          "emergency braking begins", "emergency braking ends"));
+  take_over::TakeOverLog shared;
+  Add(shared, Shared(7, arbitration_t::HUMAN, 0.3));
+  Add(shared, Shared(8, arbitration_t::EMERGENCY_BRAKING, 0.3));
+  Add(shared, Shared(9, arbitration_t::HUMAN, 0.3));
+  EXPECT_THAT(Texts(shared), ElementsAre("first command of the log", "emergency braking begins",
+                                         "emergency braking ends"));
+}
+
+TEST(LateTakeOverLogTest, HasTheTransfersOfALateLog) {
+  take_over::TakeOverLog log;
+  Add(log, Emergency(7, arbitration_t::EMERGENCY_BRAKING));
+  Add(log, Emergency(8, arbitration_t::EMERGENCY_BRAKING, 1));
+  Add(log, Command(9, arbitration_t::HUMAN));
+  Add(log, Command(10, arbitration_t::AUTOMATION));
+  EXPECT_FALSE(log.BeganInRequest());
+  EXPECT_THAT(Transfers(log), ElementsAre(8, 10));
+  EXPECT_EQ(log.entries()[1].from, log.entries()[1].to);
+}
+
+}  // namespace
+}  // namespace fogline::test
