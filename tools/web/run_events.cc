@@ -16,11 +16,7 @@ std::string_view KindOf(const take_over::TakeOverEntry& entry) {
   return InMinimalRisk(entry.to) ? "manoeuvre" : "request";
 }
 
-/// Whether an entry says only that the run has begun.
-bool IsBeginning(const take_over::TakeOverEntry& entry) {
-  return entry.from == arbitration_t::AUTOMATION && entry.to == arbitration_t::AUTOMATION &&
-         !entry.transfer;
-}
+bool IsAlarm(const arbitration_t& command) { return command.doc >= command.threshold; }
 
 }  // namespace
 
@@ -37,6 +33,10 @@ void RunEvents::Note(const Message& message, std::string_view kind, std::string 
 
 void RunEvents::Add(const truth_t& truth) {
   if (truth.header.step <= truth_step_) return;
+  if (truth_step_ < 0 && truth.header.step > 0) {
+    fog_ = truth.fog_present != 0;
+    collision_ = truth.collision;
+  }
   truth_step_ = truth.header.step;
   if (const bool fog = truth.fog_present != 0; fog != std::exchange(fog_, fog)) {
     Note(truth.header, "fog", fog ? "fog begins" : "fog ends");
@@ -51,16 +51,21 @@ void RunEvents::Add(const truth_t& truth) {
 
 void RunEvents::Add(const arbitration_t& command, std::optional<double> human_mps2) {
   if (command.header.step <= command_step_) return;
+  if (command_step_ < 0 && command.header.step > 0) alarm_ = IsAlarm(command);
   command_step_ = command.header.step;
   NoteAlarm(command);
   take_over_.Add(command, human_mps2);
   for (const take_over::TakeOverEntry& entry : take_over_.TakeEntries()) {
-    if (!IsBeginning(entry)) Note(entry, KindOf(entry), std::string(entry.logged));
+    if (!entry.first) {
+      Note(entry, KindOf(entry), std::string(entry.logged));
+    } else if (entry.to != arbitration_t::AUTOMATION && entry.to != arbitration_t::HUMAN) {
+      Note(entry, KindOf(entry), fmt::format("state {}", take_over::NameOfMode(entry.to)));
+    }
   }
 }
 
 void RunEvents::NoteAlarm(const arbitration_t& command) {
-  const bool alarm = command.doc >= command.threshold;
+  const bool alarm = IsAlarm(command);
   if (alarm == std::exchange(alarm_, alarm)) return;
   Note(command.header, "alarm",
        fmt::format("DoC {:.2f} {} the threshold {:.2f}", command.doc,

@@ -23,7 +23,9 @@ struct RunEvent {
 };
 
 /// Finds the events. Takes the messages of a run in the order of their steps. Messages may be
-/// missing. A message that comes again, or too late, is ignored.
+/// missing. A message that comes again, or too late, is ignored. If the first message is not of
+/// step 0, as in a run that is joined later, the fog, alarm or collision in this message is no
+/// event, because it may have begun before.
 class RunEvents {
  public:
   /// Limit for the stored events. A DoC that moves around its threshold causes many alarms.

@@ -112,6 +112,7 @@ TEST(RunTrackerTest, FindsEventsOfItsRunOnly) {
   own.AllParts(kBegin);
   other.Truth(3, true, kBegin);
   EXPECT_TRUE(tracker.events().empty());
+  own.Truth(0, false, kBegin);
   own.Truth(3, true, kBegin);
   own.Truth(3, true, kBegin);
   own.Truth(2, false, kBegin);  // late
@@ -154,6 +155,7 @@ TEST(RunTrackerTest, TellsTheEventsAgainWhenTheScenarioIsKnown) {
   RunTracker tracker;
   Speaker run(tracker, 5);
   run.Part(0, kBegin);
+  run.Truth(0, false, kBegin);
   run.Truth(3, true, kBegin);
   EXPECT_EQ(tracker.TakeEvents().size(), 1U);
   run.AllParts(kBegin);
