@@ -70,8 +70,10 @@ void SayAbout(const runner::LoggedRun& run, const cli::Pairing& pair) {
     unknown += (unknown.empty() ? "" : ", ") + take_overs;
   }
   if (unknown.empty()) return;
-  Complain(fmt::format("{}: unknown, because messages are missing: {}", PathText(run.result.log),
-                       unknown));
+  Complain(
+      fmt::format("{}: unknown, because messages are missing: {}; the other measures are of the "
+                  "steps in the log",
+                  PathText(run.result.log), unknown));
 }
 
 /// The digest of a run; null if it cannot be computed because messages are missing.

@@ -190,6 +190,7 @@ LoggedRun ReadSteps(const std::filesystem::path& log, const log::ReadOptions& op
     use(*sample);
     measures.Add(*messages, decoder);
   }
+  logged.result.lack.every_truth = first;
   static_cast<log::RunLog&>(logged) = reader.run();
   logged.result.seed = logged.scenario.seed;
   logged.result.steps = logged.steps;

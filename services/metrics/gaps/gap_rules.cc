@@ -62,6 +62,7 @@ const std::array kNeedsEveryStep = [] {
 }  // namespace
 
 bool IsKnown(std::string_view measure, const Lack& lack) {
+  if (lack.every_truth) return false;
   const auto* row = std::ranges::find(kNeedsEveryStep, measure, &NeedsEveryStep::measure);
   if (row == kNeedsEveryStep.end()) return true;
   return (row->channels & lack.channels).none() && !(row->from_beginning && lack.beginning);

@@ -12,15 +12,17 @@ namespace fogline::metrics {
 struct Lack {
   std::bitset<kNumChannels> channels;  // the channels that lack a message after the first step
   bool beginning = false;              // whether the first steps are missing
+  bool every_truth = false;            // whether every TRUTH is missing
   // Whether a request to take over may have been open before the first HOST_COMMAND of the log.
   bool beginning_of_request = false;
 };
 
-/// Whether a measure (a name of VisitMetrics()) is known. The table in gap_rules.cc lists the
-/// measures that need every step, such as sums over time, counts, shares of time, and differences
-/// between steps. Such a measure is unknown if one of its messages is missing. If it also depends
-/// on the beginning of the run, it is unknown if the beginning is missing. All other measures, such
-/// as extremes, are always known: they are computed from the steps that the log has.
+/// Whether a measure (a name of VisitMetrics()) is known. Without any TRUTH, none is. The table in
+/// gap_rules.cc lists the measures that need every step, such as sums over time, counts, shares of
+/// time, and differences between steps. Such a measure is unknown if one of its messages is
+/// missing. If it also depends on the beginning of the run, it is unknown if the beginning is
+/// missing. All other measures, such as extremes, are always known: they are computed from the
+/// steps that the log has.
 bool IsKnown(std::string_view measure, const Lack& lack);
 
 /// Whether the measures of requests to take over are known. These measures need every TRUTH,

@@ -66,6 +66,14 @@ TEST_F(GapTest, MetricsSayWhatIsUnknownBecauseOfAGap) {
   EXPECT_THAT(text.out, HasSubstr("transfers                            unknown"));
 }
 
+TEST_F(GapTest, NoMeasureIsKnownWithoutAnyTruth) {
+  const std::string log =
+      Without([](std::string_view channel, std::int64_t) { return channel == "TRUTH"; });
+  const nlohmann::json metrics = Json({"metrics", log}, 1)[0]["metrics"];
+  EXPECT_GT(metrics.size(), 40U);
+  for (const auto& [name, value] : metrics.items()) EXPECT_TRUE(value.is_null()) << name;
+}
+
 TEST_F(GapTest, TheSafetyImprovementIsUnknownIfOneOfTheTwoLogsHasAGap) {
   const std::string none = folder_.File("none.lcm");
   ASSERT_EQ(Fogline({"run", "scenario/paper.json", "--transport", "direct", "--quiet", "--log",

@@ -91,7 +91,8 @@ TEST_F(LateLogTest, LeavesOutTheRequestThatItBeginsIn) {
   EXPECT_EQ(Json({"metrics", log}, 1)[0]["unknown_take_overs"], unknown);
   EXPECT_THAT(Fogline({"events", log}).err,
               HasSubstr("unknown, because messages are missing: " + unknown + "\n"));
-  EXPECT_THAT(Fogline({"metrics", log}).err, HasSubstr(", " + unknown + "\n"));
+  EXPECT_THAT(Fogline({"metrics", log}).err,
+              HasSubstr(", " + unknown + "; the other measures are of the steps in the log\n"));
   const std::string page = folder_.File("report.html");
   EXPECT_EQ(Fogline({"report", log, "--output", page}).code, 1);
   EXPECT_THAT(Content(page), HasSubstr(unknown));
@@ -112,7 +113,7 @@ TEST_F(LateLogTest, MayBeginInTheMiddleOfAStep) {
 TEST_F(LateLogTest, HasNoFalseAlarmThatBeganBeforeIt) {
   const nlohmann::json whole = Json({"metrics", whole_}, 0)[0]["metrics"];
   EXPECT_EQ(whole["false_alarms_ph"], 0);
-  for (std::int64_t first = asked_; first < 330; ++first) {
+  for (std::int64_t first = asked_; first < 330; first += 16) {
     EXPECT_EQ(Json({"metrics", From(first)}, 1)[0]["metrics"]["false_alarms_ph"], 0) << first;
   }
 }
