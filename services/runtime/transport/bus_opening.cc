@@ -25,7 +25,7 @@ namespace {
 
 /// Adds ttl=0 to a udpm URL without a ttl, so that its traffic stays on this machine.
 std::string WithDefaults(const std::string& url) {
-  if (!url.starts_with("udpm://") || url.find("ttl") != std::string::npos) return url;
+  if (!url.starts_with("udpm://") || url.find("ttl=") != std::string::npos) return url;
   return fmt::format("{}{}ttl=0", url, url.find('?') == std::string::npos ? '?' : '&');
 }
 
@@ -60,6 +60,9 @@ Bus::Bus(const std::string& url) : url_(WithDefaults(url)), in_memory_(url.start
   }
   // If the URL is empty, LCM uses its own default URL, which Fogline has not checked.
   if (url_.empty()) throw InputError("error: the LCM URL is empty");
+  if (const std::string why = WhyNoOption(url_); !why.empty()) {
+    throw InputError(fmt::format("error: {}: {}", url, why));
+  }
   RequireMulticast(url_);
   OpenLcm();
   static bool warned = false;

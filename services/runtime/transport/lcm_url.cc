@@ -9,7 +9,10 @@
 #include <array>
 #include <cstdlib>
 
+#include <fmt/core.h>
+
 #include "common/parse_number.h"
+#include "common/text.h"
 #include "services/runtime/transport/kernel_limits.h"
 #include "services/runtime/transport/multicast_route.h"
 #include "services/runtime/transport/tcpq_url.h"
@@ -20,6 +23,9 @@ namespace {
 constexpr std::string_view kUdpm = "udpm://";
 constexpr std::string_view kTcpq = "tcpq://";
 constexpr std::uint16_t kLcmPort = 7667;
+// The options of a udpm:// URL.
+constexpr std::string_view kTtl = "ttl";
+constexpr std::string_view kReceiveBuffer = "recv_buf_size";
 // The longest URL that may be announced. A URL with all options of LCM takes 60 characters.
 constexpr std::size_t kMaxAnnounced = 200;
 // The least receive buffer that may be announced, in bytes. With a smaller buffer, a program that
@@ -46,9 +52,9 @@ bool ReadOptions(std::string_view options, MulticastAddress& address) {
     const std::string_view name = TakeUntil('=', value);
     const auto number = ParseNumber<int>(value);
     if (!number || *number < 0) return false;
-    if (name == "ttl") {
+    if (name == kTtl) {
       address.ttl = *number;
-    } else if (name == "recv_buf_size") {
+    } else if (name == kReceiveBuffer) {
       address.receive_buffer = *number;
     } else {
       return false;
@@ -129,6 +135,19 @@ std::optional<MulticastAddress> ParseMulticastUrl(std::string_view url) {
   }
   if (!ParseAddress(address.group) || !ReadOptions(options, address)) return std::nullopt;
   return address;
+}
+
+std::string WhyNoOption(std::string_view url) {
+  if (!url.starts_with(kUdpm)) return "";
+  TakeUntil('?', url);
+  while (!url.empty()) {
+    std::string_view option = TakeUntil('&', url);
+    const std::string_view name = TakeUntil('=', option);
+    if (name == kTtl || name == kReceiveBuffer) continue;
+    return fmt::format("udpm has no option {}; its options are {} and {}", QuoteShort(name), kTtl,
+                       kReceiveBuffer);
+  }
+  return "";
 }
 
 bool SameNetwork(std::string_view a, std::string_view b) {

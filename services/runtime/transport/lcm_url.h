@@ -41,6 +41,10 @@ struct MulticastAddress {
 /// unknown to LCM.
 std::optional<MulticastAddress> ParseMulticastUrl(std::string_view url);
 
+/// Names the first option of a udpm:// URL that LCM does not have, and the options that it has; ""
+/// if there is no such option. LCM itself ignores unknown options, also a mistyped ttl.
+std::string WhyNoOption(std::string_view url);
+
 /// Whether two URLs name one network. For udpm this compares group and port, for tcpq host and
 /// port, otherwise the whole URL without its options.
 bool SameNetwork(std::string_view a, std::string_view b);

@@ -332,9 +332,21 @@ TEST(BusTest, SaysWhyItCannotListen) {
   EXPECT_EQ(error, "error: cannot listen to \"" + url + "?ttl=0\": Address already in use");
 }
 
-TEST(BusTest, ReceivesThroughLcmIfTheUrlHasAnOptionThatOnlyLcmKnows) {
+TEST(BusTest, RefusesAnOptionThatLcmWouldIgnore) {
+  const std::string url = runtime::FreshMulticastUrl() + "&tll=1";
+  std::string error;
+  try {
+    const runtime::Bus bus(url);
+  } catch (const InputError& refused) {
+    error = refused.what();
+  }
+  EXPECT_EQ(error, "error: " + url +
+                       ": udpm has no option \"tll\"; its options are ttl and recv_buf_size");
+}
+
+TEST(BusTest, ReceivesThroughLcmIfTheUrlHasANumberThatOnlyLcmReads) {
   const std::string url = runtime::FreshMulticastUrl();
-  runtime::Bus bus(url + "&option=1");
+  runtime::Bus bus(url + "&recv_buf_size=0x200000");
   int received = 0;
   std::vector<std::string> watched;
   bus.Subscribe("C", [&received](runtime::Bytes) { ++received; });

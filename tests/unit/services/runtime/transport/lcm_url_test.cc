@@ -56,6 +56,17 @@ TEST(LcmUrlTest, IsNoneWithAnythingElseInIt) {
   }
 }
 
+TEST(LcmUrlTest, MayHaveOnlyOptionsOfLcm) {
+  for (const char* url : {"udpm://", "udpm://?ttl=1", "udpm://239.1.1.1:7700?recv_buf_size=1&ttl=0",
+                          "tcpq://?tll=0", ""}) {
+    EXPECT_EQ(runtime::WhyNoOption(url), "") << url;
+  }
+  EXPECT_EQ(runtime::WhyNoOption("udpm://239.1.1.1?ttl=0&tll=1"),
+            "udpm has no option \"tll\"; its options are ttl and recv_buf_size");
+  EXPECT_EQ(runtime::WhyNoOption("udpm://?="),
+            "udpm has no option \"\"; its options are ttl and recv_buf_size");
+}
+
 TEST(LcmUrlTest, NamesTheSameNetworkByGroupAndPort) {
   EXPECT_TRUE(
       runtime::SameNetwork("udpm://239.255.76.67:7667?ttl=0", "udpm://?recv_buf_size=2097152"));
