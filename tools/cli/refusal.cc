@@ -8,17 +8,10 @@
 
 #include "common/text.h"
 #include "scenario/io/catalogue.h"
+#include "services/runtime/process/program_options.h"
 
 namespace fogline::cli {
 namespace {
-
-std::vector<std::string> OptionsOf(const CLI::App& command) {
-  std::vector<std::string> names;
-  for (const CLI::Option* option : command.get_options()) {
-    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
-  }
-  return names;
-}
 
 /// The verbs that have this option, such as "fogline run, table"; "" if no verb has this option.
 std::string VerbsWith(const CLI::App& app, const std::string& option) {
@@ -84,10 +77,8 @@ std::string Misfit(const CLI::App& app, const CLI::App& command,
                    const std::vector<std::string>& words) {
   const std::string& word = words.front();
   if (word.starts_with("-")) {
-    const std::vector<std::string> options = OptionsOf(command);
-    const std::vector<std::string_view> views(options.begin(), options.end());
     const std::string name = word.substr(0, word.find('='));
-    std::string hint = DidYouMean(Nearest(name, views));
+    std::string hint = runtime::OptionMeant(command, name);
     const std::string verbs = VerbsWith(app, name);
     if (hint.empty() && !verbs.empty()) {
       hint = &command == &app ? "; an option stands after its verb"

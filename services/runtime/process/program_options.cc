@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
+#include <string_view>
 
 #include <fmt/core.h>
 #include <CLI/CLI.hpp>
@@ -10,6 +11,7 @@
 #include "common/exit_code.h"
 #include "common/parse_number.h"
 #include "common/process/console.h"
+#include "common/text.h"
 
 namespace fogline::runtime {
 
@@ -34,6 +36,15 @@ void AddTrafficOptions(CLI::App& app, TrafficOptions& options) {
       });
   app.add_option("--faults", options.faults,
                  "Receive as over a bad network, such as loss=0.3,delay_ms=5");
+}
+
+std::string OptionMeant(const CLI::App& command, const std::string& mistyped) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : command.get_options()) {
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  }
+  const std::vector<std::string_view> views(names.begin(), names.end());
+  return DidYouMean(Nearest(mistyped, views));
 }
 
 ProgramOptions::ProgramOptions(const std::string& name, const std::string& purpose,
@@ -99,7 +110,15 @@ std::optional<int> ProgramOptions::Parse(int argc, char** argv) {
   } catch (const CLI::Success& asked) {  // --help, --version
     return app_->exit(asked);
   } catch (const CLI::ParseError& error) {
-    Complain(fmt::format("{0}: error: {1} (see {0} --help)", app_->get_name(), error.what()));
+    const std::vector<std::string> unknown = app_->remaining();
+    std::string what = error.what();
+    if (!unknown.empty()) {
+      const std::string word = unknown.front().substr(0, unknown.front().find('='));
+      what = word.starts_with("-")
+                 ? fmt::format("no option {}{}", QuoteShort(word), OptionMeant(*app_, word))
+                 : fmt::format("{} is one argument too many", QuoteShort(word));
+    }
+    Complain(fmt::format("{0}: error: {1} (see {0} --help)", app_->get_name(), what));
     return kBadInput;
   }
   return std::nullopt;

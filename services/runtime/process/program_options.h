@@ -25,6 +25,11 @@ void AddRunIdOption(CLI::App& app, const std::string& name, std::optional<std::i
 /// Adds --key and --faults to a command line.
 void AddTrafficOptions(CLI::App& app, TrafficOptions& options);
 
+/// The option of a command line that a mistyped option probably means, as `; did you mean
+/// "--log"?`;
+/// "" if no option is near.
+std::string OptionMeant(const CLI::App& command, const std::string& mistyped);
+
 /// The options of a program without verbs. Only the source file of this class includes CLI11,
 /// because its headers take seconds to compile. A variable that is given to a function gets its
 /// value in Parse(); its value before Parse() is the default.

@@ -311,8 +311,19 @@ TEST(CommandLineTest, BeginsARefusalOfTheRelayWithItsName) {
   EXPECT_EQ(outcome.code, 2);
   EXPECT_EQ(outcome.out, "");
   EXPECT_EQ(outcome.err,
-            "fogline-relay: error: The following argument was not expected: --bogus "
-            "(see fogline-relay --help)\n");
+            "fogline-relay: error: no option \"--bogus\" (see fogline-relay --help)\n");
+}
+
+TEST(CommandLineTest, NamesTheOptionOfARoleThatIsProbablyMeant) {
+  const Outcome outcome =
+      RunCommand({Program("fogline-fusion"), "--lcm-urll", "udpm://239.255.76.67:7700?ttl=0"});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_EQ(outcome.err,
+            "fogline-fusion: error: no option \"--lcm-urll\"; did you mean \"--lcm-url\"? (see "
+            "fogline-fusion --help)\n");
+  EXPECT_EQ(
+      RunCommand({Program("fogline-fusion"), "lab"}).err,
+      "fogline-fusion: error: \"lab\" is one argument too many (see fogline-fusion --help)\n");
 }
 
 TEST(CommandLineTest, BeginsEveryRefusalWithTheVerb) {
