@@ -242,7 +242,14 @@ bool IsStdout(const fs::path& file) {
 void RequireFolderOf(const fs::path& file, std::string_view option) {
   const fs::path folder = fs::absolute(file).lexically_normal().parent_path();
   std::error_code error;
-  if (folder == fs::absolute(kDefaultFolder)) fs::create_directory(folder, error);
+  if (folder == fs::absolute(kDefaultFolder)) {
+    fs::create_directory(folder, error);
+    std::error_code unknown;
+    if (error && !fs::exists(folder, unknown)) {
+      throw InputError(fmt::format("{}: error: cannot make the folder: {}",
+                                   PathText(file.parent_path()), error.message()));
+    }
+  }
   if (fs::status(folder, error).type() != fs::file_type::not_found) return;
   throw InputError(fmt::format("{}: error: {}: there is no folder {}", PathText(file), option,
                                PathText(file.parent_path())));

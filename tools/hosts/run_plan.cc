@@ -122,6 +122,10 @@ std::string WhyNoDestination(std::string_view destination) {
   if (destination.find_first_of(" \t") != std::string_view::npos) {
     return fmt::format("{} is no machine, because it has a space", QuoteShort(destination));
   }
+  if (destination.find('/') != std::string_view::npos && !destination.starts_with("ssh://")) {
+    return fmt::format("{} is no machine, because it has a \"/\"; a folder begins with / or ~/",
+                       QuoteShort(destination));
+  }
   return "";
 }
 

@@ -153,7 +153,7 @@ SweepPlan::SweepPlan(Scenario base, std::vector<Axis> axes, SeedRange seeds, std
   std::int64_t left = kMaxRows / seeds_.count();
   for (const Axis& axis : axes_) left /= static_cast<std::int64_t>(axis.values.size());
   if (left == 0) {
-    throw InputError(fmt::format("error: the sweep has more than {} rows", kMaxRows));
+    throw InputError(fmt::format("error: --seeds and --grid give more than {} rows", kMaxRows));
   }
   // stride_ is the number of rows between two values of an axis, among the axes of its kind
   // (arbitrator or other). The last axis of a kind varies fastest.

@@ -34,6 +34,10 @@ Results::Results(const PlanFile& plan, std::filesystem::path folder)
     if (!std::filesystem::exists(folder_, missing) || std::filesystem::is_empty(folder_, missing)) {
       return;
     }
+    if (!std::filesystem::is_directory(folder_, missing)) {
+      throw InputError(
+          fmt::format("{}: error: --results: it is a file, not a folder", PathText(folder_)));
+    }
     throw InputError(fmt::format("{}: error: --results: the folder has other files, and no {}",
                                  PathText(folder_), PathText(Kept().filename())));
   }

@@ -230,6 +230,21 @@ TEST_F(AtomicFileTest, OfSeveralReplacesNoneIfADeviceTakesNothing) {
   EXPECT_EQ(Content(file_), "old");
 }
 
+TEST_F(AtomicFileTest, SaysWhyTheFolderOfItsDefaultNameCannotBeMade) {
+  // GIVEN a working folder in which this process may not write
+  const std::filesystem::path before = std::filesystem::current_path();
+  const uid_t user = geteuid();
+  std::filesystem::current_path(folder_.path());
+  std::filesystem::permissions(
+      folder_.path(), std::filesystem::perms::owner_read | std::filesystem::perms::owner_exec);
+  ASSERT_EQ(seteuid(user == 0 ? 65534 : user), 0);
+  const std::string error = ErrorOf([] { RequireFolderOf("logs/paper-1.lcm", "--log"); });
+  ASSERT_EQ(seteuid(user), 0);
+  std::filesystem::permissions(folder_.path(), std::filesystem::perms::owner_all);
+  std::filesystem::current_path(before);
+  EXPECT_EQ(error, "logs: error: cannot make the folder: Permission denied");
+}
+
 TEST_F(AtomicFileTest, NeedsItsFolderForAMissingOneIsLikelyToBeASlip) {
   const std::string slip = folder_.File("nonexist/dir");
   const std::string none = ": error: --out: there is no folder " + slip;

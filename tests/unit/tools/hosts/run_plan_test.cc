@@ -63,6 +63,9 @@ TEST(RunPlanTest, WrongPlacesAreNamed) {
   EXPECT_EQ(PlanRefusal({.on = {"fusion=-oProxyCommand=x"}}),
             "error: --on fusion=-oProxyCommand=x: \"-oProxyCommand=x\" is no machine, because ssh "
             "would read it as an option");
+  EXPECT_EQ(PlanRefusal({.on = {"fusion=lab2:rel/path"}}),
+            "error: --on fusion=lab2:rel/path: \"lab2:rel/path\" is no machine, because it has a "
+            "\"/\"; a folder begins with / or ~/");
   EXPECT_EQ(PlanRefusal({.on = {"fusion=lab2:/a", "acc=lab2:/b"}}),
             "error: --on acc=lab2:/b: the programs of \"lab2\" are in \"/a\" already");
   EXPECT_EQ(PlanRefusal({.on = {"fusion=lab2", "fusion=lab3"}}),

@@ -8,6 +8,7 @@
 
 #include "common/errors.h"
 #include "tests/support/command.h"
+#include "tests/support/input_errors.h"
 
 namespace fogline::trials {
 namespace {
@@ -82,6 +83,8 @@ TEST(ResultsTest, AFolderWithOtherFilesIsRefused) {
   std::ofstream(folder.File("thesis.txt")) << "text";
   const PlanFile plan = Plan();
   EXPECT_THROW(Results(plan, folder.path()), InputError);
+  EXPECT_EQ(test::ErrorOf([&] { Results(plan, folder.File("thesis.txt")); }),
+            folder.File("thesis.txt") + ": error: --results: it is a file, not a folder");
 }
 
 }  // namespace
