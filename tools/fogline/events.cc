@@ -34,7 +34,7 @@ struct EventsArguments {
 struct RunEvents {
   log::RunLog run;
   take_over::TakeOverLog log;
-  std::vector<metrics::TakeOverMeasures> measures;  // one for each of log.requests()
+  std::vector<metrics::TakeOverMeasures> measures;  // of the requests in `log` that have measures
   std::string unknown;  // the requests without measures (UnknownTakeOvers())
 };
 
@@ -54,7 +54,7 @@ RunEvents ReadEvents(const std::filesystem::path& file, const log::ReadOptions& 
   events.run = reader.run();
   if (!events.log.requests().empty() || events.run.gaps.Any() || events.log.BeganInRequest()) {
     runner::LoggedRun measured = runner::MeasureLoggedRun(file, events.run.scenario, options);
-    measured.result.lack.beginning_of_request = events.log.BeganInRequest();
+    measured.result.lack.beginning_of_request |= events.log.BeganInRequest();
     events.unknown = cli::UnknownTakeOvers(measured);
     events.measures = std::move(measured.result.take_overs);
   }

@@ -70,10 +70,10 @@ void SayAbout(const runner::LoggedRun& run, const cli::Pairing& pair) {
     unknown += (unknown.empty() ? "" : ", ") + take_overs;
   }
   if (unknown.empty()) return;
-  Complain(
-      fmt::format("{}: unknown, because messages are missing: {}; the other measures are of the "
-                  "steps in the log",
-                  PathText(run.result.log), unknown));
+  const std::string others =
+      run.result.lack.every_truth ? "" : "; the other measures are of the steps in the log";
+  Complain(fmt::format("{}: unknown, because messages are missing: {}{}", PathText(run.result.log),
+                       unknown, others));
 }
 
 /// The digest of a run; null if it cannot be computed because messages are missing.

@@ -190,7 +190,6 @@ LoggedRun ReadSteps(const std::filesystem::path& log, const log::ReadOptions& op
     use(*sample);
     measures.Add(*messages, decoder);
   }
-  logged.result.lack.every_truth = first;
   static_cast<log::RunLog&>(logged) = reader.run();
   logged.result.seed = logged.scenario.seed;
   logged.result.steps = logged.steps;
@@ -200,6 +199,7 @@ LoggedRun ReadSteps(const std::filesystem::path& log, const log::ReadOptions& op
   for (std::size_t i = 0; i < kNumChannels; ++i) {
     logged.result.lack.channels[i] = logged.gaps.Lacks(i);
   }
+  logged.result.lack.every_truth = first && logged.gaps.Any();
   measures.PutInto(logged);
   if (!metrics::AreTakeOversKnown(logged.result.lack)) logged.result.take_overs.clear();
   return logged;

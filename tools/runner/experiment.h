@@ -100,7 +100,7 @@ struct ExperimentResult {
   bool checked = true;        // every byte of the log agrees with the recorder's reports
   std::filesystem::path log;  // empty if there is no log
   metrics::RunMetrics measures;
-  metrics::Lack lack;  // for a log with gaps: says which measures are unknown (IsKnown)
+  metrics::Lack lack;  // of the log: says which measures are unknown (IsKnown)
   std::vector<metrics::FollowerMetrics> followers;    // nearest to the host first
   std::vector<metrics::TakeOverMeasures> take_overs;  // one for each request to take over
   std::optional<log::InputLatency> input_latency;     // only for a run in which a person drove

@@ -40,11 +40,12 @@ bool IsUnanswered(std::int8_t mode) {
          mode == arbitration_t::REQUEST_URGENT;
 }
 
-/// Whether only a run with requests has this command: its mode is a state of a request, or the
-/// driver has less than half of the authority.
+/// Whether only a run with requests has this command: its mode is a state of a request, or the mode
+/// names the side with less authority.
 bool ShowsRequests(const arbitration_t& command) {
+  if (command.mode == arbitration_t::AUTOMATION) return HumanDrives(command.lambda_human);
   if (command.mode == arbitration_t::HUMAN) return !HumanDrives(command.lambda_human);
-  return command.mode != arbitration_t::AUTOMATION && StateOf(command.mode) != nullptr;
+  return StateOf(command.mode) != nullptr;
 }
 
 }  // namespace
@@ -109,7 +110,7 @@ void TakeOverLog::Reveal(const arbitration_t& command) {
   if (!InEmergency(last_sent_) || !InMinimalRisk(command.mode)) return;
   entries_.push_back({.step = command.header.step,
                       .utime = command.header.utime,
-                      .from = last_sent_,
+                      .from = command.mode,
                       .to = command.mode,
                       .logged = "manoeuvre begins"});
 }

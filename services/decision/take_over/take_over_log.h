@@ -69,6 +69,7 @@ class TakeOverLog {
   /// and the first mode that emergency braking does not hide is neither AUTOMATION nor HUMAN.
   bool BeganInRequest() const { return began_in_request_; }
   /// The mode of the last command without emergency braking; AUTOMATION before the first command.
+  /// EMERGENCY_BRAKING if the log begins late, and all commands so far have this mode.
   std::int8_t mode() const { return last_ ? last_->mode : arbitration_t::AUTOMATION; }
   /// Removes the entries so far, and all requests except the last request, which may still change.
   /// So a reader of an endless run needs bounded memory. @return the entries

@@ -25,9 +25,9 @@ std::int64_t LogGaps::Messages() const {
 }
 
 bool LogGaps::Lacks(std::size_t channel) const {
-  const bool in_first =
-      first > 0 && !gaps.empty() && gaps.front().first == first && gaps.front().channels[channel];
-  return messages[channel] > (in_first ? 1 : 0);
+  const bool begins_in_step = first > 0 && !gaps.empty() && gaps.front().first == first &&
+                              gaps.front().channels[IndexOf<truth_t>()];
+  return messages[channel] > (begins_in_step && gaps.front().channels[channel] ? 1 : 0);
 }
 
 void LogGaps::Add(std::int64_t step, const std::bitset<kNumChannels>& channels) {

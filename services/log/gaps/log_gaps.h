@@ -38,7 +38,8 @@ struct LogGaps {
   bool Any() const { return first > 0 || steps > 0; }
   std::int64_t Messages() const;
   /// Whether a step lacks the message of this channel (an index of kChannels). The first step of a
-  /// log that begins late does not count: a logger usually begins in the middle of a step.
+  /// log that begins late does not count if it lacks TRUTH: a logger usually begins in the middle
+  /// of a step, and a step without TRUTH is in no measure.
   bool Lacks(std::size_t channel) const;
   /// Adds a step that lacks the messages of these channels. Steps come in order.
   void Add(std::int64_t step, const std::bitset<kNumChannels>& channels);

@@ -110,7 +110,8 @@ std::optional<int> ProgramOptions::Parse(int argc, char** argv) {
   } catch (const CLI::Success& asked) {  // --help, --version
     return app_->exit(asked);
   } catch (const CLI::ParseError& error) {
-    const std::vector<std::string> unknown = app_->remaining();
+    std::vector<std::string> unknown = app_->remaining();
+    std::erase(unknown, "--");
     std::string what = error.what();
     if (!unknown.empty()) {
       const std::string word = unknown.front().substr(0, unknown.front().find('='));

@@ -110,6 +110,18 @@ TEST_F(LateLogTest, MayBeginInTheMiddleOfAStep) {
   EXPECT_FALSE(metrics["metrics"]["human_time_s"].is_null());
 }
 
+TEST_F(LateLogTest, DoesNotKnowWhatAMessageThatItsFirstStepLacksWouldShow) {
+  const std::int64_t first = asked_ - 20;
+  const std::string log = Without([&](std::string_view channel, std::int64_t step) {
+    return channel != "RUN" && (step < first || (step == first && channel == "HOST_COMMAND"));
+  });
+  const nlohmann::json metrics = Json({"metrics", log}, 1)[0];
+  for (const char* unknown : {"transfers", "human_time_s", "wrong_human_s", "false_alarms_ph"}) {
+    EXPECT_TRUE(metrics["metrics"][unknown].is_null()) << unknown;
+  }
+  EXPECT_EQ(metrics["unknown_take_overs"], "the measures of take-overs");
+}
+
 TEST_F(LateLogTest, HasNoFalseAlarmThatBeganBeforeIt) {
   const nlohmann::json whole = Json({"metrics", whole_}, 0)[0]["metrics"];
   EXPECT_EQ(whole["false_alarms_ph"], 0);

@@ -1,6 +1,7 @@
 #include "services/metrics/detection.h"
 
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <optional>
 #include <vector>
@@ -47,6 +48,18 @@ TEST(DetectionTest, TheHumanIsWrongWhileTheLidarIsRightAndTheAutomationWhileTheT
   const metrics::DetectionMetrics m = Collect(run);
   EXPECT_EQ(m.wrong_automation_s, 2 * kStep_s);  // steps 2 and 3
   EXPECT_EQ(m.wrong_human_s, kStep_s);           // step 5; the last step, 7, has no duration
+}
+
+TEST(DetectionTest, AnAlarmInTheFirstStepOfALateLogMayHaveBegunBefore) {
+  for (const std::int64_t first : {0, 7}) {
+    auto run = ClearRun(4);
+    for (std::size_t k = 0; k < run.size(); ++k) {
+      run[k].step = first + static_cast<std::int64_t>(k);
+      run[k].doc = k == 1 ? 0 : 0.8;  // the alarm falls, and rises again
+    }
+    const double quiet_s = 3 * kStep_s;
+    EXPECT_DOUBLE_EQ(Collect(run).false_alarms_ph.value(), (first == 0 ? 2 : 1) * 3600 / quiet_s);
+  }
 }
 
 TEST(DetectionTest, AuthorityWeighsTheTime) {

@@ -83,6 +83,15 @@ TEST(LateTakeOverLogTest, SeesThatARunHasRequestsInALateLogThatBeginsWithTheDriv
                                          "emergency braking ends"));
 }
 
+TEST(LateTakeOverLogTest, TakesNoRampForAChangeOfState) {
+  take_over::TakeOverLog log;
+  Add(log, Shared(7, arbitration_t::AUTOMATION, 0.7));
+  Add(log, Shared(8, arbitration_t::EMERGENCY_BRAKING, 0.55));
+  Add(log, Shared(9, arbitration_t::AUTOMATION, 0.3));
+  EXPECT_THAT(Texts(log), ElementsAre("first command of the log", "emergency braking begins",
+                                      "return to automation", "emergency braking ends"));
+}
+
 TEST(LateTakeOverLogTest, HasTheTransfersOfALateLog) {
   take_over::TakeOverLog log;
   Add(log, Emergency(7, arbitration_t::EMERGENCY_BRAKING));

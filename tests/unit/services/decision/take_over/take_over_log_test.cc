@@ -278,5 +278,19 @@ TEST(TakeOverLogTest, TakesAnOverrideBehindEmergencyBrakingForTheSame) {
                           "emergency braking ends", "driver recovered"));
 }
 
+TEST(TakeOverLogTest, TakesTheStateBehindEmergencyBrakingForTheSameAfterAnOverride) {
+  take_over::TakeOverLog log;
+  Add(log, Command(0, arbitration_t::AUTOMATION));
+  Add(log, Command(1, arbitration_t::RECOVERING, -3));
+  Add(log, Command(2, arbitration_t::AUTOMATION));
+  Add(log, Emergency(3, arbitration_t::EMERGENCY_BRAKING, 0.6));
+  Add(log, Command(4, arbitration_t::RECOVERING, -3));
+  EXPECT_THAT(Texts(log),
+              ElementsAre("activation of the automation", "transfer to the driver",
+                          "first effective input of the driver", "return to automation",
+                          "transfer to the driver", "emergency braking begins", "driver takes part",
+                          "first effective input of the driver", "emergency braking ends"));
+}
+
 }  // namespace
 }  // namespace fogline::test
