@@ -56,7 +56,7 @@ bool IsStopped(pid_t process) {
 }
 
 /// Stops the processes of a run. Processes that are stopped already stay so. The destructor lets
-/// those continue that still stand still.
+/// the others continue.
 class Held {
  public:
   explicit Held(const SoakedRun& run) {

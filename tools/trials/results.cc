@@ -31,13 +31,12 @@ Results::Results(const PlanFile& plan, std::filesystem::path folder)
     : plan_(plan), folder_(std::move(folder)) {
   std::error_code missing;
   if (!std::filesystem::exists(Kept(), missing)) {
-    if (!std::filesystem::exists(folder_, missing) || std::filesystem::is_empty(folder_, missing)) {
-      return;
-    }
+    if (!std::filesystem::exists(folder_, missing)) return;
     if (!std::filesystem::is_directory(folder_, missing)) {
       throw InputError(
           fmt::format("{}: error: --results: it is a file, not a folder", PathText(folder_)));
     }
+    if (std::filesystem::is_empty(folder_, missing)) return;
     throw InputError(fmt::format("{}: error: --results: the folder has other files, and no {}",
                                  PathText(folder_), PathText(Kept().filename())));
   }

@@ -237,11 +237,12 @@ TEST_F(AtomicFileTest, SaysWhyTheFolderOfItsDefaultNameCannotBeMade) {
   std::filesystem::current_path(folder_.path());
   std::filesystem::permissions(
       folder_.path(), std::filesystem::perms::owner_read | std::filesystem::perms::owner_exec);
-  ASSERT_EQ(seteuid(user == 0 ? 65534 : user), 0);
+  const bool is_user = seteuid(user == 0 ? 65534 : user) == 0;
   const std::string error = ErrorOf([] { RequireFolderOf("logs/paper-1.lcm", "--log"); });
   ASSERT_EQ(seteuid(user), 0);
   std::filesystem::permissions(folder_.path(), std::filesystem::perms::owner_all);
   std::filesystem::current_path(before);
+  ASSERT_TRUE(is_user);
   EXPECT_EQ(error, "logs: error: cannot make the folder: Permission denied");
 }
 
