@@ -32,7 +32,7 @@ TEST(FollowedNetworkTest, ForgetsTheNamesThatLcmKeeps) {
   const std::string url = runtime::FreshMulticastUrl();
   for (const bool lcm_receives : {false, true}) {
     std::int64_t heard = 0;
-    FollowedNetwork network(lcm_receives ? url + "&option=1" : url, false,
+    FollowedNetwork network(lcm_receives ? url + "&recv_buf_size=0x200000" : url, false,
                             [&](std::string_view, runtime::Bytes) { ++heard; });
     const std::int64_t generation = network.generation();
     network.ForgetNames(9'999);
