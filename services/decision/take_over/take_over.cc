@@ -133,8 +133,8 @@ void TakeOver::TakeAuthority(const TakeOverRow& row, std::int64_t step) {
   awaits_answer_ = false;
 }
 
-// If the person who has the authority is gone, this function prepares a new manoeuvre, which begins
-// from the person's last command. So an earlier manoeuvre of this run has no effect on it.
+// Prepares a new manoeuvre after a person with the authority has gone. The manoeuvre begins from
+// the person's last command. An earlier manoeuvre of this run has no effect on it.
 void TakeOver::LoseAuthority() {
   request_.reset();
   awaits_answer_ = true;
