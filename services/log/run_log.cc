@@ -20,18 +20,12 @@
 #include "services/runtime/wire/step_ring.h"
 
 namespace fogline::log {
-namespace {
 
-/// The channels, among `channels`, whose messages the step lacks.
-runtime::ChannelSet LackingIn(const StepMessages& messages, const runtime::ChannelSet& channels) {
-  runtime::ChannelSet lacks = channels;
-  for (std::size_t i = 0; i < kNumChannels; ++i) {
-    if (!messages[i].empty()) lacks.reset(i);
-  }
-  return lacks;
+runtime::ChannelSet ChannelsIn(const StepMessages& messages) {
+  runtime::ChannelSet there;
+  for (std::size_t i = 0; i < kNumChannels; ++i) there[i] = !messages[i].empty();
+  return there;
 }
-
-}  // namespace
 
 /// Combines the events of a log into steps.
 class RunLogReader::Assembler {
@@ -120,11 +114,12 @@ class RunLogReader::Assembler {
 
   /// Counts a step and its gaps, and adds the step to the digest.
   void Count(const StepMessages& messages) {
-    const runtime::ChannelSet lacks = LackingIn(messages, run_.channels);
+    const runtime::ChannelSet lacks = run_.channels & ~ChannelsIn(messages);
     if (realtime_) realtime_->AddStep(~lacks);
+    if (lacks == run_.channels && step() == first_heard_) ++first_heard_;
     if (ReadsGaps() && lacks.any()) {
       if (!InTail()) run_.gaps.Add(step(), lacks);
-      if (step() == tail_) tail_lacks_ = NamesOfChannels(lacks);
+      if (step() == tail_) tail_lacks_ = lacks;
       return;
     }
     ++run_.steps;
@@ -186,7 +181,7 @@ class RunLogReader::Assembler {
     if (realtime_) run_.realtime = realtime_->Result();  // also if the log is refused below
     if (reader_.empty()) Refuse("the log is empty: no run has begun to write it");
     FinishScenario();
-    run_.digest = run_.gaps.Any() ? "" : digest_.Hex();
+    run_.digest = run_.gaps.Any() || first_steps_ == 0 ? "" : digest_.Hex();
     foreign_ -= others_.Forget(run_.run_id);  // messages of this run before its id was known
     run_.other_runs = others_.all();
     run_.events = reader_.head();
@@ -201,21 +196,25 @@ class RunLogReader::Assembler {
     run_.complete = run_.ended && (!run_.realtime || run_.realtime->unlogged_messages == 0);
     LogRemarks remarks{.torn = reader_.torn(),
                        .alteration = alteration,
+                       .first = realtime_ ? first_heard_ : run_.gaps.first,
                        .has_last = last_,
                        .next = tail_.value_or(next_),
-                       .incomplete = tail_,
-                       .lacks = tail_lacks_,
+                       .tail = tail_,
+                       .tail_lacks = tail_lacks_,
                        .astray = astray_,
                        .conflict = conflict_,
                        .foreign = foreign_};
-    if (!pending_.empty()) {
-      const auto& [next, there] = *pending_.begin();
-      remarks.incomplete = run_.steps;
-      remarks.lacks = next == run_.steps
-                          ? NamesOfChannels(LackingIn(there.messages, run_.channels))
-                          : fmt::format("every message; the next step in the log is {}", next);
-    }
+    if (!pending_.empty()) remarks.unread = UnreadSteps();
     run_.note = NoteOf(run_, remarks);
+  }
+
+  log::UnreadSteps UnreadSteps() const {
+    const auto& [first, first_unread] = *pending_.begin();
+    const bool has_whole = std::ranges::any_of(
+        pending_, [&](const auto& step) { return step.second.there == run_.channels; });
+    return {.first = first,
+            .lacks = run_.channels & ~first_unread.there,
+            .are_end = !has_whole && pending_.rbegin()->first <= next_ + runtime::kMaxAhead};
   }
 
   /// Sets the scenario of the run. @throws InputError
@@ -369,9 +368,10 @@ class RunLogReader::Assembler {
   StepMessages current_{};
   std::int64_t next_ = 0;             // the step after current_
   bool begun_ = false;                // whether a step was given
+  std::int64_t first_heard_ = 0;      // the first step with a message; in real time
   std::int64_t first_steps_ = 0;      // complete steps before the first gap, in the digest
   std::optional<std::int64_t> tail_;  // the first step of the tail, if there is one
-  std::string tail_lacks_;            // the channels that this step lacks
+  runtime::ChannelSet tail_lacks_;    // the channels that this step lacks
   std::size_t guess_ = 0;
   std::int64_t foreign_ = 0;
   std::int64_t astray_ = 0;  // steps that are too far from the other steps

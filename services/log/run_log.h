@@ -23,6 +23,9 @@ namespace fogline::log {
 /// The messages of one step, by index in kChannels. A missing message is empty.
 using StepMessages = std::array<runtime::Bytes, kNumChannels>;
 
+/// The channels of which the step has a message.
+runtime::ChannelSet ChannelsIn(const StepMessages& messages);
+
 /// The contents of a log, apart from its steps.
 struct RunLog {
   std::int64_t run_id = 0;
@@ -31,7 +34,8 @@ struct RunLog {
   std::string scenario_hash;
   runtime::ChannelSet channels;  // the channels of a step (log_graph.h)
   std::int64_t steps = 0;        // number of complete steps
-  // Digest of the complete steps; "" if the log has gaps and they were read (ReadOptions::gaps).
+  // Digest of the complete steps; "" if there is none, or if the log has gaps and they were read
+  // (ReadOptions::gaps).
   std::string digest;
   // Whether the log has the whole run, up to its end: the scenario is known, the log ends with the
   // last step of the run, the log was not changed after it was sealed, no event is torn, and no two

@@ -1,5 +1,6 @@
 #include "tools/export/take_over_csv.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <fstream>
 #include <string_view>
@@ -45,6 +46,14 @@ void AppendRequest(const TakeOverRun& run, std::size_t index, std::string& text)
   text += '\n';
 }
 
+/// Appends the line of the requests whose measures are not known.
+void AppendUnknown(const TakeOverRun& run, std::string& text) {
+  const std::string columns = RequestColumns();
+  const auto others = std::ranges::count(columns, ',') - std::ranges::count(kKeys, ',') + 1;
+  text += fmt::format("{},{},,unknown{}\n", Quoted(run.log), run.seed,
+                      std::string(static_cast<std::size_t>(others), ','));
+}
+
 }  // namespace
 
 bool IsTakeOverCsv(const std::filesystem::path& file) {
@@ -57,6 +66,7 @@ bool IsTakeOverCsv(const std::filesystem::path& file) {
 void WriteTakeOverCsv(std::span<const TakeOverRun> runs, const std::filesystem::path& file) {
   std::string text = RequestColumns();
   for (const TakeOverRun& run : runs) {
+    if (run.unknown) AppendUnknown(run, text);
     for (std::size_t i = 0; i < run.take_overs.size(); ++i) AppendRequest(run, i, text);
   }
   AtomicFile out(file);

@@ -101,13 +101,13 @@ int RunDigest(const DigestArguments& arguments) {
       Complain(PathText(log) + ": a copy of a run in real time; its seal proves only the steps");
     }
     rows.push_back({{"log", log.string()},
-                    {"digest", run.digest},
+                    {"digest", cli::DigestJson(run)},
                     {"steps", run.steps},
                     {"complete", run.complete},
                     {"seal", SealState(run)},
                     {"signature", signature.state},
                     {"builds", BuildsJson(run)}});
-    if (!arguments.json) fmt::print("{}  {}\n", run.digest, PathText(log));
+    if (!arguments.json) fmt::print("{}  {}\n", cli::DigestText(run), PathText(log));
   });
   if (arguments.json) cli::PrintJson(rows);
   if (!readable) return kBadInput;
@@ -132,7 +132,7 @@ void AddDigest(CLI::App& app, cli::Action& action) {
       "change of the log. The log of a killed run has no seal. If lcm-logplayer has played a\n"
       "log and lcm-logger has recorded it, the seal covers only scenario and steps\n"
       "(\"seal\": \"copy\"). The digest of a log that lacks messages is that of the complete\n"
-      "steps before the first gap.\n\n"
+      "steps before the first gap; it is unknown (null) if there is no such step.\n\n"
       "Examples:\n"
       "  fogline digest logs/*.lcm\n"
       "  fogline run scenario/paper.json --key lab.key --log logs/signed.lcm\n"

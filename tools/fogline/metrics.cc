@@ -56,6 +56,7 @@ void WriteTakeOvers(const std::vector<runner::LoggedRun>& runs, const std::files
     rows.push_back({.log = run.result.log.string(),
                     .seed = run.result.seed,
                     .take_overs = run.result.take_overs,
+                    .unknown = !cli::UnknownTakeOvers(run).empty(),
                     .input_latency = run.result.input_latency});
   }
   exports::WriteTakeOverCsv(rows, file);
@@ -70,16 +71,10 @@ void SayAbout(const runner::LoggedRun& run, const cli::Pairing& pair) {
     unknown += (unknown.empty() ? "" : ", ") + take_overs;
   }
   if (unknown.empty()) return;
-  const std::string others =
-      run.result.lack.every_truth ? "" : "; the other measures are of the steps in the log";
+  const bool has_truth = !run.result.lack.every[IndexOf<truth_t>()];
+  const std::string others = has_truth ? "; the other measures are of the steps in the log" : "";
   Complain(fmt::format("{}: unknown, because messages are missing: {}{}", PathText(run.result.log),
                        unknown, others));
-}
-
-/// The digest of a run; null if it cannot be computed because messages are missing.
-nlohmann::ordered_json DigestJson(const runner::LoggedRun& run) {
-  if (run.gaps.Any()) return nullptr;
-  return run.result.digest;
 }
 
 int RunMetrics(const MetricsArguments& arguments) {
@@ -101,9 +96,10 @@ int RunMetrics(const MetricsArguments& arguments) {
     const runner::LoggedRun& run = runs[i];
     SayAbout(run, pairs[i]);
     if (arguments.json) {
-      nlohmann::ordered_json row{{"log", run.result.log.string()}, {"title", run.scenario.title},
-                                 {"seed", run.result.seed},        {"steps", run.result.steps},
-                                 {"complete", run.complete},       {"digest", DigestJson(run)}};
+      nlohmann::ordered_json row{
+          {"log", run.result.log.string()}, {"title", run.scenario.title},
+          {"seed", run.result.seed},        {"steps", run.result.steps},
+          {"complete", run.complete},       {"digest", cli::DigestJson(run)}};
       if (run.gaps.Any()) row["gaps"] = cli::GapsJson(run.gaps);
       if (const std::string unknown = cli::UnknownTakeOvers(run); !unknown.empty()) {
         row["unknown_take_overs"] = unknown;

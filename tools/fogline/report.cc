@@ -216,7 +216,7 @@ report::ReportRun PageOf(runner::LoggedRun& run, const std::string& name,
           .scenario_title = run.scenario.title,
           .scenario_json = run.scenario_text,
           .seed = run.result.seed,
-          .digest = run.gaps.Any() ? "unknown" : run.result.digest,
+          .digest = cli::DigestText(run),
           .has_gaps = run.gaps.Any(),
           .samples = run.gaps.Any() ? metrics::WithHoles(run.result.samples, run.scenario.step_s)
                                     : std::move(run.result.samples),

@@ -14,6 +14,7 @@
 #include "common/text.h"
 #include "scenario/io/loader.h"
 #include "services/closed_loop/closed_loop.h"
+#include "services/log/about/log_graph.h"
 #include "services/metrics/sample_decoder.h"
 #include "services/metrics/take_over/take_over_accumulator.h"
 #include "services/models/traffic/load_sumo.h"
@@ -127,10 +128,6 @@ ExperimentResult RunDirect(const Scenario& scenario, const ExperimentOptions& op
   }
 }
 
-std::size_t PlaceOf(const ChannelInfo& channel) {
-  return static_cast<std::size_t>(&channel - kChannels.data());
-}
-
 /// The measures of a run that need the messages themselves, and not only the samples.
 class MessageMeasures {
  public:
@@ -169,15 +166,16 @@ LoggedRun ReadSteps(const std::filesystem::path& log, const log::ReadOptions& op
   LoggedRun logged;
   MessageMeasures measures;
   metrics::SampleDecoder decoder;
-  bool first = true;
+  std::optional<std::int64_t> first;  // the first step with TRUTH
+  runtime::ChannelSet heard;          // the channels of which a step with TRUTH has a message
+  const runtime::ChannelSet all = log::OwnStepChannels();
   log::RunLogReader reader(log, options);
   while (const log::StepMessages* messages = reader.Next()) {
     if (reader.InTail()) continue;
-    const bool holes = std::ranges::any_of(kChannels, [&](const ChannelInfo& channel) {
-      return channel.pace == Pace::kStep && (*messages)[PlaceOf(channel)].empty();
-    });
-    // Without TRUTH the state of the step is unknown.
-    if (holes && (*messages)[IndexOf<truth_t>()].empty()) continue;
+    const runtime::ChannelSet there = log::ChannelsIn(*messages);
+    if (!there[IndexOf<truth_t>()]) continue;  // the state of the step is unknown
+    heard |= there;
+    const bool holes = (all & ~there).any();
     const metrics::Sample* sample =
         holes ? decoder.DecodeWithHoles(*messages) : decoder.Decode(*messages);
     if (sample == nullptr) {
@@ -186,7 +184,7 @@ LoggedRun ReadSteps(const std::filesystem::path& log, const log::ReadOptions& op
                       "message types?",
                       PathText(log), reader.step()));
     }
-    if (std::exchange(first, false)) logged.result.lack.beginning = sample->step > 0;
+    if (!first) first = sample->step;
     use(*sample);
     measures.Add(*messages, decoder);
   }
@@ -196,12 +194,12 @@ LoggedRun ReadSteps(const std::filesystem::path& log, const log::ReadOptions& op
   logged.result.digest = logged.digest;
   logged.result.log = log;
   logged.result.realtime = logged.realtime;
-  for (std::size_t i = 0; i < kNumChannels; ++i) {
-    logged.result.lack.channels[i] = logged.gaps.Lacks(i);
-  }
-  logged.result.lack.every_truth = first && logged.gaps.Any();
+  metrics::Lack& lack = logged.result.lack;
+  for (std::size_t i = 0; i < kNumChannels; ++i) lack.channels[i] = logged.gaps.Lacks(i);
+  lack.every = all & ~heard;
+  lack.beginning = first.value_or(0) > 0;
   measures.PutInto(logged);
-  if (!metrics::AreTakeOversKnown(logged.result.lack)) logged.result.take_overs.clear();
+  if (!metrics::AreTakeOversKnown(lack)) logged.result.take_overs.clear();
   return logged;
 }
 

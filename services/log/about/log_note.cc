@@ -10,9 +10,25 @@ std::string OfSteps(const RunLog& run) {
   return run.has_scenario ? fmt::format(" of {}", run.scenario.steps) : "";
 }
 
+/// Which steps the log has; "" if the other remarks say so.
 std::string Shortage(const RunLog& run, const LogRemarks& remarks) {
+  if (remarks.unread && !remarks.unread->are_end) {
+    if (run.steps == 0) return "";
+    return fmt::format("complete up to step {}{}", remarks.next - 1, OfSteps(run));
+  }
   if (run.steps == 0 && !run.gaps.Any()) return fmt::format("no step{} is complete", OfSteps(run));
   return fmt::format("ends after step {}{}", remarks.next - 1, OfSteps(run));
+}
+
+std::string StepLacks(std::int64_t step, const std::string& what) {
+  return fmt::format("step {} lacks {}", step, what);
+}
+
+/// What the first step that was not read lacks.
+std::string Lacks(const UnreadSteps& unread, std::int64_t step) {
+  if (unread.first == step) return StepLacks(step, NamesOfChannels(unread.lacks));
+  return StepLacks(step,
+                   fmt::format("every message; the next step in the log is {}", unread.first));
 }
 
 }  // namespace
@@ -24,7 +40,9 @@ std::string NoteOf(const RunLog& run, const LogRemarks& remarks) {
   };
   if (!run.has_scenario) note("the log has no scenario");
   if (!remarks.alteration.empty()) note("altered: " + remarks.alteration);
-  if (run.gaps.first > 0) note(fmt::format("begins at step {}{}", run.gaps.first, OfSteps(run)));
+  const std::int64_t first =
+      remarks.unread && run.steps == 0 ? remarks.unread->first : remarks.first;
+  if (first > 0) note(fmt::format("begins at step {}{}", first, OfSteps(run)));
   if (!remarks.has_last) note(Shortage(run, remarks));
   note(run.gaps.Text());
   if (run.realtime && run.realtime->missed_messages > 0) {
@@ -32,7 +50,8 @@ std::string NoteOf(const RunLog& run, const LogRemarks& remarks) {
     const std::int64_t unlogged = run.realtime->unlogged_messages;
     if (unlogged > 0) note(fmt::format("published, but not in the log: {}", unlogged));
   }
-  if (remarks.incomplete) note(fmt::format("step {} lacks {}", *remarks.incomplete, remarks.lacks));
+  if (remarks.tail) note(StepLacks(*remarks.tail, NamesOfChannels(remarks.tail_lacks)));
+  if (remarks.unread && first == 0) note(Lacks(*remarks.unread, run.steps));
   if (remarks.astray > 0) note(fmt::format("{} impossible steps ignored", remarks.astray));
   note(remarks.conflict);
   if (remarks.foreign > 0) note(fmt::format("{} messages of other runs ignored", remarks.foreign));

@@ -9,17 +9,26 @@
 
 namespace fogline::log {
 
+/// The steps that were not read, because an earlier step lacks a message.
+struct UnreadSteps {
+  std::int64_t first = 0;     // the first of these steps of which the log has a message
+  runtime::ChannelSet lacks;  // the channels that this step lacks
+  bool are_end = false;       // whether all are incomplete, as at the end of a run that ends early
+};
+
 /// What a reader has found out about a log, apart from RunLog.
 struct LogRemarks {
-  std::string torn;                        // how the file was cut off; "" if it was not
-  std::string alteration;                  // how the log differs from its seal; "" if not
-  bool has_last = false;                   // whether the log has the last step of the run
-  std::int64_t next = 0;                   // the first step that the log does not have
-  std::optional<std::int64_t> incomplete;  // a step at the end that lacks messages
-  std::string lacks;                       // the channels that this step lacks
-  std::int64_t astray = 0;                 // steps whose numbers are impossible for the run
-  std::string conflict;                    // two different messages of one step and channel
-  std::int64_t foreign = 0;                // messages of other runs
+  std::string torn;                  // how the file was cut off; "" if it was not
+  std::string alteration;            // how the log differs from its seal; "" if not
+  std::int64_t first = 0;            // the first step of which the log has a message
+  bool has_last = false;             // whether the log has the last step of the run
+  std::int64_t next = 0;             // the first step that the log does not have
+  std::optional<std::int64_t> tail;  // the first of the incomplete steps at the end
+  runtime::ChannelSet tail_lacks;    // the channels that this step lacks
+  std::optional<UnreadSteps> unread;
+  std::int64_t astray = 0;   // steps whose numbers are impossible for the run
+  std::string conflict;      // two different messages of one step and channel
+  std::int64_t foreign = 0;  // messages of other runs
 };
 
 /// The remark; "" if there is no remark. @param run all its fields except `note` are set

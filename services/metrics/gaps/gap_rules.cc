@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <array>
-#include <initializer_list>
+#include <cstdint>
 
 namespace fogline::metrics {
 namespace {
@@ -16,60 +16,90 @@ Channels Of() {
   return channels;
 }
 
-/// A measure that needs every step, the channels that it is computed from, and whether it also
-/// needs the beginning of the run.
-struct NeedsEveryStep {
+/// The steps that a measure needs.
+enum class Needs : std::uint8_t { kAnyStep, kEveryStep, kEveryStepFromTheBeginning };
+
+struct GapRule {
   std::string_view measure;
-  Channels channels;
-  bool from_beginning = false;
+  Channels channels;  // from which the measure is computed
+  Needs needs = Needs::kAnyStep;
 };
 
-const std::array kNeedsEveryStep = [] {
+const std::array kGapRules = [] {
+  using enum Needs;
   const Channels truth = Of<truth_t>();
   const Channels command = Of<truth_t, arbitration_t>();
   const Channels deception = Of<truth_t, arbitration_t, lidar_t>();
   const Channels recovery = Of<truth_t, track_t, follower_command_t>();
   const Channels follower = Of<truth_t, follower_command_t>();
-  return std::to_array<NeedsEveryStep>({
-      {"max_compromised_safety_until_recovery_m", recovery, true},
-      {"mean_compromised_safety_until_recovery_m", recovery, true},
-      {"max_slow_down_fog_mps", truth, true},
-      {"host_tet_s", truth},
-      {"host_tit_s2", truth},
-      {"host_cpi", truth},
-      {"follower_tet_s", follower},
-      {"follower_tit_s2", follower},
-      {"follower_cpi", follower},
-      {"rhe_pct", command},
-      {"human_time_s", command},
-      {"transfers", command},
-      {"transfers_pmin", command},
-      {"min_dwell_s", command},
-      {"max_handover_jump_mps2", command},
-      {"max_handover_jerk_mps3", command},
-      {"max_handover_jerk_1s_mps3", command},
-      {"wrong_human_s", deception},
-      {"wrong_automation_s", Of<truth_t, arbitration_t, track_t>()},
-      {"deception_to_alarm_s", deception, true},
-      {"false_alarms_ph", deception},
-      {"max_abs_jerk_mps3", truth},
-      {"max_abs_jerk_1s_mps3", truth},
-      {"rms_jerk_mps3", truth},
-      {"minimal_risk_s", command},
+  return std::to_array<GapRule>({
+      {"steps", truth},
+      {"duration_s", truth},
+      {"min_host_gap_m", truth},
+      {"min_follower_gap_m", follower},
+      {"max_compromised_safety_m", follower},
+      {"mean_compromised_safety_fog_m", follower},
+      {"max_compromised_safety_until_recovery_m", recovery, kEveryStepFromTheBeginning},
+      {"mean_compromised_safety_until_recovery_m", recovery, kEveryStepFromTheBeginning},
+      {"max_slow_down_fog_mps", truth, kEveryStepFromTheBeginning},
+      {"min_host_ttc_s", truth},
+      {"host_tet_s", truth, kEveryStep},
+      {"host_tit_s2", truth, kEveryStep},
+      {"min_host_time_gap_s", truth},
+      {"max_host_drac_mps2", truth},
+      {"min_host_picud_m", truth},
+      {"min_host_rss_margin_m", truth},
+      {"min_host_rss_margin_ad_rss_m", truth},
+      {"host_cpi", truth, kEveryStep},
+      {"min_follower_ttc_s", follower},
+      {"follower_tet_s", follower, kEveryStep},
+      {"follower_tit_s2", follower, kEveryStep},
+      {"min_follower_time_gap_s", follower},
+      {"max_follower_drac_mps2", follower},
+      {"min_follower_picud_m", follower},
+      {"min_follower_rss_margin_m", follower},
+      {"min_follower_rss_margin_ad_rss_m", follower},
+      {"follower_cpi", follower, kEveryStep},
+      {"collision", truth},
+      {"collision_time_s", truth},
+      {"rhe_pct", command, kEveryStep},
+      {"human_time_s", command, kEveryStep},
+      {"transfers", command, kEveryStep},
+      {"transfers_pmin", command, kEveryStep},
+      {"min_dwell_s", command, kEveryStep},
+      {"max_handover_jump_mps2", command, kEveryStep},
+      {"max_handover_jerk_mps3", command, kEveryStep},
+      {"max_handover_jerk_1s_mps3", command, kEveryStep},
+      {"wrong_human_s", deception, kEveryStep},
+      {"wrong_automation_s", Of<truth_t, arbitration_t, track_t>(), kEveryStep},
+      {"deception_to_alarm_s", deception, kEveryStepFromTheBeginning},
+      {"false_alarms_ph", deception, kEveryStep},
+      {"max_abs_acceleration_mps2", truth},
+      {"max_abs_jerk_mps3", truth, kEveryStep},
+      {"max_abs_jerk_1s_mps3", truth, kEveryStep},
+      {"rms_jerk_mps3", truth, kEveryStep},
+      {"max_doc", command},
+      {"min_conflict_clear_m", command},
+      {"max_conflict_clear_m", command},
+      {"rms_fusion_error_m", Of<truth_t, track_t>()},
+      {"minimal_risk_s", command, kEveryStep},
   });
 }();
 
 }  // namespace
 
 bool IsKnown(std::string_view measure, const Lack& lack) {
-  if (lack.every_truth) return false;
-  const auto* row = std::ranges::find(kNeedsEveryStep, measure, &NeedsEveryStep::measure);
-  if (row == kNeedsEveryStep.end()) return true;
-  return (row->channels & lack.channels).none() && !(row->from_beginning && lack.beginning);
+  const auto* rule = std::ranges::find(kGapRules, measure, &GapRule::measure);
+  if (rule == kGapRules.end()) return lack == Lack();
+  if ((rule->channels & lack.every).any()) return false;
+  if (rule->needs == Needs::kAnyStep) return true;
+  if (rule->needs == Needs::kEveryStepFromTheBeginning && lack.beginning) return false;
+  return (rule->channels & lack.channels).none();
 }
 
 bool AreTakeOversKnown(const Lack& lack) {
-  return (Of<truth_t, arbitration_t, track_t, driver_command_t>() & lack.channels).none();
+  const Channels needed = Of<truth_t, arbitration_t, track_t, driver_command_t>();
+  return (needed & (lack.channels | lack.every)).none();
 }
 
 }  // namespace fogline::metrics

@@ -11,18 +11,21 @@ namespace fogline::metrics {
 /// The messages that the log of a run lacks.
 struct Lack {
   std::bitset<kNumChannels> channels;  // the channels that lack a message after the first step
+  std::bitset<kNumChannels> every;     // the channels of which no step with TRUTH has a message
   bool beginning = false;              // whether the first steps are missing
-  bool every_truth = false;            // whether every TRUTH is missing
   // Whether a request to take over may have been open before the first HOST_COMMAND of the log.
   bool beginning_of_request = false;
+
+  friend bool operator==(const Lack&, const Lack&) = default;
 };
 
-/// Whether a measure (a name of VisitMetrics()) is known. Without any TRUTH, none is. The table in
-/// gap_rules.cc lists the measures that need every step, such as sums over time, counts, shares of
-/// time, and differences between steps. Such a measure is unknown if one of its messages is
-/// missing. If it also depends on the beginning of the run, it is unknown if the beginning is
-/// missing. All other measures, such as extremes, are always known: they are computed from the
-/// steps that the log has.
+/// Whether a measure (a name of VisitMetrics()) is known. The table in gap_rules.cc says from which
+/// channels a measure is computed, and which steps it needs. Sums over time, counts, shares of
+/// time, and differences between steps need every step: such a measure is unknown if a message of
+/// its channels is missing. If it also depends on the beginning of the run, it is unknown if the
+/// beginning is missing. All other measures, such as extremes, are computed from the steps that the
+/// log has. They are unknown only if the log has no message of a channel. A measure that the table
+/// does not have is known only if nothing is missing.
 bool IsKnown(std::string_view measure, const Lack& lack);
 
 /// Whether the measures of requests to take over are known. These measures need every TRUTH,

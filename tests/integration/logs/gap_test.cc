@@ -23,6 +23,7 @@
 namespace fogline::test {
 namespace {
 
+using ::testing::EndsWith;
 using ::testing::HasSubstr;
 using ::testing::Not;
 using ::testing::StartsWith;
@@ -66,12 +67,36 @@ TEST_F(GapTest, MetricsSayWhatIsUnknownBecauseOfAGap) {
   EXPECT_THAT(text.out, HasSubstr("transfers                            unknown"));
 }
 
+TEST_F(GapTest, AMeasureIsUnknownIfTheLogHasNoMessageOfItsChannel) {
+  const nlohmann::json whole = Json({"metrics", whole_}, 0)[0]["metrics"];
+  const auto unknown_without = [&](std::string_view lost) {
+    const std::string log =
+        Without([&](std::string_view channel, std::int64_t) { return channel == lost; });
+    const nlohmann::json metrics = Json({"metrics", log}, 1)[0]["metrics"];
+    const std::string err = Fogline({"metrics", log}).err;
+    for (const auto& [name, value] : metrics.items()) {
+      const bool known = err.find(" " + name + ",") == std::string::npos &&
+                         err.find(" " + name + ";") == std::string::npos;
+      EXPECT_EQ(value, known ? whole[name] : nullptr) << name;
+    }
+    return metrics;
+  };
+  const nlohmann::json without_commands = unknown_without("HOST_COMMAND");
+  for (const char* name : {"max_doc", "min_conflict_clear_m", "max_conflict_clear_m"}) {
+    EXPECT_TRUE(without_commands[name].is_null()) << name;
+  }
+  EXPECT_TRUE(unknown_without("TRACK")["rms_fusion_error_m"].is_null());
+  EXPECT_TRUE(unknown_without("FOLLOWER_COMMAND")["min_follower_gap_m"].is_null());
+}
+
 TEST_F(GapTest, NoMeasureIsKnownWithoutAnyTruth) {
   const std::string log =
       Without([](std::string_view channel, std::int64_t) { return channel == "TRUTH"; });
   const nlohmann::json metrics = Json({"metrics", log}, 1)[0]["metrics"];
   EXPECT_GT(metrics.size(), 40U);
   for (const auto& [name, value] : metrics.items()) EXPECT_TRUE(value.is_null()) << name;
+  EXPECT_THAT(Fogline({"metrics", log}).err,
+              EndsWith(": unknown, because messages are missing: all measures\n"));
 }
 
 TEST_F(GapTest, TheSafetyImprovementIsUnknownIfOneOfTheTwoLogsHasAGap) {
@@ -211,9 +236,19 @@ TEST_F(GapTest, ALogThatBeginsLateSaysWithItsDigestWithWhichStep) {
   }
   const Outcome digest = Fogline({"digest", late});
   EXPECT_EQ(digest.code, 1);
-  EXPECT_EQ(digest.err, late +
-                            ": no step of 500 is complete; step 0 lacks every message; the next "
-                            "step in the log is 199\n");
+  EXPECT_EQ(digest.err, late + ": begins at step 199 of 500\n");
+  EXPECT_EQ(digest.out, "unknown  " + late + "\n");
+  EXPECT_EQ(Json({"digest", late}, 1)[0]["digest"], nullptr);
+}
+
+TEST_F(GapTest, AVerbThatReadsOnlyWholeStepsSaysUpToWhichStepTheyGo) {
+  const std::string log = WithoutOne("RADAR");
+  const std::string note = ": complete up to step 393 of 500; step 394 lacks RADAR\n";
+  EXPECT_EQ(Fogline({"digest", log}).err, log + note);
+  EXPECT_THAT(Fogline({"replay", log, "--role", "driver"}).err, HasSubstr(note));
+  const std::string first = Without(
+      [](std::string_view channel, std::int64_t step) { return channel == "RADAR" && step == 0; });
+  EXPECT_EQ(Fogline({"digest", first}).err, first + ": step 0 lacks RADAR\n");
 }
 
 TEST_F(GapTest, TheReportOfALogWithAGapLeavesOutWhatIsUnknown) {

@@ -65,14 +65,27 @@ nlohmann::ordered_json GapsJson(const log::LogGaps& gaps) {
   return json;
 }
 
+std::string DigestText(const log::RunLog& run) {
+  return run.digest.empty() ? "unknown" : run.digest;
+}
+
+nlohmann::ordered_json DigestJson(const log::RunLog& run) {
+  if (run.digest.empty()) return nullptr;
+  return run.digest;
+}
+
 std::string UnknownMeasures(const runner::ExperimentResult& result) {
   std::string names;
+  bool all = true;
   metrics::VisitMetrics(
       result.measures, [&](std::string_view name, const auto&, std::string_view, std::string_view) {
-        if (metrics::IsKnown(name, result.lack)) return;
-        names += fmt::format("{}{}", names.empty() ? "" : ", ", name);
+        if (metrics::IsKnown(name, result.lack)) {
+          all = false;
+        } else {
+          names += fmt::format("{}{}", names.empty() ? "" : ", ", name);
+        }
       });
-  return names;
+  return all ? "all measures" : names;
 }
 
 std::string UnknownTakeOvers(const runner::LoggedRun& run) {

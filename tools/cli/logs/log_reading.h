@@ -42,8 +42,13 @@ void SayAboutLog(const std::filesystem::path& log, const log::RunLog& run);
 /// [{"first_step": 394, "last_step": 394, "channels": ["RADAR"]}], "gaps_left_out": 0}
 nlohmann::ordered_json GapsJson(const log::LogGaps& gaps);
 
+/// The digest of a run as text: "unknown" if no step gives it, or if the log has gaps.
+std::string DigestText(const log::RunLog& run);
+/// The same as JSON: null if it is unknown.
+nlohmann::ordered_json DigestJson(const log::RunLog& run);
+
 /// The names of the measures of a run that are unknown because its log has gaps, such as "rhe_pct,
-/// transfers"; "" if all are known.
+/// transfers", or "all measures"; "" if all are known.
 std::string UnknownMeasures(const runner::ExperimentResult& result);
 
 /// The requests to take over of a run whose measures are unknown, such as "the measures of

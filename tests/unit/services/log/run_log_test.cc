@@ -77,6 +77,12 @@ TEST_F(RunLogTest, InRealTimeIsIncompleteWithoutItsLastStep) {
   EXPECT_THAT(run.note, HasSubstr("ends after step 1 of 3"));
 }
 
+TEST_F(RunLogTest, InRealTimeSaysWithWhichStepItBegins) {
+  const log::RunLog run =
+      Read(InRealTime([](std::string_view /*channel*/, std::int64_t step) { return step > 0; }));
+  EXPECT_EQ(run.note.substr(0, run.note.find(';')), "begins at step 1 of 3");
+}
+
 TEST_F(RunLogTest, InRealTimeHasNoStepBeyondTheScenarioThatAMessageBeforeItClaims) {
   test::ShortLog contents{.realtime = true};
   contents.early = std::int64_t{1} << 20;

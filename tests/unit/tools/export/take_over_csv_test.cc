@@ -59,6 +59,17 @@ TEST_F(TakeOverCsvTest, HasALineForEachRequest) {
                 "b.lcm,4,1,open,2,,,,,,,0,0,,,,,,,0,0,0,0,9,10,20,30\n");
 }
 
+TEST_F(TakeOverCsvTest, HasALineForRequestsWithUnknownMeasures) {
+  const exports::TakeOverRun run{.log = "a.lcm",
+                                 .seed = 3,
+                                 .take_overs = {{.requested_s = 20}},
+                                 .unknown = true,
+                                 .input_latency = {}};
+  EXPECT_EQ(Written({run}), std::string(kHeader) +
+                                "a.lcm,3,,unknown,,,,,,,,,,,,,,,,,,,,,,,\n"
+                                "a.lcm,3,1,open,20,,,,,,,0,0,,,,,,,0,0,0,0,,,,\n");
+}
+
 TEST_F(TakeOverCsvTest, QuotesTheNameOfALogWithACommaOrAQuote) {
   exports::TakeOverRun run{
       .log = "a,\"b\".lcm", .seed = 1, .take_overs = {{}}, .input_latency = {}};

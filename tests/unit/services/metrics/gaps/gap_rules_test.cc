@@ -10,9 +10,17 @@
 namespace fogline::metrics {
 namespace {
 
+/// One message of this channel is missing.
 Lack Lacking(std::size_t channel) {
   Lack lack;
   lack.channels.set(channel);
+  return lack;
+}
+
+/// All messages of this channel are missing.
+Lack LackingEvery(std::size_t channel) {
+  Lack lack = Lacking(channel);
+  lack.every.set(channel);
   return lack;
 }
 
@@ -50,6 +58,36 @@ TEST(GapRulesTest, AMissingCommandMakesCountsAndTimesUnknownButNoExtremes) {
   for (const char* name : {"min_host_gap_m", "max_doc", "collision", "rms_jerk_mps3"}) {
     EXPECT_FALSE(unknown.contains(name)) << name;
   }
+}
+
+TEST(GapRulesTest, EachMeasureHasARule) {
+  EXPECT_TRUE(Unknown(LackingEvery(IndexOf<radar_t>())).empty());
+}
+
+TEST(GapRulesTest, ExtremesAndMeansOfAChannelWithoutAnyMessageAreUnknown) {
+  const auto more = [](std::size_t channel) {
+    std::set<std::string> names = Unknown(LackingEvery(channel));
+    for (const std::string& name : Unknown(Lacking(channel))) names.erase(name);
+    return names;
+  };
+  EXPECT_EQ(more(IndexOf<arbitration_t>()),
+            (std::set<std::string>{"max_doc", "min_conflict_clear_m", "max_conflict_clear_m"}));
+  EXPECT_EQ(more(IndexOf<track_t>()), (std::set<std::string>{"rms_fusion_error_m"}));
+  EXPECT_EQ(more(IndexOf<follower_command_t>()),
+            (std::set<std::string>{"min_follower_gap_m", "max_compromised_safety_m",
+                                   "mean_compromised_safety_fog_m", "min_follower_ttc_s",
+                                   "min_follower_time_gap_s", "max_follower_drac_mps2",
+                                   "min_follower_picud_m", "min_follower_rss_margin_m",
+                                   "min_follower_rss_margin_ad_rss_m"}));
+  EXPECT_FALSE(AreTakeOversKnown(LackingEvery(IndexOf<arbitration_t>())));
+}
+
+TEST(GapRulesTest, NothingIsKnownWithoutTruth) {
+  std::set<std::string> all;
+  VisitMetrics({}, [&](std::string_view name, const auto&, std::string_view, std::string_view) {
+    all.emplace(name);
+  });
+  EXPECT_EQ(Unknown(LackingEvery(IndexOf<truth_t>())), all);
 }
 
 TEST(GapRulesTest, AMissingBeginningMakesOnlyUnknownWhatBeginsThere) {
