@@ -84,6 +84,19 @@ const metrics::TakeOverMeasures* MeasuresOf(const RunEvents& events,
   return found == events.measures.end() ? nullptr : &*found;
 }
 
+/// Whether an event may have happened before the step in which it is listed, because commands are
+/// missing. In real time a step may have no command, so nothing is known from a missing command.
+bool MayBeEarlier(const RunEvents& events, const take_over::TakeOverEntry& entry) {
+  return !events.run.realtime && entry.earliest_step < entry.step;
+}
+
+/// The same for the events of a step.
+bool MayBeEarlier(const RunEvents& events, std::int64_t step) {
+  return std::ranges::any_of(events.log.entries(), [&](const take_over::TakeOverEntry& entry) {
+    return entry.step == step && MayBeEarlier(events, entry);
+  });
+}
+
 nlohmann::ordered_json EventsJson(const RunEvents& events) {
   auto rows = nlohmann::ordered_json::array();
   for (const take_over::TakeOverEntry& entry : events.log.entries()) {
@@ -93,6 +106,7 @@ nlohmann::ordered_json EventsJson(const RunEvents& events) {
                     {"transfer", entry.transfer},
                     {"from", take_over::NameOfMode(entry.from)},
                     {"to", take_over::NameOfMode(entry.to)}});
+    if (MayBeEarlier(events, entry)) rows.back()["earliest_step"] = entry.earliest_step;
   }
   return rows;
 }
@@ -101,13 +115,16 @@ nlohmann::ordered_json RequestsJson(const RunEvents& events) {
   auto rows = nlohmann::ordered_json::array();
   for (const take_over::TakeOverRequest& request : events.log.requests()) {
     nlohmann::ordered_json row;
+    auto earlier = nlohmann::ordered_json::array();
     for (const auto& [name, step] : TimesOf(request)) {
+      if (step && MayBeEarlier(events, *step)) earlier.push_back(fmt::format("{}_s", name));
       const double time_s = static_cast<double>(step.value_or(0)) * events.run.scenario.step_s;
       row[fmt::format("{}_s", name)] = step ? nlohmann::ordered_json(time_s) : nullptr;
     }
     if (const auto* measures = MeasuresOf(events, request)) {
       row["measures"] = cli::TakeOverJson(*measures);
     }
+    if (!earlier.empty()) row["may_be_earlier"] = std::move(earlier);
     rows.push_back(std::move(row));
   }
   return rows;
@@ -148,9 +165,11 @@ std::vector<EventLine> LinesOf(const RunEvents& events) {
   std::vector<EventLine> lines;
   AddGaps(events.run.gaps, lines);
   for (const take_over::TakeOverEntry& entry : events.log.entries()) {
-    lines.emplace_back(entry.step,
-                       fmt::format("{:<42}{}", take_over::TextOf(entry, events.run.scenario.person),
-                                   ModesText(entry)));
+    std::string text = fmt::format("{:<42}{}", take_over::TextOf(entry, events.run.scenario.person),
+                                   ModesText(entry));
+    if (MayBeEarlier(events, entry))
+      text += fmt::format(", in step {} or later", entry.earliest_step);
+    lines.emplace_back(entry.step, std::move(text));
   }
   AddFallbacks(events.run, lines);
   std::ranges::stable_sort(lines, {}, &EventLine::first);
@@ -172,7 +191,8 @@ void PrintText(const std::filesystem::path& file, const RunEvents& events) {
     fmt::print("  request {}:", ++number);
     for (const auto& [name, step] : TimesOf(request)) {
       if (!step) continue;
-      fmt::print(" {} {:.2f} s", name, static_cast<double>(*step) * events.run.scenario.step_s);
+      fmt::print(" {} {:.2f} s{}", name, static_cast<double>(*step) * events.run.scenario.step_s,
+                 MayBeEarlier(events, *step) ? " or before" : "");
     }
     fmt::print("\n");
     if (const auto* measures = MeasuresOf(events, request)) {
@@ -240,7 +260,8 @@ void AddEvents(CLI::App& app, cli::Action& action) {
       "Lists the events that a data recorder stores: changes of state, requests to take over\n"
       "and their escalation, acknowledgements, transfers, first effective inputs, manoeuvres,\n"
       "collision warnings and emergency braking. In a run in real time it also lists the\n"
-      "fallbacks of the roles. Where the log lacks commands of the host, the list says so.\n"
+      "fallbacks of the roles. Where the log lacks commands of the host, the list says so. An\n"
+      "event after such a gap may have happened in the gap (\"in step N or later\").\n"
       "If the log lacks the beginning of the run, the list begins with the state in the first\n"
       "command of the log.\n"
       "Then lists the times of each request, from the start of the run, and its outcome and\n"

@@ -75,6 +75,7 @@ std::string_view TextOf(const TakeOverEntry& entry, const PersonSection& person)
 }
 
 void TakeOverLog::Add(const arbitration_t& command, std::optional<double> human_mps2) {
+  earliest_ = last_ ? last_->header.step + 1 : command.header.step;
   if (!last_) Begin(command);
   if (hidden_ && command.mode != arbitration_t::EMERGENCY_BRAKING) Reveal(command);
   asks_ = asks_ || ShowsRequests(command);
@@ -90,6 +91,7 @@ void TakeOverLog::Begin(const arbitration_t& command) {
   const std::int8_t mode = late ? command.mode : std::int8_t{arbitration_t::AUTOMATION};
   entries_.push_back(
       {.step = command.header.step,
+       .earliest_step = earliest_,
        .utime = command.header.utime,
        .from = mode,
        .to = mode,
@@ -109,6 +111,7 @@ void TakeOverLog::Reveal(const arbitration_t& command) {
   // Emergency braking hides no manoeuvre, so the manoeuvre begins in this step.
   if (!InEmergency(last_sent_) || !InMinimalRisk(command.mode)) return;
   entries_.push_back({.step = command.header.step,
+                      .earliest_step = earliest_,
                       .utime = command.header.utime,
                       .from = command.mode,
                       .to = command.mode,
@@ -130,6 +133,7 @@ void TakeOverLog::AddEmergency(const arbitration_t& command) {
   if (command.mode == last_sent_) return;
   const auto add = [&](std::string_view logged) {
     entries_.push_back({.step = command.header.step,
+                        .earliest_step = earliest_,
                         .utime = command.header.utime,
                         .from = last_sent_,
                         .to = command.mode,
@@ -156,6 +160,7 @@ void TakeOverLog::AddDecided(const arbitration_t& command, std::optional<double>
   if (transfer) Transfer(command);
   if (transfer && !with_state) {
     entries_.push_back({.step = command.header.step,
+                        .earliest_step = earliest_,
                         .utime = command.header.utime,
                         .from = command.mode,
                         .to = command.mode,
@@ -175,6 +180,7 @@ void TakeOverLog::Change(const arbitration_t& command, std::int8_t from, bool tr
     if (command.mode == arbitration_t::AUTOMATION) logged = "driver is released";
   }
   entries_.push_back({.step = command.header.step,
+                      .earliest_step = earliest_,
                       .utime = command.header.utime,
                       .from = from,
                       .to = command.mode,
@@ -218,6 +224,7 @@ void TakeOverLog::Drive(const arbitration_t& command, double human_mps2) {
   if (!IsEffective(command.lambda_human, human_mps2, *before_share_mps2_)) return;
   before_share_mps2_.reset();
   entries_.push_back({.step = command.header.step,
+                      .earliest_step = earliest_,
                       .utime = command.header.utime,
                       .from = command.mode,
                       .to = command.mode,

@@ -23,7 +23,10 @@ std::string_view NameOfMode(std::int8_t mode);
 /// For other events, `from` and `to` are the modes that the commands would have without emergency
 /// braking.
 struct TakeOverEntry {
-  std::int64_t step = 0;
+  std::int64_t step = 0;  // the first step whose command shows the event
+  // The event may have happened from this step on; earlier than `step` if the commands of the steps
+  // before it are missing.
+  std::int64_t earliest_step = 0;
   std::int64_t utime = 0;
   std::int8_t from = 0;  // mode before the event
   std::int8_t to = 0;
@@ -100,6 +103,7 @@ class TakeOverLog {
   // The first command is not of step 0, and emergency braking has hidden the state since then.
   bool hidden_ = false;
   bool began_in_request_ = false;
+  std::int64_t earliest_ = 0;  // the step after the command before this one
   std::vector<TakeOverEntry> entries_;
   std::vector<TakeOverRequest> requests_;
 };

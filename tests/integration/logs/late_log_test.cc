@@ -93,6 +93,9 @@ TEST_F(LateLogTest, LeavesOutTheRequestThatItBeginsIn) {
               HasSubstr("unknown, because messages are missing: " + unknown + "\n"));
   EXPECT_THAT(Fogline({"metrics", log}).err,
               HasSubstr(", " + unknown + "; the other measures are of the steps in the log\n"));
+  const std::string table = folder_.File("take-overs.csv");
+  EXPECT_EQ(Fogline({"metrics", log, "--take-overs", table}).code, 1);
+  EXPECT_THAT(Content(table), HasSubstr("\n" + log + ",1,,unknown,,"));
   const std::string page = folder_.File("report.html");
   EXPECT_EQ(Fogline({"report", log, "--output", page}).code, 1);
   EXPECT_THAT(Content(page), HasSubstr(unknown));
@@ -120,6 +123,26 @@ TEST_F(LateLogTest, DoesNotKnowWhatAMessageThatItsFirstStepLacksWouldShow) {
     EXPECT_TRUE(metrics["metrics"][unknown].is_null()) << unknown;
   }
   EXPECT_EQ(metrics["unknown_take_overs"], "the measures of take-overs");
+}
+
+TEST_F(LateLogTest, SaysThatARequestAfterAGapMayHaveBegunInTheGap) {
+  const std::int64_t lost = asked_ - 3;
+  const std::string log = Without([&](std::string_view channel, std::int64_t step) {
+    return channel == "HOST_COMMAND" && step >= lost && step <= asked_;
+  });
+  const nlohmann::json events = Json({"events", log}, 1)[0];
+  nlohmann::json expected = events_.at(1);
+  expected["step"] = asked_ + 1;
+  expected["time_s"] = static_cast<double>(asked_ + 1) / 10;
+  expected["earliest_step"] = lost;
+  EXPECT_EQ(events["events"].at(1), expected);
+  EXPECT_EQ(events["requests"].at(0)["may_be_earlier"], nlohmann::json({"requested_s"}));
+  const std::string text = Fogline({"events", log}).out;
+  EXPECT_THAT(text, HasSubstr(", in step " + std::to_string(lost) + " or later\n"));
+  EXPECT_THAT(text, HasSubstr(" s or before acknowledged "));
+  const std::string table = folder_.File("take-overs.csv");
+  EXPECT_EQ(Fogline({"metrics", log, "--take-overs", table}).code, 1);
+  EXPECT_THAT(Content(table), HasSubstr("\n" + log + ",1,,unknown,,"));
 }
 
 TEST_F(LateLogTest, HasNoFalseAlarmThatBeganBeforeIt) {

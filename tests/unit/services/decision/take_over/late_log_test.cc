@@ -1,6 +1,9 @@
 // TakeOverLog of a log that lacks the first commands of its run.
 #include "services/decision/take_over/take_over_log.h"
 
+#include <cstdint>
+#include <vector>
+
 #include <gmock/gmock-more-matchers.h>
 #include <gtest/gtest.h>
 
@@ -31,6 +34,17 @@ TEST(LateTakeOverLogTest, HasNoRequestThatBeganBeforeTheFirstCommand) {
   EXPECT_FALSE(log.entries()[1].first);
   Add(log, Command(20, arbitration_t::REQUEST));
   EXPECT_THAT(log.requests(), ElementsAre(take_over::TakeOverRequest{.requested = 20}));
+}
+
+TEST(LateTakeOverLogTest, SaysFromWhichStepOnAnEventAfterAGapMayHaveHappened) {
+  take_over::TakeOverLog log;
+  Add(log, Command(7, arbitration_t::AUTOMATION));
+  Add(log, Command(8, arbitration_t::REQUEST));
+  Add(log, Command(12, arbitration_t::HANDOVER));
+  std::vector<std::int64_t> earliest;
+  for (const take_over::TakeOverEntry& entry : log.entries())
+    earliest.push_back(entry.earliest_step);
+  EXPECT_THAT(earliest, ElementsAre(7, 8, 9));
 }
 
 TEST(LateTakeOverLogTest, KnowsTheStateOfALateLogWhenEmergencyBrakingHidesItNoLonger) {
