@@ -39,9 +39,11 @@ int RunDiff(const DiffArguments& arguments) {
   const std::string name_b = NameOf(arguments.b, arguments.run_b);
   std::optional<replay::Difference> difference;
   std::int64_t step = 0;
+  const log::StepMessages* a = nullptr;
+  const log::StepMessages* b = nullptr;
   while (true) {
-    const log::StepMessages* a = reader_a.Next();
-    const log::StepMessages* b = reader_b.Next();
+    a = reader_a.Next();
+    b = reader_b.Next();
     if (a == nullptr && b == nullptr) break;
     if (a == nullptr || b == nullptr) {
       difference = {.step = step,
@@ -72,11 +74,12 @@ int RunDiff(const DiffArguments& arguments) {
   } else {
     fmt::print("equal: {} steps\n", step);
   }
-  for (const log::RunLogReader* reader : {&reader_a, &reader_b}) {
-    if (!difference && !reader->run().note.empty()) {
-      Complain(fmt::format("{}: {}", reader == &reader_a ? name_a : name_b, reader->run().note));
-    }
-  }
+  // The remarks on a log are known if it was read to its end.
+  const auto remark = [](const log::RunLogReader& reader, const std::string& name) {
+    if (!reader.run().note.empty()) Complain(fmt::format("{}: {}", name, reader.run().note));
+  };
+  if (a == nullptr) remark(reader_a, name_a);
+  if (b == nullptr) remark(reader_b, name_b);
   const bool complete = difference || (reader_a.run().complete && reader_b.run().complete);
   return difference || !complete ? kCheckFailed : kDone;
 }

@@ -246,6 +246,10 @@ TEST_F(GapTest, AVerbThatReadsOnlyWholeStepsSaysUpToWhichStepTheyGo) {
   const std::string note = ": complete up to step 393 of 500; step 394 lacks RADAR\n";
   EXPECT_EQ(Fogline({"digest", log}).err, log + note);
   EXPECT_THAT(Fogline({"replay", log, "--role", "driver"}).err, HasSubstr(note));
+  const Outcome differ = Fogline({"diff", whole_, log});
+  EXPECT_EQ(differ.code, 1);
+  EXPECT_THAT(differ.out, StartsWith("step 394: (run) (step): there in "));
+  EXPECT_EQ(differ.err, log + note);
   const std::string first = Without(
       [](std::string_view channel, std::int64_t step) { return channel == "RADAR" && step == 0; });
   EXPECT_EQ(Fogline({"digest", first}).err, first + ": step 0 lacks RADAR\n");
