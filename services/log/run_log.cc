@@ -70,7 +70,7 @@ class RunLogReader::Assembler {
     while (!Ready()) {
       const auto event = ended_ ? std::nullopt : reader_.Next();
       if (!event) {
-        if (!std::exchange(ended_, true)) FindTail();
+        if (!std::exchange(ended_, true) && ReadsGaps()) tail_ = Tail();
         if (Ready()) break;
         Finish();
         return nullptr;
@@ -130,18 +130,19 @@ class RunLogReader::Assembler {
     }
   }
 
-  /// Finds the incomplete steps that a run leaves when it ends early. The world is at most
-  /// kMaxAhead steps ahead of the log.
-  void FindTail() {
-    if (!ReadsGaps() || pending_.empty()) return;
-    const Pending& newest = pending_.rbegin()->second;
-    // The run has ended with this step, so the missing messages of this step are gaps.
-    if (runtime::Decode(newest.messages[IndexOf<truth_t>()], truth_) && truth_.last) return;
+  /// The first of the incomplete steps that a run leaves when it ends early; nullopt if it leaves
+  /// none. The world is at most kMaxAhead steps ahead of the log.
+  std::optional<std::int64_t> Tail() const {
+    if (pending_.empty()) return std::nullopt;
+    const auto& [newest, messages] = *pending_.rbegin();
+    // A run ends with such a step, so the missing messages of this step are gaps.
+    truth_t truth{};
+    if (runtime::Decode(messages.messages[IndexOf<truth_t>()], truth) && truth.last) return {};
     auto step = pending_.rbegin();
     while (step != pending_.rend() && step->second.there != run_.channels) ++step;
-    if (step == pending_.rbegin()) return;  // all messages of the newest step are there
-    const std::int64_t last = step == pending_.rend() ? next_ - 1 : step->first;
-    if (pending_.rbegin()->first <= last + runtime::kMaxAhead) tail_ = last + 1;
+    if (step == pending_.rbegin()) return {};  // all messages of the newest step are there
+    const std::int64_t first = step == pending_.rend() ? next_ : step->first + 1;
+    return newest < first + runtime::kMaxAhead ? std::optional(first) : std::nullopt;
   }
 
   void Take(const Event& event) {
@@ -204,17 +205,13 @@ class RunLogReader::Assembler {
                        .astray = astray_,
                        .conflict = conflict_,
                        .foreign = foreign_};
-    if (!pending_.empty()) remarks.unread = UnreadSteps();
+    if (!pending_.empty()) remarks.unread = Unread();
     run_.note = NoteOf(run_, remarks);
   }
 
-  log::UnreadSteps UnreadSteps() const {
-    const auto& [first, first_unread] = *pending_.begin();
-    const bool has_whole = std::ranges::any_of(
-        pending_, [&](const auto& step) { return step.second.there == run_.channels; });
-    return {.first = first,
-            .lacks = run_.channels & ~first_unread.there,
-            .are_end = !has_whole && pending_.rbegin()->first <= next_ + runtime::kMaxAhead};
+  UnreadSteps Unread() const {
+    const auto& [first, pending] = *pending_.begin();
+    return {.first = first, .lacks = run_.channels & ~pending.there, .are_end = Tail() == next_};
   }
 
   /// Sets the scenario of the run. @throws InputError

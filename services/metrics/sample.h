@@ -49,7 +49,8 @@ inline Sample MakeSample(const truth_t& truth, const radar_t& radar, const lidar
                          const driver_command_t& driver, const arbitration_t& host,
                          const follower_command_t& follower) {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-  const bool followed = truth.num_followers > 0 && follower.num_followers > 0;
+  const bool followed = truth.num_followers > 0;
+  const bool commanded = followed && follower.num_followers > 0;
   return {
       .step = truth.header.step,
       .time_s = static_cast<double>(truth.header.utime) * 1e-6,
@@ -65,7 +66,7 @@ inline Sample MakeSample(const truth_t& truth, const radar_t& radar, const lidar
       .follower_speed_mps = followed ? truth.follower_speed_mps[0] : kNone,
       .follower_acceleration_mps2 = followed ? truth.follower_acceleration_mps2[0] : kNone,
       .follower_gap_m = followed ? truth.follower_gap_m[0] : kNone,
-      .follower_safe_distance_m = followed ? follower.safe_distance_m[0] : kNone,
+      .follower_safe_distance_m = commanded ? follower.safe_distance_m[0] : kNone,
       .acc_acceleration_mps2 = acc.acceleration_mps2,
       .driver_acceleration_mps2 = driver.acceleration_mps2,
       .command_mps2 = host.acceleration_mps2,

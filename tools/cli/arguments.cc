@@ -193,7 +193,7 @@ std::string MetricsJson(const runner::ExperimentResult& result) {
   nlohmann::ordered_json json;
   metrics::VisitMetrics(result.measures, Into(json));
   for (auto& [name, value] : json.items()) {
-    if (!metrics::IsKnown(name, result.lack)) value = nullptr;
+    if (!metrics::IsKnown(name, !value.is_null(), result.lack)) value = nullptr;
   }
   if (result.followers.size() > 1) {
     for (const metrics::FollowerMetrics& follower : result.followers) {
@@ -207,7 +207,7 @@ std::string MetricsText(const runner::ExperimentResult& result) {
   std::string text;
   metrics::VisitMetrics(result.measures, [&]<class V>(std::string_view name, const V& value,
                                                       std::string_view unit, std::string_view) {
-    if (!metrics::IsKnown(name, result.lack)) {
+    if (!metrics::IsKnown(name, value, result.lack)) {
       text += fmt::format("  {:<32}{:>12}\n", name, "unknown");
     } else if constexpr (std::is_same_v<V, std::optional<double>>) {
       text += fmt::format("  {:<32}{:>12} {}\n", name, Cell(name, value, unit), unit);

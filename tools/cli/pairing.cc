@@ -1,5 +1,7 @@
 #include "tools/cli/pairing.h"
 
+#include <iterator>
+
 #include "scenario/io/loader.h"
 
 namespace fogline::cli {
@@ -9,6 +11,12 @@ namespace {
 std::string CommonPart(Scenario scenario) {
   scenario.arbitrator = {};
   return PrintScenario(scenario);
+}
+
+/// Whether there is a sample of each step up to the last.
+bool HasEverySample(const runner::LoggedRun& run) {
+  const std::vector<metrics::Sample>& samples = run.result.samples;
+  return !run.gaps.Any() && (samples.empty() || samples.back().step == std::ssize(samples) - 1);
 }
 
 }  // namespace
@@ -26,7 +34,7 @@ std::vector<Pairing> MeasurePairs(std::span<const runner::LoggedRun> runs) {
     if (runs[i].scenario.arbitrator.policy == Policy::kNone) continue;
     for (std::size_t j = 0; j < runs.size(); ++j) {
       if (runs[j].scenario.arbitrator.policy != Policy::kNone || common[i] != common[j]) continue;
-      if (runs[i].gaps.Any() || runs[j].gaps.Any()) {
+      if (!HasEverySample(runs[i]) || !HasEverySample(runs[j])) {
         pairs[i].unknown = true;
         continue;
       }

@@ -18,16 +18,17 @@ struct TakeOverRun {
   std::string log;  // may contain any characters
   std::int64_t seed = 0;
   std::vector<metrics::TakeOverMeasures> take_overs;
-  bool unknown = false;  // whether the log lacks messages that belong to further requests
+  // Whether the log lacks messages, so that there may be more requests than `take_overs`.
+  bool unknown = false;
   std::optional<log::InputLatency> input_latency;
 };
 
 /// Whether WriteTakeOverCsv() could have written the file, judged by its beginning.
 bool IsTakeOverCsv(const std::filesystem::path& file);
 
-/// Writes a header line, and a line for each request. If a log lacks messages of further requests,
-/// their number is not known: one line has the outcome "unknown" and no number of a request. The
-/// columns are log, seed, request (from 1 on in each run), outcome, the measures of
+/// Writes a header line, and a line for each request. If a run may have more requests
+/// (TakeOverRun::unknown), one line has the outcome "unknown", and neither a number nor measures.
+/// The columns are log, seed, request (from 1 on in each log), outcome, the measures of
 /// VisitTakeOver(), and the input latency of the run. A value that does not exist is empty. Numbers
 /// have enough digits to restore every bit. A name with a comma, a quote or a line end is in quotes
 /// (RFC 4180).

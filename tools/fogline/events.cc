@@ -52,7 +52,9 @@ RunEvents ReadEvents(const std::filesystem::path& file, const log::ReadOptions& 
     events.log.Add(command, offered ? std::optional(driver.acceleration_mps2) : std::nullopt);
   }
   events.run = reader.run();
-  if (!events.log.requests().empty() || events.run.gaps.Any() || events.log.BeganInRequest()) {
+  const bool has_command = !events.log.entries().empty();
+  if (!events.log.requests().empty() || events.run.gaps.Any() || events.log.BeganInRequest() ||
+      !has_command) {
     runner::LoggedRun measured = runner::MeasureLoggedRun(file, events.run.scenario, options);
     measured.result.lack.beginning_of_request |= events.log.BeganInRequest();
     events.unknown = cli::UnknownTakeOvers(measured);
@@ -85,9 +87,11 @@ const metrics::TakeOverMeasures* MeasuresOf(const RunEvents& events,
 }
 
 /// Whether an event may have happened before the step in which it is listed, because commands are
-/// missing. In real time a step may have no command, so nothing is known from a missing command.
+/// missing. In real time, a step may have no command. So an event is late only if published
+/// messages are missing.
 bool MayBeEarlier(const RunEvents& events, const take_over::TakeOverEntry& entry) {
-  return !events.run.realtime && entry.earliest_step < entry.step;
+  const bool has_all = events.run.realtime && events.run.realtime->unlogged_messages == 0;
+  return !has_all && entry.earliest_step < entry.step;
 }
 
 /// The same for the events of a step.
@@ -152,10 +156,13 @@ void AddFallbacks(const log::RunLog& run, std::vector<EventLine>& lines) {
   }
 }
 
-/// Adds a line for each gap in HOST_COMMAND. In a gap it is unknown which side drove.
+/// Adds a line for each gap in HOST_COMMAND or DRIVER_COMMAND. In a gap it is unknown which side
+/// drove, or whether an input of the driver was effective.
 void AddGaps(const log::LogGaps& gaps, std::vector<EventLine>& lines) {
   for (const log::Gap& gap : gaps.gaps) {
-    if (!gap.channels[IndexOf<arbitration_t>()]) continue;
+    if (!gap.channels[IndexOf<arbitration_t>()] && !gap.channels[IndexOf<driver_command_t>()]) {
+      continue;
+    }
     lines.emplace_back(gap.first, fmt::format("unknown: {}", gap.Text()));
   }
 }
@@ -167,8 +174,9 @@ std::vector<EventLine> LinesOf(const RunEvents& events) {
   for (const take_over::TakeOverEntry& entry : events.log.entries()) {
     std::string text = fmt::format("{:<42}{}", take_over::TextOf(entry, events.run.scenario.person),
                                    ModesText(entry));
-    if (MayBeEarlier(events, entry))
-      text += fmt::format(", in step {} or later", entry.earliest_step);
+    if (MayBeEarlier(events, entry)) {
+      text += fmt::format(", in one of the steps {} to {}", entry.earliest_step, entry.step);
+    }
     lines.emplace_back(entry.step, std::move(text));
   }
   AddFallbacks(events.run, lines);
@@ -260,8 +268,9 @@ void AddEvents(CLI::App& app, cli::Action& action) {
       "Lists the events that a data recorder stores: changes of state, requests to take over\n"
       "and their escalation, acknowledgements, transfers, first effective inputs, manoeuvres,\n"
       "collision warnings and emergency braking. In a run in real time it also lists the\n"
-      "fallbacks of the roles. Where the log lacks commands of the host, the list says so. An\n"
-      "event after such a gap may have happened in the gap (\"in step N or later\").\n"
+      "fallbacks of the roles. Where the log lacks commands of the host or the driver, the list\n"
+      "says so. An event after such a gap may have happened in the gap: the list gives the\n"
+      "steps, JSON has earliest_step, and may_be_earlier with the times of a request.\n"
       "If the log lacks the beginning of the run, the list begins with the state in the first\n"
       "command of the log.\n"
       "Then lists the times of each request, from the start of the run, and its outcome and\n"

@@ -62,21 +62,6 @@ void WriteTakeOvers(const std::vector<runner::LoggedRun>& runs, const std::files
   exports::WriteTakeOverCsv(rows, file);
 }
 
-/// Prints on stderr what a log lacks, and which results are unknown for this reason.
-void SayAbout(const runner::LoggedRun& run, const cli::Pairing& pair) {
-  cli::SayAboutLog(run.result.log, run);
-  std::string unknown = cli::UnknownMeasures(run.result);
-  if (pair.unknown) unknown += (unknown.empty() ? "" : ", ") + std::string("si_pct");
-  if (const std::string take_overs = cli::UnknownTakeOvers(run); !take_overs.empty()) {
-    unknown += (unknown.empty() ? "" : ", ") + take_overs;
-  }
-  if (unknown.empty()) return;
-  const bool has_truth = !run.result.lack.every[IndexOf<truth_t>()];
-  const std::string others = has_truth ? "; the other measures are of the steps in the log" : "";
-  Complain(fmt::format("{}: unknown, because messages are missing: {}{}", PathText(run.result.log),
-                       unknown, others));
-}
-
 int RunMetrics(const MetricsArguments& arguments) {
   const bool writes_csv = !arguments.take_overs.empty();
   if (writes_csv) {
@@ -94,7 +79,8 @@ int RunMetrics(const MetricsArguments& arguments) {
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
   for (std::size_t i = 0; i < runs.size(); ++i) {
     const runner::LoggedRun& run = runs[i];
-    SayAbout(run, pairs[i]);
+    cli::SayAboutLog(run.result.log, run);
+    cli::SayWhatIsUnknown(run, pairs[i].unknown ? "si_pct, si_until_recovery_pct" : "");
     if (arguments.json) {
       nlohmann::ordered_json row{
           {"log", run.result.log.string()}, {"title", run.scenario.title},

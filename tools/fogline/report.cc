@@ -142,7 +142,7 @@ std::vector<report::ReportMetric> MetricsOf(const metrics::RunMetrics& measures,
         } else {
           number = static_cast<double>(value);
         }
-        if (!metrics::IsKnown(name, lack)) number = std::numeric_limits<double>::quiet_NaN();
+        if (!metrics::IsKnown(name, value, lack)) number = std::numeric_limits<double>::quiet_NaN();
         out.push_back({std::string(name), number, std::string(unit), std::string(description)});
       });
   return out;
@@ -185,6 +185,7 @@ std::vector<runner::LoggedRun> ReadRuns(std::span<const std::filesystem::path> l
   for (const std::filesystem::path& log : logs) {
     runs.push_back(runner::ReadLoggedRun(log, options));
     cli::SayAboutLog(log, runs.back());
+    cli::SayWhatIsUnknown(runs.back());
   }
   std::stable_partition(runs.begin(), runs.end(), [](const runner::LoggedRun& run) {
     return run.scenario.arbitrator.policy == Policy::kNone;

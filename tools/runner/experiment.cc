@@ -168,10 +168,12 @@ LoggedRun ReadSteps(const std::filesystem::path& log, const log::ReadOptions& op
   metrics::SampleDecoder decoder;
   std::optional<std::int64_t> first;  // the first step with TRUTH
   runtime::ChannelSet heard;          // the channels of which a step with TRUTH has a message
+  bool has_steps = false;
   const runtime::ChannelSet all = log::OwnStepChannels();
   log::RunLogReader reader(log, options);
   while (const log::StepMessages* messages = reader.Next()) {
     if (reader.InTail()) continue;
+    has_steps = true;
     const runtime::ChannelSet there = log::ChannelsIn(*messages);
     if (!there[IndexOf<truth_t>()]) continue;  // the state of the step is unknown
     heard |= there;
@@ -196,7 +198,7 @@ LoggedRun ReadSteps(const std::filesystem::path& log, const log::ReadOptions& op
   logged.result.realtime = logged.realtime;
   metrics::Lack& lack = logged.result.lack;
   for (std::size_t i = 0; i < kNumChannels; ++i) lack.channels[i] = logged.gaps.Lacks(i);
-  lack.every = all & ~heard;
+  if (has_steps) lack.every = all & ~heard;
   lack.beginning = first.value_or(0) > 0;
   measures.PutInto(logged);
   if (!metrics::AreTakeOversKnown(lack)) logged.result.take_overs.clear();

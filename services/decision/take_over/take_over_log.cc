@@ -167,7 +167,7 @@ void TakeOverLog::AddDecided(const arbitration_t& command, std::optional<double>
                         .transfer = true,
                         .logged = human ? kToDriver : kToAutomation});
   }
-  if (human_mps2 && HumanDrives(command.mode)) Drive(command, *human_mps2);
+  if (HumanDrives(command.mode)) Drive(command, human_mps2);
   last_ = command;
 }
 
@@ -187,8 +187,10 @@ void TakeOverLog::Change(const arbitration_t& command, std::int8_t from, bool tr
                       .transfer = transfer,
                       .logged = logged});
   NoteUnasked(from, command.mode);
+  if (HidesRequest(command, from)) unasked_ = true;
   if (share_changes) {
     before_share_mps2_.reset();
+    unknown_offer_.reset();
     if (has_share && last_) before_share_mps2_ = last_->acceleration_mps2;
     asked_ = command.mode == arbitration_t::RECOVERING && !unasked_;
   }
@@ -213,15 +215,29 @@ void TakeOverLog::NoteUnasked(std::int8_t from, std::int8_t to) {
   if (overrides || leaves) unasked_ = true;
 }
 
+bool TakeOverLog::HidesRequest(const arbitration_t& command, std::int8_t from) const {
+  if (earliest_ == command.header.step) return false;
+  const bool has_answered = from == arbitration_t::HUMAN || from == arbitration_t::RECOVERING;
+  if (InMinimalRisk(command.mode)) return from == arbitration_t::AUTOMATION;
+  if (command.mode == arbitration_t::REQUEST_URGENT || command.mode == arbitration_t::HANDOVER) {
+    return has_answered || from == arbitration_t::AUTOMATION;
+  }
+  return command.mode == arbitration_t::RECOVERING && from == arbitration_t::HUMAN;
+}
+
 void TakeOverLog::Transfer(const arbitration_t& command) {
   const bool answers = asked_ && HumanDrives(command.mode) && HumanDrives(command.lambda_human);
   if (!answers || requests_.empty() || requests_.back().transferred) return;
   requests_.back().transferred = command.header.step;
 }
 
-void TakeOverLog::Drive(const arbitration_t& command, double human_mps2) {
+void TakeOverLog::Drive(const arbitration_t& command, std::optional<double> human_mps2) {
   if (!before_share_mps2_) return;
-  if (!IsEffective(command.lambda_human, human_mps2, *before_share_mps2_)) return;
+  if (!human_mps2) {
+    if (!unknown_offer_) unknown_offer_ = command.header.step;
+    return;
+  }
+  if (!IsEffective(command.lambda_human, *human_mps2, *before_share_mps2_)) return;
   before_share_mps2_.reset();
   entries_.push_back({.step = command.header.step,
                       .earliest_step = earliest_,
@@ -229,6 +245,7 @@ void TakeOverLog::Drive(const arbitration_t& command, double human_mps2) {
                       .from = command.mode,
                       .to = command.mode,
                       .logged = "first effective input of the driver"});
+  if (unknown_offer_) entries_.back().earliest_step = std::min(earliest_, *unknown_offer_);
   if (asked_ && !requests_.empty()) requests_.back().effective = command.header.step;
 }
 

@@ -24,8 +24,8 @@ std::string_view NameOfMode(std::int8_t mode);
 /// braking.
 struct TakeOverEntry {
   std::int64_t step = 0;  // the first step whose command shows the event
-  // The event may have happened from this step on; earlier than `step` if the commands of the steps
-  // before it are missing.
+  // The event may have happened from this step on; earlier than `step` if the log lacks commands
+  // before it. For an effective input, also if it lacks offers of the driver.
   std::int64_t earliest_step = 0;
   std::int64_t utime = 0;
   std::int8_t from = 0;  // mode before the event
@@ -42,7 +42,8 @@ struct TakeOverEntry {
 std::string_view TextOf(const TakeOverEntry& entry, const PersonSection& person);
 
 /// Collects the events and the requests of a run from its commands (HOST_COMMAND), in the order of
-/// steps. Some commands may be missing.
+/// steps. Some commands may be missing. If the first command after such a gap belongs to a request
+/// that begins in the gap, the request is not one of the requests.
 ///
 /// If the commands of the first steps are missing, the earlier events are unknown. The first entry
 /// then says which mode the first command has. A request that may be open in this command is not
@@ -87,7 +88,9 @@ class TakeOverLog {
   void Change(const arbitration_t& command, std::int8_t from, bool transfer);
   void NoteUnasked(std::int8_t from, std::int8_t to);
   void Transfer(const arbitration_t& command);
-  void Drive(const arbitration_t& command, double human_mps2);
+  /// Whether the commands of the steps before this one are missing, and a request began there.
+  bool HidesRequest(const arbitration_t& command, std::int8_t from) const;
+  void Drive(const arbitration_t& command, std::optional<double> human_mps2);
 
   std::optional<arbitration_t> last_;                  // its mode ignores emergency braking
   std::int8_t last_sent_ = arbitration_t::AUTOMATION;  // mode of the last command
@@ -97,13 +100,15 @@ class TakeOverLog {
   std::optional<double> before_share_mps2_;
   bool asked_ = false;
   // Whether the driver has, or had, authority without an open request. Two events lead to this: an
-  // override, and the absence of a person who had taken over.
+  // override, and the absence of a person who had taken over. So does a request whose beginning the
+  // log lacks.
   bool unasked_ = false;
   bool asks_ = false;  // whether a command has shown that this is a run with requests
   // The first command is not of step 0, and emergency braking has hidden the state since then.
   bool hidden_ = false;
   bool began_in_request_ = false;
-  std::int64_t earliest_ = 0;  // the step after the command before this one
+  std::optional<std::int64_t> unknown_offer_;  // the first step of this share without an offer
+  std::int64_t earliest_ = 0;                  // the step after the command before this one
   std::vector<TakeOverEntry> entries_;
   std::vector<TakeOverRequest> requests_;
 };

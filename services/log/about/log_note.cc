@@ -10,10 +10,10 @@ std::string OfSteps(const RunLog& run) {
   return run.has_scenario ? fmt::format(" of {}", run.scenario.steps) : "";
 }
 
-/// Which steps the log has; "" if the other remarks say so.
+/// Which steps of the log were read.
 std::string Shortage(const RunLog& run, const LogRemarks& remarks) {
   if (remarks.unread && !remarks.unread->are_end) {
-    if (run.steps == 0) return "";
+    if (run.steps == 0) return "no step is read";
     return fmt::format("complete up to step {}{}", remarks.next - 1, OfSteps(run));
   }
   if (run.steps == 0 && !run.gaps.Any()) return fmt::format("no step{} is complete", OfSteps(run));

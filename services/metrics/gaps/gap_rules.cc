@@ -17,7 +17,12 @@ Channels Of() {
 }
 
 /// The steps that a measure needs.
-enum class Needs : std::uint8_t { kAnyStep, kEveryStep, kEveryStepFromTheBeginning };
+enum class Needs : std::uint8_t {
+  kAnyStep,    // without a value, every step: a missing step might have one
+  kLaterStep,  // any later step says it again
+  kEveryStep,
+  kEveryStepFromTheBeginning
+};
 
 struct GapRule {
   std::string_view measure;
@@ -36,7 +41,7 @@ const std::array kGapRules = [] {
       {"steps", truth},
       {"duration_s", truth},
       {"min_host_gap_m", truth},
-      {"min_follower_gap_m", follower},
+      {"min_follower_gap_m", truth},
       {"max_compromised_safety_m", follower},
       {"mean_compromised_safety_fog_m", follower},
       {"max_compromised_safety_until_recovery_m", recovery, kEveryStepFromTheBeginning},
@@ -51,17 +56,17 @@ const std::array kGapRules = [] {
       {"min_host_rss_margin_m", truth},
       {"min_host_rss_margin_ad_rss_m", truth},
       {"host_cpi", truth, kEveryStep},
-      {"min_follower_ttc_s", follower},
-      {"follower_tet_s", follower, kEveryStep},
-      {"follower_tit_s2", follower, kEveryStep},
-      {"min_follower_time_gap_s", follower},
-      {"max_follower_drac_mps2", follower},
-      {"min_follower_picud_m", follower},
-      {"min_follower_rss_margin_m", follower},
-      {"min_follower_rss_margin_ad_rss_m", follower},
-      {"follower_cpi", follower, kEveryStep},
-      {"collision", truth},
-      {"collision_time_s", truth},
+      {"min_follower_ttc_s", truth},
+      {"follower_tet_s", truth, kEveryStep},
+      {"follower_tit_s2", truth, kEveryStep},
+      {"min_follower_time_gap_s", truth},
+      {"max_follower_drac_mps2", truth},
+      {"min_follower_picud_m", truth},
+      {"min_follower_rss_margin_m", truth},
+      {"min_follower_rss_margin_ad_rss_m", truth},
+      {"follower_cpi", truth, kEveryStep},
+      {"collision", truth, kLaterStep},
+      {"collision_time_s", truth, kLaterStep},
       {"rhe_pct", command, kEveryStep},
       {"human_time_s", command, kEveryStep},
       {"transfers", command, kEveryStep},
@@ -88,18 +93,27 @@ const std::array kGapRules = [] {
 
 }  // namespace
 
-bool IsKnown(std::string_view measure, const Lack& lack) {
+bool IsKnown(std::string_view measure, bool has_value, const Lack& lack) {
   const auto* rule = std::ranges::find(kGapRules, measure, &GapRule::measure);
   if (rule == kGapRules.end()) return lack == Lack();
   if ((rule->channels & lack.every).any()) return false;
-  if (rule->needs == Needs::kAnyStep) return true;
-  if (rule->needs == Needs::kEveryStepFromTheBeginning && lack.beginning) return false;
-  return (rule->channels & lack.channels).none();
+  const bool lacks_a_step = (rule->channels & lack.channels).any();
+  switch (rule->needs) {
+    case Needs::kAnyStep:
+      return has_value || !(lacks_a_step || lack.beginning);
+    case Needs::kLaterStep:
+      return true;
+    case Needs::kEveryStep:
+      return !lacks_a_step;
+    case Needs::kEveryStepFromTheBeginning:
+      return !(lacks_a_step || lack.beginning);
+  }
+  return false;
 }
 
 bool AreTakeOversKnown(const Lack& lack) {
   const Channels needed = Of<truth_t, arbitration_t, track_t, driver_command_t>();
-  return (needed & (lack.channels | lack.every)).none();
+  return (needed & lack.channels).none() && !lack.every[IndexOf<arbitration_t>()];
 }
 
 }  // namespace fogline::metrics

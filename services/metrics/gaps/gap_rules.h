@@ -2,7 +2,9 @@
 #pragma once
 
 #include <bitset>
+#include <optional>
 #include <string_view>
+#include <type_traits>
 
 #include "services/graph.h"
 
@@ -23,10 +25,21 @@ struct Lack {
 /// channels a measure is computed, and which steps it needs. Sums over time, counts, shares of
 /// time, and differences between steps need every step: such a measure is unknown if a message of
 /// its channels is missing. If it also depends on the beginning of the run, it is unknown if the
-/// beginning is missing. All other measures, such as extremes, are computed from the steps that the
-/// log has. They are unknown only if the log has no message of a channel. A measure that the table
-/// does not have is known only if nothing is missing.
-bool IsKnown(std::string_view measure, const Lack& lack);
+/// beginning is missing. Extremes and means are computed from the steps that the log has. They are
+/// unknown if the log has no message of a channel, or if they have no value and a missing step
+/// might give one. A measure that the table does not have is known only if nothing is missing.
+bool IsKnown(std::string_view measure, bool has_value, const Lack& lack);
+
+/// The same for a value that VisitMetrics() gives.
+template <class V>
+bool IsKnown(std::string_view measure, const V& value,
+             const Lack& lack) requires(!std::is_same_v<V, bool>) {
+  if constexpr (std::is_same_v<V, std::optional<double>>) {
+    return IsKnown(measure, value.has_value(), lack);
+  } else {
+    return IsKnown(measure, true, lack);
+  }
+}
 
 /// Whether the measures of requests to take over are known. These measures need every TRUTH,
 /// HOST_COMMAND, TRACK and DRIVER_COMMAND from the first step of the log on. If the log lacks the

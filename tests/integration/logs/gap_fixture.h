@@ -58,7 +58,7 @@ class GapTest : public testing::Test {
   }
 
   const ScratchFolder folder_;
-  const std::string whole_ = folder_.File("whole.lcm");
+  std::string whole_ = folder_.File("whole.lcm");
 };
 
 }  // namespace fogline::test

@@ -86,7 +86,9 @@ TEST_F(GapTest, AMeasureIsUnknownIfTheLogHasNoMessageOfItsChannel) {
     EXPECT_TRUE(without_commands[name].is_null()) << name;
   }
   EXPECT_TRUE(unknown_without("TRACK")["rms_fusion_error_m"].is_null());
-  EXPECT_TRUE(unknown_without("FOLLOWER_COMMAND")["min_follower_gap_m"].is_null());
+  const nlohmann::json without_followers = unknown_without("FOLLOWER_COMMAND");
+  EXPECT_TRUE(without_followers["max_compromised_safety_m"].is_null());
+  EXPECT_EQ(without_followers["min_follower_gap_m"], whole["min_follower_gap_m"]);
 }
 
 TEST_F(GapTest, NoMeasureIsKnownWithoutAnyTruth) {
@@ -109,6 +111,27 @@ TEST_F(GapTest, TheSafetyImprovementIsUnknownIfOneOfTheTwoLogsHasAGap) {
   const std::string log = WithoutOne("TRUTH");
   EXPECT_TRUE(Json({"metrics", none, log}, 1)[1]["si_pct"].is_null());
   EXPECT_THAT(Fogline({"metrics", none, log}).err, HasSubstr("si_pct"));
+}
+
+TEST_F(GapTest, TheSafetyImprovementIsUnknownIfALogInRealTimeLacksATruth) {
+  const auto realtime_log = [&](const std::string& policy) {
+    whole_ = folder_.File(policy + ".lcm");
+    EXPECT_EQ(
+        Fogline({"run", "scenario/paper.json", "--realtime", "--speed", "20", "--quiet", "--log",
+                 whole_, "--set", "/steps=100", "--set", "/arbitrator/policy=" + policy})
+            .code,
+        0);
+    return Without(
+        [](std::string_view channel, std::int64_t step) { return channel == "TRUTH" && step == 7; },
+        policy + "_gap.lcm");
+  };
+  const std::string none = realtime_log("none");
+  const std::string traded = realtime_log("traded");
+  const nlohmann::json pair = Json({"metrics", none, traded}, 1);
+  EXPECT_TRUE(pair[1]["si_pct"].is_null());
+  EXPECT_EQ(pair[1]["metrics"]["steps"], 99);
+  EXPECT_THAT(Fogline({"metrics", none, traded}).err,
+              HasSubstr("unknown, because messages are missing: si_pct, si_until_recovery_pct;"));
 }
 
 TEST_F(GapTest, EventsGoOnAfterAGapAndShowIt) {
@@ -236,7 +259,7 @@ TEST_F(GapTest, ALogThatBeginsLateSaysWithItsDigestWithWhichStep) {
   }
   const Outcome digest = Fogline({"digest", late});
   EXPECT_EQ(digest.code, 1);
-  EXPECT_EQ(digest.err, late + ": begins at step 199 of 500\n");
+  EXPECT_EQ(digest.err, late + ": begins at step 199 of 500; no step is read\n");
   EXPECT_EQ(digest.out, "unknown  " + late + "\n");
   EXPECT_EQ(Json({"digest", late}, 1)[0]["digest"], nullptr);
 }
@@ -252,7 +275,23 @@ TEST_F(GapTest, AVerbThatReadsOnlyWholeStepsSaysUpToWhichStepTheyGo) {
   EXPECT_EQ(differ.err, log + note);
   const std::string first = Without(
       [](std::string_view channel, std::int64_t step) { return channel == "RADAR" && step == 0; });
-  EXPECT_EQ(Fogline({"digest", first}).err, first + ": step 0 lacks RADAR\n");
+  EXPECT_EQ(Fogline({"digest", first}).err, first + ": no step is read; step 0 lacks RADAR\n");
+}
+
+TEST_F(GapTest, AMeasureWithoutAValueIsUnknownIfAGapMayHideTheValue) {
+  std::int64_t fog = 500;
+  log::EventLogReader reader(whole_);
+  truth_t truth{};
+  while (const auto event = reader.Next()) {
+    if (event->channel != "TRUTH" || !runtime::Decode(event->data, truth)) continue;
+    if (truth.fog_present != 0) fog = std::min(fog, truth.header.step);
+  }
+  const std::string log = Without([&](std::string_view channel, std::int64_t step) {
+    return channel == "FOLLOWER_COMMAND" && step >= fog;
+  });
+  const nlohmann::json metrics = Json({"metrics", log}, 1)[0]["metrics"];
+  EXPECT_TRUE(metrics["mean_compromised_safety_fog_m"].is_null());
+  EXPECT_THAT(Fogline({"metrics", log}).err, HasSubstr(" mean_compromised_safety_fog_m,"));
 }
 
 TEST_F(GapTest, TheReportOfALogWithAGapLeavesOutWhatIsUnknown) {
@@ -261,6 +300,7 @@ TEST_F(GapTest, TheReportOfALogWithAGapLeavesOutWhatIsUnknown) {
   const Outcome outcome = Fogline({"report", log, "--output", page});
   EXPECT_EQ(outcome.code, 1);
   EXPECT_THAT(outcome.err, HasSubstr("step 394 lacks HOST_COMMAND"));
+  EXPECT_THAT(outcome.err, HasSubstr("unknown, because messages are missing: rhe_pct, "));
   EXPECT_THAT(Content(page), Not(HasSubstr("Human drives")));
 }
 

@@ -122,7 +122,7 @@ TEST_F(LateLogTest, DoesNotKnowWhatAMessageThatItsFirstStepLacksWouldShow) {
   for (const char* unknown : {"transfers", "human_time_s", "wrong_human_s", "false_alarms_ph"}) {
     EXPECT_TRUE(metrics["metrics"][unknown].is_null()) << unknown;
   }
-  EXPECT_EQ(metrics["unknown_take_overs"], "the measures of take-overs");
+  EXPECT_EQ(metrics["unknown_take_overs"], "requests in a gap and the measures of take-overs");
 }
 
 TEST_F(LateLogTest, SaysThatARequestAfterAGapMayHaveBegunInTheGap) {
@@ -138,7 +138,8 @@ TEST_F(LateLogTest, SaysThatARequestAfterAGapMayHaveBegunInTheGap) {
   EXPECT_EQ(events["events"].at(1), expected);
   EXPECT_EQ(events["requests"].at(0)["may_be_earlier"], nlohmann::json({"requested_s"}));
   const std::string text = Fogline({"events", log}).out;
-  EXPECT_THAT(text, HasSubstr(", in step " + std::to_string(lost) + " or later\n"));
+  EXPECT_THAT(text, HasSubstr(", in one of the steps " + std::to_string(lost) + " to " +
+                              std::to_string(asked_ + 1) + "\n"));
   EXPECT_THAT(text, HasSubstr(" s or before acknowledged "));
   const std::string table = folder_.File("take-overs.csv");
   EXPECT_EQ(Fogline({"metrics", log, "--take-overs", table}).code, 1);

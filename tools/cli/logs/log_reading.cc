@@ -77,25 +77,40 @@ nlohmann::ordered_json DigestJson(const log::RunLog& run) {
 std::string UnknownMeasures(const runner::ExperimentResult& result) {
   std::string names;
   bool all = true;
-  metrics::VisitMetrics(
-      result.measures, [&](std::string_view name, const auto&, std::string_view, std::string_view) {
-        if (metrics::IsKnown(name, result.lack)) {
-          all = false;
-        } else {
-          names += fmt::format("{}{}", names.empty() ? "" : ", ", name);
-        }
-      });
+  metrics::VisitMetrics(result.measures, [&](std::string_view name, const auto& value,
+                                             std::string_view, std::string_view) {
+    if (metrics::IsKnown(name, value, result.lack)) {
+      all = false;
+    } else {
+      names += fmt::format("{}{}", names.empty() ? "" : ", ", name);
+    }
+  });
   return all ? "all measures" : names;
 }
 
 std::string UnknownTakeOvers(const runner::LoggedRun& run) {
   if (run.scenario.arbitrator.take_over.mode != TakeOverMode::kRequested) return "";
   const metrics::Lack& lack = run.result.lack;
+  if (lack.channels[IndexOf<arbitration_t>()] || lack.every[IndexOf<arbitration_t>()]) {
+    return "requests in a gap and the measures of take-overs";
+  }
   if (!metrics::AreTakeOversKnown(lack)) return "the measures of take-overs";
   if (lack.beginning_of_request) {
     return "the measures of a request that may have begun before the log";
   }
   return "";
+}
+
+void SayWhatIsUnknown(const runner::LoggedRun& run, const std::string& of_pair) {
+  const bool has_truth = !run.result.lack.every[IndexOf<truth_t>()];
+  std::string unknown = UnknownMeasures(run.result);
+  for (const std::string& other : {of_pair, UnknownTakeOvers(run)}) {
+    if (has_truth && !other.empty()) unknown += (unknown.empty() ? "" : ", ") + other;
+  }
+  if (unknown.empty()) return;
+  const std::string others = has_truth ? "; the other measures are of the steps in the log" : "";
+  Complain(fmt::format("{}: unknown, because messages are missing: {}{}", PathText(run.result.log),
+                       unknown, others));
 }
 
 }  // namespace fogline::cli

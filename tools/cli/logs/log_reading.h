@@ -52,7 +52,12 @@ nlohmann::ordered_json DigestJson(const log::RunLog& run);
 std::string UnknownMeasures(const runner::ExperimentResult& result);
 
 /// The requests to take over of a run whose measures are unknown, such as "the measures of
-/// take-overs"; "" if the measures of all requests are known, or if the run cannot have requests.
+/// take-overs"; "" if all requests and their measures are known, or if the run cannot have
+/// requests.
 std::string UnknownTakeOvers(const runner::LoggedRun& run);
+
+/// Prints on stderr which results of a run are unknown because its log has gaps.
+/// @param of_pair names of unknown results that need the paired run
+void SayWhatIsUnknown(const runner::LoggedRun& run, const std::string& of_pair = "");
 
 }  // namespace fogline::cli

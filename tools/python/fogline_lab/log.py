@@ -161,10 +161,11 @@ class Log:
 
     @property
     def events(self) -> list[dict[str, Any]]:
-        """The events of the run: step, time_s, event, from, to (`fogline events`).
+        """The events of the run: step, time_s, event, transfer, from, to (`fogline events`).
 
         If the log is not complete, they are those of the steps that are there. The warning
-        IncompleteLog then says what is missing.
+        IncompleteLog then says what is missing. An event that may have happened before, in a gap,
+        has earliest_step.
         """
         return self._tell("events")["events"]
 

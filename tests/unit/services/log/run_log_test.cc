@@ -100,6 +100,20 @@ TEST_F(RunLogTest, InLockstepIsIncompleteWithoutTheLastStateOfTheWorld) {
   EXPECT_THAT(run.note, HasSubstr("ends after step 1 of 3"));
 }
 
+TEST_F(RunLogTest, InLockstepDoesNotEndAtAnIncompleteStepIfTheLogHasLaterStepsOrTheLast) {
+  const auto note_without_radar = [&](std::int64_t step, std::int64_t end) {
+    test::ShortLog contents;
+    contents.has = [=](std::string_view channel, std::int64_t at) {
+      return at < end && !(at == step && channel == ChannelOf<radar_t>().name);
+    };
+    return Read(contents).note;
+  };
+  EXPECT_EQ(note_without_radar(1, 3), "complete up to step 0 of 3; step 1 lacks RADAR");
+  EXPECT_EQ(note_without_radar(2, 3), "complete up to step 1 of 3; step 2 lacks RADAR");
+  EXPECT_EQ(note_without_radar(1, 2), "ends after step 0 of 3; step 1 lacks RADAR");
+  EXPECT_EQ(note_without_radar(0, 3), "no step is read; step 0 lacks RADAR");
+}
+
 TEST_F(RunLogTest, IsIncompleteIfAStepHasTwoDifferentMessagesOfOneChannel) {
   test::WriteShortLog(file_);
   const std::string copy = folder_.File("copy");

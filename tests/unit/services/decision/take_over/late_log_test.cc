@@ -47,6 +47,40 @@ TEST(LateTakeOverLogTest, SaysFromWhichStepOnAnEventAfterAGapMayHaveHappened) {
   EXPECT_THAT(earliest, ElementsAre(7, 8, 9));
 }
 
+TEST(LateTakeOverLogTest, DoesNotTakeARequestThatBeginsInAGapForTheOneBefore) {
+  for (const std::int8_t first_heard : {arbitration_t::REQUEST_URGENT, arbitration_t::HANDOVER,
+                                        arbitration_t::RECOVERING, arbitration_t::MRM_COMFORT}) {
+    take_over::TakeOverLog log;
+    Add(log, Command(0, arbitration_t::AUTOMATION));
+    Add(log, Command(1, arbitration_t::REQUEST));
+    Add(log, Command(2, arbitration_t::AUTOMATION));
+    const std::vector<take_over::TakeOverRequest> before = log.requests();
+    Add(log, Command(9, first_heard, -3));
+    Add(log, Command(10, arbitration_t::RECOVERING, -6));
+    Add(log, Command(11, arbitration_t::HUMAN, -6));
+    EXPECT_EQ(log.requests(), before) << take_over::NameOfMode(first_heard);
+    Add(log, Command(12, arbitration_t::AUTOMATION));
+    Add(log, Command(13, arbitration_t::REQUEST));
+    Add(log, Command(14, arbitration_t::HANDOVER));
+    EXPECT_EQ(log.requests().back(),
+              (take_over::TakeOverRequest{.requested = 13, .acknowledged = 14}));
+  }
+}
+
+TEST(LateTakeOverLogTest, SaysThatAnInputMayHaveBeenEffectiveBeforeIfOffersAreMissing) {
+  take_over::TakeOverLog log;
+  Add(log, Command(0, arbitration_t::AUTOMATION));
+  Add(log, Command(1, arbitration_t::REQUEST));
+  Add(log, Command(2, arbitration_t::HANDOVER));
+  log.Add(Command(3, arbitration_t::RECOVERING, -3), std::nullopt);
+  log.Add(Command(4, arbitration_t::RECOVERING, -3), std::nullopt);
+  Add(log, Command(5, arbitration_t::RECOVERING, -3));
+  const take_over::TakeOverEntry& last = log.entries().back();
+  EXPECT_EQ(last.logged, "first effective input of the driver");
+  EXPECT_EQ(last.step, 5);
+  EXPECT_EQ(last.earliest_step, 3);
+}
+
 TEST(LateTakeOverLogTest, KnowsTheStateOfALateLogWhenEmergencyBrakingHidesItNoLonger) {
   take_over::TakeOverLog log;
   Add(log, Emergency(7, arbitration_t::EMERGENCY_BRAKING));

@@ -24,11 +24,11 @@ Lack LackingEvery(std::size_t channel) {
   return lack;
 }
 
-/// The measures of a run that are unknown.
-std::set<std::string> Unknown(const Lack& lack) {
+/// The measures of a run that are unknown. @param has_value whether each measure has a value
+std::set<std::string> Unknown(const Lack& lack, bool has_value = true) {
   std::set<std::string> names;
   VisitMetrics({}, [&](std::string_view name, const auto&, std::string_view, std::string_view) {
-    if (!IsKnown(name, lack)) names.emplace(name);
+    if (!IsKnown(name, has_value, lack)) names.emplace(name);
   });
   return names;
 }
@@ -74,11 +74,7 @@ TEST(GapRulesTest, ExtremesAndMeansOfAChannelWithoutAnyMessageAreUnknown) {
             (std::set<std::string>{"max_doc", "min_conflict_clear_m", "max_conflict_clear_m"}));
   EXPECT_EQ(more(IndexOf<track_t>()), (std::set<std::string>{"rms_fusion_error_m"}));
   EXPECT_EQ(more(IndexOf<follower_command_t>()),
-            (std::set<std::string>{"min_follower_gap_m", "max_compromised_safety_m",
-                                   "mean_compromised_safety_fog_m", "min_follower_ttc_s",
-                                   "min_follower_time_gap_s", "max_follower_drac_mps2",
-                                   "min_follower_picud_m", "min_follower_rss_margin_m",
-                                   "min_follower_rss_margin_ad_rss_m"}));
+            (std::set<std::string>{"max_compromised_safety_m", "mean_compromised_safety_fog_m"}));
   EXPECT_FALSE(AreTakeOversKnown(LackingEvery(IndexOf<arbitration_t>())));
 }
 
@@ -88,6 +84,37 @@ TEST(GapRulesTest, NothingIsKnownWithoutTruth) {
     all.emplace(name);
   });
   EXPECT_EQ(Unknown(LackingEvery(IndexOf<truth_t>())), all);
+}
+
+TEST(GapRulesTest, AMissingTruthMakesSumsAndDifferencesUnknown) {
+  const std::set<std::string> unknown = Unknown(Lacking(IndexOf<truth_t>()));
+  for (const char* name :
+       {"host_tet_s", "host_tit_s2", "host_cpi", "follower_tet_s", "follower_tit_s2",
+        "follower_cpi", "max_abs_jerk_mps3", "max_abs_jerk_1s_mps3", "rms_jerk_mps3",
+        "max_slow_down_fog_mps", "transfers", "false_alarms_ph"}) {
+    EXPECT_TRUE(unknown.contains(name)) << name;
+  }
+  for (const char* name : {"min_host_gap_m", "min_host_ttc_s", "collision", "collision_time_s",
+                           "max_abs_acceleration_mps2", "rms_fusion_error_m", "steps"}) {
+    EXPECT_FALSE(unknown.contains(name)) << name;
+  }
+}
+
+TEST(GapRulesTest, AMissingScanMakesTheMeasuresOfDeceptionUnknown) {
+  EXPECT_EQ(Unknown(Lacking(IndexOf<lidar_t>())),
+            (std::set<std::string>{"wrong_human_s", "deception_to_alarm_s", "false_alarms_ph"}));
+}
+
+TEST(GapRulesTest, AnExtremeWithoutAValueIsUnknownIfAMissingStepMightGiveOne) {
+  const std::set<std::string> radar = Unknown(Lacking(IndexOf<radar_t>()), false);
+  EXPECT_TRUE(radar.empty());
+  const std::set<std::string> follower = Unknown(Lacking(IndexOf<follower_command_t>()), false);
+  EXPECT_TRUE(follower.contains("mean_compromised_safety_fog_m"));
+  EXPECT_FALSE(follower.contains("min_host_ttc_s"));
+  Lack late;
+  late.beginning = true;
+  EXPECT_TRUE(Unknown(late, false).contains("mean_compromised_safety_fog_m"));
+  EXPECT_FALSE(Unknown(late, false).contains("collision_time_s"));
 }
 
 TEST(GapRulesTest, AMissingBeginningMakesOnlyUnknownWhatBeginsThere) {
