@@ -16,6 +16,7 @@ void RealtimeAccumulator::Add(const status_t& status) {
 
 void RealtimeAccumulator::AddStep(const runtime::ChannelSet& there) {
   ++steps_;
+  if (logged_[IndexOf<truth_t>()] == 0 && !there[IndexOf<truth_t>()]) ++late_steps_;
   for (std::size_t i = 0; i < kNumChannels; ++i) logged_[i] += there[i] ? 1 : 0;
 }
 
@@ -50,13 +51,16 @@ RealtimeFigures RealtimeAccumulator::Result() const {
   for (std::size_t i = 0; i < kNumChannels; ++i) {
     if (kChannels[i].pace != Pace::kStep) continue;
     figures.missed_messages += steps_ - logged_[i];
-    figures.unlogged_messages += Unlogged(i);
+    const std::int64_t unlogged = Unlogged(i);
+    figures.unlogged_messages += unlogged;
+    figures.unlogged_channels[i] = unlogged > late_steps_;
   }
   for (const auto& [process, status] : last_) {
     if (process.first == NameOf(Role::kRecorder)) continue;  // no role waits for the recorder
     figures.deadline_misses += status.deadline_misses;
     for (const std::int64_t late : status.input_late) figures.late_messages += late;
     if (process.first != NameOf(Role::kWorld)) continue;
+    figures.has_status = true;
     figures.ticks += status.ticks;
     figures.ticks_late += status.ticks_late;
     figures.ticks_missed += status.ticks_missed;

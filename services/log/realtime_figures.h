@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -33,12 +34,22 @@ struct RealtimeFigures {
   // At least this number of the missed messages was published. Messages that came too late for the
   // recorder do not count here.
   std::int64_t unlogged_messages = 0;
+  // The channels of these messages, apart from messages before the first TRUTH of the log.
+  runtime::ChannelSet unlogged_channels;
+  // Whether the log has a STATUS of the world. All figures except `speed` and `missed_messages`
+  // come from STATUS, so without it they are unknown.
+  bool has_status = false;
   // The first fallbacks (FallbackLog::kMaxKept at most), and the number of later fallbacks.
   std::vector<runtime::Fallback> fallbacks;
   std::int64_t fallbacks_left_out = 0;
   // nullopt in a log of lcm-logger, of an older version, or of a run that ended too early.
   std::optional<RealtimePriority> priority;
 };
+
+/// Whether a figure (a name of VisitFigures()) is known.
+inline bool IsKnown(std::string_view figure, const RealtimeFigures& f) {
+  return f.has_status || figure == "speed" || figure == "missed_messages";
+}
 
 /// Calls `visit(name, value, unit, description)` for every figure that is a number, in order.
 template <class Visitor>
@@ -79,6 +90,7 @@ class RealtimeAccumulator {
   runtime::FallbackLog fallbacks_;
   std::optional<RealtimePriority> priority_;
   std::int64_t steps_ = 0;                           // number of steps in the log
+  std::int64_t late_steps_ = 0;                      // of these, the steps before the first TRUTH
   std::array<std::int64_t, kNumChannels> logged_{};  // number of logged messages of each channel
   // The last STATUS of each process, by role and instance. The counters of a STATUS begin at the
   // start of the process.

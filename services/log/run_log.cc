@@ -194,7 +194,9 @@ class RunLogReader::Assembler {
     const bool whole = pending_.empty() && !run_.gaps.Any() && !tail_;
     run_.ended = last_ && whole && run_.has_scenario && conflict_.empty() &&
                  reader_.torn().empty() && !run_.altered;
-    run_.complete = run_.ended && (!run_.realtime || run_.realtime->unlogged_messages == 0);
+    run_.complete =
+        run_.ended &&
+        (!run_.realtime || (run_.realtime->has_status && run_.realtime->unlogged_messages == 0));
     LogRemarks remarks{.torn = reader_.torn(),
                        .alteration = alteration,
                        .first = realtime_ ? first_heard_ : run_.gaps.first,

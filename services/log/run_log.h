@@ -41,7 +41,7 @@ struct RunLog {
   // last step of the run, the log was not changed after it was sealed, no event is torn, and no two
   // messages of one step and channel differ. In lockstep, the log must also have all messages.
   bool ended = false;
-  // Whether `ended` is true and, in real time, no published message is known to be missing.
+  // Whether `ended` is true and, in real time, STATUS says that no published message is missing.
   bool complete = false;
   // Why the log is not complete, or what was ignored; "" if there is no such remark.
   std::string note;

@@ -220,8 +220,10 @@ std::string MetricsText(const runner::ExperimentResult& result) {
 
 nlohmann::ordered_json RealtimeJson(const log::RealtimeFigures& figures) {
   nlohmann::ordered_json json;
-  log::VisitFigures(figures, [&json](std::string_view name, const auto& value, std::string_view,
-                                     std::string_view) { json[std::string(name)] = value; });
+  log::VisitFigures(figures, [&](std::string_view name, const auto& value, std::string_view,
+                                 std::string_view) {
+    json[std::string(name)] = log::IsKnown(name, figures) ? nlohmann::ordered_json(value) : nullptr;
+  });
   json["fallbacks"] = nlohmann::ordered_json::array();
   for (const runtime::Fallback& fallback : figures.fallbacks) {
     nlohmann::ordered_json entry{
@@ -252,9 +254,11 @@ std::string PriorityText(const log::RealtimePriority& priority) {
 
 std::string RealtimeText(const log::RealtimeFigures& figures) {
   std::string text;
-  log::VisitFigures(figures, [&text](std::string_view name, const auto& value,
-                                     std::string_view unit, std::string_view) {
-    text += fmt::format("  {:<32}{:>12} {}\n", name, value, unit);
+  log::VisitFigures(figures, [&](std::string_view name, const auto& value, std::string_view unit,
+                                 std::string_view) {
+    const bool known = log::IsKnown(name, figures);
+    text += known ? fmt::format("  {:<32}{:>12} {}\n", name, value, unit)
+                  : fmt::format("  {:<32}{:>12}\n", name, "unknown");
   });
   if (figures.priority) text += PriorityText(*figures.priority);
   for (const runtime::Fallback& fallback : figures.fallbacks) {

@@ -13,10 +13,11 @@ std::string CommonPart(Scenario scenario) {
   return PrintScenario(scenario);
 }
 
-/// Whether there is a sample of each step up to the last.
+/// Whether there is a sample of each step of the run.
 bool HasEverySample(const runner::LoggedRun& run) {
   const std::vector<metrics::Sample>& samples = run.result.samples;
-  return !run.gaps.Any() && (samples.empty() || samples.back().step == std::ssize(samples) - 1);
+  return run.ended && !run.gaps.Any() &&
+         (samples.empty() || samples.back().step == std::ssize(samples) - 1);
 }
 
 }  // namespace

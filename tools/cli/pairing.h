@@ -19,7 +19,7 @@ Scenario WithoutTradedControl(Scenario scenario);
 struct Pairing {
   metrics::PairedMetrics measures;
   metrics::FogEffect without;  // effect of the fog in the paired run without traded control
-  bool unknown = false;        // there is a paired run, but one of the two logs lacks a step
+  bool unknown = false;        // there is a paired run, but one of the two logs is not whole
 };
 
 /// The pairing of every run, in the order of `runs`. The paired run has the policy `none` and the

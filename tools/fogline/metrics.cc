@@ -74,7 +74,7 @@ int RunMetrics(const MetricsArguments& arguments) {
   const bool readable = cli::ForEachReadable(arguments.logs, [&](const std::filesystem::path& log) {
     runs.push_back(runner::ReadLoggedRun(log, options));
   });
-  if (writes_csv) WriteTakeOvers(runs, arguments.take_overs);
+  if (writes_csv && readable) WriteTakeOvers(runs, arguments.take_overs);
   const std::vector<cli::Pairing> pairs = cli::MeasurePairs(runs);
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
   for (std::size_t i = 0; i < runs.size(); ++i) {

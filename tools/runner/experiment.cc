@@ -198,6 +198,7 @@ LoggedRun ReadSteps(const std::filesystem::path& log, const log::ReadOptions& op
   logged.result.realtime = logged.realtime;
   metrics::Lack& lack = logged.result.lack;
   for (std::size_t i = 0; i < kNumChannels; ++i) lack.channels[i] = logged.gaps.Lacks(i);
+  if (logged.realtime) lack.channels = logged.realtime->unlogged_channels;
   if (has_steps) lack.every = all & ~heard;
   lack.beginning = first.value_or(0) > 0;
   measures.PutInto(logged);

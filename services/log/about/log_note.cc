@@ -45,10 +45,15 @@ std::string NoteOf(const RunLog& run, const LogRemarks& remarks) {
   if (first > 0) note(fmt::format("begins at step {}{}", first, OfSteps(run)));
   if (!remarks.has_last) note(Shortage(run, remarks));
   note(run.gaps.Text());
+  if (run.realtime && !run.realtime->has_status) note("real time, without STATUS of the world");
   if (run.realtime && run.realtime->missed_messages > 0) {
     note(fmt::format("real time, {} messages missing", run.realtime->missed_messages));
     const std::int64_t unlogged = run.realtime->unlogged_messages;
-    if (unlogged > 0) note(fmt::format("published, but not in the log: {}", unlogged));
+    const std::string names = NamesOfChannels(run.realtime->unlogged_channels);
+    if (unlogged > 0) {
+      note(fmt::format("published, but not in the log: {}{}", unlogged,
+                       names.empty() ? "" : fmt::format(" ({})", names)));
+    }
   }
   if (remarks.tail) note(StepLacks(*remarks.tail, NamesOfChannels(remarks.tail_lacks)));
   if (remarks.unread && first == 0) note(Lacks(*remarks.unread, run.steps));

@@ -209,7 +209,12 @@ TEST_F(TakeOverRunTest, ReplacesNoOtherFileByItsCsvFile) {
                              "not replaced\n");
   EXPECT_EQ(Content(log), before);
   TakeOvers({log});
-  TakeOvers({log});  // a table of take-overs is replaced
+  const std::string table = TakeOvers({log});  // a table of take-overs is replaced
+  const std::string file = folder_.File("take-overs.csv");
+  EXPECT_EQ(
+      RunCommand({Program("fogline"), "metrics", folder_.File("none"), "--take-overs", file}).code,
+      2);
+  EXPECT_EQ(Content(file), table) << "the table is kept if a log cannot be read";
 }
 
 TEST_F(TakeOverRunTest, WritesItsCsvFileAlsoToStdout) {

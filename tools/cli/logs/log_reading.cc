@@ -107,6 +107,9 @@ void SayWhatIsUnknown(const runner::LoggedRun& run, const std::string& of_pair) 
   for (const std::string& other : {of_pair, UnknownTakeOvers(run)}) {
     if (has_truth && !other.empty()) unknown += (unknown.empty() ? "" : ", ") + other;
   }
+  if (unknown.empty() && !run.ended && run.steps > 0) {
+    Complain(fmt::format("{}: the measures are of the steps in the log", PathText(run.result.log)));
+  }
   if (unknown.empty()) return;
   const std::string others = has_truth ? "; the other measures are of the steps in the log" : "";
   Complain(fmt::format("{}: unknown, because messages are missing: {}{}", PathText(run.result.log),

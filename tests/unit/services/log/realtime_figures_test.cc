@@ -4,6 +4,7 @@
 
 #include <limits>
 
+#include "services/log/gaps/log_gaps.h"
 #include "tests/unit/services/log/short_log.h"
 
 namespace fogline {
@@ -58,6 +59,26 @@ TEST_F(UnloggedMessagesTest, AreThoseThatTheirProducerHasCountedAndTheLogHasNot)
   AddRadar(1, 9);
   EXPECT_EQ(figures_.Result().missed_messages, 4);
   EXPECT_EQ(figures_.Result().unlogged_messages, 3) << "one was never published";
+  EXPECT_EQ(log::NamesOfChannels(figures_.Result().unlogged_channels), "RADAR");
+}
+
+TEST_F(UnloggedMessagesTest, OfALogThatBeginsLateAreOfNoChannelIfTheyCameBeforeItsFirstTruth) {
+  AddSteps(4, {});
+  AddSteps(1, AllBut({IndexOf<truth_t>()}));
+  AddSteps(5, AllBut({}));
+  AddRadar(1, 10);
+  const log::RealtimeFigures figures = figures_.Result();
+  EXPECT_EQ(figures.unlogged_messages, 5 + 4 + 4) << "TRUTH, HOST_EGO and RADAR";
+  EXPECT_EQ(figures.unlogged_channels, runtime::ChannelSet());
+}
+
+TEST(RealtimeFiguresTest, AreUnknownWithoutAStatusOfTheWorld) {
+  log::RealtimeAccumulator figures(1, kStep_us, 1000);
+  figures.Add(Said("radar", 1, 1));
+  EXPECT_FALSE(IsKnown("ticks", figures.Result()));
+  EXPECT_TRUE(IsKnown("missed_messages", figures.Result()));
+  figures.Add(Said("world", 1, 1));
+  EXPECT_TRUE(IsKnown("ticks", figures.Result()));
 }
 
 TEST_F(UnloggedMessagesTest, AreNotThoseThatCameWhenTheirStepWasWritten) {

@@ -47,7 +47,7 @@ TEST_F(RunLogTest, InRealTimeHasEndedWithoutTheLastStateOfTheWorldAndIsIncomplet
   EXPECT_EQ(run.steps, kSteps);
   EXPECT_TRUE(run.ended) << run.note;
   EXPECT_FALSE(run.complete);
-  EXPECT_EQ(run.note, "real time, 1 messages missing; published, but not in the log: 1");
+  EXPECT_EQ(run.note, "real time, 1 messages missing; published, but not in the log: 1 (TRUTH)");
   ASSERT_TRUE(run.realtime);
   EXPECT_EQ(run.realtime->unlogged_messages, 1);
 }
@@ -67,6 +67,13 @@ TEST_F(RunLogTest, InRealTimeIsCompleteWithoutAMessageThatWasNotPublished) {
   }));
   EXPECT_TRUE(run.complete) << run.note;
   EXPECT_EQ(run.note, "real time, 1 messages missing");
+}
+
+TEST_F(RunLogTest, InRealTimeIsIncompleteWithoutAnyStatusOfTheWorld) {
+  const log::RunLog run = Read({.realtime = true, .status = false});
+  EXPECT_TRUE(run.ended) << run.note;
+  EXPECT_FALSE(run.complete);
+  EXPECT_EQ(run.note, "real time, without STATUS of the world");
 }
 
 TEST_F(RunLogTest, InRealTimeIsIncompleteWithoutItsLastStep) {

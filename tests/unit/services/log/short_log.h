@@ -34,6 +34,8 @@ struct ShortLog {
       [](std::string_view, std::int64_t) { return true; };
   /// If set, the log ends with a STATUS of the world that has this step and the state DONE.
   std::optional<std::int64_t> done;
+  /// Whether a log in real time has a STATUS of the world.
+  bool status = true;
   /// If set, the scenario has two parts, and a TRUTH of this step comes between them.
   std::optional<std::int64_t> early;
   /// If set, the log has this event on FOGLINE_GRAPH after the scenario.
@@ -82,11 +84,13 @@ inline log::LogHead WriteShortLog(const std::filesystem::path& file,
       writer.Write(ChannelOf<M>().name, message.header.utime, bytes);
     });
   }
-  if (contents.done) {
+  if (contents.done || (contents.realtime && contents.status)) {
+    const std::int64_t step = contents.done.value_or(kSteps - 1);
     status_t status{};
-    status.header = {.run_id = kRunId, .step = *contents.done, .utime = *contents.done * kStep_us};
+    status.header = {.run_id = kRunId, .step = step, .utime = step * kStep_us};
     status.role = NameOf(Role::kWorld);
-    status.state = status_t::DONE;
+    status.sequence = 1;
+    status.state = contents.done ? status_t::DONE : status_t::RUNNING;
     runtime::Encode(status, bytes);
     writer.Write(ChannelOf<status_t>().name, status.header.utime, bytes);
   }

@@ -269,6 +269,7 @@ TEST(MeasuresTest, AreThoseOfEachCarOfAColumn) {
 
 TEST(MeasuresTest, OfARunInRealTimeAreItsFiguresAndFallbacks) {
   log::RealtimeFigures figures;
+  figures.has_status = true;
   figures.ticks_late = 4;
   figures.fallbacks = {
       {.step = 17, .role = "arbitrator", .what = "TRACK lost", .culprit = "fusion"},

@@ -127,6 +127,7 @@ TEST(RunOutcomeTest, NamesTheDifferenceThatAVerificationFound) {
 TEST(RunOutcomeTest, HasTheFiguresOfARunInRealTime) {
   RunOutcome outcome = Undisturbed();
   outcome.result.realtime.emplace();
+  outcome.result.realtime->has_status = true;
   outcome.result.realtime->ticks_late = 4;
   EXPECT_EQ(ToJson(outcome)["realtime"]["ticks_late"], 4);
   EXPECT_THAT(ToText(outcome), HasSubstr("\n  ticks_late "));

@@ -1,0 +1,90 @@
+// Logs of runs in real time that lack published messages. Messages that were never published are
+// normal in such a run.
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "tests/integration/logs/gap_fixture.h"
+
+namespace fogline::test {
+namespace {
+
+using ::testing::ContainsRegex;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+/// The runs of this test have 250 steps, of which the last are in fog.
+class GapInRealtimeTest : public GapTest {
+ protected:
+  /// Makes a run. @return its log
+  std::string Run(const std::string& policy) {
+    whole_ = folder_.File(policy + ".lcm");
+    const Outcome run =
+        Fogline({"run", "scenario/paper.json", "--realtime", "--speed", "20", "--quiet", "--log",
+                 whole_, "--set", "/steps=250", "--set", "/arbitrator/policy=" + policy});
+    EXPECT_EQ(run.code, 0) << run.err;
+    return whole_;
+  }
+};
+
+TEST_F(GapInRealtimeTest, PairsHaveNoSafetyImprovementIfALogLacksATruth) {
+  const auto without_one = [&](const std::string& policy) {
+    Run(policy);
+    return Without(
+        [](std::string_view channel, std::int64_t step) { return channel == "TRUTH" && step == 7; },
+        policy + "_gap.lcm");
+  };
+  const std::string none = without_one("none");
+  const std::string traded = without_one("traded");
+  const nlohmann::json pair = Json({"metrics", none, traded}, 1);
+  EXPECT_TRUE(pair[1]["si_pct"].is_null());
+  EXPECT_EQ(pair[1]["metrics"]["steps"], 249);
+  EXPECT_THAT(Fogline({"metrics", none, traded}).err,
+              HasSubstr(", si_pct, si_until_recovery_pct; the other measures are of the steps"));
+}
+
+TEST_F(GapInRealtimeTest, MeasuresAreUnknownIfPublishedMessagesOfTheirChannelsAreMissing) {
+  const std::string whole = Run("traded");
+  EXPECT_THAT(Fogline({"metrics", whole}).err, Not(HasSubstr("unknown")));
+  const nlohmann::json of_whole = Json({"events", whole}, 0)[0]["events"];
+  ASSERT_GE(of_whole.size(), 2U);
+  const std::int64_t transfer = of_whole[1]["step"];
+  const std::string log = Without([&](std::string_view channel, std::int64_t step) {
+    return channel == "HOST_COMMAND" && step >= transfer - 60 && step <= transfer;
+  });
+  const nlohmann::json metrics = Json({"metrics", log}, 1)[0]["metrics"];
+  EXPECT_TRUE(metrics["human_time_s"].is_null());
+  EXPECT_FALSE(metrics["min_host_gap_m"].is_null());
+  EXPECT_THAT(Fogline({"metrics", log}).err,
+              ContainsRegex("published, but not in the log: [0-9]+ [(]HOST_COMMAND[)]\n"));
+  EXPECT_EQ(Json({"events", log}, 1)[0]["events"][1]["earliest_step"], transfer - 60);
+}
+
+TEST_F(GapInRealtimeTest, FiguresAreUnknownWithoutStatus) {
+  Run("traded");
+  const std::string log =
+      Without([](std::string_view channel, std::int64_t) { return channel == "STATUS"; });
+  const nlohmann::json metrics = Json({"metrics", log}, 1)[0];
+  EXPECT_EQ(metrics["complete"], false);
+  EXPECT_EQ(metrics["realtime"]["ticks"], nullptr);
+  EXPECT_EQ(metrics["realtime"]["speed"], 20);
+  const Outcome text = Fogline({"metrics", log});
+  EXPECT_THAT(text.err, HasSubstr("real time, without STATUS of the world"));
+  EXPECT_THAT(text.out, HasSubstr("  latency_p50_us                       unknown\n"));
+}
+
+TEST_F(GapInRealtimeTest, SaysWithWhichStepALateLogBegins) {
+  Run("traded");
+  const std::string log = Without([](std::string_view channel, std::int64_t step) {
+    return channel != "RUN" && channel != "STATUS" && step < 100;
+  });
+  EXPECT_THAT(Fogline({"metrics", log}).err, HasSubstr("begins at step 100 of 250; real time, "));
+  EXPECT_FALSE(Json({"metrics", log}, 1)[0]["metrics"]["human_time_s"].is_null());
+}
+
+}  // namespace
+}  // namespace fogline::test
