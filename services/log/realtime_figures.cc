@@ -43,6 +43,11 @@ std::int64_t RealtimeAccumulator::Unlogged(std::size_t channel) const {
   return processes == 1 ? std::max<std::int64_t>(0, published - logged_[channel] - late) : 0;
 }
 
+bool RealtimeAccumulator::HasStatus(Role role) const {
+  return std::ranges::any_of(
+      last_, [role](const auto& status) { return status.first.first == NameOf(role); });
+}
+
 RealtimeFigures RealtimeAccumulator::Result() const {
   RealtimeFigures figures{.speed = speed_,
                           .fallbacks = fallbacks_.all(),
@@ -53,7 +58,9 @@ RealtimeFigures RealtimeAccumulator::Result() const {
     figures.missed_messages += steps_ - logged_[i];
     const std::int64_t unlogged = Unlogged(i);
     figures.unlogged_messages += unlogged;
-    figures.unlogged_channels[i] = unlogged > late_steps_;
+    const std::int64_t missed = steps_ - late_steps_ - logged_[i];
+    figures.unlogged_channels[i] =
+        HasStatus(kChannels[i].from) ? unlogged > late_steps_ : missed > 0;
   }
   for (const auto& [process, status] : last_) {
     if (process.first == NameOf(Role::kRecorder)) continue;  // no role waits for the recorder

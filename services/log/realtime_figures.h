@@ -34,7 +34,8 @@ struct RealtimeFigures {
   // At least this number of the missed messages was published. Messages that came too late for the
   // recorder do not count here.
   std::int64_t unlogged_messages = 0;
-  // The channels of these messages, apart from messages before the first TRUTH of the log.
+  // The channels of these messages, apart from messages before the first TRUTH of the log. Also the
+  // channels that lack any message, if the log has no STATUS of their producer.
   runtime::ChannelSet unlogged_channels;
   // Whether the log has a STATUS of the world. All figures except `speed` and `missed_messages`
   // come from STATUS, so without it they are unknown.
@@ -82,6 +83,7 @@ class RealtimeAccumulator {
   RealtimeFigures Result() const;
 
  private:
+  bool HasStatus(Role role) const;
   /// Lower bound of the number of messages of a channel that were published but are not in the log.
   /// Messages that came too late for the recorder do not count here.
   std::int64_t Unlogged(std::size_t channel) const;

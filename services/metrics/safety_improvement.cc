@@ -1,6 +1,7 @@
 #include "services/metrics/safety_improvement.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <stdexcept>
 #include <string>
@@ -54,7 +55,7 @@ void SafetyImprovement::Add(const Sample& baseline, const Sample& traded) {
   if (!baseline.fog_present && !traded.fog_present) return;  // neither run is in fog
   const double without = baseline_.Next(baseline);
   const double with = traded_.Next(traded);
-  if (!baseline.fog_present || !(without > floor_m_)) return;
+  if (!baseline.fog_present || !(without > floor_m_) || std::isnan(with)) return;
   mean_.Add(without, with);
 }
 

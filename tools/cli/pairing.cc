@@ -13,11 +13,14 @@ std::string CommonPart(Scenario scenario) {
   return PrintScenario(scenario);
 }
 
-/// Whether there is a sample of each step of the run.
-bool HasEverySample(const runner::LoggedRun& run) {
+/// Whether the log has each step of the run, with the messages that the measures of a pair need.
+bool IsWhole(const runner::LoggedRun& run) {
   const std::vector<metrics::Sample>& samples = run.result.samples;
-  return run.ended && !run.gaps.Any() &&
-         (samples.empty() || samples.back().step == std::ssize(samples) - 1);
+  const auto lacks = run.result.lack.channels | run.result.lack.every;
+  const bool has_messages = !lacks[IndexOf<truth_t>()] && !lacks[IndexOf<track_t>()] &&
+                            !lacks[IndexOf<follower_command_t>()];
+  return has_messages && !run.gaps.Any() && !samples.empty() && samples.back().last &&
+         samples.back().step == std::ssize(samples) - 1;
 }
 
 }  // namespace
@@ -35,7 +38,7 @@ std::vector<Pairing> MeasurePairs(std::span<const runner::LoggedRun> runs) {
     if (runs[i].scenario.arbitrator.policy == Policy::kNone) continue;
     for (std::size_t j = 0; j < runs.size(); ++j) {
       if (runs[j].scenario.arbitrator.policy != Policy::kNone || common[i] != common[j]) continue;
-      if (!HasEverySample(runs[i]) || !HasEverySample(runs[j])) {
+      if (!IsWhole(runs[i]) || !IsWhole(runs[j])) {
         pairs[i].unknown = true;
         continue;
       }

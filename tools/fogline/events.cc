@@ -53,8 +53,9 @@ RunEvents ReadEvents(const std::filesystem::path& file, const log::ReadOptions& 
   }
   events.run = reader.run();
   const bool has_command = !events.log.entries().empty();
-  if (!events.log.requests().empty() || events.run.gaps.Any() || events.log.BeganInRequest() ||
-      !has_command) {
+  const bool has_gaps = events.run.gaps.Any() ||
+                        (events.run.realtime && events.run.realtime->unlogged_channels.any());
+  if (!events.log.requests().empty() || has_gaps || events.log.BeganInRequest() || !has_command) {
     runner::LoggedRun measured = runner::MeasureLoggedRun(file, events.run.scenario, options);
     measured.result.lack.beginning_of_request |= events.log.BeganInRequest();
     events.unknown = cli::UnknownTakeOvers(measured);
@@ -90,8 +91,10 @@ const metrics::TakeOverMeasures* MeasuresOf(const RunEvents& events,
 /// missing. In real time, a step may have no command. So an event is late only if published
 /// messages are missing.
 bool MayBeEarlier(const RunEvents& events, const take_over::TakeOverEntry& entry) {
-  const bool has_all = events.run.realtime && events.run.realtime->unlogged_messages == 0;
-  return !has_all && entry.earliest_step < entry.step;
+  if (entry.earliest_step == entry.step) return false;
+  if (!events.run.realtime) return true;
+  const runtime::ChannelSet& unlogged = events.run.realtime->unlogged_channels;
+  return unlogged[IndexOf<arbitration_t>()] || unlogged[IndexOf<driver_command_t>()];
 }
 
 /// The same for the events of a step.

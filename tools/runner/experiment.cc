@@ -168,12 +168,11 @@ LoggedRun ReadSteps(const std::filesystem::path& log, const log::ReadOptions& op
   metrics::SampleDecoder decoder;
   std::optional<std::int64_t> first;  // the first step with TRUTH
   runtime::ChannelSet heard;          // the channels of which a step with TRUTH has a message
-  bool has_steps = false;
+  bool has_last = false;              // whether the log has the TRUTH of the last step
   const runtime::ChannelSet all = log::OwnStepChannels();
   log::RunLogReader reader(log, options);
   while (const log::StepMessages* messages = reader.Next()) {
     if (reader.InTail()) continue;
-    has_steps = true;
     const runtime::ChannelSet there = log::ChannelsIn(*messages);
     if (!there[IndexOf<truth_t>()]) continue;  // the state of the step is unknown
     heard |= there;
@@ -187,6 +186,7 @@ LoggedRun ReadSteps(const std::filesystem::path& log, const log::ReadOptions& op
                       PathText(log), reader.step()));
     }
     if (!first) first = sample->step;
+    has_last = sample->last;
     use(*sample);
     measures.Add(*messages, decoder);
   }
@@ -199,7 +199,8 @@ LoggedRun ReadSteps(const std::filesystem::path& log, const log::ReadOptions& op
   metrics::Lack& lack = logged.result.lack;
   for (std::size_t i = 0; i < kNumChannels; ++i) lack.channels[i] = logged.gaps.Lacks(i);
   if (logged.realtime) lack.channels = logged.realtime->unlogged_channels;
-  if (has_steps) lack.every = all & ~heard;
+  lack.every = all & ~heard;
+  lack.last = lack.channels[IndexOf<truth_t>()] && !has_last;
   lack.beginning = first.value_or(0) > 0;
   measures.PutInto(logged);
   if (!metrics::AreTakeOversKnown(lack)) logged.result.take_overs.clear();

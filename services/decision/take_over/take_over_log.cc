@@ -187,7 +187,11 @@ void TakeOverLog::Change(const arbitration_t& command, std::int8_t from, bool tr
                       .transfer = transfer,
                       .logged = logged});
   NoteUnasked(from, command.mode);
-  if (HidesRequest(command, from)) unasked_ = true;
+  if (HidesRequest(command, from)) {
+    unasked_ = true;
+    asked_ = false;
+    before_share_mps2_.reset();
+  }
   if (share_changes) {
     before_share_mps2_.reset();
     unknown_offer_.reset();
@@ -219,7 +223,8 @@ bool TakeOverLog::HidesRequest(const arbitration_t& command, std::int8_t from) c
   if (earliest_ == command.header.step) return false;
   const bool has_answered = from == arbitration_t::HUMAN || from == arbitration_t::RECOVERING;
   if (InMinimalRisk(command.mode)) return from == arbitration_t::AUTOMATION;
-  if (command.mode == arbitration_t::REQUEST_URGENT || command.mode == arbitration_t::HANDOVER) {
+  if (command.mode == arbitration_t::REQUEST_URGENT) return from != arbitration_t::REQUEST;
+  if (command.mode == arbitration_t::HANDOVER) {
     return has_answered || from == arbitration_t::AUTOMATION;
   }
   return command.mode == arbitration_t::RECOVERING && from == arbitration_t::HUMAN;

@@ -102,7 +102,7 @@ bool IsKnown(std::string_view measure, bool has_value, const Lack& lack) {
     case Needs::kAnyStep:
       return has_value || !(lacks_a_step || lack.beginning);
     case Needs::kLaterStep:
-      return true;
+      return has_value || !lack.last;
     case Needs::kEveryStep:
       return !lacks_a_step;
     case Needs::kEveryStepFromTheBeginning:

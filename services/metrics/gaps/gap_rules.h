@@ -15,6 +15,7 @@ struct Lack {
   std::bitset<kNumChannels> channels;  // the channels that lack a message after the first step
   std::bitset<kNumChannels> every;     // the channels of which no step with TRUTH has a message
   bool beginning = false;              // whether the first steps are missing
+  bool last = false;                   // whether TRUTH is missing, also that of the last step
   // Whether a request to take over may have been open before the first HOST_COMMAND of the log.
   bool beginning_of_request = false;
 
@@ -27,7 +28,8 @@ struct Lack {
 /// its channels is missing. If it also depends on the beginning of the run, it is unknown if the
 /// beginning is missing. Extremes and means are computed from the steps that the log has. They are
 /// unknown if the log has no message of a channel, or if they have no value and a missing step
-/// might give one. A measure that the table does not have is known only if nothing is missing.
+/// might give one. A collision is in every later TRUTH. A measure that the table does not have is
+/// known only if nothing is missing.
 bool IsKnown(std::string_view measure, bool has_value, const Lack& lack);
 
 /// The same for a value that VisitMetrics() gives.
@@ -37,7 +39,7 @@ bool IsKnown(std::string_view measure, const V& value,
   if constexpr (std::is_same_v<V, std::optional<double>>) {
     return IsKnown(measure, value.has_value(), lack);
   } else {
-    return IsKnown(measure, true, lack);
+    return IsKnown(measure, value != 0, lack);
   }
 }
 

@@ -42,7 +42,7 @@ TEST_F(GapInRealtimeTest, PairsHaveNoSafetyImprovementIfALogLacksATruth) {
   const std::string traded = without_one("traded");
   const nlohmann::json pair = Json({"metrics", none, traded}, 1);
   EXPECT_TRUE(pair[1]["si_pct"].is_null());
-  EXPECT_EQ(pair[1]["metrics"]["steps"], 249);
+  EXPECT_LE(pair[1]["metrics"]["steps"], 249);
   EXPECT_THAT(Fogline({"metrics", none, traded}).err,
               HasSubstr(", si_pct, si_until_recovery_pct; the other measures are of the steps"));
 }
@@ -60,18 +60,22 @@ TEST_F(GapInRealtimeTest, MeasuresAreUnknownIfPublishedMessagesOfTheirChannelsAr
   EXPECT_TRUE(metrics["human_time_s"].is_null());
   EXPECT_FALSE(metrics["min_host_gap_m"].is_null());
   EXPECT_THAT(Fogline({"metrics", log}).err,
-              ContainsRegex("published, but not in the log: [0-9]+ [(]HOST_COMMAND[)]\n"));
-  EXPECT_EQ(Json({"events", log}, 1)[0]["events"][1]["earliest_step"], transfer - 60);
+              ContainsRegex("published, but not in the log: [0-9]+ [(][A-Z_, ]*HOST_COMMAND"));
+  const nlohmann::json event = Json({"events", log}, 1)[0]["events"].at(1);
+  EXPECT_LE(event["earliest_step"], transfer - 60) << "a step before the gap may have no command";
+  EXPECT_GT(event["step"], transfer);
 }
 
 TEST_F(GapInRealtimeTest, FiguresAreUnknownWithoutStatus) {
   Run("traded");
-  const std::string log =
-      Without([](std::string_view channel, std::int64_t) { return channel == "STATUS"; });
+  const std::string log = Without([](std::string_view channel, std::int64_t step) {
+    return channel == "STATUS" || (channel == "HOST_COMMAND" && step > 100 && step < 120);
+  });
   const nlohmann::json metrics = Json({"metrics", log}, 1)[0];
   EXPECT_EQ(metrics["complete"], false);
   EXPECT_EQ(metrics["realtime"]["ticks"], nullptr);
   EXPECT_EQ(metrics["realtime"]["speed"], 20);
+  EXPECT_EQ(metrics["metrics"]["human_time_s"], nullptr);
   const Outcome text = Fogline({"metrics", log});
   EXPECT_THAT(text.err, HasSubstr("real time, without STATUS of the world"));
   EXPECT_THAT(text.out, HasSubstr("  latency_p50_us                       unknown\n"));

@@ -102,12 +102,13 @@ std::string UnknownTakeOvers(const runner::LoggedRun& run) {
 }
 
 void SayWhatIsUnknown(const runner::LoggedRun& run, const std::string& of_pair) {
+  if (run.steps == 0 && !run.gaps.Any()) return;  // SayAboutLog() says it
   const bool has_truth = !run.result.lack.every[IndexOf<truth_t>()];
   std::string unknown = UnknownMeasures(run.result);
   for (const std::string& other : {of_pair, UnknownTakeOvers(run)}) {
     if (has_truth && !other.empty()) unknown += (unknown.empty() ? "" : ", ") + other;
   }
-  if (unknown.empty() && !run.ended && run.steps > 0) {
+  if (unknown.empty() && !run.ended) {
     Complain(fmt::format("{}: the measures are of the steps in the log", PathText(run.result.log)));
   }
   if (unknown.empty()) return;

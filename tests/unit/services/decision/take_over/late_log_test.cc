@@ -67,6 +67,26 @@ TEST(LateTakeOverLogTest, DoesNotTakeARequestThatBeginsInAGapForTheOneBefore) {
   }
 }
 
+TEST(LateTakeOverLogTest, KeepsTheTimesOfARequestBeforeAGapInWhichTheNextOneBegins) {
+  take_over::TakeOverLog answered;
+  Add(answered, Command(0, arbitration_t::AUTOMATION));
+  Add(answered, Command(1, arbitration_t::REQUEST));
+  Add(answered, Command(2, arbitration_t::HANDOVER));
+  std::vector<take_over::TakeOverRequest> before = answered.requests();
+  Add(answered, Command(900, arbitration_t::REQUEST_URGENT));
+  EXPECT_EQ(answered.requests(), before);
+
+  take_over::TakeOverLog driven;
+  Add(driven, Command(0, arbitration_t::AUTOMATION));
+  Add(driven, Command(1, arbitration_t::REQUEST));
+  Add(driven, Command(2, arbitration_t::RECOVERING));
+  Add(driven, Command(3, arbitration_t::HUMAN));
+  before = driven.requests();
+  Add(driven, Command(900, arbitration_t::RECOVERING));
+  Add(driven, Command(901, arbitration_t::RECOVERING, -6));
+  EXPECT_EQ(driven.requests(), before);
+}
+
 TEST(LateTakeOverLogTest, SaysThatAnInputMayHaveBeenEffectiveBeforeIfOffersAreMissing) {
   take_over::TakeOverLog log;
   Add(log, Command(0, arbitration_t::AUTOMATION));

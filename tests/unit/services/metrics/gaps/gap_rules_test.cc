@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <set>
 #include <string>
 
@@ -115,6 +116,14 @@ TEST(GapRulesTest, AnExtremeWithoutAValueIsUnknownIfAMissingStepMightGiveOne) {
   late.beginning = true;
   EXPECT_TRUE(Unknown(late, false).contains("mean_compromised_safety_fog_m"));
   EXPECT_FALSE(Unknown(late, false).contains("collision_time_s"));
+}
+
+TEST(GapRulesTest, ACollisionThatOnlyTheLastTruthWouldShowIsUnknown) {
+  Lack lack = Lacking(IndexOf<truth_t>());
+  EXPECT_TRUE(IsKnown("collision", std::int64_t{0}, lack));
+  lack.last = true;
+  EXPECT_FALSE(IsKnown("collision", std::int64_t{0}, lack));
+  EXPECT_TRUE(IsKnown("collision", std::int64_t{1}, lack));
 }
 
 TEST(GapRulesTest, AMissingBeginningMakesOnlyUnknownWhatBeginsThere) {
