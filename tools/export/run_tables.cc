@@ -47,10 +47,7 @@ class Tabulator {
                       "message types?",
                       table_.messages, table_.name));
     }
-    if (table_.fields.empty()) {
-      DefineFields();
-      for (const auto& [run_id, step] : early_gaps_) AddGapRow(run_id, step);
-    }
+    if (table_.fields.empty()) BeginTable();
     next_ = 0;
     VisitFields(message_, [this]<class V>(std::string_view name, const V& value) {
       if constexpr (std::is_same_v<V, header_t>) {
@@ -78,11 +75,17 @@ class Tabulator {
 
   /// The table. It has its columns even if it has no message.
   ChannelTable& table() {
-    if (table_.fields.empty()) DefineFields();
+    if (table_.fields.empty()) BeginTable();
     return table_;
   }
 
  private:
+  /// Adds the fields of message_, and the rows of the gaps so far.
+  void BeginTable() {
+    DefineFields();
+    for (const auto& [run_id, step] : early_gaps_) AddGapRow(run_id, step);
+  }
+
   /// Adds the fields of message_, without values.
   void DefineFields() {
     VisitFields(message_, [this]<class V>(std::string_view name, const V& value) {

@@ -156,6 +156,17 @@ TEST_F(GapTest, ExportHasARowWithEmptyCellsForAMissingMessage) {
   EXPECT_EQ(rows, expected);
 }
 
+TEST_F(GapTest, ExportHasRowsOfAChannelWithoutAnyMessage) {
+  const std::string log =
+      Without([](std::string_view channel, std::int64_t) { return channel == "RADAR"; });
+  const std::string out = folder_.File("csv");
+  EXPECT_EQ(Fogline({"export", log, "--out", out}).code, 1);
+  const std::vector<std::string> rows = LinesOf(out + "/RADAR.csv");
+  ASSERT_EQ(rows.size(), 501U);
+  EXPECT_THAT(rows[395], HasSubstr(",394,39400000,,"));
+  EXPECT_EQ(Fogline({"export", log, "--out", folder_.File("log.mat")}).code, 1);
+}
+
 TEST_F(GapTest, ALogWithoutTheBeginningIsUsedFromItsFirstStepOn) {
   const std::string log = Without(
       [](std::string_view channel, std::int64_t step) { return channel != "RUN" && step < 124; });
