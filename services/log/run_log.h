@@ -34,8 +34,8 @@ struct RunLog {
   std::string scenario_hash;
   runtime::ChannelSet channels;  // the channels of a step (log_graph.h)
   std::int64_t steps = 0;        // number of complete steps
-  // Digest of the complete steps; "" if there is none, or if the log has gaps and they were read
-  // (ReadOptions::gaps).
+  // Digest of the complete steps. It is empty if no step is complete. It is also empty if the log
+  // has gaps and the reader accepts them (ReadOptions::gaps).
   std::string digest;
   // Whether the log has the whole run, up to its end: the scenario is known, the log ends with the
   // last step of the run, the log was not changed after it was sealed, no event is torn, and no two
