@@ -127,8 +127,9 @@ void AddMetrics(CLI::App& app, cli::Action& action) {
   const auto arguments = std::make_shared<MetricsArguments>(*verb);
   verb->add_option("LOG", arguments->logs, "Event logs")->required();
   verb->add_option("--take-overs", arguments->take_overs,
-                   "CSV file to write: a line for each request to take over; an existing file is "
-                   "replaced only if it is such a table");
+                   "CSV file to write: a line for each request to take over; if messages are "
+                   "missing, also a line with the outcome unknown; an existing file is replaced "
+                   "only if it is such a table");
   verb->add_flag("--json", arguments->json, "Print as JSON");
   cli::ShowExitCodes(*verb, {.check_failed = "a log is not complete"});
   verb->footer(

@@ -69,6 +69,8 @@ std::string_view OutcomeText(metrics::TakeOverEnd end) {
       return "withdrawn";
     case metrics::TakeOverEnd::kFallback:
       return "fallback to the driver";
+    case metrics::TakeOverEnd::kUnknown:
+      return "unknown: the log ends first";
   }
   return "";
 }

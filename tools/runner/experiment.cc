@@ -145,9 +145,10 @@ class MessageMeasures {
   }
 
   /// @param run has the scenario and the name of the log
-  void PutInto(LoggedRun& run) const {
+  /// @param has_end whether the log has the last step
+  void PutInto(LoggedRun& run, bool has_end) const {
     run.result.followers = followers_.Result();
-    run.result.take_overs = take_overs_.Result();
+    run.result.take_overs = take_overs_.Result(has_end);
     run.result.lack.beginning_of_request = take_overs_.BeganInRequest();
     AddPersonMeasures(seats_, run);
   }
@@ -202,7 +203,7 @@ LoggedRun ReadSteps(const std::filesystem::path& log, const log::ReadOptions& op
   lack.every = all & ~heard;
   lack.last = lack.channels[IndexOf<truth_t>()] && !has_last;
   lack.beginning = first.value_or(0) > 0;
-  measures.PutInto(logged);
+  measures.PutInto(logged, has_last || logged.ended);
   if (!metrics::AreTakeOversKnown(lack)) logged.result.take_overs.clear();
   return logged;
 }

@@ -39,6 +39,8 @@ std::string_view NameOf(TakeOverEnd end) {
       return "withdrawn";
     case TakeOverEnd::kFallback:
       return "fallback";
+    case TakeOverEnd::kUnknown:
+      return "unknown";
   }
   return "";
 }
@@ -166,9 +168,13 @@ void TakeOverAccumulator::Finish(const Judged& judged, TakeOverMeasures& measure
   measures.manoeuvre_drove_s = Seconds(judged.manoeuvre_us);
 }
 
-std::vector<TakeOverMeasures> TakeOverAccumulator::Result() const {
+std::vector<TakeOverMeasures> TakeOverAccumulator::Result(bool has_end) const {
   std::vector<TakeOverMeasures> result = requests_;
-  if (judged_) Finish(*judged_, result.back());
+  if (!judged_) return result;
+  Finish(*judged_, result.back());
+  TakeOverEnd& outcome = result.back().outcome;
+  const bool may_change = outcome == TakeOverEnd::kOpen || outcome == TakeOverEnd::kMinimalRisk;
+  if (!has_end && may_change && !IsLocked(log_.mode())) outcome = TakeOverEnd::kUnknown;
   return result;
 }
 

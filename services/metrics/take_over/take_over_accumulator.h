@@ -31,7 +31,10 @@ class TakeOverAccumulator {
            std::optional<double> human_mps2);
 
   /// The measures of each request so far, in order of time.
-  std::vector<TakeOverMeasures> Result() const;
+  /// @param has_end whether the last step of the run was added. Otherwise the outcome of a request
+  ///     is unknown if it may still change: the driver has not taken over, and the judged interval
+  ///     has not ended.
+  std::vector<TakeOverMeasures> Result(bool has_end = true) const;
   /// Whether the log may lack the beginning of a request (TakeOverLog::BeganInRequest). Result()
   /// does not contain this request.
   bool BeganInRequest() const { return log_.BeganInRequest(); }

@@ -16,6 +16,7 @@ enum class TakeOverEnd : std::uint8_t {
   kMinimalRisk,    // a minimal risk manoeuvre, and the driver did not take over
   kWithdrawn,      // the automation drives on, and the driver had no share of the authority
   kFallback,       // the driver drives without an answer, because inputs have failed
+  kUnknown,        // the log lacks the end of the run, and with it the end of the request
 };
 
 /// Name of an outcome for JSON and CSV, such as "taken_over".

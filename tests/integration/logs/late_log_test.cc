@@ -146,6 +146,22 @@ TEST_F(LateLogTest, SaysThatARequestAfterAGapMayHaveBegunInTheGap) {
   EXPECT_THAT(Content(table), HasSubstr("\n" + log + ",1,,unknown,,"));
 }
 
+TEST_F(LateLogTest, ALogThatIsCutOffDoesNotKnowTheOutcomeOfItsRequest) {
+  const std::string log = Without([&](std::string_view channel, std::int64_t step) {
+    return channel != "RUN" && step > asked_ + 2;
+  });
+  const nlohmann::json request = Json({"metrics", log}, 1)[0]["take_overs"].at(0);
+  EXPECT_EQ(request["outcome"], "unknown");
+  EXPECT_EQ(request["requested_s"], measures_["requested_s"]);
+  EXPECT_EQ(Json({"events", log}, 1)[0]["requests"].at(0)["measures"]["outcome"], "unknown");
+  const std::string table = folder_.File("take-overs.csv");
+  EXPECT_EQ(Fogline({"metrics", log, "--take-overs", table}).code, 1);
+  EXPECT_THAT(Content(table), HasSubstr("\n" + log + ",1,1,unknown,"));
+  const std::string page = folder_.File("report.html");
+  EXPECT_EQ(Fogline({"report", log, "--output", page}).code, 1);
+  EXPECT_THAT(Content(page), HasSubstr("<td>unknown: the log ends first</td>"));
+}
+
 TEST_F(LateLogTest, HasNoFalseAlarmThatBeganBeforeIt) {
   const nlohmann::json whole = Json({"metrics", whole_}, 0)[0]["metrics"];
   EXPECT_EQ(whole["false_alarms_ph"], 0);

@@ -283,6 +283,22 @@ TEST(TakeOverAccumulatorTest, GoesWithoutTheCommandsOfAStepThatHasNone) {
   EXPECT_EQ(requests[0].min_time_gap_s, 0.5) << "the situation of this step counts";
 }
 
+TEST(TakeOverAccumulatorTest, ALogThatIsCutOffLeavesTheEndOfItsLastRequestOpen) {
+  using A = arbitration_t;
+  const auto cut = [](const std::vector<std::int8_t>& modes) {
+    std::vector<HostStep> steps;
+    for (const std::int8_t mode : modes) steps.push_back({.mode = mode});
+    return Accumulated(steps).Result(/*has_end=*/false).back().outcome;
+  };
+  EXPECT_EQ(cut({A::REQUEST, A::HANDOVER}), TakeOverEnd::kUnknown);
+  EXPECT_EQ(cut({A::REQUEST, A::MRM_COMFORT}), TakeOverEnd::kUnknown);
+  EXPECT_EQ(cut({A::REQUEST, A::MRM_COMFORT, A::MRM_DONE}), TakeOverEnd::kMinimalRisk);
+  EXPECT_EQ(cut({A::REQUEST, A::MINIMAL_RISK}), TakeOverEnd::kMinimalRisk) << "it lasts";
+  EXPECT_EQ(cut({A::REQUEST, A::HANDOVER, A::RECOVERING}), TakeOverEnd::kTakenOver);
+  EXPECT_EQ(cut({A::REQUEST, A::AUTOMATION}), TakeOverEnd::kWithdrawn);
+  EXPECT_EQ(metrics::NameOf(TakeOverEnd::kUnknown), "unknown");
+}
+
 TEST(TakeOverAccumulatorTest, LeavesOutARequestThatBeganBeforeTheLog) {
   const auto late = Accumulated({{.mode = arbitration_t::REQUEST},
                                  {.mode = arbitration_t::HANDOVER},
@@ -335,10 +351,10 @@ TEST(TakeOverMeasuresTest, HaveADistinctNameForEachOutcome) {
   using enum TakeOverEnd;
   std::set<std::string_view> names;
   for (const TakeOverEnd end :
-       {kOpen, kTakenOver, kTakenOverLate, kMinimalRisk, kWithdrawn, kFallback}) {
+       {kOpen, kTakenOver, kTakenOverLate, kMinimalRisk, kWithdrawn, kFallback, kUnknown}) {
     names.insert(metrics::NameOf(end));
   }
-  EXPECT_THAT(names, SizeIs(6));
+  EXPECT_THAT(names, SizeIs(7));
   EXPECT_FALSE(names.contains(""));
 }
 
