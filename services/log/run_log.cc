@@ -21,12 +21,6 @@
 
 namespace fogline::log {
 
-runtime::ChannelSet ChannelsIn(const StepMessages& messages) {
-  runtime::ChannelSet there;
-  for (std::size_t i = 0; i < kNumChannels; ++i) there[i] = !messages[i].empty();
-  return there;
-}
-
 /// Combines the events of a log into steps.
 class RunLogReader::Assembler {
  public:
@@ -205,6 +199,7 @@ class RunLogReader::Assembler {
                        .tail = tail_,
                        .tail_lacks = tail_lacks_,
                        .astray = astray_,
+                       .unchecked = parts_.empty() && status_hash_.empty() && run_.has_scenario,
                        .conflict = conflict_,
                        .foreign = foreign_};
     if (!pending_.empty()) remarks.unread = Unread();
@@ -395,7 +390,7 @@ RunLogReader::~RunLogReader() = default;
 const StepMessages* RunLogReader::Next() { return assembler_->Next(); }
 std::int64_t RunLogReader::step() const { return assembler_->step(); }
 bool RunLogReader::InTail() const { return assembler_->InTail(); }
-bool RunLogReader::MayHaveGap() const { return assembler_->ReadsGaps() && !InTail(); }
+bool RunLogReader::ReadsGaps() const { return assembler_->ReadsGaps(); }
 const RunLog& RunLogReader::run() const { return assembler_->run(); }
 
 }  // namespace fogline::log

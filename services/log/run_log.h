@@ -24,7 +24,11 @@ namespace fogline::log {
 using StepMessages = std::array<runtime::Bytes, kNumChannels>;
 
 /// The channels of which the step has a message.
-runtime::ChannelSet ChannelsIn(const StepMessages& messages);
+inline runtime::ChannelSet ChannelsIn(const StepMessages& messages) {
+  runtime::ChannelSet there;
+  for (std::size_t i = 0; i < kNumChannels; ++i) there[i] = !messages[i].empty();
+  return there;
+}
 
 /// The contents of a log, apart from its steps.
 struct RunLog {
@@ -55,6 +59,11 @@ struct RunLog {
   bool has_scenario = true;
 };
 
+/// The digest as text: "unknown" if it is empty.
+inline std::string DigestText(const RunLog& run) {
+  return run.digest.empty() ? "unknown" : run.digest;
+}
+
 /// Reads a run step by step from a log that the recorder or lcm-logger wrote. The events may be in
 /// any order. If the events are in order, the memory use is bounded.
 class RunLogReader {
@@ -81,9 +90,9 @@ class RunLogReader {
   /// Whether this step is one of the incomplete steps at the end of the log that a run leaves when
   /// it ends early. The missing messages of these steps are not gaps.
   bool InTail() const;
-  /// Whether a missing message of this step counts as a gap: gaps are read, the run is in lockstep,
-  /// and InTail() is false.
-  bool MayHaveGap() const;
+  /// Whether the steps may be incomplete because the log lacks messages: ReadOptions::gaps is set,
+  /// and the run is in lockstep.
+  bool ReadsGaps() const;
 
   /// The contents of the whole log. Known after Next() has returned nullptr.
   const RunLog& run() const;

@@ -188,7 +188,7 @@ RunTables ReadRunTables(const std::filesystem::path& log, const log::ReadOptions
         auto& tabulator = std::get<Tabulator<M>>(tabulators);
         const runtime::Bytes bytes = (*messages)[channel];
         tabulator.Add(bytes);
-        if (bytes.empty() && reader.MayHaveGap()) {
+        if (bytes.empty() && reader.ReadsGaps()) {
           tabulator.AddGap(reader.run().run_id, reader.step());
         }
       });

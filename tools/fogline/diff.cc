@@ -46,6 +46,7 @@ int RunDiff(const DiffArguments& arguments) {
     b = reader_b.Next();
     if (a == nullptr && b == nullptr) break;
     if (a == nullptr || b == nullptr) {
+      if (step == 0) break;  // one log has no whole step, so nothing is compared
       difference = {.step = step,
                     .channel = "(run)",
                     .field = "(step)",
@@ -58,6 +59,7 @@ int RunDiff(const DiffArguments& arguments) {
   }
   if (arguments.json) {
     nlohmann::ordered_json json{{"equal", !difference}};
+    if (!difference && step == 0) json["equal"] = nullptr;
     if (difference) {
       json["step"] = difference->step;
       json["channel"] = difference->channel;
@@ -71,6 +73,8 @@ int RunDiff(const DiffArguments& arguments) {
   } else if (difference) {
     fmt::print("step {}: {} {}: {} in {}, {} in {}\n", difference->step, difference->channel,
                difference->field, difference->a, name_a, difference->b, name_b);
+  } else if (step == 0) {
+    fmt::print("unknown: no step is compared\n");
   } else {
     fmt::print("equal: {} steps\n", step);
   }

@@ -107,7 +107,7 @@ int RunDigest(const DigestArguments& arguments) {
                     {"seal", SealState(run)},
                     {"signature", signature.state},
                     {"builds", BuildsJson(run)}});
-    if (!arguments.json) fmt::print("{}  {}\n", cli::DigestText(run), PathText(log));
+    if (!arguments.json) fmt::print("{}  {}\n", log::DigestText(run), PathText(log));
   });
   if (arguments.json) cli::PrintJson(rows);
   if (!readable) return kBadInput;

@@ -81,9 +81,15 @@ std::vector<replay::RoleCheck> ChosenRoles(const ReplayArguments& arguments,
                                Shown(Names(names)), DidYouMean(Nearest(arguments.role, names))));
 }
 
-nlohmann::ordered_json ToJson(const replay::RoleCheck& one) {
+/// Whether a role computes the same messages: null if the log has no step to compare.
+nlohmann::ordered_json SameJson(bool same, std::int64_t steps) {
+  if (steps == 0) return nullptr;
+  return same;
+}
+
+nlohmann::ordered_json ToJson(const replay::RoleCheck& one, std::int64_t steps) {
   nlohmann::ordered_json json{{"role", NameOf(one.role)},
-                              {"same", !one.first},
+                              {"same", SameJson(!one.first, steps)},
                               {"steps_that_differ", one.steps_that_differ}};
   if (!one.first) return json;
   json["first"] = {{"step", one.first->step},
@@ -95,6 +101,10 @@ nlohmann::ordered_json ToJson(const replay::RoleCheck& one) {
 }
 
 void PrintText(const replay::RoleCheck& one, std::int64_t steps) {
+  if (steps == 0) {
+    fmt::print("{:<11} unknown: no step is compared\n", NameOf(one.role));
+    return;
+  }
   if (!one.first) {
     fmt::print("{:<11} same: {} steps\n", NameOf(one.role), steps);
     return;
@@ -129,9 +139,9 @@ int RunReplay(const ReplayArguments& arguments) {
     nlohmann::ordered_json json{{"log", arguments.log.string()},
                                 {"steps", run.steps},
                                 {"complete", run.complete},
-                                {"same", same},
+                                {"same", SameJson(same, run.steps)},
                                 {"roles", nlohmann::ordered_json::array()}};
-    for (const replay::RoleCheck& one : roles) json["roles"].push_back(ToJson(one));
+    for (const replay::RoleCheck& one : roles) json["roles"].push_back(ToJson(one, run.steps));
     cli::PrintJson(json);
   } else {
     for (const replay::RoleCheck& one : roles) PrintText(one, run.steps);

@@ -39,6 +39,7 @@ std::string NoteOf(const RunLog& run, const LogRemarks& remarks) {
     all += all.empty() || text.empty() ? text : "; " + text;
   };
   if (!run.has_scenario) note("the log has no scenario");
+  if (remarks.unchecked) note("--scenario is not checked, because the log has no hash");
   if (!remarks.alteration.empty()) note("altered: " + remarks.alteration);
   const std::int64_t first =
       remarks.unread && run.steps == 0 ? remarks.unread->first : remarks.first;

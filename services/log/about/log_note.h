@@ -27,6 +27,7 @@ struct LogRemarks {
   runtime::ChannelSet tail_lacks;    // the channels that this step lacks
   std::optional<UnreadSteps> unread;
   std::int64_t astray = 0;   // steps whose numbers are impossible for the run
+  bool unchecked = false;    // whether the log has no hash with which to check a given scenario
   std::string conflict;      // two different messages of one step and channel
   std::int64_t foreign = 0;  // messages of other runs
 };

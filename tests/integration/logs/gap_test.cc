@@ -195,6 +195,42 @@ TEST_F(GapTest, ALogWithoutAScenarioIsExportedAndMeasuredWithAGivenScenario) {
   const nlohmann::json given = Json({"metrics", log, "--scenario", "scenario/paper.json"}, 1)[0];
   EXPECT_EQ(given["steps"], 376);
   EXPECT_EQ(given["title"], Json({"metrics", whole_}, 0)[0]["title"]);
+  EXPECT_THAT(
+      Fogline({"metrics", log, "--scenario", "scenario/paper.json"}).err,
+      HasSubstr(": --scenario is not checked, because the log has no hash; begins at step 124"));
+  EXPECT_THAT(Fogline({"metrics", whole_, "--scenario", "scenario/paper.json"}).err,
+              Not(HasSubstr("not checked")));
+}
+
+TEST_F(GapTest, ExportHasARowForEachStepOfALogThatIsCutOff) {
+  // GIVEN the log of a killed run: the world is ahead of the other roles
+  const std::string log = Without([](std::string_view channel, std::int64_t step) {
+    return channel != "RUN" && (channel == "TRUTH" ? step > 102 : step > 100);
+  });
+  const std::string out = folder_.File("csv");
+  EXPECT_EQ(Fogline({"export", log, "--out", out}).code, 1);
+  const std::vector<std::string> truth = LinesOf(out + "/TRUTH.csv");
+  const std::vector<std::string> lidar = LinesOf(out + "/LIDAR.csv");
+  ASSERT_EQ(truth.size(), 104U);
+  ASSERT_EQ(lidar.size(), 104U);
+  const auto header = [](const std::string& line) {
+    std::size_t end = 0;
+    for (int comma = 0; comma < 3; ++comma) end = line.find(',', end) + 1;
+    return line.substr(0, end);
+  };
+  for (const std::size_t row : {102U, 103U}) {
+    EXPECT_EQ(header(lidar[row]), header(truth[row]));
+    EXPECT_EQ(lidar[row].find_first_not_of(',', header(lidar[row]).size()), std::string::npos);
+  }
+  EXPECT_THAT(Fogline({"metrics", log}).err,
+              HasSubstr("ends after step 100 of 500; step 101 lacks"));
+}
+
+TEST_F(GapTest, AnMcapFileOfALogWithGapsHasNoDigest) {
+  const std::string file = folder_.File("run.mcap");
+  EXPECT_EQ(Fogline({"export", WithoutOne("RADAR"), "--mcap", file}).code, 1);
+  // A text of a map in MCAP follows its length.
+  EXPECT_THAT(Content(file), HasSubstr(std::string("digest\x07\0\0\0unknown", 17)));
 }
 
 TEST_F(GapTest, AScenarioThatTheLogContradictsIsRefused) {
@@ -258,6 +294,17 @@ TEST_F(GapTest, ALogThatBeginsLateSaysWithItsDigestWithWhichStep) {
   EXPECT_EQ(digest.err, late + ": begins at step 199 of 500; no step is read\n");
   EXPECT_EQ(digest.out, "unknown  " + late + "\n");
   EXPECT_EQ(Json({"digest", late}, 1)[0]["digest"], nullptr);
+  // Other verbs that read only whole steps compare nothing.
+  const Outcome replay = Fogline({"replay", late, "--role", "driver"});
+  EXPECT_EQ(replay.code, 1);
+  EXPECT_EQ(replay.out, "driver      unknown: no step is compared\n");
+  EXPECT_EQ(Json({"replay", late, "--role", "driver"}, 1)["same"], nullptr);
+  for (const std::string& other : {late, whole_}) {
+    const Outcome differ = Fogline({"diff", late, other});
+    EXPECT_EQ(differ.code, 1);
+    EXPECT_EQ(differ.out, "unknown: no step is compared\n");
+    EXPECT_EQ(Json({"diff", other, late}, 1)["equal"], nullptr);
+  }
 }
 
 TEST_F(GapTest, AVerbThatReadsOnlyWholeStepsSaysUpToWhichStepTheyGo) {

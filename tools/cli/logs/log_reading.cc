@@ -65,10 +65,6 @@ nlohmann::ordered_json GapsJson(const log::LogGaps& gaps) {
   return json;
 }
 
-std::string DigestText(const log::RunLog& run) {
-  return run.digest.empty() ? "unknown" : run.digest;
-}
-
 nlohmann::ordered_json DigestJson(const log::RunLog& run) {
   if (run.digest.empty()) return nullptr;
   return run.digest;

@@ -42,9 +42,7 @@ void SayAboutLog(const std::filesystem::path& log, const log::RunLog& run);
 /// [{"first_step": 394, "last_step": 394, "channels": ["RADAR"]}], "gaps_left_out": 0}
 nlohmann::ordered_json GapsJson(const log::LogGaps& gaps);
 
-/// The digest of a run as text: "unknown" if no step gives it, or if the log has gaps.
-std::string DigestText(const log::RunLog& run);
-/// The same as JSON: null if it is unknown.
+/// The digest of a run as JSON: null if it is unknown (log::DigestText()).
 nlohmann::ordered_json DigestJson(const log::RunLog& run);
 
 /// The names of the measures of a run that are unknown because its log has gaps, such as "rhe_pct,

@@ -162,7 +162,7 @@ class Exporter {
   void AddFacts(const log::RunLog& run) {
     writer_.AddAttachment("scenario.json", "application/json", run.scenario_text);
     writer_.AddMetadata("fogline", {{"complete", run.complete ? "true" : "false"},
-                                    {"digest", run.digest},
+                                    {"digest", log::DigestText(run)},
                                     {"run_id", std::to_string(run.run_id)},
                                     {"scenario_hash", run.scenario_hash},
                                     {"seed", std::to_string(run.scenario.seed)},
