@@ -177,9 +177,7 @@ std::vector<EventLine> LinesOf(const RunEvents& events) {
   for (const take_over::TakeOverEntry& entry : events.log.entries()) {
     std::string text = fmt::format("{:<42}{}", take_over::TextOf(entry, events.run.scenario.person),
                                    ModesText(entry));
-    if (MayBeEarlier(events, entry)) {
-      text += fmt::format(", in one of the steps {} to {}", entry.earliest_step, entry.step);
-    }
+    if (MayBeEarlier(events, entry)) text += log::InOneOfTheSteps(entry.earliest_step, entry.step);
     lines.emplace_back(entry.step, std::move(text));
   }
   AddFallbacks(events.run, lines);

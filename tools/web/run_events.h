@@ -1,5 +1,6 @@
 // The events of a run, found in its messages: fog, transfers, requests, alarms, manoeuvres,
-// emergency braking, collisions. A live run and its log give the same events.
+// emergency braking, collisions. A live run and its log give the same events, apart from the steps
+// that the text of an event after missing messages names.
 #pragma once
 
 #include <cstddef>
@@ -25,12 +26,17 @@ struct RunEvent {
 /// Finds the events. Takes the messages of a run in the order of their steps. Messages may be
 /// missing. A message that comes again, or too late, is ignored. If the first message is not of
 /// step 0, as in a run that is joined later, the fog, alarm or collision in this message is no
-/// event, because it may have begun before.
+/// event, because it may have begun before. If messages before an event are missing, its text names
+/// the steps in which it may have happened.
 class RunEvents {
  public:
   /// Limit for the stored events. A DoC that moves around its threshold causes many alarms.
   static constexpr std::size_t kMost = 5000;
 
+  /// Sets whether a step may have no command without any loss, as in real time. An event in a
+  /// command then happened in the step of the command. Applies to commands that are added
+  /// afterwards.
+  void set_may_lack_commands(bool may_lack) { may_lack_commands_ = may_lack; }
   void Add(const truth_t& truth);
   /// @param human_mps2 the driver's offer in this step; nullopt if the offer is unknown
   void Add(const arbitration_t& command, std::optional<double> human_mps2);
@@ -41,13 +47,16 @@ class RunEvents {
   const take_over::TakeOverLog& take_over() const { return take_over_; }
 
  private:
+  /// @param earliest the first step in which the event may have happened
   template <class Message>
-  void Note(const Message& message, std::string_view kind, std::string text);
-  void NoteAlarm(const arbitration_t& command);
+  void Note(const Message& message, std::int64_t earliest, std::string_view kind, std::string text);
+  void NoteCollision(const truth_t& truth, std::int64_t earliest);
+  void NoteAlarm(const arbitration_t& command, std::int64_t earliest);
 
   take_over::TakeOverLog take_over_;
   std::int64_t truth_step_ = -1;
   std::int64_t command_step_ = -1;
+  bool may_lack_commands_ = false;
   bool fog_ = false;
   bool alarm_ = false;
   std::int8_t collision_ = truth_t::COLLISION_NONE;

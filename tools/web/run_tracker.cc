@@ -34,6 +34,8 @@ void RunTracker::HearRun(runtime::Bytes bytes, TimePoint now) {
     Begin(run);
   }
   heard_ = now;
+  realtime_ = run.realtime != 0;
+  events_.set_may_lack_commands(realtime_);
   stopped_ = run.phase == run_t::STOP;
   const bool known = parts_.Complete();
   if (!parts_.Add(run) || known || !parts_.Complete() || !parts_.HashHolds()) return;
@@ -66,6 +68,7 @@ std::vector<RunEvent> RunTracker::TakeEvents() {
 
 void RunTracker::ForgetEvents() {
   events_ = {};
+  events_.set_may_lack_commands(realtime_);
   taken_ = 0;
 }
 

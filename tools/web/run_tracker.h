@@ -58,6 +58,7 @@ class RunTracker {
   std::optional<std::int64_t> only_;
   TimePoint heard_{};
   bool stopped_ = false;
+  bool realtime_ = false;  // whether the followed run is in real time
   runtime::ScenarioParts parts_;
   std::optional<RunFacts> shown_;
   std::string shown_text_;

@@ -14,6 +14,10 @@ std::string NamesOfChannels(const std::bitset<kNumChannels>& channels) {
   return names;
 }
 
+std::string InOneOfTheSteps(std::int64_t earliest, std::int64_t step) {
+  return earliest == step ? "" : fmt::format(", in one of the steps {} to {}", earliest, step);
+}
+
 std::string Gap::Text() const {
   const std::string names = NamesOfChannels(channels);
   if (first == last) return fmt::format("step {} lacks {}", first, names);

@@ -49,6 +49,9 @@ struct LogGaps {
   std::string Text() const;
 };
 
+/// For an event after a gap: ", in one of the steps 394 to 396"; "" if both steps are the same.
+std::string InOneOfTheSteps(std::int64_t earliest, std::int64_t step);
+
 /// The names of these channels, such as "RADAR, LIDAR".
 std::string NamesOfChannels(const std::bitset<kNumChannels>& channels);
 

@@ -110,6 +110,11 @@ void LogIndex::FindEvents() {
   truth_t truth{};
   arbitration_t command{};
   driver_command_t driver{};
+  if (run_.realtime) {
+    const runtime::ChannelSet& unlogged = run_.realtime->unlogged_channels;
+    events_.set_may_lack_commands(!unlogged[IndexOf<arbitration_t>()] &&
+                                  !unlogged[IndexOf<driver_command_t>()]);
+  }
   for (std::int64_t step = first_; step <= last_step(); ++step) {
     if (runtime::Decode(Message(step, IndexOf<truth_t>()), truth)) events_.Add(truth);
     if (!runtime::Decode(Message(step, IndexOf<arbitration_t>()), command)) continue;

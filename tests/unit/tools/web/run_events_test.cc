@@ -54,5 +54,33 @@ TEST(RunEventsTest, BeginWithTheRequestInWhichTheyWereJoined) {
   EXPECT_EQ(events.events()[0].kind, "request");
 }
 
+TEST(RunEventsTest, NameTheStepsInWhichAnEventAfterAGapMayHaveHappened) {
+  for (const bool may_lack_commands : {false, true}) {
+    RunEvents events;
+    events.set_may_lack_commands(may_lack_commands);
+    truth_t truth{};
+    arbitration_t command{};
+    command.threshold = 0.5;
+    events.Add(truth);
+    events.Add(command, std::nullopt);
+    truth.header.step = command.header.step = 3;
+    truth.fog_present = 1;
+    command.doc = 0.8;
+    command.mode = arbitration_t::REQUEST;
+    events.Add(truth);
+    events.Add(command, std::nullopt);
+    const std::string steps = ", in one of the steps 1 to 3";
+    ASSERT_EQ(events.events().size(), 3U);
+    EXPECT_EQ(events.events()[0].text, "fog begins" + steps);
+    const std::string of_command = may_lack_commands ? "" : steps;
+    EXPECT_EQ(events.events()[1].text, "DoC 0.80 reaches the threshold 0.50" + of_command);
+    EXPECT_EQ(events.events()[2].text, "request to take over" + of_command);
+    truth.header.step = 4;
+    truth.fog_present = 0;
+    events.Add(truth);
+    EXPECT_EQ(events.events().back().text, "fog ends");
+  }
+}
+
 }  // namespace
 }  // namespace fogline::web

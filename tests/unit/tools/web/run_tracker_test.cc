@@ -17,9 +17,12 @@ class Speaker {
       : tracker_(tracker), run_id_(run_id), text_(std::move(text)) {}
 
   /// Sends one part of the scenario. @return the number of parts
-  std::size_t Part(std::size_t part, TimePoint now, std::int8_t phase = run_t::GO) {
+  std::size_t Part(std::size_t part, TimePoint now, std::int8_t phase = run_t::GO,
+                   bool realtime = false) {
     const auto parts = runtime::SplitScenario(text_);
-    Send(runtime::MakeRunPart(run_id_, phase, 2.0, runtime::HashOf(text_), parts, part), now);
+    run_t run = runtime::MakeRunPart(run_id_, phase, 2.0, runtime::HashOf(text_), parts, part);
+    run.realtime = realtime ? 1 : 0;
+    Send(run, now);
     return parts.size();
   }
   void AllParts(TimePoint now) {
@@ -160,6 +163,24 @@ TEST(RunTrackerTest, TellsTheEventsAgainWhenTheScenarioIsKnown) {
   EXPECT_EQ(tracker.TakeEvents().size(), 1U);
   run.AllParts(kBegin);
   EXPECT_EQ(tracker.TakeEvents().size(), 1U);
+}
+
+TEST(RunTrackerTest, NamesTheStepsOfAnEventAfterMissingCommandsExceptInRealTime) {
+  for (const bool realtime : {false, true}) {
+    RunTracker tracker;
+    Speaker runner(tracker, 5);
+    runner.Part(0, kBegin, run_t::GO, realtime);
+    arbitration_t command{};
+    command.header.run_id = 5;
+    command.threshold = 0.5;
+    runner.Send(command, kBegin);
+    command.header.step = 4;
+    command.doc = 0.8;
+    runner.Send(command, kBegin);
+    ASSERT_EQ(tracker.events().size(), 1U);
+    const std::string text = "DoC 0.80 reaches the threshold 0.50";
+    EXPECT_EQ(tracker.events()[0].text, text + (realtime ? "" : ", in one of the steps 1 to 4"));
+  }
 }
 
 TEST(RunTrackerTest, ShowsNoScenarioThatIsNoObject) {
