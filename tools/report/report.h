@@ -37,7 +37,7 @@ struct ReportRun {
   std::string scenario_json;  // the effective scenario; shown folded, and compared between runs
   std::int64_t seed = 0;
   std::string digest;
-  bool has_gaps = false;                 // whether the log lacks messages before its end
+  bool has_gaps = false;                 // whether messages before the end of the log are missing
   std::vector<metrics::Sample> samples;  // in order of time; without values where a step is missing
   std::vector<ReportMetric> measures;
   // Safety improvement compared with the paired run without traded control: in fog, and until the

@@ -13,6 +13,7 @@
 
 #include "common/errors.h"
 #include "common/text.h"
+#include "services/metrics/gaps/gap_rules.h"
 #include "tools/runner/experiment.h"
 #include "tools/trials/questionnaires.h"
 
@@ -58,13 +59,15 @@ std::vector<std::string> ItemColumns(const ExperimentPlan& plan) {
   return columns;
 }
 
-std::vector<Value> MetricsOf(const metrics::RunMetrics& measures) {
+/// The measures of a run. A measure that is unknown, because messages are missing, has no value.
+std::vector<Value> MetricsOf(const runner::ExperimentResult& result) {
   std::vector<Value> values;
-  metrics::VisitMetrics(measures, [&values](std::string_view name, const auto& value,
-                                            std::string_view unit, std::string_view) {
+  metrics::VisitMetrics(result.measures, [&](std::string_view name, const auto& value,
+                                             std::string_view unit, std::string_view) {
+    const bool is_known = metrics::IsKnown(name, value, result.lack);
     values.push_back({.kind = "metric",
                       .item = std::string(name),
-                      .value = NumberCell(value),
+                      .value = is_known ? NumberCell(value) : "",
                       .unit = std::string(unit),
                       .time_s = ""});
   });
@@ -142,7 +145,7 @@ class TableMaker {
     std::string complete;
     if (has_run) {
       const runner::LoggedRun run = runner::ReadLoggedRun(record.log);
-      measures = MetricsOf(run.result.measures);
+      measures = MetricsOf(run.result);
       seed = std::to_string(run.scenario.seed);
       complete = run.complete ? "1" : "0";
     } else if (!story.facts.empty()) {

@@ -4,6 +4,7 @@
 
 #include <csignal>
 #include <cstdint>
+#include <filesystem>
 #include <fstream>
 #include <map>
 #include <set>
@@ -14,6 +15,9 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include "services/log/event_log.h"
+#include "services/log/log_seal.h"
+#include "services/runtime/wire/wire.h"
 #include "tests/integration/experiment/page_session.h"
 #include "tests/support/command.h"
 #include "tests/support/web_client.h"
@@ -79,11 +83,11 @@ class ExperimentRealtimeTest : public ::testing::Test {
     return RunCommand(command);
   }
 
-  /// The rows of trials.csv, by the names of the columns.
-  std::vector<std::map<std::string, std::string>> ExportedTrials() const {
+  /// The rows of trials.csv, by the names of the columns. @param code 1 if trials are missing
+  std::vector<std::map<std::string, std::string>> ExportedTrials(int code = 0) const {
     const std::string out = folder_.File("tables");
     const Outcome outcome = Experiment("export", {"--out", out, "--force"});
-    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_EQ(outcome.code, code) << outcome.err;
     std::istringstream lines(Content(out + "/trials.csv"));
     std::vector<std::vector<std::string>> table;
     for (std::string line; std::getline(lines, line);) {
@@ -300,6 +304,31 @@ TEST_F(ExperimentRealtimeTest, TheLogOfATrialTellsItsStory) {
   const Outcome metrics = RunCommand({Program("fogline"), "metrics", log});
   EXPECT_EQ(metrics.code, 0) << metrics.err;
   EXPECT_THAT(Content(log), AllOf(HasSubstr("TRIAL"), HasSubstr("mental_demand")));
+}
+
+TEST_F(ExperimentRealtimeTest, AMeasureThatMissingMessagesMakeUnknownHasNoValue) {
+  ASSERT_EQ(RunCommand(Session(1)).code, 0);
+  const std::map<std::string, std::string> whole = ExportedTrials(1).at(0);
+  EXPECT_EQ(whole.at("complete"), "1");
+  EXPECT_NE(whole.at("human_time_s"), "");
+  const std::string log = results_ + "/" + whole.at("log");
+  const std::string part = folder_.File("part.lcm");
+  {
+    log::EventLogReader reader(log);
+    log::EventLogWriter writer(part);
+    while (const auto event = reader.Next()) {
+      const std::int64_t step = runtime::ReadInt64(event->data, runtime::kStepOffset);
+      // So many that the last STATUS of the arbitrator, which may be some steps old, shows it.
+      const bool lost = event->channel == "HOST_COMMAND" && step >= 20 && step <= 60;
+      if (lost || event->channel == log::kLogSealChannel) continue;
+      writer.Write(event->channel, event->utime, event->data);
+    }
+  }
+  std::filesystem::rename(part, log);
+  const std::map<std::string, std::string> row = ExportedTrials(1).at(0);
+  EXPECT_EQ(row.at("complete"), "0");
+  EXPECT_EQ(row.at("human_time_s"), "");
+  EXPECT_EQ(row.at("min_host_gap_m"), whole.at("min_host_gap_m"));
 }
 
 TEST_F(ExperimentRealtimeTest, WrongArgumentsAreRefused) {

@@ -64,6 +64,12 @@ TEST_F(GapInRealtimeTest, MeasuresAreUnknownIfPublishedMessagesOfTheirChannelsAr
   const nlohmann::json event = Json({"events", log}, 1)[0]["events"].at(1);
   EXPECT_LE(event["earliest_step"], transfer - 60) << "a step before the gap may have no command";
   EXPECT_GT(event["step"], transfer);
+  // The story at the top of a report leaves out the run.
+  const std::string page = folder_.File("report.html");
+  EXPECT_EQ(Fogline({"report", whole, "--output", page}).code, 0);
+  EXPECT_THAT(Content(page), HasSubstr("the human drove for "));
+  EXPECT_EQ(Fogline({"report", log, "--output", page}).code, 1);
+  EXPECT_THAT(Content(page), Not(HasSubstr("the human drove for ")));
 }
 
 TEST_F(GapInRealtimeTest, FiguresAreUnknownWithoutStatus) {
