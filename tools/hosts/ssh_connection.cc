@@ -119,10 +119,8 @@ std::string SshConnection::HowItEnded(const std::vector<std::string>& lines) con
     return line.starts_with(fmt::format("{}: ", kShell));
   };
   if (std::ranges::any_of(lines, is_local)) {
-    return fmt::format(
-        "the command {} cannot be run on this machine (apt-get install "
-        "openssh-client)",
-        ShellWord(ssh_));
+    return fmt::format("the command {} cannot be run on this machine{}", ShellWord(ssh_),
+                       ssh_ == "ssh" ? " (apt-get install openssh-client)" : "");
   }
   if (code != kNoProgram) return fmt::format("fogline host {}", processes::HowItEnded(status_));
   if (!host_.programs.empty()) return fmt::format("there is no {}/fogline", host_.programs);

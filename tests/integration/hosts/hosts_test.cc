@@ -105,7 +105,7 @@ TEST_F(EnteredHostsTest, SayThatThereIsNoSsh) {
   EXPECT_THAT(
       Failure("/none/ssh -p 2222", OnLab2({"acc"})),
       StartsWith("fogline run: error: lab2: the command '/none/ssh -p 2222' cannot be run on "
-                 "this machine (apt-get install openssh-client)\n"));
+                 "this machine\n"));
 }
 
 TEST_F(EnteredHostsTest, NameAMachineWithoutARoute) {
