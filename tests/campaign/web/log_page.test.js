@@ -54,7 +54,7 @@ test("three moments of a log show who drives, and the log's own numbers", async 
 
 test("the curves have the log's values over the whole time", async (t) => {
   const folder = scratch(t);
-  const log = recordedRun(folder);
+  const log = recordedRun(folder, ["/fog/model=modes", "/fog/modes/missing_share=1"]);
   const numbers = numbersOf(folder, log);
   const page = await open(t, await browser(t), await view(t, [log]));
   await page.waitForFunction(() => foglinePage.curves.charts.length === 2 &&

@@ -84,8 +84,8 @@ test("the page of a drive looks well", async (t) => {
   await looksWell(page, "the device");
   await page.click("#setup-close");
   run.kill("SIGINT");
-  await page.waitForFunction(() => document.getElementById("origin-words").textContent.startsWith("No connection"));
-  await looksWell(page, "no connection");
+  await page.waitForFunction(() => document.getElementById("origin-words").textContent === "The program has ended");
+  await looksWell(page, "the end of the program");
   page.trouble = page.trouble.filter((words) => !/WebSocket|ERR_CONNECTION/.test(words));  // of that time
 });
 
