@@ -5,34 +5,75 @@
 #include "services/runtime/lockstep/possible_status.h"
 
 namespace fogline::log {
+namespace {
+
+// A STATUS is in the log at most this many steps after the step that it names. So the last steps
+// are kept. For a later STATUS, the number of lost messages is a lower bound.
+constexpr std::size_t kKeptSteps = 1024;
+
+}  // namespace
 
 void RealtimeAccumulator::Add(const status_t& status) {
   if (!runtime::IsPossible(status)) return;  // a file may contain any numbers
-  status_t& last = last_[{status.role, status.instance}];
-  if (status.sequence <= last.sequence) return;  // a newer STATUS came earlier
-  last = status;
+  Process& process = last_[{status.role, status.instance}];
+  if (status.sequence <= process.status.sequence) return;  // a newer STATUS came earlier
+  process.status = status;
+  process.is_checked = false;
+  if (status.header.step < steps_) {
+    Check(process);
+  } else {
+    due_.emplace(status.header.step, &process);
+  }
   fallbacks_.Add(status);
 }
 
 void RealtimeAccumulator::AddStep(const runtime::ChannelSet& there) {
-  ++steps_;
-  if (logged_[IndexOf<truth_t>()] == 0 && !there[IndexOf<truth_t>()]) ++late_steps_;
-  for (std::size_t i = 0; i < kNumChannels; ++i) logged_[i] += there[i] ? 1 : 0;
+  const std::int64_t step = steps_++;
+  const bool is_late = logged_[IndexOf<truth_t>()] == 0 && !there[IndexOf<truth_t>()];
+  if (is_late) ++late_steps_;
+  for (std::size_t i = 0; i < kNumChannels; ++i) {
+    logged_[i] += there[i] ? 1 : 0;
+    if (!there[i] && !is_late) ++unchecked_[i];
+  }
+  kept_.push_back(there);
+  if (kept_.size() > kKeptSteps) kept_.pop_front();
+  const auto end = due_.upper_bound(step);
+  for (auto due = due_.begin(); due != end; ++due) {
+    if (due->second->status.header.step == step) Check(*due->second);
+  }
+  due_.erase(due_.begin(), end);
+}
+
+// All steps up to that of the STATUS were added, and `after` later steps.
+void RealtimeAccumulator::Check(Process& process) {
+  process.is_checked = true;
+  const std::int64_t after = steps_ - 1 - process.status.header.step;
+  const bool is_kept = after <= std::ssize(kept_);
+  for (std::size_t i = 0; i < kNumChannels; ++i) {
+    if (process.status.role != NameOf(kChannels[i].from)) continue;
+    process.unlogged[i] = process.status.ticks - logged_[i];
+    if (!is_kept) continue;
+    const std::int64_t there = std::count_if(kept_.end() - after, kept_.end(),
+                                             [i](const auto& channels) { return channels[i]; });
+    process.unlogged[i] += there;
+    unchecked_[i] = after - there;
+  }
 }
 
 std::int64_t RealtimeAccumulator::Unlogged(std::size_t channel) const {
   const Role from = kChannels[channel].from;
   // The world skips no step, even if several processes of the world compute the steps.
   if (from == Role::kWorld) return steps_ - logged_[channel];
-  std::int64_t published = 0;
+  std::int64_t unlogged = 0;
   int processes = 0;
   std::int64_t late = 0;  // messages that came after the recorder had written their step
-  for (const auto& [process, status] : last_) {
-    if (process.first == NameOf(from)) {
-      published = status.ticks;
+  for (const auto& [name, process] : last_) {
+    const status_t& status = process.status;
+    if (name.first == NameOf(from)) {
+      unlogged = process.is_checked ? process.unlogged[channel] : status.ticks - logged_[channel];
       ++processes;
     }
-    if (process.first != NameOf(Role::kRecorder)) continue;
+    if (name.first != NameOf(Role::kRecorder)) continue;
     const auto input = std::ranges::find(status.input, kChannels[channel].name);
     if (input != status.input.end()) {
       late += status.input_late[static_cast<std::size_t>(input - status.input.begin())];
@@ -40,7 +81,17 @@ std::int64_t RealtimeAccumulator::Unlogged(std::size_t channel) const {
   }
   // With several processes the number of published messages is not known, because a restarted
   // process may compute a step a second time.
-  return processes == 1 ? std::max<std::int64_t>(0, published - logged_[channel] - late) : 0;
+  return processes == 1 ? std::max<std::int64_t>(0, unlogged - late) : 0;
+}
+
+bool RealtimeAccumulator::MayLack(std::size_t channel, bool is_sealed) const {
+  const Role from = kChannels[channel].from;
+  const std::int64_t missed = steps_ - late_steps_ - logged_[channel];
+  if (!HasStatus(from)) return missed > 0;
+  if (is_sealed || from == Role::kWorld) return false;
+  const auto processes = std::ranges::count_if(
+      last_, [from](const auto& process) { return process.first.first == NameOf(from); });
+  return processes > 1 ? missed > 0 : unchecked_[channel] > 0;
 }
 
 bool RealtimeAccumulator::HasStatus(Role role) const {
@@ -48,7 +99,7 @@ bool RealtimeAccumulator::HasStatus(Role role) const {
       last_, [role](const auto& status) { return status.first.first == NameOf(role); });
 }
 
-RealtimeFigures RealtimeAccumulator::Result() const {
+RealtimeFigures RealtimeAccumulator::Result(bool is_sealed) const {
   RealtimeFigures figures{.speed = speed_,
                           .fallbacks = fallbacks_.all(),
                           .fallbacks_left_out = fallbacks_.left_out(),
@@ -58,15 +109,14 @@ RealtimeFigures RealtimeAccumulator::Result() const {
     figures.missed_messages += steps_ - logged_[i];
     const std::int64_t unlogged = Unlogged(i);
     figures.unlogged_messages += unlogged;
-    const std::int64_t missed = steps_ - late_steps_ - logged_[i];
-    figures.unlogged_channels[i] =
-        HasStatus(kChannels[i].from) ? unlogged > late_steps_ : missed > 0;
+    figures.unlogged_channels[i] = MayLack(i, is_sealed) || unlogged > late_steps_;
   }
-  for (const auto& [process, status] : last_) {
-    if (process.first == NameOf(Role::kRecorder)) continue;  // no role waits for the recorder
+  for (const auto& [name, process] : last_) {
+    const status_t& status = process.status;
+    if (name.first == NameOf(Role::kRecorder)) continue;  // no role waits for the recorder
     figures.deadline_misses += status.deadline_misses;
     for (const std::int64_t late : status.input_late) figures.late_messages += late;
-    if (process.first != NameOf(Role::kWorld)) continue;
+    if (name.first != NameOf(Role::kWorld)) continue;
     figures.has_status = true;
     figures.ticks += status.ticks;
     figures.ticks_late += status.ticks_late;

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <deque>
 #include <map>
 #include <optional>
 #include <string>
@@ -35,7 +36,9 @@ struct RealtimeFigures {
   // recorder do not count here.
   std::int64_t unlogged_messages = 0;
   // The channels of these messages, apart from messages before the first TRUTH of the log. Also the
-  // channels that lack any message, if the log has no STATUS of their producer.
+  // channels that lack a message of which no STATUS says whether it was published: the log has no
+  // STATUS of the producer, or the log has no seal and the message is of a step after the last
+  // STATUS of the producer.
   runtime::ChannelSet unlogged_channels;
   // Whether the log has a STATUS of the world. All figures except `speed` and `missed_messages`
   // come from STATUS, so without it they are unknown.
@@ -74,16 +77,32 @@ class RealtimeAccumulator {
   RealtimeAccumulator(double speed, std::int64_t step_us, std::int64_t steps)
       : speed_(speed), fallbacks_(step_us, speed, steps) {}
 
+  RealtimeAccumulator(RealtimeAccumulator&&) = default;
+  RealtimeAccumulator& operator=(RealtimeAccumulator&&) = default;
+
   /// Adds the next STATUS of the log.
   void Add(const status_t& status);
   void Add(RealtimePriority priority) { priority_ = std::move(priority); }
   /// Adds the next step of the log. `there` has the channels of which the step has a message.
   void AddStep(const runtime::ChannelSet& there);
 
-  RealtimeFigures Result() const;
+  /// @param is_sealed whether the log has a seal: it then has every message that the recorder has
+  ///     received
+  RealtimeFigures Result(bool is_sealed = true) const;
 
  private:
+  /// A process, and what its last STATUS says.
+  struct Process {
+    status_t status;
+    bool is_checked = false;                            // whether `unlogged` is of this STATUS
+    std::array<std::int64_t, kNumChannels> unlogged{};  // of each channel, up to this STATUS
+  };
+
+  /// Compares the number of published messages with the number of logged messages.
+  void Check(Process& process);
   bool HasStatus(Role role) const;
+  /// Whether the log lacks a message of a channel of which no STATUS says whether it was published.
+  bool MayLack(std::size_t channel, bool is_sealed) const;
   /// Lower bound of the number of messages of a channel that were published but are not in the log.
   /// Messages that came too late for the recorder do not count here.
   std::int64_t Unlogged(std::size_t channel) const;
@@ -94,9 +113,14 @@ class RealtimeAccumulator {
   std::int64_t steps_ = 0;                           // number of steps in the log
   std::int64_t late_steps_ = 0;                      // of these, the steps before the first TRUTH
   std::array<std::int64_t, kNumChannels> logged_{};  // number of logged messages of each channel
+  // Number of steps without a message of each channel, after the last STATUS of its producer.
+  std::array<std::int64_t, kNumChannels> unchecked_{};
   // The last STATUS of each process, by role and instance. The counters of a STATUS begin at the
   // start of the process.
-  std::map<std::pair<std::string, std::int64_t>, status_t> last_;
+  std::map<std::pair<std::string, std::int64_t>, Process> last_;
+  std::deque<runtime::ChannelSet> kept_;       // the channels of which each of the last steps has a
+                                               // message
+  std::multimap<std::int64_t, Process*> due_;  // by the step of the STATUS, which is not here yet
 };
 
 }  // namespace fogline::log

@@ -152,7 +152,8 @@ class RunLogReader::Assembler {
     const runtime::Bytes data = Payload(event.data);
     if ((parts_.empty() && !options_.gaps) || data.empty() || run_id != run_.run_id) {
       ++foreign_;
-      if (run_id != run_.run_id) others_.Add(run_id);
+      const std::int64_t step = runtime::ReadInt64(event.data, runtime::kStepOffset);
+      if (run_id != run_.run_id) others_.Add(run_id, step);
       return;
     }
     if (runtime::ReadInt64(data, 0) != runtime::FingerprintOf(channel) &&
@@ -173,11 +174,13 @@ class RunLogReader::Assembler {
   }
 
   void Finish() {
-    if (realtime_) run_.realtime = realtime_->Result();  // also if the log is refused below
+    // Also if the log is refused below.
+    if (realtime_) run_.realtime = realtime_->Result(run_.seal.has_value());
     if (reader_.empty()) Refuse("the log is empty: no run has begun to write it");
     FinishScenario();
     run_.digest = run_.gaps.Any() || first_steps_ == 0 ? "" : digest_.Hex();
-    foreign_ -= others_.Forget(run_.run_id);  // messages of this run before its id was known
+    const RunInLog early = others_.Forget(run_.run_id);  // the messages before RUN
+    foreign_ -= early.messages;
     run_.other_runs = others_.all();
     run_.events = reader_.head();
     const std::string alteration = Alteration();
@@ -188,12 +191,13 @@ class RunLogReader::Assembler {
     const bool whole = pending_.empty() && !run_.gaps.Any() && !tail_;
     run_.ended = last_ && whole && run_.has_scenario && conflict_.empty() &&
                  reader_.torn().empty() && !run_.altered;
-    run_.complete =
-        run_.ended &&
-        (!run_.realtime || (run_.realtime->has_status && run_.realtime->unlogged_messages == 0));
+    run_.complete = run_.ended && (!run_.realtime || (run_.realtime->has_status &&
+                                                      run_.realtime->unlogged_messages == 0 &&
+                                                      run_.realtime->unlogged_channels.none()));
     LogRemarks remarks{.torn = reader_.torn(),
                        .alteration = alteration,
                        .first = realtime_ ? first_heard_ : run_.gaps.first,
+                       .before_run = early.first_step,
                        .has_last = last_,
                        .next = tail_.value_or(next_),
                        .tail = tail_,

@@ -1,5 +1,7 @@
 #include "services/log/about/log_note.h"
 
+#include <algorithm>
+
 #include <fmt/core.h>
 
 namespace fogline::log {
@@ -41,9 +43,10 @@ std::string NoteOf(const RunLog& run, const LogRemarks& remarks) {
   if (!run.has_scenario) note("the log has no scenario");
   if (remarks.unchecked) note("--scenario is not checked, because the log has no hash");
   if (!remarks.alteration.empty()) note("altered: " + remarks.alteration);
-  const std::int64_t first =
-      remarks.unread && run.steps == 0 ? remarks.unread->first : remarks.first;
+  std::int64_t first = remarks.unread && run.steps == 0 ? remarks.unread->first : remarks.first;
+  if (remarks.before_run) first = std::min(first, *remarks.before_run);
   if (first > 0) note(fmt::format("begins at step {}{}", first, OfSteps(run)));
+  if (remarks.before_run) note("the messages before RUN are not read");
   if (!remarks.has_last) note(Shortage(run, remarks));
   note(run.gaps.Text());
   if (run.realtime && !run.realtime->has_status) note("real time, without STATUS of the world");
@@ -52,12 +55,14 @@ std::string NoteOf(const RunLog& run, const LogRemarks& remarks) {
     const std::int64_t unlogged = run.realtime->unlogged_messages;
     const std::string names = NamesOfChannels(run.realtime->unlogged_channels);
     if (unlogged > 0) {
-      note(fmt::format("published, but not in the log: {}{}", unlogged,
+      note(fmt::format("published, but not in the log: at least {}{}", unlogged,
                        names.empty() ? "" : fmt::format(" ({})", names)));
+    } else if (!names.empty()) {
+      note(fmt::format("perhaps published, but not in the log: {}", names));
     }
   }
   if (remarks.tail) note(StepLacks(*remarks.tail, NamesOfChannels(remarks.tail_lacks)));
-  if (remarks.unread && first == 0) note(Lacks(*remarks.unread, run.steps));
+  if (remarks.unread && first == 0 && !remarks.before_run) note(Lacks(*remarks.unread, run.steps));
   if (remarks.astray > 0) note(fmt::format("{} impossible steps ignored", remarks.astray));
   note(remarks.conflict);
   if (remarks.foreign > 0) note(fmt::format("{} messages of other runs ignored", remarks.foreign));

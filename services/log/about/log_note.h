@@ -18,9 +18,11 @@ struct UnreadSteps {
 
 /// What a reader has found out about a log, apart from RunLog.
 struct LogRemarks {
-  std::string torn;                  // how the file was cut off; "" if it was not
-  std::string alteration;            // how the log differs from its seal; "" if not
-  std::int64_t first = 0;            // the first step of which the log has a message
+  std::string torn;        // how the file was cut off; "" if it was not
+  std::string alteration;  // how the log differs from its seal; "" if not
+  std::int64_t first = 0;  // the first step of which a message was read
+  // The first step of the messages before RUN. They were not read.
+  std::optional<std::int64_t> before_run;
   bool has_last = false;             // whether the log has the last step of the run
   std::int64_t next = 0;             // the first step that the log does not have
   std::optional<std::int64_t> tail;  // the first of the incomplete steps at the end

@@ -291,7 +291,11 @@ TEST_F(GapTest, ALogThatBeginsLateSaysWithItsDigestWithWhichStep) {
   }
   const Outcome digest = Fogline({"digest", late});
   EXPECT_EQ(digest.code, 1);
-  EXPECT_EQ(digest.err, late + ": begins at step 199 of 500; no step is read\n");
+  EXPECT_EQ(digest.err,
+            late +
+                ": begins at step 196 of 500; the messages before RUN are not read; no step "
+                "is read\n");
+  EXPECT_THAT(Fogline({"metrics", late}).err, HasSubstr(": begins at step 196 of 500"));
   EXPECT_EQ(digest.out, "unknown  " + late + "\n");
   EXPECT_EQ(Json({"digest", late}, 1)[0]["digest"], nullptr);
   // Other verbs that read only whole steps compare nothing.

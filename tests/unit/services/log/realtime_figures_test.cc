@@ -45,11 +45,17 @@ class UnloggedMessagesTest : public testing::Test {
     for (const std::size_t channel : channels) there.reset(channel);
     return there;
   }
-  void AddRadar(std::int64_t instance, std::int64_t ticks) {
-    status_t radar = Said("radar", instance, 1);
+  /// @param step the last step that the radar has completed; 9: the last one
+  void AddRadar(std::int64_t instance, std::int64_t ticks, std::int64_t step = 9) {
+    status_t radar = Said("radar", instance, ++sequence_);
     radar.ticks = ticks;
+    radar.header.step = step;
     figures_.Add(radar);
   }
+  std::string Channels(bool is_sealed) const {
+    return log::NamesOfChannels(figures_.Result(is_sealed).unlogged_channels);
+  }
+  std::int64_t sequence_ = 0;
   log::RealtimeAccumulator figures_{1, kStep_us, 10};
 };
 
@@ -60,6 +66,41 @@ TEST_F(UnloggedMessagesTest, AreThoseThatTheirProducerHasCountedAndTheLogHasNot)
   EXPECT_EQ(figures_.Result().missed_messages, 4);
   EXPECT_EQ(figures_.Result().unlogged_messages, 3) << "one was never published";
   EXPECT_EQ(log::NamesOfChannels(figures_.Result().unlogged_channels), "RADAR");
+}
+
+TEST_F(UnloggedMessagesTest, AreFoundAlthoughTheLastStatusIsOlderThanTheEnd) {
+  for (const int steps_before_status : {0, 1, 3}) {
+    figures_ = log::RealtimeAccumulator(1, kStep_us, 10);
+    AddSteps(3, AllBut({}));
+    AddSteps(2, AllBut({IndexOf<radar_t>()}));
+    // The STATUS is of step 5, and stands before or after this step in the log.
+    AddSteps(steps_before_status, AllBut({}));
+    AddRadar(1, 6, 5);
+    AddSteps(5 - steps_before_status, AllBut({}));
+    EXPECT_EQ(figures_.Result().unlogged_messages, 2) << steps_before_status;
+    EXPECT_EQ(Channels(/*is_sealed=*/true), "RADAR");
+  }
+}
+
+TEST_F(UnloggedMessagesTest, MayBeMessagesAfterTheLastStatusIfTheLogHasNoSeal) {
+  AddSteps(4, AllBut({}));
+  AddRadar(1, 5, 5);  // the radar has skipped a step
+  AddSteps(1, AllBut({IndexOf<radar_t>()}));
+  AddSteps(1, AllBut({}));
+  EXPECT_EQ(Channels(/*is_sealed=*/false), "");
+  AddSteps(1, AllBut({IndexOf<radar_t>()}));
+  EXPECT_EQ(figures_.Result(false).unlogged_messages, 0);
+  EXPECT_EQ(Channels(/*is_sealed=*/false), "RADAR");
+  EXPECT_EQ(Channels(/*is_sealed=*/true), "");
+}
+
+TEST_F(UnloggedMessagesTest, MayBeThoseOfARoleThatWasStartedAgainIfTheLogHasNoSeal) {
+  AddSteps(5, AllBut({}));
+  AddSteps(1, AllBut({IndexOf<radar_t>()}));
+  AddRadar(1, 5, 4);
+  AddRadar(2, 1, 5);
+  EXPECT_EQ(Channels(/*is_sealed=*/false), "RADAR");
+  EXPECT_EQ(Channels(/*is_sealed=*/true), "");
 }
 
 TEST_F(UnloggedMessagesTest, OfALogThatBeginsLateAreOfNoChannelIfTheyCameBeforeItsFirstTruth) {

@@ -47,7 +47,8 @@ TEST_F(RunLogTest, InRealTimeHasEndedWithoutTheLastStateOfTheWorldAndIsIncomplet
   EXPECT_EQ(run.steps, kSteps);
   EXPECT_TRUE(run.ended) << run.note;
   EXPECT_FALSE(run.complete);
-  EXPECT_EQ(run.note, "real time, 1 messages missing; published, but not in the log: 1 (TRUTH)");
+  EXPECT_EQ(run.note,
+            "real time, 1 messages missing; published, but not in the log: at least 1 (TRUTH)");
   ASSERT_TRUE(run.realtime);
   EXPECT_EQ(run.realtime->unlogged_messages, 1);
 }
@@ -62,11 +63,18 @@ TEST_F(RunLogTest, InRealTimeHasEndedWithTheLastStepOfAWorldThatIsDone) {
 }
 
 TEST_F(RunLogTest, InRealTimeIsCompleteWithoutAMessageThatWasNotPublished) {
-  const log::RunLog run = Read(InRealTime([](std::string_view channel, std::int64_t step) {
+  test::ShortLog contents = InRealTime([](std::string_view channel, std::int64_t step) {
     return !(channel == ChannelOf<radar_t>().name && step == 1);
-  }));
-  EXPECT_TRUE(run.complete) << run.note;
-  EXPECT_EQ(run.note, "real time, 1 messages missing");
+  });
+  const std::string missing = "real time, 1 messages missing";
+  EXPECT_FALSE(Read(contents).complete);
+  EXPECT_EQ(Read(contents).note, missing + "; perhaps published, but not in the log: RADAR");
+  contents.radar_ticks = test::kSteps - 1;
+  EXPECT_TRUE(Read(contents).complete);
+  EXPECT_EQ(Read(contents).note, missing);
+  contents.radar_ticks = test::kSteps;
+  EXPECT_FALSE(Read(contents).complete);
+  EXPECT_EQ(Read(contents).note, missing + "; published, but not in the log: at least 1 (RADAR)");
 }
 
 TEST_F(RunLogTest, InRealTimeIsIncompleteWithoutAnyStatusOfTheWorld) {

@@ -36,6 +36,8 @@ struct ShortLog {
   std::optional<std::int64_t> done;
   /// Whether a log in real time has a STATUS of the world.
   bool status = true;
+  /// If set, the log ends with a STATUS of the radar that has computed this number of steps.
+  std::optional<std::int64_t> radar_ticks;
   /// If set, the scenario has two parts, and a TRUTH of this step comes between them.
   std::optional<std::int64_t> early;
   /// If set, the log has this event on FOGLINE_GRAPH after the scenario.
@@ -91,6 +93,16 @@ inline log::LogHead WriteShortLog(const std::filesystem::path& file,
     status.role = NameOf(Role::kWorld);
     status.sequence = 1;
     status.state = contents.done ? status_t::DONE : status_t::RUNNING;
+    runtime::Encode(status, bytes);
+    writer.Write(ChannelOf<status_t>().name, status.header.utime, bytes);
+  }
+  if (contents.radar_ticks) {
+    status_t status{};
+    status.header = {.run_id = kRunId, .step = kSteps - 1, .utime = (kSteps - 1) * kStep_us};
+    status.role = NameOf(Role::kRadar);
+    status.sequence = 1;
+    status.state = status_t::RUNNING;
+    status.ticks = *contents.radar_ticks;
     runtime::Encode(status, bytes);
     writer.Write(ChannelOf<status_t>().name, status.header.utime, bytes);
   }
