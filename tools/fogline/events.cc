@@ -55,7 +55,7 @@ RunEvents ReadEvents(const std::filesystem::path& file, const log::ReadOptions& 
   const bool has_command = !events.log.entries().empty();
   const bool has_gaps = events.run.gaps.Any() ||
                         (events.run.realtime && events.run.realtime->unlogged_channels.any());
-  if (!events.log.requests().empty() || has_gaps || events.log.BeganInRequest() || !has_command) {
+  if (!events.log.requests().empty() || has_gaps || !events.run.ended || !has_command) {
     runner::LoggedRun measured = runner::MeasureLoggedRun(file, events.run.scenario, options);
     measured.result.lack.beginning_of_request |= events.log.BeganInRequest();
     events.unknown = cli::UnknownTakeOvers(measured);
@@ -87,14 +87,17 @@ const metrics::TakeOverMeasures* MeasuresOf(const RunEvents& events,
   return found == events.measures.end() ? nullptr : &*found;
 }
 
+/// Whether the log of a run in real time lacks published commands of the host or the driver.
+bool LacksCommands(const log::RunLog& run) {
+  return run.realtime && (run.realtime->unlogged_channels[IndexOf<arbitration_t>()] ||
+                          run.realtime->unlogged_channels[IndexOf<driver_command_t>()]);
+}
+
 /// Whether an event may have happened before the step in which it is listed, because commands are
 /// missing. In real time, a step may have no command. So an event is late only if published
 /// messages are missing.
 bool MayBeEarlier(const RunEvents& events, const take_over::TakeOverEntry& entry) {
-  if (entry.earliest_step == entry.step) return false;
-  if (!events.run.realtime) return true;
-  const runtime::ChannelSet& unlogged = events.run.realtime->unlogged_channels;
-  return unlogged[IndexOf<arbitration_t>()] || unlogged[IndexOf<driver_command_t>()];
+  return entry.earliest_step != entry.step && (!events.run.realtime || LacksCommands(events.run));
 }
 
 /// The same for the events of a step.
@@ -174,6 +177,11 @@ void AddGaps(const log::LogGaps& gaps, std::vector<EventLine>& lines) {
 std::vector<EventLine> LinesOf(const RunEvents& events) {
   std::vector<EventLine> lines;
   AddGaps(events.run.gaps, lines);
+  if (LacksCommands(events.run)) {
+    lines.emplace_back(0,
+                       fmt::format("unknown: the log lacks published messages of {}",
+                                   log::NamesOfChannels(events.run.realtime->unlogged_channels)));
+  }
   for (const take_over::TakeOverEntry& entry : events.log.entries()) {
     std::string text = fmt::format("{:<42}{}", take_over::TextOf(entry, events.run.scenario.person),
                                    ModesText(entry));
@@ -269,8 +277,9 @@ void AddEvents(CLI::App& app, cli::Action& action) {
       "Lists the events that a data recorder stores: changes of state, requests to take over\n"
       "and their escalation, acknowledgements, transfers, first effective inputs, manoeuvres,\n"
       "collision warnings and emergency braking. In a run in real time it also lists the\n"
-      "fallbacks of the roles. Where the log lacks commands of the host or the driver, the list\n"
-      "says so. An event after such a gap may have happened in the gap: the list gives the\n"
+      "fallbacks of the roles. If the log lacks commands of the host or the driver, the list\n"
+      "says so, in lockstep with their steps. An event after such a gap may have happened in the "
+      "gap: the list gives the\n"
       "steps, JSON has earliest_step, and may_be_earlier with the times of a request.\n"
       "If the log lacks the beginning of the run, the list begins with the state in the first\n"
       "command of the log.\n"

@@ -87,6 +87,9 @@ int RunMetrics(const MetricsArguments& arguments) {
           {"seed", run.result.seed},        {"steps", run.result.steps},
           {"complete", run.complete},       {"digest", cli::DigestJson(run)}};
       if (run.gaps.Any()) row["gaps"] = cli::GapsJson(run.gaps);
+      if (const auto unknown = cli::UnknownMeasures(run.result); !unknown.empty()) {
+        row["unknown_measures"] = unknown;
+      }
       if (const std::string unknown = cli::UnknownTakeOvers(run); !unknown.empty()) {
         row["unknown_take_overs"] = unknown;
       }

@@ -225,6 +225,7 @@ report::ReportRun PageOf(runner::LoggedRun& run, const std::string& name,
           .si_pct = paired.si_pct,
           .si_until_recovery_pct = paired.si_until_recovery_pct,
           .take_overs = run.result.take_overs,
+          .unknown_measures = cli::UnknownMeasuresText(run.result),
           .unknown_take_overs = cli::UnknownTakeOvers(run)};
 }
 

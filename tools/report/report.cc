@@ -128,6 +128,17 @@ std::string CurvesSection(const std::optional<ReportCurves>& curves) {
   return Section("curves", "Every threshold, over seeds", CurvesContent(*curves));
 }
 
+/// A remark for each run of which something is unknown.
+std::string UnknownNotes(std::span<const ReportRun> runs, std::string ReportRun::*unknown) {
+  std::string notes;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    if ((runs[i].*unknown).empty()) continue;
+    notes += fmt::format("<p class=\"note\">{}: unknown, because messages are missing: {}.</p>\n",
+                         EscapeHtml(RunName(runs, i)), EscapeHtml(runs[i].*unknown));
+  }
+  return notes;
+}
+
 std::string RequestsSection(std::span<const ReportRun> runs) {
   std::string content = TakeOverTable(runs);
   if (!content.empty()) {
@@ -136,11 +147,7 @@ std::string RequestsSection(std::span<const ReportRun> runs) {
         "from the request until the driver has recovered, the automation drives again, or the car "
         "stands after a minimal risk manoeuvre.</p>\n";
   }
-  for (std::size_t i = 0; i < runs.size(); ++i) {
-    if (runs[i].unknown_take_overs.empty()) continue;
-    content += fmt::format("<p class=\"note\">{}: unknown, because messages are missing: {}.</p>\n",
-                           EscapeHtml(RunName(runs, i)), EscapeHtml(runs[i].unknown_take_overs));
-  }
+  content += UnknownNotes(runs, &ReportRun::unknown_take_overs);
   return Section("take-overs", "Take-overs", content);
 }
 
@@ -199,26 +206,28 @@ std::string MakeReport(std::span<const ReportRun> runs, const std::optional<Repo
   const std::array scripts{assets::kModelJs,  assets::kScrollJs, assets::kChartJs,
                            assets::kLegendJs, assets::kCurvesJs, assets::kFrontJs,
                            assets::kPageJs};
-  return Fill(assets::kPageHtml,
-              {{"title", EscapeHtml(TitleOf(runs, curves))},
-               {"style", fmt::format("{}\n{}", assets::kUplotCss, assets::kPageCss)},
-               {"summary", SummaryOf(runs, curves)},
-               {"story", StoryElement(runs)},
-               {"runs", cards},
-               {"table", TableSection(table)},
-               {"curves", CurvesSection(curves)},
-               {"figures_hidden", no_figures ? " hidden" : ""},
-               {"figures", figures},
-               {"measures", Section("measures", "Measures", MetricTable(runs))},
-               {"take_overs", RequestsSection(runs)},
-               {"differences",
-                Section("differences", "Differences between the scenarios", DifferenceTable(runs))},
-               {"scenarios", Section("scenarios", "Scenarios", scenarios)},
-               {"data", EscapeScript(PageData(runs, curves))},
-               {"uplot", std::string(assets::kUplotJs)},
-               {"uplot_license", EscapeHtml(assets::kUplotLicense)},
-               {"uplot_version", std::string(assets::kUplotVersion)},
-               {"script", fmt::format("{}", fmt::join(scripts, "\n"))}});
+  return Fill(
+      assets::kPageHtml,
+      {{"title", EscapeHtml(TitleOf(runs, curves))},
+       {"style", fmt::format("{}\n{}", assets::kUplotCss, assets::kPageCss)},
+       {"summary", SummaryOf(runs, curves)},
+       {"story", StoryElement(runs)},
+       {"runs", cards},
+       {"table", TableSection(table)},
+       {"curves", CurvesSection(curves)},
+       {"figures_hidden", no_figures ? " hidden" : ""},
+       {"figures", figures},
+       {"measures", Section("measures", "Measures",
+                            MetricTable(runs) + UnknownNotes(runs, &ReportRun::unknown_measures))},
+       {"take_overs", RequestsSection(runs)},
+       {"differences",
+        Section("differences", "Differences between the scenarios", DifferenceTable(runs))},
+       {"scenarios", Section("scenarios", "Scenarios", scenarios)},
+       {"data", EscapeScript(PageData(runs, curves))},
+       {"uplot", std::string(assets::kUplotJs)},
+       {"uplot_license", EscapeHtml(assets::kUplotLicense)},
+       {"uplot_version", std::string(assets::kUplotVersion)},
+       {"script", fmt::format("{}", fmt::join(scripts, "\n"))}});
 }
 
 }  // namespace fogline::report

@@ -45,6 +45,7 @@ struct ReportRun {
   std::optional<double> si_pct = {};
   std::optional<double> si_until_recovery_pct = {};
   std::vector<metrics::TakeOverMeasures> take_overs = {};  // one for each request to take over
+  std::string unknown_measures = {};    // such as "rhe_pct, transfers"; "" if all are known
   std::string unknown_take_overs = {};  // the requests without measures; "" if there are none
 };
 

@@ -148,9 +148,10 @@ class MessageMeasures {
   /// @param has_end whether the log has the last step
   void PutInto(LoggedRun& run, bool has_end) const {
     run.result.followers = followers_.Result();
-    run.result.take_overs = take_overs_.Result(has_end);
+    run.result.take_overs = take_overs_.Result();
     run.result.lack.beginning_of_request = take_overs_.BeganInRequest();
     AddPersonMeasures(seats_, run);
+    if (!has_end) take_overs_.CutOff(run.result.take_overs);
   }
 
  private:
@@ -203,7 +204,8 @@ LoggedRun ReadSteps(const std::filesystem::path& log, const log::ReadOptions& op
   lack.every = all & ~heard;
   lack.last = lack.channels[IndexOf<truth_t>()] && !has_last;
   lack.beginning = first.value_or(0) > 0;
-  measures.PutInto(logged, has_last || logged.ended);
+  lack.end = !has_last && !logged.ended;
+  measures.PutInto(logged, !lack.end);
   if (!metrics::AreTakeOversKnown(lack)) logged.result.take_overs.clear();
   return logged;
 }

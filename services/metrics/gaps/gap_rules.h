@@ -15,6 +15,7 @@ struct Lack {
   std::bitset<kNumChannels> channels;  // the channels that lack a message after the first step
   std::bitset<kNumChannels> every;     // the channels of which no step with TRUTH has a message
   bool beginning = false;              // whether the first steps are missing
+  bool end = false;                    // whether the log ends before the run
   bool last = false;                   // whether TRUTH is missing, also that of the last step
   // Whether a request to take over may have been open before the first HOST_COMMAND of the log.
   bool beginning_of_request = false;

@@ -25,7 +25,7 @@ void InputTimes::Add(const driver_input_t& input) {
   if (seat.begun == 0) return;
   TakeOverMeasures& request = requests_[seat.begun - 1];
   const double since_s = time_s - request.requested_s;
-  if (since_s > request.judged_s + kSameTime_s) return;
+  if (since_s > *request.judged_s + kSameTime_s) return;
   const Position& before = seat.at_request;
   const bool moved = std::abs(seat.now.throttle - before.throttle) >= kMovement ||
                      std::abs(seat.now.brake - before.brake) >= kMovement ||

@@ -168,14 +168,24 @@ void TakeOverAccumulator::Finish(const Judged& judged, TakeOverMeasures& measure
   measures.manoeuvre_drove_s = Seconds(judged.manoeuvre_us);
 }
 
-std::vector<TakeOverMeasures> TakeOverAccumulator::Result(bool has_end) const {
+std::vector<TakeOverMeasures> TakeOverAccumulator::Result() const {
   std::vector<TakeOverMeasures> result = requests_;
-  if (!judged_) return result;
-  Finish(*judged_, result.back());
-  TakeOverEnd& outcome = result.back().outcome;
-  const bool may_change = outcome == TakeOverEnd::kOpen || outcome == TakeOverEnd::kMinimalRisk;
-  if (!has_end && may_change && !IsLocked(log_.mode())) outcome = TakeOverEnd::kUnknown;
+  if (judged_) Finish(*judged_, result.back());
   return result;
+}
+
+void TakeOverAccumulator::CutOff(std::vector<TakeOverMeasures>& requests) const {
+  if (!judged_) return;
+  TakeOverMeasures& cut = requests.back();
+  for (std::optional<double>* measure :
+       {&cut.judged_s, &cut.max_deceleration_mps2, &cut.mean_deceleration_mps2,
+        &cut.max_abs_jerk_1s_mps3, &cut.min_ttc_s, &cut.min_time_gap_s, &cut.automation_drove_s,
+        &cut.driver_drove_s, &cut.manoeuvre_drove_s, &cut.sensor_excluded_s}) {
+    measure->reset();
+  }
+  const bool may_change =
+      cut.outcome == TakeOverEnd::kOpen || cut.outcome == TakeOverEnd::kMinimalRisk;
+  if (may_change && !IsLocked(log_.mode())) cut.outcome = TakeOverEnd::kUnknown;
 }
 
 }  // namespace fogline::metrics

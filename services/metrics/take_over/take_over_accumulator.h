@@ -31,10 +31,11 @@ class TakeOverAccumulator {
            std::optional<double> human_mps2);
 
   /// The measures of each request so far, in order of time.
-  /// @param has_end whether the last step of the run was added. Otherwise the outcome of a request
-  ///     is unknown if it may still change: the driver has not taken over, and the judged interval
-  ///     has not ended.
-  std::vector<TakeOverMeasures> Result(bool has_end = true) const;
+  std::vector<TakeOverMeasures> Result() const;
+  /// Empties the measures that are unknown if the last step of the run was not added: those of a
+  /// judged interval that has not ended, and the outcome if it may still change.
+  /// @param requests of Result()
+  void CutOff(std::vector<TakeOverMeasures>& requests) const;
   /// Whether the log may lack the beginning of a request (TakeOverLog::BeganInRequest). Result()
   /// does not contain this request.
   bool BeganInRequest() const { return log_.BeganInRequest(); }

@@ -28,13 +28,14 @@ std::string_view NameOf(TakeOverEnd end);
 ///
 /// The *judged interval* begins with the step of the request. It ends with the first step in which
 /// the driver counts as recovered, the automation drives again, or the car stands after a minimal
-/// risk manoeuvre. If no such step comes, the interval ends with the run.
+/// risk manoeuvre. If no such step comes, the interval ends with the run. If the log ends before
+/// the run and the interval do, all measures of the interval are empty.
 struct TakeOverMeasures {
   TakeOverEnd outcome = TakeOverEnd::kOpen;
   /// Time of the request since the start of the run, s.
   double requested_s = 0;
   /// Length of the judged interval, s.
-  double judged_s = 0;
+  std::optional<double> judged_s = 0;
 
   /// Only if a person drives (input_times.h): first_movement_time_s is the time to the first
   /// DRIVER_INPUT in which the person has moved a pedal, or pressed the button for taking over,
@@ -74,12 +75,12 @@ struct TakeOverMeasures {
   /// Times in the judged interval in which automation, driver and manoeuvre drove the host, s.
   /// While authority is shared, the mode in HOST_COMMAND names the side. A step without
   /// HOST_COMMAND counts like the step before it.
-  double automation_drove_s = 0;
-  double driver_drove_s = 0;
-  double manoeuvre_drove_s = 0;
+  std::optional<double> automation_drove_s = 0;
+  std::optional<double> driver_drove_s = 0;
+  std::optional<double> manoeuvre_drove_s = 0;
   /// Part of automation_drove_s in which the policy excluded a value of a sensor from the fusion,
   /// s. A step in which this sensor has no value does not count.
-  double sensor_excluded_s = 0;
+  std::optional<double> sensor_excluded_s = 0;
 
   friend bool operator==(const TakeOverMeasures&, const TakeOverMeasures&) = default;
 };

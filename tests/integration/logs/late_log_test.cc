@@ -152,6 +152,7 @@ TEST_F(LateLogTest, ALogThatIsCutOffDoesNotKnowTheOutcomeOfItsRequest) {
   });
   const nlohmann::json request = Json({"metrics", log}, 1)[0]["take_overs"].at(0);
   EXPECT_EQ(request["outcome"], "unknown");
+  EXPECT_EQ(request["judged_s"], nullptr);
   EXPECT_EQ(request["requested_s"], measures_["requested_s"]);
   EXPECT_EQ(Json({"events", log}, 1)[0]["requests"].at(0)["measures"]["outcome"], "unknown");
   const std::string table = folder_.File("take-overs.csv");
@@ -160,6 +161,24 @@ TEST_F(LateLogTest, ALogThatIsCutOffDoesNotKnowTheOutcomeOfItsRequest) {
   const std::string page = folder_.File("report.html");
   EXPECT_EQ(Fogline({"report", log, "--output", page}).code, 1);
   EXPECT_THAT(Content(page), HasSubstr("<td>unknown: the log ends first</td>"));
+}
+
+TEST_F(LateLogTest, DoesNotKnowRequestsOutsideOfIt) {
+  // GIVEN a log that begins after the end of the request, and one that ends before its beginning
+  const std::string after = From(static_cast<std::int64_t>(events_.back()["step"]) + 1);
+  const std::string table = folder_.File("take-overs.csv");
+  const auto expect_unknown = [&](const std::string& log, const std::string& what) {
+    EXPECT_EQ(Json({"events", log}, 1)[0]["unknown_take_overs"], what);
+    EXPECT_EQ(Json({"metrics", log}, 1)[0]["unknown_take_overs"], what);
+    EXPECT_EQ(Fogline({"metrics", log, "--take-overs", table}).code, 1);
+    EXPECT_THAT(Content(table), HasSubstr("\n" + log + ",1,,unknown,,"));
+  };
+  expect_unknown(after, "requests before the beginning of the log");
+  const std::string before =
+      Without([&](std::string_view channel,
+                  std::int64_t step) { return channel != "RUN" && step > asked_ - 10; },
+              "before.lcm");
+  expect_unknown(before, "requests after the end of the log");
 }
 
 TEST_F(LateLogTest, HasNoFalseAlarmThatBeganBeforeIt) {

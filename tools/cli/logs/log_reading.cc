@@ -1,6 +1,6 @@
 #include "tools/cli/logs/log_reading.h"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "common/errors.h"
@@ -70,18 +70,18 @@ nlohmann::ordered_json DigestJson(const log::RunLog& run) {
   return run.digest;
 }
 
-std::string UnknownMeasures(const runner::ExperimentResult& result) {
-  std::string names;
-  bool all = true;
+std::vector<std::string> UnknownMeasures(const runner::ExperimentResult& result) {
+  std::vector<std::string> names;
   metrics::VisitMetrics(result.measures, [&](std::string_view name, const auto& value,
                                              std::string_view, std::string_view) {
-    if (metrics::IsKnown(name, value, result.lack)) {
-      all = false;
-    } else {
-      names += fmt::format("{}{}", names.empty() ? "" : ", ", name);
-    }
+    if (!metrics::IsKnown(name, value, result.lack)) names.emplace_back(name);
   });
-  return all ? "all measures" : names;
+  return names;
+}
+
+std::string UnknownMeasuresText(const runner::ExperimentResult& result) {
+  if (result.lack.every[IndexOf<truth_t>()]) return "all measures";
+  return fmt::format("{}", fmt::join(UnknownMeasures(result), ", "));
 }
 
 std::string UnknownTakeOvers(const runner::LoggedRun& run) {
@@ -91,16 +91,20 @@ std::string UnknownTakeOvers(const runner::LoggedRun& run) {
     return "requests in a gap and the measures of take-overs";
   }
   if (!metrics::AreTakeOversKnown(lack)) return "the measures of take-overs";
+  std::vector<std::string> unknown;
   if (lack.beginning_of_request) {
-    return "the measures of a request that may have begun before the log";
+    unknown.emplace_back("the measures of a request that may have begun before the log");
+  } else if (lack.beginning) {
+    unknown.emplace_back("requests before the beginning of the log");
   }
-  return "";
+  if (lack.end) unknown.emplace_back("requests after the end of the log");
+  return fmt::format("{}", fmt::join(unknown, ", "));
 }
 
 void SayWhatIsUnknown(const runner::LoggedRun& run, const std::string& of_pair) {
   if (run.steps == 0 && !run.gaps.Any()) return;  // SayAboutLog() says it
   const bool has_truth = !run.result.lack.every[IndexOf<truth_t>()];
-  std::string unknown = UnknownMeasures(run.result);
+  std::string unknown = UnknownMeasuresText(run.result);
   for (const std::string& other : {of_pair, UnknownTakeOvers(run)}) {
     if (has_truth && !other.empty()) unknown += (unknown.empty() ? "" : ", ") + other;
   }

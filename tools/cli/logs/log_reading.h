@@ -45,9 +45,10 @@ nlohmann::ordered_json GapsJson(const log::LogGaps& gaps);
 /// The digest of a run as JSON: null if it is unknown (log::DigestText()).
 nlohmann::ordered_json DigestJson(const log::RunLog& run);
 
-/// The names of the measures of a run that are unknown because its log has gaps, such as "rhe_pct,
-/// transfers", or "all measures"; "" if all are known.
-std::string UnknownMeasures(const runner::ExperimentResult& result);
+/// The names of the measures of a run that are unknown because its log has gaps.
+std::vector<std::string> UnknownMeasures(const runner::ExperimentResult& result);
+/// The same as text, such as "rhe_pct, transfers", or "all measures"; "" if all are known.
+std::string UnknownMeasuresText(const runner::ExperimentResult& result);
 
 /// The requests to take over of a run whose measures are unknown, such as "the measures of
 /// take-overs"; "" if all requests and their measures are known, or if the run cannot have

@@ -288,14 +288,22 @@ TEST(TakeOverAccumulatorTest, ALogThatIsCutOffLeavesTheEndOfItsLastRequestOpen) 
   const auto cut = [](const std::vector<std::int8_t>& modes) {
     std::vector<HostStep> steps;
     for (const std::int8_t mode : modes) steps.push_back({.mode = mode});
-    return Accumulated(steps).Result(/*has_end=*/false).back().outcome;
+    const metrics::TakeOverAccumulator accumulated = Accumulated(steps);
+    std::vector<TakeOverMeasures> requests = accumulated.Result();
+    accumulated.CutOff(requests);
+    return requests.back();
   };
-  EXPECT_EQ(cut({A::REQUEST, A::HANDOVER}), TakeOverEnd::kUnknown);
-  EXPECT_EQ(cut({A::REQUEST, A::MRM_COMFORT}), TakeOverEnd::kUnknown);
-  EXPECT_EQ(cut({A::REQUEST, A::MRM_COMFORT, A::MRM_DONE}), TakeOverEnd::kMinimalRisk);
-  EXPECT_EQ(cut({A::REQUEST, A::MINIMAL_RISK}), TakeOverEnd::kMinimalRisk) << "it lasts";
-  EXPECT_EQ(cut({A::REQUEST, A::HANDOVER, A::RECOVERING}), TakeOverEnd::kTakenOver);
-  EXPECT_EQ(cut({A::REQUEST, A::AUTOMATION}), TakeOverEnd::kWithdrawn);
+  EXPECT_EQ(cut({A::REQUEST, A::HANDOVER}).outcome, TakeOverEnd::kUnknown);
+  EXPECT_EQ(cut({A::REQUEST, A::MRM_COMFORT}).outcome, TakeOverEnd::kUnknown);
+  EXPECT_EQ(cut({A::REQUEST, A::MRM_COMFORT, A::MRM_DONE}).outcome, TakeOverEnd::kMinimalRisk);
+  EXPECT_EQ(cut({A::REQUEST, A::MINIMAL_RISK}).outcome, TakeOverEnd::kMinimalRisk) << "it lasts";
+  EXPECT_EQ(cut({A::REQUEST, A::HANDOVER, A::RECOVERING}).outcome, TakeOverEnd::kTakenOver);
+  EXPECT_EQ(cut({A::REQUEST, A::AUTOMATION}).outcome, TakeOverEnd::kWithdrawn);
+  // The judged interval of a driver who has not recovered goes on, and its measures are unknown.
+  EXPECT_EQ(cut({A::REQUEST, A::HANDOVER, A::RECOVERING}).judged_s, std::nullopt);
+  EXPECT_EQ(cut({A::REQUEST, A::HANDOVER, A::RECOVERING}).driver_drove_s, std::nullopt);
+  EXPECT_EQ(cut({A::REQUEST, A::HANDOVER, A::RECOVERING}).reaction_time_s, 0.5);
+  EXPECT_EQ(cut({A::REQUEST, A::RECOVERING, A::HUMAN}).judged_s, 1.0);
   EXPECT_EQ(metrics::NameOf(TakeOverEnd::kUnknown), "unknown");
 }
 
