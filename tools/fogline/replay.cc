@@ -16,6 +16,7 @@
 #include "tools/fogline/logs/live_replay.h"
 #include "tools/fogline/verbs.h"
 #include "tools/replay/role_check.h"
+#include "tools/watch/role_cell.h"
 
 namespace fogline {
 namespace {
@@ -102,16 +103,16 @@ nlohmann::ordered_json ToJson(const replay::RoleCheck& one, std::int64_t steps) 
 
 void PrintText(const replay::RoleCheck& one, std::int64_t steps) {
   if (steps == 0) {
-    fmt::print("{:<11} unknown: no step is compared\n", NameOf(one.role));
+    fmt::print("{} unknown: no step is compared\n", RoleCell(NameOf(one.role)));
     return;
   }
   if (!one.first) {
-    fmt::print("{:<11} same: {} steps\n", NameOf(one.role), steps);
+    fmt::print("{} same: {} steps\n", RoleCell(NameOf(one.role)), steps);
     return;
   }
-  fmt::print("{:<11} differs in {} of {} steps, first in step {}: {} {}: {} in the log, {} here\n",
-             NameOf(one.role), one.steps_that_differ, steps, one.first->step, one.first->channel,
-             one.first->field, one.first->a, one.first->b);
+  fmt::print("{} differs in {} of {} steps, first in step {}: {} {}: {} in the log, {} here\n",
+             RoleCell(NameOf(one.role)), one.steps_that_differ, steps, one.first->step,
+             one.first->channel, one.first->field, one.first->a, one.first->b);
 }
 
 int RunReplay(const ReplayArguments& arguments) {

@@ -7,6 +7,7 @@
 #include <fmt/core.h>
 
 #include "common/text.h"
+#include "tools/watch/role_cell.h"
 
 namespace fogline::watch {
 namespace {
@@ -67,11 +68,11 @@ Line ChannelLine(const ChannelView& channel) {
       bad ? Line::Style::kBad : Line::Style::kPlain};
 }
 
-constexpr const char* kRoleRow = " {:<11}{:<8}{:>7}{:>7}{:>8}{:>7}{:>7}{:>7}  {:<16}  {}";
+constexpr const char* kRoleRow = " {}{:<8}{:>7}{:>7}{:>8}{:>7}{:>7}{:>7}  {:<16}  {}";
 
 Line RoleHeading() {
-  return {fmt::format(kRoleRow, "role", "state", "step", "asked", "served", "CPU %", "MB", "age s",
-                      "process", ""),
+  return {fmt::format(kRoleRow, RoleCell("role"), "state", "step", "asked", "served", "CPU %", "MB",
+                      "age s", "process", ""),
           Line::Style::kHeading};
 }
 
@@ -102,8 +103,9 @@ Line RoleLine(const RoleView& role) {
   const status_t& status = role.status;
   const bool bad = role.silent || status.state == status_t::FAILED;
   return {
-      fmt::format(kRoleRow, Printable(status.role), StateName(status.state), status.header.step,
-                  status.repairs_asked, status.repairs_served, Number(role.cpu_percent, 1, 1),
+      fmt::format(kRoleRow, RoleCell(Printable(status.role)), StateName(status.state),
+                  status.header.step, status.repairs_asked, status.repairs_served,
+                  Number(role.cpu_percent, 1, 1),
                   Number(static_cast<double>(status.rss_bytes), kMega, 1), Number(role.age_s, 1, 1),
                   fmt::format("{}@{}", status.pid, Printable(status.host)), Remarks(role)),
       bad ? Line::Style::kBad : Line::Style::kPlain};

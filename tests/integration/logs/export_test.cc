@@ -19,6 +19,7 @@
 #include <nlohmann/json.hpp>
 
 #include "services/log/run_log.h"
+#include "services/log/step_order.h"
 #include "services/runtime/wire/wire.h"
 #include "tests/integration/logs/export_fixture.h"
 #include "tests/support/command.h"
@@ -95,7 +96,8 @@ class Csv {
 TEST_F(ExportTest, WritesEveryNumberOfEveryChannelAsCsvToTheLastBit) {
   const Outcome outcome = Export({"--out", out_, "--json"});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_EQ(nlohmann::json::parse(outcome.out)["files"].size(), 10U);
+  EXPECT_EQ(nlohmann::json::parse(outcome.out)["files"].size(), log::kStepChannels + 1)
+      << "scenario.json";
   std::map<std::string_view, Csv> files;
   ForEachStepChannel([&]<class M>(std::size_t channel) {
     const std::string_view name = kChannels[channel].name;

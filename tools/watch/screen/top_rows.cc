@@ -9,6 +9,7 @@
 
 #include "common/text.h"
 #include "tools/watch/announced.h"
+#include "tools/watch/role_cell.h"
 #include "tools/watch/screen/field_lines.h"
 #include "tools/watch/screen/health_text.h"
 #include "tools/watch/senders/senders_report.h"
@@ -71,14 +72,14 @@ double SenderNumber(const SenderView& sender, std::size_t column) {
   return static_cast<double>(column == 1 ? sender.counts.received : sender.counts.lost);
 }
 
-constexpr const char* kRoleColumns = " {:<11}{:<8}{:>6}{:>6}{:>6}  {}";
+constexpr const char* kRoleColumns = " {}{:<8}{:>6}{:>6}{:>6}  {}";
 
 TopRow RoleRow(const RunView& run, const RoleView& role) {
   std::string remarks;
   for (const std::string& remark : RemarksOn(role, run.realtime)) {
     remarks += (remarks.empty() ? "" : "; ") + remark;
   }
-  return {.line = {fmt::format(kRoleColumns, Printable(role.status.role),
+  return {.line = {fmt::format(kRoleColumns, RoleCell(Printable(role.status.role)),
                                StateName(role.status.state), role.status.header.step,
                                role.cpu_percent ? fmt::format("{:.1f}", *role.cpu_percent) : "-",
                                fmt::format("{:.1f}", role.age_s), remarks.empty() ? "ok" : remarks),
@@ -136,8 +137,8 @@ const TableOrder& OrderOf(Table table, const TableOrders& orders) {
 void AddRun(const RunView& run, const TableOrders& orders, std::vector<TopRow>& rows) {
   rows.push_back(Heading(Table::kNone, RunText(run)));
   if (!run.roles.empty()) {
-    rows.push_back(Heading(Table::kRoles, fmt::format(kRoleColumns, "role", "state", "step",
-                                                      "CPU %", "age s", "diagnosis")));
+    rows.push_back(Heading(Table::kRoles, fmt::format(kRoleColumns, RoleCell("role"), "state",
+                                                      "step", "CPU %", "age s", "diagnosis")));
   }
   const TableOrder& by = OrderOf(Table::kRoles, orders);
   for (const RoleView* role : Sorted<RoleView>(
@@ -167,16 +168,16 @@ void AddOthers(const TopView& view, const TableOrders& orders, std::vector<TopRo
 
 void AddWaiting(const TopView& view, std::vector<TopRow>& rows) {
   if (view.waiting.empty()) return;
-  constexpr const char* kWaitingColumns = " {:<11}{:<24}{:<11}{:>7}  {}";
-  rows.push_back(Heading(Table::kWaiting, fmt::format(kWaitingColumns, "waits", "process",
+  constexpr const char* kWaitingColumns = " {}{:<24}{:<11}{:>7}  {}";
+  rows.push_back(Heading(Table::kWaiting, fmt::format(kWaitingColumns, RoleCell("waits"), "process",
                                                       "version", "for s", "network")));
   for (const runtime::WaitingRole& role : view.waiting) {
-    rows.push_back(
-        {.line = {fmt::format(kWaitingColumns, role.role, fmt::format("{}@{}", role.pid, role.host),
-                              role.version, fmt::format("{:.0f}", role.waiting_s), role.url),
-                  role.same_types ? Style::kPlain : Style::kBad},
-         .table = Table::kWaiting,
-         .key = fmt::format("waiting {}", role.instance)});
+    rows.push_back({.line = {fmt::format(kWaitingColumns, RoleCell(role.role),
+                                         fmt::format("{}@{}", role.pid, role.host), role.version,
+                                         fmt::format("{:.0f}", role.waiting_s), role.url),
+                             role.same_types ? Style::kPlain : Style::kBad},
+                    .table = Table::kWaiting,
+                    .key = fmt::format("waiting {}", role.instance)});
   }
 }
 

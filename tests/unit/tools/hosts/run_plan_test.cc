@@ -18,7 +18,12 @@ using hosts::HostPlan;
 using hosts::MakePlan;
 using hosts::PlanWords;
 using hosts::RunPlan;
+using testing::AllOf;
 using testing::ElementsAre;
+using testing::EndsWith;
+using testing::HasSubstr;
+using testing::Not;
+using testing::StartsWith;
 
 std::string PlanRefusal(const PlanWords& words) {
   return ErrorOf([&words] { MakePlan(words); });
@@ -51,10 +56,10 @@ TEST(RunPlanTest, AMachineMayNameTheFolderOfItsPrograms) {
 TEST(RunPlanTest, WrongPlacesAreNamed) {
   EXPECT_EQ(PlanRefusal({.on = {"fusion"}}),
             "error: --on fusion: must be ROLE=HOST, such as fusion=user@lab2");
-  EXPECT_EQ(PlanRefusal({.on = {"fusoin=lab2"}}),
-            "error: --on fusoin=lab2: \"fusoin\" is no role; did you mean \"fusion\"?; roles are "
-            "\"world\", \"radar\", \"lidar\", \"fusion\", \"acc\", \"driver\", \"arbitrator\", "
-            "\"follower\"");
+  EXPECT_THAT(PlanRefusal({.on = {"fusoin=lab2"}}),
+              AllOf(StartsWith("error: --on fusoin=lab2: \"fusoin\" is no role; did you mean "
+                               "\"fusion\"?; roles are \"world\", \"radar\", "),
+                    EndsWith(", \"follower\""), Not(HasSubstr("recorder"))));
   EXPECT_EQ(PlanRefusal({.on = {"recorder=lab2"}}),
             "error: --on recorder=lab2: the recorder runs on the machine of the run, whose result "
             "is read from its log");

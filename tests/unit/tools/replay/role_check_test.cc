@@ -29,7 +29,7 @@ using testing::SizeIs;
 
 constexpr std::int64_t kSteps = 40;
 constexpr std::int64_t kAltered = 23;
-constexpr std::size_t kComputing = 8;  // all roles except the recorder
+constexpr std::size_t kComputing = kRoles.size() - 1;  // all roles except the recorder
 
 /// The log of a run, and a copy in which a message of one step is altered.
 class RoleCheckTest : public testing::Test {

@@ -77,10 +77,12 @@ TEST(RealtimeStatisticsTest, LeavesRoomInAStatusOfOneDatagram) {
   status.version = "10.20.30-release-candidate";
   status.waiting_for = "FOLLOWER_COMMAND";
   status.fallback = "the automation drives alone: driver (DRIVER_COMMAND lost)";
+  std::int32_t inputs = 0;
   ForEachStepChannel([&]<class M>(std::size_t channel) {
     runtime::WriteInput(kChannels[channel].name, health, kDue, status);
+    ++inputs;
   });
-  EXPECT_EQ(status.num_inputs, 9);
+  EXPECT_EQ(status.num_inputs, inputs);
   std::vector<std::uint8_t> bytes;
   runtime::Encode(status, bytes);
   RecordProperty("bytes", static_cast<int>(bytes.size()));
