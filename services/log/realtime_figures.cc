@@ -84,11 +84,11 @@ std::int64_t RealtimeAccumulator::Unlogged(std::size_t channel) const {
   return processes == 1 ? std::max<std::int64_t>(0, unlogged - late) : 0;
 }
 
-bool RealtimeAccumulator::MayLack(std::size_t channel, bool is_sealed) const {
+bool RealtimeAccumulator::MayLack(std::size_t channel, bool has_all) const {
   const Role from = kChannels[channel].from;
   const std::int64_t missed = steps_ - late_steps_ - logged_[channel];
   if (!HasStatus(from)) return missed > 0;
-  if (is_sealed || from == Role::kWorld) return false;
+  if (has_all || from == Role::kWorld) return false;
   const auto processes = std::ranges::count_if(
       last_, [from](const auto& process) { return process.first.first == NameOf(from); });
   return processes > 1 ? missed > 0 : unchecked_[channel] > 0;
@@ -99,7 +99,7 @@ bool RealtimeAccumulator::HasStatus(Role role) const {
       last_, [role](const auto& status) { return status.first.first == NameOf(role); });
 }
 
-RealtimeFigures RealtimeAccumulator::Result(bool is_sealed) const {
+RealtimeFigures RealtimeAccumulator::Result(bool has_all) const {
   RealtimeFigures figures{.speed = speed_,
                           .fallbacks = fallbacks_.all(),
                           .fallbacks_left_out = fallbacks_.left_out(),
@@ -109,7 +109,7 @@ RealtimeFigures RealtimeAccumulator::Result(bool is_sealed) const {
     figures.missed_messages += steps_ - logged_[i];
     const std::int64_t unlogged = Unlogged(i);
     figures.unlogged_messages += unlogged;
-    figures.unlogged_channels[i] = MayLack(i, is_sealed) || unlogged > late_steps_;
+    figures.unlogged_channels[i] = MayLack(i, has_all) || unlogged > late_steps_;
   }
   for (const auto& [name, process] : last_) {
     const status_t& status = process.status;

@@ -86,9 +86,9 @@ class RealtimeAccumulator {
   /// Adds the next step of the log. `there` has the channels of which the step has a message.
   void AddStep(const runtime::ChannelSet& there);
 
-  /// @param is_sealed whether the log has a seal: it then has every message that the recorder has
-  ///     received
-  RealtimeFigures Result(bool is_sealed = true) const;
+  /// @param has_all whether the log has every message that the recorder has received, as a log with
+  ///     a seal has
+  RealtimeFigures Result(bool has_all = true) const;
 
  private:
   /// A process, and what its last STATUS says.
@@ -102,7 +102,7 @@ class RealtimeAccumulator {
   void Check(Process& process);
   bool HasStatus(Role role) const;
   /// Whether the log lacks a message of a channel of which no STATUS says whether it was published.
-  bool MayLack(std::size_t channel, bool is_sealed) const;
+  bool MayLack(std::size_t channel, bool has_all) const;
   /// Lower bound of the number of messages of a channel that were published but are not in the log.
   /// Messages that came too late for the recorder do not count here.
   std::int64_t Unlogged(std::size_t channel) const;

@@ -150,17 +150,16 @@ class RunLogReader::Assembler {
     const std::int64_t run_id = runtime::ReadInt64(event.data, runtime::kRunIdOffset);
     if (options_.gaps && parts_.empty()) ChooseRun(event.data, channel, run_id);
     const runtime::Bytes data = Payload(event.data);
+    const std::int64_t step = runtime::ReadInt64(event.data, runtime::kStepOffset);
     if ((parts_.empty() && !options_.gaps) || data.empty() || run_id != run_.run_id) {
       ++foreign_;
-      const std::int64_t step = runtime::ReadInt64(event.data, runtime::kStepOffset);
-      if (run_id != run_.run_id) others_.Add(run_id, step);
+      if (run_id != run_.run_id) others_.Add(run_id, step < 0 ? std::nullopt : std::optional(step));
       return;
     }
     if (runtime::ReadInt64(data, 0) != runtime::FingerprintOf(channel) &&
         (other_types_ || VersionOf(file_).other_types)) {
       RefuseVersion(file_);
     }
-    const std::int64_t step = runtime::ReadInt64(data, runtime::kStepOffset);
     if (step < next_ || (realtime_ && step >= steps_)) return;  // repeated, or not of the run
     Pending& pending = pending_[step];
     if (!pending.messages[channel].empty()) {
@@ -174,8 +173,7 @@ class RunLogReader::Assembler {
   }
 
   void Finish() {
-    // Also if the log is refused below.
-    if (realtime_) run_.realtime = realtime_->Result(run_.seal.has_value());
+    if (realtime_) run_.realtime = realtime_->Result();  // also if the log is refused below
     if (reader_.empty()) Refuse("the log is empty: no run has begun to write it");
     FinishScenario();
     run_.digest = run_.gaps.Any() || first_steps_ == 0 ? "" : digest_.Hex();
@@ -185,6 +183,8 @@ class RunLogReader::Assembler {
     run_.events = reader_.head();
     const std::string alteration = Alteration();
     run_.altered = !alteration.empty();
+    const bool has_all = options_.has_all || (run_.seal && run_.seal->whole && !run_.altered);
+    if (realtime_) run_.realtime = realtime_->Result(has_all);
     // In real time, the TRUTH message that has `last` may be missing. Then the number of steps
     // shows that the run has ended.
     if (realtime_ && (run_.steps == steps_ || run_.steps == end_)) last_ = true;

@@ -46,7 +46,7 @@ struct RunLog {
   // messages of one step and channel differ. In lockstep, the log must also have all messages.
   bool ended = false;
   // Whether `ended` is true and, in real time, STATUS says that no published message is missing. If
-  // the log has no seal, STATUS must say so up to the last step that lacks a message.
+  // the log has no sound seal, STATUS must say so up to the last step that lacks a message.
   bool complete = false;
   // Why the log is not complete, or what was ignored; "" if there is no such remark.
   std::string note;

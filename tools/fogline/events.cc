@@ -53,9 +53,7 @@ RunEvents ReadEvents(const std::filesystem::path& file, const log::ReadOptions& 
   }
   events.run = reader.run();
   const bool has_command = !events.log.entries().empty();
-  const bool has_gaps = events.run.gaps.Any() ||
-                        (events.run.realtime && events.run.realtime->unlogged_channels.any());
-  if (!events.log.requests().empty() || has_gaps || !events.run.ended || !has_command) {
+  if (!events.log.requests().empty() || !events.run.complete || !has_command) {
     runner::LoggedRun measured = runner::MeasureLoggedRun(file, events.run.scenario, options);
     measured.result.lack.beginning_of_request |= events.log.BeganInRequest();
     events.unknown = cli::UnknownTakeOvers(measured);
@@ -87,17 +85,20 @@ const metrics::TakeOverMeasures* MeasuresOf(const RunEvents& events,
   return found == events.measures.end() ? nullptr : &*found;
 }
 
-/// Whether the log of a run in real time lacks published commands of the host or the driver.
-bool LacksCommands(const log::RunLog& run) {
-  return run.realtime && (run.realtime->unlogged_channels[IndexOf<arbitration_t>()] ||
-                          run.realtime->unlogged_channels[IndexOf<driver_command_t>()]);
+/// Of HOST_COMMAND and DRIVER_COMMAND, the channels of which the log of a run in real time may lack
+/// published messages.
+runtime::ChannelSet UnloggedCommands(const log::RunLog& run) {
+  runtime::ChannelSet commands;
+  commands.set(IndexOf<arbitration_t>()).set(IndexOf<driver_command_t>());
+  return run.realtime ? commands & run.realtime->unlogged_channels : runtime::ChannelSet();
 }
 
 /// Whether an event may have happened before the step in which it is listed, because commands are
 /// missing. In real time, a step may have no command. So an event is late only if published
-/// messages are missing.
+/// messages may be missing.
 bool MayBeEarlier(const RunEvents& events, const take_over::TakeOverEntry& entry) {
-  return entry.earliest_step != entry.step && (!events.run.realtime || LacksCommands(events.run));
+  return entry.earliest_step != entry.step &&
+         (!events.run.realtime || UnloggedCommands(events.run).any());
 }
 
 /// The same for the events of a step.
@@ -177,10 +178,9 @@ void AddGaps(const log::LogGaps& gaps, std::vector<EventLine>& lines) {
 std::vector<EventLine> LinesOf(const RunEvents& events) {
   std::vector<EventLine> lines;
   AddGaps(events.run.gaps, lines);
-  if (LacksCommands(events.run)) {
-    lines.emplace_back(0,
-                       fmt::format("unknown: the log lacks published messages of {}",
-                                   log::NamesOfChannels(events.run.realtime->unlogged_channels)));
+  if (const runtime::ChannelSet commands = UnloggedCommands(events.run); commands.any()) {
+    lines.emplace_back(0, fmt::format("unknown: the log may lack published messages of {}",
+                                      log::NamesOfChannels(commands)));
   }
   for (const take_over::TakeOverEntry& entry : events.log.entries()) {
     std::string text = fmt::format("{:<42}{}", take_over::TextOf(entry, events.run.scenario.person),

@@ -214,7 +214,9 @@ LoggedRun ReadSteps(const std::filesystem::path& log, const log::ReadOptions& op
 LoggedRun ReadOwnLog(const LogKeeper& keeper, const std::filesystem::path& log, const BusRun& run,
                      const Scenario& scenario, const ExperimentOptions& options) {
   const auto read = [&] {
-    LoggedRun logged = options.samples ? ReadLoggedRun(log) : MeasureLoggedRun(log, scenario);
+    const log::ReadOptions whole{.has_all = true};
+    LoggedRun logged =
+        options.samples ? ReadLoggedRun(log, whole) : MeasureLoggedRun(log, scenario, whole);
     if (logged.run_id == run.run_id) return logged;
     throw std::runtime_error(
         fmt::format("{}: the log is of run {}, not of this run, {}: it was replaced meanwhile",

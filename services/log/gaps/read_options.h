@@ -18,6 +18,9 @@ struct ReadOptions {
   /// In lockstep: whether the reader also gives steps that lack messages. Otherwise the reader ends
   /// before the first of these steps.
   bool gaps = false;
+  /// Whether the log is known to have every message that the recorder has received. A log with a
+  /// sound seal has them in any case.
+  bool has_all = false;
   /// The run to read; nullopt: the first run in the log.
   std::optional<std::int64_t> run_id;
   /// The effective scenario of a log that lacks its scenario; "": not known.

@@ -24,8 +24,8 @@ class GapInRealtimeTest : public GapTest {
   std::string Run(const std::string& policy) {
     whole_ = folder_.File(policy + ".lcm");
     const Outcome run =
-        Fogline({"run", "scenario/paper.json", "--realtime", "--speed", "20", "--quiet", "--log",
-                 whole_, "--set", "/steps=250", "--set", "/arbitrator/policy=" + policy});
+        Fogline({"run", "scenario/paper.json", "--realtime", "--speed", "20", "--quiet", "--force",
+                 "--log", whole_, "--set", "/steps=250", "--set", "/arbitrator/policy=" + policy});
     EXPECT_EQ(run.code, 0) << run.err;
     return whole_;
   }
@@ -65,8 +65,9 @@ TEST_F(GapInRealtimeTest, MeasuresAreUnknownIfPublishedMessagesOfTheirChannelsAr
   const nlohmann::json event = Json({"events", log}, 1)[0]["events"].at(1);
   EXPECT_LE(event["earliest_step"], transfer - 60) << "a step before the gap may have no command";
   EXPECT_GT(event["step"], transfer);
-  EXPECT_THAT(Fogline({"events", log}).out,
-              ContainsRegex("unknown: the log lacks published messages of [A-Z_, ]*HOST_COMMAND"));
+  EXPECT_THAT(
+      Fogline({"events", log}).out,
+      ContainsRegex("unknown: the log may lack published messages of [A-Z_, ]*HOST_COMMAND"));
   // The story at the top of a report leaves out the run.
   const std::string page = folder_.File("report.html");
   EXPECT_EQ(Fogline({"report", whole, "--output", page}).code, 0);
@@ -84,6 +85,9 @@ TEST_F(GapInRealtimeTest, OneLostCommandIsFoundAlthoughLaterStepsHaveNoStatus) {
   EXPECT_EQ(metrics["complete"], false);
   EXPECT_TRUE(metrics["metrics"]["human_time_s"].is_null());
   EXPECT_THAT(metrics["unknown_measures"], ::testing::Contains("human_time_s"));
+  EXPECT_THAT(
+      Fogline({"metrics", log}).err,
+      ContainsRegex("published, but not in the log: at least [0-9]+ [(][A-Z_, ]*HOST_COMM"));
 }
 
 TEST_F(GapInRealtimeTest, FiguresAreUnknownWithoutStatus) {
@@ -102,15 +106,17 @@ TEST_F(GapInRealtimeTest, FiguresAreUnknownWithoutStatus) {
 }
 
 TEST_F(GapInRealtimeTest, SaysWithWhichStepALateLogBegins) {
-  Run("traded");
+  // A run in which no role skips a step. On a busy machine, roles do.
+  bool is_whole = false;
+  for (int attempt = 0; attempt < 5 && !is_whole; ++attempt) {
+    is_whole = Json({"metrics", Run("traded")}, 0)[0]["realtime"]["missed_messages"] == 0;
+  }
+  ASSERT_TRUE(is_whole);
   const std::string log = Without([](std::string_view channel, std::int64_t step) {
     return channel != "RUN" && channel != "STATUS" && step < 100;
   });
   EXPECT_THAT(Fogline({"metrics", log}).err, HasSubstr("begins at step 100 of 250; real time, "));
-  // Nothing is unknown if no role has skipped a step.
-  const nlohmann::json metrics = Json({"metrics", log}, 1)[0];
-  if (Json({"metrics", whole_}, 0)[0]["realtime"]["missed_messages"] > 0) return;
-  EXPECT_FALSE(metrics["metrics"]["human_time_s"].is_null());
+  EXPECT_FALSE(Json({"metrics", log}, 1)[0]["metrics"]["human_time_s"].is_null());
 }
 
 }  // namespace

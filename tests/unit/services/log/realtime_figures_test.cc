@@ -52,8 +52,8 @@ class UnloggedMessagesTest : public testing::Test {
     radar.header.step = step;
     figures_.Add(radar);
   }
-  std::string Channels(bool is_sealed) const {
-    return log::NamesOfChannels(figures_.Result(is_sealed).unlogged_channels);
+  std::string Channels(bool has_all) const {
+    return log::NamesOfChannels(figures_.Result(has_all).unlogged_channels);
   }
   std::int64_t sequence_ = 0;
   log::RealtimeAccumulator figures_{1, kStep_us, 10};
@@ -78,7 +78,7 @@ TEST_F(UnloggedMessagesTest, AreFoundAlthoughTheLastStatusIsOlderThanTheEnd) {
     AddRadar(1, 6, 5);
     AddSteps(5 - steps_before_status, AllBut({}));
     EXPECT_EQ(figures_.Result().unlogged_messages, 2) << steps_before_status;
-    EXPECT_EQ(Channels(/*is_sealed=*/true), "RADAR");
+    EXPECT_EQ(Channels(/*has_all=*/true), "RADAR");
   }
 }
 
@@ -87,11 +87,11 @@ TEST_F(UnloggedMessagesTest, MayBeMessagesAfterTheLastStatusIfTheLogHasNoSeal) {
   AddRadar(1, 5, 5);  // the radar has skipped a step
   AddSteps(1, AllBut({IndexOf<radar_t>()}));
   AddSteps(1, AllBut({}));
-  EXPECT_EQ(Channels(/*is_sealed=*/false), "");
+  EXPECT_EQ(Channels(/*has_all=*/false), "");
   AddSteps(1, AllBut({IndexOf<radar_t>()}));
   EXPECT_EQ(figures_.Result(false).unlogged_messages, 0);
-  EXPECT_EQ(Channels(/*is_sealed=*/false), "RADAR");
-  EXPECT_EQ(Channels(/*is_sealed=*/true), "");
+  EXPECT_EQ(Channels(/*has_all=*/false), "RADAR");
+  EXPECT_EQ(Channels(/*has_all=*/true), "");
 }
 
 TEST_F(UnloggedMessagesTest, MayBeThoseOfARoleThatWasStartedAgainIfTheLogHasNoSeal) {
@@ -99,8 +99,8 @@ TEST_F(UnloggedMessagesTest, MayBeThoseOfARoleThatWasStartedAgainIfTheLogHasNoSe
   AddSteps(1, AllBut({IndexOf<radar_t>()}));
   AddRadar(1, 5, 4);
   AddRadar(2, 1, 5);
-  EXPECT_EQ(Channels(/*is_sealed=*/false), "RADAR");
-  EXPECT_EQ(Channels(/*is_sealed=*/true), "");
+  EXPECT_EQ(Channels(/*has_all=*/false), "RADAR");
+  EXPECT_EQ(Channels(/*has_all=*/true), "");
 }
 
 TEST_F(UnloggedMessagesTest, OfALogThatBeginsLateAreOfNoChannelIfTheyCameBeforeItsFirstTruth) {
