@@ -7,8 +7,9 @@
 namespace fogline::log {
 namespace {
 
-// A STATUS is in the log at most this many steps after the step that it names. So the last steps
-// are kept. For a later STATUS, the number of lost messages is a lower bound.
+// The last steps are kept, because a STATUS may stand in the log behind later steps than the one
+// that it names. A role that stands still names the same step for a long time. If that step is no
+// longer kept, the number of lost messages is a lower bound.
 constexpr std::size_t kKeptSteps = 1024;
 
 }  // namespace

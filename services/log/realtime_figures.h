@@ -118,8 +118,7 @@ class RealtimeAccumulator {
   // The last STATUS of each process, by role and instance. The counters of a STATUS begin at the
   // start of the process.
   std::map<std::pair<std::string, std::int64_t>, Process> last_;
-  std::deque<runtime::ChannelSet> kept_;       // the channels of which each of the last steps has a
-                                               // message
+  std::deque<runtime::ChannelSet> kept_;       // the channels that each of the last steps has
   std::multimap<std::int64_t, Process*> due_;  // by the step of the STATUS, which is not here yet
 };
 

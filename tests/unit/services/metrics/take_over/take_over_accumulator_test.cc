@@ -299,7 +299,7 @@ TEST(TakeOverAccumulatorTest, ALogThatIsCutOffLeavesTheEndOfItsLastRequestOpen) 
   EXPECT_EQ(cut({A::REQUEST, A::MINIMAL_RISK}).outcome, TakeOverEnd::kMinimalRisk) << "it lasts";
   EXPECT_EQ(cut({A::REQUEST, A::HANDOVER, A::RECOVERING}).outcome, TakeOverEnd::kTakenOver);
   EXPECT_EQ(cut({A::REQUEST, A::AUTOMATION}).outcome, TakeOverEnd::kWithdrawn);
-  // The judged interval of a driver who has not recovered goes on, and its measures are unknown.
+  // The judged interval goes on until the driver has recovered. So its measures are unknown.
   EXPECT_EQ(cut({A::REQUEST, A::HANDOVER, A::RECOVERING}).judged_s, std::nullopt);
   EXPECT_EQ(cut({A::REQUEST, A::HANDOVER, A::RECOVERING}).driver_drove_s, std::nullopt);
   EXPECT_EQ(cut({A::REQUEST, A::HANDOVER, A::RECOVERING}).reaction_time_s, 0.5);
