@@ -40,21 +40,23 @@ std::optional<driver_input_t> Seat::Leave(std::uint64_t client, TimePoint now) {
 
 Seat::Taken Seat::Take(std::uint64_t client, const SeatInput& input, TimePoint now) {
   Taken taken;
-  if (!Has(client)) {
-    if (!input.present) return taken;
-    if (client_ && message_.present) {
-      taken.why = "another person has the seat";
-      return taken;
-    }
-    taken.sits = true;
-    taken.before = std::exchange(client_, client);
+  const bool sits = !Has(client);
+  if (sits && !input.present) return taken;
+  if (sits && client_ && message_.present) {
+    taken.why = "another person has the seat";
+    return taken;
   }
-  heard_at_ = now;
+  if (!sits) heard_at_ = now;
   // The rate limit never refuses an input that says that the person has left.
   const bool leaves = message_.present && !input.present;
   if (!limiter_.Take(now) && !leaves) {
     taken.why = fmt::format("more than {} inputs a second", runtime::kMostInputsPerSecond);
     return taken;
+  }
+  if (sits) {
+    taken.sits = true;
+    taken.before = std::exchange(client_, client);
+    heard_at_ = now;
   }
   silent_ = false;
   message_.time_us = std::max<std::int64_t>(0, MicrosecondsOf(now) - ToMicroseconds(input.age_ms));

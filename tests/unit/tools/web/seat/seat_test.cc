@@ -105,6 +105,21 @@ TEST_F(SeatTest, APageThatIsOnlyOpenDoesNotKeepTheSeat) {
   EXPECT_TRUE(seat_.Take(kAnna, Brakes(), At(6)).sits);
 }
 
+TEST_F(SeatTest, ARefusedInputDoesNotTakeTheSeat) {
+  SeatInput away = Brakes();
+  away.present = false;
+  seat_.Sit(kAnna, At(0));
+  const auto tries = static_cast<int>(2 * runtime::kMostInputsPerSecond);
+  for (int i = 0; i < tries; ++i) seat_.Take(kAnna, away, At(1));
+  const Seat::Taken refused = seat_.Take(kBert, Brakes(), At(1));
+  EXPECT_THAT(refused.why, HasSubstr("inputs a second"));
+  EXPECT_FALSE(refused.sits);
+  EXPECT_TRUE(seat_.Has(kAnna));
+  const Seat::Taken taken = seat_.Take(kBert, Brakes(), At(1001));
+  EXPECT_TRUE(taken.sits);
+  EXPECT_EQ(taken.before, kAnna);
+}
+
 TEST_F(SeatTest, ASilentPersonLosesTheSeatToOneWhoIsThere) {
   seat_.Sit(kAnna, At(0));
   seat_.Take(kAnna, Brakes(), At(1));
