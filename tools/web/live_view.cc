@@ -153,11 +153,13 @@ void LiveView::Opened(Client& client) {
 
 void LiveView::Received(Client& client, std::string_view bytes, bool binary) {
   if (auto& session = viewers_.at(client.id()).foxglove) {
-    return SendFrames(client, session->Received(bytes, binary));
+    const foxglove::Session::Answer answer = session->Received(bytes, binary);
+    if (!answer.error.empty()) client.CountWrongFrame(answer.error);
+    return SendFrames(client, answer.frames);
   }
-  if (binary) return client.Send(TextFrame(ErrorText(std::nullopt, "requests are text frames")));
-  const ViewRequest request = ParseViewRequest(bytes);
+  const ViewRequest request = ParseViewFrame(bytes, binary);
   if (const auto* bad = std::get_if<BadRequest>(&request)) {
+    client.CountWrongFrame(bad->why);
     return client.Send(TextFrame(ErrorText(bad->id, bad->why)));
   }
   if (const auto* history = std::get_if<HistoryRequest>(&request)) {
@@ -295,7 +297,9 @@ std::string LiveView::Health() {
                               {"unverified", unverified_},
                               {"viewers", server_ ? server_->counts().viewers : 0},
                               {"cut_off", server_ ? server_->counts().cut_off : 0},
-                              {"refused", server_ ? server_->counts().refused : 0}};
+                              {"refused", server_ ? server_->counts().refused : 0},
+                              {"wrong_frames", server_ ? server_->counts().wrong_frames : 0},
+                              {"events_left_out", tracker_.events_left_out()}};
   for (auto& run : json["traffic"]["runs"]) {  // as text: JavaScript rounds numbers beyond 2^53
     run["run_id"] = std::to_string(run["run_id"].get<std::int64_t>());
   }

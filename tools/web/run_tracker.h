@@ -43,6 +43,8 @@ class RunTracker {
   std::int64_t refused_scenarios() const { return refused_scenarios_; }
   /// The events of the followed run so far.
   const std::vector<RunEvent>& events() const { return events_.events(); }
+  /// Number of later events of the run, which events() does not have (RunEvents::kMost).
+  std::size_t events_left_out() const { return events_.left_out(); }
   /// The events since the last call. The events begin again with each new run, and when a run is
   /// played again.
   std::vector<RunEvent> TakeEvents();

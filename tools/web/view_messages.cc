@@ -24,6 +24,12 @@ Json ChannelJson(const KnownChannel& channel) {
           {"type", channel.type.empty() ? Json(nullptr) : Json(channel.type)}};
 }
 
+Json RolesJson() {
+  Json roles = Json::array();
+  for (const RoleInfo& info : kRoles) roles.push_back(info.name);
+  return roles;
+}
+
 Json EventJson(const RunEvent& event) {
   return {
       {"step", event.step}, {"time_s", event.time_s}, {"kind", event.kind}, {"text", event.text}};
@@ -41,6 +47,7 @@ std::string HelloText(const std::optional<std::string>& url,
             {"types", TypesJson(FoglineTypes())},
             {"fingerprints", FingerprintsJson(FoglineTypes())},
             {"channels", ChannelsJson()},
+            {"roles", RolesJson()},
             {"url", url ? Json(*url) : Json(nullptr)}};
   for (const KnownChannel& channel : others) json["channels"].push_back(ChannelJson(channel));
   return Printed(json);
@@ -76,7 +83,8 @@ std::string LogText(const std::filesystem::path& file, const LogIndex& index) {
             {"last_step", index.last_step()},
             {"complete", index.run().complete},
             {"note", index.run().note},
-            {"events", Json::array()}};
+            {"events", Json::array()},
+            {"events_left_out", index.events_left_out()}};
   for (const RunEvent& event : index.events()) json["events"].push_back(EventJson(event));
   return Printed(json);
 }

@@ -54,6 +54,10 @@ ViewRequest ParseSeries(const json& request, RequestId id) {
   series.from = WholeNumber(request, "from", 0, kMostStep);
   series.to = WholeNumber(request, "to", series.from, kMostStep);
   series.points = WholeNumber(request, "points", 1, SeriesRequest::kMostPoints);
+  if (const auto changes = request.find("changes"); changes != request.end()) {
+    if (!changes->is_boolean()) throw InputError("\"changes\" must be true or false");
+    series.changes = changes->get<bool>();
+  }
   return series;
 }
 
@@ -76,6 +80,11 @@ ViewRequest ParseViewRequest(std::string_view text) {
     bad.why = error.what();
   }
   return bad;
+}
+
+ViewRequest ParseViewFrame(std::string_view bytes, bool binary) {
+  if (binary) return BadRequest{.id = std::nullopt, .why = "requests are text frames"};
+  return ParseViewRequest(bytes);
 }
 
 }  // namespace fogline::web

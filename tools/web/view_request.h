@@ -28,6 +28,7 @@ struct SeriesRequest {
   std::int64_t from = 0;
   std::int64_t to = 0;
   std::int64_t points = 0;
+  bool changes = false;  // whether only the values that differ from the one before are wanted
 
   static constexpr std::int64_t kMostPoints = 20'000;
 };
@@ -47,5 +48,7 @@ using ViewRequest = std::variant<StepsRequest, SeriesRequest, HistoryRequest, Ba
 
 /// Reads a request. Never throws: a wrong text becomes a BadRequest.
 ViewRequest ParseViewRequest(std::string_view text);
+/// The same for any frame. A binary frame is a BadRequest.
+ViewRequest ParseViewFrame(std::string_view bytes, bool binary);
 
 }  // namespace fogline::web

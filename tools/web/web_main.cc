@@ -128,7 +128,7 @@ void CheckTogether(const ViewArguments& arguments) {
     throw InputError("error: --lcm-url: a log needs no network; leave out --lcm-url or the log");
   }
   if (!live && !arguments.traffic.key_file.empty()) {
-    throw InputError("error: --key: for the messages of a network; a log has no signatures");
+    throw InputError("error: --key: for the messages of a network; see fogline digest LOG --key");
   }
   if (!live && arguments.seat) {
     throw InputError("error: --seat: no person can drive in a log; leave out LOG");

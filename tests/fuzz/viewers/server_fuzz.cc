@@ -4,6 +4,8 @@
 // stands for the address of the server.
 #include <array>
 #include <chrono>
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -43,24 +45,32 @@ class Frames final : public web::View {
         bytes.size() <= (drives ? web::Server::kMostSeatFrameBytes : web::Server::kMostFrameBytes),
         "no frame is larger than its limit");
     Took();
-    if (binary || web::IsFoxglove(client.protocol())) return;
+    if (web::IsFoxglove(client.protocol())) return;
     if (drives) {
       if (const auto frame = web::ParseSeatFrame(bytes);
           const auto* bad = std::get_if<web::BadSeatFrame>(&frame)) {
-        client.Send(web::TextFrame(web::ErrorText(std::nullopt, bad->why)));
+        Refuse(client, std::nullopt, bad->why);
       }
-    } else if (const auto request = web::ParseViewRequest(bytes);
+    } else if (const auto request = web::ParseViewFrame(bytes, binary);
                const auto* bad = std::get_if<web::BadRequest>(&request)) {
-      client.Send(web::TextFrame(web::ErrorText(bad->id, bad->why)));
+      Refuse(client, bad->id, bad->why);
     }
   }
   void Idle(web::Client&) override {}
   void Closed(web::Client&) override { --open_; }
 
   int open() const { return open_; }
+  std::int64_t wrong() const { return wrong_; }
 
  private:
+  void Refuse(web::Client& client, std::optional<web::RequestId> id, const std::string& why) {
+    ++wrong_;
+    client.CountWrongFrame(why);
+    client.Send(web::TextFrame(web::ErrorText(id, why)));
+  }
+
   int open_ = 0;
+  std::int64_t wrong_ = 0;
 };
 
 /// A server that all inputs share, because it runs until the program ends. If data of a client
@@ -94,6 +104,7 @@ class Served {
       context_.run_one_for(std::chrono::milliseconds(1));
     }
     Demand(view_.open() == 0 && server_.counts().drivers == 0, "each client comes and goes once");
+    Demand(server_.counts().wrong_frames == view_.wrong(), "each wrong frame is counted once");
     return answer;
   }
 

@@ -187,13 +187,17 @@ TEST(LogViewTest, AnswersBadRequestsAndGoesOn) {
   WebClient client(viewed.port());
   for (const char* bad : {"", "{", "[]", R"({"op":"steps","id":1,"from":0,"to":512})",
                           R"({"op":"history","id":1})", R"({"op":"run","id":1})",
-                          R"({"op":"series","id":1,"channel":"RUN","field":"phase",)"
+                          R"({"op":"series","id":1,"channel":"NONE","field":"phase",)"
+                          R"("from":0,"to":1,"points":1})",
+                          R"({"op":"series","id":1,"channel":"RUN/world","field":"phase",)"
                           R"("from":0,"to":1,"points":1})"}) {
     client.Send(bad);
     EXPECT_NE(ReceiveOp(client, "error")["message"], "") << bad;
   }
   client.Send(std::string(100, '\xff'), true);
   EXPECT_EQ(ReceiveOp(client, "error")["id"], nullptr);
+  EXPECT_TRUE(
+      viewed.process().WaitForErr("sends a wrong frame (6 so far): requests are text frames"));
   // If the log does not have the requested steps, the answer has no messages for them.
   client.Send(R"({"op":"steps","id":9,"from":15,"to":500})");
   EXPECT_EQ(MessagesOf(ReceiveKind(client, 2)).back().step, 19);

@@ -174,9 +174,9 @@ TEST_F(SeatPageTest, RefusesCountsAndNamesWhatIsOutOfRange) {
   EXPECT_THAT(ReceiveOp(page, "error")["message"].get<std::string>(), HasSubstr("\"brake\""));
   page.Send("{");
   page.Send("\1\2", true);
-  EXPECT_TRUE(viewed_.process().WaitForErr("refused (1 so far): \"brake\""));
-  EXPECT_TRUE(viewed_.process().WaitForErr("refused (2 so far): this frame is no JSON"));
-  EXPECT_TRUE(viewed_.process().WaitForErr("refused (3 so far): inputs are text frames"));
+  EXPECT_TRUE(viewed_.process().WaitForErr("wrong frame (1 so far): \"brake\""));
+  EXPECT_TRUE(viewed_.process().WaitForErr("wrong frame (2 so far): this frame is no JSON"));
+  EXPECT_TRUE(viewed_.process().WaitForErr("wrong frame (3 so far): inputs are text frames"));
   page.Send(Braking(1));
   network_.Hear(IsThere);
 }

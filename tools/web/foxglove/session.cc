@@ -122,11 +122,11 @@ Frame Session::Advertised(const Channel& channel) const {
   return AdvertiseFrame(Json::array({ChannelJson(channels_.types(), channel)}));
 }
 
-std::vector<Frame> Session::Received(std::string_view bytes, bool binary) {
-  const std::string error = binary ? WhyNotBinary(bytes) : Text(bytes);
+Session::Answer Session::Received(std::string_view bytes, bool binary) {
+  std::string error = binary ? WhyNotBinary(bytes) : Text(bytes);
   if (error.empty()) return {};
-  ++refused_;
-  return {TextFrame({{"op", "status"}, {"level", kError}, {"message", error}})};
+  return {.frames = {TextFrame({{"op", "status"}, {"level", kError}, {"message", error}})},
+          .error = std::move(error)};
 }
 
 std::string Session::Text(std::string_view text) {

@@ -25,8 +25,7 @@ struct Frame {
 };
 
 /// The session of one client. A client subscribes to channels, and gets their messages as JSON
-/// (DecodeJson()). It cannot send messages, because Fogline's viewers never change a run. Each
-/// frame that the session refuses is counted, and answered by one status of level error.
+/// (DecodeJson()). It cannot send messages, because Fogline's viewers never change a run.
 class Session {
  public:
   /// @param channels must outlive the session
@@ -38,8 +37,12 @@ class Session {
   /// The frame that tells the client about a channel that was added after Opened().
   Frame Advertised(const Channel& channel) const;
 
-  /// Takes a frame of the client. @return the answer, if there is one
-  std::vector<Frame> Received(std::string_view bytes, bool binary);
+  struct Answer {
+    std::vector<Frame> frames;
+    std::string error;  // why the frame is refused; "" if it is not
+  };
+  /// Takes a frame of the client. A frame that is refused is answered by a status of level error.
+  Answer Received(std::string_view bytes, bool binary);
 
   /// The frame with a message for the client; nullopt if the client has not subscribed to the
   /// channel, or the bytes are not a message of the channel's type.
@@ -50,8 +53,6 @@ class Session {
   /// Whether the client has subscribed to any channel. If not, Message() returns nullopt.
   bool Subscribed() const { return !subscriptions_.empty(); }
 
-  /// The number of frames that were answered by an error.
-  std::int64_t refused() const { return refused_; }
   /// The number of messages that were not of their channel's type.
   std::int64_t undecodable() const { return undecodable_; }
 
@@ -64,7 +65,6 @@ class Session {
 
   const Channels& channels_;
   std::map<std::uint32_t, std::uint32_t> subscriptions_;  // the client's number for each channel
-  std::int64_t refused_ = 0;
   std::int64_t undecodable_ = 0;
 };
 

@@ -69,7 +69,6 @@ void LogIndex::Take(const log::Event& event) {
     knows_run_ = true;
     is_signed_ = runtime::LooksSigned(event.data) &&
                  runtime::Decode(runtime::WithoutSignature(event.data), ignored);
-    return;
   }
   // The recorder writes channels in the order of the table, so the search begins at the next one.
   for (std::size_t i = 0; i < log::kStepChannels; ++i) {
@@ -78,32 +77,40 @@ void LogIndex::Take(const log::Event& event) {
     guess_ = row + 1;
     return TakeStep(row, event.data);
   }
+  const std::size_t channel = ChannelNamed(event.channel);
+  if (channel == kNumChannels) return;
+  runtime::Bytes data = event.data;
+  if (const Place place = PlaceOf(data); place.size > 0) control_[channel].push_back(place);
+}
+
+LogIndex::Place LogIndex::PlaceOf(runtime::Bytes& data) const {
+  if (is_signed_) {
+    // In a signed run a message without a signature does not belong to the run.
+    if (!runtime::LooksSigned(data)) return {};
+    data = runtime::WithoutSignature(data);
+    if (data.size() < runtime::kHeaderEnd) return {};
+  }
+  const auto offset = static_cast<std::uint64_t>(data.data() - reader_.content().data());
+  if (offset > kMostOffset || data.size() > kMostSize) return {};
+  return {.offset = offset & kMostOffset, .size = data.size() & kMostSize};
 }
 
 void LogIndex::TakeStep(std::size_t row, runtime::Bytes data) {
-  if (is_signed_) {
-    // In a signed run a message without a signature does not belong to the run.
-    if (!runtime::LooksSigned(data)) return;
-    data = runtime::WithoutSignature(data);
-    if (data.size() < runtime::kHeaderEnd) return;
-  }
+  const Place taken = PlaceOf(data);
+  if (taken.size == 0) return;
   const std::int64_t step = runtime::ReadInt64(data, runtime::kStepOffset);
   if (step < 0 || step >= std::min(run_.scenario.steps, read_ + kLargestGap)) return;
-  const auto offset = static_cast<std::uint64_t>(data.data() - reader_.content().data());
-  if (offset > kMostOffset || data.size() > kMostSize) return;
   if (step > last_step()) rows_.resize(static_cast<std::size_t>(step) + 1);
   Place& place = rows_[static_cast<std::size_t>(step)][row];
   if (place.size > 0) return;  // the log has this message twice
-  place.offset = offset & kMostOffset;
-  place.size = data.size() & kMostSize;
+  place = taken;
   ++messages_;
 }
 
 runtime::Bytes LogIndex::Message(std::int64_t step, std::size_t channel) const {
   const std::size_t row = kRowOfChannel[channel];
   if (step < 0 || step > last_step() || row == log::kStepChannels) return {};
-  const Place& place = rows_[static_cast<std::size_t>(step)][row];
-  return reader_.content().subspan(place.offset, place.size);
+  return At(rows_[static_cast<std::size_t>(step)][row]);
 }
 
 void LogIndex::FindEvents() {

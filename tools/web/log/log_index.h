@@ -6,8 +6,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <iterator>
+#include <optional>
 #include <vector>
 
+#include "services/graph.h"
 #include "services/log/event_log.h"
 #include "services/log/run_log.h"
 #include "services/log/step_order.h"
@@ -40,7 +43,16 @@ class LogIndex {
   /// @param channel place of the channel in kChannels
   runtime::Bytes Message(std::int64_t step, std::size_t channel) const;
 
+  /// Number of messages on a channel without a message in each step (Pace::kControl).
+  std::int64_t control_messages(std::size_t channel) const { return std::ssize(control_[channel]); }
+  /// The i-th of these messages, in the order of the log; otherwise like Message().
+  runtime::Bytes ControlMessage(std::size_t channel, std::int64_t i) const {
+    return At(control_[channel][static_cast<std::size_t>(i)]);
+  }
+
   const std::vector<RunEvent>& events() const { return events_.events(); }
+  /// Number of later events, which events() does not have (RunEvents::kMost).
+  std::size_t events_left_out() const { return events_.left_out(); }
 
  private:
   // Place of a message in the file; size 0: the log lacks the message.
@@ -54,12 +66,19 @@ class LogIndex {
   void ReadPlaces();
   void Take(const log::Event& event);
   void TakeStep(std::size_t row, runtime::Bytes data);
+  runtime::Bytes At(const Place& place) const {
+    return reader_.content().subspan(place.offset, place.size);
+  }
+  /// Leaves out the signature of a message. @return size 0 if the message does not belong to the
+  /// run, or is too large
+  Place PlaceOf(runtime::Bytes& data) const;
   void FindEvents();
 
   log::EventLogReader reader_;
   log::RunLog run_;
   RunEvents events_;
   std::vector<Row> rows_;  // by step
+  std::array<std::vector<Place>, kNumChannels> control_;
   std::int64_t first_ = 0;
   std::int64_t messages_ = 0;
   std::int64_t read_ = 0;   // number of events that have been read

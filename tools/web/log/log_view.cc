@@ -21,35 +21,78 @@ namespace {
 // each.
 constexpr std::size_t kUtimeOffset = 24;
 
-/// The channel of a series.
-/// @throws InputError if the name is not that of a channel with a message in every step
-std::size_t ChannelOfSeries(const std::string& name) {
-  const std::size_t channel = ChannelNamed(name);
-  if (channel < kNumChannels && kChannels[channel].pace == Pace::kStep) return channel;
-  throw InputError(fmt::format("no channel {} has a message in every step", QuoteShort(name)));
-}
+/// The messages of a series: a channel, and with STATUS the role that has sent them.
+struct Source {
+  std::size_t channel = 0;
+  std::string role;  // "": any
+
+  /// @param name "CHANNEL" or "STATUS/ROLE"
+  /// @throws InputError if there is no such channel
+  explicit Source(const std::string& name) {
+    const std::size_t slash = name.find('/');
+    channel = ChannelNamed(name.substr(0, slash));
+    if (slash != std::string::npos) role = name.substr(slash + 1);
+    if (channel < kNumChannels && (role.empty() || channel == IndexOf<status_t>())) return;
+    throw InputError(fmt::format("there is no channel {}", QuoteShort(name)));
+  }
+};
 
 /// A field of the messages of one channel.
 class LoggedField {
  public:
   /// @throws InputError if there is no such channel or field
-  LoggedField(const LogIndex& index, const std::string& channel, const std::string& field)
+  LoggedField(const LogIndex& index, const SeriesRequest& request)
       : index_(index),
-        channel_(ChannelOfSeries(channel)),
-        read_(FoglineTypes(), *FoglineTypes().WithFingerprint(runtime::FingerprintOf(channel_)),
-              field) {}
+        request_(request),
+        source_(request.channel),
+        read_(FoglineTypes(),
+              *FoglineTypes().WithFingerprint(runtime::FingerprintOf(source_.channel)),
+              request.field) {}
 
-  std::optional<SeriesPoint> At(std::int64_t step) const {
-    const runtime::Bytes message = index_.Message(step, channel_);
+  /// The series that the request asks for.
+  Series Values() const {
+    if (kChannels[source_.channel].pace == Pace::kStep) {
+      return Values(
+          std::max(request_.from, index_.first_step()), std::min(request_.to, index_.last_step()),
+          [this](std::int64_t step) { return Of(index_.Message(step, source_.channel)); });
+    }
+    // If a role is started again, its time goes back. The points of a series are in order.
+    double newest_s = 0;
+    return Values(0, index_.control_messages(source_.channel) - 1, [&](std::int64_t i) {
+      auto point = OfControl(index_.ControlMessage(source_.channel, i));
+      if (point) point->time_s = newest_s = std::max(newest_s, point->time_s);
+      return point;
+    });
+  }
+
+ private:
+  template <class At>
+  Series Values(std::int64_t from, std::int64_t to, const At& at) const {
+    if (request_.changes) {
+      if (auto changes = Changes(from, to, 2 * request_.points, at)) return std::move(*changes);
+    }
+    return Decimate(from, to, request_.points, at);
+  }
+
+  std::optional<SeriesPoint> OfControl(runtime::Bytes message) const {
+    const std::int64_t step = runtime::ReadInt64(message, runtime::kStepOffset);
+    if (step < request_.from || step > request_.to) return std::nullopt;
+    status_t status;
+    const bool counts =
+        source_.role.empty() || (runtime::Decode(message, status) && status.role == source_.role);
+    return counts ? Of(message) : std::nullopt;
+  }
+
+  std::optional<SeriesPoint> Of(runtime::Bytes message) const {
     if (message.empty()) return std::nullopt;
     const auto utime = static_cast<double>(runtime::ReadInt64(message, kUtimeOffset));
     return SeriesPoint{.time_s = utime / kMicrosPerSecond,
                        .value = read_(message).value_or(std::numeric_limits<double>::quiet_NaN())};
   }
 
- private:
   const LogIndex& index_;
-  std::size_t channel_;
+  const SeriesRequest& request_;
+  Source source_;
   FieldReader read_;
 };
 
@@ -73,8 +116,9 @@ void LogView::Opened(Client& client) {
 
 void LogView::Received(Client& client, std::string_view bytes, bool binary) {
   if (client.protocol() != kViewProtocol) return;
-  if (binary) return client.Send(TextFrame(ErrorText(std::nullopt, "requests are text frames")));
-  client.Send(Answer(ParseViewRequest(bytes)));
+  const ViewRequest request = ParseViewFrame(bytes, binary);
+  if (const auto* bad = std::get_if<BadRequest>(&request)) client.CountWrongFrame(bad->why);
+  client.Send(Answer(request));
 }
 
 OutgoingFrame LogView::Answer(const ViewRequest& request) const {
@@ -91,12 +135,7 @@ OutgoingFrame LogView::Answer(const ViewRequest& request) const {
 
 OutgoingFrame LogView::AnswerSeries(const SeriesRequest& request) const {
   try {
-    const LoggedField field(index_, request.channel, request.field);
-    const std::int64_t from = std::max(request.from, index_.first_step());
-    const std::int64_t to = std::min(request.to, index_.last_step());
-    return BinaryFrame(
-        SeriesFrame(request.id, Decimate(from, to, request.points,
-                                         [&field](std::int64_t step) { return field.At(step); })));
+    return BinaryFrame(SeriesFrame(request.id, LoggedField(index_, request).Values()));
   } catch (const InputError& error) {
     return TextFrame(ErrorText(request.id, error.what()));
   }

@@ -1,6 +1,7 @@
 #include "tools/web/log/series.h"
 
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <utility>
 
@@ -58,6 +59,22 @@ Series Decimate(std::int64_t from, std::int64_t to, std::int64_t points,
       if (const auto point = at(step)) extremes.Add(*point);
     }
     extremes.AppendTo(series);
+  }
+  return series;
+}
+
+std::optional<Series> Changes(std::int64_t from, std::int64_t to, std::int64_t most,
+                              const std::function<std::optional<SeriesPoint>(std::int64_t)>& at) {
+  Series series;
+  for (std::int64_t step = from; step <= to; ++step) {
+    const auto point = at(step);
+    if (!point) continue;
+    if (!series.value.empty()) {
+      const double before = series.value.back();
+      if (point->value == before || (std::isnan(point->value) && std::isnan(before))) continue;
+    }
+    if (std::ssize(series.value) == most) return std::nullopt;
+    Append(series, *point);
   }
   return series;
 }

@@ -182,9 +182,7 @@ void SeatView::Take(Client& client, const SeatInput& input) {
 }
 
 void SeatView::Refuse(Client& client, const std::string& why) {
-  ++refused_;
-  lines_.Print(
-      fmt::format("{}: an input is refused ({} so far): {}", client.address(), refused_, why));
+  client.CountWrongFrame(why);
   client.Send(TextFrame(ErrorText(std::nullopt, why)));
 }
 

@@ -65,7 +65,6 @@ class SeatView final : public View {
   Seat seat_;
   std::map<std::uint64_t, Driver> drivers_;
   std::int64_t told_run_ = 0;        // RunTracker::runs() at the last report to the drivers
-  std::int64_t refused_ = 0;         // number of refused frames of drivers
   bool told_lost_ = false;           // whether the client with the seat knows that it is lost
   std::string url_;                  // URL of the bus
   std::optional<runtime::Bus> bus_;  // nullopt: the network cannot be reached

@@ -12,6 +12,7 @@
 #include "common/clock.h"
 #include "tools/web/server/frame_budget.h"
 #include "tools/web/server/http_answer.h"
+#include "tools/web/server/subprotocol.h"
 
 namespace fogline::web {
 namespace {
@@ -42,22 +43,22 @@ std::string AddressOf(const tcp::socket& socket) {
 
 std::string_view TextOf(beast::string_view text) { return {text.data(), text.size()}; }
 
-/// The first subprotocol of the header that the server knows. The header may name several.
-/// @return kViewProtocol if the header is empty; "" if the server knows none of them
-/// @param seat whether a person may drive
-std::string_view ChooseProtocol(std::string_view header, bool seat) {
-  if (header.empty()) return kViewProtocol;
-  for (const auto& token : http::token_list(beast::string_view(header.data(), header.size()))) {
-    for (const std::string_view known : {kViewProtocol, kFoxgloveProtocol, kFoxgloveSdkProtocol}) {
-      if (TextOf(token) == known) return known;
-    }
-    if (seat && TextOf(token) == kDriveProtocol) return kDriveProtocol;
-  }
-  return "";
+/// Whether a client has broken the WebSocket protocol in another way than by a large frame.
+bool IsWrong(error_code error) {
+  const error_code any = websocket::error::closed;
+  return error.category() == any.category() && error != websocket::error::closed &&
+         error != websocket::error::message_too_big;
 }
 
 using Request = http::request<http::empty_body>;
 using Response = http::response<http::span_body<const char>>;
+
+void SetSafetyHeaders(http::fields& headers) {
+  for (const auto& [name, value] : SafetyHeaders()) {
+    headers.set(beast::string_view(name.data(), name.size()),
+                beast::string_view(value.data(), value.size()));
+  }
+}
 
 RequestOrigin OriginOf(const Request& request, std::string_view protocol) {
   return {.host = TextOf(request[http::field::host]),
@@ -96,12 +97,13 @@ class BeastConnection final : public Connection,
   void Handle(error_code error);
   void HandleError(error_code error);
   void HandleRequest();
-  void Refuse(unsigned status, const std::string& why, std::string text);
+  void Refuse(unsigned status, std::string_view why, std::string text);
   void Write(HttpAnswer answer);
   void Linger();
   void Upgrade();
   void Open();
   void Read();
+  void CutOffFlood();
   void TakeFrame();
   void WriteNext();
   void Close(CloseCode code, const std::string& why, std::chrono::milliseconds limit);
@@ -166,24 +168,19 @@ void BeastConnection::HandleError(error_code error) {
 
 void BeastConnection::HandleRequest() {
   const Request& request = parser_->get();
-  protocol_ =
-      ChooseProtocol(TextOf(request[http::field::sec_websocket_protocol]), access().rules().seat);
+  const bool seat = access().rules().seat;
+  protocol_ = ChooseProtocol(TextOf(request[http::field::sec_websocket_protocol]), seat);
   const RequestOrigin from = OriginOf(request, protocol_);
   const bool opens = websocket::is_upgrade(request) && PathOf(from.target) == kSocketPath &&
                      access().OfWebSocket(from) == Verdict::kAllowed;
   if (opens) {
-    if (protocol_.empty()) {
-      return Write(
-          Refusal(kBadRequest, fmt::format("The subprotocols here are {}{}{}, {} and {}.\n",
-                                           kViewProtocol, access().rules().seat ? ", " : "",
-                                           access().rules().seat ? kDriveProtocol : "",
-                                           kFoxgloveProtocol, kFoxgloveSdkProtocol)));
-    }
+    constexpr std::string_view kWhy = "asks for no subprotocol of this server";
+    if (protocol_.empty()) return Refuse(kBadRequest, kWhy, SubprotocolsText(seat));
     if (TakePlace()) return Upgrade();
   }
   // If all places of viewers are taken, the page for viewers is refused, too: without a WebSocket
   // it would show nothing.
-  const bool may_drive = access().rules().seat && !opens && MayBeOfDrivePage(PathOf(from.target));
+  const bool may_drive = seat && !opens && MayBeOfDrivePage(PathOf(from.target));
   if (IsFull() && !may_drive && access().OfPage(from) == Verdict::kAllowed) {
     return Refuse(kUnavailable, fmt::format("{} viewers are connected already", limits().viewers),
                   "Too many viewers are connected. Try again later.\n");
@@ -195,22 +192,17 @@ void BeastConnection::HandleRequest() {
 }
 
 /// Answers with a line of text. @param why reason for stderr
-void BeastConnection::Refuse(unsigned status, const std::string& why, std::string text) {
+void BeastConnection::Refuse(unsigned status, std::string_view why, std::string text) {
   CountRefused(why);
   Write(Refusal(status, std::move(text)));
 }
 
 void BeastConnection::Write(HttpAnswer answer) {
-  if (answer.verdict != Verdict::kAllowed) {
-    CountRefused(WhyRefused(answer.verdict));
-  }
+  if (answer.verdict != Verdict::kAllowed) CountRefused(WhyRefused(answer.verdict));
   answer_ = std::move(answer);
   const std::string_view body = answer_.text.empty() ? answer_.body : answer_.text;
   response_.emplace(http::status(answer_.status), 11);
-  for (const auto& [name, value] : SafetyHeaders()) {
-    response_->set(beast::string_view(name.data(), name.size()),
-                   beast::string_view(value.data(), value.size()));
-  }
+  SetSafetyHeaders(*response_);
   for (const auto& [name, value] : answer_.headers) {
     response_->set(beast::string_view(name.data(), name.size()), value);
   }
@@ -257,17 +249,22 @@ void BeastConnection::Upgrade() {
   const bool named = !parser_->get()[http::field::sec_websocket_protocol].empty();
   socket_->set_option(websocket::stream_base::decorator(
       [named, protocol = protocol_](websocket::response_type& response) {
-        for (const auto& [name, value] : SafetyHeaders()) {
-          response.set(beast::string_view(name.data(), name.size()),
-                       beast::string_view(value.data(), value.size()));
-        }
+        SetSafetyHeaders(response);
         if (!named) return;
         response.set(http::field::sec_websocket_protocol,
                      beast::string_view(protocol.data(), protocol.size()));
       }));
   socket_->read_message_max(MostFrameBytes());
   socket_->auto_fragment(false);
+  // A ping counts as a frame. The callback runs within a read operation, so it only posts.
+  socket_->control_callback([this](websocket::frame_type kind, beast::string_view) {
+    if (kind == websocket::frame_type::close || !budget_ || budget_->Take(Clock::now())) return;
+    asio::post(context(), [self = shared_from_this()] { self->CutOffFlood(); });
+  });
   socket_->async_accept(parser_->get(), [self = shared_from_this()](error_code error) {
+    if (error && IsWrong(error)) {
+      self->CountRefused(fmt::format("opens no WebSocket: {}", error.message()));
+    }
     if (error || self->gone_) return self->Leave();
     self->Open();
   });
@@ -297,16 +294,20 @@ void BeastConnection::Read() {
       self->CountCutOff(
           fmt::format("does not answer a ping for {} s", Seconds(self->limits().silence)));
     }
+    if (IsWrong(error) && !self->reason_)
+      self->CountCutOff(fmt::format("breaks RFC 6455: {}", error.message()));
     if (error) return self->Leave();
     self->TakeFrame();
   });
 }
 
+void BeastConnection::CutOffFlood() {
+  CutOff(CloseCode::kPolicyViolation,
+         fmt::format("sends more than {} frames a second", budget_->frames()));
+}
+
 void BeastConnection::TakeFrame() {
-  if (!reason_ && !budget_->Take(Clock::now())) {
-    CutOff(CloseCode::kPolicyViolation,
-           fmt::format("sends more than {} frames a second", budget_->frames()));
-  }
+  if (!reason_ && !budget_->Take(Clock::now())) CutOffFlood();
   if (!reason_) {
     const auto bytes = buffer_.cdata();
     view().Received(*this, {static_cast<const char*>(bytes.data()), bytes.size()},

@@ -41,6 +41,9 @@ class Connection : public Client {
   bool drives() const { return protocol() == kDriveProtocol; }
   /// Makes this client a viewer or a driver. @return false if there is no free place
   [[nodiscard]] bool TakePlace() { return has_place_ = server_.TakePlace(id_, drives()); }
+  void CountWrongFrame(std::string_view why) const final {
+    server_.CountWrongFrame(address(), why);
+  }
   void CountCutOff(const std::string& why) const { server_.CountCutOff(address(), why); }
   void CountRefused(std::string_view why) const { server_.CountRefused(address(), why); }
   /// Makes the server remove this connection. @param opened whether the view knows the connection

@@ -91,6 +91,12 @@ void Server::CountRefused(const std::string& address, std::string_view why) {
   lines_.Print(fmt::format("{} refused: {}", address, why));
 }
 
+void Server::CountWrongFrame(const std::string& address, std::string_view why) {
+  ++counts_.wrong_frames;
+  lines_.Print(
+      fmt::format("{} sends a wrong frame ({} so far): {}", address, counts_.wrong_frames, why));
+}
+
 void Server::Stop() {
   acceptor_.Stop();
   const auto connections = connections_;

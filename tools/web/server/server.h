@@ -26,19 +26,9 @@
 #include "tools/web/server/access.h"
 #include "tools/web/server/assets.h"
 #include "tools/web/server/send_queue.h"
+#include "tools/web/server/subprotocol.h"
 
 namespace fogline::web {
-
-/// The subprotocols of WebSockets: our own for viewers and for the client that drives, and both
-/// names of Foxglove's protocol.
-inline constexpr std::string_view kViewProtocol = "fogline.view.v1";
-inline constexpr std::string_view kDriveProtocol = "fogline.drive.v1";
-inline constexpr std::string_view kFoxgloveProtocol = "foxglove.websocket.v1";
-inline constexpr std::string_view kFoxgloveSdkProtocol = "foxglove.sdk.v1";
-
-constexpr bool IsFoxglove(std::string_view protocol) {
-  return protocol == kFoxgloveProtocol || protocol == kFoxgloveSdkProtocol;
-}
 
 /// Codes with which the server closes a WebSocket (RFC 6455, 7.4.1; 1013 is from IANA's registry).
 enum class CloseCode : std::uint16_t {
@@ -65,6 +55,8 @@ class Client {
   /// Closes the client because it exceeds a limit. The client is counted, and named on stderr.
   /// View::Closed() is called later, not during this call.
   virtual void CutOff(CloseCode code, const std::string& why) = 0;
+  /// Counts a frame of the client that cannot be used, and names it on stderr. The client stays.
+  virtual void CountWrongFrame(std::string_view why) const = 0;
 };
 
 /// The contents that a server gives its clients.
@@ -111,6 +103,7 @@ struct ServerCounts {
   std::int64_t cut_off = 0;  // viewers that exceeded a limit
   // Number of callers that exceeded a limit, or had a wrong Host, Origin or token.
   std::int64_t refused = 0;
+  std::int64_t wrong_frames = 0;  // frames of open WebSockets that could not be used
 };
 
 class Connection;
@@ -159,6 +152,7 @@ class Server {
   /// Counts a viewer that exceeds a limit, and names it on stderr.
   void CountCutOff(const std::string& address, const std::string& why);
   void CountRefused(const std::string& address, std::string_view why);
+  void CountWrongFrame(const std::string& address, std::string_view why);
 
   boost::asio::io_context& context_;
   std::span<const Asset> assets_;

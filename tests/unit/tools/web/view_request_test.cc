@@ -28,6 +28,11 @@ TEST(ViewRequestTest, ReadsEachRequest) {
   EXPECT_EQ(series.field, "host_gap_m");
   EXPECT_EQ(series.to, 499);
   EXPECT_EQ(series.points, 9);
+  EXPECT_FALSE(series.changes);
+  EXPECT_TRUE(std::get<SeriesRequest>(
+                  ParseViewRequest(R"({"op":"series","id":8,"channel":"A","field":"b","from":0,)"
+                                   R"("to":9,"points":9,"changes":true})"))
+                  .changes);
   EXPECT_EQ(std::get<HistoryRequest>(ParseViewRequest(R"({"op":"history","id":4294967295})")).id,
             4294967295U);
 }
@@ -61,6 +66,16 @@ TEST(ViewRequestTest, RefusesNumbersOutOfRange) {
   EXPECT_NE(
       Bad(R"({"op":"series","id":1,"channel":"A","field":"b","from":0,"to":1,"points":20001})").why,
       "");
+}
+
+TEST(ViewRequestTest, RefusesBinaryFramesAndOddChanges) {
+  EXPECT_NE(Bad(R"({"op":"series","id":1,"channel":"A","field":"b","from":0,"to":1,"points":1,)"
+                R"("changes":1})")
+                .why,
+            "");
+  const std::string_view history = R"({"op":"history","id":1})";
+  EXPECT_TRUE(std::holds_alternative<HistoryRequest>(ParseViewFrame(history, false)));
+  EXPECT_TRUE(std::holds_alternative<BadRequest>(ParseViewFrame(history, true)));
 }
 
 TEST(ViewRequestTest, SurvivesDeepNestingAndOddBytes) {

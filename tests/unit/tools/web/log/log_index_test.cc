@@ -56,6 +56,21 @@ TEST_F(LogIndexTest, HasTheMessagesThatRunLogReaderReads) {
   EXPECT_TRUE(index.run().complete);
 }
 
+TEST_F(LogIndexTest, HasTheMessagesThatBelongToNoStep) {
+  const std::string file = Run(10);
+  const LogIndex index(file);
+  std::int64_t runs = 0;
+  log::EventLogReader reader(file);
+  while (const auto event = reader.Next()) {
+    if (event->channel != ChannelOf<run_t>().name) continue;
+    ASSERT_LT(runs, index.control_messages(IndexOf<run_t>()));
+    EXPECT_TRUE(std::ranges::equal(index.ControlMessage(IndexOf<run_t>(), runs++), event->data));
+  }
+  EXPECT_GT(runs, 0);
+  EXPECT_EQ(index.control_messages(IndexOf<run_t>()), runs);
+  EXPECT_EQ(index.control_messages(IndexOf<truth_t>()), 0);
+}
+
 TEST_F(LogIndexTest, HasNothingOutsideOfTheRun) {
   const LogIndex index(Run(10));
   EXPECT_TRUE(index.Message(-1, IndexOf<truth_t>()).empty());

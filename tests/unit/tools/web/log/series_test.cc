@@ -60,5 +60,18 @@ TEST(SeriesTest, LeavesOutStepsWithoutAMessage) {
   EXPECT_EQ(Decimate(5, 4, 100, odd).value.size(), 0U);
 }
 
+TEST(SeriesTest, HasEachChangeOfAValueThatSeldomChanges) {
+  const std::vector<double> values{0, 0, 3, 3, kNone, kNone, 3, 0, 0};
+  const auto changes = Changes(0, 8, 5, Of(values));
+  ASSERT_TRUE(changes);
+  ASSERT_EQ(changes->value.size(), 5U);
+  EXPECT_EQ(changes->time_s, (std::vector<double>{0, 0.2, 0.1 * 4, 0.1 * 6, 0.1 * 7}));
+  EXPECT_EQ(changes->value[1], 3);
+  EXPECT_TRUE(std::isnan(changes->value[2]));
+  EXPECT_EQ(changes->value[4], 0);
+  EXPECT_FALSE(Changes(0, 8, 4, Of(values)));
+  EXPECT_EQ(Changes(1, 1, 4, Of(values))->value.size(), 1U);
+}
+
 }  // namespace
 }  // namespace fogline::web

@@ -10,6 +10,7 @@
 
 #include <boost/asio/post.hpp>
 #include <boost/asio/read.hpp>
+#include <boost/asio/read_until.hpp>
 #include <boost/asio/write.hpp>
 
 #include "common/clock.h"
@@ -36,6 +37,7 @@ class EchoView final : public View {
  public:
   void Opened(Client&) override {}
   void Received(Client& client, std::string_view bytes, bool) override {
+    if (bytes == "wrong") client.CountWrongFrame("as the test says");
     if (bytes != "flood") return client.Send(TextFrame(std::string(bytes)));
     for (int i = 0; i < 32; ++i) client.Send(TextFrame(std::string(1 << 20, 'x')));
   }
@@ -85,6 +87,19 @@ class ServerLimitsTest : public ::testing::Test {
     socket.set_option(boost::asio::socket_base::receive_buffer_size(4096));
     socket.bind({boost::asio::ip::make_address(host), 0});
     socket.connect({boost::asio::ip::address_v4::loopback(), port()});
+    return socket;
+  }
+  /// A connection that has opened a WebSocket.
+  tcp::socket Open() {
+    tcp::socket socket = Connect();
+    const std::string request =
+        GetRequest(port(), "/ws",
+                   "Connection: Upgrade\r\nUpgrade: websocket\r\nSec-WebSocket-Version: 13\r\n"
+                   "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n");
+    boost::asio::write(socket, boost::asio::buffer(request));
+    std::string answer;
+    boost::asio::read_until(socket, boost::asio::dynamic_buffer(answer), "\r\n\r\n");
+    EXPECT_EQ(StatusOf(answer), 101);
     return socket;
   }
   /// Waits until the server closes a connection. @return whether it does
@@ -265,6 +280,45 @@ TEST_F(ServerLimitsTest, FramesOfAClient) {
   EXPECT_TRUE(Waits(&ServerCounts::cut_off, 1));
   ExpectServes();
   EXPECT_THAT(End(), HasSubstr("cut off: sends more than 200 frames a second"));
+}
+
+TEST_F(ServerLimitsTest, PingsOfAClient) {
+  Serve({});
+  tcp::socket client = Open();
+  std::string pings;
+  for (int i = 0; i < 1000; ++i) pings += std::string("\x89\x80\1\2\3\4", 6);
+  boost::asio::write(client, boost::asio::buffer(pings));
+  EXPECT_TRUE(Waits(&ServerCounts::cut_off, 1));
+  ExpectServes();
+  EXPECT_THAT(End(), HasSubstr("cut off: sends more than 200 frames a second"));
+}
+
+TEST_F(ServerLimitsTest, BytesThatAreNoFrame) {
+  Serve({});
+  tcp::socket client = Open();
+  boost::asio::write(client, boost::asio::buffer(std::string("\x83\x80\1\2\3\4", 6)));
+  EXPECT_TRUE(Waits(&ServerCounts::cut_off, 1));
+  EXPECT_TRUE(IsClosed(client));
+  ExpectServes();
+  EXPECT_THAT(End(), HasSubstr("cut off: breaks RFC 6455: "));
+}
+
+TEST_F(ServerLimitsTest, SubprotocolThatTheServerDoesNotKnow) {
+  Serve({});
+  EXPECT_THROW(WebClient(port(), {.protocol = "other"}), test::WebRefused);
+  EXPECT_EQ(Counts().refused, 1);
+  EXPECT_THAT(End(), HasSubstr("refused: asks for no subprotocol of this server"));
+}
+
+TEST_F(ServerLimitsTest, WrongFramesAreCounted) {
+  Serve({});
+  WebClient client(port());
+  for (const std::int64_t count : {1, 2}) {
+    client.Send("wrong");
+    EXPECT_EQ(client.Receive().bytes, "wrong");
+    EXPECT_EQ(Counts().wrong_frames, count);
+  }
+  EXPECT_THAT(End(), HasSubstr("sends a wrong frame (2 so far): as the test says"));
 }
 
 TEST_F(ServerLimitsTest, TimeWithoutAnAnswerToAPing) {
