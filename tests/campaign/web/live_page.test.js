@@ -64,6 +64,26 @@ test("a page that opens late has the history of the run", async (t) => {
   assert.ok(await late.evaluate(() => foglinePage.curves.charts[0].chart.data[0].length) > 20);
 });
 
+test("a link to a moment of a live run opens this moment", async (t) => {
+  const network = url();
+  const address = await view(t, ["--lcm-url", network]);
+  const started = await browser(t);
+  const first = await open(t, started, address);
+  run(t, network, "--pace", "1");
+  await first.waitForFunction(() => Number(document.body.dataset.step) >= 20);
+  const run_id = await first.evaluate(() => foglinePage.run.run_id);
+  const at = (fragment) => open(t, started, address.replace(/(#.*)?$/, fragment));
+  const second = await at(`#run=${run_id}&step=12`);
+  await second.waitForFunction(() => document.body.dataset.step === "12");
+  assert.equal(await second.locator("#origin-words").innerText(), "Paused; the run goes on");
+  for (const [fragment, words] of [["#run=5&step=12", /of another run/], [`#run=${run_id}&step=600`, /to step 600/]]) {
+    const other = await at(fragment);
+    await other.waitForFunction((wanted) => new RegExp(wanted).test(document.getElementById("note").textContent),
+                                words.source);
+    assert.equal(await other.locator("#origin-words").innerText(), "Live");
+  }
+});
+
 test("an event that comes takes the focus from no event of the list", async (t) => {
   const network = url();
   const page = await open(t, await browser(t), await view(t, ["--lcm-url", network]));

@@ -72,6 +72,87 @@ test("the curves have the log's values over the whole time", async (t) => {
   assert.deepEqual(columns[1][1], [first, deceived, last].map(([truth]) => truth.host_speed_mps));
 });
 
+test("the numbers of a log of 60,000 steps are those of its steps", async (t) => {
+  const folder = scratch(t);
+  const log = recordedRun(folder, ["/steps=60000"]);
+  const numbers = numbersOf(folder, log);
+  const page = await open(t, await browser(t), await view(t, [log]));
+  for (const step of [12347, 40001, 59998]) {
+    await goTo(page, step);
+    const {host_gap_m: gap} = numbers("TRUTH", step);
+    for (const [key, channel, field] of [["radar", "RADAR", "range_m"], ["fusion", "TRACK", "state[0]"]]) {
+      const error = Number((numbers(channel, step)[field] - gap).toFixed(2)) + 0;
+      await page.waitForFunction(([id, wanted]) => {
+        const words = document.getElementById(id).textContent.replace("\u2212", "-");
+        return words !== "" && Math.abs(parseFloat(words) - wanted) < 1e-9;
+      }, [`value-${key}`, error]);
+    }
+  }
+  // The curves over the whole time have only extremes. The values at the cursor are those of its step.
+  await page.locator("#charts .u-over").first().hover({position: {x: 333, y: 40}});
+  await page.waitForFunction(() => foglinePage.curves.hover !== null);
+  const step = await page.evaluate(() => Math.floor(foglinePage.curves.hover / 0.1 + 1e-6));
+  const {host_gap_m: gap} = numbers("TRUTH", step);
+  await page.waitForFunction((wanted) => (
+    Number(document.querySelector("#chosen .value").dataset.value) === wanted), gap);
+});
+
+/** The colours of the preceding car in the driver's view, in linear light: its rear, a lamp. */
+function leadColours(page) {
+  return page.evaluate(() => {
+    const {view} = foglinePage.scene;
+    const {moment} = foglinePage.curves;
+    const gl = view.renderer.getContext();
+    const linear = (value) => (value > 10 ? ((value / 255 + 0.055) / 1.055) ** 2.4 : value / 3295);
+    const at = (x, y) => {
+      const place = view.lead.position.clone();
+      place.x += x;
+      place.y += y;
+      place.z += 0.03;
+      place.project(view.camera);
+      const pixel = new Uint8Array(4);
+      gl.readPixels(Math.round((place.x + 1) / 2 * gl.drawingBufferWidth),
+                    Math.round((place.y + 1) / 2 * gl.drawingBufferHeight),
+                    1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel);
+      return [...pixel.subarray(0, 3)].map(linear);
+    };
+    const look = () => ({rear: at(0, 0.86), lamp: at(0.68, 0.8)});
+    view.draw(moment, 1);
+    const seen = look();
+    view.scene.fog.near = 0;
+    view.renderer.render(view.scene, view.camera);
+    const clear = look();
+    const {r, g, b} = view.scene.background;
+    return {seen, clear, haze: [r, g, b], distance_m: -view.lead.position.z};
+  });
+}
+
+test("the driver's view has the preceding car at its place, its brake lamps, and the fog's contrast", async (t) => {
+  const folder = scratch(t);
+  const log = recordedRun(folder);
+  const numbers = numbersOf(folder, log);
+  const page = await open(t, await browser(t), await view(t, [log]));
+  await page.waitForFunction(() => foglinePage.scene.view);
+  const reds = [];
+  for (const step of [50, 300]) {
+    await goTo(page, step);
+    const {host_gap_m: gap, fog_visibility_m: visibility} = numbers("TRUTH", step);
+    const {seen, clear, haze, distance_m} = await leadColours(page);
+    assert.ok(Math.abs(distance_m - gap - 2.1) < 1e-3, `the eye is 2.1 m behind the front: ${distance_m} ${gap}`);
+    const contrast = distance(seen.rear, haze) / distance(clear.rear, haze);
+    const left = 0.05 ** (Math.hypot(distance_m, 0.4) / visibility);  // Koschmieder
+    assert.ok(Math.abs(contrast - left) < 0.03, `contrast ${contrast}, by Koschmieder's law ${left}`);
+  }
+  for (const shines of [true, false]) {
+    const step = [...Array(700).keys()].find((i) => (
+      shines === (numbers("TRUTH", i).preceding_acceleration_mps2 < -0.7)));
+    await goTo(page, step);
+    const [red, green] = (await leadColours(page)).clear.lamp;
+    reds.push(red - green);
+  }
+  assert.ok(reds[0] > 0.7 && reds[1] < 0.3, `red of the lamps, braking and not: ${reds}`);
+});
+
 test("a request to take over counts down, and the page says who drives", async (t) => {
   const log = recordedRun(scratch(t), ["/arbitrator/take_over/mode=requested",
                                        "/arbitrator/take_over/absent_probability=1"]);

@@ -18,7 +18,7 @@ import {Why} from "./parts/why.js";
 import {socketUrl, Wire} from "./data/wire.js";
 
 const PARTS = ["scene", "why", "curves", "events-part", "health"];
-const MOST_EVENTS = 500;
+const MOST_EVENTS = 5000;  // as many as the server sends of one run
 const HASH_EVERY_MS = 500;
 
 class Page {
@@ -35,7 +35,6 @@ class Page {
     this.timebar = new Timebar({...this.act, speed: (speed) => { this.clock.speed = speed; }});
     this.frame = null;
     this.budget = new Budget();
-    this.frames = 0;
     listenForKeys(this.act);
     this.listen();
     this.wire = new Wire(socketUrl(location, this.token), {
@@ -44,6 +43,11 @@ class Page {
       state: (state) => this.showConnection(state),
     });
     requestAnimationFrame((now) => this.loop(now));
+  }
+
+  /** Number of later events of the run that the server has not listed. */
+  get eventsLeftOut() {
+    return (this.isLive ? this.lastHealth : this.log)?.events_left_out ?? 0;
   }
 
   get isLive() { return this.hello?.mode === "live"; }
@@ -74,9 +78,9 @@ class Page {
       // keepAddress() may have changed the address since this event. So the event's address is
       // used.
       const {hash} = new URL(newURL);
-      const {step, token} = readFragment(hash);
+      const {step, run, token} = readFragment(hash);
       if (token) this.takeNewToken(hash);
-      if (step !== null && this.store) this.goTo(step);
+      if (step !== null && this.store) this.goToLinked({step, run});
     });
     byId("parts").addEventListener("click", (event) => {
       const link = event.target.closest("a");
@@ -162,7 +166,25 @@ class Page {
       const history = messages > 0 ? this.early.slice(-messages) : [];
       this.early = null;
       this.take(history);
+      this.openLink();
     }, () => { this.early = null; });
+  }
+
+  /** Goes to the moment of the address, once, when the history of a live run has come. */
+  openLink() {
+    const {step, run} = readFragment(location.hash);
+    if (step === null || this.linkOpened) return;
+    this.linkOpened = true;
+    this.goToLinked({step, run});
+  }
+
+  /** Goes to a step of a link. A live page may not have it: it keeps one run, and not for ever. */
+  goToLinked({step, run}) {
+    const {firstStep, lastStep} = this.store;
+    if (!this.isLive) this.goTo(step);
+    else if (run && run !== this.run.run_id) this.tell("The link is to a moment of another run.");
+    else if (step >= firstStep && step <= lastStep) this.goTo(step);
+    else this.tell(`This page has the steps ${firstStep} to ${lastStep}; the link is to step ${step}.`);
   }
 
   take(messages) {
@@ -236,13 +258,14 @@ class Page {
 
   async copyLink() {
     if (!this.store) return;
-    const link = new URL(fragmentOf(this.step, this.token), location.href).href;
+    const run = this.isLive ? this.run.run_id : "";
+    const link = new URL(fragmentOf(this.step, this.token, run), location.href).href;
     const words = `a link to step ${this.step}`;
     try {
       await navigator.clipboard.writeText(link);
       this.tell(`Copied ${words}.`);
     } catch {
-      history.replaceState(null, "", fragmentOf(this.step, ""));
+      history.replaceState(null, "", fragmentOf(this.step, "", run));
       this.tell(`The address of this page is now ${words}.`);
     }
   }
@@ -300,7 +323,6 @@ class Page {
     this.clock.advance(passed_s, this.store.firstTime, this.store.lastTime);
     if (this.isLive && played && this.clock.state === "paused") this.clock.follow();  // caught up
     this.draw();
-    ++this.frames;
   }
 
   /**
@@ -339,7 +361,7 @@ class Page {
     this.curves.draw(moment, 2 * rest_ms);
     this.timebar.draw({clock, store, step, time: store.timeOf(step), run, isLive: this.isLive}, modes, lambdas,
                       this.events, theme);
-    this.timebar.drawEvents(this.events, step, run);
+    this.timebar.drawEvents(this.events, step, run, this.eventsLeftOut);
     this.drawHealth();
     this.keepAddress(step);
     setAttribute(document.body, "data-step", String(this.frameStep ?? ""));

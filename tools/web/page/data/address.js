@@ -1,17 +1,20 @@
-// The fragment of the page's address: "#step=190" is the shown step, "#token=..." gives access.
+// The fragment of the page's address: "#step=190" is the shown step, "#run=..." its run in a live
+// view, "#token=..." gives access.
 
 const TOKEN = "fogline.token";
 
-/** Returns {step, token}; step is null if the address has no step. */
+/** Returns {step, run, token}; step is null, and run and token are "", if the address has none. */
 export function readFragment(fragment) {
   const parts = new URLSearchParams(fragment.replace(/^#/, ""));
   const step = /^\d+$/.test(parts.get("step") ?? "") ? Number(parts.get("step")) : null;
-  return {step, token: parts.get("token") ?? ""};
+  return {step, run: parts.get("run") ?? "", token: parts.get("token") ?? ""};
 }
 
-/** The fragment of an address that shows a step again. */
-export function fragmentOf(step, token) {
-  return `#${token ? `token=${encodeURIComponent(token)}&` : ""}step=${step}`;
+/** The fragment of an address that shows a step again. @param run "": the step of a log */
+export function fragmentOf(step, token, run = "") {
+  const parts = Object.entries({token, run}).filter(([, value]) => value)
+    .map(([name, value]) => `${name}=${encodeURIComponent(value)}&`);
+  return `#${parts.join("")}step=${step}`;
 }
 
 /** The other parts of a fragment, with their "#"; "" without other parts. */
@@ -24,10 +27,10 @@ export function fragmentWithoutToken(fragment) {
 
 /** Moves the token from the address, where other people could read it, into this tab's storage. */
 export function takeToken(hash = location.hash) {
-  const {step, token} = readFragment(hash);
+  const {step, run, token} = readFragment(hash);
   if (token) {
     sessionStorage.setItem(TOKEN, token);
-    history.replaceState(null, "", step === null ? location.pathname : fragmentOf(step, ""));
+    history.replaceState(null, "", step === null ? location.pathname : fragmentOf(step, "", run));
   }
   return sessionStorage.getItem(TOKEN) ?? "";
 }

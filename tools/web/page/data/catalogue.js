@@ -5,13 +5,15 @@ import {DecodeError, fieldsOf, fingerprintOf, makeDecoder} from "./lcm.js";
 
 const FOGLINE_HEADER = "header_t";
 const CONTROL = new Set(["RUN", "STATUS", "RESEND", "DRIVER_INPUT", "TRIAL"]);  // not in every step
+const OF_EACH_ROLE = "STATUS";  // the messages of each role are a series of their own
 // Places of run_id, step and utime, and the end of header_t, in a message that begins with
 // header_t.
 const AT = {run_id: 8, step: 16, utime: 24, end: 32};
 
 export class Catalogue {
-  constructor({types, fingerprints, channels}) {
+  constructor({types, fingerprints, channels, roles}) {
     this.types = types;
+    this.roles = roles ?? [];
     this.fingerprints = fingerprints ?? {};
     this.channels = new Map();
     this.decoders = new Map();
@@ -53,13 +55,20 @@ export class Catalogue {
   }
 
   /**
-   * All numeric fields of the messages of steps: [{channel, path, name, unit, comment}]. name is
-   * "CHANNEL.path".
+   * All numeric fields of the messages with a header: [{channel, path, name, unit, comment,
+   * isStepwise}]. name is "CHANNEL.path". channel is "CHANNEL/ROLE" if each role sends messages on
+   * the channel.
    */
   fields() {
-    const channels = [...this.channels.values()].filter(({isStepwise}) => isStepwise);
-    return channels.flatMap(({name, type}) => fieldsOf(this.types, type).map((field) => (
-      {...field, channel: name, name: `${name}.${field.path}`})));
+    return [...this.channels.values()].filter(({hasHeader}) => hasHeader)
+      .flatMap((channel) => this.sourcesOf(channel).flatMap((source) => (
+        fieldsOf(this.types, channel.type).map((field) => (
+          {...field, channel: source, name: `${source}.${field.path}`,
+           isStepwise: channel.isStepwise})))));
+  }
+
+  sourcesOf({name}) {
+    return name === OF_EACH_ROLE ? this.roles.map((role) => `${name}/${role}`) : [name];
   }
 }
 
@@ -82,7 +91,7 @@ export function searchFields(fields, typed, most) {
     let weight = low.length / 1000 + (low.includes(".header.") ? 10 : 0);
     for (const word of words) {
       const place = low.indexOf(word);
-      if (place >= 0) weight += /[._]/.test(low[place - 1] ?? ".") ? 0 : 1;
+      if (place >= 0) weight += /[./_]/.test(low[place - 1] ?? ".") ? 0 : 1;
       else if (`${comment} ${unit}`.toLowerCase().includes(word)) weight += 3;
       else return Infinity;
     }

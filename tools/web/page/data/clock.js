@@ -1,5 +1,6 @@
 // The reader's time: follows the live run, plays, or is paused. It does not use the document.
 
+export const EARLY = 1e-6;  // in steps: 0.3 s is step 3 of 0.1 s, although 0.3 / 0.1 < 3
 export const SPEEDS = [0.1, 0.2, 0.5, 1, 2, 5, 10];
 
 export class Clock {
@@ -11,7 +12,6 @@ export class Clock {
 
   /** The simulated step that is shown. */
   step(step_s) {
-    const EARLY = 1e-6;  // in steps: 0.3 s is step 3 of 0.1 s, although 0.3 / 0.1 < 3
     return Math.floor(this.time / step_s + EARLY);
   }
 

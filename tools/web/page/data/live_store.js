@@ -20,13 +20,15 @@ class Track {
     this.bytes = 0;
   }
 
+  get lastStep() { return this.steps.at(-1) ?? -Infinity; }
+  get lastTime() { return this.times.at(-1) ?? -Infinity; }
+
+  /** Adds a copy of the bytes: a part of a frame would keep the whole frame in memory. */
   add({step, time_s}, bytes) {
-    if (this.steps.length && step <= this.steps.at(-1)) return false;
     this.steps.push(step);
     this.times.push(time_s);
-    this.messages.push(bytes);
+    this.messages.push(bytes.slice());
     this.bytes += bytes.byteLength;
-    return true;
   }
 
   forgetBefore(time) {
@@ -79,19 +81,41 @@ export class LiveStore {
     if (!header) return;
     this.runId ??= header.run_id;  // the server has not yet named the run that it follows
     if (header.run_id !== this.runId) return;
-    if (channel.name === "STATUS") this.addStatus(channel, bytes);
+    if (channel.name === "STATUS") this.addStatus(channel, header, bytes);
     else if (channel.isStepwise) this.keep(channel, header, arrived_ms, bytes);
+    else this.keepControl(channel.name, channel, header, bytes);
   }
 
-  addStatus(channel, bytes) {
+  addStatus(channel, header, bytes) {
     const status = this.catalogue.decode(channel, bytes);
-    if (status) this.statuses.set(status.role, status);
+    if (!this.catalogue.roles.includes(status?.role)) return;
+    this.statuses.set(status.role, status);
+    this.keepControl(`${channel.name}/${status.role}`, channel, header, bytes);
+  }
+
+  /** Keeps a message that does not belong to one step. Its time is at least that of the last one. */
+  keepControl(source, channel, {step, time_s}, bytes) {
+    const track = this.track(source, channel);
+    const header = {step: Math.max(step, track.lastStep), time_s: Math.max(time_s, track.lastTime)};
+    track.add(header, bytes);
+    this.extend(source, channel, header, bytes);
+    this.countOne();
+  }
+
+  track(source, channel) {
+    if (!this.tracks.has(source)) this.tracks.set(source, new Track(channel));
+    return this.tracks.get(source);
+  }
+
+  countOne() {
+    if (++this.count % TIDY_AFTER === 0) this.tidy();
   }
 
   keep(channel, header, arrived_ms, bytes) {
     if (this.beginsAgain(channel, header, arrived_ms)) this.clear();
-    if (!this.tracks.has(channel.name)) this.tracks.set(channel.name, new Track(channel));
-    if (!this.tracks.get(channel.name).add(header, bytes)) return;
+    const track = this.track(channel.name, channel);
+    if (header.step <= track.lastStep) return;
+    track.add(header, bytes);
     if (this.lastStep < 0) this.firstStep = header.step;
     if (header.step > this.lastStep) {
       this.lastStep = header.step;
@@ -99,8 +123,8 @@ export class LiveStore {
       this.taken_ms = performance.now();
     }
     if (header.step > 0) this.seenStep_s = header.time_s / header.step;
-    this.extend(channel, header, bytes);
-    if (++this.count % TIDY_AFTER === 0) this.tidy();
+    this.extend(channel.name, channel, header, bytes);
+    this.countOne();
   }
 
   /**
@@ -111,10 +135,10 @@ export class LiveStore {
     return name === "TRUTH" && step < this.lastStep && arrived_ms - this.arrived_ms > AWAY_MS;
   }
 
-  extend(channel, {time_s}, bytes) {
+  extend(source, channel, {time_s}, bytes) {
     let message = null;
     for (const wanted of this.wanted.values()) {
-      if (wanted.channel !== channel.name) continue;
+      if (wanted.channel !== source) continue;
       message ??= this.catalogue.decode(channel, bytes);
       if (message) wanted.series.push(time_s, numberAt(message, wanted.parts));
     }
@@ -131,11 +155,15 @@ export class LiveStore {
     this.firstStep = Math.ceil(oldest / this.step_s);
   }
 
-  /** The newest message of each channel at a step: {NAME: message}; null before the first step. */
+  /**
+   * The newest message of each channel at a step: {NAME: message}; null before the first step. It
+   * has no channels without a message in every step.
+   */
   frame(step) {
     if (this.lastStep < 0) return null;
     const frame = {};
     for (const [name, {channel, steps, messages}] of this.tracks) {
+      if (!channel.isStepwise) continue;
       const place = upTo(steps, step);
       const message = place < 0 ? null : this.catalogue.decode(channel, messages[place]);
       if (message) frame[name] = message;
@@ -159,6 +187,7 @@ export class LiveStore {
     return this.wanted.get(name).series;
   }
 
-  /** The same as series(), because a live series already has every value. */
+  // A live series already has every value.
   detail(channel, path) { return this.series(channel, path); }
+  changes(channel, path) { return this.series(channel, path); }
 }

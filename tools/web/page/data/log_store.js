@@ -6,7 +6,7 @@ const CHUNK = 64;          // number of steps that are fetched together
 const KEEP_CHUNKS = 64;
 const MOST_POINTS = 20000;   // of a series over the whole log; the server sends up to twice as many
 const DETAIL_POINTS = 4000;  // of a series over a part of the log
-const KEEP_DETAILS = 24;
+const KEEP_DETAILS = 48;     // of these, the charts show 16 at a time
 
 export class LogStore {
   constructor(catalogue, wire) {
@@ -101,25 +101,37 @@ export class LogStore {
     }
   }
 
-  fetchSeries(series, channel, path, from, to, points) {
-    this.wire.ask({op: "series", channel, field: path, from, to, points}).then((answer) => {
-      series.whole = to - from < 2 * points;
+  fetchSeries(series, question) {
+    const {from, to, points, changes} = question;
+    this.wire.ask({op: "series", ...question}).then((answer) => {
+      series.whole = !changes && to - from < 2 * points;
       series.replace(answer);
     }, () => {});
   }
 
-  /** The values of a field over the whole log. The series is empty until the values have come. */
-  series(channel, path) {
-    const name = `${channel}.${path}`;
+  /** Fetches a field over the whole log. @param more further members of the question */
+  fetchWhole(channel, path, more = {}) {
+    const name = JSON.stringify([channel, path, more]);
     if (!this.wanted.has(name)) {
       const series = new Series();
       this.wanted.set(name, series);
-      const steps = this.lastStep - this.firstStep + 1;
-      this.fetchSeries(series, channel, path, this.firstStep, this.lastStep,
-                       Math.min(MOST_POINTS, steps));
+      const {firstStep: from, lastStep: to} = this;
+      this.fetchSeries(series, {channel, field: path, from, to, points: MOST_POINTS, ...more});
     }
     return this.wanted.get(name);
   }
+
+  /**
+   * The values of a field over the whole log; of a long log only the extremes of each span. The
+   * series is empty until the values have come.
+   */
+  series(channel, path) { return this.fetchWhole(channel, path); }
+
+  /**
+   * The values of a field that seldom changes, over the whole log: the first value, and each value
+   * that differs from the one before it. So at() gives the exact value, however long the log is.
+   */
+  changes(channel, path) { return this.fetchWhole(channel, path, {changes: true}); }
 
   /**
    * The values of a field between two times, with as many points as a screen can show. A fetched
@@ -140,9 +152,11 @@ export class LogStore {
       }
       const series = new Series();
       this.details.set(name, series);
-      this.fetchSeries(series, channel, path, from, to, DETAIL_POINTS);
+      this.fetchSeries(series, {channel, field: path, from, to, points: DETAIL_POINTS});
     }
     const detail = this.details.get(name);
+    this.details.delete(name);
+    this.details.set(name, detail);  // the last used part is last
     return detail.length ? detail : whole;
   }
 }

@@ -20,7 +20,8 @@ export function lossesOf({senders, senders_note: note, traffic}, number = String
  */
 export function lacksOf(health, number = String) {
   const {own_overflow: missed, too_large: large, too_large_channels: channels = [],
-         refused_scenarios: scenarios, cut_off: cutOff, refused} = health;
+         refused_scenarios: scenarios, cut_off: cutOff, refused,
+         wrong_frames: wrong} = health;
   const are = (n, thing, rest) => n && `${number(n)} ${thing}${n === 1 ? " is" : "s are"} ${rest}`;
   const were = (n, thing, rest) => n && `${number(n)} ${thing}${n === 1 ? " was" : "s were"} ${rest}`;
   return [
@@ -29,5 +30,6 @@ export function lacksOf(health, number = String) {
     are(scenarios, "run", "not shown, because the scenario is not valid"),
     were(cutOff, "viewer", "cut off"),
     were(refused, "connection", "refused"),
+    wrong && `${number(wrong)} frame${wrong === 1 ? "" : "s"} of viewers ${wrong === 1 ? "was" : "were"} wrong`,
   ].filter(Boolean);
 }

@@ -56,6 +56,42 @@ export function spansOf(times, values, end) {
 }
 
 /**
+ * Spans of the side that drives, as spansOf() gives them, within [from, to]. `modes` and `lambdas`
+ * are series of HOST_COMMAND.mode and HOST_COMMAND.lambda_human; they may have only the changes.
+ */
+export function sideSpans(modes, lambdas, from, to, end) {
+  const [mode, lambda] = [modes.within(from, to), lambdas.within(from, to)];
+  const [times, sides] = [[], []];
+  for (let [i, j] = [0, 0]; i < mode.times.length || j < lambda.times.length;) {
+    const time = Math.min(mode.times[i] ?? Infinity, lambda.times[j] ?? Infinity);
+    if (mode.times[i] === time) ++i;
+    if (lambda.times[j] === time) ++j;
+    if (i === 0) continue;
+    times.push(time);
+    sides.push(modeOf(mode.values[i - 1], lambda.values[j - 1]).side);
+  }
+  return spansOf(times, sides, end);
+}
+
+/**
+ * The time at which the side that drives at `time` began to drive; null if it drives from the
+ * first value on. `modes` and `lambdas` as in sideSpans().
+ */
+export function drivingSince(modes, lambdas, time) {
+  const [modeTimes, lambdaTimes] = [modes.times, lambdas.times];
+  let [i, j] = [upTo(modeTimes, time), upTo(lambdaTimes, time)];
+  const side = () => modeOf(modes.values[i], lambdas.values[j]).side;
+  if (i < 0) return null;
+  for (const now = side(); ;) {
+    const since = Math.max(modeTimes[i], lambdaTimes[j] ?? -Infinity);
+    if (lambdaTimes[j] === since) --j;
+    if (modeTimes[i] === since) --i;
+    if (i < 0) return null;
+    if (side() !== now) return since;
+  }
+}
+
+/**
  * The request that is open at a time: {since_s, left_s, share}; null if no request is open. `times`
  * and `modes` come from HOST_COMMAND up to this time. lead_s comes from the scenario. A request
  * begins with the first of the successive modes that ask.

@@ -2,6 +2,8 @@
 
 import {upTo} from "./modes.js";
 
+let versions = 0;  // of all series
+
 /**
  * Columns of values, with NaN where the series `valid` is 0, because a sensor has no value there.
  */
@@ -15,7 +17,7 @@ export class Series {
     this.allValues = values;
     this.from = 0;
     this.to = n;
-    this.version = 0;
+    this.version = ++versions;  // no other state of any series has this number
     this.whole = true;  // whether it has every value, and not only the extremes of each span
   }
 
@@ -27,7 +29,7 @@ export class Series {
     if (this.to === this.allTimes.length) this.makeRoom();
     this.allTimes[this.to] = time;
     this.allValues[this.to++] = value;
-    ++this.version;
+    this.version = ++versions;
   }
 
   makeRoom() {
@@ -53,7 +55,7 @@ export class Series {
     this.allValues = values;
     this.from = 0;
     this.to = times.length;
-    ++this.version;
+    this.version = ++versions;
   }
 
   /** Columns of the times in [from, to], with one more value before and one more after them. */

@@ -6,6 +6,7 @@ import {DASHES, placesOf} from "../draw/curve_styles.js";
 import {byId, make, say, setAttribute} from "../draw/dom.js";
 import {searchFields} from "../data/catalogue.js";
 import {digits, seconds, withUnit} from "../draw/format.js";
+import {EARLY} from "../data/clock.js";
 import {numberAt, parsePath} from "../data/lcm.js";
 import {spansOf} from "../data/modes.js";
 import {whereValid} from "../data/series.js";
@@ -194,25 +195,25 @@ export class Curves {
   }
 
   /**
-   * The series `valid` of a field, which says whether a sensor has a value; null for a field that
-   * always has one.
+   * The changes of `valid` of a field, which says whether a sensor has a value; null for a field
+   * that always has one.
    */
-  validOf({channel, path}, from, to) {
+  validOf({channel, path}) {
     const depends = path !== "valid" && !path.startsWith("header.") && this.fieldNamed(`${channel}.valid`);
-    return depends ? this.seriesOf({channel, path: "valid"}, from, to) : null;
+    return depends ? this.store.changes(channel, "valid") : null;
   }
 
   /** The values of a field in this time, with a gap where a sensor has no value. */
   columnsOf(field, from, to) {
     const columns = this.seriesOf(field, from, to).within(from, to);
-    const valid = this.validOf(field, from, to);
+    const valid = this.validOf(field);
     return valid?.length ? whereValid(columns, valid) : columns;
   }
 
   drawFog(chart) {
     const {min, max} = chart.scales.x;
     if (min == null) return;
-    const {times, values} = this.store.series("TRUTH", "fog_present").within(min, max);
+    const {times, values} = this.store.changes("TRUTH", "fog_present").within(min, max);
     for (const span of spansOf(times, values, Math.min(max, this.store.lastTime))) {
       if (span.value) fillSpan(chart, span.from, span.to, this.theme.fog);
     }
@@ -226,7 +227,7 @@ export class Curves {
     const rest_ms = Math.min(REST.most_ms, Math.max(least_ms, REST.factor * this.cost_ms));
     if (now - this.drawnAt < rest_ms) return;
     const [from, to] = this.range(moment.time);
-    const series = this.fields.flatMap((field) => [this.seriesOf(field, from, to), this.validOf(field, from, to)]);
+    const series = this.fields.flatMap((field) => [this.seriesOf(field, from, to), this.validOf(field)]);
     const drawn = `${from} ${to} ${moment.time} ${series.map((one) => one?.version)}`;
     if (drawn === this.drawn) return;
     this.drawn = drawn;
@@ -244,15 +245,25 @@ export class Curves {
     chart.setScale("x", {min: from, max: to});
   }
 
+  /** The value of a field at a time: the last one up to it. NaN until it has come. */
+  valueAt({channel, path, isStepwise}, time) {
+    const series = this.seriesOf({channel, path}, ...this.range(this.moment.time));
+    if (series.whole || !isStepwise) return series.at(time);
+    // The series has only the extremes of each span. The messages of the step have the value.
+    const frame = this.store.frame(Math.floor(time / this.store.run.step_s + EARLY));
+    return numberAt(frame?.[channel], parsePath(path));
+  }
+
   /**
    * Shows the values at the cursor, or without a cursor the values of the shown moment, with all
    * significant digits.
    */
   sayValues({frame, time, run}) {
     const hover = this.hover;
-    this.fields.forEach(({channel, path, unit}, i) => {
-      const value = hover === null ? numberAt(frame?.[channel], parsePath(path))
-                                   : this.store.series(channel, path).at(hover);
+    this.fields.forEach((field, i) => {
+      const {channel, path, unit, isStepwise} = field;
+      const value = hover === null && isStepwise ? numberAt(frame?.[channel], parsePath(path))
+                                                 : this.valueAt(field, hover ?? time);
       say(this.values[i], withUnit(digits(value), unit));
       setAttribute(this.values[i], "data-value", String(value));
     });

@@ -3,23 +3,13 @@
 
 import {byId, say, setAttribute} from "../draw/dom.js";
 import {decimal, seconds, withUnit} from "../draw/format.js";
-import {modeOf, requestAt, SIDES, upTo} from "../data/modes.js";
+import {drivingSince, modeOf, requestAt, SIDES} from "../data/modes.js";
 
 const ANNOUNCE_AFTER_MS = 400;  // otherwise a quick move through time would read out each change
 
 const LASTS = {
   automation: "The automation has driven for", human: "The human has driven for",
   risk: "The manoeuvre has lasted", unknown: "This has lasted"};
-
-/** The time at which the side that drives at the end of `times` began; null if it always drove. */
-function drivingSince(times, modes, lambdas) {
-  let place = times.length - 1;
-  if (place < 0) return null;
-  const sideAt = (i) => modeOf(modes[i], lambdas?.[i]).side;
-  const side = sideAt(place);
-  while (place > 0 && sideAt(place - 1) === side) --place;
-  return place > 0 ? times[place] : null;
-}
 
 // Reasons for modes whose reason is not the Degree of Conflict. The page says this reason first.
 const REASONS = {
@@ -62,13 +52,11 @@ export class Now {
     const mode = modeOf(command.mode, command.lambda_human);
     setAttribute(this.strip, "data-side", mode.side);
     say(this.words, mode.words);
-    const end = upTo(modes.times, time) + 1;
-    const times = modes.times.subarray(0, end);
-    const since = drivingSince(times, modes.values, lambdas.values);
+    const since = drivingSince(modes, lambdas, time);
     const lasted = since === null ? ""
       : ` ${LASTS[mode.side]} ${seconds(time - since, run.step_s)}.`;
     say(this.reason, reason(command) + lasted);
-    this.drawRequest(requestAt(times, modes.values, time,
+    this.drawRequest(requestAt(modes.times, modes.values, time,
                                run.scenario?.arbitrator?.take_over?.lead_s ?? 10));
     this.announce(mode.words);
     return mode.side;

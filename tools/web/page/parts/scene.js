@@ -13,6 +13,7 @@ export class Scene {
     this.road = new Road(byId("road"));
     this.view = null;
     this.wordsAt = 0;
+    this.pictures = 0;  // number of drawn pictures of the road
     loadView().then((view) => {
       this.view = view;
       this.setScheme();
@@ -42,6 +43,7 @@ export class Scene {
     this.turn = (this.turn ?? 0) + 1;
     if (this.turn % every === 0 || !moment.moves) this.view?.draw(moment, moment.moves ? ratio : 1);
     this.road.draw(moment);
+    ++this.pictures;
     this.sayNumbers(frame);
     this.describe(moment);
   }

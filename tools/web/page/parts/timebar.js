@@ -1,10 +1,9 @@
 // The bar at the bottom: live, pause, play, step, jump to events, scrub, speed, link.
 
 import {byId, fitCanvas, hatch, make, say, setAttribute} from "../draw/dom.js";
-import {seconds, timeDecimals, decimal} from "../draw/format.js";
-import {modeOf, spansOf} from "../data/modes.js";
+import {count, decimal, seconds, timeDecimals} from "../draw/format.js";
+import {sideSpans, spansOf} from "../data/modes.js";
 import {SPEEDS} from "../data/clock.js";
-import {sideNames, sideNumber} from "./why.js";
 
 const TRACK_HZ = 4;
 export const EVENT_MARKS = {
@@ -56,7 +55,7 @@ export class Timebar {
 
   /** Draws fog, the side that drives, and events over the whole time. */
   drawTrack(store, modes, lambdas, events, theme) {
-    const fog = store.series("TRUTH", "fog_present");
+    const fog = store.changes("TRUTH", "fog_present");
     const state = [modes.version, lambdas.version, fog.version, store.lastStep, events.length,
                    this.track.clientWidth, theme.ink].join(" ");
     const now = performance.now();
@@ -75,11 +74,10 @@ export class Timebar {
     for (const span of spansOf(fog.times, fog.values, lastTime)) {
       if (span.value) fill(span, theme.fog, 0, height);
     }
-    const sides = modes.values.map((mode, i) => sideNumber[modeOf(mode, lambdas.values[i]).side]);
     const patterns = {human: hatch(pen, theme.surface, {size: 5}),
                       risk: hatch(pen, theme.surface, {size: 5, both: true})};
-    for (const span of spansOf(modes.times, sides, lastTime)) {
-      const side = sideNames[span.value];
+    for (const span of sideSpans(modes, lambdas, -Infinity, Infinity, lastTime)) {
+      const side = span.value;
       if (side === "unknown") continue;
       fill(span, theme[side], 9, 8);
       if (patterns[side]) fill(span, patterns[side], 9, 8);
@@ -92,7 +90,9 @@ export class Timebar {
    * Fills the list of events, and marks the last event at or before the shown step. Elements that
    * are already in the list are not replaced, because one of them may have the focus.
    */
-  drawEvents(events, step, run) {
+  drawEvents(events, step, run, leftOut) {
+    byId("more-events").hidden = leftOut === 0;
+    say(byId("more-events"), `${count(leftOut)} later events are not listed.`);
     const list = byId("events");
     const {drawn = []} = this;
     const isLonger = this.drawnRun === run.run_id && drawn.at(-1) === events[drawn.length - 1];

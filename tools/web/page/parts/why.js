@@ -4,8 +4,8 @@
 import {drawNow, extremes, fillSpan, joined, makeChart, stepped, TOP, widened}
   from "../draw/chart.js";
 import {byId, hatch, say} from "../draw/dom.js";
-import {decimal} from "../draw/format.js";
-import {modeOf, spansOf} from "../data/modes.js";
+import {decimal, withUnit} from "../draw/format.js";
+import {sideSpans, spansOf, upTo} from "../data/modes.js";
 import {Series, whereValid} from "../data/series.js";
 import {withAlpha} from "../draw/theme.js";
 
@@ -20,14 +20,10 @@ const SOURCES = [
   {key: "fusion", channel: "TRACK", path: "state[0]", label: "fusion"},
 ];
 
-export const sideNumber = {automation: 0, human: 1, risk: 2, unknown: 3};
-export const sideNames = Object.keys(sideNumber);
-
 /** Draws the side that drives as a band: a colour and a pattern for each side. */
 export function drawBand(chart, spans, theme, top, height) {
   const {ctx} = chart;
-  for (const {from, to, value} of spans) {
-    const side = sideNames[value];
+  for (const {from, to, value: side} of spans) {
     if (side === "unknown") continue;
     fillSpan(chart, from, to, theme[side], top, height);
     if (side === "automation") continue;
@@ -37,11 +33,16 @@ export function drawBand(chart, spans, theme, top, height) {
   }
 }
 
-/** Value minus truth of a source; NaN where the source has no value. */
-function errorColumns(value, valid, truth) {
-  const {times, values} = whereValid(value, valid);
-  return {times, values: values.map((one, i) => one - truth.at(times[i]))};
+/**
+ * Value minus truth of a source; NaN where the source has no value. Both series have every value
+ * of the shown time, because the extremes of two series are not of the same steps.
+ */
+function errorColumns({times, values}, valid, truth) {
+  const seen = whereValid({times, values}, valid);
+  return {times, values: seen.values.map((one, i) => one - truth.at(times[i]))};
 }
+
+const NOTHING = new Series();
 
 export class Why {
   constructor(onPick) {
@@ -55,17 +56,10 @@ export class Why {
     this.store = store;
     this.theme = theme;
     this.moment = {time: 0};
-    const series = (channel, path) => store.series(channel, path);
-    this.doc = series("HOST_COMMAND", "doc");
-    this.threshold = series("HOST_COMMAND", "threshold");
-    this.modes = series("HOST_COMMAND", "mode");
-    this.lambdas = series("HOST_COMMAND", "lambda_human");
-    this.automation = series("HOST_COMMAND", "lambda_automation");
-    this.fog = series("TRUTH", "fog_present");
-    this.truth = series("TRUTH", "host_gap_m");
-    this.sources = SOURCES.map((source) => ({
-      ...source, value: series(source.channel, source.path),
-      valid: series(source.channel, "valid")}));
+    this.modes = store.changes("HOST_COMMAND", "mode");
+    this.lambdas = store.changes("HOST_COMMAND", "lambda_human");
+    this.fog = store.changes("TRUTH", "fog_present");
+    this.valid = SOURCES.map(({channel}) => store.changes(channel, "valid"));
     this.charts = [this.makeConflict(), this.makeAuthority(), this.makeErrors()];
     this.drawn = "";
     this.drawnAt = 0;
@@ -124,10 +118,13 @@ export class Why {
   }
 
   sideSpans() {
-    const {times, values} = this.modes.within(...this.range);
-    const lambdas = this.lambdas.within(...this.range).values;
-    const sides = values.map((mode, i) => sideNumber[modeOf(mode, lambdas[i]).side]);
-    return spansOf(times, sides, this.shownEnd);
+    return sideSpans(this.modes, this.lambdas, ...this.range, this.shownEnd);
+  }
+
+  /** Every value of a field in the shown time. The series is empty until they have come. */
+  shown(channel, path) {
+    const series = this.store.detail(channel, path, ...this.range);
+    return series.whole ? series : NOTHING;
   }
 
   /** The end of the shown time, or the last known time if this is earlier. */
@@ -143,8 +140,13 @@ export class Why {
   /** Draws the moment. While time goes on, there are at least `rest_ms` between two drawings. */
   draw(moment, rest_ms) {
     this.moment = moment;
-    const all = [this.doc, this.threshold, this.modes, this.lambdas, this.automation, this.fog,
-                 this.truth, ...this.sources.flatMap(({value, valid}) => [value, valid])];
+    const command = (path) => this.shown("HOST_COMMAND", path);
+    const [doc, threshold, automation, human] =
+      ["doc", "threshold", "lambda_automation", "lambda_human"].map(command);
+    const truth = this.shown("TRUTH", "host_gap_m");
+    const sources = SOURCES.map(({channel, path}) => this.shown(channel, path));
+    const all = [doc, threshold, automation, human, truth, ...sources, ...this.valid, this.modes,
+                 this.lambdas, this.fog];
     const drawn = `${moment.time} ${all.map(({version}) => version)}`;
     if (drawn === this.drawn && moment.frame === this.frame) return;
     const now = performance.now();
@@ -153,32 +155,30 @@ export class Why {
     this.drawn = drawn;
     this.frame = moment.frame;
     const [from, to] = this.range;
-    const errors = this.sources.map(({value, valid}) => {
-      const {times, values} = value.within(from, to);
-      return errorColumns(new Series(times, values, times.length), valid, this.truth);
-    });
-    this.errorRange = widened(...extremes(errors, from, to), LEAST_ERROR_SPAN_M);
     const part = (series) => series.within(from, to);
-    const columns = [[part(this.doc), part(this.threshold)],
-                     [part(this.automation), part(this.lambdas)], errors];
+    const errors = sources.map((values, i) => errorColumns(part(values), this.valid[i], truth));
+    this.errorRange = widened(...extremes(errors, from, to), LEAST_ERROR_SPAN_M);
+    const columns = [[part(doc), part(threshold)], [part(automation), part(human)], errors];
     this.charts.forEach((chart, i) => {
       chart.setData(joined(columns[i]), false);
       chart.setScale("x", {min: from, max: to});
     });
-    this.sayValues(moment);
+    this.sayValues(moment, errors);
   }
 
   /** Shows the numbers of the shown moment, beside the names of the curves. */
-  sayValues({frame, time}) {
-    const {HOST_COMMAND: command, TRUTH: truth} = frame ?? {};
+  sayValues({frame, time}, errors) {
+    const {HOST_COMMAND: command} = frame ?? {};
     say(byId("value-doc"), decimal(command?.doc, 2));
     say(byId("value-threshold"), decimal(command?.threshold, 2));
     say(byId("value-automation"), decimal(command?.lambda_automation, 2));
     say(byId("value-human"), decimal(command?.lambda_human, 2));
-    for (const {key, value, valid} of this.sources) {
-      const seen = truth && valid.at(time) ? value.at(time) - truth.host_gap_m : NaN;
-      say(byId(`value-${key}`), Number.isNaN(seen) ? "no value" : `${decimal(seen, 2)} m`);
-    }
+    SOURCES.forEach(({key}, i) => {
+      const {times, values} = errors[i];
+      const place = upTo(times, time);
+      const words = Number.isNaN(values[place]) ? "no value" : withUnit(decimal(values[place], 2), "m");
+      say(byId(`value-${key}`), place < 0 ? "" : words);
+    });
   }
 
   resize() {

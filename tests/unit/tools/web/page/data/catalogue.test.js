@@ -9,12 +9,14 @@ import {describedTypes, realLog} from "../real_log.js";
 const log = realLog("/steps=300");
 const CHANNELS = [
   {id: 0, name: "TRUTH", type: "truth_t"}, {id: 1, name: "HOST_COMMAND", type: "arbitration_t"},
-  {id: 2, name: "CAMERA", type: null}];
+  {id: 2, name: "CAMERA", type: null}, {id: 3, name: "STATUS", type: "status_t"},
+  {id: 4, name: "RUN", type: "run_t"}];
+const ROLES = ["world", "fusion"];
 const bytesOf = (channel) => log.events.filter((event) => event.channel === channel).map(({bytes}) => bytes);
 const truth = bytesOf("TRUTH");
 
 function catalogue() {
-  return new Catalogue({types: describedTypes(), channels: CHANNELS,
+  return new Catalogue({types: describedTypes(), channels: CHANNELS, roles: ROLES,
                         fingerprints: {truth_t: fingerprintOf(truth[0])}});
 }
 
@@ -57,6 +59,33 @@ test("a live store gives each step's newest messages, and the values of a field"
   const {times, values} = store.series("TRUTH", "host_gap_m");
   assert.equal(times.length, 300);
   assert.equal(String(values[270]), log.table("TRUTH")[270].host_gap_m);
+});
+
+test("a live store keeps no more than its messages of a frame", () => {
+  const frame = new Uint8Array(1e6);
+  const store = new LiveStore(catalogue());
+  frame.set(truth[0], 500);
+  store.add({channel: 0, arrived_ms: 0, bytes: frame.subarray(500, 500 + truth[0].length)});
+  const [kept] = store.tracks.get("TRUTH").messages;
+  assert.equal(kept.buffer.byteLength, truth[0].length);
+  assert.deepEqual(kept, truth[0]);
+});
+
+test("messages that belong to no step have curves, too, and STATUS one for each role", () => {
+  const fields = catalogue().fields();
+  const found = (name) => fields.find((field) => field.name === name);
+  assert.deepEqual([found("STATUS/fusion.cpu_ms").channel, found("STATUS/fusion.cpu_ms").isStepwise],
+                   ["STATUS/fusion", false]);
+  assert.equal(found("STATUS.cpu_ms"), undefined);
+  assert.equal(found("TRUTH.host_gap_m").isStepwise, true);
+  const store = new LiveStore(catalogue());
+  const before = store.series("RUN", "header.step");
+  const runs = bytesOf("RUN");
+  for (const bytes of [...runs, ...runs]) store.add({channel: 4, arrived_ms: 0, bytes});
+  const after = store.series("RUN", "header.run_id");
+  assert.deepEqual([before.length, after.length], [2 * runs.length, 2 * runs.length]);
+  assert.equal(store.lastStep, -1);
+  assert.equal(store.frame(0), null);
 });
 
 test("a live store takes no message twice, of another run, or of an unknown type", () => {

@@ -46,8 +46,9 @@ test("the speed stays within 0.1 and 10", () => {
 });
 
 test("a link reopens its step, with the key if there is one", () => {
-  assert.deepEqual(readFragment(fragmentOf(190, "")), {step: 190, token: ""});
-  assert.deepEqual(readFragment(fragmentOf(190, "a+b&c")), {step: 190, token: "a+b&c"});
+  assert.deepEqual(readFragment(fragmentOf(190, "")), {step: 190, run: "", token: ""});
+  assert.deepEqual(readFragment(fragmentOf(190, "a+b&c")), {step: 190, run: "", token: "a+b&c"});
+  assert.deepEqual(readFragment(fragmentOf(7, "t", "-64")), {step: 7, run: "-64", token: "t"});
   for (const fragment of ["", "#", "#step=", "#step=-1", "#step=1.5", "#step=x", "#other=3"]) {
     assert.equal(readFragment(fragment).step, null);
   }

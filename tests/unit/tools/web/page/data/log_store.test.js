@@ -74,6 +74,30 @@ test("a window that moves over a long log needs another part only now and then",
   assert.ok(wire.asked.length <= 25, String(wire.asked.length));
 });
 
+test("the changes of a field are asked for once, and are exact at any time", async () => {
+  const {wire, store} = opened(1e6);
+  const modes = store.changes("HOST_COMMAND", "mode");
+  assert.equal(store.changes("HOST_COMMAND", "mode"), modes);
+  assert.equal(wire.asked.length, 1);
+  assert.deepEqual(wire.asked[0].question, {op: "series", channel: "HOST_COMMAND", field: "mode", from: 0,
+                                            to: 1e6, points: 20000, changes: true});
+  wire.asked.shift().resolve({times: Float64Array.of(0, 77.7), values: Float64Array.of(0, 1)});
+  for (let i = 0; i < 5; ++i) await Promise.resolve();
+  assert.deepEqual([modes.at(77.6), modes.at(77.7), modes.at(9e4)], [0, 1, 1]);
+});
+
+test("a part that is still used is not forgotten for newer ones", async () => {
+  const {wire, store} = opened(1e6);
+  store.detail("TRUTH", "host_gap_m", 0, 60);
+  await wire.answer();
+  for (let from = 0; from < 6000; from += 60) {
+    store.detail("TRUTH", "host_gap_m", 0, 60);
+    store.detail("TRUTH", "host_speed_mps", from, from + 60);
+  }
+  const {length} = wire.asked.filter(({question: {field, to}}) => field === "host_gap_m" && to === 600);
+  assert.equal(length, 1);
+});
+
 test("a short log needs no finer values", async () => {
   const {wire, store} = opened();
   store.detail("TRUTH", "host_gap_m", 0, 60);

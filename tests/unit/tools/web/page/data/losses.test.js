@@ -21,11 +21,11 @@ test("a message that is not shown, and a client that is refused, have words", ()
   assert.deepEqual(lacksOf({own_overflow: 0, too_large: 0, refused_scenarios: 0, cut_off: 0, refused: 0}), []);
   assert.deepEqual(
     lacksOf({own_overflow: 1, too_large: 2, too_large_channels: ["CAMERA", "MAP"], refused_scenarios: 3,
-             cut_off: 4, refused: 5}),
+             cut_off: 4, refused: 5, wrong_frames: 6}),
     ["this viewer itself missed 1 packet",
      "2 messages are larger than a datagram and not shown (CAMERA, MAP)",
      "3 runs are not shown, because the scenario is not valid", "4 viewers were cut off",
-     "5 connections were refused"]);
+     "5 connections were refused", "6 frames of viewers were wrong"]);
   assert.deepEqual(
     lacksOf({own_overflow: 2, too_large: 1, too_large_channels: ["MAP"], refused_scenarios: 1, cut_off: 1, refused: 1}),
     ["this viewer itself missed 2 packets", "1 message is larger than a datagram and not shown (MAP)",

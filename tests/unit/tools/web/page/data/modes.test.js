@@ -1,7 +1,9 @@
 import assert from "node:assert/strict";
 import {test} from "node:test";
 
-import {modeOf, requestAt, spansOf, upTo} from "../../../../../../tools/web/page/data/modes.js";
+import {drivingSince, modeOf, requestAt, sideSpans, spansOf, upTo}
+  from "../../../../../../tools/web/page/data/modes.js";
+import {Series} from "../../../../../../tools/web/page/data/series.js";
 import {describedTypes} from "../real_log.js";
 
 test("each mode of HOST_COMMAND has its name here", () => {
@@ -19,6 +21,28 @@ test("spans join equal values and end where the next begins", () => {
   assert.deepEqual(spansOf([0, 1, 2, 3], [5, 5, NaN, 7], 4),
                    [{from: 0, to: 3, value: 5}, {from: 3, to: 4, value: 7}]);
   assert.deepEqual(spansOf([], [], 4), []);
+});
+
+function seriesOf(points) {
+  const series = new Series();
+  for (const [time, value] of points) series.push(time, value);
+  return series;
+}
+
+test("the sides are the same from all values and from the changes alone", () => {
+  const mode = [0, 0, 1, 11, 11, 11, 0];
+  const lambda = [0, 0, 1, 1, 0, 0, 0];
+  const changed = (values) => values.map((value, i) => [i, value])
+    .filter(([i, value]) => i === 0 || value !== values[i - 1]);
+  const expected = [{from: 0, to: 2, value: "automation"}, {from: 2, to: 4, value: "human"},
+                    {from: 4, to: 7, value: "automation"}];
+  for (const pick of [(values) => values.map((value, i) => [i, value]), changed]) {
+    const [modes, lambdas] = [mode, lambda].map((values) => seriesOf(pick(values)));
+    assert.deepEqual(sideSpans(modes, lambdas, -Infinity, Infinity, 7), expected);
+    assert.deepEqual([0, 1, 2, 3, 4, 6].map((time) => drivingSince(modes, lambdas, time)),
+                     [null, null, 2, 2, 4, 4]);
+  }
+  assert.equal(drivingSince(seriesOf([]), seriesOf([]), 3), null);
 });
 
 test("a request counts down from its first step, through all modes that ask", () => {

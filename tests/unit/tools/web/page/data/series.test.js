@@ -26,6 +26,16 @@ test("a series that forgets needs no more room", () => {
   assert.ok(series.allTimes.length <= 512, String(series.allTimes.length));
 });
 
+test("no two states of any series have the same version", () => {
+  const [first, second] = [new Series(), new Series()];
+  const seen = new Set([first.version, second.version]);
+  first.push(1, 2);
+  seen.add(first.version);
+  second.replace({times: Float64Array.of(1), values: Float64Array.of(2)});
+  seen.add(second.version);
+  assert.equal(seen.size, 4);
+});
+
 test("a part of a series has one value before and one after", () => {
   const {times, values} = counted(100).within(10.5, 20.5);
   assert.deepEqual([times[0], times.at(-1), values[0]], [10, 21, 100]);
