@@ -87,10 +87,12 @@ test("a wheel is calibrated in the page, drives, and is known again", async (t) 
   await page.click("#invert-throttle");
   await page.click("#setup-close");
   await page.reload();
-  await setPad(page, {axes: [-1, 1]});
+  await setPad(page, {axes: [0, 0]});  // the axes have not moved since the page was loaded
   await page.waitForFunction(() => foglineDrive.person.device.id === "Test Wheel");
   await begin(page);
   await drives(page, true);
+  const untouched = (await run.next(({present}) => present, "that a person is there")).message;
+  assert.deepEqual([untouched.throttle, untouched.brake], [0, 0]);
   await setPad(page, {axes: [1, 1]});
   await run.next(({throttle, present}) => present && throttle === 1, "the inverted throttle");
 });
@@ -164,7 +166,10 @@ test("a page that is busy for 300 ms does not drive, and is told", async (t) => 
     while (performance.now() < end) continue;
   }));
   await until(() => server.said.includes("its page is silent"), "the notice of the silence");
-  await drives(page, true);  // its next input takes the seat again
+  // Its next input takes the seat again, with released pedals although the key is still down.
+  await drives(page, true);
+  const back = await run.next(({present}) => present, "that the person is back");
+  assert.equal(back.message.brake, 0);
 });
 
 test("a page that is closed, or has lost its socket, does not drive", async (t) => {

@@ -195,6 +195,8 @@ class Drive {
     this.refused = state === "taken" && this.state === "taken";
     if (this.refused) this.person.set("begun", false);
     this.state = state;
+    // The server has not heard the page for a time, although the page has perhaps not paused.
+    if (state === "lost") this.person.leavePedals();
     // A lost seat still belongs to this page: the page's next frame takes the seat again.
     this.set("seated", state === "yours" || state === "lost");
   }

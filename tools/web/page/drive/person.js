@@ -13,6 +13,13 @@ export const BUTTON_KEYS = {t: "take_over", g: "give_back"};
 const LEAST_PRESS_MS = 120;
 // Smaller changes of raw values are noise: analogue sticks at rest move less than this.
 const NOISE = 0.01;
+// After this time without a look at the devices, the server counts the page as silent
+// (Seat::kSilent), so the person was away.
+const SILENT_MS = 300;
+// A pedal below this share of its way counts as released when a person comes back. Our choice: more
+// than the 1 to 2 % by which the rest position of consumer pedals moves, and a person hardly feels it.
+const RELEASED = 0.05;
+const PEDALS = ["throttle", "brake"];
 
 /** "wheel" or "gamepad", from the name that the device reports. */
 export function kindOf(id) {
@@ -33,7 +40,6 @@ export class Person {
     this.ramps = new Ramps();
     this.device = KEYBOARD;
     this.calibration = null;
-    this.pad = null;          // newest state of the chosen gamepad; null: not connected
     this.begun = false;       // whether the person has said that they are ready
     this.visible = true;
     this.focused = true;
@@ -42,13 +48,23 @@ export class Person {
     this.down = new Set();    // buttons that a key holds
     this.until_ms = {take_over: -Infinity, give_back: -Infinity};
     this.touched_ms = null;   // time of the newest input of the device
+    this.looked_ms = -Infinity;
     this.raw = [];
+    this.forgetPad();
+  }
+
+  /** Forgets the state of the device, because it is unplugged or another one is chosen. */
+  forgetPad() {
+    this.pad = null;            // newest state of the chosen gamepad; null: not connected
+    this.firstAxes = [];        // values of its axes when it was connected
+    this.moved = new Set();     // its axes that have moved since then
+    this.released = new Set();  // pedals that were released since the person came
   }
 
   /** Chooses a device. @param calibration of a gamepad; null for the keyboard */
   choose(device, calibration = null) {
     if (device.id !== this.device.id) {
-      this.pad = null;
+      this.forgetPad();
       this.raw = [];
       this.drop();
     }
@@ -58,9 +74,15 @@ export class Person {
 
   /** Releases all keys and buttons, because no person is present. */
   drop() {
-    this.ramps.drop();
+    this.leavePedals();
     this.down.clear();
     this.until_ms = {take_over: -Infinity, give_back: -Infinity};
+  }
+
+  /** Releases the pedals. A pedal of a device acts again only after the person has released it. */
+  leavePedals() {
+    this.ramps.drop();
+    this.released.clear();
   }
 
   /**
@@ -104,15 +126,44 @@ export class Person {
 
   /** Takes the states of all gamepads (navigator.getGamepads()). */
   look(pads, now_ms) {
+    if (now_ms - this.looked_ms >= SILENT_MS) this.leavePedals();
+    this.looked_ms = now_ms;
     if (this.device.kind === "keyboard") return;
-    this.pad = [...pads].find((pad) => pad?.connected && pad.id === this.device.id) ?? null;
-    if (!this.pad) return;
+    const pad = [...pads].find((one) => one?.connected && one.id === this.device.id);
+    if (!pad) {
+      this.forgetPad();
+      return;
+    }
+    if (!this.pad) this.firstAxes = [...pad.axes];
+    this.pad = pad;
+    this.notePedals();
     const raw = [...this.pad.axes, ...this.pad.buttons.map(({value}) => value)];
     if (!movesBeyondNoise(this.raw, raw)) return;
     this.raw = raw;
     // `timestamp` is the time at which the browser got the state. It is 0 in some browsers.
     const {timestamp} = this.pad;
     this.touched_ms = timestamp > 0 && timestamp <= now_ms ? timestamp : now_ms;
+  }
+
+  /** Notes the axes that have moved, and the pedals that are released. */
+  notePedals() {
+    this.pad.axes.forEach((value, axis) => {
+      if (value !== this.firstAxes[axis]) this.moved.add(axis);
+    });
+    if (this.whyAway() !== "") return;
+    for (const pedal of PEDALS) {
+      if (this.position(this.calibration[pedal]) < RELEASED) this.released.add(pedal);
+    }
+  }
+
+  /**
+   * Position of a pedal in [0, 1]; null if the device has no such axis. An axis that has not moved
+   * yet counts as released: a browser may report 0 for it, which is the middle of its way.
+   */
+  position(pedal) {
+    const value = pedalValue(this.pad, pedal);
+    const isUnknown = pedal.axis !== undefined && !this.moved.has(pedal.axis);
+    return value !== null && isUnknown ? 0 : value;
   }
 
   /** The reason why the person does not drive; "" if the person drives. */
@@ -134,8 +185,10 @@ export class Person {
 
   pedals(now_ms) {
     if (this.device.kind === "keyboard") return this.ramps.advance(now_ms);
-    const throttle = pedalValue(this.pad, this.calibration.throttle);
-    const brake = pedalValue(this.pad, this.calibration.brake);
+    const [throttle, brake] = PEDALS.map((pedal) => {
+      const position = this.position(this.calibration[pedal]);
+      return position === null || this.released.has(pedal) ? position : 0;
+    });
     return throttle === null || brake === null ? null : {throttle, brake};
   }
 

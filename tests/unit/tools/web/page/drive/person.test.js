@@ -108,6 +108,67 @@ test("a calibrated wheel moves the pedals and has its own buttons", () => {
   assert.ok(person.key("t", true, 50));                   // but the buttons of the keyboard are
 });
 
+test("an axis counts as released until it has moved: a browser may report 0 before that", () => {
+  const person = ready();
+  person.choose(deviceOf({id: ID}), CALIBRATION);
+  const at = (now_ms, axes) => {
+    person.look([pad({axes})], now_ms);
+    const {present, throttle, brake} = person.input(now_ms);
+    return {present, throttle, brake};
+  };
+  assert.deepEqual(at(0, [0, 0]), {present: true, throttle: 0, brake: 0});
+  assert.deepEqual(at(20, [0, 0]), {present: true, throttle: 0, brake: 0});
+  assert.deepEqual(at(40, [0, -0.5]), {present: true, throttle: 0, brake: 0.75});  // the first movement acts
+  assert.deepEqual(at(60, [0, 0]), {present: true, throttle: 0, brake: 0.5});      // now 0 is a position
+  // The device is plugged in again, and has forgotten the positions of its axes.
+  person.look([], 80);
+  assert.deepEqual(at(100, [0, 0]), {present: true, throttle: 0, brake: 0});
+});
+
+for (const [what, leave, comeBack] of [
+  ["a hidden page", (person) => person.set("visible", false), (person) => person.set("visible", true)],
+  ["a lost connection", (person) => person.set("seated", false), (person) => person.set("seated", true)],
+  ["a silent page", () => {}, () => {}],
+  ["a silence that only the server has noticed", (person) => person.leavePedals(), () => {}],
+]) {
+  test(`after ${what} a pedal of a device acts only after it was released`, () => {
+    const person = atWheel();
+    const brakeAt = (now_ms, axis) => {
+      person.look([pad({axes: [1, axis]})], now_ms);
+      return person.input(now_ms).brake;
+    };
+    assert.equal(brakeAt(40, 0), 0.5);
+    leave(person);
+    const back_ms = what === "a silent page" ? 340 : 80;
+    comeBack(person);
+    assert.equal(brakeAt(back_ms, 0), 0);
+    assert.equal(brakeAt(back_ms + 40, -1), 0, "a movement of a pressed pedal is no release");
+    assert.ok(person.input(back_ms + 40).present);
+    assert.equal(brakeAt(back_ms + 80, 0.9375), 0.03125);  // nearly released, as a worn pedal rests
+    assert.equal(brakeAt(back_ms + 120, 0), 0.5);
+  });
+}
+
+test("a pedal that was released and pressed again while the person was away does not act", () => {
+  const person = atWheel();
+  person.set("focused", false);
+  person.look([pad({axes: [1, 1]})], 40);
+  person.look([pad({axes: [1, 0]})], 80);
+  person.set("focused", true);
+  person.look([pad({axes: [1, 0]})], 120);
+  assert.deepEqual([person.input(120).present, person.input(120).brake], [true, 0]);
+});
+
+test("a short pause of the page leaves the pedals pressed, a silence does not", () => {
+  const person = ready();
+  person.look([], 0);
+  person.key("ArrowDown", true, 0);
+  person.look([], 290);
+  assert.ok(person.input(290).brake > 0);
+  person.look([], 590);
+  assert.equal(person.input(590).brake, 0);
+});
+
 test("the time of an input is the device's own, and noise is no input", () => {
   const person = atWheel();
   person.look([pad({axes: [0.5, 1], timestamp: 90})], 100);
