@@ -113,7 +113,8 @@ test("a gamepad with the standard mapping drives at once; unplugged, no person d
     pad.buttons = pad.buttons.map((button, i) => (i === 6 ? {pressed: true, value: 1} : button));
     window.fakePads = [{...pad}];
   });
-  await run.next(({brake}) => brake === 1, "the left trigger");
+  const pressed = (await run.next(({brake}) => brake === 1, "the left trigger")).message;
+  assert.deepEqual(pressed.axes, [0, 0, 0, 0, 0, 1], "the raw values of both triggers follow the axes");
   await page.evaluate(() => {
     window.fakePads = [null];
     dispatchEvent(new Event("gamepaddisconnected"));

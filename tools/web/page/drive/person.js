@@ -1,7 +1,7 @@
 // The input of the person at the page: keys, a gamepad or a wheel, buttons of the page, and whether
 // a person is present. This file does not use the document.
 
-import {isComplete, isDown, pedalValue} from "./calibration.js";
+import {isComplete, isDown, pedalValue, rawOf} from "./calibration.js";
 import {Ramps} from "./ramps.js";
 
 export const KEYBOARD = {id: "", kind: "keyboard", name: "Keyboard"};
@@ -192,6 +192,14 @@ export class Person {
     return throttle === null || brake === null ? null : {throttle, brake};
   }
 
+  /** The values of the device: its axes, then those of the buttons that are throttle and brake. */
+  values() {
+    if (!this.pad) return [];
+    const buttons = PEDALS.map((pedal) => this.calibration?.[pedal])
+      .filter((pedal) => pedal && pedal.axis === undefined);
+    return [...this.pad.axes, ...buttons.map((pedal) => rawOf(this.pad, pedal) ?? 0)];
+  }
+
   holds(button, now_ms) {
     return this.down.has(button) || now_ms < this.until_ms[button] ||
       (this.pad !== null && isDown(this.pad, this.calibration[button]));
@@ -202,8 +210,7 @@ export class Person {
     const present = this.whyAway() === "";
     const {throttle, brake} = present ? this.pedals(now_ms) : {throttle: 0, brake: 0};
     return {
-      present, throttle, brake, device: this.device,
-      axes: this.pad ? [...this.pad.axes] : [],
+      present, throttle, brake, device: this.device, axes: this.values(),
       buttons: present ? ["take_over", "give_back"].filter((name) => this.holds(name, now_ms)) : [],
     };
   }

@@ -169,6 +169,17 @@ test("a short pause of the page leaves the pedals pressed, a silence does not", 
   assert.equal(person.input(590).brake, 0);
 });
 
+test("the raw values of pedals that are buttons follow the axes", () => {
+  const person = ready();
+  const calibration = {...CALIBRATION, throttle: {button: 1, released: 0, pressed: 1, dead: 0}};
+  person.choose(deviceOf({id: ID}), calibration);
+  assert.deepEqual(person.input(0).axes, []);
+  person.look([pad({axes: [0.25, 1], down: [1]})], 0);
+  assert.deepEqual(person.input(0).axes, [0.25, 1, 1]);
+  person.choose(deviceOf({id: ID}), null);
+  assert.deepEqual(person.input(0).axes, [0.25, 1], "without a calibration no button is a pedal");
+});
+
 test("the time of an input is the device's own, and noise is no input", () => {
   const person = atWheel();
   person.look([pad({axes: [0.5, 1], timestamp: 90})], 100);
