@@ -26,9 +26,9 @@ void VisitLatency(const InputLatency& l, Visitor&& visit) {
   visit("max_us", l.max_us, "us", "the same: longest");
 }
 
-/// Collects the latencies of a run. A seat repeats its newest measurement in each message, and also
-/// sends messages without a new input. So a measurement counts only in a message with a new input
-/// of the device (a new driver_input_t.time_us).
+/// Collects the latencies of a run. A seat sends each measurement once. The seats of older versions
+/// repeat a measurement. So a measurement counts only in a message with a new input of the device
+/// (a new driver_input_t.time_us).
 class InputLatencyAccumulator {
  public:
   /// Adds the next DRIVER_INPUT of the log.

@@ -138,7 +138,8 @@ for (const [device, make] of [["the keys", keys], ["a wheel", wheel]]) {
     }, "the automation to drive again");
     await run.ended;
     assert.equal(run.code, 0, run.said);
-    const measured = await page.evaluate(() => foglineDrive.latency.values.map((ms) => Math.trunc(1000 * ms)));
+    const {measured, count} = await page.evaluate(() => ({
+      measured: foglineDrive.latency.values.map((ms) => Math.trunc(1000 * ms)), count: foglineDrive.latency.count}));
     page.trouble = page.trouble.filter((words) => !words.includes("WebSocket"));  // after the end of the run
 
     const truth = messagesOf(log, "TRUTH", "truth_t");
@@ -155,6 +156,8 @@ for (const [device, make] of [["the keys", keys], ["a wheel", wheel]]) {
     t.diagnostic(`${device}: ${latencies.length} delays, median ${median / 1000} ms`);
     assert.ok(latencies.length >= 10, `${latencies.length} delays`);
     assert.deepEqual(latencies.filter((one) => !measured.includes(one)), []);
+    const sent = inputs.filter(({latency_us}) => latency_us >= 0).length;
+    assert.ok(sent <= count, `${count} measurements are ${sent} times in the log`);
     // A replay of the inputs in the log gives the same commands.
     execFileSync(FOGLINE, ["replay", log, "--role", "driver"], {stdio: "pipe"});
   });

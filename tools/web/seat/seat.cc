@@ -93,6 +93,7 @@ driver_input_t Seat::Next(TimePoint now) {
 }
 
 driver_input_t Seat::EmptySeat(TimePoint now) {
+  message_.latency_us = -1;
   message_.present = false;
   message_.throttle = 0;
   message_.brake = 0;

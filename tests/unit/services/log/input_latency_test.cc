@@ -33,6 +33,18 @@ TEST(InputLatencyTest, CountsAMeasurementOnceForEachInputOfTheDevice) {
   EXPECT_EQ(latency.max_us, 20);
 }
 
+// The page knows the age of an input, and the seat the time at which the page's frame came. So the
+// times of an input that the page repeats differ a little.
+TEST(InputLatencyTest, CountsAMeasurementOnceAlthoughTheTimesOfAnInputJitter) {
+  log::InputLatencyAccumulator accumulator;
+  accumulator.Add(Input(1000, 20));
+  for (const int jitter_us : {7, -3, 11, -9}) accumulator.Add(Input(1000 + jitter_us, -1));
+  accumulator.Add(Input(2000, 30));
+  const log::InputLatency latency = accumulator.Result();
+  EXPECT_EQ(latency.inputs, 2);
+  EXPECT_EQ(latency.p50_us, 20);
+}
+
 TEST(InputLatencyTest, LeavesOutInputsWithoutAMeasurement) {
   log::InputLatencyAccumulator accumulator;
   accumulator.Add(Input(1000, -1));

@@ -138,7 +138,7 @@ class Drive {
       return;
     }
     const {touched_ms} = this.person;
-    const frame = this.sender.next(input, now, touched_ms, this.latency.newest);
+    const frame = this.sender.next(input, now, touched_ms, this.latency.takeUnsent());
     this.wire.send(frame);
     if (input.present && touched_ms !== null && touched_ms !== this.followed_ms) {
       this.followed_ms = touched_ms;

@@ -22,6 +22,7 @@ export class Latency {
     this.probe = null;     // {sequence, began_ms, input: number of DRIVER_INPUT or null, applied}
     this.values = [];
     this.count = 0;
+    this.unsent = null;    // the newest measurement, until a frame has it
     this.unjudged = [];    // measurements since takeLate() last judged
   }
 
@@ -33,6 +34,13 @@ export class Latency {
 
   /** Whether one of the last WARN_OF measurements was too long. */
   get isHigh() { return this.highest > WARN_ABOVE_MS; }
+
+  /** The newest measurement in ms for the next frame; null if an earlier frame has it. */
+  takeUnsent() {
+    const value = this.unsent;
+    this.unsent = null;
+    return value;
+  }
 
   /** Whether more than one measurement in LATE_OF was late. Each measurement is judged once. */
   takeLate() {
@@ -79,6 +87,7 @@ export class Latency {
     this.probe = null;
     ++this.count;
     this.values.push(value);
+    this.unsent = value;
     this.unjudged.push(value);
     if (this.values.length > KEPT) this.values.shift();
     return value;

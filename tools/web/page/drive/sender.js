@@ -30,7 +30,7 @@ const within = (value, least, most) =>
 
 /**
  * The frame for an input. @param age_ms time since the newest input of the device. @param
- * latency_ms newest measurement, or null
+ * latency_ms the measurement that no earlier frame has, or null
  */
 export function inputFrame(input, sequence, age_ms, latency_ms) {
   const {present, throttle, brake, axes, buttons, device} = input;

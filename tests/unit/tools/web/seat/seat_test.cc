@@ -141,7 +141,9 @@ TEST_F(SeatTest, AFreeSeatNeedsNoNewConnection) {
 TEST_F(SeatTest, WhoLeavesReleasesThePedalsAtOnce) {
   seat_.Sit(kAnna, At(0));
   seat_.Take(kAnna, Brakes(), At(1));
-  ExpectEmptySeat(seat_.Leave(kAnna, At(2)));
+  const auto message = seat_.Leave(kAnna, At(2));
+  ExpectEmptySeat(message);
+  EXPECT_EQ(message->latency_us, -1) << "the message before has the measurement";
   EXPECT_TRUE(seat_.Sit(kBert, At(3)));
   EXPECT_EQ(seat_.Take(kBert, Brakes(), At(4)).message->sequence, 2);
 }

@@ -2,6 +2,8 @@ import assert from "node:assert/strict";
 import {test} from "node:test";
 
 import {LATE_ABOVE_MS, Latency} from "../../../../../../tools/web/page/drive/latency.js";
+import {KEYBOARD} from "../../../../../../tools/web/page/drive/person.js";
+import {Sender} from "../../../../../../tools/web/page/drive/sender.js";
 
 /** One measurement of so many ms. */
 function measure(latency, began_ms, value_ms) {
@@ -42,6 +44,25 @@ test("one input is followed at a time, and forgotten if no step uses it", () => 
   latency.published(4, 11);
   latency.commanded(11);
   assert.equal(latency.drawn(4020), null);
+});
+
+test("each measurement is in one frame, although the page repeats an input in many frames", () => {
+  const latency = new Latency();
+  const sender = new Sender();
+  const input = {present: true, throttle: 0, brake: 0, axes: [], buttons: [], device: KEYBOARD};
+  const sent = [];
+  let now = 0;
+  for (let i = 0; i < 200; ++i) {
+    const began_ms = now;
+    for (let frame = 0; frame < 1 + (7 * i) % 5; ++frame) {
+      now += 40 + (13 * i + 5 * frame) % 11;  // the times of the frames jitter
+      sent.push(sender.next(input, now, began_ms, latency.takeUnsent()).latency_ms);
+    }
+    measure(latency, now, 10 + i % 3);
+  }
+  sent.push(sender.next(input, now, now, latency.takeUnsent()).latency_ms);
+  assert.ok(sent.length > 500);
+  assert.deepEqual(sent.filter((value) => value !== undefined), latency.values);
 });
 
 test("the percentile is the nearest rank of what was measured", () => {
