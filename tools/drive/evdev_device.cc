@@ -68,6 +68,7 @@ std::string EvdevDevice::Open() {
   }
   name_ = libevdev_get_name(device_);
   throttle_moved_ = brake_moved_ = false;
+  keys_.Drop();  // an unplugged device does not report that its keys go up
   return "";
 }
 

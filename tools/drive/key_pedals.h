@@ -55,6 +55,12 @@ class KeyPedals {
     other.pressed_until = other.rests_until = now;
   }
 
+  /// Releases both keys and both pedals at once, because the device is gone.
+  void Drop() {
+    keys_ = {};
+    moved_ = {};
+  }
+
   /// Moves the pedals up to this time. Call it at least every 20 ms.
   void MoveTo(TimePoint now) {
     const double passed_s = moved_ == TimePoint() ? 0 : std::max(0.0, Seconds(now - moved_));

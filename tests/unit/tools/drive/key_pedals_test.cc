@@ -76,5 +76,21 @@ TEST_F(KeyPedalsTest, LeavesOnePedalForTheOther) {
   EXPECT_NEAR(pedals_->brake(), 0.5, 0.011);
 }
 
+TEST_F(KeyPedalsTest, DropsAHeldKeyAndItsPedal) {
+  pedals_->Hold(PedalKey::kThrottle, true, now_);
+  Pass(milliseconds(500));
+  pedals_->Drop();
+  EXPECT_EQ(pedals_->throttle(), 0);
+  now_ += std::chrono::seconds(10);  // the device is unplugged, and nothing moves the pedals
+  Pass(milliseconds(500));
+  EXPECT_EQ(pedals_->throttle(), 0);
+  // The time without the device moves no pedal of a key that is pressed afterwards.
+  pedals_->Drop();
+  now_ += std::chrono::seconds(10);
+  pedals_->Hold(PedalKey::kBrake, true, now_);
+  Pass(milliseconds(500));
+  EXPECT_NEAR(pedals_->brake(), 0.5, 0.011);
+}
+
 }  // namespace
 }  // namespace fogline
