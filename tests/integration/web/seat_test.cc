@@ -86,6 +86,25 @@ TEST_F(SeatPageTest, APageSeesTheRunAndNothingElse) {
   EXPECT_EQ(messages[0].channel, IndexOf<truth_t>());
 }
 
+TEST_F(SeatPageTest, APageThatIsOpenedLateIsToldWhenTheRequestBegan) {
+  const auto command = [this](std::int64_t step, std::int8_t mode) {
+    arbitration_t host{};
+    host.header = {.run_id = kSeatRun, .step = step, .utime = step * 20'000};
+    host.mode = mode;
+    network_.Send(host);
+  };
+  WebClient page = Page(port());
+  ReceiveOp(page, "seat");
+  command(0, arbitration_t::AUTOMATION);
+  command(5, arbitration_t::REQUEST);
+  const json told = ReceiveOp(page, "request");
+  EXPECT_EQ(told["since_s"], 0.1);
+  EXPECT_EQ(told["begin_known"], true);
+  command(400, arbitration_t::REQUEST_URGENT);
+  WebClient late = Page(port());
+  EXPECT_EQ(ReceiveOp(late, "request"), told);
+}
+
 TEST_F(SeatPageTest, AClosedSocketReleasesThePedalsAtOnce) {
   std::optional<WebClient> page(Page(port()));
   page->Send(Braking(0));

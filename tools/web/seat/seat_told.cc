@@ -88,6 +88,13 @@ std::string SeatRunText(const RunFacts& run) {
       .dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
+std::string SeatRequestText(const OpenRequest::Request& request) {
+  return Json{{"op", "request"},
+              {"since_s", static_cast<double>(request.since_us) / kMicrosPerSecond},
+              {"begin_known", request.begin_known}}
+      .dump();
+}
+
 std::optional<std::vector<std::uint8_t>> ForSeat(std::size_t channel, runtime::Bytes bytes) {
   if (channel == IndexOf<truth_t>()) return std::vector<std::uint8_t>(bytes.begin(), bytes.end());
   if (channel == IndexOf<driver_command_t>()) return Reduced<driver_command_t>(bytes);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "services/runtime/wire/wire.h"
+#include "tools/web/seat/open_request.h"
 #include "tools/web/view_messages.h"
 
 namespace fogline::web {
@@ -21,6 +22,9 @@ std::string SeatHelloText();
 /// whether the brake overrides, the length of a car, and the time of the countdown.
 /// @pre the scenario is a JSON object
 std::string SeatRunText(const RunFacts& run);
+
+/// The begin of a request to take over, from which the page counts down.
+std::string SeatRequestText(const OpenRequest::Request& request);
 
 /// The message in the form that the seat gets. TRUTH is complete. DRIVER_COMMAND and HOST_COMMAND
 /// have only the header and the fields that the page shows; all other fields are 0.

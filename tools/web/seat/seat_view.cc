@@ -6,6 +6,7 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include "fogline/arbitration_t.hpp"
 #include "fogline/run_t.hpp"
 #include "fogline/truth_t.hpp"
 #include "services/graph.h"
@@ -72,6 +73,7 @@ void SeatView::Hear(const RingMessage& message) {
   const auto followed = live_.tracker().followed();
   if (followed && runtime::ReadInt64(message.bytes, runtime::kRunIdOffset) != *followed) return;
   TellRun();
+  TellRequest(message);
   TellMessage(message);
   if (message.channel == IndexOf<truth_t>()) {
     if (truth_t truth; runtime::Decode(message.bytes, truth)) seat_.Hear(truth.header);
@@ -113,6 +115,15 @@ void SeatView::TellRun() {
   for (const auto& [id, driver] : drivers_) driver.client->Send(frame);
 }
 
+// The page gets the begin of a request before the HOST_COMMAND that asks.
+void SeatView::TellRequest(const RingMessage& message) {
+  if (message.channel != IndexOf<arbitration_t>()) return;
+  arbitration_t command;
+  if (!runtime::Decode(message.bytes, command) || !request_.Hear(command)) return;
+  const OutgoingFrame frame = TextFrame(SeatRequestText(*request_.request()));
+  for (const auto& [id, driver] : drivers_) driver.client->Send(frame);
+}
+
 void SeatView::TellMessage(const RingMessage& message) {
   if (drivers_.empty()) return;
   const auto bytes = ForSeat(message.channel, message.bytes);
@@ -144,6 +155,7 @@ void SeatView::Opened(Client& client) {
   drivers_[client.id()].client = &client;
   client.Send(TextFrame(SeatHelloText()));
   if (const auto& run = live_.tracker().run()) client.Send(TextFrame(SeatRunText(*run)));
+  if (const auto& request = request_.request()) client.Send(TextFrame(SeatRequestText(*request)));
   const bool sits = seat_.Sit(client.id(), Clock::now());
   told_lost_ = told_lost_ && !sits;
   if (!sits) {

@@ -17,6 +17,7 @@
 #include "common/process/line_budget.h"
 #include "services/runtime/transport/bus.h"
 #include "tools/web/live_view.h"
+#include "tools/web/seat/open_request.h"
 #include "tools/web/seat/seat.h"
 #include "tools/web/server/server.h"
 
@@ -49,6 +50,7 @@ class SeatView final : public View {
 
   void Hear(const RingMessage& message);
   void TellRun();
+  void TellRequest(const RingMessage& message);
   void TellMessage(const RingMessage& message);
   /// Sends the newest messages if no earlier frame waits to be sent to the client.
   static void Pump(Driver& driver);
@@ -64,6 +66,7 @@ class SeatView final : public View {
   std::optional<runtime::SigningKey> key_;
   Seat seat_;
   std::map<std::uint64_t, Driver> drivers_;
+  OpenRequest request_;
   std::int64_t told_run_ = 0;        // RunTracker::runs() at the last report to the drivers
   bool told_lost_ = false;           // whether the client with the seat knows that it is lost
   std::string url_;                  // URL of the bus

@@ -15,7 +15,7 @@ import {ratesOf} from "./ramps.js";
 import {SeatWire, takeDriverToken} from "./seat_wire.js";
 import {LEAST_GAP_MS, LOOK_EVERY_MS, Sender} from "./sender.js";
 import {Setup} from "./setup.js";
-import {Answer, Countdown, told, whyAwayInWords} from "./told.js";
+import {Answer, countdown, told, whyAwayInWords} from "./told.js";
 
 // A person waits for the next frame after each input. So this page already draws less if it misses
 // one of three frames of 60 Hz, or if inputs are late.
@@ -28,11 +28,11 @@ class Drive {
     this.sender = new Sender();
     this.latency = new Latency();
     this.alarm = new Alarm();
-    this.countdown = new Countdown();
     this.answer = new Answer();
     this.told = told(null);
     this.budget = new Budget({slow_ms: SLOW_MS, isLate: () => this.latency.takeLate()});
     this.newest = null;
+    this.request = null;     // the newest request to take over: {since_s, begin_known}
     this.view = null;
     this.instance = "";
     this.state = "";         // of the seat: yours, taken, lost; "": unknown
@@ -174,7 +174,11 @@ class Drive {
   }
 
   receive(object) {
-    if (object.op === "hello") this.newest = new Newest(new Catalogue(object));
+    if (object.op === "hello") {
+      this.newest = new Newest(new Catalogue(object));
+      this.request = null;
+    }
+    if (object.op === "request") this.request = object;
     if (object.op === "run") this.setRun(object);
     if (object.op === "seat") this.sit(object.state);
     if (object.op === "published") {
@@ -233,7 +237,8 @@ class Drive {
     const state = told(frame.HOST_COMMAND, frame.TRUTH);
     this.told = state;
     const time_s = Number(frame.HOST_COMMAND?.header.utime ?? 0) / 1e6;
-    const left = this.countdown.see(state.asks, time_s, run?.scenario?.arbitrator?.take_over?.lead_s ?? 10);
+    const lead_s = run?.scenario?.arbitrator?.take_over?.lead_s ?? 10;
+    const left = state.asks ? countdown(this.request, time_s, lead_s) : null;
     this.alarm.sound(state);
     if (this.side !== undefined && this.side !== state.side) this.alarm.change();
     this.side = state.side;
@@ -253,7 +258,8 @@ class Drive {
     setAttribute(request, "data-urgent", String(urgent));
     if (!left) return;
     say(byId("request-words"), words);
-    say(byId("request-left"), withUnit(decimal(Math.ceil(left.left_s), 0), "s"));
+    const left_s = withUnit(decimal(Math.ceil(left.left_s), 0), "s");
+    say(byId("request-left"), left.atMost ? `at most ${left_s}` : left_s);
     byId("request-bar").value = left.share;
   }
 

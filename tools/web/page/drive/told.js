@@ -43,23 +43,17 @@ export function told(command, truth = null) {
   return {side, words, asks, urgent, answered: waits && !asks};
 }
 
-/** Counts down a request to take over. */
-export class Countdown {
-  constructor() {
-    this.since_s = null;
-  }
-
-  /**
-   * @param asks whether HOST_COMMAND of this time asks; time_s of the run; lead_s of the scenario
-   * @return {left_s, share}, or null if the person is not asked
-   */
-  see(asks, time_s, lead_s) {
-    if (!asks) this.since_s = null;
-    if (!asks) return null;
-    if (this.since_s === null || time_s < this.since_s) this.since_s = time_s;
-    const left_s = Math.max(0, this.since_s + lead_s - time_s);
-    return {left_s, share: lead_s > 0 ? left_s / lead_s : 0};
-  }
+/**
+ * Counts down a request to take over.
+ * @param request {since_s, begin_known} of the server: the time of the run at which the request
+ *     began; null if the server has not said it. time_s of the run; lead_s of the scenario
+ * @return {left_s, share, atMost}: the time left, and its share of lead_s. With `atMost`, less time
+ *     may be left, because the begin of the request is not known
+ */
+export function countdown(request, time_s, lead_s) {
+  const {since_s, begin_known} = request ?? {since_s: time_s, begin_known: false};
+  const left_s = Math.min(lead_s, Math.max(0, since_s + lead_s - time_s));
+  return {left_s, share: lead_s > 0 ? left_s / lead_s : 0, atMost: !begin_known};
 }
 
 // An answer of the run to a button comes in a few steps. Afterwards the words stay so long that a

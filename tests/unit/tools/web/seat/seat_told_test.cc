@@ -84,6 +84,11 @@ TEST(SeatToldTest, TheFirstFrameDescribesTheChannelsOfTheSeat) {
   EXPECT_THAT(hello["types"], SizeIs(4));  // also the type of the header
 }
 
+TEST(SeatToldTest, ARequestHasItsBegin) {
+  EXPECT_EQ(json::parse(SeatRequestText({.since_us = 12'340'000, .begin_known = true})),
+            json({{"op", "request"}, {"since_s", 12.34}, {"begin_known", true}}));
+}
+
 TEST(SeatToldTest, ARunHasOnlyWhatThePageNeeds) {
   const json scenario{{"title", "secret"},
                       {"seed", 4711},

@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import {test} from "node:test";
 
-import {Answer, Countdown, told, whyAwayInWords} from "../../../../../../tools/web/page/drive/told.js";
+import {Answer, countdown, told, whyAwayInWords} from "../../../../../../tools/web/page/drive/told.js";
 import {describedTypes} from "../real_log.js";
 
 test("each mode of HOST_COMMAND has words that say nothing of conflict or threshold", () => {
@@ -27,15 +27,19 @@ test("who drives and who is asked is told by mode", () => {
   assert.match(at(COLLISION_WARNING, 0).words, /The automation drives/);
 });
 
-test("a request counts down from its first step, and a new one begins again", () => {
-  const countdown = new Countdown();
-  assert.equal(countdown.see(false, 1, 10), null);
-  assert.deepEqual(countdown.see(true, 2, 10), {left_s: 10, share: 1});
-  assert.deepEqual(countdown.see(true, 7, 10), {left_s: 5, share: 0.5});
-  assert.equal(countdown.see(true, 30, 10).left_s, 0);
-  assert.equal(countdown.see(false, 31, 10), null);
-  assert.equal(countdown.see(true, 32, 10).left_s, 10);
-  assert.equal(countdown.see(true, 1, 10).left_s, 10);  // another run
+test("a request counts down from its begin, also if the page sees only its end", () => {
+  const request = {op: "request", since_s: 2, begin_known: true};
+  assert.deepEqual(countdown(request, 2, 10), {left_s: 10, share: 1, atMost: false});
+  assert.deepEqual(countdown(request, 7, 10), {left_s: 5, share: 0.5, atMost: false});
+  assert.equal(countdown(request, 10, 10).left_s, 2, "a page that was loaded 8 s after the request");
+  assert.equal(countdown(request, 30, 10).left_s, 0);
+  assert.equal(countdown({...request, since_s: 32}, 31.98, 10).left_s, 10);  // the frame before
+});
+
+test("if the begin of a request is not known, the page says at most how much time is left", () => {
+  assert.deepEqual(countdown({op: "request", since_s: 8, begin_known: false}, 10, 10),
+                   {left_s: 8, share: 0.8, atMost: true});
+  assert.deepEqual(countdown(null, 10, 10), {left_s: 10, share: 1, atMost: true});
 });
 
 test("the end of a drive is told, and a collision", () => {

@@ -1,0 +1,60 @@
+// The request to take over that is open in a run, found in its HOST_COMMANDs.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "fogline/arbitration_t.hpp"
+
+namespace fogline::web {
+
+/// Follows the request of a run. Some commands may be missing, and the first command may be of any
+/// step.
+class OpenRequest {
+ public:
+  struct Request {
+    std::int64_t since_us = 0;  // utime of the first command of the request
+    // Whether the request began then. If not, it may have begun earlier, because commands before
+    // this one have not been heard, or emergency braking has hidden the state.
+    bool begin_known = false;
+  };
+
+  /// Takes a command of the shown run. Older commands of this run are ignored.
+  /// @return whether a request has begun
+  bool Hear(const arbitration_t& command) {
+    const header_t& header = command.header;
+    if (run_id_ != header.run_id) {
+      *this = {};
+      run_id_ = header.run_id;
+    }
+    if (header.step <= step_) return false;
+    step_ = header.step;
+    if (command.mode == arbitration_t::EMERGENCY_BRAKING) return false;
+    const std::int64_t gap_us = header.utime - state_us_;
+    state_us_ = header.utime;
+    if (!Asks(command.mode)) request_.reset();
+    if (!Asks(command.mode) || request_) return false;
+    request_ = Request{.since_us = header.utime, .begin_known = gap_us <= kMostGap_us};
+    return true;
+  }
+
+  /// The open request; nullopt if no request is open.
+  const std::optional<Request>& request() const { return request_; }
+
+ private:
+  /// Longest time without a known state before a request whose begin counts as known. Our choice: a
+  /// fifth of a second, because the countdown shows whole seconds.
+  static constexpr std::int64_t kMostGap_us = 200'000;
+
+  static bool Asks(std::int8_t mode) {
+    return mode == arbitration_t::REQUEST || mode == arbitration_t::REQUEST_URGENT ||
+           mode == arbitration_t::HANDOVER;
+  }
+
+  std::optional<std::int64_t> run_id_;
+  std::int64_t step_ = -1;
+  std::int64_t state_us_ = 0;  // the newest time at which the state was known: at first the start
+  std::optional<Request> request_;
+};
+
+}  // namespace fogline::web
