@@ -14,6 +14,13 @@ const {FOGLINE} = process.env;
 const WHEEL = {throttle: {axis: 0, released: 1, pressed: -1, dead: 0.02},
                brake: {axis: 1, released: 1, pressed: -1, dead: 0.02}, take_over: 0, give_back: 1};
 
+// The defaults of /person/deadman_s and /person/coasting_mps2, and the step of scenario/drive.json.
+const DEADMAN_S = 0.3;
+const RELEASED_MPS2 = -0.5;
+const PERIOD_S = 0.02;
+// Scheduling allowance: the time for which the machine may delay the messages of page and driver.
+const ALLOWANCE_S = 0.25;
+
 // The story of scenario/drive.json in 30 s. The fog lasts from 3 s to 18 s, and the car ahead
 // brakes at 12 s.
 const STORY = {
@@ -163,6 +170,33 @@ for (const [device, make] of [["the keys", keys], ["a wheel", wheel]]) {
   });
 }
 
+/** Presses the throttle of a person who drives, until the car accelerates. */
+async function pressThrottle(page, isWheel) {
+  if (isWheel) await setPad(page, {axes: [0, 1]});
+  else await page.keyboard.down("ArrowUp");
+  await page.waitForFunction(() => foglineDrive.newest.frame.TRUTH.host_acceleration_mps2 > 0.5);
+}
+
+/**
+ * Checks in the log that the driver is not ready in time after the last input of the person, and
+ * that the pedals are released from then on.
+ * @param from the step in which the person has begun to drive
+ */
+function assertReleased(log, from) {
+  const timeOf = ({header}) => Number(header.utime) / 1e6;
+  const commands = messagesOf(log, "DRIVER_COMMAND", "driver_command_t").filter(({header}) => header.step >= from);
+  const away = commands.findIndex(({readiness}) => readiness === 0);
+  assert.ok(away > 0, "the driver becomes not ready");
+  assert.ok(commands[away - 1].acceleration_mps2 > 0, "the person has pressed the throttle until then");
+  assert.equal(commands[away].input_sequence, -1);
+  const last = messagesOf(log, "DRIVER_INPUT", "driver_input_t")
+    .filter((input) => input.present && timeOf(input) <= timeOf(commands[away])).at(-1);
+  const after_s = timeOf(commands[away]) - timeOf(last);
+  assert.ok(after_s <= DEADMAN_S + 2 * PERIOD_S + ALLOWANCE_S, `${after_s} s after the last input`);
+  const pressed = commands.slice(away).filter(({acceleration_mps2}) => acceleration_mps2 !== RELEASED_MPS2);
+  assert.deepEqual(pressed.map(({header}) => header.step), []);
+}
+
 /**
  * The person drives. Then `happens` is called, and the run must notice that no person is present.
  */
@@ -174,6 +208,7 @@ async function leavesTheCar(t, happens, {isWheel = false} = {}) {
   await drives(page, true);  // before that, the page ignores keys
   await says(page, "Take over");
   await takeOver(page, isWheel);
+  await pressThrottle(page, isWheel);
   await happens(page);
   await run.ended;
   const commands = messagesOf(log, "HOST_COMMAND", "arbitration_t");
@@ -181,8 +216,7 @@ async function leavesTheCar(t, happens, {isWheel = false} = {}) {
   assert.ok(drove > 0);
   assert.ok(commands.slice(drove).some(({mode}) => mode === 2 || (mode >= 7 && mode <= 10)),
             "the car stops by itself");
-  const left = messagesOf(log, "DRIVER_COMMAND", "driver_command_t").slice(drove);
-  assert.ok(left.some(({readiness, input_sequence}) => readiness === 0 && input_sequence === -1));
+  assertReleased(log, commands[drove].header.step);
 }
 
 test("when the tab is hidden, the fallbacks stop the car", async (t) => {
