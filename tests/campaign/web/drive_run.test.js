@@ -8,7 +8,7 @@ import {test} from "node:test";
 import {makeDecoder} from "../../../tools/web/page/data/lcm.js";
 import {describedTypes, readEvents} from "../../unit/tools/web/page/real_log.js";
 import {begin, drives, holdTakeOver, setPad, startDrive, withFakePads} from "./seat.js";
-import {browser, DESKTOP, open, PHONE, until} from "./window.js";
+import {browser, DESKTOP, open, PHONE, root, until} from "./window.js";
 
 const {FOGLINE} = process.env;
 const WHEEL = {throttle: {axis: 0, released: 1, pressed: -1, dead: 0.02},
@@ -18,6 +18,7 @@ const WHEEL = {throttle: {axis: 0, released: 1, pressed: -1, dead: 0.02},
 const DEADMAN_S = 0.3;
 const RELEASED_MPS2 = -0.5;
 const PERIOD_S = 0.02;
+const TAKE_OVER_PEDAL = "0.1";  // the default of /person/take_over_pedal
 // Scheduling allowance: the time for which the machine may delay the messages of page and driver.
 const ALLOWANCE_S = 0.25;
 
@@ -114,6 +115,35 @@ function latenciesOf(inputs) {
   return values.filter((value, i) => value !== values[i - 1]);
 }
 
+/**
+ * Checks that `fogline metrics` has the measures that take_over_measures.py works out from the raw
+ * messages of the log, and that `fogline events` names the person's answer.
+ * @param count number of latencies that the page has measured
+ */
+function assertMeasures(log, count) {
+  const run = (command, ...args) => execFileSync(command, args, {cwd: root, encoding: "utf8"});
+  const expected = JSON.parse(run("python3", "tests/integration/drive/take_over_measures.py", log, TAKE_OVER_PEDAL));
+  const [measured] = JSON.parse(run(FOGLINE, "metrics", log, "--json"));
+  assert.ok(expected.length > 0, "a request");
+  assert.equal(measured.take_overs.length, expected.length);
+  expected.forEach((request, i) => {
+    for (const [name, value] of Object.entries(request)) {
+      const found = measured.take_overs[i][name];
+      const isEqual = value === null ? found === null : Math.abs(found - value) <= 1e-9;
+      assert.ok(isEqual, `request ${i}, ${name}: ${found} in place of ${value}`);
+    }
+  });
+  assert.equal(measured.take_overs[0].outcome, "taken_over");
+  const {inputs} = measured.input_latency;
+  assert.ok(inputs > 0 && inputs <= count, `${inputs} of ${count} latencies`);
+  const [{events}] = JSON.parse(run(FOGLINE, "events", log, "--json"));
+  const texts = events.map(({event}) => event);
+  for (const text of ["request to take over", "acknowledgement by the person", "transfer to the driver",
+                      "return to automation"]) {
+    assert.ok(texts.includes(text), `${text} is not one of: ${texts.join(", ")}`);
+  }
+}
+
 for (const [device, make] of [["the keys", keys], ["a wheel", wheel]]) {
   test(`a person takes over on request, brakes behind the leader, and gives back (${device})`, async (t) => {
     const isWheel = make === wheel;
@@ -165,6 +195,7 @@ for (const [device, make] of [["the keys", keys], ["a wheel", wheel]]) {
     assert.deepEqual(latencies.filter((one) => !measured.includes(one)), []);
     const sent = inputs.filter(({latency_us}) => latency_us >= 0).length;
     assert.ok(sent <= count, `${count} measurements are ${sent} times in the log`);
+    assertMeasures(log, count);
     // A replay of the inputs in the log gives the same commands.
     execFileSync(FOGLINE, ["replay", log, "--role", "driver"], {stdio: "pipe"});
   });
