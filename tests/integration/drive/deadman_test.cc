@@ -22,8 +22,9 @@ constexpr double kInTime_s = kDeadman_s - 0.06;
 // Two periods: the last input may be of the end of its step, and the driver notices its absence
 // with its next step.
 constexpr double kTwoPeriods_s = 0.04;
-// Scheduling allowance: the time for which the machine may delay the messages of seat and driver.
-constexpr double kAllowance_s = 0.25;
+// The longest time for which a busy machine may delay a process.
+// tests/campaign/web/drive_run.test.js has a narrow limit.
+constexpr double kAllowance_s = 3;
 
 class DeadmanInRealtimeTest : public testing::Test {
  protected:
@@ -63,9 +64,29 @@ class DeadmanInRealtimeTest : public testing::Test {
     run_.WaitForStep(commands_.driver.header.step + 50);
     run_.run().Signal(SIGINT);
     run_.run().Wait();
-    std::int64_t input_us = -1;
+    const std::int64_t input_us = LastInput_us();
+    ASSERT_GE(input_us, 0);
     std::optional<std::int64_t> away_us;
-    bool ready = false;
+    log::EventLogReader reader(run_.log());
+    while (const auto event = reader.Next()) {
+      driver_command_t command{};
+      if (event->channel != ChannelOf<driver_command_t>().name ||
+          !runtime::Decode(event->data, command) || command.header.utime < input_us) {
+        continue;
+      }
+      if (command.readiness == 0 && !away_us) away_us = command.header.utime;
+      if (!away_us) continue;
+      EXPECT_EQ(command.readiness, 0) << "step " << command.header.step;
+      EXPECT_EQ(command.acceleration_mps2, -0.5) << "step " << command.header.step;
+    }
+    ASSERT_TRUE(away_us);
+    const double after_s = static_cast<double>(*away_us - input_us) / kMicrosPerSecond;
+    EXPECT_LE(after_s, deadman_s + kTwoPeriods_s + kAllowance_s);
+  }
+
+  /// Time of the run at the last input of a person in the log; -1 if there is none.
+  std::int64_t LastInput_us() {
+    std::int64_t input_us = -1;
     log::EventLogReader reader(run_.log());
     while (const auto event = reader.Next()) {
       driver_input_t input{};
@@ -73,22 +94,8 @@ class DeadmanInRealtimeTest : public testing::Test {
           runtime::Decode(event->data, input) && input.present) {
         input_us = input.header.utime;
       }
-      driver_command_t command{};
-      if (event->channel != ChannelOf<driver_command_t>().name ||
-          !runtime::Decode(event->data, command)) {
-        continue;
-      }
-      ready = ready || command.readiness > 0;
-      if (!ready) continue;  // the person has not come yet
-      if (command.readiness == 0 && !away_us) away_us = command.header.utime;
-      if (!away_us) continue;
-      EXPECT_EQ(command.readiness, 0) << "step " << command.header.step;
-      EXPECT_EQ(command.acceleration_mps2, -0.5) << "step " << command.header.step;
     }
-    ASSERT_TRUE(away_us);
-    ASSERT_GE(input_us, 0);
-    const double after_s = static_cast<double>(*away_us - input_us) / kMicrosPerSecond;
-    EXPECT_LE(after_s, deadman_s + kTwoPeriods_s + kAllowance_s);
+    return input_us;
   }
 
   RealtimeRun run_{kDriveScenario, kSteps, 1, AlwaysAsked()};
