@@ -16,6 +16,7 @@
 #include "scenario/io/json.h"
 #include "scenario/io/reader.h"
 #include "services/runtime/wire/digest.h"
+#include "services/runtime/wire/trial.h"
 #include "tools/runner/experiment.h"
 
 namespace fogline::trials {
@@ -23,9 +24,9 @@ namespace {
 
 constexpr std::string_view kAllowed = "fogline experiment check --schema";
 // Largest length of a name. Names become parts of file names and of columns. The value is our
-// choice; file systems allow 255 bytes.
+// choice; file systems allow 255 bytes. Each character of a name is one byte.
 constexpr std::size_t kMostNameCharacters = 40;
-constexpr std::size_t kMostTitleCharacters = 80;
+static_assert(kMostNameCharacters <= runtime::kMostTrialNameBytes);
 
 /// Checks the rules that the checks of single fields do not cover.
 class PlanCheck {
@@ -33,11 +34,7 @@ class PlanCheck {
   PlanCheck(const JsonValue& root, DiagnosticList& mistakes) : root_(root), mistakes_(mistakes) {}
 
   void Check(const ExperimentPlan& plan) {
-    if (CountCharacters(plan.title) > kMostTitleCharacters) {
-      Add("/title", "text",
-          fmt::format("{} characters; at most {} are allowed", CountCharacters(plan.title),
-                      kMostTitleCharacters));
-    }
+    CheckFitsLog("/title", plan.title);
     CheckConditions("/conditions", plan.conditions);
     CheckConditions("/practice", plan.practice);
     if (plan.conditions.empty()) Add("/conditions", "needed", "an experiment needs a condition");
@@ -59,6 +56,16 @@ class PlanCheck {
  private:
   void Add(const std::string& pointer, std::string_view rule, std::string message) {
     mistakes_.Add(FindPlace(root_, pointer), pointer, rule, std::move(message));
+  }
+
+  /// Checks the length of a text that each fact of a trial, or each answer, has (trial_t). Names
+  /// have a smaller limit.
+  void CheckFitsLog(const std::string& pointer, const std::string& text) {
+    if (text.size() <= runtime::kMostTrialNameBytes) return;
+    Add(pointer, "text",
+        fmt::format("{} has {} bytes; at most {} are allowed, because it is in the log of each "
+                    "trial",
+                    QuoteShort(text), text.size(), runtime::kMostTrialNameBytes));
   }
 
   void CheckName(const std::string& pointer, const std::string& name,
@@ -102,6 +109,7 @@ class PlanCheck {
       const ItemSection& item = questionnaire.items[i];
       CheckName(at + "/name", item.name, names);
       if (item.text.empty()) Add(at + "/text", "needed", "a question is needed");
+      CheckFitsLog(at + "/unit", item.unit);
       if (item.kind == ItemKind::kScale) CheckScale(at, item);
     }
   }

@@ -11,6 +11,7 @@
 #include "services/runtime/transport/bus.h"
 #include "services/runtime/wire/trial.h"
 #include "services/runtime/wire/wire.h"
+#include "tools/trials/trial_log.h"
 
 namespace fogline::trials {
 namespace {
@@ -24,6 +25,7 @@ Speaker::Speaker(const std::string& url, std::int64_t run_id,
                  const runtime::TrafficOptions& traffic, trial_t base)
     : base_(std::move(base)) {
   base_.header = {.run_id = run_id, .step = -1, .utime = 0};
+  RequireReadable(base_);
   thread_ = std::thread([this, url, traffic] {
     try {
       Work(url, traffic);

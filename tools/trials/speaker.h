@@ -18,7 +18,7 @@ class Speaker {
  public:
   /// Sends the fact BEGIN when the first TRUTH of the run comes.
   /// @param base a fact with the values that all facts of the trial share
-  /// @throws InputError, std::runtime_error as runtime::Bus()
+  /// @throws std::runtime_error as RequireReadable(), before the first fact is sent
   Speaker(const std::string& url, std::int64_t run_id, const runtime::TrafficOptions& traffic,
           trial_t base);
   /// Ends the thread.

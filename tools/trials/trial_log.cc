@@ -79,8 +79,17 @@ TrialStory ReadStory(const std::filesystem::path& log) {
   return story;
 }
 
+void RequireReadable(const trial_t& fact) {
+  if (runtime::WrongIn(fact) == nullptr) return;
+  throw std::runtime_error(fmt::format(
+      "a fact of trial {} of participant {} cannot be written: a text is too long, or a "
+      "number is out of range",
+      fact.trial, fact.participant));
+}
+
 void AddFacts(const std::filesystem::path& log, const TrialStory& story,
               const std::vector<trial_t>& facts, const runtime::SigningKey* key) {
+  std::ranges::for_each(facts, RequireReadable);
   if (story.altered) {
     throw std::runtime_error(fmt::format("{}: {}; nothing is added", PathText(log), story.note));
   }

@@ -39,12 +39,17 @@ struct TrialStory {
 /// Reads a log. A log that cannot be read counts as the log of a broken run, and the note says why.
 TrialStory ReadStory(const std::filesystem::path& log);
 
+/// @throws std::runtime_error if a text of the fact is too long, or a number is out of range:
+///     recorder and readers ignore such a fact (runtime::WrongIn)
+void RequireReadable(const trial_t& fact);
+
 /// Adds facts to the log of a complete run, and seals it again. Facts with a sequence number that
 /// the log already has are left out. The log is replaced as a whole, so a crash leaves the old log
 /// or the new one.
 /// @param story of the log
 /// @param key signs the seal; nullptr: no signature
-/// @throws std::runtime_error if the log was altered after it was sealed, or cannot be written
+/// @throws std::runtime_error as RequireReadable(), and if the log was altered after it was sealed,
+///     or cannot be written
 void AddFacts(const std::filesystem::path& log, const TrialStory& story,
               const std::vector<trial_t>& facts, const runtime::SigningKey* key);
 

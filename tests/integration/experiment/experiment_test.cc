@@ -331,6 +331,19 @@ TEST_F(ExperimentRealtimeTest, AMeasureThatMissingMessagesMakeUnknownHasNoValue)
   EXPECT_EQ(row.at("min_host_gap_m"), whole.at("min_host_gap_m"));
 }
 
+TEST_F(ExperimentRealtimeTest, ATitleThatNoLogCanHoldIsRefusedBeforeTheFirstRun) {
+  auto plan = nlohmann::json::parse(Content(file_));
+  std::string title;
+  for (int i = 0; i < 60; ++i) title += "\u00e4";  // two bytes each
+  plan["title"] = title;
+  std::ofstream(file_) << plan.dump(2);
+  const Outcome outcome = RunCommand(Session(1));
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr(file_), HasSubstr("/title: \"\u00e4"),
+                                 HasSubstr("has 120 bytes; at most 100 are allowed")));
+  EXPECT_FALSE(std::filesystem::exists(results_));
+}
+
 TEST_F(ExperimentRealtimeTest, WrongArgumentsAreRefused) {
   const Outcome none = Experiment("run", {"--participant", "5"});
   EXPECT_EQ(none.code, 2);

@@ -65,6 +65,26 @@ TEST(PlanFileTest, AMistakeIsNamedWithFileFieldAndValue) {
   EXPECT_THAT(Refusal(R"("participants": "x")"), HasSubstr("fogline experiment check --schema"));
 }
 
+TEST(PlanFileTest, ATextThatAFactOfALogCannotHoldIsRefused) {
+  const auto letters = [](int count) {
+    std::string text;
+    for (int i = 0; i < count; ++i) text += "\u00e4";  // two bytes each
+    return text;
+  };
+  const auto title = [&](int count) { return Refusal(R"("title": ")" + letters(count) + "\""); };
+  EXPECT_EQ(title(50), "");
+  EXPECT_THAT(title(51), StartsWith("e.json:1:25: error: /title: \"\u00e4\u00e4"));
+  EXPECT_THAT(title(51), HasSubstr("has 102 bytes; at most 100 are allowed"));
+  const auto unit = [&](int count) {
+    return Refusal(R"("questionnaires": [{"name": "q", "items": [
+                      {"name": "i", "text": "?", "unit": ")" +
+                   letters(count) + "\"}]}]");
+  };
+  EXPECT_EQ(unit(50), "");
+  EXPECT_THAT(unit(51), HasSubstr("/questionnaires/0/items/0/unit: "));
+  EXPECT_THAT(unit(51), HasSubstr("has 102 bytes; at most 100 are allowed"));
+}
+
 TEST(PlanFileTest, AFileWithoutConditionsIsRefused) {
   EXPECT_THROW(ParsePlan(R"({"version": 1})"), ScenarioError);
   EXPECT_THROW(ParsePlan(R"({"version": 1, "conditions": []})"), ScenarioError);

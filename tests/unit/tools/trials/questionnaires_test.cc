@@ -72,5 +72,16 @@ TEST(QuestionnairesTest, AFreeTextIsUtf8WithoutControlCharacters) {
   EXPECT_FALSE(ReadAnswer(item, std::string(501, 'x'), why));
 }
 
+TEST(QuestionnairesTest, AFreeTextHasAtMost500BytesAlsoIfItsCharactersHaveSeveral) {
+  ItemSection item;
+  item.kind = ItemKind::kText;
+  std::string longest;
+  for (int i = 0; i < 250; ++i) longest += "\u00e4";  // two bytes each
+  std::string why;
+  EXPECT_EQ(ReadAnswer(item, longest, why)->text, longest);
+  EXPECT_FALSE(ReadAnswer(item, longest + "x", why));
+  EXPECT_EQ(why, "a text of at most 500 bytes");
+}
+
 }  // namespace
 }  // namespace fogline::trials

@@ -77,6 +77,28 @@ TEST_F(TrialLogTest, AFactIsAddedOnce) {
   EXPECT_EQ(test::Content(log_), before);
 }
 
+TEST_F(TrialLogTest, AFactWithTheLongestTextsIsReadAgain) {
+  std::string letters;
+  for (int i = 0; i < 50; ++i) letters += "\u00e4";  // two bytes each
+  trial_t fact = Fact(trial_t::ANSWER, 0);
+  fact.experiment = letters;
+  fact.unit = letters;
+  AddFacts(log_, ReadStory(log_), {fact}, nullptr);
+  const TrialStory story = ReadStory(log_);
+  ASSERT_THAT(story.facts, SizeIs(1));
+  EXPECT_EQ(story.facts[0].experiment, letters);
+  EXPECT_EQ(story.facts[0].unit, letters);
+}
+
+TEST_F(TrialLogTest, AFactThatNoReaderWouldUseIsNotWritten) {
+  trial_t fact = Fact(trial_t::END, 1);
+  fact.experiment = std::string(101, 'x');
+  const std::string before = test::Content(log_);
+  EXPECT_THROW(AddFacts(log_, ReadStory(log_), {Fact(trial_t::BEGIN, 0), fact}, nullptr),
+               std::runtime_error);
+  EXPECT_EQ(test::Content(log_), before);
+}
+
 TEST_F(TrialLogTest, ALogThatWasChangedGetsNothing) {
   const std::string sealed = test::Content(log_);
   const std::size_t last_truth = sealed.rfind("TRUTH");

@@ -155,6 +155,12 @@ TEST(PageStateTest, MarkersAreTakenDuringARunOnly) {
   const std::string longest(500, 'x');
   EXPECT_TRUE(state.FromExperimenter(R"({"op":"marker","text":")" + longest + "\"}", why));
   EXPECT_FALSE(state.FromExperimenter(R"({"op":"marker","text":")" + longest + "x\"}", why));
+  std::string letters;
+  for (int i = 0; i < 250; ++i) letters += "\u00e4";  // two bytes each
+  EXPECT_EQ(state.FromExperimenter(R"({"op":"marker","text":")" + letters + "\"}", why)->text,
+            letters);
+  EXPECT_FALSE(state.FromExperimenter(R"({"op":"marker","text":")" + letters + "x\"}", why));
+  EXPECT_THAT(why, HasSubstr("1 to 500 bytes"));
   state.EndRun();
   EXPECT_FALSE(state.FromExperimenter(kMarker, why));
   EXPECT_EQ(why, "no run is under way");
