@@ -164,7 +164,7 @@ class TableMaker {
       for (const Value& value : *values) {
         if (value.value.empty() && value.kind != "marker") continue;
         tables_.values += fmt::format("{},{},{},{},{},{}\n", head, value.kind, value.item,
-                                      Cell(value.value), value.unit, value.time_s);
+                                      Cell(value.value), Cell(value.unit), value.time_s);
       }
     }
   }
