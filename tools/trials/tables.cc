@@ -13,7 +13,9 @@
 
 #include "common/errors.h"
 #include "common/text.h"
+#include "services/log/input_latency.h"
 #include "services/metrics/gaps/gap_rules.h"
+#include "services/metrics/take_over/take_over_measures.h"
 #include "tools/runner/experiment.h"
 #include "tools/trials/questionnaires.h"
 
@@ -59,18 +61,53 @@ std::vector<std::string> ItemColumns(const ExperimentPlan& plan) {
   return columns;
 }
 
+Value MetricValue(std::string name, std::string value, std::string_view unit) {
+  return {.kind = "metric",
+          .item = std::move(name),
+          .value = std::move(value),
+          .unit = std::string(unit),
+          .time_s = ""};
+}
+
+/// The number of requests to take over, and the measures of the first one.
+void AddFirstRequest(const runner::LoggedRun& run, std::vector<Value>& values) {
+  const auto& requests = run.result.take_overs;
+  const bool are_known = run.scenario.arbitrator.take_over.mode != TakeOverMode::kRequested ||
+                         metrics::AreAllTakeOversKnown(run.result.lack);
+  const bool has_first = are_known && !requests.empty();
+  const metrics::TakeOverMeasures first =
+      has_first ? requests.front() : metrics::TakeOverMeasures{};
+  const auto add = [&](std::string_view name, std::string value, std::string_view unit) {
+    values.push_back(MetricValue(fmt::format("first_request_{}", name),
+                                 has_first ? std::move(value) : "", unit));
+  };
+  values.push_back(MetricValue("requests", are_known ? NumberCell(std::ssize(requests)) : "", ""));
+  add("outcome", std::string(metrics::NameOf(first.outcome)), "");
+  metrics::VisitTakeOver(
+      first, [&](std::string_view name, const std::optional<double>& value, std::string_view unit,
+                 std::string_view) { add(name, NumberCell(value), unit); });
+}
+
+/// The latency of the inputs of a person who drove.
+void AddInputLatency(const std::optional<log::InputLatency>& latency, std::vector<Value>& values) {
+  log::VisitLatency(
+      latency.value_or(log::InputLatency{}),
+      [&](std::string_view name, std::int64_t value, std::string_view unit, std::string_view) {
+        values.push_back(MetricValue(fmt::format("input_latency_{}", name),
+                                     latency ? NumberCell(value) : "", unit));
+      });
+}
+
 /// The measures of a run. A measure that is unknown, because messages are missing, has no value.
-std::vector<Value> MetricsOf(const runner::ExperimentResult& result) {
+std::vector<Value> MetricsOf(const runner::LoggedRun& run) {
   std::vector<Value> values;
-  metrics::VisitMetrics(result.measures, [&](std::string_view name, const auto& value,
-                                             std::string_view unit, std::string_view) {
-    const bool is_known = metrics::IsKnown(name, value, result.lack);
-    values.push_back({.kind = "metric",
-                      .item = std::string(name),
-                      .value = is_known ? NumberCell(value) : "",
-                      .unit = std::string(unit),
-                      .time_s = ""});
+  metrics::VisitMetrics(run.result.measures, [&](std::string_view name, const auto& value,
+                                                 std::string_view unit, std::string_view) {
+    const bool is_known = metrics::IsKnown(name, value, run.result.lack);
+    values.push_back(MetricValue(std::string(name), is_known ? NumberCell(value) : "", unit));
   });
+  AddFirstRequest(run, values);
+  AddInputLatency(run.result.input_latency, values);
   return values;
 }
 
@@ -145,7 +182,7 @@ class TableMaker {
     std::string complete;
     if (has_run) {
       const runner::LoggedRun run = runner::ReadLoggedRun(record.log);
-      measures = MetricsOf(run.result);
+      measures = MetricsOf(run);
       seed = std::to_string(run.scenario.seed);
       complete = run.complete ? "1" : "0";
     } else if (!story.facts.empty()) {

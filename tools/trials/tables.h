@@ -11,7 +11,8 @@ namespace fogline::trials {
 
 struct Tables {
   /// A row for each trial that has a log: participant, trial, condition, order, seed, log, one
-  /// column for each item of a questionnaire, and one for each measure of the run.
+  /// column for each item of a questionnaire, and one for each measure of the run, of its first
+  /// request to take over, and of the latency of a person's inputs.
   std::string trials;
   /// A row for each answer, measure and marker: participant, trial, condition, kind, item, value,
   /// unit.

@@ -116,4 +116,8 @@ bool AreTakeOversKnown(const Lack& lack) {
   return (needed & lack.channels).none() && !lack.every[IndexOf<arbitration_t>()];
 }
 
+bool AreAllTakeOversKnown(const Lack& lack) {
+  return AreTakeOversKnown(lack) && !lack.beginning && !lack.beginning_of_request && !lack.end;
+}
+
 }  // namespace fogline::metrics

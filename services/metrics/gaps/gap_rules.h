@@ -50,4 +50,8 @@ bool IsKnown(std::string_view measure, const V& value,
 /// are known.
 bool AreTakeOversKnown(const Lack& lack);
 
+/// Whether the measures of requests are known, and the log has every step in which a request can
+/// begin. So the number of requests is known, too.
+bool AreAllTakeOversKnown(const Lack& lack);
+
 }  // namespace fogline::metrics

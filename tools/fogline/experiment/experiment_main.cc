@@ -130,7 +130,8 @@ struct TablesArguments {
     verb.footer(
         "trials.csv has a row for each trial with a log: participant, trial, condition, order, "
         "seed,\n"
-        "log, the answers as QUESTIONNAIRE.ITEM, and the measures of the run (fogline metrics).\n"
+        "log, the answers as QUESTIONNAIRE.ITEM, and the measures of the run (fogline metrics),\n"
+        "also those of its first request to take over (first_request_...).\n"
         "values.csv has a row for each answer, measure and marker: item, value, unit. Practice "
         "runs\n"
         "have practice 1. A trial without a log has no rows.\n\n"

@@ -3,11 +3,19 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cstdint>
+#include <cstddef>
 #include <filesystem>
+#include <map>
+#include <optional>
+#include <sstream>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include <fmt/core.h>
+
+#include "common/text.h"
+#include "scenario/io/loader.h"
 #include "tests/support/command.h"
 #include "tools/runner/experiment.h"
 
@@ -52,6 +60,21 @@ class TablesTest : public ::testing::Test {
     AddFacts(log_, story, {answer, end}, nullptr);
   }
 
+  /// The only row of the table of trials, by the names of its columns.
+  std::map<std::string, std::string> Row() const {
+    std::istringstream lines(MakeTables(plan_, results_).trials);
+    std::vector<std::vector<std::string>> table;
+    for (std::string line; std::getline(lines, line);) {
+      auto& cells = table.emplace_back();
+      std::istringstream text(line + ",");
+      for (std::string cell; std::getline(text, cell, ',');) cells.push_back(cell);
+    }
+    std::map<std::string, std::string> row;
+    if (table.size() != 2 || table[0].size() != table[1].size()) return row;
+    for (std::size_t i = 0; i < table[0].size(); ++i) row[table[0][i]] = table[1][i];
+    return row;
+  }
+
   test::ScratchFolder folder_;
   PlanFile plan_{.file = "e.json", .text = "{}\n", .hash = "", .plan = {}};
   Results results_{plan_, folder_.path() / "r"};
@@ -65,6 +88,62 @@ TEST_F(TablesTest, AUnitWithACommaIsOneCell) {
   Answer(6);
   EXPECT_THAT(MakeTables(plan_, results_).values,
               HasSubstr("\n1,1,0,fog,answer,speed.guess,6,\"km/h, estimated\",\n"));
+}
+
+TEST_F(TablesTest, ATrialHasTheMeasuresOfItsFirstRequest) {
+  Run(LoadScenario(
+      test::SourceDirectory() / "scenario/dense_fog.json",
+      {"/steps=120", "/fog/start_s=1", "/fog/duration_s=4", "/arbitrator/take_over/mode=requested",
+       "/arbitrator/take_over/time/mean_s=2", "/arbitrator/take_over/time/std_s=0.01"}));
+  const runner::LoggedRun run = runner::ReadLoggedRun(log_);
+  ASSERT_FALSE(run.result.take_overs.empty());
+  const metrics::TakeOverMeasures& first = run.result.take_overs[0];
+  ASSERT_TRUE(first.take_over_time_s);
+  const std::map<std::string, std::string> row = Row();
+  ASSERT_TRUE(row.contains("requests"));
+  EXPECT_EQ(row.at("requests"), std::to_string(run.result.take_overs.size()));
+  EXPECT_EQ(row.at("first_request_outcome"), "taken_over");
+  metrics::VisitTakeOver(first, [&](const std::string_view name, const std::optional<double>& value,
+                                    std::string_view, std::string_view) {
+    const auto cell = row.find(fmt::format("first_request_{}", name));
+    ASSERT_NE(cell, row.end()) << name;
+    EXPECT_EQ(cell->second, value ? NumberText(*value) : "") << name;
+  });
+  EXPECT_EQ(row.at("input_latency_p95_us"), "") << "no person drove";
+  EXPECT_THAT(MakeTables(plan_, results_).values,
+              HasSubstr(fmt::format("\n1,1,0,fog,metric,first_request_take_over_time_s,{},s,\n",
+                                    NumberText(*first.take_over_time_s))));
+}
+
+TEST_F(TablesTest, TheDocumentationNamesTheMeasuresOfARequest) {
+  const std::string docs = test::Content(test::SourceDirectory() / "docs/experiment.md");
+  metrics::VisitTakeOver(
+      {}, [&](std::string_view name, const std::optional<double>&, std::string_view,
+              std::string_view) { EXPECT_THAT(docs, HasSubstr(fmt::format("`{}`", name))); });
+}
+
+TEST_F(TablesTest, ARunWithoutARequestHasNoMeasuresOfOne) {
+  Scenario scenario;
+  scenario.steps = 20;
+  Run(scenario);
+  const std::map<std::string, std::string> row = Row();
+  ASSERT_TRUE(row.contains("requests"));
+  EXPECT_EQ(row.at("requests"), "0");
+  EXPECT_EQ(row.at("first_request_outcome"), "");
+  EXPECT_EQ(row.at("first_request_speed_at_request_mps"), "");
+  EXPECT_NE(row.at("duration_s"), "");
+}
+
+TEST_F(TablesTest, ARunThatBrokeOffHasNoMeasures) {
+  Scenario scenario;
+  scenario.steps = 20;
+  Run(scenario);
+  std::filesystem::resize_file(log_, std::filesystem::file_size(log_) / 2);
+  const std::map<std::string, std::string> row = Row();
+  ASSERT_TRUE(row.contains("requests"));
+  for (const char* name : {"duration_s", "requests", "first_request_outcome"}) {
+    EXPECT_EQ(row.at(name), "") << name;
+  }
 }
 
 }  // namespace

@@ -135,5 +135,16 @@ TEST(GapRulesTest, AMissingBeginningMakesOnlyUnknownWhatBeginsThere) {
   EXPECT_TRUE(AreTakeOversKnown(late));
 }
 
+TEST(GapRulesTest, AllTakeOversAreKnownOnlyIfNoneCanBeOutsideOfTheLog) {
+  EXPECT_TRUE(AreAllTakeOversKnown({}));
+  EXPECT_FALSE(AreAllTakeOversKnown(Lacking(IndexOf<track_t>())));
+  for (bool Lack::*const part : {&Lack::beginning, &Lack::beginning_of_request, &Lack::end}) {
+    Lack lack;
+    lack.*part = true;
+    EXPECT_FALSE(AreAllTakeOversKnown(lack));
+    EXPECT_TRUE(AreTakeOversKnown(lack));
+  }
+}
+
 }  // namespace
 }  // namespace fogline::metrics
