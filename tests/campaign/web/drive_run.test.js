@@ -57,7 +57,8 @@ async function follow(page, run, pedals, until_s) {
   for (;;) {
     const seen = await page.evaluate(() => {
       const {TRUTH: truth, HOST_COMMAND: command} = foglineDrive.newest.frame;
-      return {time_s: truth.header.utime / 1e6, gap_m: truth.host_gap_m, speed_mps: truth.host_speed_mps,
+      const gap_m = truth.preceding_position_m - foglineDrive.length_m - truth.host_position_m;
+      return {time_s: truth.header.utime / 1e6, gap_m, speed_mps: truth.host_speed_mps,
               lead_mps: truth.preceding_speed_mps, lambda_human: command.lambda_human};
     });
     assertGoesOn(run, seen.lambda_human > 0.5, `the person does not drive at ${seen.time_s} s`);

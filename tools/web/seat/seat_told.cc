@@ -24,6 +24,22 @@ constexpr std::array kScenarioFields{"/person/key_press_ps", "/person/key_releas
                                      "/person/override_by", "/world/vehicle_length_m",
                                      "/arbitrator/take_over/lead_s"};
 
+/// The fields of TRUTH that the page /drive draws: host and preceding car, the visibility, and the
+/// end of the run.
+truth_t Shown(const truth_t& message) {
+  truth_t shown{};
+  shown.header = message.header;
+  shown.preceding_position_m = message.preceding_position_m;
+  shown.preceding_speed_mps = message.preceding_speed_mps;
+  shown.preceding_acceleration_mps2 = message.preceding_acceleration_mps2;
+  shown.host_position_m = message.host_position_m;
+  shown.host_speed_mps = message.host_speed_mps;
+  shown.fog_visibility_m = message.fog_visibility_m;
+  shown.collision = message.collision;
+  shown.last = message.last;
+  return shown;
+}
+
 /// The fields of HOST_COMMAND that the page /drive shows.
 arbitration_t Shown(const arbitration_t& message) {
   arbitration_t shown{};
@@ -96,7 +112,7 @@ std::string SeatRequestText(const OpenRequest::Request& request) {
 }
 
 std::optional<std::vector<std::uint8_t>> ForSeat(std::size_t channel, runtime::Bytes bytes) {
-  if (channel == IndexOf<truth_t>()) return std::vector<std::uint8_t>(bytes.begin(), bytes.end());
+  if (channel == IndexOf<truth_t>()) return Reduced<truth_t>(bytes);
   if (channel == IndexOf<driver_command_t>()) return Reduced<driver_command_t>(bytes);
   if (channel == IndexOf<arbitration_t>()) return Reduced<arbitration_t>(bytes);
   return std::nullopt;

@@ -1,6 +1,7 @@
 // The frames about a run for the page /drive: only data that the page shows to the person who
-// drives. A participant of an experiment can read everything that the browser receives. So the
-// frames must not show the condition of the trial.
+// drives. A participant of an experiment can read everything that the browser receives. So of the
+// condition of the trial the frames have only what the person sees anyway, such as the time of the
+// countdown.
 #pragma once
 
 #include <cstddef>
@@ -26,10 +27,10 @@ std::string SeatRunText(const RunFacts& run);
 /// The begin of a request to take over, from which the page counts down.
 std::string SeatRequestText(const OpenRequest::Request& request);
 
-/// The message in the form that the seat gets. TRUTH is complete. DRIVER_COMMAND and HOST_COMMAND
-/// have only the header and the fields that the page shows; all other fields are 0.
+/// The message in the form that the seat gets: the header and the fields that the page shows; all
+/// other fields are 0.
 /// @param channel place of the channel in kChannels
-/// @return nullopt if the seat does not get the message
+/// @return nullopt if the seat does not get the message, or the message cannot be decoded
 std::optional<std::vector<std::uint8_t>> ForSeat(std::size_t channel, runtime::Bytes bytes);
 
 }  // namespace fogline::web

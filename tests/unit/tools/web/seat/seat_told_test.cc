@@ -66,12 +66,52 @@ TEST(SeatToldTest, TheRoadIsToldAndNothingElse) {
   truth_t truth{};
   truth.host_speed_mps = 20;
   EXPECT_EQ(Told(truth)->host_speed_mps, 20);
-  const std::vector<std::uint8_t> bytes{1, 2, 3};
+  std::vector<std::uint8_t> bytes;
+  runtime::Encode(truth, bytes);
   for (std::size_t channel = 0; channel < kNumChannels; ++channel) {
     EXPECT_EQ(ForSeat(channel, bytes).has_value(), channel == IndexOf<truth_t>()) << channel;
   }
   EXPECT_FALSE(Told(trial_t{}));
   EXPECT_FALSE(Told(run_t{}));
+}
+
+TEST(SeatToldTest, OfTheRoadOnlyWhatTheWindscreenShowsIsTold) {
+  truth_t truth{};
+  truth.header = {.run_id = 7, .step = 12, .utime = 240'000};
+  truth.preceding_position_m = 60;
+  truth.preceding_speed_mps = 19;
+  truth.preceding_acceleration_mps2 = -2;
+  truth.host_position_m = 20;
+  truth.host_speed_mps = 20;
+  truth.host_acceleration_mps2 = -1;
+  truth.host_gap_m = 35.5;
+  truth.num_followers = 1;
+  truth.follower_position_m = {-15};
+  truth.follower_speed_mps = {20};
+  truth.follower_acceleration_mps2 = {0.5};
+  truth.follower_gap_m = {30.5};
+  truth.fog_present = 1;
+  truth.fog_level = 0.75;
+  truth.fog_visibility_m = 60;
+  truth.collision = truth_t::COLLISION_HOST;
+  truth.collision_time_s = 0.24;
+  truth.last = 1;
+  const auto told = Told(truth);
+  ASSERT_TRUE(told);
+  EXPECT_EQ(told->header.step, 12);
+  EXPECT_EQ(told->preceding_position_m, 60);
+  EXPECT_EQ(told->preceding_speed_mps, 19);
+  EXPECT_EQ(told->preceding_acceleration_mps2, -2);
+  EXPECT_EQ(told->host_position_m, 20);
+  EXPECT_EQ(told->fog_visibility_m, 60);
+  EXPECT_EQ(told->collision, truth_t::COLLISION_HOST);
+  EXPECT_TRUE(told->last);
+  for (const double hidden :
+       {told->host_acceleration_mps2, told->host_gap_m, told->fog_level, told->collision_time_s}) {
+    EXPECT_EQ(hidden, 0);
+  }
+  EXPECT_FALSE(told->fog_present);
+  EXPECT_EQ(told->num_followers, 0);
 }
 
 TEST(SeatToldTest, TheFirstFrameDescribesTheChannelsOfTheSeat) {
