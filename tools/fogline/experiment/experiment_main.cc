@@ -30,7 +30,7 @@ constexpr const char* kExperimentExamples =
     R"(An experiment is a JSON file: conditions (a scenario and changes of it), participants
 (numbers, no names), practice runs, breaks and questionnaires. Each trial is a run in
 real time with a log of its own, RESULTS/participant-03/trial-2-fog.lcm. The log has
-everything: participant, trial, condition, seed, markers and answers.
+participant, trial, condition, seed, markers and answers.
 
 `fogline experiment ACTION --help` explains an action, with examples.
 
