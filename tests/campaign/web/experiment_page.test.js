@@ -1,6 +1,7 @@
-// An experiment with people in headless Chromium: four participants drive three conditions each. A
-// script acts as the participants: it begins each run, drives at the seat, and answers the
-// questions. In the middle of one trial the test kills fogline-web.
+// An experiment with people in headless Chromium: after a practice run, four participants drive
+// three conditions each. A script acts as the participants: it begins each run, drives at the seat,
+// and answers the questions. In the middle of one trial the test kills fogline-web. Everything that
+// the script has typed must be in the tables.
 import assert from "node:assert/strict";
 import {execFileSync} from "node:child_process";
 import {readdirSync, readFileSync, writeFileSync} from "node:fs";
@@ -18,17 +19,43 @@ const {FOGLINE} = process.env;
 const PARTICIPANTS = 4;
 const CONDITIONS = {"secret-short": 10, "secret-middle": 14, "secret-long": 18};  // lead_s
 const KILLED = {participant: 2, trial: 2};
+const PRACTICE = 0;  // number of the practice run
+const BREAK_S = 5;   // after the first trial
+const MARKER = "looks away, \"tired\", m\u00fcde";
+const SCALES = ["mental_demand", "physical_demand", "temporal_demand", "performance", "effort", "frustration"];
 
-/** Writes the file of the experiment. In each run the person is asked from the first step on. */
+/**
+ * Writes the file of the experiment. In each run the person is asked from the first step on. If a
+ * busy machine sends no input for so long that the deadman acts, the person may take over again.
+ */
 function writePlan(folder) {
   const file = path.join(folder, "experiment.json");
-  const conditions = Object.entries(CONDITIONS).map(([name, lead_s]) => ({
+  const condition = (name, lead_s) => ({
     name, scenario: path.join(root, "scenario/drive.json"),
-    set: ["/person/drives=true", "/arbitrator/threshold=0", "/steps=500", `/arbitrator/take_over/lead_s=${lead_s}`]}));
+    set: ["/person/drives=true", "/person/when_gone=until_back", "/arbitrator/threshold=0", "/steps=500",
+          `/arbitrator/take_over/lead_s=${lead_s}`]});
   writeFileSync(file, JSON.stringify({
-    version: 1, title: "Test", participants: PARTICIPANTS, seeds: "trial", conditions,
-    questionnaires: [{name: "kss", kind: "kss"}]}));
+    version: 1, title: "\u00e4".repeat(50), participants: PARTICIPANTS, seeds: "trial",  // the longest title
+    conditions: Object.entries(CONDITIONS).map(([name, lead_s]) => condition(name, lead_s)),
+    practice: [condition("secret-practice", 12)],
+    breaks: [{after_trial: 1, at_least_s: BREAK_S}],
+    questionnaires: [
+      {name: "kss", kind: "kss", practice: true},
+      {name: "tlx", kind: "nasa_tlx"},
+      {name: "own", kind: "own", items: [
+        {name: "guess", text: "How fast was the car?", min: 0, max: 200, step: 10, unit: "km/h, estimated"},
+        {name: "remark", text: "What did you notice?", kind: "text"}]}]}));
   return file;
+}
+
+/** The answers after a run: for each questionnaire its items and their answers. */
+function answersAfter(participant, trial) {
+  const sleepiness = {"kss.sleepiness": participant + trial};
+  if (trial === PRACTICE) return [sleepiness];
+  return [
+    sleepiness,
+    Object.fromEntries(SCALES.map((name, i) => [`tlx.${name}`, 5 * (participant + trial + i)])),
+    {"own.guess": 10 * (participant + trial), "own.remark": `\u201egut\u201c, "${participant}", f\u00fcr ${trial}`}];
 }
 
 /** Starts a session. @return {session, participant, experimenter}: its process and both addresses */
@@ -64,9 +91,7 @@ async function driveTrial(page, address, during) {
   await begin(page);
   await drives(page, true);
   await page.waitForFunction(() => !document.getElementById("request").hidden);
-  // A busy machine may send no input for so long that the deadman stops the car. This test also
-  // accepts such a stop.
-  await holdTakeOver(page, "^(You drive|The car)");
+  await holdTakeOver(page, "^You drive");
   await page.keyboard.down("ArrowDown");
   await page.waitForFunction(() => document.getElementById("brake").value > 0.2);
   await page.keyboard.up("ArrowDown");
@@ -107,41 +132,65 @@ async function killDuring(t, started, page, {session, participant, experimenter}
   page.trouble = page.trouble.filter((words) => !/WebSocket|ERR_CONNECTION/.test(words));
 }
 
-async function answer(page, value) {
-  await page.check(`#questions input[value="${value}"]`);
+/** Answers a questionnaire. @param answers by item; a number is the answer on a scale */
+async function answer(page, answers) {
+  const values = Object.values(answers);
+  await page.waitForFunction((count) => !document.getElementById("questions").hidden
+    && document.querySelectorAll("#questions fieldset").length === count, values.length);
+  for (const [i, value] of values.entries()) {
+    if (typeof value === "number") await page.check(`#questions input[name="item-${i}"][value="${value}"]`);
+    else await page.fill(`#questions textarea[name="item-${i}"]`, value);
+  }
   await page.click("#questions button");
 }
 
-/** Makes all trials of a participant. */
+/** Waits until the page shows the next run, and begins this run when the break is over. */
+async function beginRun(page, trial) {
+  await page.waitForFunction((words) => document.getElementById("title").textContent === words,
+                             trial === PRACTICE ? "Practice run 1 of 1" : `Run ${trial} of 3`);
+  assert.doesNotMatch(await page.content(), /secret|threshold|lead/i);
+  if (trial === 2) {
+    await page.waitForFunction(() => document.getElementById("begin").disabled
+      && document.getElementById("words").textContent.startsWith("You have a break."));
+  }
+  await page.click("#begin");
+}
+
+/** Makes the practice run and all trials of a participant. */
 async function takePart(t, started, pages, participant, onFirst) {
   const {session, participant: address} = pages;
   const page = await open(t, started, address, {size: DESKTOP, allPorts: true});
-  for (let trial = 1; trial <= Object.keys(CONDITIONS).length; ++trial) {
-    await page.waitForFunction((words) => document.getElementById("title").textContent === words,
-                               `Run ${trial} of 3`);
-    assert.doesNotMatch(await page.content(), /secret|threshold|lead/i);
-    await page.click("#begin");
+  for (let trial = PRACTICE; trial <= Object.keys(CONDITIONS).length; ++trial) {
+    await beginRun(page, trial);
     await driveTrial(page, address, async () => {
       assert.doesNotMatch(await page.content(), /secret|threshold|conflict/i);
       if (participant === KILLED.participant && trial === KILLED.trial) await killDuring(t, started, page, pages);
       if (trial === 1) await onFirst?.();
     });
-    await page.waitForSelector("#questions input");
-    await answer(page, participant + trial);
+    for (const answers of answersAfter(participant, trial)) await answer(page, answers);
   }
   await page.waitForFunction(() => document.getElementById("title").textContent === "That was the last run");
   await session.ended;
   assert.equal(session.code, 0, session.said);
 }
 
-/** The rows of a CSV file without quotes, as objects with the names of the columns. */
+/** The cells of a line of a CSV file, as in RFC 4180. The first cell is not empty. */
+function cellsOf(line) {
+  return [...line.matchAll(/(?:^|,)(?:"((?:[^"]|"")*)"|([^,"]*))/g)]
+    .map(([, quoted, plain]) => quoted?.replaceAll('""', '"') ?? plain);
+}
+
+/** The rows of a CSV file as objects with the names of the columns. */
 function rowsOf(file) {
-  const [head, ...rows] = readFileSync(file, "utf8").trim().split("\n").map((line) => line.split(","));
+  const [head, ...rows] = readFileSync(file, "utf8").trimEnd().split("\n").map(cellsOf);
   return rows.map((row) => {
-    assert.equal(row.length, head.length);
+    assert.equal(row.length, head.length, `${row}`);
     return Object.fromEntries(head.map((name, i) => [name, row[i]]));
   });
 }
+
+/** The number of a row's trial; PRACTICE for a practice run. */
+const trialOf = ({practice, trial}) => (practice === "1" ? PRACTICE : Number(trial));
 
 /**
  * Each participant drives each condition once. In the trials of the first three participants, each
@@ -153,16 +202,72 @@ function assertLatinSquare(rows) {
   for (let participant = 1; participant <= PARTICIPANTS; ++participant) {
     assert.deepEqual(conditionsOf((row) => Number(row.participant) === participant), names);
   }
+  for (const row of rows) {
+    const [, ...places] = row.order.match(/^(\S+) (\S+) (\S+)$/);
+    assert.equal(row.condition, places[row.trial - 1]);
+  }
   for (let place = 1; place <= names.length; ++place) {
     assert.deepEqual(conditionsOf((row) => Number(row.trial) === place && Number(row.participant) <= 3), names);
   }
 }
 
+/** The decoded messages of a channel in a log. */
+function messagesIn(log, wanted, type) {
+  const decode = makeDecoder(describedTypes(), type);
+  return readEvents(log).filter(({channel}) => channel === wanted).map(({bytes}) => decode(bytes));
+}
+
 /** The instances of the seat in a log, if its person was present. */
-function seatsIn(log) {
-  const decode = makeDecoder(describedTypes(), "driver_input_t");
-  const inputs = readEvents(log).filter(({channel}) => channel === "DRIVER_INPUT").map(({bytes}) => decode(bytes));
-  return new Set(inputs.filter(({present}) => present).map(({instance}) => String(instance)));
+const seatsIn = (log) => new Set(messagesIn(log, "DRIVER_INPUT", "driver_input_t")
+  .filter(({present}) => present).map(({instance}) => String(instance)));
+
+/** The wall-clock time of the first fact of this kind in a log, s. */
+function timeOf(log, kind) {
+  const {constants} = describedTypes().trial_t;
+  return Number(messagesIn(log, "TRIAL", "trial_t").find((fact) => fact.kind === constants[kind]).unix_us) / 1e6;
+}
+
+/** The measures of a log by the names of their columns, from `fogline metrics`. */
+function measuresOf(log) {
+  const [run] = JSON.parse(execFileSync(FOGLINE, ["metrics", log, "--json"], {encoding: "utf8"}));
+  const named = (prefix, values) => Object.entries(values).map(([name, value]) => [prefix + name, value]);
+  return Object.fromEntries([
+    ...named("", run.metrics), ["requests", run.take_overs.length],
+    ...named("first_request_", run.take_overs[0]), ...named("input_latency_", run.input_latency)]);
+}
+
+/** The row has the measures of its log, and the long table has the same values. */
+function assertMeasures(row, log, values) {
+  const measures = measuresOf(log);
+  for (const [name, value] of Object.entries(measures)) {
+    assert.ok(name in row, name);
+    const cell = row[name];
+    assert.equal(typeof value === "number" && cell !== "" ? Number(cell) : cell, value ?? "", name);
+  }
+  const known = Object.keys(measures).filter((name) => row[name] !== "");
+  const metrics = values.filter((one) => one.kind === "metric" && one.participant === row.participant
+    && one.practice === row.practice && one.trial === row.trial);
+  assert.deepEqual(metrics.map(({item, value}) => [item, value]), known.map((name) => [name, row[name]]));
+}
+
+/** The long table has each answer that the script has typed, and the marker of the experimenter. */
+function assertAnswersAndMarker(values) {
+  const typed = {};
+  for (let participant = 1; participant <= PARTICIPANTS; ++participant) {
+    for (let trial = PRACTICE; trial <= 3; ++trial) {
+      for (const [item, value] of answersAfter(participant, trial).flatMap(Object.entries)) {
+        typed[`${participant} ${trial} ${item}`] = String(value);
+      }
+    }
+  }
+  const answers = values.filter(({kind}) => kind === "answer");
+  const told = answers.map((row) => [`${row.participant} ${trialOf(row)} ${row.item}`, row.value]);
+  assert.deepEqual(Object.fromEntries(told), typed);
+  assert.equal(answers.length, Object.keys(typed).length);
+  for (const {item, unit} of answers) assert.equal(unit, item === "own.guess" ? "km/h, estimated" : "");
+  const markers = values.filter(({kind}) => kind === "marker");
+  assert.deepEqual(markers.map((row) => [row.participant, trialOf(row), row.value]), [["1", 1, MARKER]]);
+  assert.ok(Number(markers[0].time_s) > 0 && Number(markers[0].time_s) < 10, markers[0].time_s);
 }
 
 test("four participants drive three conditions; a kill of fogline-web loses nothing", async (t) => {
@@ -178,9 +283,9 @@ test("four participants drive three conditions; a kill of fogline-web loses noth
       onFirst = async () => {
         assert.match(await desk.locator("#words").innerText(), /secret-\w+, seed \d+/);
         assert.match(await desk.locator("#view").getAttribute("href"), /^http:\/\/127\.0\.0\.1:\d+\/#token=\w+$/);
-        await desk.fill("#marker-text", "looks away");
+        await desk.fill("#marker-text", MARKER);
         await desk.click("#marker button");
-        await desk.waitForFunction(() => document.getElementById("lines").textContent.includes("looks away"));
+        await desk.waitForFunction((text) => document.getElementById("lines").textContent.includes(text), MARKER);
         await desk.close();
       };
     }
@@ -192,19 +297,36 @@ test("four participants drive three conditions; a kill of fogline-web loses noth
   execFileSync(FOGLINE, ["experiment", "status", file, "--results", results], {stdio: "pipe"});  // all are done
   const tables = path.join(folder, "tables");
   execFileSync(FOGLINE, ["experiment", "export", file, "--results", results, "--out", tables], {stdio: "pipe"});
-  const rows = rowsOf(path.join(tables, "trials.csv"));
+  const runs = rowsOf(path.join(tables, "trials.csv"));
+  const values = rowsOf(path.join(tables, "values.csv"));
+  assert.equal(runs.length, PARTICIPANTS * 4);
+  const rows = runs.filter(({practice}) => practice === "0");
   assert.equal(rows.length, 12);
   assertLatinSquare(rows);
-  for (const row of rows) {
-    const [participant, trial] = [Number(row.participant), Number(row.trial)];
-    assert.deepEqual([row.state, row.attempt, row["kss.sleepiness"], row.markers],
-                     ["done", "1", String(participant + trial), participant === 1 && trial === 1 ? "1" : "0"]);
-    const log = path.join(results, `participant-0${participant}`,
-                          `trial-${trial}-${row.condition}.lcm`);
-    execFileSync(FOGLINE, ["replay", log, "--role", "driver"], {stdio: "pipe"});
+  assertAnswersAndMarker(values);
+  const logOf = (row) => path.join(results, row.log);
+  for (const row of runs) {
+    const [participant, trial] = [Number(row.participant), trialOf(row)];
+    const isFirst = participant === 1 && trial === 1;
+    assert.deepEqual([row.state, row.complete, row.attempt, row.markers], ["done", "1", "1", isFirst ? "1" : "0"]);
+    assert.equal(row.log, `participant-0${participant}/${trial === PRACTICE ? "practice-1" : `trial-${trial}`}`
+      + `-${row.condition}.lcm`);
+    if (trial !== PRACTICE) assert.equal(row.seed, String(3 * (participant - 1) + trial));
+    for (const [item, value] of answersAfter(participant, trial).flatMap(Object.entries)) {
+      assert.equal(row[item], String(value), item);
+    }
+    assertMeasures(row, logOf(row), values);
+    assert.match(row.first_request_outcome, /^taken_over(_late)?$/);
+    assert.ok(Number(row.first_request_take_over_time_s) > 0, row.first_request_take_over_time_s);
+    execFileSync(FOGLINE, ["replay", logOf(row), "--role", "driver"], {stdio: "pipe"});
     const killed = participant === KILLED.participant && trial === KILLED.trial;
-    assert.equal(seatsIn(log).size, killed ? 2 : 1, log);
+    assert.equal(seatsIn(logOf(row)).size, killed ? 2 : 1, row.log);
+  }
+  for (let participant = 1; participant <= PARTICIPANTS; ++participant) {
+    const [first, second] = rows.filter((row) => Number(row.participant) === participant).map(logOf);
+    const break_s = timeOf(second, "BEGIN") - timeOf(first, "END");
+    assert.ok(break_s >= BREAK_S, `a break of ${break_s} s`);
   }
   const logs = readdirSync(results, {recursive: true}).filter((name) => name.endsWith(".lcm"));
-  assert.equal(logs.length, 12, `nothing was run twice: ${logs}`);
+  assert.equal(logs.length, 16, `nothing was run twice: ${logs}`);
 });
