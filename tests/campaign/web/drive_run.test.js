@@ -204,9 +204,11 @@ for (const [device, make] of [["the keys", keys], ["a wheel", wheel]]) {
 
 /** Presses the throttle of a person who drives, until the car accelerates. */
 async function pressThrottle(page, isWheel) {
+  const speed = () => page.evaluate(() => foglineDrive.newest.frame.TRUTH.host_speed_mps);
+  const before = await speed();
   if (isWheel) await setPad(page, {axes: [0, 1]});
   else await page.keyboard.down("ArrowUp");
-  await page.waitForFunction(() => foglineDrive.newest.frame.TRUTH.host_acceleration_mps2 > 0.5);
+  await until(async () => await speed() > before + 0.1, "the car to accelerate");
 }
 
 /**
