@@ -258,7 +258,12 @@ int RunView(const ViewArguments& arguments) {
     return kDone;
   }
   LogView view(arguments.log, arguments.run);
-  const std::string& note = view.index().run().note;
+  const LogIndex& index = view.index();
+  if (arguments.open_at.value_or(index.last_step()) > index.last_step()) {
+    throw InputError(fmt::format("error: --open-at {}: the last step of {} is {}",
+                                 *arguments.open_at, PathText(arguments.log), index.last_step()));
+  }
+  const std::string& note = index.run().note;
   if (!note.empty()) Notice(fmt::format("{}: {}", PathText(arguments.log), note));
   const auto server = Listen(context, arguments, view);
   Serve(context, arguments, *server, [] {});

@@ -233,6 +233,11 @@ TEST(LogViewTest, NamesALogThatCannotBeShown) {
   EXPECT_EQ(other.code, 2);
   EXPECT_THAT(other.err, HasSubstr("not an LCM event log"));
   EXPECT_EQ(other.out, "");
+  MakeLog(folder.File("paper.lcm"), 20);
+  const Outcome beyond = RunCommand({Program("fogline"), "view", "--no-browser", "--port", "0",
+                                     folder.File("paper.lcm"), "--open-at", "20"});
+  EXPECT_EQ(beyond.code, 2);
+  EXPECT_THAT(beyond.err, HasSubstr("--open-at 20: the last step of "));
 }
 
 /// The largest resident memory of a process so far, in bytes.
