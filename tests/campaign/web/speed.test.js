@@ -54,7 +54,7 @@ test("at 100 Hz a page shows 30 frames a second, and a message at most 150 ms af
 test("a scrub through 7000 steps answers within 50 ms", async (t) => {
   const log = recordedRun(scratch(t), ["/steps=7000", "/lead/profile=sinusoid"]);
   const page = await open(t, await browser(t), await view(t, [log]));
-  await page.waitForFunction(() => foglinePage.why.doc.length > 0);
+  await page.waitForFunction(() => foglinePage.why.modes.length > 0);
   let round = 0;
   await meetsBar(t, async () => {
     round += 1;
