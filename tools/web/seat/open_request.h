@@ -23,18 +23,18 @@ class OpenRequest {
   /// @return whether a request has begun
   bool Hear(const arbitration_t& command) {
     const header_t& header = command.header;
-    if (run_id_ != header.run_id) {
-      *this = {};
-      run_id_ = header.run_id;
-    }
+    if (run_id_ != header.run_id) Forget();
+    run_id_ = header.run_id;
+    if (header.step == 0) Forget();  // the run begins, or is played again
     if (header.step <= step_) return false;
     step_ = header.step;
     if (command.mode == arbitration_t::EMERGENCY_BRAKING) return false;
-    const std::int64_t gap_us = header.utime - state_us_;
+    const bool follows = header.step - state_step_ <= 1 || header.utime - state_us_ <= kMostGap_us;
+    state_step_ = header.step;
     state_us_ = header.utime;
     if (!Asks(command.mode)) request_.reset();
     if (!Asks(command.mode) || request_) return false;
-    request_ = Request{.since_us = header.utime, .begin_known = gap_us <= kMostGap_us};
+    request_ = Request{.since_us = header.utime, .begin_known = follows};
     return true;
   }
 
@@ -51,9 +51,17 @@ class OpenRequest {
            mode == arbitration_t::HANDOVER;
   }
 
+  void Forget() {
+    const auto run_id = run_id_;
+    *this = {};
+    run_id_ = run_id;
+  }
+
   std::optional<std::int64_t> run_id_;
   std::int64_t step_ = -1;
-  std::int64_t state_us_ = 0;  // the newest time at which the state was known: at first the start
+  // The newest step and time at which the state was known; at first those of the start.
+  std::int64_t state_step_ = -1;
+  std::int64_t state_us_ = 0;
   std::optional<Request> request_;
 };
 

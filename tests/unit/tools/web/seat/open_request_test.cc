@@ -82,5 +82,25 @@ TEST_F(OpenRequestTest, IgnoresOlderCommandsAndEndsWithTheRun) {
   EXPECT_TRUE(Hear(1, arbitration_t::REQUEST, 8));
 }
 
+TEST_F(OpenRequestTest, BeginsAgainIfTheRunIsPlayedAgain) {
+  Hear(0, arbitration_t::AUTOMATION);
+  Hear(9, arbitration_t::REQUEST);
+  EXPECT_FALSE(Hear(0, arbitration_t::AUTOMATION));
+  EXPECT_FALSE(open_.request());
+  EXPECT_TRUE(Hear(1, arbitration_t::REQUEST));
+  ExpectRequest(1, true);
+}
+
+TEST_F(OpenRequestTest, HasAKnownBeginHoweverLongAStepIs) {
+  arbitration_t command{};
+  for (const std::int64_t step : {0, 1, 2}) {
+    command.header = {.run_id = 7, .step = step, .utime = 1'000'000 * step};
+    command.mode = step < 2 ? arbitration_t::AUTOMATION : arbitration_t::REQUEST;
+    open_.Hear(command);
+  }
+  ASSERT_TRUE(open_.request());
+  EXPECT_TRUE(open_.request()->begin_known);
+}
+
 }  // namespace
 }  // namespace fogline::web
