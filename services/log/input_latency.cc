@@ -1,14 +1,16 @@
 #include "services/log/input_latency.h"
 
 #include <chrono>
+#include <utility>
 
 namespace fogline::log {
 
 void InputLatencyAccumulator::Add(const driver_input_t& input) {
-  const auto [newest, is_first] = newest_us_.try_emplace(input.instance, input.time_us);
-  if (!is_first && newest->second == input.time_us) return;
-  newest->second = input.time_us;
-  if (input.latency_us >= 0) latencies_.Add(std::chrono::microseconds(input.latency_us));
+  if (input.latency_us < 0) return;
+  const std::pair measurement(input.time_us, input.latency_us);
+  const auto [newest, is_first] = newest_.try_emplace(input.instance, measurement);
+  if (!is_first && std::exchange(newest->second, measurement) == measurement) return;
+  latencies_.Add(std::chrono::microseconds(input.latency_us));
 }
 
 InputLatency InputLatencyAccumulator::Result() const {

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <map>
+#include <utility>
 
 #include "services/graph.h"
 #include "services/runtime/realtime/duration_histogram.h"
@@ -26,9 +27,8 @@ void VisitLatency(const InputLatency& l, Visitor&& visit) {
   visit("max_us", l.max_us, "us", "the same: longest");
 }
 
-/// Collects the latencies of a run. A seat sends each measurement once. The seats of older versions
-/// repeat a measurement. So a measurement counts only in a message with a new input of the device
-/// (a new driver_input_t.time_us).
+/// Collects the latencies of a run. A seat sends each measurement once. A message that repeats the
+/// measurement and the driver_input_t.time_us of the one before does not count.
 class InputLatencyAccumulator {
  public:
   /// Adds the next DRIVER_INPUT of the log.
@@ -37,7 +37,8 @@ class InputLatencyAccumulator {
 
  private:
   runtime::DurationHistogram latencies_;
-  std::map<std::int64_t, std::int64_t> newest_us_;  // time_us of the last message of each instance
+  // time_us and latency_us of the last measurement of each instance.
+  std::map<std::int64_t, std::pair<std::int64_t, std::int64_t>> newest_;
 };
 
 }  // namespace fogline::log
