@@ -87,7 +87,6 @@ std::string UnknownMeasuresText(const runner::ExperimentResult& result) {
 std::string UnknownTakeOvers(const runner::LoggedRun& run) {
   if (run.scenario.arbitrator.take_over.mode != TakeOverMode::kRequested) return "";
   const metrics::Lack& lack = run.result.lack;
-  if (metrics::AreAllTakeOversKnown(lack)) return "";
   if (lack.channels[IndexOf<arbitration_t>()] || lack.every[IndexOf<arbitration_t>()]) {
     return "requests in a gap and the measures of take-overs";
   }
