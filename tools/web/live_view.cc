@@ -158,19 +158,15 @@ void LiveView::Received(Client& client, std::string_view bytes, bool binary) {
     return SendFrames(client, answer.frames);
   }
   const ViewRequest request = ParseViewFrame(bytes, binary);
-  if (const auto* bad = std::get_if<BadRequest>(&request)) {
-    client.CountWrongFrame(bad->why);
-    return client.Send(TextFrame(ErrorText(bad->id, bad->why)));
-  }
+  std::string why = "this server shows a live network; only a log has steps and series";
+  if (const auto* bad = std::get_if<BadRequest>(&request)) why = bad->why;
   if (const auto* history = std::get_if<HistoryRequest>(&request)) {
     Viewer& viewer = viewers_.at(client.id());
     if (!viewer.history) return BeginHistory(viewer, history->id);
-    return client.Send(TextFrame(ErrorText(history->id, "a history is being sent already")));
+    why = "a history is being sent already";
   }
-  const auto id =
-      std::visit([](const auto& any) { return std::optional<RequestId>(any.id); }, request);
-  client.Send(TextFrame(
-      ErrorText(id, "this server shows a live network; only a log has steps and series")));
+  client.CountWrongFrame(why);
+  client.Send(TextFrame(ErrorText(IdOf(request), why)));
 }
 
 void LiveView::BeginHistory(Viewer& viewer, RequestId id) {

@@ -128,6 +128,7 @@ std::string StepsFrame(const StepsRequest& request, const LogIndex& index) {
 std::string SeriesFrame(RequestId id, const Series& series) {
   std::string frame = BeginFrame(FrameKind::kSeries);
   PutLittleEndian(id, frame);
+  frame += static_cast<char>(series.whole ? 1 : 0);
   PutLittleEndian(static_cast<std::uint32_t>(series.value.size()), frame);
   for (const double time_s : series.time_s) PutLittleEndian(time_s, frame);
   for (const double value : series.value) PutLittleEndian(value, frame);

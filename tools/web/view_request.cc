@@ -82,6 +82,10 @@ ViewRequest ParseViewRequest(std::string_view text) {
   return bad;
 }
 
+std::optional<RequestId> IdOf(const ViewRequest& request) {
+  return std::visit([](const auto& any) { return std::optional<RequestId>(any.id); }, request);
+}
+
 ViewRequest ParseViewFrame(std::string_view bytes, bool binary) {
   if (binary) return BadRequest{.id = std::nullopt, .why = "requests are text frames"};
   return ParseViewRequest(bytes);

@@ -46,6 +46,9 @@ struct BadRequest {
 
 using ViewRequest = std::variant<StepsRequest, SeriesRequest, HistoryRequest, BadRequest>;
 
+/// The id of a request, for its answer; nullopt if a bad request has none.
+std::optional<RequestId> IdOf(const ViewRequest& request);
+
 /// Reads a request. Never throws: a wrong text becomes a BadRequest.
 ViewRequest ParseViewRequest(std::string_view text);
 /// The same for any frame. A binary frame is a BadRequest.

@@ -35,7 +35,7 @@ class LogIndex {
   /// The first and the last step that have a message; 0 and -1 if no step has a message.
   std::int64_t first_step() const { return first_; }
   std::int64_t last_step() const { return static_cast<std::int64_t>(rows_.size()) - 1; }
-  /// Number of messages in the index.
+  /// Number of messages of steps in the index.
   std::int64_t messages() const { return messages_; }
 
   /// The message of a step, without its signature; empty if the log lacks the message. The bytes

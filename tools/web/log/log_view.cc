@@ -1,10 +1,12 @@
 #include "tools/web/log/log_view.h"
 
 #include <algorithm>
+#include <iterator>
 #include <limits>
 #include <optional>
 #include <utility>
 #include <variant>
+#include <vector>
 
 #include <fmt/core.h>
 
@@ -56,12 +58,9 @@ class LoggedField {
           std::max(request_.from, index_.first_step()), std::min(request_.to, index_.last_step()),
           [this](std::int64_t step) { return Of(index_.Message(step, source_.channel)); });
     }
-    // If a role is started again, its time goes back. The points of a series are in order.
-    double newest_s = 0;
-    return Values(0, index_.control_messages(source_.channel) - 1, [&](std::int64_t i) {
-      auto point = OfControl(index_.ControlMessage(source_.channel, i));
-      if (point) point->time_s = newest_s = std::max(newest_s, point->time_s);
-      return point;
+    const std::vector<SeriesPoint> points = OfControl();
+    return Values(0, std::ssize(points) - 1, [&points](std::int64_t i) {
+      return std::optional(points[static_cast<std::size_t>(i)]);
     });
   }
 
@@ -74,13 +73,24 @@ class LoggedField {
     return Decimate(from, to, request_.points, at);
   }
 
-  std::optional<SeriesPoint> OfControl(runtime::Bytes message) const {
-    const std::int64_t step = runtime::ReadInt64(message, runtime::kStepOffset);
-    if (step < request_.from || step > request_.to) return std::nullopt;
+  /// The points of a channel that has no message in each step.
+  std::vector<SeriesPoint> OfControl() const {
+    std::vector<SeriesPoint> points;
     status_t status;
-    const bool counts =
-        source_.role.empty() || (runtime::Decode(message, status) && status.role == source_.role);
-    return counts ? Of(message) : std::nullopt;
+    for (std::int64_t i = 0; i < index_.control_messages(source_.channel); ++i) {
+      const runtime::Bytes message = index_.ControlMessage(source_.channel, i);
+      const std::int64_t step = runtime::ReadInt64(message, runtime::kStepOffset);
+      if (step < request_.from || step > request_.to) continue;
+      if (!source_.role.empty() &&
+          (!runtime::Decode(message, status) || status.role != source_.role)) {
+        continue;
+      }
+      auto point = Of(message);
+      // If a role is started again, its time goes back. The points of a series are in order.
+      if (!points.empty()) point->time_s = std::max(point->time_s, points.back().time_s);
+      points.push_back(*point);
+    }
+    return points;
   }
 
   std::optional<SeriesPoint> Of(runtime::Bytes message) const {
@@ -117,28 +127,24 @@ void LogView::Opened(Client& client) {
 void LogView::Received(Client& client, std::string_view bytes, bool binary) {
   if (client.protocol() != kViewProtocol) return;
   const ViewRequest request = ParseViewFrame(bytes, binary);
-  if (const auto* bad = std::get_if<BadRequest>(&request)) client.CountWrongFrame(bad->why);
-  client.Send(Answer(request));
+  try {
+    client.Send(Answer(request));
+  } catch (const InputError& error) {
+    client.CountWrongFrame(error.what());
+    client.Send(TextFrame(ErrorText(IdOf(request), error.what())));
+  }
 }
 
+/// @throws InputError if the request cannot be fulfilled
 OutgoingFrame LogView::Answer(const ViewRequest& request) const {
   if (const auto* steps = std::get_if<StepsRequest>(&request)) {
     return BinaryFrame(StepsFrame(*steps, index_));
   }
-  if (const auto* series = std::get_if<SeriesRequest>(&request)) return AnswerSeries(*series);
-  if (const auto* history = std::get_if<HistoryRequest>(&request)) {
-    return TextFrame(ErrorText(history->id, "a log is shown; it has no history"));
+  if (const auto* series = std::get_if<SeriesRequest>(&request)) {
+    return BinaryFrame(SeriesFrame(series->id, LoggedField(index_, *series).Values()));
   }
-  const auto& bad = std::get<BadRequest>(request);
-  return TextFrame(ErrorText(bad.id, bad.why));
-}
-
-OutgoingFrame LogView::AnswerSeries(const SeriesRequest& request) const {
-  try {
-    return BinaryFrame(SeriesFrame(request.id, LoggedField(index_, request).Values()));
-  } catch (const InputError& error) {
-    return TextFrame(ErrorText(request.id, error.what()));
-  }
+  if (const auto* bad = std::get_if<BadRequest>(&request)) throw InputError(bad->why);
+  throw InputError("a log is shown; it has no history");
 }
 
 }  // namespace fogline::web

@@ -29,7 +29,6 @@ class LogView final : public View {
 
  private:
   OutgoingFrame Answer(const ViewRequest& request) const;
-  OutgoingFrame AnswerSeries(const SeriesRequest& request) const;
 
   std::filesystem::path file_;
   LogIndex index_;

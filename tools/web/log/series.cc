@@ -51,6 +51,7 @@ Series Decimate(std::int64_t from, std::int64_t to, std::int64_t points,
     }
     return series;
   }
+  series.whole = false;
   for (std::int64_t bucket = 0; bucket < points; ++bucket) {
     const std::int64_t begin = from + bucket * steps / points;
     const std::int64_t end = from + (bucket + 1) * steps / points;
@@ -65,7 +66,7 @@ Series Decimate(std::int64_t from, std::int64_t to, std::int64_t points,
 
 std::optional<Series> Changes(std::int64_t from, std::int64_t to, std::int64_t most,
                               const std::function<std::optional<SeriesPoint>(std::int64_t)>& at) {
-  Series series;
+  Series series{.whole = false, .time_s = {}, .value = {}};
   for (std::int64_t step = from; step <= to; ++step) {
     const auto point = at(step);
     if (!point) continue;

@@ -9,6 +9,7 @@
 namespace fogline::web {
 
 struct Series {
+  bool whole = true;  // whether it has a point for each message of the steps
   std::vector<double> time_s;
   std::vector<double> value;  // NaN: no value
 };

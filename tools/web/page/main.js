@@ -24,6 +24,7 @@ const HASH_EVERY_MS = 500;
 class Page {
   constructor() {
     this.token = takeToken();
+    this.link = readFragment(location.hash);  // the moment to go to when the first history has come
     this.clock = new Clock();
     this.theme = readTheme();
     this.scene = new Scene();
@@ -80,7 +81,7 @@ class Page {
       const {hash} = new URL(newURL);
       const {step, run, token} = readFragment(hash);
       if (token) this.takeNewToken(hash);
-      if (step !== null && this.store) this.goToLinked({step, run});
+      else if (step !== null && this.store) this.goToLinked({step, run});
     });
     byId("parts").addEventListener("click", (event) => {
       const link = event.target.closest("a");
@@ -95,6 +96,7 @@ class Page {
    * again.
    */
   takeNewToken(hash) {
+    this.link = readFragment(hash);
     this.token = takeToken(hash);
     this.wire.moveTo(socketUrl(location, this.token));
   }
@@ -170,19 +172,18 @@ class Page {
     }, () => { this.early = null; });
   }
 
-  /** Goes to the moment of the address, once, when the history of a live run has come. */
   openLink() {
-    const {step, run} = readFragment(location.hash);
-    if (step === null || this.linkOpened) return;
-    this.linkOpened = true;
-    this.goToLinked({step, run});
+    const {link} = this;
+    this.link = null;
+    if (link && link.step !== null) this.goToLinked(link);
   }
 
   /** Goes to a step of a link. A live page may not have it: it keeps one run, and not for ever. */
   goToLinked({step, run}) {
-    const {firstStep, lastStep} = this.store;
+    const {firstStep, lastStep, runId} = this.store;
     if (!this.isLive) this.goTo(step);
-    else if (run && run !== this.run.run_id) this.tell("The link is to a moment of another run.");
+    else if (lastStep < 0) this.tell("There is no run yet, so the link leads nowhere.");
+    else if (run && run !== String(runId)) this.tell("The link is to a moment of another run.");
     else if (step >= firstStep && step <= lastStep) this.goTo(step);
     else this.tell(`This page has the steps ${firstStep} to ${lastStep}; the link is to step ${step}.`);
   }

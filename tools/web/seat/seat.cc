@@ -50,6 +50,7 @@ Seat::Taken Seat::Take(std::uint64_t client, const SeatInput& input, TimePoint n
   // The rate limit never refuses an input that says that the person has left.
   const bool leaves = message_.present && !input.present;
   if (!limiter_.Take(now) && !leaves) {
+    taken.too_many = true;
     taken.why = fmt::format("more than {} inputs a second", runtime::kMostInputsPerSecond);
     return taken;
   }

@@ -43,6 +43,7 @@ class Seat {
   struct Taken {
     std::optional<driver_input_t> message;  // to be sent now
     std::string why;                        // why the input is refused; "" if it is accepted
+    bool too_many = false;                  // whether it is refused because of the rate limit
     bool sits = false;                      // whether this input gave the client the seat
     std::optional<std::uint64_t> before;    // the client that had the seat before, if `sits`
   };

@@ -180,7 +180,10 @@ void SeatView::Received(Client& client, std::string_view bytes, bool binary) {
 void SeatView::Take(Client& client, const SeatInput& input) {
   const Seat::Taken taken = seat_.Take(client.id(), input, Clock::now());
   if (taken.before) Say(*drivers_.at(*taken.before).client, "taken");
-  if (!taken.why.empty()) Refuse(client, taken.why);
+  if (taken.too_many) Refuse(client, taken.why);
+  if (!taken.why.empty() && !taken.too_many) {
+    client.Send(TextFrame(ErrorText(std::nullopt, taken.why)));
+  }
   if (!taken.why.empty() && !seat_.Has(client.id())) Say(client, "taken");
   if (!taken.message) return;
   Publish(*taken.message);

@@ -256,7 +256,7 @@ void BeastConnection::Upgrade() {
       }));
   socket_->read_message_max(MostFrameBytes());
   socket_->auto_fragment(false);
-  // A ping counts as a frame. The callback runs within a read operation, so it only posts.
+  // Pings and pongs count as frames. The callback runs within a read operation, so it only posts.
   socket_->control_callback([this](websocket::frame_type kind, beast::string_view) {
     if (kind == websocket::frame_type::close || !budget_ || budget_->Take(Clock::now())) return;
     asio::post(context(), [self = shared_from_this()] { self->CutOffFlood(); });

@@ -100,7 +100,7 @@ struct ServerOptions {
 struct ServerCounts {
   std::int64_t viewers = 0;  // WebSockets that are open, including those that drive
   std::int64_t drivers = 0;  // WebSockets that drive, or ask for the seat
-  std::int64_t cut_off = 0;  // viewers that exceeded a limit
+  std::int64_t cut_off = 0;  // clients that exceeded a limit, or broke RFC 6455
   // Number of callers that exceeded a limit, or had a wrong Host, Origin or token.
   std::int64_t refused = 0;
   std::int64_t wrong_frames = 0;  // frames of open WebSockets that could not be used

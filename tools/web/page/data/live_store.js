@@ -6,7 +6,8 @@ import {upTo} from "./modes.js";
 import {Series} from "./series.js";
 
 const KEEP_S = 600;              // of simulated time
-const KEEP_BYTES = 96 * 2 ** 20;
+const KEEP_BYTES = 96 * 2 ** 20;         // of all channels with a message in every step
+const KEEP_CONTROL_BYTES = 4 * 2 ** 20;  // of each other channel, and of each role's STATUS
 const AWAY_MS = 2000;            // the run has stopped if no step has come for this long
 const TIDY_AFTER = 4096;         // messages between two removals of old messages
 
@@ -31,11 +32,12 @@ class Track {
     this.bytes += bytes.byteLength;
   }
 
-  forgetBefore(time) {
-    const keep = upTo(this.times, time) + 1;
-    for (const bytes of this.messages.splice(0, keep)) this.bytes -= bytes.byteLength;
-    this.steps.splice(0, keep);
-    this.times.splice(0, keep);
+  forgetBefore(time) { this.forgetFirst(upTo(this.times, time) + 1); }
+
+  forgetFirst(n) {
+    for (const bytes of this.messages.splice(0, n)) this.bytes -= bytes.byteLength;
+    this.steps.splice(0, n);
+    this.times.splice(0, n);
   }
 }
 
@@ -99,7 +101,16 @@ export class LiveStore {
     const header = {step: Math.max(step, track.lastStep), time_s: Math.max(time_s, track.lastTime)};
     track.add(header, bytes);
     this.extend(source, channel, header, bytes);
+    if (track.bytes > KEEP_CONTROL_BYTES) this.halve(source, track);
     this.countOne();
+  }
+
+  /** Forgets the older half of a channel. The time of its messages may stand still, as after a run. */
+  halve(source, track) {
+    track.forgetFirst(Math.ceil(track.messages.length / 2));
+    for (const {channel, series} of this.wanted.values()) {
+      if (channel === source) series.keepLast(track.messages.length);
+    }
   }
 
   track(source, channel) {
@@ -147,7 +158,7 @@ export class LiveStore {
   tidy() {
     let oldest = this.lastTime - KEEP_S;
     let bytes = 0;
-    for (const track of this.tracks.values()) bytes += track.bytes;
+    for (const track of this.tracks.values()) if (track.channel.isStepwise) bytes += track.bytes;
     if (bytes > KEEP_BYTES) oldest = Math.max(oldest, (this.firstTime + this.lastTime) / 2);
     if (oldest <= this.firstTime) return;
     for (const track of this.tracks.values()) track.forgetBefore(oldest);

@@ -4,8 +4,8 @@ import {Series} from "./series.js";
 
 const CHUNK = 64;          // number of steps that are fetched together
 const KEEP_CHUNKS = 64;
-const MOST_POINTS = 20000;   // of a series over the whole log; the server sends up to twice as many
-const DETAIL_POINTS = 4000;  // of a series over a part of the log
+export const MOST_POINTS = 20000;  // of a series; the server sends up to twice as many values
+const DETAIL_POINTS = 4000;  // of a curve over a part of the log
 const KEEP_DETAILS = 48;     // of these, the charts show 16 at a time
 
 export class LogStore {
@@ -102,9 +102,8 @@ export class LogStore {
   }
 
   fetchSeries(series, question) {
-    const {from, to, points, changes} = question;
     this.wire.ask({op: "series", ...question}).then((answer) => {
-      series.whole = !changes && to - from < 2 * points;
+      series.whole = answer.whole;
       series.replace(answer);
     }, () => {});
   }
@@ -134,17 +133,26 @@ export class LogStore {
   changes(channel, path) { return this.fetchWhole(channel, path, {changes: true}); }
 
   /**
-   * The values of a field between two times, with as many points as a screen can show. A fetched
-   * part begins and ends at multiples of its length, so a moving window seldom needs another part.
+   * The values of a field between two times. A fetched part begins and ends at multiples of its
+   * length, so a moving window seldom needs another part. The next part is fetched early.
+   * @param points if there are more than twice as many values, the series has only extremes
    */
-  detail(channel, path, from_s, to_s) {
+  detail(channel, path, from_s, to_s, points = DETAIL_POINTS) {
     const whole = this.series(channel, path);
     if (whole.whole) return whole;
     const {step_s} = this.run;
     const length = Math.max(1, Math.ceil((to_s - from_s) / step_s));
-    const from = Math.max(this.firstStep, Math.floor(from_s / step_s / length) * length);
-    const to = Math.min(this.lastStep, Math.ceil(to_s / step_s / length) * length);
-    const name = `${channel}.${path} ${from} ${to}`;
+    const place = from_s / step_s / length;  // of the window, in lengths
+    const part = (begin) => this.part(channel, path, begin * length, (begin + 2) * length, points);
+    if (place - Math.floor(place) > 0.5) part(Math.floor(place) + 1);
+    const detail = part(Math.floor(place));
+    return detail.length ? detail : whole;
+  }
+
+  part(channel, path, begin, end, points) {
+    const from = Math.min(Math.max(this.firstStep, begin), this.lastStep);
+    const to = Math.max(from, Math.min(this.lastStep, end));
+    const name = JSON.stringify([channel, path, from, to, points]);
     if (!this.details.has(name)) {
       for (const oldest of this.details.keys()) {
         if (this.details.size < KEEP_DETAILS) break;
@@ -152,11 +160,11 @@ export class LogStore {
       }
       const series = new Series();
       this.details.set(name, series);
-      this.fetchSeries(series, {channel, field: path, from, to, points: DETAIL_POINTS});
+      this.fetchSeries(series, {channel, field: path, from, to, points});
     }
     const detail = this.details.get(name);
     this.details.delete(name);
     this.details.set(name, detail);  // the last used part is last
-    return detail.length ? detail : whole;
+    return detail;
   }
 }

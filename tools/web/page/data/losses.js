@@ -30,6 +30,6 @@ export function lacksOf(health, number = String) {
     are(scenarios, "run", "not shown, because the scenario is not valid"),
     were(cutOff, "viewer", "cut off"),
     were(refused, "connection", "refused"),
-    wrong && `${number(wrong)} frame${wrong === 1 ? "" : "s"} of viewers ${wrong === 1 ? "was" : "were"} wrong`,
+    wrong && `${number(wrong)} frame${wrong === 1 ? "" : "s"} of clients ${wrong === 1 ? "was" : "were"} wrong`,
   ].filter(Boolean);
 }

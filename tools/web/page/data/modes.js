@@ -78,9 +78,10 @@ export function sideSpans(modes, lambdas, from, to, end) {
  * first value on. `modes` and `lambdas` as in sideSpans().
  */
 export function drivingSince(modes, lambdas, time) {
-  const [modeTimes, lambdaTimes] = [modes.times, lambdas.times];
+  const {times: modeTimes, values: modeValues} = modes;
+  const {times: lambdaTimes, values: lambdaValues} = lambdas;
   let [i, j] = [upTo(modeTimes, time), upTo(lambdaTimes, time)];
-  const side = () => modeOf(modes.values[i], lambdas.values[j]).side;
+  const side = () => modeOf(modeValues[i], lambdaValues[j]).side;
   if (i < 0) return null;
   for (const now = side(); ;) {
     const since = Math.max(modeTimes[i], lambdaTimes[j] ?? -Infinity);

@@ -50,6 +50,9 @@ export class Series {
     while (this.from < this.to && this.allTimes[this.from] < time) ++this.from;
   }
 
+  /** Forgets all but the last n values. */
+  keepLast(n) { this.from = Math.max(this.from, this.to - n); }
+
   replace({times, values}) {
     this.allTimes = times;
     this.allValues = values;

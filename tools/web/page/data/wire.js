@@ -31,16 +31,16 @@ function readSteps(view, buffer) {
   return {id: view.getUint32(1, true), messages};
 }
 
-/** Reads a frame of kind 3: {id, times, values}. */
+/** Reads a frame of kind 3: {id, whole, times, values}. */
 function readSeries(view, buffer) {
-  const n = view.getUint32(5, true);
+  const n = view.getUint32(6, true);
   const times = new Float64Array(n);
   const values = new Float64Array(n);
   for (let i = 0; i < n; ++i) {
-    times[i] = view.getFloat64(9 + 8 * i, true);
-    values[i] = view.getFloat64(9 + 8 * (n + i), true);
+    times[i] = view.getFloat64(10 + 8 * i, true);
+    values[i] = view.getFloat64(10 + 8 * (n + i), true);
   }
-  return {id: view.getUint32(1, true), times, values};
+  return {id: view.getUint32(1, true), whole: view.getUint8(5) === 1, times, values};
 }
 
 /**

@@ -17,6 +17,7 @@ const MOST_SUGGESTIONS = 40;
 const MINUTE_S = 60;
 const REST = {most_ms: 1000, factor: 5};  // pause between drawings; factor: of a drawing's time
 const LEAST_SPAN = 1e-3;  // of a value axis, as a share of the values
+const NEAR_S = 10;  // a longer part of a channel may have more values than a curve
 const KEEP = "fogline.fields";
 
 /** The reader's last choice, if the browser has stored it. */
@@ -248,8 +249,12 @@ export class Curves {
   /** The value of a field at a time: the last one up to it. NaN until it has come. */
   valueAt({channel, path, isStepwise}, time) {
     const series = this.seriesOf({channel, path}, ...this.range(this.moment.time));
-    if (series.whole || !isStepwise) return series.at(time);
-    // The series has only the extremes of each span. The messages of the step have the value.
+    if (series.whole) return series.at(time);
+    // The series has only the extremes of each span.
+    if (!isStepwise) {
+      const near = this.seriesOf({channel, path}, time - NEAR_S, time + NEAR_S);
+      return near.whole ? near.at(time) : NaN;
+    }
     const frame = this.store.frame(Math.floor(time / this.store.run.step_s + EARLY));
     return numberAt(frame?.[channel], parsePath(path));
   }

@@ -5,6 +5,7 @@ import {drawNow, extremes, fillSpan, joined, makeChart, stepped, TOP, widened}
   from "../draw/chart.js";
 import {byId, hatch, say} from "../draw/dom.js";
 import {decimal, withUnit} from "../draw/format.js";
+import {MOST_POINTS} from "../data/log_store.js";
 import {sideSpans, spansOf, upTo} from "../data/modes.js";
 import {Series, whereValid} from "../data/series.js";
 import {withAlpha} from "../draw/theme.js";
@@ -123,7 +124,7 @@ export class Why {
 
   /** Every value of a field in the shown time. The series is empty until they have come. */
   shown(channel, path) {
-    const series = this.store.detail(channel, path, ...this.range);
+    const series = this.store.detail(channel, path, ...this.range, MOST_POINTS);
     return series.whole ? series : NOTHING;
   }
 
@@ -156,7 +157,10 @@ export class Why {
     this.frame = moment.frame;
     const [from, to] = this.range;
     const part = (series) => series.within(from, to);
-    const errors = sources.map((values, i) => errorColumns(part(values), this.valid[i], truth));
+    const errors = sources.map((values, i) => {
+      const isThere = truth.length > 0 && this.valid[i].length > 0;
+      return errorColumns(part(isThere ? values : NOTHING), this.valid[i], truth);
+    });
     this.errorRange = widened(...extremes(errors, from, to), LEAST_ERROR_SPAN_M);
     const columns = [[part(doc), part(threshold)], [part(automation), part(human)], errors];
     this.charts.forEach((chart, i) => {

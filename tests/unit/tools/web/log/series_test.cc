@@ -26,6 +26,7 @@ TEST(SeriesTest, GivesEveryValueIfTheyAreFew) {
   EXPECT_EQ(series.value[1], 1);
   EXPECT_TRUE(std::isnan(series.value[2]));
   EXPECT_EQ(series.time_s[3], 0.1 * 3);
+  EXPECT_TRUE(series.whole);
 }
 
 TEST(SeriesTest, LosesNoPeak) {
@@ -40,6 +41,7 @@ TEST(SeriesTest, LosesNoPeak) {
       EXPECT_EQ(std::ranges::min(series.value), std::ranges::min(values));
       EXPECT_EQ(std::ranges::max(series.value), std::ranges::max(values));
       EXPECT_TRUE(std::ranges::is_sorted(series.time_s));
+      EXPECT_EQ(series.whole, steps <= 2 * points);
     }
   }
 }

@@ -80,6 +80,7 @@ TEST_F(SeatTest, OnlyOneClientDrives) {
   EXPECT_FALSE(refused.message);
   EXPECT_FALSE(refused.sits);
   EXPECT_THAT(refused.why, HasSubstr("another person"));
+  EXPECT_FALSE(refused.too_many);
   EXPECT_FALSE(seat_.Leave(kBert, At(2)));
   EXPECT_TRUE(seat_.Take(kAnna, Brakes(), At(3)).message);
 }
@@ -113,6 +114,7 @@ TEST_F(SeatTest, ARefusedInputDoesNotTakeTheSeat) {
   for (int i = 0; i < tries; ++i) seat_.Take(kAnna, away, At(1));
   const Seat::Taken refused = seat_.Take(kBert, Brakes(), At(1));
   EXPECT_THAT(refused.why, HasSubstr("inputs a second"));
+  EXPECT_TRUE(refused.too_many);
   EXPECT_FALSE(refused.sits);
   EXPECT_TRUE(seat_.Has(kAnna));
   const Seat::Taken taken = seat_.Take(kBert, Brakes(), At(1001));

@@ -88,6 +88,17 @@ test("messages that belong to no step have curves, too, and STATUS one for each 
   assert.equal(store.frame(0), null);
 });
 
+test("messages whose time stands still do not fill the memory, and cost no step", () => {
+  const store = filledStore();
+  const [bytes] = bytesOf("RUN");
+  const series = store.series("RUN", "header.step");
+  for (let i = 0; i < 6 * 2 ** 20 / bytes.length; ++i) store.add({channel: 4, arrived_ms: 0, bytes});
+  const {bytes: kept, messages} = store.tracks.get("RUN");
+  assert.ok(kept <= 4 * 2 ** 20 && kept > 2 ** 20, String(kept));
+  assert.ok(series.length >= messages.length && series.length < 4 * 2 ** 20 / bytes.length + 1, String(series.length));
+  assert.deepEqual([store.firstStep, store.lastStep], [0, 299]);
+});
+
 test("a live store takes no message twice, of another run, or of an unknown type", () => {
   const store = filledStore();
   const series = store.series("TRUTH", "host_gap_m");

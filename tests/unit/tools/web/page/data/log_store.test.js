@@ -17,11 +17,11 @@ class Wire {
   }
 
   async answer() {
-    const {question: {op, from, to}, resolve} = this.asked.shift();
+    const {question: {op, from, to, points}, resolve} = this.asked.shift();
     if (op === "steps") {
       resolve({messages: truth.slice(from, to + 1).map((bytes, i) => ({channel: 0, step: from + i, bytes}))});
     } else {
-      resolve({times: Float64Array.of(from, to), values: Float64Array.of(1, 2)});
+      resolve({whole: to - from < 2 * points, times: Float64Array.of(from, to), values: Float64Array.of(1, 2)});
     }
     for (let i = 0; i < 5; ++i) await Promise.resolve();
   }
@@ -94,7 +94,7 @@ test("a part that is still used is not forgotten for newer ones", async () => {
     store.detail("TRUTH", "host_gap_m", 0, 60);
     store.detail("TRUTH", "host_speed_mps", from, from + 60);
   }
-  const {length} = wire.asked.filter(({question: {field, to}}) => field === "host_gap_m" && to === 600);
+  const {length} = wire.asked.filter(({question: {field, to}}) => field === "host_gap_m" && to === 1200);
   assert.equal(length, 1);
 });
 

@@ -25,7 +25,7 @@ test("a message that is not shown, and a client that is refused, have words", ()
     ["this viewer itself missed 1 packet",
      "2 messages are larger than a datagram and not shown (CAMERA, MAP)",
      "3 runs are not shown, because the scenario is not valid", "4 viewers were cut off",
-     "5 connections were refused", "6 frames of viewers were wrong"]);
+     "5 connections were refused", "6 frames of clients were wrong"]);
   assert.deepEqual(
     lacksOf({own_overflow: 2, too_large: 1, too_large_channels: ["MAP"], refused_scenarios: 1, cut_off: 1, refused: 1}),
     ["this viewer itself missed 2 packets", "1 message is larger than a datagram and not shown (MAP)",

@@ -38,13 +38,14 @@ test("an answer has the messages of its steps", () => {
 });
 
 test("a series has its times, then its values", () => {
-  const {id, times, values} = readFrame(frame(
-    ["u8", 3], ["u32", 4], ["u32", 2], ["f64", 0], ["f64", 0.1], ["f64", NaN], ["f64", 7]));
-  assert.deepEqual([id, [...times], [...values]], [4, [0, 0.1], [NaN, 7]]);
+  const {id, whole, times, values} = readFrame(frame(
+    ["u8", 3], ["u32", 4], ["u8", 1], ["u32", 2], ["f64", 0], ["f64", 0.1], ["f64", NaN], ["f64", 7]));
+  assert.deepEqual([id, whole, [...times], [...values]], [4, true, [0, 0.1], [NaN, 7]]);
+  assert.equal(readFrame(frame(["u8", 3], ["u32", 4], ["u8", 0], ["u32", 0])).whole, false);
 });
 
 test("a frame whose lengths do not fit is no frame", () => {
-  for (const bad of [frame(["u8", 1], ["u16", 3]), frame(["u8", 3], ["u32", 4], ["u32", 2]),
+  for (const bad of [frame(["u8", 1], ["u16", 3]), frame(["u8", 3], ["u32", 4], ["u8", 1], ["u32", 2]),
                      frame(["u8", 2], ["u32", 9], ["u16", 1], ["i64", 1], ["u32", 99]), frame()]) {
     assert.throws(() => readFrame(bad), RangeError);
   }
