@@ -2,13 +2,16 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <map>
 
+#include "services/log/event_log.h"
 #include "services/log/remains.h"
 #include "services/log/run_log.h"
+#include "services/runtime/transport/bus.h"
 #include "tests/integration/web/viewed.h"
 
 namespace fogline::test {
@@ -178,6 +181,44 @@ TEST(LogViewTest, GivesAFieldOverTimeAndLosesNoPeak) {
   const json error = ReceiveOp(client, "error");
   EXPECT_EQ(error["id"], 3);
   EXPECT_THAT(error["message"].get<std::string>(), HasSubstr("host_gap_m"));
+}
+
+TEST(LogViewInRealtimeTest, GivesAFieldOfTheStatusOfOneRole) {
+  const ScratchFolder folder;
+  const std::string log = folder.File("run.lcm");
+  const Outcome run = RunCommand({Program("fogline"), "run", "scenario/paper.json", "--realtime",
+                                  "--set", "/step_s=0.01", "--set", "/steps=200", "--lcm-url",
+                                  runtime::FreshMulticastUrl(), "--log", log, "--quiet"});
+  ASSERT_EQ(run.code, 0) << run.err;
+  std::vector<double> steps;
+  log::EventLogReader reader(log);
+  status_t status{};
+  while (const auto event = reader.Next()) {
+    if (event->channel == ChannelOf<status_t>().name && runtime::Decode(event->data, status) &&
+        status.role == "fusion" && status.header.step >= 0) {
+      steps.push_back(static_cast<double>(status.header.step));
+    }
+  }
+  ASSERT_FALSE(steps.empty());
+  Viewed viewed({log});
+  ASSERT_NE(viewed.port(), 0) << viewed.process().Err();
+  WebClient client(viewed.port());
+  const auto ask = [&](std::uint32_t id, std::int64_t points, bool changes) {
+    client.Send(json{
+        {"op", "series"},
+        {"id", id},
+        {"channel", "STATUS/fusion"},
+        {"field", "header.step"},
+        {"from", 0},
+        {"to", 199},
+        {"points", points},
+        {"changes",
+         changes}}.dump());
+    return ReceiveKind(client, 3);
+  };
+  EXPECT_EQ(SeriesOf(ask(1, std::ssize(steps), false), 1, true).second, steps);
+  steps.erase(std::unique(steps.begin(), steps.end()), steps.end());
+  EXPECT_EQ(SeriesOf(ask(2, std::ssize(steps), true), 2, false).second, steps);
 }
 
 TEST(LogViewTest, AnswersBadRequestsAndGoesOn) {
