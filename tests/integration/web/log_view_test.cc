@@ -314,7 +314,7 @@ TEST(LogViewTest, OpensAMillionMessagesIn3sAnd300MB) {
         {"to", kSteps},
         {"points",
          1000}}.dump());
-    EXPECT_LE(ReceiveKind(client, 3).bytes.size(), 9 + 2000 * 2 * sizeof(double));
+    EXPECT_LE(ReceiveKind(client, 3).bytes.size(), 10 + 2000 * 2 * sizeof(double));
   }
   for (int from = 0; from < kSteps; from += kSteps / 20) {
     client.Send(json{{"op", "steps"}, {"id", 1}, {"from", from}, {"to", from + 500}}.dump());

@@ -93,7 +93,7 @@ void Server::CountRefused(const std::string& address, std::string_view why) {
 
 void Server::CountWrongFrame(const std::string& address, std::string_view why) {
   ++counts_.wrong_frames;
-  lines_.Print(
+  frame_lines_.Print(
       fmt::format("{} sends a wrong frame ({} so far): {}", address, counts_.wrong_frames, why));
 }
 

@@ -159,6 +159,7 @@ class Server {
   View& view_;
   const ServerLimits limits_;
   LineBudget lines_{"fogline-web"};
+  LineBudget frame_lines_{"fogline-web"};  // a flood of wrong frames hides no other line
   Acceptor acceptor_;
   Access access_;
   std::map<std::uint64_t, std::shared_ptr<Connection>> connections_;
