@@ -80,7 +80,7 @@ test("the numbers of a log of 60,000 steps are those of its steps", async (t) =>
   for (const step of [12347, 40001, 59998]) {
     await goTo(page, step);
     const {host_gap_m: gap} = numbers("TRUTH", step);
-    for (const [key, channel, field] of [["radar", "RADAR", "range_m"], ["fusion", "TRACK", "state[0]"]]) {
+    for (const [key, channel, field] of [["radar", "RADAR", "range_m"], ["fusion", "TRACK", "state.0"]]) {
       const error = Number((numbers(channel, step)[field] - gap).toFixed(2)) + 0;
       await page.waitForFunction(([id, wanted]) => {
         const words = document.getElementById(id).textContent.replace("\u2212", "-");
@@ -127,9 +127,12 @@ function leadColours(page) {
   });
 }
 
+// The speeds of a leader who brakes with 2 m/s2 after 10 s.
+const BRAKES = [{duration_s: 10, speed_mps: 20}, {duration_s: 4, speed_mps: 12}, {duration_s: 60, speed_mps: 12}];
+
 test("the driver's view has the preceding car at its place, its brake lamps, and the fog's contrast", async (t) => {
   const folder = scratch(t);
-  const log = recordedRun(folder);
+  const log = recordedRun(folder, ["/lead/profile=breakpoints", `/lead/breakpoints=${JSON.stringify(BRAKES)}`]);
   const numbers = numbersOf(folder, log);
   const page = await open(t, await browser(t), await view(t, [log]));
   await page.waitForFunction(() => foglinePage.scene.view);
