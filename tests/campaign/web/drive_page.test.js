@@ -162,7 +162,7 @@ test("an open dialog does not drive", async (t) => {
 });
 
 test("a page that is busy for 300 ms does not drive, and is told", async (t) => {
-  const {page, server} = await leaves(t, ({page: one}) => one.evaluate(() => {
+  const {page, server, run} = await leaves(t, ({page: one}) => one.evaluate(() => {
     const end = performance.now() + 900;
     while (performance.now() < end) continue;
   }));
