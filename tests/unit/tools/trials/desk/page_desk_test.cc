@@ -40,7 +40,9 @@ TEST(PageDeskTest, AMarkerAfterTheEndOfARunIsRefusedAndNotTold) {
   const std::string url = runtime::FreshMulticastUrl();
   PageDesk desk(PageOptions{});
   WebClient experimenter = Open(desk.experimenter_address());
-  Speaker speaker(runtime::FreshMulticastUrl(), 1, {}, {});
+  trial_t base{};
+  base.participant = base.trial = base.attempt = 1;
+  Speaker speaker(runtime::FreshMulticastUrl(), 1, {}, base);
   desk.RunBegins(speaker);
   experimenter.Send(R"({"op":"marker","text":"yawns"})");
   for (std::string state; state.find("marker: yawns") == std::string::npos;) {
