@@ -138,15 +138,16 @@ export class LogStore {
    * @param points if there are more than twice as many values, the series has only extremes
    */
   detail(channel, path, from_s, to_s, points = DETAIL_POINTS) {
-    const whole = this.series(channel, path);
-    if (whole.whole) return whole;
+    if (this.lastStep - this.firstStep < 2 * MOST_POINTS) {
+      const whole = this.series(channel, path);
+      if (whole.whole) return whole;
+    }
     const {step_s} = this.run;
     const length = Math.max(1, Math.ceil((to_s - from_s) / step_s));
     const place = from_s / step_s / length;  // of the window, in lengths
     const part = (begin) => this.part(channel, path, begin * length, (begin + 2) * length, points);
     if (place - Math.floor(place) > 0.5) part(Math.floor(place) + 1);
-    const detail = part(Math.floor(place));
-    return detail.length ? detail : whole;
+    return part(Math.floor(place));
   }
 
   part(channel, path, begin, end, points) {

@@ -68,7 +68,7 @@ test("a store keeps a limited number of steps", async () => {
 test("a window that moves over a long log needs another part only now and then", async () => {
   const {wire, store} = opened(1e6);
   store.detail("TRUTH", "host_gap_m", 0, 60);
-  assert.equal(wire.asked[0].question.to, 1e6);
+  assert.deepEqual([wire.asked[0].question.from, wire.asked[0].question.to], [0, 1200], "not the whole log");
   await wire.answer();
   for (let from = 0; from < 600; from += 1) store.detail("TRUTH", "host_gap_m", from, from + 60);
   assert.ok(wire.asked.length <= 25, String(wire.asked.length));
@@ -94,8 +94,8 @@ test("a part that is still used is not forgotten for newer ones", async () => {
     store.detail("TRUTH", "host_gap_m", 0, 60);
     store.detail("TRUTH", "host_speed_mps", from, from + 60);
   }
-  const {length} = wire.asked.filter(({question: {field, to}}) => field === "host_gap_m" && to === 1200);
-  assert.equal(length, 1);
+  assert.ok(wire.asked.length > 48);
+  assert.ok(!wire.asked.some(({question: {field}}) => field === "host_gap_m"), "it was asked for once");
 });
 
 test("a short log needs no finer values", async () => {
