@@ -88,7 +88,7 @@ class DeadmanInRealtimeTest : public testing::Test {
     EXPECT_LE(after_s, deadman_s + kTwoPeriods_s + kAllowance_s);
   }
 
-  /// Time of the run at the last input of a person in the log; -1 if there is none.
+  /// Finds the last DRIVER_INPUT with a person in the log. @return its utime; -1 if there is none
   std::int64_t LastInput_us() {
     std::int64_t input_us = -1;
     log::EventLogReader reader(run_.log());
