@@ -155,7 +155,8 @@ TEST(CrashTest, ASecondProcessOfARoleThatLivesIsRefusedAndToldAndTheRunGoesOn) {
 TEST(CrashTest, AProcessOfARoleThatTheRunHasItselfWaitsForAnotherRun) {
   WatchedRun watched({}, 6000);
   watched.WaitForStep(100);
-  Background stray({Program("fogline-acc"), "--lcm-url", watched.url()});
+  // The run may last longer than the usual limit of this wait, which is 60 s.
+  Background stray({Program("fogline-acc"), "--lcm-url", watched.url(), "--wait", "0"});
   EXPECT_TRUE(stray.WaitForErr("fogline-acc: run " + watched.RunId() + " on " + watched.url()));
   EXPECT_TRUE(watched.ExpectSameResult()["restarts"].empty());
   EXPECT_TRUE(IsAlive(stray.pid()));
