@@ -99,9 +99,11 @@ void PageState::Ask(const Next& after, const QuestionnaireSection& questionnaire
 
 void PageState::Finish() { Enter(Stage::kFinished); }
 
-void PageState::Tell(std::string line) {
+void PageState::Tell(std::string line, std::chrono::system_clock::time_point at) {
+  using std::chrono::milliseconds;
   if (lines_.size() == kMostLines) lines_.erase(lines_.begin());
-  lines_.push_back(std::move(line));
+  const auto at_ms = std::chrono::floor<milliseconds>(at.time_since_epoch()).count();
+  lines_.push_back({at_ms, std::move(line)});
 }
 
 std::string PageState::ForParticipant() const {
@@ -119,6 +121,8 @@ std::string PageState::ForParticipant() const {
 }
 
 std::string PageState::ForExperimenter() const {
+  Json lines = Json::array();
+  for (const Line& line : lines_) lines.push_back({{"at_ms", line.at_ms}, {"text", line.text}});
   return Json{{"state", number_},
               {"stage", WordOf(stage_)},
               {"participant", next_.trial.participant},
@@ -129,7 +133,7 @@ std::string PageState::ForExperimenter() const {
               {"condition", next_.for_experimenter},
               {"questionnaire", stage_ == Stage::kAsking ? questionnaire_.name : ""},
               {"view", view_},
-              {"lines", lines_}}
+              {"lines", std::move(lines)}}
       .dump();
 }
 

@@ -2,6 +2,7 @@
 // no sockets.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -52,7 +53,9 @@ class PageState {
   void Finish();
   /// Adds a line at the end of the lines that the experimenter sees. If there are too many lines,
   /// the oldest ones are removed.
-  void Tell(std::string line);
+  /// @param at the time that the experimenter sees beside the line
+  void Tell(std::string line,
+            std::chrono::system_clock::time_point at = std::chrono::system_clock::now());
 
   /// JSON for the page of the participant. It does not contain the condition, the seed, the
   /// threshold or the address of the view.
@@ -69,6 +72,12 @@ class PageState {
   std::optional<PageMessage> FromExperimenter(std::string_view frame, std::string& why) const;
 
  private:
+  /// A line that the experimenter sees.
+  struct Line {
+    std::int64_t at_ms;  // since 1970
+    std::string text;
+  };
+
   void Enter(Stage stage);
 
   Stage stage_ = Stage::kStarting;
@@ -78,7 +87,7 @@ class PageState {
   QuestionnaireSection questionnaire_;
   std::string view_;
   std::string seat_;
-  std::vector<std::string> lines_;
+  std::vector<Line> lines_;
 };
 
 }  // namespace fogline::trials

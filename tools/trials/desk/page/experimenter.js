@@ -38,9 +38,12 @@ function show(state) {
     view.href = state.view;
     view.hostname = location.hostname;  // the name by which this browser knows the machine
   }
-  byId("lines").replaceChildren(...state.lines.toReversed().map((line) => {
+  byId("lines").replaceChildren(...state.lines.toReversed().map(({at_ms, text}) => {
     const row = document.createElement("li");
-    row.textContent = line;
+    const time = document.createElement("time");
+    time.dateTime = new Date(at_ms).toISOString();
+    time.textContent = new Date(at_ms).toLocaleTimeString("en-GB");
+    row.append(time, text);
     return row;
   }));
 }

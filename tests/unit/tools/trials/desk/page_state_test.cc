@@ -49,6 +49,17 @@ TEST(PageStateTest, TheParticipantSeesNothingOfConditionSeedOrView) {
   expect_silence();
 }
 
+TEST(PageStateTest, TheExperimenterSeesWhenEachThingHappened) {
+  using namespace std::chrono_literals;
+  PageState state(1);
+  const std::chrono::system_clock::time_point start{1'700'000'000s};
+  state.Tell("the run begins", start);
+  state.Tell("marker: yawns", start + 1500ms);
+  const json lines = json::parse(state.ForExperimenter())["lines"];
+  EXPECT_EQ(lines, json::parse(R"([{"at_ms": 1700000000000, "text": "the run begins"},
+                                   {"at_ms": 1700000001500, "text": "marker: yawns"}])"));
+}
+
 TEST(PageStateTest, TheParticipantWhoDrivesSeesTheSeatWhileItIsOpen) {
   PageState state(1);
   Next next = NextRun();
