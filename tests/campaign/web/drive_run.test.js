@@ -232,8 +232,9 @@ function assertReleased(log, from) {
 
 /**
  * The person drives. Then `happens` is called, and the run must notice that no person is present.
+ * `then` looks at the page while the car stops.
  */
-async function leavesTheCar(t, happens, {isWheel = false} = {}) {
+async function leavesTheCar(t, happens, {isWheel = false, then = null} = {}) {
   const {page, log, run} = await drive(t, {"/arbitrator/threshold": 0, "/steps": 600},
                                        {prepare: isWheel ? withFakePads : null});
   if (isWheel) await plugIn(page);
@@ -243,6 +244,7 @@ async function leavesTheCar(t, happens, {isWheel = false} = {}) {
   await takeOver(page, isWheel);
   await pressThrottle(page, isWheel);
   await happens(page);
+  await then?.(page);
   await run.ended;
   const commands = messagesOf(log, "HOST_COMMAND", "arbitration_t");
   const drove = commands.findIndex(({lambda_human}) => lambda_human > 0.5);
@@ -264,7 +266,11 @@ test("when the page is closed, the fallbacks stop the car", async (t) => {
 });
 
 test("when the wheel is unplugged, the fallbacks stop the car", async (t) => {
-  await leavesTheCar(t, (page) => setPad(page, {connected: false}), {isWheel: true});
+  await leavesTheCar(t, (page) => setPad(page, {connected: false}), {isWheel: true, then: async (page) => {
+    await says(page, "The car stands");
+    assert.equal(await page.locator("#away").innerText(), "Nobody drives any more in this run.");
+    assert.ok(await page.locator("#take-over").isDisabled());
+  }});
 });
 
 test("when the page is silent for 300 ms, the fallbacks stop the car", async (t) => {

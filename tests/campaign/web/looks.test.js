@@ -85,6 +85,9 @@ test("the page of a drive looks well", async (t) => {
   await page.click("#setup-close");
   run.kill("SIGINT");
   await page.waitForFunction(() => document.getElementById("origin-words").textContent === "The program has ended");
+  assert.match(await page.locator("#who").innerText(), /^The (program|drive) has ended/);
+  assert.equal(await page.locator("#speed").innerText(), "–");
+  for (const button of ["#begin", "#take-over", "#give-back"]) assert.ok(await page.locator(button).isDisabled());
   await looksWell(page, "the end of the program");
   page.trouble = page.trouble.filter((words) => !/WebSocket|ERR_CONNECTION/.test(words));  // of that time
 });
@@ -104,7 +107,8 @@ const ITEMS = [
 ];
 const BOTH = {state: 1, practice: false, run: 2, of: 3, wait_s: 0, drives: true};
 const DESK = {...BOTH, participant: 1, condition: "late, seed 102", questionnaire: "", view: "", lines: [
-  "the run begins", `marker: ${"a long text without a break ".repeat(4)}`, "the run has ended"]};
+  "the run begins", `marker: ${"a long text without a break ".repeat(4)}`, "the run has ended",
+].map((text, i) => ({at_ms: Date.UTC(2026, 0, 1) + 60_000 * i, text}))};
 const ASKING = {...BOTH, stage: "asking", items: ITEMS};
 const STATES = {
   "index.html": [

@@ -154,6 +154,7 @@ class Drive {
   // ---- messages of the server ---------------------------------------------------------------------
 
   showConnection(state) {
+    this.connection = state;
     const words = {open: "Connected", ended: "The program has ended", lost: "No connection, trying again",
                    refused: "No connection"}[state];
     setAttribute(byId("origin"), "data-state", state === "open" ? "live" : "lost");
@@ -234,7 +235,7 @@ class Drive {
 
   draw() {
     const {frame = {}, run} = this.newest ?? {};
-    const state = told(frame.HOST_COMMAND, frame.TRUTH);
+    const state = told(frame.HOST_COMMAND, frame.TRUTH, this.connection);
     this.told = state;
     const time_s = Number(frame.HOST_COMMAND?.header.utime ?? 0) / 1e6;
     const lead_s = run?.scenario?.arbitrator?.take_over?.lead_s ?? 10;
@@ -245,6 +246,7 @@ class Drive {
     this.drawState(state, left);
     this.drawPerson(state);
     this.drawRoad(frame.TRUTH);
+    setAttribute(document.body, "data-connection", this.connection ?? "none");
     setAttribute(document.body, "data-step", String(this.newest?.step ?? ""));
   }
 
@@ -264,11 +266,11 @@ class Drive {
   }
 
   drawPerson(state) {
-    const {side} = state;
+    const {side, isFinal} = state;
     const why = this.person.whyAway();
     const seat = this.refused ? "refused" : "no seat";
     const words = this.state === "" ? ""
-      : whyAwayInWords(this.state === "taken" ? seat : why, {hasLeft: this.hasLeft, side});
+      : whyAwayInWords(this.state === "taken" ? seat : why, {hasLeft: this.hasLeft, side, isFinal});
     say(byId("away"), words);
     byId("away").hidden = words === "";
     const answer = words === "" ? this.answer.words(state, performance.now()) : "";
@@ -277,7 +279,8 @@ class Drive {
     say(byId("begin"), this.person.begun ? "Leave the seat" : "Begin");
     setAttribute(byId("begin"), "data-begun", String(this.person.begun));
     setAttribute(document.body, "data-present", String(why === ""));
-    byId("take-over").disabled = why !== "" || side === "human" || Boolean(this.newest?.frame.TRUTH?.last);
+    byId("begin").disabled = this.connection === "ended";
+    byId("take-over").disabled = why !== "" || isFinal || (side !== "automation" && side !== "risk");
     byId("give-back").disabled = why !== "" || side !== "human";
     const {throttle = 0, brake = 0} = this.input ?? {};
     byId("throttle").value = throttle;
@@ -289,7 +292,7 @@ class Drive {
   drawRoad(truth) {
     byId("no-road").hidden = Boolean(truth);
     if (!truth) return;
-    say(byId("speed"), kmh(truth.host_speed_mps));
+    say(byId("speed"), this.connection === "open" ? kmh(truth.host_speed_mps) : "–");
     const {run, taken_ms} = this.newest;
     const ahead_s = reducedMotion.matches || truth.last ? 0
       : Math.min(run?.step_s ?? 0.1, Math.max(0, (performance.now() - taken_ms) / 1000) * (run?.pace || 1));

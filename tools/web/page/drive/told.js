@@ -25,22 +25,35 @@ const ENDED = [
   "The drive has ended: the car behind has hit yours",
 ];
 
-const noSide = (words) => ({side: "unknown", words, asks: false, urgent: false, answered: false});
+// The texts while there is no connection to the program, by the state of the wire (data/wire.js).
+const GONE = {
+  ended: "The program has ended",
+  lost: "No connection to the car",
+  refused: "No connection to the car",
+};
+
+// Modes after which nobody drives until the end of the run.
+const FINAL = ["MINIMAL_RISK", "MRM_DONE"];
+
+const noSide = (words) => (
+  {side: "unknown", words, asks: false, urgent: false, answered: false, isFinal: false});
 
 /**
- * The description {side, words, asks, urgent, answered} of a HOST_COMMAND. Without a HOST_COMMAND
- * the drive has not begun.
+ * The description {side, words, asks, urgent, answered, isFinal} of a HOST_COMMAND. Without a
+ * HOST_COMMAND the drive has not begun. `isFinal`: nobody drives until the end of the run.
  * @param truth the newest TRUTH, which says whether the run has ended
+ * @param connection state of the wire (data/wire.js)
  */
-export function told(command, truth = null) {
+export function told(command, truth = null, connection = "open") {
   if (truth?.last) return noSide(ENDED[truth.collision] ?? ENDED[0]);
+  if (GONE[connection]) return noSide(GONE[connection]);
   if (!command) return noSide("The drive has not begun");
   const {name, side, asks: waits = false, urgent = false} = modeOf(command.mode, command.lambda_human);
   const asks = waits && name !== "HANDOVER";  // in HANDOVER the person has already answered
   const drives = side === "human" ? TOLD.HUMAN : TOLD.AUTOMATION;
   const words = name === "COLLISION_WARNING" ? `Collision warning. ${drives}`
     : TOLD[name] ?? "It is not known who drives";
-  return {side, words, asks, urgent, answered: waits && !asks};
+  return {side, words, asks, urgent, answered: waits && !asks, isFinal: FINAL.includes(name)};
 }
 
 /**
@@ -60,9 +73,15 @@ export function countdown(request, time_s, lead_s) {
 // person can read them.
 const ANSWER_MS = {after: 1000, until: 6000};
 
+// By button and the side that drives. Other pairs have an effect.
 const NO_EFFECT = {
-  take_over: "The automation goes on driving: it has not asked you to take over.",
-  give_back: "You still drive: the automation does not take the car yet. Press again later.",
+  take_over: {
+    automation: "The automation goes on driving: it has not asked you to take over.",
+    risk: "The car goes on stopping by itself: it has not taken your answer.",
+  },
+  give_back: {
+    human: "You still drive: the automation does not take the car yet. Press again later.",
+  },
 };
 
 /** Tells a person that a button has had no effect. */
@@ -73,8 +92,8 @@ export class Answer {
 
   /** @param state what told() says at this time */
   press(button, {side, asks, answered}, now_ms) {
-    const canDo = button === "take_over" ? side === "automation" && !asks && !answered : side === "human";
-    this.pressed = canDo ? {button, side, at_ms: now_ms} : null;
+    const mayFail = NO_EFFECT[button][side] !== undefined && !asks && !answered;
+    this.pressed = mayFail ? {button, side, at_ms: now_ms} : null;
   }
 
   /** The words at a time; "" if there is nothing to say. */
@@ -82,7 +101,8 @@ export class Answer {
     if (this.pressed?.side !== side || asks) this.pressed = null;
     if (!this.pressed) return "";
     const passed_ms = now_ms - this.pressed.at_ms;
-    return passed_ms < ANSWER_MS.after || passed_ms > ANSWER_MS.until ? "" : NO_EFFECT[this.pressed.button];
+    const isShown = passed_ms >= ANSWER_MS.after && passed_ms <= ANSWER_MS.until;
+    return isShown ? NO_EFFECT[this.pressed.button][side] : "";
   }
 }
 
@@ -98,12 +118,14 @@ const WHY_AWAY = {
 };
 
 const LEFT = "You have left the seat. Press “Begin” to come back.";
+const NO_MORE = "Nobody drives any more in this run.";
 
 /**
  * The text for a reason of Person.whyAway(); "" if the person drives.
- * @param hasLeft whether the person had begun before; side: the side that drives
+ * @param hasLeft whether the person had begun before; side, isFinal: see told()
  */
-export function whyAwayInWords(why, {hasLeft = false, side = "unknown"} = {}) {
+export function whyAwayInWords(why, {hasLeft = false, side = "unknown", isFinal = false} = {}) {
+  if (isFinal) return NO_MORE;
   const words = why === "not begun" && hasLeft ? LEFT : WHY_AWAY[why] ?? "";
   return words !== "" && side === "human" ? `${words} No person presses the pedals now.` : words;
 }

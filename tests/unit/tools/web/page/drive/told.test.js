@@ -51,6 +51,44 @@ test("the end of a drive is told, and a collision", () => {
   assert.match(at({last: 1, collision: COLLISION_FOLLOWER}), /ended: the car behind has hit yours/);
 });
 
+test("without a connection the page does not say that somebody drives", () => {
+  const {HUMAN, REQUEST} = describedTypes().arbitration_t.constants;
+  const at = (connection, truth = null, mode = HUMAN) => told({mode, lambda_human: 1}, truth, connection);
+  assert.equal(at("open").words, "You drive");
+  assert.equal(at("ended").words, "The program has ended");
+  for (const state of ["lost", "refused"]) assert.match(at(state).words, /No connection/);
+  for (const state of ["ended", "lost", "refused"]) assert.equal(at(state).side, "unknown");
+  assert.equal(at("lost", null, REQUEST).asks, false);
+  assert.match(at("ended", {last: 1, collision: 0}).words, /^The drive has ended/, "the result stays");
+});
+
+test("in a stop that lasts until the end of the run the page gives no advice", () => {
+  const {MINIMAL_RISK, MRM_COMFORT, MRM_DONE, MRM_FAILED, EMERGENCY_BRAKING} =
+    describedTypes().arbitration_t.constants;
+  const at = (mode) => told({mode, lambda_human: 0});
+  for (const mode of [MINIMAL_RISK, MRM_DONE]) {
+    assert.ok(at(mode).isFinal);
+    for (const why of ["", "not begun", "no seat", "not calibrated"]) {
+      assert.match(whyAwayInWords(why, at(mode)), /Nobody drives any more in this run/);
+    }
+  }
+  for (const mode of [MRM_COMFORT, MRM_FAILED, EMERGENCY_BRAKING]) {
+    assert.equal(at(mode).isFinal, false);
+    assert.equal(whyAwayInWords("", at(mode)), "");
+  }
+});
+
+test("a car that goes on stopping answers the button", () => {
+  const {HUMAN, MRM_COMFORT} = describedTypes().arbitration_t.constants;
+  const answer = new Answer();
+  const stop = told({mode: MRM_COMFORT, lambda_human: 0});
+  answer.press("take_over", stop, 0);
+  assert.match(answer.words(stop, 1500), /goes on stopping by itself/);
+  assert.equal(answer.words(told({mode: HUMAN, lambda_human: 1}), 1500), "", "the person drives");
+  answer.press("give_back", stop, 0);
+  assert.equal(answer.words(stop, 1500), "");
+});
+
 test("a button without effect gets an answer, one with an effect gets none", () => {
   const {AUTOMATION, HUMAN, REQUEST, HANDOVER} = describedTypes().arbitration_t.constants;
   const state = (mode, lambda_human = 0) => told({mode, lambda_human});
