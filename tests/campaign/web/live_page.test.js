@@ -28,7 +28,7 @@ test("a live run is shown as it goes: the newest step, all roles, no loss", asyn
   assert.equal(await page.locator("#who").innerText(), "Automation drives");
   await page.waitForFunction(() => document.querySelectorAll("#roles tbody tr").length === 9);
   await page.waitForFunction(() => document.querySelectorAll("#senders tbody tr").length >= 9);
-  await page.waitForFunction(() => /^All 9 roles answer\. No packet was lost/.test(
+  await page.waitForFunction(() => /^All 9 roles answer\. No packet to this viewer was lost/.test(
     document.getElementById("health-summary").textContent));
   const steps = await page.evaluate(async () => {
     const before = Number(document.body.dataset.step);
@@ -129,6 +129,8 @@ test("the page says when the run has ended, and when the program has", async (t)
   const {server, address} = await serve(t, ["--lcm-url", network]);
   const page = await open(t, await browser(t), address);
   await page.waitForFunction(() => foglinePage.hello);
+  await page.waitForFunction(() => document.getElementById("origin-words").textContent === "Connected");
+  assert.notEqual(await page.locator("#origin").getAttribute("data-state"), "live");  // there is no run yet
   run(t, network, "--pace", "10");
   const says = (words) => page.waitForFunction(
     (wanted) => document.getElementById("origin-words").textContent === wanted, words);

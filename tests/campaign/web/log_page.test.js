@@ -251,6 +251,41 @@ test("curves: type a field, zoom by a drag, back by a double click, choose a mom
   assert.deepEqual(names, ["TRUTH.host_gap_m", "LIDAR.range_m", "TRUTH.host_speed_mps", "HOST_COMMAND.doc"]);
 });
 
+test("Why shows nothing that is later than the shown moment", async (t) => {
+  const log = recordedRun(scratch(t));
+  const page = await open(t, await browser(t), await view(t, [log]));
+  for (const [step, from_s] of [[50, 0], [300, 10]]) {
+    await goTo(page, step);
+    await page.waitForFunction((time) => foglinePage.why.charts.every(({data: [times]}) => times.at(-1) === time), step / 10);
+    const {scales, spans, fog_s} = await page.evaluate(() => {
+      const {why} = foglinePage;
+      const {min, max} = why.charts[0].scales.x;
+      return {scales: [min, max], spans: why.sideSpans(), fog_s: why.shownEnd};
+    });
+    assert.deepEqual(scales, [from_s, from_s + 20]);
+    assert.equal(fog_s, step / 10);
+    assert.equal(spans.at(-1).to, step / 10);
+  }
+});
+
+test("a mode has its name, and a ninth curve is refused in words", async (t) => {
+  const log = recordedRun(scratch(t));
+  const page = await open(t, await browser(t), await view(t, [log]));
+  await goTo(page, 300);
+  const add = async (name) => {
+    await page.locator("#field-search").fill(name);
+    await page.locator("#field-list li", {hasText: name}).first().click();
+  };
+  const names = ["HOST_COMMAND.mode", "HOST_COMMAND.doc", "HOST_COMMAND.threshold", "HOST_COMMAND.lambda_human"];
+  for (const name of names) await add(name);
+  await page.waitForFunction(() => (
+    [...document.querySelectorAll("#chosen li")].some((item) => /HOST_COMMAND\.mode.*1\sHUMAN/.test(item.textContent))));
+  await add("TRUTH.host_acceleration_mps2");
+  await page.waitForFunction(() => document.getElementById("note").textContent ===
+    "At most 8 curves are shown. Remove one before you add TRUTH.host_acceleration_mps2.");
+  assert.equal(await page.locator("#chosen li").count(), 8);
+});
+
 test("until the messages of a step have come, all parts show the step before", async (t) => {
   const log = recordedRun(scratch(t));
   const page = await open(t, await browser(t), await view(t, [log]));

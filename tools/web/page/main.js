@@ -30,7 +30,7 @@ class Page {
     this.scene = new Scene();
     this.now = new Now();
     this.why = new Why((time) => this.goToTime(time));
-    this.curves = new Curves({onPick: (time) => this.goToTime(time)});
+    this.curves = new Curves({onPick: (time) => this.goToTime(time), onFull: (words) => this.tell(words)});
     this.health = new Health();
     this.act = this.actions();
     this.timebar = new Timebar({...this.act, speed: (speed) => { this.clock.speed = speed; }});
@@ -52,6 +52,7 @@ class Page {
   }
 
   get isLive() { return this.hello?.mode === "live"; }
+  get waits() { return this.isLive && this.store.lastStep < 0; }  // for a run
   get run() { return this.store?.run ?? {step_s: this.store?.step_s ?? 0.1, run_id: ""}; }
   get step() {
     const step = this.clock.step(this.run.step_s);
@@ -301,7 +302,7 @@ class Page {
     const isOpen = this.connection === "open";
     const isBehind = isOpen && this.isLive && (this.isOver || this.clock.state !== "live");
     setAttribute(byId("origin"), "data-state",
-                 !isOpen ? "lost" : isBehind ? "behind" : this.hello?.mode ?? "none");
+                 !isOpen ? "lost" : this.waits ? "none" : isBehind ? "behind" : this.hello?.mode ?? "none");
     say(byId("origin-words"), this.originInWords());
   }
 
@@ -309,6 +310,7 @@ class Page {
     if (this.connection === "ended") return "The program has ended";
     if (this.connection !== "open") return "No connection, trying again";
     if (!this.isLive) return this.log ? this.log.file : "Connecting";
+    if (this.waits) return "Connected";
     if (this.isOver) return "The run has ended";
     return {live: "Live", paused: "Paused; the run goes on", playing: "Behind the run"}[this.clock.state];
   }

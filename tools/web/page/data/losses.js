@@ -8,9 +8,9 @@ export function lossesOf({senders, senders_note: note, traffic}, number = String
     return {count: 0, words: `Lost packets: not known${why}.`};
   }
   const count = senders.reduce((sum, {lost}) => sum + lost, 0);
-  const words = count === 0 ? "No packet was lost."
-    : count === 1 ? "One packet was lost on the network."
-    : `${number(count)} packets were lost on the network.`;
+  const words = count === 0 ? "No packet to this viewer was lost."
+    : count === 1 ? "One packet to this viewer was lost."
+    : `${number(count)} packets to this viewer were lost.`;
   return {count, words};
 }
 

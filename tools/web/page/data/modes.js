@@ -40,12 +40,12 @@ export function modeOf(mode, lambda_human = 0) {
 }
 
 /**
- * Spans of equal value: [{from, to, value}], from ascending times and their values. `to` is the
- * begin of the next span. For the last span it is `end`.
+ * Spans of equal value up to `end`: [{from, to, value}], from ascending times and their values. `to`
+ * is the begin of the next span. For the last span it is `end`.
  */
 export function spansOf(times, values, end) {
   const spans = [];
-  for (let i = 0; i < times.length; ++i) {
+  for (let i = 0; i < times.length && times[i] <= end; ++i) {
     if (Number.isNaN(values[i])) continue;
     const last = spans.at(-1);
     if (last?.value === values[i]) continue;

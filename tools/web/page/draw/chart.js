@@ -2,11 +2,12 @@
 
 import uPlot from "uplot";
 
-import {decimal} from "./format.js";
+import {decimal, timeTick} from "./format.js";
 import {upTo} from "../data/modes.js";
 
 const VALUE_AXIS_WIDTH = 52;  // equal in all charts, so that their time axes line up
 export const TOP = 8;         // space above the plot, in pixels
+const RIGHT = 28;             // space right of the plot: half of the longest label of a time
 const SYNC = "time";          // all charts share the reader's cursor
 
 export const stepped = uPlot.paths.stepped({align: 1});
@@ -19,10 +20,16 @@ function decimalsOf(increment) {
   return decimals;
 }
 
-const tickTexts = (suffix) => (chart, ticks, axis, space, increment) => {
-  const decimals = decimalsOf(increment);
-  return ticks.map((tick) => decimal(tick, decimals) + suffix);
-};
+const valueTicks = (chart, ticks, axis, space, increment) =>
+  ticks.map((tick) => decimal(tick, decimalsOf(increment)));
+const timeTicks = (chart, ticks, axis, space, increment) =>
+  ticks.map((tick) => timeTick(tick, increment, decimalsOf(increment)));
+
+// Distances of the ticks of a time axis, in s: below a minute decimal, then whole minutes and hours.
+const TIME_INCREMENTS = [
+  ...[-4, -3, -2, -1, 0].flatMap((power) => [1, 2, 5].map((digit) => Number(`${digit}e${power}`))),
+  10, 20, 30, ...[1, 2, 5, 10, 20, 30].map((minutes) => 60 * minutes),
+  ...[1, 2, 5, 10, 20, 50, 100, 200, 500, 1000].map((hours) => 3600 * hours)];
 
 function axisOptions(theme, more) {
   const lines = {stroke: theme.grid, width: 1};
@@ -49,7 +56,7 @@ export function makeChart(element, options) {
   const chart = new uPlot({
     width: Math.max(120, element.clientWidth),
     height: options.height,
-    padding: [options.top ?? TOP, 18, withTimeAxis ? 0 : 4, 0],
+    padding: [options.top ?? TOP, RIGHT, withTimeAxis ? 0 : 4, 0],
     legend: {show: false},
     series: [{}, ...lines.map(({stroke, dash, width, paths}) => (
       {stroke, dash, width: width ?? 1.75, paths, points: {show: false}, spanGaps: false}))],
@@ -58,10 +65,10 @@ export function makeChart(element, options) {
       y: {range: options.valueRange},
     },
     axes: [
-      axisOptions(theme, withTimeAxis ? {space: 56, size: 28, values: tickTexts(" s")}
-                                      : {space: 56, size: 0, values: () => [],
-                                         ticks: {show: false}}),
-      axisOptions(theme, {space: 30, size: VALUE_AXIS_WIDTH, values: tickTexts(""),
+      axisOptions(theme, withTimeAxis ? {space: 64, size: 28, incrs: TIME_INCREMENTS, values: timeTicks}
+                                      : {space: 64, size: 0, incrs: TIME_INCREMENTS,
+                                         values: () => [], ticks: {show: false}}),
+      axisOptions(theme, {space: 30, size: VALUE_AXIS_WIDTH, values: valueTicks,
                           ...options.valueAxis}),
     ],
     cursor: {

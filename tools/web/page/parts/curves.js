@@ -8,7 +8,7 @@ import {searchFields} from "../data/catalogue.js";
 import {digits, seconds, withUnit} from "../draw/format.js";
 import {EARLY} from "../data/clock.js";
 import {numberAt, parsePath} from "../data/lcm.js";
-import {spansOf} from "../data/modes.js";
+import {modeOf, spansOf} from "../data/modes.js";
 import {whereValid} from "../data/series.js";
 
 const FIRST_FIELDS = ["TRUTH.host_gap_m", "RADAR.range_m", "LIDAR.range_m", "TRUTH.host_speed_mps"];
@@ -19,6 +19,7 @@ const REST = {most_ms: 1000, factor: 5};  // pause between drawings; factor: of 
 const LEAST_SPAN = 1e-3;  // of a value axis, as a share of the values
 const NEAR_S = 10;  // a longer part of a channel may have more values than a curve
 const KEEP = "fogline.fields";
+const NAMES = {"HOST_COMMAND.mode": (mode) => modeOf(mode).name};  // of values, by field
 
 /** The reader's last choice, if the browser has stored it. */
 function keptFields() {
@@ -50,8 +51,10 @@ function lineKey(colour, dash) {
 }
 
 export class Curves {
-  constructor({onPick}) {
+  /** @param onPick(time), onFull(words): called if the reader chooses one field too many */
+  constructor({onPick, onFull}) {
     this.onPick = onPick;
+    this.onFull = onFull;
     this.place = byId("charts");
     this.chips = byId("chosen");
     this.charts = [];
@@ -108,6 +111,7 @@ export class Curves {
     const place = this.fields.findIndex((field) => field.name === name);
     if (place >= 0) this.fields.splice(place, 1);
     else if (this.fields.length < MOST_FIELDS) this.fields.push(this.fieldNamed(name));
+    else this.onFull(`At most ${MOST_FIELDS} curves are shown. Remove one before you add ${name}.`);
     keepFields(this.fields);
     this.rebuild();
   }
@@ -134,7 +138,7 @@ export class Curves {
     const fields = this.fields.filter((field) => field.unit === unit);
     const names = fields.map(({name}) => name).join(", ");
     const label = `Curves over time: ${names}`;
-    const element = make("div", {class: "chart", role: "img", "aria-label": label});
+    const element = make("div", {class: "chart", role: "img", "aria-label": label, "aria-describedby": "chosen"});
     this.place.append(make("p", {class: "axis-name"}, unit || "no unit"), element);
     const panel = {fields, element, range: [0, 1]};
     panel.chart = makeChart(element, {
@@ -269,7 +273,7 @@ export class Curves {
       const {channel, path, unit, isStepwise} = field;
       const value = hover === null && isStepwise ? numberAt(frame?.[channel], parsePath(path))
                                                  : this.valueAt(field, hover ?? time);
-      say(this.values[i], withUnit(digits(value), unit));
+      say(this.values[i], withUnit(digits(value), Number.isNaN(value) ? unit : NAMES[field.name]?.(value) ?? unit));
       setAttribute(this.values[i], "data-value", String(value));
     });
     say(byId("curves-at"), hover === null ? `Values at ${seconds(time, run.step_s)}`

@@ -202,8 +202,10 @@ function drawSights({pen, width, top, theme, x}, frame, truth) {
     line(pen, front, y, Math.min(width, Math.max(rear, front)), y);
     pen.fillStyle = theme.muted;
     pen.textAlign = "right";
-    pen.fillText(seen[key] === null ? `${label}: no echo` : label, front - 8, y);
-    if (seen[key] === null) continue;
+    const isNear = seen[key] !== null && x(seen[key]) >= 0 && x(seen[key]) <= width;
+    const words = seen[key] === null ? "no echo" : `${decimal(seen[key], 0)} m`;
+    pen.fillText(isNear ? label : `${label}: ${words}`, front - 8, y);
+    if (!isNear) continue;
     pen.strokeStyle = colours[key];
     pen.lineWidth = 2;
     pen.beginPath();

@@ -7,7 +7,7 @@ import {SPEEDS} from "../data/clock.js";
 
 const TRACK_HZ = 4;
 export const EVENT_MARKS = {
-  fog: "≋", transfer: "⇄", request: "?", alarm: "!", manoeuvre: "△", braking: "▼", collision: "✕"};
+  fog: "≋", transfer: "⇄", request: "◎", alarm: "!", manoeuvre: "△", braking: "▼", collision: "✕"};
 
 export class Timebar {
   /** @param act {toggle, step, jump, goTo, speed, live, link} */
@@ -43,6 +43,7 @@ export class Timebar {
     say(byId("time-now"), decimal(time, timeDecimals(run.step_s)));
     say(byId("time-end"), ` / ${seconds(store.lastTime, run.step_s)}`);
     say(byId("step-now"), `step ${step}`);
+    this.keepRoom(store, run);
     const running = clock.state !== "paused";
     setAttribute(this.play, "aria-label", running ? "Pause" : "Play");
     setAttribute(this.play, "data-running", String(running));
@@ -51,6 +52,17 @@ export class Timebar {
     this.liveButton.hidden = !isLive;
     setAttribute(this.liveButton, "aria-pressed", String(clock.state === "live"));
     this.drawTrack(store, modes, lambdas, events, theme);
+  }
+
+  /** Keeps room for the longest texts of the run, so that the slider does not move. */
+  keepRoom(store, run) {
+    const last = Math.max(store.lastStep, (run.steps ?? 0) - 1);
+    if (last === this.roomFor) return;
+    this.roomFor = last;
+    const digits = decimal(store.timeOf(last), timeDecimals(run.step_s)).length;
+    byId("time-now").style.minWidth = `${digits}ch`;
+    byId("time-end").style.minWidth = `${digits + " / ".length + " s".length}ch`;
+    byId("step-now").style.minWidth = `${`step ${last}`.length}ch`;
   }
 
   /** Draws fog, the side that drives, and events over the whole time. */

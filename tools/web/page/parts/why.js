@@ -13,6 +13,7 @@ import {withAlpha} from "../draw/theme.js";
 export const WINDOW_S = 20;
 const BAND = {height: 12, gap: 5};  // space above the conflict for the side that drives, in pixels
 const LEAST_ERROR_SPAN_M = 0.5;
+const MANY_M = 100;
 
 /** The values whose errors are drawn: {key, channel, path, label}. */
 const SOURCES = [
@@ -41,6 +42,18 @@ export function drawBand(chart, spans, theme, top, height) {
 function errorColumns({times, values}, valid, truth) {
   const seen = whereValid({times, values}, valid);
   return {times, values: seen.values.map((one, i) => one - truth.at(times[i]))};
+}
+
+/** The columns up to a time. */
+function upToTime({times, values}, time) {
+  const n = upTo(times, time) + 1;
+  return {times: times.subarray(0, n), values: values.subarray(0, n)};
+}
+
+/** An error in m, as text. The decimals of a large error say nothing. */
+function errorInWords(error_m) {
+  if (Number.isNaN(error_m)) return "no value";
+  return withUnit(decimal(error_m, Math.abs(error_m) < MANY_M ? 2 : 0), "m");
 }
 
 const NOTHING = new Series();
@@ -112,14 +125,14 @@ export class Why {
   }
 
   drawFog(chart) {
-    const {times, values} = this.fog.within(...this.range);
+    const {times, values} = this.fog.within(this.range[0], this.shownEnd);
     for (const {from, to, value} of spansOf(times, values, this.shownEnd)) {
       if (value) fillSpan(chart, from, to, this.theme.fog);
     }
   }
 
   sideSpans() {
-    return sideSpans(this.modes, this.lambdas, ...this.range, this.shownEnd);
+    return sideSpans(this.modes, this.lambdas, this.range[0], this.shownEnd, this.shownEnd);
   }
 
   /** Every value of a field in the shown time. The series is empty until they have come. */
@@ -128,11 +141,12 @@ export class Why {
     return series.whole ? series : NOTHING;
   }
 
-  /** The end of the shown time, or the last known time if this is earlier. */
+  /** The shown moment, or the last known time if this is earlier. Nothing later is shown. */
   get shownEnd() {
-    return Math.min(this.range[1], this.store.lastTime);
+    return Math.min(this.moment.time, this.store.lastTime);
   }
 
+  /** First and last time of the charts. In the first 20 s the moment is before the last time. */
   get range() {
     const end = Math.max(this.moment.time, this.store.firstTime + WINDOW_S);
     return [end - WINDOW_S, end];
@@ -156,7 +170,7 @@ export class Why {
     this.drawn = drawn;
     this.frame = moment.frame;
     const [from, to] = this.range;
-    const part = (series) => series.within(from, to);
+    const part = (series) => upToTime(series.within(from, moment.time), moment.time);
     const errors = sources.map((values, i) => {
       const isThere = truth.length > 0 && this.valid[i].length > 0;
       return errorColumns(part(isThere ? values : NOTHING), this.valid[i], truth);
@@ -180,8 +194,7 @@ export class Why {
     SOURCES.forEach(({key}, i) => {
       const {times, values} = errors[i];
       const place = upTo(times, time);
-      const words = Number.isNaN(values[place]) ? "no value" : withUnit(decimal(values[place], 2), "m");
-      say(byId(`value-${key}`), place < 0 ? "" : words);
+      say(byId(`value-${key}`), place < 0 ? "" : errorInWords(values[place]));
     });
   }
 

@@ -4,10 +4,10 @@ import {test} from "node:test";
 import {lacksOf, lossesOf} from "../../../../../../tools/web/page/data/losses.js";
 
 test("lost packets are counted over all senders", () => {
-  assert.deepEqual(lossesOf({senders: [{lost: 0}, {lost: 0}]}), {count: 0, words: "No packet was lost."});
-  assert.equal(lossesOf({senders: [{lost: 1}]}).words, "One packet was lost on the network.");
+  assert.deepEqual(lossesOf({senders: [{lost: 0}, {lost: 0}]}), {count: 0, words: "No packet to this viewer was lost."});
+  assert.equal(lossesOf({senders: [{lost: 1}]}).words, "One packet to this viewer was lost.");
   assert.deepEqual(lossesOf({senders: [{lost: 1}, {lost: 2}]}),
-                   {count: 3, words: "3 packets were lost on the network."});
+                   {count: 3, words: "3 packets to this viewer were lost."});
 });
 
 test("a network without numbers is not said to lose nothing", () => {

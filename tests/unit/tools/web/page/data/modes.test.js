@@ -21,6 +21,8 @@ test("spans join equal values and end where the next begins", () => {
   assert.deepEqual(spansOf([0, 1, 2, 3], [5, 5, NaN, 7], 4),
                    [{from: 0, to: 3, value: 5}, {from: 3, to: 4, value: 7}]);
   assert.deepEqual(spansOf([], [], 4), []);
+  assert.deepEqual(spansOf([0, 1, 3], [5, 6, 7], 2),
+                   [{from: 0, to: 1, value: 5}, {from: 1, to: 2, value: 6}], "nothing later than the end");
 });
 
 function seriesOf(points) {
