@@ -6,7 +6,7 @@ import {test} from "node:test";
 
 import {meetsBar} from "./load.js";
 import {begin, drives, freshNetwork, seat} from "./seat.js";
-import {background, browser, open, recordedRun, scratch, shows, view} from "./window.js";
+import {background, browser, open, recordedRun, scratch, view} from "./window.js";
 
 const {FOGLINE} = process.env;
 
@@ -81,12 +81,14 @@ test("the page of a log of a million messages is there within 3 s", async (t) =>
   await meetsBar(t, async () => {
     const began = performance.now();
     const page = await open(t, started, await view(t, [log]));
-    await shows(page, 0);
-    await page.waitForFunction(() => foglinePage.curves.charts.length > 0 &&
+    await page.waitForFunction(() => document.body.dataset.step === "0" && foglinePage.curves.charts.length > 0 &&
       foglinePage.curves.charts.every(({chart}) => chart.data[1].length > 0));
     const opened_ms = rounded(performance.now() - began);
+    // The driver's view comes last. Without a graphics processor a browser needs a second for it.
+    await page.waitForFunction(() => foglinePage.scene.view);
+    const with_view_ms = rounded(performance.now() - began);
     await page.close();
-    return {opened_ms};
+    return {opened_ms, with_view_ms};
   }, ({opened_ms}) => (opened_ms > 3000 ? ["opened_ms"] : []));
 });
 

@@ -11,6 +11,7 @@ import {listenForKeys} from "./parts/keys.js";
 import {LiveStore} from "./data/live_store.js";
 import {LogStore} from "./data/log_store.js";
 import {Now} from "./parts/now.js";
+import {sayOrigin} from "./parts/origin.js";
 import {Scene} from "./parts/scene.js";
 import {readTheme} from "./draw/theme.js";
 import {eventFrom, Timebar} from "./parts/timebar.js";
@@ -20,6 +21,7 @@ import {socketUrl, Wire} from "./data/wire.js";
 const PARTS = ["scene", "why", "curves", "events-part", "health"];
 const MOST_EVENTS = 5000;  // as many as the server sends of one run
 const HASH_EVERY_MS = 500;
+const MOST_WAIT_MS = 1000;  // for the data of the first picture of a log
 
 class Page {
   constructor() {
@@ -288,31 +290,13 @@ class Page {
 
   showConnection(state) {
     this.connection = state;
-    this.sayOrigin();
+    sayOrigin(this);
     if (state === "refused") {
       this.complain("The server does not answer. If it listens for other machines, open exactly " +
                     "the address that it has printed: the address contains a key.");
     } else {
       byId("problem").hidden = true;
     }
-  }
-
-  /** Shows where the displayed data come from, and whether they are behind the run. */
-  sayOrigin() {
-    const isOpen = this.connection === "open";
-    const isBehind = isOpen && this.isLive && (this.isOver || this.clock.state !== "live");
-    setAttribute(byId("origin"), "data-state",
-                 !isOpen ? "lost" : this.waits ? "none" : isBehind ? "behind" : this.hello?.mode ?? "none");
-    say(byId("origin-words"), this.originInWords());
-  }
-
-  originInWords() {
-    if (this.connection === "ended") return "The program has ended";
-    if (this.connection !== "open") return "No connection, trying again";
-    if (!this.isLive) return this.log ? this.log.file : "Connecting";
-    if (this.waits) return "Connected";
-    if (this.isOver) return "The run has ended";
-    return {live: "Live", paused: "Paused; the run goes on", playing: "Behind the run"}[this.clock.state];
   }
 
   loop(now) {
@@ -325,7 +309,24 @@ class Page {
     const played = this.clock.state === "playing";
     this.clock.advance(passed_s, this.store.firstTime, this.store.lastTime);
     if (this.isLive && played && this.clock.state === "paused") this.clock.follow();  // caught up
+    if (!this.isLive && this.waitsForFirst(now)) return;
     this.draw();
+  }
+
+  /**
+   * Whether the data of the first picture of a log are still on their way. A picture costs much
+   * time in a browser without a graphics processor, so the page draws none without data.
+   */
+  waitsForFirst(now) {
+    if (this.hasFirst) return false;
+    this.askedAt ??= now;
+    const {step} = this;
+    const moment = {time: this.store.timeOf(step)};
+    this.store.frame(step);
+    this.why.fetch(moment);
+    this.curves.fetch(moment);
+    this.hasFirst = this.wire.isQuiet || now - this.askedAt > MOST_WAIT_MS;
+    return !this.hasFirst;
   }
 
   /**
@@ -356,7 +357,7 @@ class Page {
     const {modes, lambdas} = this.why;
     const moment = {frame: this.frame, step: shown, time, run, theme, length_m: this.length_m, isLive: this.isLive,
                     ahead_s: frame ? this.aheadOf(step) : 0, moves: clock.state !== "paused"};
-    this.sayOrigin();
+    sayOrigin(this);
     const {rest_ms} = this.budget.now;
     moment.side = this.now.draw(moment, modes, lambdas);
     this.scene.draw(moment, this.budget.now);
@@ -366,6 +367,8 @@ class Page {
                       this.events, theme);
     this.timebar.drawEvents(this.events, step, run, this.eventsLeftOut);
     this.drawHealth();
+    const isThere = this.isLive || (frame && this.curves.isCurrent);
+    if (isThere && this.wire.isQuiet) this.scene.loadView();
     this.keepAddress(step);
     setAttribute(document.body, "data-step", String(this.frameStep ?? ""));
   }

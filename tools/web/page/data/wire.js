@@ -122,6 +122,9 @@ export class Wire {
     this.retry_ms = RETRY_MS.then;
   }
 
+  /** Whether all questions have their answers. */
+  get isQuiet() { return this.waiting.size === 0; }
+
   ask(question) {
     const id = this.next++;
     return new Promise((resolve, reject) => {

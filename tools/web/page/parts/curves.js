@@ -64,6 +64,7 @@ export class Curves {
     this.hover = null;
     this.drawnAt = 0;
     this.cost_ms = 0;
+    this.isCurrent = false;  // whether the charts show all values that have come
     this.box = new Combobox(byId("field-search"), byId("field-list"), {
       suggest: (typed) => this.suggestions(typed),
       onChoose: (name) => this.toggle(name),
@@ -224,15 +225,22 @@ export class Curves {
     }
   }
 
+  /** All series of the charts, at a moment. A log store fetches those that it does not have. */
+  fetch({time}) {
+    const [from, to] = this.range(time);
+    return this.fields.flatMap((field) => [this.seriesOf(field, from, to), this.validOf(field)]);
+  }
+
   /** Draws the moment. There are at least `least_ms` between two drawings. */
   draw(moment, least_ms) {
     this.moment = moment;
     this.sayValues(moment);
     const now = performance.now();
     const rest_ms = Math.min(REST.most_ms, Math.max(least_ms, REST.factor * this.cost_ms));
-    if (now - this.drawnAt < rest_ms) return;
+    this.isCurrent = now - this.drawnAt >= rest_ms;
+    if (!this.isCurrent) return;
     const [from, to] = this.range(moment.time);
-    const series = this.fields.flatMap((field) => [this.seriesOf(field, from, to), this.validOf(field)]);
+    const series = this.fetch(moment);
     const drawn = `${from} ${to} ${moment.time} ${series.map((one) => one?.version)}`;
     if (drawn === this.drawn) return;
     this.drawn = drawn;

@@ -7,6 +7,7 @@ import {loadView, setScheme} from "../draw/view_file.js";
 import {Road, roadInWords} from "./road.js";
 
 const WORDS_EVERY_MS = 1000;
+const AFTER_PICTURE_MS = 100;
 
 export class Scene {
   constructor() {
@@ -14,10 +15,21 @@ export class Scene {
     this.view = null;
     this.wordsAt = 0;
     this.pictures = 0;  // number of drawn pictures of the road
-    loadView().then((view) => {
-      this.view = view;
+    this.isLoading = false;
+  }
+
+  /**
+   * Loads the driver's view, if this has not begun. A browser without a graphics processor prepares
+   * the view for more than a second, in which it does nothing else. So the page calls this method
+   * when it has drawn all other parts, and the view waits until their picture is on the screen.
+   */
+  loadView() {
+    if (this.isLoading) return;
+    this.isLoading = true;
+    setTimeout(async () => {
+      this.view = await loadView();
       this.setScheme();
-    });
+    }, AFTER_PICTURE_MS);
   }
 
   setScheme() {

@@ -152,16 +152,22 @@ export class Why {
     return [end - WINDOW_S, end];
   }
 
-  /** Draws the moment. While time goes on, there are at least `rest_ms` between two drawings. */
-  draw(moment, rest_ms) {
+  /** All series of the charts, at a moment. A log store fetches those that it does not have. */
+  fetch(moment) {
     this.moment = moment;
     const command = (path) => this.shown("HOST_COMMAND", path);
-    const [doc, threshold, automation, human] =
-      ["doc", "threshold", "lambda_automation", "lambda_human"].map(command);
-    const truth = this.shown("TRUTH", "host_gap_m");
-    const sources = SOURCES.map(({channel, path}) => this.shown(channel, path));
-    const all = [doc, threshold, automation, human, truth, ...sources, ...this.valid, this.modes,
-                 this.lambdas, this.fog];
+    return {
+      commands: ["doc", "threshold", "lambda_automation", "lambda_human"].map(command),
+      truth: this.shown("TRUTH", "host_gap_m"),
+      sources: SOURCES.map(({channel, path}) => this.shown(channel, path)),
+    };
+  }
+
+  /** Draws the moment. While time goes on, there are at least `rest_ms` between two drawings. */
+  draw(moment, rest_ms) {
+    const {commands, truth, sources} = this.fetch(moment);
+    const [doc, threshold, automation, human] = commands;
+    const all = [...commands, truth, ...sources, ...this.valid, this.modes, this.lambdas, this.fog];
     const drawn = `${moment.time} ${all.map(({version}) => version)}`;
     if (drawn === this.drawn && moment.frame === this.frame) return;
     const now = performance.now();
