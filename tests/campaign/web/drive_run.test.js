@@ -267,7 +267,7 @@ test("when the page is closed, the fallbacks stop the car", async (t) => {
 
 test("when the wheel is unplugged, the fallbacks stop the car", async (t) => {
   await leavesTheCar(t, (page) => setPad(page, {connected: false}), {isWheel: true, then: async (page) => {
-    await says(page, "The car stands");
+    await says(page, "The car stops by itself");
     assert.equal(await page.locator("#away").innerText(), "Nobody drives any more in this run.");
     assert.ok(await page.locator("#take-over").isDisabled());
   }});

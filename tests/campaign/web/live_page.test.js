@@ -147,5 +147,5 @@ test("the page finds the server again after it was away", async (t) => {
   await page.waitForFunction(() => foglinePage.hello);
   await page.evaluate(() => foglinePage.wire.socket.close());
   await page.waitForFunction(() => document.getElementById("origin").dataset.state === "lost");
-  await page.waitForFunction(() => document.getElementById("origin").dataset.state === "live");
+  await page.waitForFunction(() => document.getElementById("origin-words").textContent === "Connected");
 });

@@ -252,19 +252,29 @@ test("curves: type a field, zoom by a drag, back by a double click, choose a mom
 });
 
 test("Why shows nothing that is later than the shown moment", async (t) => {
-  const log = recordedRun(scratch(t));
-  const page = await open(t, await browser(t), await view(t, [log]));
-  for (const [step, from_s] of [[50, 0], [300, 10]]) {
-    await goTo(page, step);
-    await page.waitForFunction((time) => foglinePage.why.charts.every(({data: [times]}) => times.at(-1) === time), step / 10);
-    const {scales, spans, fog_s} = await page.evaluate(() => {
-      const {why} = foglinePage;
-      const {min, max} = why.charts[0].scales.x;
-      return {scales: [min, max], spans: why.sideSpans(), fog_s: why.shownEnd};
-    });
-    assert.deepEqual(scales, [from_s, from_s + 20]);
-    assert.equal(fog_s, step / 10);
-    assert.equal(spans.at(-1).to, step / 10);
+  // A period in whole microseconds of which not every multiple is exact: 3 * 0.3 < 0.9.
+  for (const step_s of [0.1, 0.3]) {
+    const folder = scratch(t);
+    const log = recordedRun(folder, [`/step_s=${step_s}`]);
+    const numbers = numbersOf(folder, log);
+    const time = (step) => numbers("TRUTH", step)["header.utime"] / 1e6;
+    const steps = [...Array(400).keys()];
+    const fog = steps.find((step) => numbers("TRUTH", step).fog_present === 1);
+    const human = steps.find((step) => numbers("HOST_COMMAND", step).mode === 1);
+    const page = await open(t, await browser(t), await view(t, [log]));
+    for (const step of [3, fog - 1, fog, fog + 3, human - 1, human + 3]) {
+      await goTo(page, step);
+      await page.waitForFunction((now) => foglinePage.why.charts.every(({data: [times]}) => times.at(-1) === now), time(step));
+      const {last, sides, fogs} = await page.evaluate(() => {
+        const {why} = foglinePage;
+        return {last: why.charts[0].scales.x.max, sides: why.sideSpans(), fogs: why.fogSpans()};
+      });
+      assert.equal(last, Math.max(20, time(step)));
+      const drives = sides.at(-1);
+      assert.deepEqual([drives.value, drives.to], [step < human ? "automation" : "human", time(step)]);
+      if (step >= human) assert.equal(drives.from, time(human));
+      assert.deepEqual(fogs, step < fog ? [] : [{from: time(fog), to: time(step), value: 1}]);
+    }
   }
 });
 

@@ -74,6 +74,7 @@ test("the page of a drive looks well", async (t) => {
   await looksWell(page, "the request to take over");
   await page.evaluate(() => {
     foglineDrive.latency.values.push(250);
+    foglineDrive.latency.measured_ms = performance.now();
     dispatchEvent(new Event("blur"));
   });
   await page.waitForFunction(() => ["away", "latency-warning"].every((id) => !document.getElementById(id).hidden));

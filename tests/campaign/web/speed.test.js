@@ -54,7 +54,7 @@ test("at 100 Hz a page shows 30 frames a second, and a message at most 150 ms af
 test("a scrub through 7000 steps answers within 50 ms", async (t) => {
   const log = recordedRun(scratch(t), ["/steps=7000", "/lead/profile=sinusoid"]);
   const page = await open(t, await browser(t), await view(t, [log]));
-  await page.waitForFunction(() => foglinePage.why.modes.length > 0);
+  await page.waitForFunction(() => document.body.dataset.step === "0" && foglinePage.why.modes.length > 0);
   let round = 0;
   await meetsBar(t, async () => {
     round += 1;
@@ -75,7 +75,9 @@ test("a scrub through 7000 steps answers within 50 ms", async (t) => {
   }, ({p95_ms}) => (p95_ms > 50 ? ["p95_ms"] : []));
 });
 
-test("the page of a log of a million messages is there within 3 s", async (t) => {
+// The driver's view comes last. Its limit is our choice: a browser without a graphics processor needs
+// a second for it.
+test("the page of a log of a million messages is there within 3 s, with the driver's view within 6 s", async (t) => {
   const log = recordedRun(scratch(t), ["/steps=111200", "/lead/profile=sinusoid"]);
   const started = await browser(t);
   await meetsBar(t, async () => {
@@ -84,12 +86,11 @@ test("the page of a log of a million messages is there within 3 s", async (t) =>
     await page.waitForFunction(() => document.body.dataset.step === "0" && foglinePage.curves.charts.length > 0 &&
       foglinePage.curves.charts.every(({chart}) => chart.data[1].length > 0));
     const opened_ms = rounded(performance.now() - began);
-    // The driver's view comes last. Without a graphics processor a browser needs a second for it.
     await page.waitForFunction(() => foglinePage.scene.view);
     const with_view_ms = rounded(performance.now() - began);
     await page.close();
     return {opened_ms, with_view_ms};
-  }, ({opened_ms}) => (opened_ms > 3000 ? ["opened_ms"] : []));
+  }, ({opened_ms, with_view_ms}) => [opened_ms > 3000 && "opened_ms", with_view_ms > 6000 && "view"].filter(Boolean));
 });
 
 // The page measures this delay and sends it into the log of the run

@@ -79,8 +79,7 @@ class Page {
     });
     sizes.observe(byId("main"));
     addEventListener("hashchange", ({newURL}) => {
-      // keepAddress() may have changed the address since this event. So the event's address is
-      // used.
+      // keepAddress() may have changed the address since this event: the event's address counts.
       const {hash} = new URL(newURL);
       const {step, run, token} = readFragment(hash);
       if (token) this.takeNewToken(hash);
@@ -218,6 +217,7 @@ class Page {
     this.log = log;
     this.events = log.events;
     this.store.setLog(log);
+    this.timebar.setRange(this.store);
     const {step} = readFragment(location.hash);
     this.clock.pause();
     this.clock.time = this.store.timeOf(step ?? log.first_step);

@@ -43,7 +43,7 @@ function show(state) {
     const time = document.createElement("time");
     time.dateTime = new Date(at_ms).toISOString();
     time.textContent = new Date(at_ms).toLocaleTimeString("en-GB");
-    row.append(time, text);
+    row.append(time, ` ${text}`);
     return row;
   }));
 }

@@ -1,6 +1,10 @@
 // The reader's time: follows the live run, plays, or is paused. It does not use the document.
 
 export const EARLY = 1e-6;  // in steps: 0.3 s is step 3 of 0.1 s, although 0.3 / 0.1 < 3
+
+/** The simulated time of a step, in s: exactly the time in the header of its messages. */
+export const timeOfStep = (step, step_s) => (step * Math.round(step_s * 1e6)) / 1e6;
+
 export const SPEEDS = [0.1, 0.2, 0.5, 1, 2, 5, 10];
 
 export class Clock {

@@ -1,5 +1,6 @@
 // The messages of a live run, as far back as the page stores them.
 
+import {timeOfStep} from "./clock.js";
 import {headerOf} from "./catalogue.js";
 import {numberAt, parsePath} from "./lcm.js";
 import {upTo} from "./modes.js";
@@ -72,7 +73,7 @@ export class LiveStore {
 
   /** The step of the scenario; before the scenario is known, the step of the messages. */
   get step_s() { return this.run?.step_s ?? this.seenStep_s ?? 0.1; }
-  timeOf(step) { return step * this.step_s; }
+  timeOf(step) { return timeOfStep(step, this.step_s); }
   get firstTime() { return this.timeOf(this.firstStep); }
   get lastTime() { return this.timeOf(Math.max(0, this.lastStep)); }
 

@@ -1,5 +1,6 @@
 // The messages of a recorded run. The page fetches them from the server when it needs them.
 
+import {timeOfStep} from "./clock.js";
 import {Series} from "./series.js";
 
 const CHUNK = 64;          // number of steps that are fetched together
@@ -30,7 +31,7 @@ export class LogStore {
     this.lastStep = last_step;
   }
 
-  timeOf(step) { return step * (this.run?.step_s ?? 0.1); }
+  timeOf(step) { return timeOfStep(step, this.run?.step_s ?? 0.1); }
   get firstTime() { return this.timeOf(this.firstStep); }
   get lastTime() { return this.timeOf(Math.max(0, this.lastStep)); }
 

@@ -32,7 +32,10 @@ export function timeDecimals(step_s) {
   return Math.min(4, Math.max(1, Math.ceil(-Math.log10(step_s) - 1e-9)));
 }
 
-/** The label of a time axis whose labels are `increment` seconds apart: "30 s", "5 min", "2 h". */
+/**
+ * A label of a time axis whose labels are increment_s apart: "30 s", "5 min", "2 h".
+ * @param decimals of a label in seconds
+ */
 export function timeTick(time_s, increment_s, decimals) {
   if (increment_s < 60) return `${decimal(time_s, decimals)}${SPACE}s`;
   const [size_s, unit] = increment_s < 3600 ? [60, "min"] : [3600, "h"];

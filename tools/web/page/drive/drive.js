@@ -241,12 +241,11 @@ class Drive {
     const lead_s = run?.scenario?.arbitrator?.take_over?.lead_s ?? 10;
     const left = state.asks ? countdown(this.request, time_s, lead_s) : null;
     this.alarm.sound(state);
-    if (this.side !== undefined && this.side !== state.side) this.alarm.change();
+    if (this.side !== undefined && this.side !== state.side && this.connection === "open") this.alarm.change();
     this.side = state.side;
     this.drawState(state, left);
     this.drawPerson(state);
     this.drawRoad(frame.TRUTH);
-    setAttribute(document.body, "data-connection", this.connection ?? "none");
     setAttribute(document.body, "data-step", String(this.newest?.step ?? ""));
   }
 
@@ -290,9 +289,11 @@ class Drive {
   }
 
   drawRoad(truth) {
+    const isOpen = this.connection === "open";
     byId("no-road").hidden = Boolean(truth);
+    setAttribute(byId("picture"), "data-old", String(!truth || !isOpen));
+    say(byId("speed"), truth && isOpen ? kmh(truth.host_speed_mps) : "–");
     if (!truth) return;
-    say(byId("speed"), this.connection === "open" ? kmh(truth.host_speed_mps) : "–");
     const {run, taken_ms} = this.newest;
     const ahead_s = reducedMotion.matches || truth.last ? 0
       : Math.min(run?.step_s ?? 0.1, Math.max(0, (performance.now() - taken_ms) / 1000) * (run?.pace || 1));
@@ -303,7 +304,8 @@ class Drive {
   }
 
   drawLatency() {
-    const {newest, highest, isHigh} = this.latency;
+    const {newest, highest} = this.latency;
+    const isHigh = this.told.side !== "unknown" && this.latency.isHigh(performance.now());
     const words = newest === null ? "not measured yet" : withUnit(decimal(newest, 0), "ms");
     say(byId("latency"), isHigh ? `${words}, of the last inputs at most ${withUnit(decimal(highest, 0), "ms")}` : words);
     byId("latency-warning").hidden = !isHigh;

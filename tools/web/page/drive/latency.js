@@ -16,11 +16,13 @@ const LATE_OF = 10;               // one of this many measurements may be late
 const FORGET_AFTER_MS = 2000;  // time without a step of the run that uses the input
 const KEPT = 512;              // number of measurements for the percentiles
 const WARN_OF = 10;            // number of the newest measurements for the warning
+const WARN_FOR_MS = 10000;     // time after the newest measurement in which the page warns
 
 export class Latency {
   constructor() {
     this.probe = null;     // {sequence, began_ms, input: number of DRIVER_INPUT or null, applied}
     this.values = [];
+    this.measured_ms = -Infinity;  // time of the newest measurement
     this.count = 0;
     this.unsent = null;    // the newest measurement, until a frame has it
     this.unjudged = [];    // measurements since takeLate() last judged
@@ -32,8 +34,10 @@ export class Latency {
   /** The longest of the last WARN_OF measurements in ms; -Infinity without a measurement. */
   get highest() { return Math.max(...this.values.slice(-WARN_OF)); }
 
-  /** Whether one of the last WARN_OF measurements was too long. */
-  get isHigh() { return this.highest > WARN_ABOVE_MS; }
+  /** Whether one of the last WARN_OF measurements was too long. Old measurements do not count. */
+  isHigh(now_ms) {
+    return this.highest > WARN_ABOVE_MS && now_ms - this.measured_ms < WARN_FOR_MS;
+  }
 
   /** The newest measurement in ms for the next frame; null if an earlier frame has it. */
   takeUnsent() {
@@ -85,6 +89,7 @@ export class Latency {
     if (!this.probe?.applied) return null;
     const value = now_ms - this.probe.began_ms;
     this.probe = null;
+    this.measured_ms = now_ms;
     ++this.count;
     this.values.push(value);
     this.unsent = value;

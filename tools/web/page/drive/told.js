@@ -25,7 +25,7 @@ const ENDED = [
   "The drive has ended: the car behind has hit yours",
 ];
 
-// The texts while there is no connection to the program, by the state of the wire (data/wire.js).
+// The texts while there is no connection to the program, by the state of the wire (seat_wire.js).
 const GONE = {
   ended: "The program has ended",
   lost: "No connection to the car",
@@ -34,15 +34,18 @@ const GONE = {
 
 // Modes after which nobody drives until the end of the run.
 const FINAL = ["MINIMAL_RISK", "MRM_DONE"];
+// Modes in which the car stops by itself, but a person may take over.
+const STOPPING = ["MRM_COMFORT", "MRM_EMERGENCY", "MRM_FAILED"];
 
-const noSide = (words) => (
-  {side: "unknown", words, asks: false, urgent: false, answered: false, isFinal: false});
+const noSide = (words) => ({
+  side: "unknown", words, asks: false, urgent: false, answered: false, isFinal: false, isStopping: false});
 
 /**
- * The description {side, words, asks, urgent, answered, isFinal} of a HOST_COMMAND. Without a
- * HOST_COMMAND the drive has not begun. `isFinal`: nobody drives until the end of the run.
+ * The description {side, words, asks, urgent, answered, isFinal, isStopping} of a HOST_COMMAND.
+ * Without a HOST_COMMAND the drive has not begun. `isFinal`: nobody drives until the end of the run.
+ * `isStopping`: the car stops by itself, but a person may take over.
  * @param truth the newest TRUTH, which says whether the run has ended
- * @param connection state of the wire (data/wire.js)
+ * @param connection state of the wire (seat_wire.js)
  */
 export function told(command, truth = null, connection = "open") {
   if (truth?.last) return noSide(ENDED[truth.collision] ?? ENDED[0]);
@@ -53,7 +56,8 @@ export function told(command, truth = null, connection = "open") {
   const drives = side === "human" ? TOLD.HUMAN : TOLD.AUTOMATION;
   const words = name === "COLLISION_WARNING" ? `Collision warning. ${drives}`
     : TOLD[name] ?? "It is not known who drives";
-  return {side, words, asks, urgent, answered: waits && !asks, isFinal: FINAL.includes(name)};
+  return {side, words, asks, urgent, answered: waits && !asks, isFinal: FINAL.includes(name),
+          isStopping: STOPPING.includes(name)};
 }
 
 /**
@@ -73,16 +77,16 @@ export function countdown(request, time_s, lead_s) {
 // person can read them.
 const ANSWER_MS = {after: 1000, until: 6000};
 
-// By button and the side that drives. Other pairs have an effect.
-const NO_EFFECT = {
-  take_over: {
-    automation: "The automation goes on driving: it has not asked you to take over.",
-    risk: "The car goes on stopping by itself: it has not taken your answer.",
-  },
-  give_back: {
-    human: "You still drive: the automation does not take the car yet. Press again later.",
-  },
-};
+/** The text for a button that may have no effect; undefined for any other button. */
+function noEffect(button, {side, asks, answered, isStopping}) {
+  if (button === "give_back" && side === "human") {
+    return "You still drive: the automation does not take the car yet. Press again later.";
+  }
+  if (button !== "take_over" || asks || answered) return undefined;
+  if (isStopping) return "You do not drive: the car has not taken your answer.";
+  if (side !== "automation") return undefined;
+  return "The automation goes on driving: it has not asked you to take over.";
+}
 
 /** Tells a person that a button has had no effect. */
 export class Answer {
@@ -91,9 +95,9 @@ export class Answer {
   }
 
   /** @param state what told() says at this time */
-  press(button, {side, asks, answered}, now_ms) {
-    const mayFail = NO_EFFECT[button][side] !== undefined && !asks && !answered;
-    this.pressed = mayFail ? {button, side, at_ms: now_ms} : null;
+  press(button, state, now_ms) {
+    const words = noEffect(button, state);
+    this.pressed = words === undefined ? null : {words, side: state.side, at_ms: now_ms};
   }
 
   /** The words at a time; "" if there is nothing to say. */
@@ -102,7 +106,7 @@ export class Answer {
     if (!this.pressed) return "";
     const passed_ms = now_ms - this.pressed.at_ms;
     const isShown = passed_ms >= ANSWER_MS.after && passed_ms <= ANSWER_MS.until;
-    return isShown ? NO_EFFECT[this.pressed.button][side] : "";
+    return isShown ? this.pressed.words : "";
   }
 }
 

@@ -19,6 +19,7 @@ const REST = {most_ms: 1000, factor: 5};  // pause between drawings; factor: of 
 const LEAST_SPAN = 1e-3;  // of a value axis, as a share of the values
 const NEAR_S = 10;  // a longer part of a channel may have more values than a curve
 const KEEP = "fogline.fields";
+const valueId = (index) => `value-of-field-${index}`;
 const NAMES = {"HOST_COMMAND.mode": (mode) => modeOf(mode).name};  // of values, by field
 
 /** The reader's last choice, if the browser has stored it. */
@@ -110,9 +111,12 @@ export class Curves {
 
   toggle(name) {
     const place = this.fields.findIndex((field) => field.name === name);
+    if (place < 0 && this.fields.length === MOST_FIELDS) {
+      this.onFull(`At most ${MOST_FIELDS} curves are shown. Remove one before you add ${name}.`);
+      return;
+    }
     if (place >= 0) this.fields.splice(place, 1);
-    else if (this.fields.length < MOST_FIELDS) this.fields.push(this.fieldNamed(name));
-    else this.onFull(`At most ${MOST_FIELDS} curves are shown. Remove one before you add ${name}.`);
+    else this.fields.push(this.fieldNamed(name));
     keepFields(this.fields);
     this.rebuild();
   }
@@ -139,7 +143,8 @@ export class Curves {
     const fields = this.fields.filter((field) => field.unit === unit);
     const names = fields.map(({name}) => name).join(", ");
     const label = `Curves over time: ${names}`;
-    const element = make("div", {class: "chart", role: "img", "aria-label": label, "aria-describedby": "chosen"});
+    const values = fields.map((field) => valueId(this.fields.indexOf(field))).join(" ");
+    const element = make("div", {class: "chart", role: "img", "aria-label": label, "aria-describedby": values});
     this.place.append(make("p", {class: "axis-name"}, unit || "no unit"), element);
     const panel = {fields, element, range: [0, 1]};
     panel.chart = makeChart(element, {
@@ -163,7 +168,7 @@ export class Curves {
   }
 
   makeChips() {
-    this.values = this.fields.map(() => make("span", {class: "value"}));
+    this.values = this.fields.map((_, i) => make("span", {class: "value", id: valueId(i)}));
     this.chips.replaceChildren(...this.fields.map((field, i) => {
       const {stroke, dash} = this.styleOf(i);
       const remove = make("button", {

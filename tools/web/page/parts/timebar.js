@@ -32,12 +32,18 @@ export class Timebar {
     this.trackAt = 0;
   }
 
-  draw({clock, store, step, time, run, isLive}, modes, lambdas, events, theme) {
+  /** Sets the first and the last step of the slider. */
+  setRange({firstStep, lastStep}) {
     const {slider} = this;
-    const min = String(store.firstStep);
-    const max = String(Math.max(store.firstStep, store.lastStep));
+    const min = String(firstStep);
+    const max = String(Math.max(firstStep, lastStep));
     if (slider.min !== min) slider.min = min;
     if (slider.max !== max) slider.max = max;
+  }
+
+  draw({clock, store, step, time, run, isLive}, modes, lambdas, events, theme) {
+    const {slider} = this;
+    this.setRange(store);
     if (slider.value !== String(step)) slider.value = step;
     setAttribute(slider, "aria-valuetext", `${seconds(time, run.step_s)}, step ${step}`);
     say(byId("time-now"), decimal(time, timeDecimals(run.step_s)));
@@ -57,9 +63,10 @@ export class Timebar {
   /** Keeps room for the longest texts of the run, so that the slider does not move. */
   keepRoom(store, run) {
     const last = Math.max(store.lastStep, (run.steps ?? 0) - 1);
-    if (last === this.roomFor) return;
-    this.roomFor = last;
-    const digits = decimal(store.timeOf(last), timeDecimals(run.step_s)).length;
+    const longest = decimal(store.timeOf(last), timeDecimals(run.step_s));
+    if (longest === this.longest) return;
+    this.longest = longest;
+    const digits = longest.length;
     byId("time-now").style.minWidth = `${digits}ch`;
     byId("time-end").style.minWidth = `${digits + " / ".length + " s".length}ch`;
     byId("step-now").style.minWidth = `${`step ${last}`.length}ch`;

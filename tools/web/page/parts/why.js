@@ -125,10 +125,12 @@ export class Why {
   }
 
   drawFog(chart) {
+    for (const {from, to} of this.fogSpans()) fillSpan(chart, from, to, this.theme.fog);
+  }
+
+  fogSpans() {
     const {times, values} = this.fog.within(this.range[0], this.shownEnd);
-    for (const {from, to, value} of spansOf(times, values, this.shownEnd)) {
-      if (value) fillSpan(chart, from, to, this.theme.fog);
-    }
+    return spansOf(times, values, this.shownEnd).filter(({value}) => value);
   }
 
   sideSpans() {

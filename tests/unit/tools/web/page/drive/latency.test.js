@@ -77,14 +77,20 @@ test("the percentile is the nearest rank of what was measured", () => {
 test("a measurement above 100 ms warns until ten good ones have come", () => {
   const latency = new Latency();
   measure(latency, 0, 100);
-  assert.equal(latency.isHigh, false);
+  assert.equal(latency.isHigh(100), false);
   measure(latency, 1000, 101);
-  assert.equal(latency.isHigh, true);
+  assert.equal(latency.isHigh(1101), true);
   assert.equal(latency.highest, 101);
   for (let i = 1; i <= 9; ++i) measure(latency, 2000 * i, 20);
-  assert.equal(latency.isHigh, true);
+  assert.equal(latency.isHigh(18020), true);
   measure(latency, 90000, 20);
-  assert.equal(latency.isHigh, false);
+  assert.equal(latency.isHigh(90020), false);
+});
+
+test("without new measurements the warning ends", () => {
+  const latency = new Latency();
+  measure(latency, 0, 300);
+  assert.deepEqual([300, 10000, 11000].map((now_ms) => latency.isHigh(now_ms)), [true, true, false]);
 });
 
 test("it is late if more than one measurement in ten is, and judges each once", () => {

@@ -78,15 +78,21 @@ test("in a stop that lasts until the end of the run the page gives no advice", (
   }
 });
 
-test("a car that goes on stopping answers the button", () => {
-  const {HUMAN, MRM_COMFORT} = describedTypes().arbitration_t.constants;
+test("a car that stops by itself answers the button, if it has not taken the answer", () => {
+  const {HUMAN, MRM_COMFORT, MRM_EMERGENCY, MRM_FAILED, EMERGENCY_BRAKING} =
+    describedTypes().arbitration_t.constants;
   const answer = new Answer();
-  const stop = told({mode: MRM_COMFORT, lambda_human: 0});
-  answer.press("take_over", stop, 0);
-  assert.match(answer.words(stop, 1500), /goes on stopping by itself/);
-  assert.equal(answer.words(told({mode: HUMAN, lambda_human: 1}), 1500), "", "the person drives");
-  answer.press("give_back", stop, 0);
-  assert.equal(answer.words(stop, 1500), "");
+  const at = (mode) => told({mode, lambda_human: 0});
+  for (const mode of [MRM_COMFORT, MRM_EMERGENCY, MRM_FAILED]) {
+    answer.press("take_over", at(mode), 0);
+    assert.match(answer.words(at(mode), 1500), /has not taken your answer/);
+    assert.equal(answer.words(told({mode: HUMAN, lambda_human: 1}), 1500), "", "the person drives");
+    answer.press("give_back", at(mode), 0);
+    assert.equal(answer.words(at(mode), 1500), "");
+  }
+  // A transfer goes on during emergency braking, so the answer may have been taken.
+  answer.press("take_over", at(EMERGENCY_BRAKING), 0);
+  assert.equal(answer.words(at(EMERGENCY_BRAKING), 1500), "");
 });
 
 test("a button without effect gets an answer, one with an effect gets none", () => {
