@@ -65,7 +65,7 @@ void RunEvents::Add(const arbitration_t& command, std::optional<double> human_mp
   for (const take_over::TakeOverEntry& entry : take_over_.TakeEntries()) {
     if (!entry.first) {
       Note(entry, may_lack_commands_ ? entry.step : entry.earliest_step, KindOf(entry),
-           std::string(entry.logged));
+           std::string(take_over::TextOf(entry, person_)));
     } else if (entry.to != arbitration_t::AUTOMATION && entry.to != arbitration_t::HUMAN) {
       Note(entry, entry.step, KindOf(entry),
            fmt::format("state {}", take_over::NameOfMode(entry.to)));

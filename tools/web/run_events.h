@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "fogline/truth_t.hpp"
+#include "scenario/sections/person.h"
 #include "services/decision/take_over/take_over_log.h"
 
 namespace fogline::web {
@@ -37,6 +38,9 @@ class RunEvents {
   /// command then happened in the step of the command. Applies to commands that are added
   /// afterwards.
   void set_may_lack_commands(bool may_lack) { may_lack_commands_ = may_lack; }
+  /// Sets the section of the run's scenario that says whether a person drives. It changes the texts
+  /// of the commands that are added afterwards.
+  void set_person(const PersonSection& person) { person_ = person; }
   void Add(const truth_t& truth);
   /// @param human_mps2 the driver's offer in this step; nullopt if the offer is unknown
   void Add(const arbitration_t& command, std::optional<double> human_mps2);
@@ -54,6 +58,7 @@ class RunEvents {
   void NoteAlarm(const arbitration_t& command, std::int64_t earliest);
 
   take_over::TakeOverLog take_over_;
+  PersonSection person_;
   std::int64_t truth_step_ = -1;
   std::int64_t command_step_ = -1;
   bool may_lack_commands_ = false;

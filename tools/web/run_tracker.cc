@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "scenario/io/json.h"
+#include "scenario/io/loader.h"
 #include "services/graph.h"
 #include "tools/watch/step_sequence.h"
 
@@ -13,6 +14,16 @@ namespace {
 // If a step is this much older than the newest one, the run is being played again. In lockstep no
 // role is so far behind.
 constexpr std::int64_t kPlayedAgain = 1000;
+
+/// The section of a scenario that says whether a person drives; its defaults if the scenario is not
+/// valid.
+PersonSection PersonOf(const std::string& scenario_text) {
+  try {
+    return ParseScenario(scenario_text).person;
+  } catch (const ScenarioError&) {
+    return {};
+  }
+}
 
 }  // namespace
 
@@ -54,6 +65,8 @@ void RunTracker::Show(RunFacts run) {
     ++refused_scenarios_;
     return;
   }
+  person_ = PersonOf(run.scenario_text);
+  events_.set_person(person_);
   shown_ = std::move(run);
   shown_text_ = std::move(text);
   taken_ = 0;
@@ -69,12 +82,14 @@ std::vector<RunEvent> RunTracker::TakeEvents() {
 void RunTracker::ForgetEvents() {
   events_ = {};
   events_.set_may_lack_commands(realtime_);
+  events_.set_person(person_);
   taken_ = 0;
 }
 
 void RunTracker::Begin(const run_t& run) {
   run_id_ = run.header.run_id;
   parts_ = {};
+  person_ = {};
   ForgetEvents();
   newest_ = -1;
   offered_ = false;

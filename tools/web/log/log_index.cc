@@ -117,6 +117,7 @@ void LogIndex::FindEvents() {
   truth_t truth{};
   arbitration_t command{};
   driver_command_t driver{};
+  events_.set_person(run_.scenario.person);
   if (run_.realtime) {
     const runtime::ChannelSet& unlogged = run_.realtime->unlogged_channels;
     events_.set_may_lack_commands(!unlogged[IndexOf<arbitration_t>()] &&

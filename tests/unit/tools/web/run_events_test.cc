@@ -82,5 +82,24 @@ TEST(RunEventsTest, NameTheStepsInWhichAnEventAfterAGapMayHaveHappened) {
   }
 }
 
+TEST(RunEventsTest, SayTheSameOfAPersonAsTheEventsOfALog) {
+  for (const bool drives : {false, true}) {
+    RunEvents events;
+    PersonSection person;
+    person.drives = drives;
+    events.set_person(person);
+    arbitration_t command{};
+    command.mode = arbitration_t::HUMAN;
+    command.lambda_human = 1;
+    events.Add(command, std::nullopt);
+    command.header.step = 1;
+    command.mode = arbitration_t::MINIMAL_RISK;
+    command.lambda_human = 0;
+    events.Add(command, std::nullopt);
+    EXPECT_EQ(events.events().back().text, drives ? "manoeuvre begins: inputs or person gone"
+                                                  : "manoeuvre begins: inputs have failed");
+  }
+}
+
 }  // namespace
 }  // namespace fogline::web

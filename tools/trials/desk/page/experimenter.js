@@ -13,7 +13,7 @@ const WORDS = {
 };
 let last = {};
 
-const send = connect(show, () => showProblem("The connection is broken. It comes back by itself."));
+const send = connect(show, showProblem);
 
 byId("begin").onclick = () => send({op: "begin", state: last.state});
 byId("marker").onsubmit = (event) => {

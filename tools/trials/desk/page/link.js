@@ -1,6 +1,9 @@
 // The connection of a page to its session. It connects again when it breaks.
 
 const RETRY_MS = 500;
+const GOING_AWAY = 1001;  // code with which the server closes when its program ends
+const BROKEN = "The connection is broken. It comes back by itself.";
+const ENDED = "The program has ended. This page goes on when the program is started again.";
 
 /** Moves the token from the address, where other people could read it, into this tab's storage. */
 function takeToken() {
@@ -14,24 +17,28 @@ function takeToken() {
 }
 
 /**
- * Calls onState with each state of the session, and onBroken when the connection breaks.
+ * Calls onState with each state of the session, and onBroken(words) when the connection breaks or
+ * the program ends.
  * @returns a function that sends an object, and returns whether it could
  */
 export function connect(onState, onBroken) {
   const token = takeToken();
   let socket = null;
   let over = false;
+  let words = BROKEN;
   const open = () => {
     const query = token ? `?token=${encodeURIComponent(token)}` : "";
     socket = new WebSocket(`ws://${location.host}/ws${query}`);
     socket.onmessage = (event) => {
       const state = JSON.parse(event.data);
       over = state.stage === "finished";
+      words = BROKEN;
       onState(state);
     };
-    socket.onclose = () => {
+    socket.onclose = ({code}) => {
       if (over) return;
-      onBroken();
+      if (code === GOING_AWAY) words = ENDED;
+      onBroken(words);
       setTimeout(open, RETRY_MS);
     };
   };

@@ -5,7 +5,7 @@ const byId = (id) => document.getElementById(id);
 let shown = -1;  // number of the state that the page shows
 let stopCount = () => {};
 
-const send = connect(show, () => showProblem("The connection is broken. It comes back by itself."));
+const send = connect(show, showProblem);
 
 /** The element with these attributes and children. */
 function make(tag, attributes, ...children) {

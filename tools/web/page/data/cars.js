@@ -3,6 +3,7 @@
 // The brake lamps of a car without a pedal may shine from 0.7 m/s2 on, and must shine from 1.3 m/s2
 // on (UN R13-H, 5.2.22.4).
 export const BRAKE_LAMPS_FROM_MPS2 = 0.7;
+const STANDSTILL_MPS = 0.1;  // slower than a person walks; our choice
 const CONTRAST_AT_VISIBILITY = 0.05;  // the definition of the meteorological optical range
 
 /** Extinction in 1/m for a visibility in m, by Koschmieder. */
@@ -45,7 +46,10 @@ export function sightings({RADAR, LIDAR, TRACK}) {
   };
 }
 
+/** Whether the host stands. Below this speed a time gap says nothing. */
+export const stands = (truth) => Boolean(truth) && truth.host_speed_mps <= STANDSTILL_MPS;
+
 /** Time in s that the host needs for the gap at its speed; null at a standstill. */
 export function timeGap(truth) {
-  return truth.host_speed_mps > 0.1 ? truth.host_gap_m / truth.host_speed_mps : null;
+  return stands(truth) ? null : truth.host_gap_m / truth.host_speed_mps;
 }

@@ -157,7 +157,7 @@ class Drive {
     this.connection = state;
     const words = {open: "Connected", ended: "The program has ended", lost: "No connection, trying again",
                    refused: "No connection"}[state];
-    setAttribute(byId("origin"), "data-state", state === "open" ? "live" : "lost");
+    setAttribute(byId("origin"), "data-state", {open: "live", ended: "behind"}[state] ?? "lost");
     say(byId("origin-words"), words);
     byId("problem").hidden = state !== "refused";
     say(byId("problem"), state !== "refused" ? "" : "The seat does not answer. Open exactly the address " +
@@ -265,20 +265,20 @@ class Drive {
   }
 
   drawPerson(state) {
-    const {side, isFinal} = state;
+    const {side, isFinal, isStopping} = state;
     const why = this.person.whyAway();
     const seat = this.refused ? "refused" : "no seat";
     const words = this.state === "" ? ""
-      : whyAwayInWords(this.state === "taken" ? seat : why, {hasLeft: this.hasLeft, side, isFinal});
+      : whyAwayInWords(this.state === "taken" ? seat : why, {hasLeft: this.hasLeft, side, isFinal, isStopping});
     say(byId("away"), words);
     byId("away").hidden = words === "";
-    const answer = words === "" ? this.answer.words(state, performance.now()) : "";
+    const answer = why === "" ? this.answer.words(state, performance.now()) : "";
     say(byId("answer"), answer);
     byId("answer").hidden = answer === "";
     say(byId("begin"), this.person.begun ? "Leave the seat" : "Begin");
     setAttribute(byId("begin"), "data-begun", String(this.person.begun));
     setAttribute(document.body, "data-present", String(why === ""));
-    byId("begin").disabled = this.connection === "ended";
+    byId("begin").disabled = this.connection === "ended" || isFinal;
     byId("take-over").disabled = why !== "" || isFinal || (side !== "automation" && side !== "risk");
     byId("give-back").disabled = why !== "" || side !== "human";
     const {throttle = 0, brake = 0} = this.input ?? {};
@@ -307,7 +307,8 @@ class Drive {
     const {newest, highest} = this.latency;
     const isHigh = this.told.side !== "unknown" && this.latency.isHigh(performance.now());
     const words = newest === null ? "not measured yet" : withUnit(decimal(newest, 0), "ms");
-    say(byId("latency"), isHigh ? `${words}, of the last inputs at most ${withUnit(decimal(highest, 0), "ms")}` : words);
+    const longest = `; the longest of the last inputs: ${withUnit(decimal(highest, 0), "ms")}`;
+    say(byId("latency"), isHigh && highest > newest ? words + longest : words);
     byId("latency-warning").hidden = !isHigh;
   }
 }

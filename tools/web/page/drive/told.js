@@ -1,6 +1,7 @@
 // The texts about the run for the person: the side that drives, and the request to take over. The
 // texts do not mention sensors, thresholds or conflict. This file does not use the document.
 
+import {stands} from "../data/cars.js";
 import {modeOf} from "../data/modes.js";
 
 const TOLD = {
@@ -55,6 +56,7 @@ export function told(command, truth = null, connection = "open") {
   const asks = waits && name !== "HANDOVER";  // in HANDOVER the person has already answered
   const drives = side === "human" ? TOLD.HUMAN : TOLD.AUTOMATION;
   const words = name === "COLLISION_WARNING" ? `Collision warning. ${drives}`
+    : name === "MINIMAL_RISK" && stands(truth) ? TOLD.MRM_DONE
     : TOLD[name] ?? "It is not known who drives";
   return {side, words, asks, urgent, answered: waits && !asks, isFinal: FINAL.includes(name),
           isStopping: STOPPING.includes(name)};
@@ -123,13 +125,17 @@ const WHY_AWAY = {
 
 const LEFT = "You have left the seat. Press “Begin” to come back.";
 const NO_MORE = "Nobody drives any more in this run.";
+const LEFT_FOR_GOOD = "You have left the seat. Nobody drives any more in this run.";
+const STILL = "You can still take over while the car moves.";
 
 /**
- * The text for a reason of Person.whyAway(); "" if the person drives.
- * @param hasLeft whether the person had begun before; side, isFinal: see told()
+ * The text for a reason of Person.whyAway(); "" if the person is present and need not be told
+ * anything.
+ * @param hasLeft whether the person had begun before; side, isFinal, isStopping: see told()
  */
-export function whyAwayInWords(why, {hasLeft = false, side = "unknown", isFinal = false} = {}) {
-  if (isFinal) return NO_MORE;
+export function whyAwayInWords(why, {hasLeft = false, side = "unknown", isFinal = false, isStopping = false} = {}) {
+  if (isFinal) return why === "not begun" && hasLeft ? LEFT_FOR_GOOD : NO_MORE;
+  if (why === "" && isStopping) return STILL;
   const words = why === "not begun" && hasLeft ? LEFT : WHY_AWAY[why] ?? "";
   return words !== "" && side === "human" ? `${words} No person presses the pedals now.` : words;
 }

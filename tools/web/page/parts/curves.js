@@ -284,12 +284,16 @@ export class Curves {
     const hover = this.hover;
     this.fields.forEach((field, i) => {
       const {channel, path, unit, isStepwise} = field;
-      const value = hover === null && isStepwise ? numberAt(frame?.[channel], parsePath(path))
-                                                 : this.valueAt(field, hover ?? time);
+      const isThere = this.validOf(field)?.at(hover ?? time) !== 0;  // a sensor may have no value
+      const value = !isThere ? NaN
+        : hover === null && isStepwise ? numberAt(frame?.[channel], parsePath(path))
+        : this.valueAt(field, hover ?? time);
       say(this.values[i], withUnit(digits(value), Number.isNaN(value) ? unit : NAMES[field.name]?.(value) ?? unit));
       setAttribute(this.values[i], "data-value", String(value));
     });
-    say(byId("curves-at"), hover === null ? `Values at ${seconds(time, run.step_s)}`
+    const [from, to] = this.range(time);
+    const outside = time < from || time > to ? ", which is outside of the charts" : "";
+    say(byId("curves-at"), hover === null ? `Values at ${seconds(time, run.step_s)}${outside}`
                                           : `Values at the cursor, ${seconds(hover, run.step_s)}`);
   }
 

@@ -43,7 +43,7 @@ function mark(kind) {
 function roleRow(role, status, isOver) {
   const kind = grade(role, status, isOver);
   const waits = role.waiting_for && !status?.fallback ? `waits for ${role.waiting_for}` : "";
-  const trouble = [fallbackOf(status), waits, role.error].filter(Boolean).join("; ");
+  const trouble = [...(isOver ? [] : [fallbackOf(status), waits]), role.error].filter(Boolean).join("; ");
   return make("tr", {},
     make("th", {scope: "row"}, mark(kind), role.role),
     cell(isOver ? "ended" : role.silent ? `${role.state}, silent` : role.state ?? "", {class: "text"}),

@@ -3,8 +3,10 @@
 
 import {byId, say, setAttribute} from "../draw/dom.js";
 import {decimal, seconds, withUnit} from "../draw/format.js";
+import {stands} from "../data/cars.js";
 import {drivingSince, modeOf, requestAt, SIDES} from "../data/modes.js";
 
+const USUAL_NETWORK = "239.255.76.67:7667";  // LCM's default, on which each run is announced
 const ANNOUNCE_AFTER_MS = 400;  // otherwise a quick move through time would read out each change
 
 const LASTS = {
@@ -18,12 +20,27 @@ const REASONS = {
 };
 const NO_DRIVER = "Neither the automation nor the human goes on driving. ";
 
-/** The reason why the side of this HOST_COMMAND drives, as text. */
-export function reason({mode, lambda_human, doc, threshold}) {
+/**
+ * The reason why the side of this HOST_COMMAND drives, as text. The mode MINIMAL_RISK does not
+ * follow from the conflict: inputs of the arbitrator have failed, or nobody is at the seat.
+ * @param driver the DRIVER_COMMAND of the step
+ */
+export function reason({mode, lambda_human, doc, threshold}, driver = null) {
   const {name, side} = modeOf(mode, lambda_human);
+  if (name === "MINIMAL_RISK") {
+    return NO_DRIVER + (driver?.readiness === 0 ? "The human is not ready to drive." : "An input has failed.");
+  }
   const compared = doc >= threshold ? "at or above" : "below";
   return (REASONS[name] ?? (side === "risk" ? NO_DRIVER : "")) +
     `The Degree of Conflict ${decimal(doc, 2)} is ${compared} the threshold ${decimal(threshold, 2)}.`;
+}
+
+const STANDS = "Minimal risk manoeuvre: the car stands";
+
+/** A command that starts a run which this page then shows. @param url of the server's network */
+function hint(url) {
+  const network = url && !url.includes(USUAL_NETWORK) ? ` --lcm-url '${url}'` : "";
+  return `Start one, such as: fogline run scenario/dense_fog.json --pace 1${network}`;
 }
 
 export class Now {
@@ -40,25 +57,26 @@ export class Now {
   }
 
   /** Draws the strip. @return the side that drives */
-  draw({frame, time, run, isLive}, modes, lambdas) {
+  draw({frame, time, run, isLive, url}, modes, lambdas) {
     const command = frame?.HOST_COMMAND;
     if (!command) {
       say(this.words, isLive ? "Waiting for a run" : SIDES.unknown.words);
-      say(this.reason, isLive ? "Start one, such as: fogline run scenario/dense_fog.json --pace 1" : "");
+      say(this.reason, isLive ? hint(url) : "");
       setAttribute(this.strip, "data-side", "unknown");
       this.request.hidden = true;
       return "unknown";
     }
     const mode = modeOf(command.mode, command.lambda_human);
+    const words = mode.name === "MINIMAL_RISK" && stands(frame.TRUTH) ? STANDS : mode.words;
     setAttribute(this.strip, "data-side", mode.side);
-    say(this.words, mode.words);
+    say(this.words, words);
     const since = drivingSince(modes, lambdas, time);
     const lasted = since === null ? ""
       : ` ${LASTS[mode.side]} ${seconds(time - since, run.step_s)}.`;
-    say(this.reason, reason(command) + lasted);
+    say(this.reason, reason(command, frame.DRIVER_COMMAND) + lasted);
     this.drawRequest(requestAt(modes.times, modes.values, time,
                                run.scenario?.arbitrator?.take_over?.lead_s ?? 10));
-    this.announce(mode.words);
+    this.announce(words);
     return mode.side;
   }
 

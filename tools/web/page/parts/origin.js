@@ -17,7 +17,7 @@ function originInWords({connection, isLive, waits, isOver, log, clock}) {
 export function sayOrigin(page) {
   const {connection, isLive, waits, isOver, hello, clock} = page;
   const isBehind = isLive && (isOver || clock.state !== "live");
-  const state = connection !== "open" ? "lost" : waits ? "none" : isBehind ? "behind" : hello?.mode ?? "none";
+  const state = connection === "ended" ? "behind" : connection !== "open" ? "lost" : waits ? "none" : isBehind ? "behind" : hello?.mode ?? "none";
   setAttribute(byId("origin"), "data-state", state);
   say(byId("origin-words"), originInWords(page));
 }

@@ -8,6 +8,7 @@ import {Road, roadInWords} from "./road.js";
 
 const WORDS_EVERY_MS = 1000;
 const AFTER_PICTURE_MS = 100;
+const LONG_S = 60;  // the digits of a longer time gap say nothing
 
 export class Scene {
   constructor() {
@@ -65,7 +66,8 @@ export class Scene {
     say(byId("speed-now"), decimal(truth.host_speed_mps, 1));
     say(byId("speed-kmh"), `${kmh(truth.host_speed_mps)} km/h`);
     say(byId("gap-now"), decimal(truth.host_gap_m, 1));
-    say(byId("gap-time"), gap_s === null ? "" : `time gap ${withUnit(decimal(gap_s, 2), "s")}`);
+    const words = gap_s > LONG_S ? `over ${LONG_S}` : decimal(gap_s, 2);
+    say(byId("gap-time"), gap_s === null ? "" : `time gap ${withUnit(words, "s")}`);
     say(byId("sight-now"), visibility(truth.fog_visibility_m));
     setAttribute(byId("gap-now"), "data-value", String(truth.host_gap_m));
     setAttribute(byId("speed-now"), "data-value", String(truth.host_speed_mps));

@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import {test} from "node:test";
 
-import {carsOf, extinction, sightings, timeGap} from "../../../../../../tools/web/page/data/cars.js";
+import {carsOf, extinction, sightings, stands, timeGap} from "../../../../../../tools/web/page/data/cars.js";
 
 const truth = {
   preceding_position_m: 137.5, preceding_speed_mps: 20, preceding_acceleration_mps2: -2,
@@ -37,4 +37,6 @@ test("a sensor without an echo sees nothing", () => {
 test("there is no time gap at a standstill", () => {
   assert.equal(timeGap(truth), 1.5);
   assert.equal(timeGap({...truth, host_speed_mps: 0}), null);
+  assert.deepEqual([0, 0.1, 0.2].map((host_speed_mps) => stands({host_speed_mps})), [true, true, false]);
+  assert.equal(stands(undefined), false);
 });

@@ -72,10 +72,19 @@ test("in a stop that lasts until the end of the run the page gives no advice", (
       assert.match(whyAwayInWords(why, at(mode)), /Nobody drives any more in this run/);
     }
   }
-  for (const mode of [MRM_COMFORT, MRM_FAILED, EMERGENCY_BRAKING]) {
+  assert.match(whyAwayInWords("not begun", {...at(MINIMAL_RISK), hasLeft: true}), /You have left the seat\. Nobody/);
+  for (const mode of [MRM_COMFORT, MRM_FAILED]) {
     assert.equal(at(mode).isFinal, false);
-    assert.equal(whyAwayInWords("", at(mode)), "");
+    assert.match(whyAwayInWords("", at(mode)), /You can still take over/);
+    assert.match(whyAwayInWords("hidden", at(mode)), /hidden/);
   }
+  assert.equal(whyAwayInWords("", at(EMERGENCY_BRAKING)), "");
+});
+
+test("a car that stands does not stop", () => {
+  const {MINIMAL_RISK} = describedTypes().arbitration_t.constants;
+  const at = (host_speed_mps) => told({mode: MINIMAL_RISK, lambda_human: 0}, {last: 0, host_speed_mps}).words;
+  assert.deepEqual([at(5), at(0)], ["The car stops by itself", "The car stands"]);
 });
 
 test("a car that stops by itself answers the button, if it has not taken the answer", () => {
