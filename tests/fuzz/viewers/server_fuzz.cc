@@ -83,8 +83,7 @@ class Served {
   /// @param opening a request that opens a WebSocket, or ""; the client waits for the answer to
   /// this request first
   std::string AnswerTo(std::string_view opening, std::string_view bytes) {
-    tcp::socket client(context_);
-    client.connect({asio::ip::address_v4::loopback(), server_.access().rules().port});
+    tcp::socket client = Connected();
     client.non_blocking(true);
     // The kernel accepts these few bytes completely in one call.
     if (!opening.empty()) client.write_some(asio::buffer(opening));
@@ -109,6 +108,19 @@ class Served {
   }
 
  private:
+  /// A client with a connection. A signal of the fuzzer's timer may interrupt the attempt; then it
+  /// is made again.
+  tcp::socket Connected() {
+    const tcp::endpoint place(asio::ip::address_v4::loopback(), server_.access().rules().port);
+    for (;;) {
+      tcp::socket client(context_);
+      error_code error;
+      client.connect(place, error);
+      if (!error) return client;
+      Demand(error == asio::error::interrupted, "the server accepts each client");
+    }
+  }
+
   /// Sends as many bytes as the kernel accepts.
   static void Write(tcp::socket& client, std::string_view& bytes) {
     if (bytes.data() == nullptr) return;
