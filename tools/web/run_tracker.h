@@ -66,7 +66,7 @@ class RunTracker {
   std::string shown_text_;
   std::int64_t runs_ = 0;
   std::int64_t refused_scenarios_ = 0;
-  PersonSection person_;  // of the shown scenario, if this is valid
+  PersonSection person_;  // of the followed run, when its scenario has come and is valid
   RunEvents events_;
   std::size_t taken_ = 0;     // number of events that TakeEvents() has returned
   std::int64_t newest_ = -1;  // newest step

@@ -33,7 +33,7 @@ test("the new address of a server that was started again works in the same tab",
   await state("log");
   server.kill("SIGINT");
   await server.ended;
-  await state("lost");
+  await page.waitForFunction(() => document.getElementById("origin-words").textContent === "The program has ended");
   const {host} = new URL(address);
   const again = await view(t, [log, "--listen", host]);
   assert.equal(new URL(again).host, host);

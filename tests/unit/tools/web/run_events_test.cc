@@ -82,7 +82,7 @@ TEST(RunEventsTest, NameTheStepsInWhichAnEventAfterAGapMayHaveHappened) {
   }
 }
 
-TEST(RunEventsTest, SayTheSameOfAPersonAsTheEventsOfALog) {
+TEST(RunEventsTest, NameAPersonWhoMayHaveGone) {
   for (const bool drives : {false, true}) {
     RunEvents events;
     PersonSection person;

@@ -124,6 +124,30 @@ TEST(RunTrackerTest, FindsEventsOfItsRunOnly) {
   EXPECT_EQ(tracker.events()[0].step, 3);
 }
 
+TEST(RunTrackerTest, NamesAPersonInTheEventsOfARunThatAPersonDrives) {
+  RunTracker tracker;
+  Speaker person(tracker, 5, R"({"person": {"drives": true}})"), model(tracker, 6);
+  const auto stop = [&](Speaker& run, std::int64_t run_id) {
+    arbitration_t command{};
+    command.header = {.run_id = run_id, .step = 0, .utime = 0};
+    command.mode = arbitration_t::HUMAN;
+    command.lambda_human = 1;
+    run.Send(command, kBegin);
+    command.header.step = 1;
+    command.mode = arbitration_t::MINIMAL_RISK;
+    command.lambda_human = 0;
+    run.Send(command, kBegin);
+    return tracker.events().empty() ? "" : tracker.events().back().text;
+  };
+  person.AllParts(kBegin);
+  EXPECT_EQ(stop(person, 5), "manoeuvre begins: inputs or person gone");
+  person.Truth(0, false, kBegin);  // it is played again
+  EXPECT_EQ(stop(person, 5), "manoeuvre begins: inputs or person gone");
+  person.Part(0, kBegin, run_t::STOP);
+  model.AllParts(kBegin);
+  EXPECT_EQ(stop(model, 6), "manoeuvre begins: inputs have failed");
+}
+
 TEST(RunTrackerTest, BeginsAgainWhenARunIsPlayedAgain) {
   RunTracker tracker;
   Speaker run(tracker, 5);

@@ -241,12 +241,18 @@ class Drive {
     const lead_s = run?.scenario?.arbitrator?.take_over?.lead_s ?? 10;
     const left = state.asks ? countdown(this.request, time_s, lead_s) : null;
     this.alarm.sound(state);
-    if (this.side !== undefined && this.side !== state.side && this.connection === "open") this.alarm.change();
-    this.side = state.side;
+    this.soundChange(state.side);
     this.drawState(state, left);
     this.drawPerson(state);
     this.drawRoad(frame.TRUTH);
     setAttribute(document.body, "data-step", String(this.newest?.step ?? ""));
+  }
+
+  /** A sound for a change of the side that drives. A lost connection and the end are no change. */
+  soundChange(side) {
+    if (this.connection !== "open" || side === "unknown") return;
+    if (this.side !== undefined && this.side !== side) this.alarm.change();
+    this.side = side;
   }
 
   drawState({side, words, asks, urgent}, left) {
@@ -265,20 +271,20 @@ class Drive {
   }
 
   drawPerson(state) {
-    const {side, isFinal, isStopping} = state;
+    const {side, isFinal, mayEnd} = state;
     const why = this.person.whyAway();
     const seat = this.refused ? "refused" : "no seat";
     const words = this.state === "" ? ""
-      : whyAwayInWords(this.state === "taken" ? seat : why, {hasLeft: this.hasLeft, side, isFinal, isStopping});
-    say(byId("away"), words);
-    byId("away").hidden = words === "";
+      : whyAwayInWords(this.state === "taken" ? seat : why, {hasLeft: this.hasLeft, side, isFinal, mayEnd});
     const answer = why === "" ? this.answer.words(state, performance.now()) : "";
+    say(byId("away"), words);
+    byId("away").hidden = words === "" || answer !== "";
     say(byId("answer"), answer);
     byId("answer").hidden = answer === "";
     say(byId("begin"), this.person.begun ? "Leave the seat" : "Begin");
     setAttribute(byId("begin"), "data-begun", String(this.person.begun));
     setAttribute(document.body, "data-present", String(why === ""));
-    byId("begin").disabled = this.connection === "ended" || isFinal;
+    byId("begin").disabled = this.connection === "ended" || (isFinal && !this.person.begun);
     byId("take-over").disabled = why !== "" || isFinal || (side !== "automation" && side !== "risk");
     byId("give-back").disabled = why !== "" || side !== "human";
     const {throttle = 0, brake = 0} = this.input ?? {};
@@ -304,8 +310,10 @@ class Drive {
   }
 
   drawLatency() {
-    const {newest, highest} = this.latency;
-    const isHigh = this.told.side !== "unknown" && this.latency.isHigh(performance.now());
+    const {newest} = this.latency;
+    const now = performance.now();
+    const highest = this.latency.highest(now);
+    const isHigh = this.told.side !== "unknown" && this.latency.isHigh(now);
     const words = newest === null ? "not measured yet" : withUnit(decimal(newest, 0), "ms");
     const longest = `; the longest of the last inputs: ${withUnit(decimal(highest, 0), "ms")}`;
     say(byId("latency"), isHigh && highest > newest ? words + longest : words);

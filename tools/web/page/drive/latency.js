@@ -16,13 +16,13 @@ const LATE_OF = 10;               // one of this many measurements may be late
 const FORGET_AFTER_MS = 2000;  // time without a step of the run that uses the input
 const KEPT = 512;              // number of measurements for the percentiles
 const WARN_OF = 10;            // number of the newest measurements for the warning
-const WARN_FOR_MS = 10000;     // time after the newest measurement in which the page warns
+const WARN_FOR_MS = 10000;     // time after a measurement in which the page warns of it
 
 export class Latency {
   constructor() {
     this.probe = null;     // {sequence, began_ms, input: number of DRIVER_INPUT or null, applied}
     this.values = [];
-    this.measured_ms = -Infinity;  // time of the newest measurement
+    this.recent = [];      // {value, at_ms} of the newest WARN_OF measurements
     this.count = 0;
     this.unsent = null;    // the newest measurement, until a frame has it
     this.unjudged = [];    // measurements since takeLate() last judged
@@ -31,13 +31,16 @@ export class Latency {
   /** The newest measurement in ms; null if there is none. */
   get newest() { return this.values.at(-1) ?? null; }
 
-  /** The longest of the last WARN_OF measurements in ms; -Infinity without a measurement. */
-  get highest() { return Math.max(...this.values.slice(-WARN_OF)); }
-
-  /** Whether one of the last WARN_OF measurements was too long. Old measurements do not count. */
-  isHigh(now_ms) {
-    return this.highest > WARN_ABOVE_MS && now_ms - this.measured_ms < WARN_FOR_MS;
+  /**
+   * The longest of the last WARN_OF measurements in ms; -Infinity without a measurement. A
+   * measurement counts for WARN_FOR_MS.
+   */
+  highest(now_ms) {
+    return Math.max(...this.recent.filter(({at_ms}) => now_ms - at_ms < WARN_FOR_MS).map(({value}) => value));
   }
+
+  /** Whether the page warns that one of the last measurements was too long. */
+  isHigh(now_ms) { return this.highest(now_ms) > WARN_ABOVE_MS; }
 
   /** The newest measurement in ms for the next frame; null if an earlier frame has it. */
   takeUnsent() {
@@ -89,7 +92,7 @@ export class Latency {
     if (!this.probe?.applied) return null;
     const value = now_ms - this.probe.began_ms;
     this.probe = null;
-    this.measured_ms = now_ms;
+    this.recent = [...this.recent, {value, at_ms: now_ms}].slice(-WARN_OF);
     ++this.count;
     this.values.push(value);
     this.unsent = value;

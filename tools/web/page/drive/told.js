@@ -35,16 +35,16 @@ const GONE = {
 
 // Modes after which nobody drives until the end of the run.
 const FINAL = ["MINIMAL_RISK", "MRM_DONE"];
-// Modes in which the car stops by itself, but a person may take over.
-const STOPPING = ["MRM_COMFORT", "MRM_EMERGENCY", "MRM_FAILED"];
+// Modes in which nobody drives, but a person may take over and end the stop while the car moves.
+const MAY_END = ["MRM_COMFORT", "MRM_EMERGENCY", "MRM_FAILED"];
 
 const noSide = (words) => ({
-  side: "unknown", words, asks: false, urgent: false, answered: false, isFinal: false, isStopping: false});
+  side: "unknown", words, asks: false, urgent: false, answered: false, isFinal: false, mayEnd: false});
 
 /**
- * The description {side, words, asks, urgent, answered, isFinal, isStopping} of a HOST_COMMAND.
+ * The description {side, words, asks, urgent, answered, isFinal, mayEnd} of a HOST_COMMAND.
  * Without a HOST_COMMAND the drive has not begun. `isFinal`: nobody drives until the end of the run.
- * `isStopping`: the car stops by itself, but a person may take over.
+ * `mayEnd`: nobody drives, but a person may take over and end the stop.
  * @param truth the newest TRUTH, which says whether the run has ended
  * @param connection state of the wire (seat_wire.js)
  */
@@ -59,7 +59,7 @@ export function told(command, truth = null, connection = "open") {
     : name === "MINIMAL_RISK" && stands(truth) ? TOLD.MRM_DONE
     : TOLD[name] ?? "It is not known who drives";
   return {side, words, asks, urgent, answered: waits && !asks, isFinal: FINAL.includes(name),
-          isStopping: STOPPING.includes(name)};
+          mayEnd: MAY_END.includes(name)};
 }
 
 /**
@@ -80,12 +80,12 @@ export function countdown(request, time_s, lead_s) {
 const ANSWER_MS = {after: 1000, until: 6000};
 
 /** The text for a button that may have no effect; undefined for any other button. */
-function noEffect(button, {side, asks, answered, isStopping}) {
+function noEffect(button, {side, asks, answered, mayEnd}) {
   if (button === "give_back" && side === "human") {
     return "You still drive: the automation does not take the car yet. Press again later.";
   }
   if (button !== "take_over" || asks || answered) return undefined;
-  if (isStopping) return "You do not drive: the car has not taken your answer.";
+  if (mayEnd) return "You do not drive: the car has not taken your answer.";
   if (side !== "automation") return undefined;
   return "The automation goes on driving: it has not asked you to take over.";
 }
@@ -131,11 +131,11 @@ const STILL = "You can still take over while the car moves.";
 /**
  * The text for a reason of Person.whyAway(); "" if the person is present and need not be told
  * anything.
- * @param hasLeft whether the person had begun before; side, isFinal, isStopping: see told()
+ * @param hasLeft whether the person had begun before; side, isFinal, mayEnd: see told()
  */
-export function whyAwayInWords(why, {hasLeft = false, side = "unknown", isFinal = false, isStopping = false} = {}) {
+export function whyAwayInWords(why, {hasLeft = false, side = "unknown", isFinal = false, mayEnd = false} = {}) {
   if (isFinal) return why === "not begun" && hasLeft ? LEFT_FOR_GOOD : NO_MORE;
-  if (why === "" && isStopping) return STILL;
+  if (why === "" && mayEnd) return STILL;
   const words = why === "not begun" && hasLeft ? LEFT : WHY_AWAY[why] ?? "";
   return words !== "" && side === "human" ? `${words} No person presses the pedals now.` : words;
 }

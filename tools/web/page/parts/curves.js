@@ -291,7 +291,7 @@ export class Curves {
       say(this.values[i], withUnit(digits(value), Number.isNaN(value) ? unit : NAMES[field.name]?.(value) ?? unit));
       setAttribute(this.values[i], "data-value", String(value));
     });
-    const [from, to] = this.range(time);
+    const [from, to] = Array.isArray(this.span) ? this.span : [-Infinity, Infinity];  // of a zoom
     const outside = time < from || time > to ? ", which is outside of the charts" : "";
     say(byId("curves-at"), hover === null ? `Values at ${seconds(time, run.step_s)}${outside}`
                                           : `Values at the cursor, ${seconds(hover, run.step_s)}`);

@@ -21,14 +21,14 @@ const REASONS = {
 const NO_DRIVER = "Neither the automation nor the human goes on driving. ";
 
 /**
- * The reason why the side of this HOST_COMMAND drives, as text. The mode MINIMAL_RISK does not
- * follow from the conflict: inputs of the arbitrator have failed, or nobody is at the seat.
- * @param driver the DRIVER_COMMAND of the step
+ * The reason why the side of this HOST_COMMAND drives, as text. The mode MINIMAL_RISK lasts until
+ * the end of the run, whatever the conflict is then.
+ * @param hasPerson whether a person drives in this run, who can leave the seat
  */
-export function reason({mode, lambda_human, doc, threshold}, driver = null) {
+export function reason({mode, lambda_human, doc, threshold}, hasPerson = false) {
   const {name, side} = modeOf(mode, lambda_human);
   if (name === "MINIMAL_RISK") {
-    return NO_DRIVER + (driver?.readiness === 0 ? "The human is not ready to drive." : "An input has failed.");
+    return NO_DRIVER + (hasPerson ? "Inputs have failed, or the person has gone." : "Inputs have failed.");
   }
   const compared = doc >= threshold ? "at or above" : "below";
   return (REASONS[name] ?? (side === "risk" ? NO_DRIVER : "")) +
@@ -73,7 +73,7 @@ export class Now {
     const since = drivingSince(modes, lambdas, time);
     const lasted = since === null ? ""
       : ` ${LASTS[mode.side]} ${seconds(time - since, run.step_s)}.`;
-    say(this.reason, reason(command, frame.DRIVER_COMMAND) + lasted);
+    say(this.reason, reason(command, run.scenario?.person?.drives) + lasted);
     this.drawRequest(requestAt(modes.times, modes.values, time,
                                run.scenario?.arbitrator?.take_over?.lead_s ?? 10));
     this.announce(words);

@@ -16,8 +16,9 @@ function originInWords({connection, isLive, waits, isOver, log, clock}) {
 /** Shows the origin of the data. @param page {connection, isLive, waits, isOver, hello, log, clock} */
 export function sayOrigin(page) {
   const {connection, isLive, waits, isOver, hello, clock} = page;
-  const isBehind = isLive && (isOver || clock.state !== "live");
-  const state = connection === "ended" ? "behind" : connection !== "open" ? "lost" : waits ? "none" : isBehind ? "behind" : hello?.mode ?? "none";
+  const isBehind = connection === "ended" || (isLive && (isOver || clock.state !== "live"));
+  const isLost = !["open", "ended"].includes(connection);
+  const state = isLost ? "lost" : waits ? "none" : isBehind ? "behind" : hello?.mode ?? "none";
   setAttribute(byId("origin"), "data-state", state);
   say(byId("origin-words"), originInWords(page));
 }

@@ -64,8 +64,8 @@ export class Timebar {
   keepRoom(store, run) {
     const last = Math.max(store.lastStep, (run.steps ?? 0) - 1);
     const longest = decimal(store.timeOf(last), timeDecimals(run.step_s));
-    if (longest === this.longest) return;
-    this.longest = longest;
+    if (this.room === `${longest} ${last}`) return;
+    this.room = `${longest} ${last}`;
     const digits = longest.length;
     byId("time-now").style.minWidth = `${digits}ch`;
     byId("time-end").style.minWidth = `${digits + " / ".length + " s".length}ch`;
