@@ -126,7 +126,7 @@ TEST(RunTrackerTest, FindsEventsOfItsRunOnly) {
 
 TEST(RunTrackerTest, NamesAPersonInTheEventsOfARunThatAPersonDrives) {
   RunTracker tracker;
-  Speaker person(tracker, 5, R"({"person": {"drives": true}})"), model(tracker, 6);
+  Speaker person(tracker, 5, R"({"version": 1, "person": {"drives": true}})"), model(tracker, 6);
   const auto stop = [&](Speaker& run, std::int64_t run_id) {
     arbitration_t command{};
     command.header = {.run_id = run_id, .step = 0, .utime = 0};
