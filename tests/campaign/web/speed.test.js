@@ -6,7 +6,7 @@ import {test} from "node:test";
 
 import {meetsBar} from "./load.js";
 import {begin, drives, freshNetwork, seat} from "./seat.js";
-import {background, browser, open, recordedRun, scratch, view} from "./window.js";
+import {background, browser, goTo, open, recordedRun, scratch, view} from "./window.js";
 
 const {FOGLINE} = process.env;
 
@@ -54,7 +54,9 @@ test("at 100 Hz a page shows 30 frames a second, and a message at most 150 ms af
 test("a scrub through 7000 steps answers within 50 ms", async (t) => {
   const log = recordedRun(scratch(t), ["/steps=7000", "/lead/profile=sinusoid"]);
   const page = await open(t, await browser(t), await view(t, [log]));
-  await page.waitForFunction(() => document.body.dataset.step === "0" && foglinePage.why.modes.length > 0);
+  // The driver's view comes last, and its first picture takes a second without a graphics processor.
+  await page.waitForFunction(() => foglinePage.scene.view && foglinePage.why.modes.length > 0);
+  await goTo(page, 7);
   let round = 0;
   await meetsBar(t, async () => {
     round += 1;
