@@ -90,17 +90,22 @@ function placeSpan(figure, xs) {
   return [first - margin, last + margin];
 }
 
-/** The name of a category in lines of at most `room` pixels. A single word may be wider. */
-function linesOf(name, room) {
+/** Width of a text of an axis, in pixels. */
+function textWidth(text) {
   const pen = document.createElement("canvas").getContext("2d");
   pen.font = `12px ${theme.font}`;
+  return pen.measureText(text).width;
+}
+
+/** The name of a category in lines of at most `room` pixels. A single word may be wider. */
+function linesOf(name, room) {
   const lines = [];
   for (const word of name.replace(/(\d) (?=\D)/g, "$1\u00a0").split(" ")) {
     const longer = lines.length ? `${lines.at(-1)} ${word}` : word;
-    if (lines.length && pen.measureText(longer).width <= room) lines[lines.length - 1] = longer;
+    if (lines.length && textWidth(longer) <= room) lines[lines.length - 1] = longer;
     else lines.push(word);
   }
-  return {lines, width: Math.max(...lines.map((line) => pen.measureText(line).width))};
+  return {lines, width: Math.max(...lines.map(textWidth))};
 }
 
 /** Names of the rows, the room for them, and the height of a row, in a chart of this width. */
@@ -165,7 +170,9 @@ function logTicks(least, most) {
 }
 
 function yAxis(figure) {
-  const place = figure.categories.length ? {side: 2, size: 28, space: 56} : {size: 56};
+  // The room has space for a tick, a gap and the longest value.
+  const room = (_, texts) => Math.max(56, 14 + Math.ceil(Math.max(...(texts ?? [""]).map(textWidth))));
+  const place = figure.categories.length ? {side: 2, size: 28, space: 56} : {size: room};
   const splits = figure.logY ? (chart, index, least, most) => logTicks(least, most) : undefined;
   return axis({...place, splits,
                values: (_, places) => places.map((y) => numberText(yAtPlace(figure, y)))});
