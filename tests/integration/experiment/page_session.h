@@ -83,8 +83,8 @@ class PageSession {
     for (const auto end = std::chrono::steady_clock::now() + kPatience;
          std::chrono::steady_clock::now() < end;) {
       const auto state = nlohmann::json::parse(experimenter_->Receive().bytes);
-      for (const std::string shown : state["lines"]) {
-        if (shown == line) return;
+      for (const auto& shown : state["lines"]) {
+        if (shown["text"] == line) return;
       }
     }
     throw std::runtime_error("no line \"" + line + "\" comes");
