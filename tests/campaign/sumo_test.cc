@@ -103,7 +103,7 @@ TEST_F(SumoTest, AWorldThatLoadsSumoForLongIsNotTakenForHung) {
   const TimePoint began = Clock::now();
   while (watched.StateOf("world", world) == status_t::WAITING) {
     kill(world, SIGSTOP);
-    std::this_thread::sleep_for(milliseconds(99));
+    std::this_thread::sleep_for(milliseconds(99));  // the test is about these pauses
     kill(world, SIGCONT);
     watched.Listen(milliseconds(1));
     ASSERT_LT(Clock::now() - began, kPatience);

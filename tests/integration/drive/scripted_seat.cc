@@ -85,6 +85,7 @@ int main(int argc, char** argv) {
   const auto run_id = drive::WaitForRun(argv[1]);
   if (!run_id) return 0;
   const drive::Seat seat(argv[1], *run_id, {}, std::make_unique<drive::Script>(acts));
+  // The seat sends in a thread of its own. This thread waits for the signal that ends the program.
   while (!WasInterrupted()) std::this_thread::sleep_for(milliseconds(20));
   return 0;
 }

@@ -33,9 +33,9 @@ const GONE = {
   refused: "No connection to the car",
 };
 
-// Modes after which nobody drives until the end of the run.
+// Modes of a stop that lasts until the end of the run. A person cannot end it.
 const FINAL = ["MINIMAL_RISK", "MRM_DONE"];
-// Modes in which nobody drives, but a person may take over and end the stop while the car moves.
+// Modes of a stop that a person can end by taking over, while the car moves.
 const MAY_END = ["MRM_COMFORT", "MRM_EMERGENCY", "MRM_FAILED"];
 
 const noSide = (words) => ({
@@ -43,8 +43,8 @@ const noSide = (words) => ({
 
 /**
  * The description {side, words, asks, urgent, answered, isFinal, mayEnd} of a HOST_COMMAND.
- * Without a HOST_COMMAND the drive has not begun. `isFinal`: nobody drives until the end of the run.
- * `mayEnd`: nobody drives, but a person may take over and end the stop.
+ * Without a HOST_COMMAND the drive has not begun. `isFinal`: the stop lasts until the end of the run.
+ * `mayEnd`: a person can end the stop by taking over.
  * @param truth the newest TRUTH, which says whether the run has ended
  * @param connection state of the wire (seat_wire.js)
  */
