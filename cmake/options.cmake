@@ -12,8 +12,8 @@ if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
 endif()
 
 # The option for code whose speed does not matter, such as that of command lines and JSON: it takes
-# long to compile.
-set(FOGLINE_COLD_CODE $<$<CONFIG:Release>:-O1>)
+# long to compile. GCC needs a quarter less time with -Og than with -O1.
+set(FOGLINE_COLD_CODE $<$<CONFIG:Release>:-Og>)
 # The option for code that mostly waits for the network or the disk.
 set(FOGLINE_IO_CODE $<$<CONFIG:Release>:-O2>)
 
