@@ -50,6 +50,7 @@ LiveView::LiveView(asio::io_context& context, LiveOptions options)
       statistics_(FourStatistics()),
       foxglove_channels_(FoglineTypes()),
       tracker_(options.run),
+      seat_(options.seat),
       network_(std::move(options.url), options.follows,
                [this](std::string_view channel, runtime::Bytes bytes) { Hear(channel, bytes); }),
       look_(context),
@@ -145,7 +146,7 @@ void LiveView::Opened(Client& client) {
     viewer.foxglove.emplace(foxglove_channels_);
     return SendFrames(client, viewer.foxglove->Opened());
   }
-  client.Send(TextFrame(HelloText(url(), channels_.others())));
+  client.Send(TextFrame(HelloText(url(), seat_, channels_.others())));
   if (!tracker_.run()) return;
   client.Send(TextFrame(tracker_.run_text()));
   for (const RunEvent& event : tracker_.events()) client.Send(TextFrame(EventText(event)));
@@ -281,6 +282,7 @@ std::string LiveView::Health() {
   const watch::TrafficView traffic = statistics_[turn_].Observe(Clock::now());
   turn_ = (turn_ + 1) % kTurns;
   const watch::SendersView senders = network_.ViewSenders(Clock::now());
+  const ServerCounts counts = server_ ? server_->counts() : ServerCounts{};
   NameTrouble(senders);
   nlohmann::ordered_json json{{"op", "health"},
                               {"traffic", watch::TrafficJson(traffic, url())},
@@ -291,10 +293,11 @@ std::string LiveView::Health() {
                               {"too_large_channels", senders.channels_in_fragments},
                               {"refused_scenarios", tracker_.refused_scenarios()},
                               {"unverified", unverified_},
-                              {"viewers", server_ ? server_->counts().viewers : 0},
-                              {"cut_off", server_ ? server_->counts().cut_off : 0},
-                              {"refused", server_ ? server_->counts().refused : 0},
-                              {"wrong_frames", server_ ? server_->counts().wrong_frames : 0},
+                              {"viewers", counts.viewers - counts.drivers},
+                              {"drivers", counts.drivers},
+                              {"cut_off", counts.cut_off},
+                              {"refused", counts.refused},
+                              {"wrong_frames", counts.wrong_frames},
                               {"events_left_out", tracker_.events_left_out()}};
   for (auto& run : json["traffic"]["runs"]) {  // as text: JavaScript rounds numbers beyond 2^53
     run["run_id"] = std::to_string(run["run_id"].get<std::int64_t>());

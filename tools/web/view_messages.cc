@@ -39,7 +39,7 @@ std::string BeginFrame(FrameKind kind) { return {static_cast<char>(kind)}; }
 
 }  // namespace
 
-std::string HelloText(const std::optional<std::string>& url,
+std::string HelloText(const std::optional<std::string>& url, bool seat,
                       const std::vector<KnownChannel>& others) {
   Json json{{"op", "hello"},
             {"version", FOGLINE_VERSION},
@@ -48,7 +48,8 @@ std::string HelloText(const std::optional<std::string>& url,
             {"fingerprints", FingerprintsJson(FoglineTypes())},
             {"channels", ChannelsJson()},
             {"roles", RolesJson()},
-            {"url", url ? Json(*url) : Json(nullptr)}};
+            {"url", url ? Json(*url) : Json(nullptr)},
+            {"seat", seat}};
   for (const KnownChannel& channel : others) json["channels"].push_back(ChannelJson(channel));
   return Printed(json);
 }

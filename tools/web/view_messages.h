@@ -29,7 +29,8 @@ struct RunFacts {
 };
 
 /// @param url the LCM network; nullopt for a log
-std::string HelloText(const std::optional<std::string>& url,
+/// @param seat whether one person may drive in the run
+std::string HelloText(const std::optional<std::string>& url, bool seat,
                       const std::vector<KnownChannel>& others);
 std::string ChannelText(const KnownChannel& channel);
 /// @return "" if the scenario is not a JSON object

@@ -245,7 +245,8 @@ int RunView(const ViewArguments& arguments) {
     LiveView view(context, {.url = arguments.network.Url(),
                             .follows = arguments.network.Follows(),
                             .run = arguments.run,
-                            .key = key});
+                            .key = key,
+                            .seat = arguments.seat});
     std::optional<SeatView> seat;
     if (arguments.seat) seat.emplace(context, view, key);
     View& shown = seat ? static_cast<View&>(*seat) : view;

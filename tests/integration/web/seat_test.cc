@@ -86,6 +86,16 @@ TEST_F(SeatPageTest, APageSeesTheRunAndNothingElse) {
   EXPECT_EQ(messages[0].channel, IndexOf<truth_t>());
 }
 
+TEST_F(SeatPageTest, APageOfTheSeatIsNoViewer) {
+  WebClient page = Page(port());
+  ReceiveOp(page, "seat");
+  WebClient viewer(port());
+  EXPECT_EQ(ReceiveOp(viewer, "hello")["seat"], true);
+  const json health = ReceiveOp(viewer, "health");
+  EXPECT_EQ(health["viewers"], 1);
+  EXPECT_EQ(health["drivers"], 1);
+}
+
 TEST_F(SeatPageTest, APageThatIsOpenedLateIsToldWhenTheRequestBegan) {
   const auto command = [this](std::int64_t step, std::int8_t mode) {
     arbitration_t host{};

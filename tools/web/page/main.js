@@ -355,7 +355,7 @@ class Page {
     const shown = this.frame ? this.frameStep : step;
     const time = store.timeOf(shown);
     const {modes, lambdas} = this.why;
-    const moment = {frame: this.frame, step: shown, time, run, theme, length_m: this.length_m, isLive: this.isLive, url: this.hello.url,
+    const moment = {frame: this.frame, step: shown, time, run, theme, length_m: this.length_m, isLive: this.isLive, hello: this.hello,
                     ahead_s: frame ? this.aheadOf(step) : 0, moves: clock.state !== "paused"};
     sayOrigin(this);
     const {rest_ms} = this.budget.now;

@@ -42,6 +42,14 @@ export function timeTick(time_s, increment_s, decimals) {
   return `${decimal(time_s / size_s, 0)}${SPACE}${unit}`;
 }
 
+/** Simulated time in whole minutes and seconds, such as "16:40 min", or "1:31:05 h". */
+export function clockTime(time_s) {
+  const whole_s = Math.floor(time_s);
+  const [h, min, s] = [Math.floor(whole_s / 3600), Math.floor(whole_s / 60) % 60, whole_s % 60];
+  const two = (value) => String(value).padStart(2, "0");
+  return h > 0 ? `${h}:${two(min)}:${two(s)}${SPACE}h` : `${min}:${two(s)}${SPACE}min`;
+}
+
 export function count(value) {
   return value == null ? DASH : value.toLocaleString("en-GB").replaceAll(",", SPACE);
 }

@@ -115,9 +115,10 @@ export class Health {
     const overall = bad.length ? "bad" : losses.count ? "note" : "good";
     setAttribute(this.summary, "data-grade", overall);
     say(this.summary, `${first} ${losses.words}`);
-    const viewers = health.viewers ?? 1;
+    const {viewers = 1, drivers = 0} = health;
     const url = health.traffic?.lcm_url;
     const facts = [url && `Network ${url}`, viewers === 1 ? "1 viewer" : `${count(viewers)} viewers`,
+                   drivers > 0 && (drivers === 1 ? "1 page of the seat" : `${count(drivers)} pages of the seat`),
                    ...lacksOf(health, count)];
     say(this.network, facts.filter(Boolean).join(" · "));
   }

@@ -37,8 +37,9 @@ export function reason({mode, lambda_human, doc, threshold}, hasPerson = false) 
 
 const STANDS = "Minimal risk manoeuvre: the car stands";
 
-/** A command that starts a run which this page then shows. @param url of the server's network */
-function hint(url) {
+/** How a run begins that this page then shows. @param hello {url, seat} of the server */
+function hint({url, seat}) {
+  if (seat) return "The drive begins when the participant presses “Begin” at the seat.";
   const network = url && !url.includes(USUAL_NETWORK) ? ` --lcm-url '${url}'` : "";
   return `Start one, such as: fogline run scenario/dense_fog.json --pace 1${network}`;
 }
@@ -57,11 +58,11 @@ export class Now {
   }
 
   /** Draws the strip. @return the side that drives */
-  draw({frame, time, run, isLive, url}, modes, lambdas) {
+  draw({frame, time, run, isLive, hello}, modes, lambdas) {
     const command = frame?.HOST_COMMAND;
     if (!command) {
       say(this.words, isLive ? "Waiting for a run" : SIDES.unknown.words);
-      say(this.reason, isLive ? hint(url) : "");
+      say(this.reason, isLive ? hint(hello) : "");
       setAttribute(this.strip, "data-side", "unknown");
       this.request.hidden = true;
       return "unknown";

@@ -1,11 +1,12 @@
 // The bar at the bottom: live, pause, play, step, jump to events, scrub, speed, link.
 
 import {byId, fitCanvas, hatch, make, say, setAttribute} from "../draw/dom.js";
-import {count, decimal, seconds, timeDecimals} from "../draw/format.js";
+import {clockTime, count, decimal, seconds, timeDecimals} from "../draw/format.js";
 import {sideSpans, spansOf} from "../data/modes.js";
 import {SPEEDS} from "../data/clock.js";
 
 const TRACK_HZ = 4;
+const LONG_S = 600;  // a run of this time or more is long
 export const EVENT_MARKS = {
   fog: "≋", transfer: "⇄", request: "◎", alarm: "!", manoeuvre: "△", braking: "▼", collision: "✕"};
 
@@ -48,7 +49,7 @@ export class Timebar {
     setAttribute(slider, "aria-valuetext", `${seconds(time, run.step_s)}, step ${step}`);
     say(byId("time-now"), decimal(time, timeDecimals(run.step_s)));
     say(byId("time-end"), ` / ${seconds(store.lastTime, run.step_s)}`);
-    say(byId("step-now"), `step ${step}`);
+    say(byId("step-now"), placeWords(step, time, store));
     this.keepRoom(store, run);
     const running = clock.state !== "paused";
     setAttribute(this.play, "aria-label", running ? "Pause" : "Play");
@@ -69,7 +70,7 @@ export class Timebar {
     const digits = longest.length;
     byId("time-now").style.minWidth = `${digits}ch`;
     byId("time-end").style.minWidth = `${digits + " / ".length + " s".length}ch`;
-    byId("step-now").style.minWidth = `${`step ${last}`.length}ch`;
+    byId("step-now").style.minWidth = `${placeWords(last, store.timeOf(last), store).length}ch`;
   }
 
   /** Draws fog, the side that drives, and events over the whole time. */
@@ -136,6 +137,11 @@ export class Timebar {
       else button.removeAttribute("aria-current");
     });
   }
+}
+
+/** The step, and in a long run the time in minutes, as on the time axes of the curves. */
+function placeWords(step, time, {lastTime}) {
+  return lastTime < LONG_S ? `step ${step}` : `step ${step}, ${clockTime(time)}`;
 }
 
 /** The step of the next (+1) or previous (-1) event, seen from a step; null if there is none. */

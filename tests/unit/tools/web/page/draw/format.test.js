@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import {test} from "node:test";
 
-import {digits, seconds, timeTick} from "../../../../../../tools/web/page/draw/format.js";
+import {clockTime, digits, seconds, timeTick} from "../../../../../../tools/web/page/draw/format.js";
 
 const plain = (text) => text.replaceAll("\u00a0", " ").replaceAll("−", "-");
 
@@ -22,4 +22,12 @@ test("a number has about four digits, and a missing one is a dash", () => {
 test("a time has the decimals of the step", () => {
   assert.equal(plain(seconds(1.25, 0.1)), "1.3 s");
   assert.equal(plain(seconds(1.25, 0.01)), "1.25 s");
+});
+
+test("a time in minutes has whole seconds, and hours only if there are some", () => {
+  assert.equal(plain(clockTime(0)), "0:00 min");
+  assert.equal(plain(clockTime(65.99)), "1:05 min");
+  assert.equal(plain(clockTime(3599.9)), "59:59 min");
+  assert.equal(plain(clockTime(3600)), "1:00:00 h");
+  assert.equal(plain(clockTime(5465)), "1:31:05 h");
 });
