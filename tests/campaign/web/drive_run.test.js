@@ -261,6 +261,17 @@ test("when the tab is hidden, the fallbacks stop the car", async (t) => {
   }));
 });
 
+test("when the person leaves the seat by a second press, the fallbacks stop the car", async (t) => {
+  await leavesTheCar(t, async (page) => {
+    const button = page.locator("#begin");
+    await button.click();
+    await until(async () => await button.innerText() === "Press again to leave", "the words for the second press");
+    await drives(page, true);
+    await button.click();
+    await drives(page, false);
+  });
+});
+
 test("when the page is closed, the fallbacks stop the car", async (t) => {
   await leavesTheCar(t, (page) => page.close());
 });

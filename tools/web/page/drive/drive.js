@@ -9,6 +9,7 @@ import {decimal, kmh, withUnit} from "../draw/format.js";
 import {loadView} from "../draw/view_file.js";
 import {Alarm} from "./alarm.js";
 import {Latency} from "./latency.js";
+import {Leaving} from "./leaving.js";
 import {backOf, Newest} from "./newest.js";
 import {isDriving, Person} from "./person.js";
 import {ratesOf} from "./ramps.js";
@@ -29,6 +30,7 @@ class Drive {
     this.latency = new Latency();
     this.alarm = new Alarm();
     this.answer = new Answer();
+    this.leaving = new Leaving();
     this.told = told(null);
     this.budget = new Budget({slow_ms: SLOW_MS, isLate: () => this.latency.takeLate()});
     this.newest = null;
@@ -96,6 +98,7 @@ class Drive {
 
   begin() {
     this.alarm.allow();
+    if (this.person.begun && !this.leaving.press(this.told.side === "human", performance.now())) return;
     this.hasLeft = this.person.begun;
     this.set("begun", !this.person.begun);
     if (this.person.begun) byId("begin").blur();  // the space bar would press the button again
@@ -281,7 +284,8 @@ class Drive {
     byId("away").hidden = words === "" || answer !== "";
     say(byId("answer"), answer);
     byId("answer").hidden = answer === "";
-    say(byId("begin"), this.person.begun ? "Leave the seat" : "Begin");
+    const leave = this.leaving.asks(performance.now()) ? "Press again to leave" : "Leave the seat";
+    say(byId("begin"), this.person.begun ? leave : "Begin");
     setAttribute(byId("begin"), "data-begun", String(this.person.begun));
     setAttribute(document.body, "data-present", String(why === ""));
     byId("begin").disabled = this.connection === "ended" || (isFinal && !this.person.begun);

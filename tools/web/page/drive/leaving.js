@@ -1,0 +1,22 @@
+// Asks a person who drives for a second press before the seat is empty: one press by mistake would
+// end the drive.
+
+const WITHIN_MS = 4000;  // the time for the second press
+
+export class Leaving {
+  constructor() {
+    this.until_ms = -Infinity;
+  }
+
+  /** @param drives whether the human drives. @return whether this press leaves the seat */
+  press(drives, now_ms) {
+    const leaves = !drives || this.asks(now_ms);
+    this.until_ms = leaves ? -Infinity : now_ms + WITHIN_MS;
+    return leaves;
+  }
+
+  /** Whether a second press would leave the seat now. */
+  asks(now_ms) {
+    return now_ms < this.until_ms;
+  }
+}
