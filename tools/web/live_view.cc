@@ -50,7 +50,7 @@ LiveView::LiveView(asio::io_context& context, LiveOptions options)
       statistics_(FourStatistics()),
       foxglove_channels_(FoglineTypes()),
       tracker_(options.run),
-      seat_(options.seat),
+      waits_for_person_(options.waits_for_person),
       network_(std::move(options.url), options.follows,
                [this](std::string_view channel, runtime::Bytes bytes) { Hear(channel, bytes); }),
       look_(context),
@@ -146,7 +146,9 @@ void LiveView::Opened(Client& client) {
     viewer.foxglove.emplace(foxglove_channels_);
     return SendFrames(client, viewer.foxglove->Opened());
   }
-  client.Send(TextFrame(HelloText(url(), seat_, channels_.others())));
+  client.Send(TextFrame(HelloText(
+      LiveFacts{.url = url(), .follows = network_.follows(), .waits_for_person = waits_for_person_},
+      channels_.others())));
   if (!tracker_.run()) return;
   client.Send(TextFrame(tracker_.run_text()));
   for (const RunEvent& event : tracker_.events()) client.Send(TextFrame(EventText(event)));

@@ -32,7 +32,7 @@ struct LiveOptions {
   bool follows = false;                    // whether to follow announced runs
   std::optional<std::int64_t> run;         // if set, only this run is shown
   std::optional<runtime::SigningKey> key;  // if set, messages without its signature are not shown
-  bool seat = false;                       // whether one person may drive in the run
+  bool waits_for_person = false;           // whether the run begins when a person is in the seat
 };
 
 class LiveView final : public View {
@@ -103,7 +103,7 @@ class LiveView final : public View {
   std::size_t told_channels_ = 0;  // number of other channels that the clients know
   MessageRing ring_;
   RunTracker tracker_;
-  const bool seat_;
+  const bool waits_for_person_;
   Teller teller_;
   std::int64_t told_run_ = 0;
   std::int64_t named_scenarios_ = 0;  // number of refused scenarios named on stderr

@@ -39,17 +39,18 @@ std::string BeginFrame(FrameKind kind) { return {static_cast<char>(kind)}; }
 
 }  // namespace
 
-std::string HelloText(const std::optional<std::string>& url, bool seat,
+std::string HelloText(const std::optional<LiveFacts>& live,
                       const std::vector<KnownChannel>& others) {
   Json json{{"op", "hello"},
             {"version", FOGLINE_VERSION},
-            {"mode", url ? "live" : "log"},
+            {"mode", live ? "live" : "log"},
             {"types", TypesJson(FoglineTypes())},
             {"fingerprints", FingerprintsJson(FoglineTypes())},
             {"channels", ChannelsJson()},
             {"roles", RolesJson()},
-            {"url", url ? Json(*url) : Json(nullptr)},
-            {"seat", seat}};
+            {"url", live ? Json(live->url) : Json(nullptr)},
+            {"follows", live && live->follows},
+            {"waits_for_person", live && live->waits_for_person}};
   for (const KnownChannel& channel : others) json["channels"].push_back(ChannelJson(channel));
   return Printed(json);
 }

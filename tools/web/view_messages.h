@@ -28,9 +28,15 @@ struct RunFacts {
   double pace = 0;
 };
 
-/// @param url the LCM network; nullopt for a log
-/// @param seat whether one person may drive in the run
-std::string HelloText(const std::optional<std::string>& url, bool seat,
+/// The facts about a live view that a page needs.
+struct LiveFacts {
+  std::string url;                // of the LCM network
+  bool follows = false;           // whether the view follows announced runs
+  bool waits_for_person = false;  // whether the run begins when a person is in the seat
+};
+
+/// @param live nullopt for a log
+std::string HelloText(const std::optional<LiveFacts>& live,
                       const std::vector<KnownChannel>& others);
 std::string ChannelText(const KnownChannel& channel);
 /// @return "" if the scenario is not a JSON object

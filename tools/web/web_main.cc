@@ -246,7 +246,7 @@ int RunView(const ViewArguments& arguments) {
                             .follows = arguments.network.Follows(),
                             .run = arguments.run,
                             .key = key,
-                            .seat = arguments.seat});
+                            .waits_for_person = arguments.seat && arguments.run});
     std::optional<SeatView> seat;
     if (arguments.seat) seat.emplace(context, view, key);
     View& shown = seat ? static_cast<View&>(*seat) : view;

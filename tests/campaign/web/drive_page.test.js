@@ -47,12 +47,12 @@ test("the arrows are the pedals, T and G the buttons", async (t) => {
   assert.deepEqual(numbers, numbers.map((_, i) => numbers[0] + i));
 });
 
-test("a view of a waiting drive says how it begins, and counts the page of the seat", async (t) => {
+test("a view counts the page of the seat, and names a command that starts a run on its network", async (t) => {
   const {view, started} = await seated(t);  // its listener is a viewer, too
   const page = await open(t, started, view);
   await page.waitForFunction(() =>
     document.getElementById("network").textContent.includes("2 viewers · 1 page of the seat"));
-  assert.match(await page.locator("#reason").innerText(), /presses “Begin” at the seat/);
+  assert.match(await page.locator("#reason").innerText(), /fogline run \S+ --pace 1 --lcm-url 'udpm:/);
 });
 
 test("a wheel is calibrated in the page, drives, and is known again", async (t) => {

@@ -272,6 +272,12 @@ test("when the person leaves the seat by a second press, the fallbacks stop the 
   });
 });
 
+test("the view of a drive says how the drive begins", async (t) => {
+  const {view} = await startDrive(t);
+  const page = await open(t, await browser(t), view);
+  await page.waitForFunction(() => /presses “Begin” at the seat/.test(document.getElementById("reason").textContent));
+});
+
 test("when the page is closed, the fallbacks stop the car", async (t) => {
   await leavesTheCar(t, (page) => page.close());
 });

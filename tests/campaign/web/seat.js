@@ -32,7 +32,7 @@ export async function seat(t, network, args = []) {
 
 /**
  * Starts a drive. @param settings fields of the scenario and their values
- * @return {run, log, address}: its process, its log, and the address of the participant's page
+ * @return {run, log, address, view}: its process, its log, and the addresses of both pages
  */
 export async function startDrive(t, settings = {}) {
   const log = path.join(scratch(t), "drive.lcm");
@@ -40,11 +40,11 @@ export async function startDrive(t, settings = {}) {
   const run = background(t, FOGLINE, ["drive", "scenario/drive.json", "--no-browser", "--lcm-url", freshNetwork(),
                                       "--log", log, "--json", ...set]);
   run.on("exit", (code) => { run.code = code; });
-  const address = await until(() => {
+  const [, address, view] = await until(() => {
     assert.equal(run.code, undefined, run.said);
-    return run.said.match(/drive: (http:\S+)\s+view:/)?.[1];
-  }, "the address of the page");
-  return {run, log, address};
+    return run.said.match(/drive: (http:\S+)\s+view: +(http:\S+)/);
+  }, "the addresses of the pages");
+  return {run, log, address, view};
 }
 
 /** The target of the WebSocket of an address, with its token. */

@@ -91,7 +91,8 @@ TEST(LiveViewTest, GivesEachMessageAsTheRunLogsIt) {
   WebClient client(viewed.port());
   const json hello = ReceiveOp(client, "hello");
   EXPECT_EQ(hello["mode"], "live");
-  EXPECT_EQ(hello["seat"], false);
+  EXPECT_EQ(hello["follows"], false);
+  EXPECT_EQ(hello["waits_for_person"], false);
   EXPECT_THAT(hello["url"].get<std::string>(), HasSubstr(url));
   constexpr int kSteps = 230;  // fog begins at step 190, the human drives from step 203 on
   constexpr std::size_t kMessages = kSteps * log::kStepChannels;

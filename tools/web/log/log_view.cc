@@ -115,7 +115,7 @@ std::string NoLogForFoxglove() {
 
 void LogView::Opened(Client& client) {
   if (client.protocol() != kViewProtocol) return client.Send(TextFrame(NoLogForFoxglove()));
-  client.Send(TextFrame(HelloText(std::nullopt, false, {})));
+  client.Send(TextFrame(HelloText(std::nullopt, {})));
   const log::RunLog& run = index_.run();
   client.Send(TextFrame(RunText({.run_id = run.run_id,
                                  .scenario_text = run.scenario_text,

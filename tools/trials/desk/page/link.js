@@ -2,8 +2,8 @@
 
 const RETRY_MS = 500;
 const GOING_AWAY = 1001;  // code with which the server closes when its program ends
-const BROKEN = "The connection is broken. It comes back by itself.";
-const ENDED = "The program has ended. This page goes on when the program is started again.";
+const BROKEN = "The connection is broken. This page tries again.";
+const ENDED = "The program has ended. When it is started again, it prints a new address for this page.";
 
 /** Moves the token from the address, where other people could read it, into this tab's storage. */
 function takeToken() {

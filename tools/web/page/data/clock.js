@@ -2,6 +2,12 @@
 
 export const EARLY = 1e-6;  // in steps: 0.3 s is step 3 of 0.1 s, although 0.3 / 0.1 < 3
 
+/**
+ * A description of a run in which `step_s` is the time between the headers of two steps: whole
+ * microseconds. The scenario may have another number, such as 1/30 s.
+ */
+export const withTimeOfHeaders = (run) => ({...run, step_s: timeOfStep(1, run.step_s)});
+
 /** The simulated time of a step, in s: exactly the time in the header of its messages. */
 export const timeOfStep = (step, step_s) => (step * Math.round(step_s * 1e6)) / 1e6;
 

@@ -1,6 +1,6 @@
 // The messages of a live run, as far back as the page stores them.
 
-import {timeOfStep} from "./clock.js";
+import {timeOfStep, withTimeOfHeaders} from "./clock.js";
 import {headerOf} from "./catalogue.js";
 import {numberAt, parsePath} from "./lcm.js";
 import {upTo} from "./modes.js";
@@ -67,7 +67,7 @@ export class LiveStore {
   setRun(run) {
     const id = BigInt.asIntN(64, BigInt(run.run_id));
     if (id !== this.runId) this.clear();
-    this.run = run;
+    this.run = withTimeOfHeaders(run);
     this.runId = id;
   }
 

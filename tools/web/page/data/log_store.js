@@ -1,6 +1,6 @@
 // The messages of a recorded run. The page fetches them from the server when it needs them.
 
-import {timeOfStep} from "./clock.js";
+import {timeOfStep, withTimeOfHeaders} from "./clock.js";
 import {Series} from "./series.js";
 
 const CHUNK = 64;          // number of steps that are fetched together
@@ -24,7 +24,7 @@ export class LogStore {
     this.arrived_ms = 0;
   }
 
-  setRun(run) { this.run = run; }
+  setRun(run) { this.run = withTimeOfHeaders(run); }
 
   setLog({first_step, last_step}) {
     this.firstStep = first_step;

@@ -98,7 +98,7 @@ class Drive {
 
   begin() {
     this.alarm.allow();
-    if (this.person.begun && !this.leaving.press(this.told.side === "human", performance.now())) return;
+    if (this.person.begun && !this.leaving.press(this.told.hasAuthority && !this.told.isFinal, performance.now())) return;
     this.hasLeft = this.person.begun;
     this.set("begun", !this.person.begun);
     if (this.person.begun) byId("begin").blur();  // the space bar would press the button again
@@ -181,6 +181,7 @@ class Drive {
     if (object.op === "hello") {
       this.newest = new Newest(new Catalogue(object));
       this.request = null;
+      this.side = undefined;
     }
     if (object.op === "request") this.request = object;
     if (object.op === "run") this.setRun(object);
@@ -274,7 +275,7 @@ class Drive {
   }
 
   drawPerson(state) {
-    const {side, isFinal, mayEnd} = state;
+    const {side, isFinal, mayEnd, hasAuthority} = state;
     const why = this.person.whyAway();
     const seat = this.refused ? "refused" : "no seat";
     const words = this.state === "" ? ""
@@ -289,7 +290,7 @@ class Drive {
     setAttribute(byId("begin"), "data-begun", String(this.person.begun));
     setAttribute(document.body, "data-present", String(why === ""));
     byId("begin").disabled = this.connection === "ended" || (isFinal && !this.person.begun);
-    byId("take-over").disabled = why !== "" || isFinal || (side !== "automation" && side !== "risk");
+    byId("take-over").disabled = why !== "" || isFinal || hasAuthority || (side !== "automation" && side !== "risk");
     byId("give-back").disabled = why !== "" || side !== "human";
     const {throttle = 0, brake = 0} = this.input ?? {};
     byId("throttle").value = throttle;

@@ -39,12 +39,15 @@ const FINAL = ["MINIMAL_RISK", "MRM_DONE"];
 const MAY_END = ["MRM_COMFORT", "MRM_EMERGENCY", "MRM_FAILED"];
 
 const noSide = (words) => ({
-  side: "unknown", words, asks: false, urgent: false, answered: false, isFinal: false, mayEnd: false});
+  side: "unknown", words, asks: false, urgent: false, answered: false, isFinal: false, mayEnd: false,
+  hasAuthority: false});
 
 /**
- * The description {side, words, asks, urgent, answered, isFinal, mayEnd} of a HOST_COMMAND.
+ * The description {side, words, asks, urgent, answered, isFinal, mayEnd, hasAuthority} of a
+ * HOST_COMMAND.
  * Without a HOST_COMMAND the drive has not begun. `isFinal`: the stop lasts until the end of the run.
- * `mayEnd`: a person can end the stop by taking over.
+ * `mayEnd`: a person can end the stop by taking over. `hasAuthority`: the human has the authority,
+ * also while the car brakes in an emergency.
  * @param truth the newest TRUTH, which says whether the run has ended
  * @param connection state of the wire (seat_wire.js)
  */
@@ -59,7 +62,7 @@ export function told(command, truth = null, connection = "open") {
     : name === "MINIMAL_RISK" && stands(truth) ? TOLD.MRM_DONE
     : TOLD[name] ?? "It is not known who drives";
   return {side, words, asks, urgent, answered: waits && !asks, isFinal: FINAL.includes(name),
-          mayEnd: MAY_END.includes(name)};
+          mayEnd: MAY_END.includes(name), hasAuthority: command.lambda_human > 0.5};
 }
 
 /**
@@ -103,8 +106,8 @@ export class Answer {
   }
 
   /** The words at a time; "" if there is nothing to say. */
-  words({side, asks}, now_ms) {
-    if (this.pressed?.side !== side || asks) this.pressed = null;
+  words({side, asks, isFinal}, now_ms) {
+    if (this.pressed?.side !== side || asks || isFinal) this.pressed = null;
     if (!this.pressed) return "";
     const passed_ms = now_ms - this.pressed.at_ms;
     const isShown = passed_ms >= ANSWER_MS.after && passed_ms <= ANSWER_MS.until;

@@ -6,7 +6,6 @@ import {decimal, seconds, withUnit} from "../draw/format.js";
 import {stands} from "../data/cars.js";
 import {drivingSince, modeOf, requestAt, SIDES} from "../data/modes.js";
 
-const USUAL_NETWORK = "239.255.76.67:7667";  // LCM's default, on which each run is announced
 const ANNOUNCE_AFTER_MS = 400;  // otherwise a quick move through time would read out each change
 
 const LASTS = {
@@ -37,10 +36,14 @@ export function reason({mode, lambda_human, doc, threshold}, hasPerson = false) 
 
 const STANDS = "Minimal risk manoeuvre: the car stands";
 
-/** How a run begins that this page then shows. @param hello {url, seat} of the server */
-function hint({url, seat}) {
-  if (seat) return "The drive begins when the participant presses “Begin” at the seat.";
-  const network = url && !url.includes(USUAL_NETWORK) ? ` --lcm-url '${url}'` : "";
+/**
+ * How a run begins that this page then shows.
+ * @param isKnown whether the page knows the run. hello {url, follows, waits_for_person} of the server
+ */
+export function hint(isKnown, {url, follows, waits_for_person}) {
+  if (waits_for_person) return "The drive begins when the participant presses “Begin” at the seat.";
+  if (isKnown) return "The run has not sent a step. It waits for roles, or it has just begun.";
+  const network = follows ? "" : ` --lcm-url '${url}'`;
   return `Start one, such as: fogline run scenario/dense_fog.json --pace 1${network}`;
 }
 
@@ -62,7 +65,7 @@ export class Now {
     const command = frame?.HOST_COMMAND;
     if (!command) {
       say(this.words, isLive ? "Waiting for a run" : SIDES.unknown.words);
-      say(this.reason, isLive ? hint(hello) : "");
+      say(this.reason, isLive ? hint(run.run_id !== "", hello) : "");
       setAttribute(this.strip, "data-side", "unknown");
       this.request.hidden = true;
       return "unknown";

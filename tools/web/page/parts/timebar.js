@@ -49,7 +49,7 @@ export class Timebar {
     setAttribute(slider, "aria-valuetext", `${seconds(time, run.step_s)}, step ${step}`);
     say(byId("time-now"), decimal(time, timeDecimals(run.step_s)));
     say(byId("time-end"), ` / ${seconds(store.lastTime, run.step_s)}`);
-    say(byId("step-now"), placeWords(step, time, store));
+    say(byId("step-now"), placeWords(step, time, endOf(store, run)));
     this.keepRoom(store, run);
     const running = clock.state !== "paused";
     setAttribute(this.play, "aria-label", running ? "Pause" : "Play");
@@ -63,14 +63,15 @@ export class Timebar {
 
   /** Keeps room for the longest texts of the run, so that the slider does not move. */
   keepRoom(store, run) {
-    const last = Math.max(store.lastStep, (run.steps ?? 0) - 1);
-    const longest = decimal(store.timeOf(last), timeDecimals(run.step_s));
+    const last = lastStepOf(store, run);
+    const end = endOf(store, run);
+    const longest = decimal(end, timeDecimals(run.step_s));
     if (this.room === `${longest} ${last}`) return;
     this.room = `${longest} ${last}`;
     const digits = longest.length;
     byId("time-now").style.minWidth = `${digits}ch`;
     byId("time-end").style.minWidth = `${digits + " / ".length + " s".length}ch`;
-    byId("step-now").style.minWidth = `${placeWords(last, store.timeOf(last), store).length}ch`;
+    byId("step-now").style.minWidth = `${placeWords(last, end, end).length}ch`;
   }
 
   /** Draws fog, the side that drives, and events over the whole time. */
@@ -139,9 +140,13 @@ export class Timebar {
   }
 }
 
+/** The last step of the run; of a live run the last one that it will have. */
+const lastStepOf = (store, run) => Math.max(store.lastStep, (run.steps ?? 0) - 1);
+const endOf = (store, run) => store.timeOf(lastStepOf(store, run));
+
 /** The step, and in a long run the time in minutes, as on the time axes of the curves. */
-function placeWords(step, time, {lastTime}) {
-  return lastTime < LONG_S ? `step ${step}` : `step ${step}, ${clockTime(time)}`;
+function placeWords(step, time, end) {
+  return end < LONG_S ? `step ${step}` : `step ${step}, ${clockTime(time)}`;
 }
 
 /** The step of the next (+1) or previous (-1) event, seen from a step; null if there is none. */

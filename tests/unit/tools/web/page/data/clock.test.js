@@ -2,7 +2,7 @@ import assert from "node:assert/strict";
 import {test} from "node:test";
 
 import {fragmentOf, fragmentWithoutToken, readFragment} from "../../../../../../tools/web/page/data/address.js";
-import {Clock, SPEEDS} from "../../../../../../tools/web/page/data/clock.js";
+import {Clock, SPEEDS, timeOfStep, withTimeOfHeaders} from "../../../../../../tools/web/page/data/clock.js";
 
 test("a live clock shows the newest time until the reader goes elsewhere", () => {
   const clock = new Clock();
@@ -28,9 +28,10 @@ test("playing goes on at the chosen speed, stops at the end, and begins again", 
 
 test("each step has its own number, although 0.3 / 0.1 is less than 3", () => {
   const clock = new Clock();
-  for (const step_s of [0.1, 0.01, 0.02, 1 / 30]) {
-    for (let step = 0; step < 10000; ++step) {
-      clock.time = step * step_s;
+  for (const of_scenario of [0.1, 0.01, 0.02, 1 / 30, 1 / 60, 0.0333333]) {
+    const {step_s} = withTimeOfHeaders({step_s: of_scenario});
+    for (let step = 0; step < 100000; ++step) {
+      clock.time = timeOfStep(step, step_s);
       assert.equal(clock.step(step_s), step);
     }
   }

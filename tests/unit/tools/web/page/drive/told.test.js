@@ -81,6 +81,13 @@ test("in a stop that lasts until the end of the run the page gives no advice", (
   assert.equal(whyAwayInWords("", at(EMERGENCY_BRAKING)), "");
 });
 
+test("emergency braking does not take the authority from the human", () => {
+  const {AUTOMATION, HUMAN, EMERGENCY_BRAKING} = describedTypes().arbitration_t.constants;
+  const has = (mode, lambda_human) => told({mode, lambda_human}).hasAuthority;
+  assert.deepEqual([has(EMERGENCY_BRAKING, 1), has(HUMAN, 1)], [true, true]);
+  assert.deepEqual([has(EMERGENCY_BRAKING, 0), has(AUTOMATION, 0), told(null).hasAuthority], [false, false, false]);
+});
+
 test("a car that stands does not stop", () => {
   const {MINIMAL_RISK} = describedTypes().arbitration_t.constants;
   const at = (host_speed_mps) => told({mode: MINIMAL_RISK, lambda_human: 0}, {last: 0, host_speed_mps}).words;
@@ -99,6 +106,10 @@ test("a car that stops by itself answers the button, if it has not taken the ans
     answer.press("give_back", at(mode), 0);
     assert.equal(answer.words(at(mode), 1500), "");
   }
+  // The stop has become final, and the page tells the person so instead.
+  const {MRM_DONE} = describedTypes().arbitration_t.constants;
+  answer.press("take_over", at(MRM_COMFORT), 0);
+  assert.equal(answer.words(at(MRM_DONE), 1500), "");
   // A transfer goes on during emergency braking, so the answer may have been taken.
   answer.press("take_over", at(EMERGENCY_BRAKING), 0);
   assert.equal(answer.words(at(EMERGENCY_BRAKING), 1500), "");
