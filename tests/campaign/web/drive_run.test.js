@@ -266,6 +266,7 @@ test("when the person leaves the seat by a second press, the fallbacks stop the 
     const button = page.locator("#begin");
     await button.click();
     await until(async () => await button.innerText() === "Press again to leave", "the words for the second press");
+    assert.match(await page.locator("#answer").innerText(), /The car may stop for the rest of the run/);
     await drives(page, true);
     await button.click();
     await drives(page, false);

@@ -125,6 +125,17 @@ test("over tcpq the page does not say that nothing was lost", async (t) => {
     document.getElementById("health-summary").textContent));
 });
 
+test("a page that has forgotten the begin of a long run says where its data begin", async (t) => {
+  const network = url();
+  const page = await open(t, await browser(t), await view(t, ["--lcm-url", network]));
+  await page.waitForFunction(() => foglinePage.hello);
+  run(t, network, "--pace", "100", "--set", "/step_s=0.5", "--set", "/steps=1400");  // 700 s; the page keeps 600 s
+  await page.waitForFunction(() => document.body.dataset.step === "1399");
+  await page.waitForFunction(() => /The data begin at \d+\.\d s/.test(document.getElementById("curves-at").textContent));
+  await page.locator("#events button").first().click();  // of an event that the page has forgotten
+  await page.waitForFunction(() => /^The data begin at step \d+\.$/.test(document.getElementById("note").textContent));
+});
+
 test("the page says when the run has ended, and when the program has", async (t) => {
   const network = url();
   const {server, address} = await serve(t, ["--lcm-url", network]);
@@ -136,6 +147,9 @@ test("the page says when the run has ended, and when the program has", async (t)
   const says = (words) => page.waitForFunction(
     (wanted) => document.getElementById("origin-words").textContent === wanted, words);
   await says("The run has ended");
+  await page.waitForFunction(() => document.getElementById("reason").textContent.startsWith("The run has ended."));
+  assert.equal(await page.locator("#live").getAttribute("aria-pressed"), "false");
+  assert.equal(await page.locator("#play").getAttribute("aria-label"), "Play");
   server.kill("SIGTERM");
   await says("The program has ended");
   page.trouble = page.trouble.filter((words) => !words.includes("WebSocket"));  // no server answers

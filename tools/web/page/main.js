@@ -248,6 +248,7 @@ class Page {
   }
 
   goTo(step) {
+    if (step < this.store?.firstStep) this.tell(`The data begin at step ${this.store.firstStep}.`);
     if (this.store) this.clock.goTo(this.store.timeOf(this.within(step)));
   }
 
@@ -343,8 +344,7 @@ class Page {
   }
 
   draw() {
-    const {clock, store, run, theme} = this;
-    const step = this.step;
+    const {clock, store, run, theme, step} = this;
     const frame = store.frame(step);
     if (frame) {
       this.frame = frame;
@@ -356,14 +356,14 @@ class Page {
     const time = store.timeOf(shown);
     const {modes, lambdas} = this.why;
     const moment = {frame: this.frame, step: shown, time, run, theme, length_m: this.length_m, isLive: this.isLive, hello: this.hello,
-                    ahead_s: frame ? this.aheadOf(step) : 0, moves: clock.state !== "paused"};
+                    isOver: this.isOver && shown === store.lastStep, ahead_s: frame ? this.aheadOf(step) : 0, moves: clock.state !== "paused"};
     sayOrigin(this);
     const {rest_ms} = this.budget.now;
     moment.side = this.now.draw(moment, modes, lambdas);
     this.scene.draw(moment, this.budget.now);
     this.why.draw(moment, rest_ms);
     this.curves.draw(moment, 2 * rest_ms);
-    this.timebar.draw({clock, store, step, time: store.timeOf(step), run, isLive: this.isLive}, modes, lambdas,
+    this.timebar.draw({clock, store, step, time: store.timeOf(step), run, isLive: this.isLive, isOver: this.isOver}, modes, lambdas,
                       this.events, theme);
     this.timebar.drawEvents(this.events, step, run, this.eventsLeftOut);
     this.drawHealth();

@@ -16,7 +16,7 @@ import {ratesOf} from "./ramps.js";
 import {SeatWire, takeDriverToken} from "./seat_wire.js";
 import {LEAST_GAP_MS, LOOK_EVERY_MS, Sender} from "./sender.js";
 import {Setup} from "./setup.js";
-import {Answer, countdown, told, whyAwayInWords} from "./told.js";
+import {Answer, countdown, LEAVING, told, whyAwayInWords} from "./told.js";
 
 // A person waits for the next frame after each input. So this page already draws less if it misses
 // one of three frames of 60 Hz, or if inputs are late.
@@ -280,12 +280,14 @@ class Drive {
     const seat = this.refused ? "refused" : "no seat";
     const words = this.state === "" ? ""
       : whyAwayInWords(this.state === "taken" ? seat : why, {hasLeft: this.hasLeft, side, isFinal, mayEnd});
-    const answer = why === "" ? this.answer.words(state, performance.now()) : "";
+    const now = performance.now();
+    const leaves = this.person.begun && this.leaving.asks(now);
+    const answer = leaves ? LEAVING : why === "" ? this.answer.words(state, now) : "";
     say(byId("away"), words);
     byId("away").hidden = words === "" || answer !== "";
     say(byId("answer"), answer);
     byId("answer").hidden = answer === "";
-    const leave = this.leaving.asks(performance.now()) ? "Press again to leave" : "Leave the seat";
+    const leave = leaves ? "Press again to leave" : "Leave the seat";
     say(byId("begin"), this.person.begun ? leave : "Begin");
     setAttribute(byId("begin"), "data-begun", String(this.person.begun));
     setAttribute(document.body, "data-present", String(why === ""));

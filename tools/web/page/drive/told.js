@@ -115,6 +115,9 @@ export class Answer {
   }
 }
 
+/** The words for a person who has pressed “Leave the seat” once while driving. */
+export const LEAVING = "If you leave now, no person drives. The car may stop for the rest of the run.";
+
 const WHY_AWAY = {
   "not begun": "Press “Begin” when you are ready.",
   "no seat": "Another page has the seat. Press “Begin” to ask for it.",

@@ -293,8 +293,11 @@ export class Curves {
     });
     const [from, to] = Array.isArray(this.span) ? this.span : [-Infinity, Infinity];  // of a zoom
     const outside = time < from || time > to ? ", which is outside of the charts" : "";
-    say(byId("curves-at"), hover === null ? `Values at ${seconds(time, run.step_s)}${outside}`
-                                          : `Values at the cursor, ${seconds(hover, run.step_s)}`);
+    const {firstStep, firstTime} = this.store;
+    const begin = firstStep > 0 ? `. The data begin at ${seconds(firstTime, run.step_s)}` : "";
+    const place = hover === null ? `Values at ${seconds(time, run.step_s)}${outside}`
+                                 : `Values at the cursor, ${seconds(hover, run.step_s)}`;
+    say(byId("curves-at"), place + begin);
   }
 
   resize() {

@@ -61,7 +61,7 @@ export class Now {
   }
 
   /** Draws the strip. @return the side that drives */
-  draw({frame, time, run, isLive, hello}, modes, lambdas) {
+  draw({frame, time, run, isLive, isOver, hello}, modes, lambdas) {
     const command = frame?.HOST_COMMAND;
     if (!command) {
       say(this.words, isLive ? "Waiting for a run" : SIDES.unknown.words);
@@ -77,7 +77,9 @@ export class Now {
     const since = drivingSince(modes, lambdas, time);
     const lasted = since === null ? ""
       : ` ${LASTS[mode.side]} ${seconds(time - since, run.step_s)}.`;
-    say(this.reason, reason(command, run.scenario?.person?.drives) + lasted);
+    const hasPerson = run.scenario?.person?.drives;
+    const gone = hasPerson && frame.DRIVER_COMMAND?.readiness === 0 ? " No person is ready at the seat." : "";
+    say(this.reason, (isOver ? "The run has ended. " : "") + reason(command, hasPerson) + gone + lasted);
     this.drawRequest(requestAt(modes.times, modes.values, time,
                                run.scenario?.arbitrator?.take_over?.lead_s ?? 10));
     this.announce(words);

@@ -42,7 +42,7 @@ export class Timebar {
     if (slider.max !== max) slider.max = max;
   }
 
-  draw({clock, store, step, time, run, isLive}, modes, lambdas, events, theme) {
+  draw({clock, store, step, time, run, isLive, isOver}, modes, lambdas, events, theme) {
     const {slider} = this;
     this.setRange(store);
     if (slider.value !== String(step)) slider.value = step;
@@ -51,13 +51,14 @@ export class Timebar {
     say(byId("time-end"), ` / ${seconds(store.lastTime, run.step_s)}`);
     say(byId("step-now"), placeWords(step, time, endOf(store, run)));
     this.keepRoom(store, run);
-    const running = clock.state !== "paused";
+    const follows = clock.state === "live" && !isOver;
+    const running = follows || clock.state === "playing";
     setAttribute(this.play, "aria-label", running ? "Pause" : "Play");
     setAttribute(this.play, "data-running", String(running));
     if (this.speed.value !== String(clock.speed)) this.speed.value = String(clock.speed);
     this.speed.disabled = clock.state === "live";
     this.liveButton.hidden = !isLive;
-    setAttribute(this.liveButton, "aria-pressed", String(clock.state === "live"));
+    setAttribute(this.liveButton, "aria-pressed", String(follows));
     this.drawTrack(store, modes, lambdas, events, theme);
   }
 
