@@ -91,8 +91,6 @@ function(fogline_add_test_program name)
     set_source_files_properties("${source}" PROPERTIES UNITY_GROUP ${group})
   endforeach()
   set_target_properties(${name}_tests PROPERTIES UNITY_BUILD ${FOGLINE_UNITY} UNITY_BUILD_MODE GROUP)
-  # Strips the symbols: they are a quarter of the program's size.
-  target_link_options(${name}_tests PRIVATE $<$<CONFIG:Release>:-s>)
   # All test programs share one precompiled header, because it takes 86 MB. It has no matchers of
   # GoogleMock, because they would take 18 MB more and only some of the files use them. A shared
   # header needs equal definitions, so all of them link boost_asio, which has some.
