@@ -31,6 +31,7 @@ test("the new address of a server that was started again works in the same tab",
   const state = (wanted) => page.waitForFunction(
     (name) => document.getElementById("origin").dataset.state === name, wanted);
   await state("log");
+  await page.waitForFunction(() => foglinePage.scene.view);  // its file is loaded last
   server.kill("SIGINT");
   await server.ended;
   await page.waitForFunction(() => document.getElementById("origin-words").textContent === "The program has ended");

@@ -129,9 +129,9 @@ test("a page that has forgotten the begin of a long run says where its data begi
   const network = url();
   const page = await open(t, await browser(t), await view(t, ["--lcm-url", network]));
   await page.waitForFunction(() => foglinePage.hello);
-  run(t, network, "--pace", "100", "--set", "/step_s=0.5", "--set", "/steps=1400");  // 700 s; the page keeps 600 s
-  await page.waitForFunction(() => document.body.dataset.step === "1399");
-  await page.waitForFunction(() => /The data begin at \d+\.\d s/.test(document.getElementById("curves-at").textContent));
+  run(t, network, "--pace", "100", "--set", "/step_s=0.5", "--set", "/steps=1900");  // 950 s; the page keeps 600 s
+  await page.waitForFunction(() => document.body.dataset.step === "1899");
+  await page.waitForFunction(() => /The data begin at \d+\.\d/.test(document.getElementById("curves-at").textContent));
   await page.locator("#events button").first().click();  // of an event that the page has forgotten
   await page.waitForFunction(() => /^The data begin at step \d+\.$/.test(document.getElementById("note").textContent));
 });
