@@ -150,6 +150,9 @@ test("the page says when the run has ended, and when the program has", async (t)
   await page.waitForFunction(() => document.getElementById("reason").textContent.startsWith("The run has ended."));
   assert.equal(await page.locator("#live").getAttribute("aria-pressed"), "false");
   assert.equal(await page.locator("#play").getAttribute("aria-label"), "Play");
+  await page.click("#play");  // shows the run again from its first step
+  await page.waitForFunction(() => Number(document.body.dataset.step) < 100);
+  await says("The run has ended");
   server.kill("SIGTERM");
   await says("The program has ended");
   page.trouble = page.trouble.filter((words) => !words.includes("WebSocket"));  // no server answers

@@ -242,9 +242,7 @@ class Page {
   }
 
   toggle() {
-    if (!this.store) return;
-    if (this.clock.state === "paused") this.clock.play(this.store.firstTime, this.store.lastTime);
-    else this.clock.pause();
+    if (this.store) this.clock.toggle(this.store.firstTime, this.store.lastTime, this.isOver);
   }
 
   goTo(step) {

@@ -52,6 +52,12 @@ export class Clock {
     this.state = "playing";
   }
 
+  /** Pauses the time, or plays if it is at rest. @param isOver whether a live run has ended */
+  toggle(first, last, isOver) {
+    if (this.state === "paused" || (this.state === "live" && isOver)) this.play(first, last);
+    else this.pause();
+  }
+
   /** Chooses the next higher (+1) or lower (-1) speed. */
   changeSpeed(direction) {
     const place = SPEEDS.indexOf(this.speed) + direction;

@@ -115,7 +115,7 @@ export class Answer {
   }
 }
 
-/** The words for a person who has pressed “Leave the seat” once while driving. */
+/** The words after the first press of “Leave the seat” while the human has the authority. */
 export const LEAVING = "If you leave now, no person drives. The car may stop for the rest of the run.";
 
 const WHY_AWAY = {

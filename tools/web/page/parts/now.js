@@ -40,7 +40,7 @@ const STANDS = "Minimal risk manoeuvre: the car stands";
  * How a run begins that this page then shows.
  * @param isKnown whether the page knows the run. hello {url, follows, waits_for_person} of the server
  */
-export function hint(isKnown, {url, follows, waits_for_person}) {
+function hint(isKnown, {url, follows, waits_for_person}) {
   if (waits_for_person) return "The drive begins when the participant presses “Begin” at the seat.";
   if (isKnown) return "The run has not sent a step. It waits for roles, or it has just begun.";
   const network = follows ? "" : ` --lcm-url '${url}'`;

@@ -26,6 +26,20 @@ test("playing goes on at the chosen speed, stops at the end, and begins again", 
   assert.equal(clock.time, 0);
 });
 
+test("the time of a live run that has ended is at rest, so it plays", () => {
+  const clock = new Clock();
+  clock.follow();
+  clock.advance(0, 0, 10);
+  clock.toggle(0, 10, false);
+  assert.equal(clock.state, "paused");
+  clock.toggle(0, 10, false);
+  assert.deepEqual([clock.state, clock.time], ["playing", 0]);
+  clock.follow();
+  clock.advance(0, 0, 10);
+  clock.toggle(0, 10, true);
+  assert.deepEqual([clock.state, clock.time], ["playing", 0]);
+});
+
 test("each step has its own number, although 0.3 / 0.1 is less than 3", () => {
   const clock = new Clock();
   for (const of_scenario of [0.1, 0.01, 0.02, 1 / 30, 1 / 60, 0.0333333]) {
