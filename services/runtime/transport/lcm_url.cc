@@ -1,13 +1,12 @@
 #include "services/runtime/transport/lcm_url.h"
 
 #include <arpa/inet.h>
-#include <ifaddrs.h>
 #include <netinet/in.h>
-#include <sys/socket.h>
 
 #include <algorithm>
 #include <array>
 #include <cstdlib>
+#include <limits>
 
 #include <fmt/core.h>
 
@@ -25,6 +24,7 @@ constexpr std::string_view kTcpq = "tcpq://";
 constexpr std::uint16_t kLcmPort = 7667;
 // The options of a udpm:// URL.
 constexpr std::string_view kTtl = "ttl";
+constexpr int kMostTtl = 255;  // the field has 8 bits (RFC 791, section 3.1)
 constexpr std::string_view kReceiveBuffer = "recv_buf_size";
 // The longest URL that may be announced. A URL with all options of LCM takes 60 characters.
 constexpr std::size_t kMaxAnnounced = 200;
@@ -46,6 +46,15 @@ std::string_view TakeUntil(char separator, std::string_view& text) {
   return part;
 }
 
+/// The value of an option as LCM reads it: decimal, octal or hexadecimal.
+std::optional<long> ReadLikeLcm(std::string_view value) {
+  const std::string text(value);
+  char* end = nullptr;
+  const long number = std::strtol(text.c_str(), &end, 0);
+  if (text.empty() || *end != '\0') return std::nullopt;
+  return number;
+}
+
 bool ReadOptions(std::string_view options, MulticastAddress& address) {
   while (!options.empty()) {
     std::string_view value = TakeUntil('&', options);
@@ -61,20 +70,6 @@ bool ReadOptions(std::string_view options, MulticastAddress& address) {
     }
   }
   return true;
-}
-
-/// Whether an address belongs to one of this machine's interfaces or to loopback (127.0.0.0/8).
-bool IsOfThisMachine(in_addr numeric) {
-  if (ntohl(numeric.s_addr) >> 24 == IN_LOOPBACKNET) return true;
-  ifaddrs* interfaces = nullptr;
-  if (getifaddrs(&interfaces) != 0) return false;
-  bool found = false;
-  for (const ifaddrs* one = interfaces; one != nullptr && !found; one = one->ifa_next) {
-    if (one->ifa_addr == nullptr || one->ifa_addr->sa_family != AF_INET) continue;
-    found = reinterpret_cast<const sockaddr_in*>(one->ifa_addr)->sin_addr.s_addr == numeric.s_addr;
-  }
-  freeifaddrs(interfaces);
-  return found;
 }
 
 /// The host and port of a relay in a tcpq:// URL, with LCM's defaults for missing parts.
@@ -98,7 +93,7 @@ bool IsRelayOfThisMachine(std::string_view url) {
   const auto place = ParseRelayUrl(url);
   if (!place || !place->port || *place->port == 0) return false;
   const auto address = ParseAddress(place->host);
-  return address && address->s_addr != htonl(INADDR_ANY) && IsOfThisMachine(*address);
+  return address && address->s_addr != htonl(INADDR_ANY) && tcpq::IsOfThisMachine(*address);
 }
 
 }  // namespace
@@ -137,15 +132,31 @@ std::optional<MulticastAddress> ParseMulticastUrl(std::string_view url) {
   return address;
 }
 
-std::string WhyNoOption(std::string_view url) {
+std::string WhyWrongUdpm(std::string_view url) {
   if (!url.starts_with(kUdpm)) return "";
-  TakeUntil('?', url);
-  while (!url.empty()) {
-    std::string_view option = TakeUntil('&', url);
-    const std::string_view name = TakeUntil('=', option);
-    if (name == kTtl || name == kReceiveBuffer) continue;
-    return fmt::format("udpm has no option {}; its options are {} and {}", QuoteShort(name), kTtl,
-                       kReceiveBuffer);
+  std::string_view options = url.substr(kUdpm.size());
+  const std::string_view place = TakeUntil('?', options);
+  const std::size_t colon = place.find(':');
+  const std::string_view address = place.substr(0, colon);
+  if (!place.empty() && !ParseAddress(address)) {
+    return fmt::format("{} is no IPv4 address in numbers", QuoteShort(address));
+  }
+  if (colon != std::string_view::npos && !ParseNumber<std::uint16_t>(place.substr(colon + 1))) {
+    return fmt::format("{} is no port (0 to 65535)", QuoteShort(place.substr(colon + 1)));
+  }
+  while (!options.empty()) {
+    std::string_view value = TakeUntil('&', options);
+    const std::string_view name = TakeUntil('=', value);
+    if (name != kTtl && name != kReceiveBuffer) {
+      return fmt::format("udpm has no option {}; its options are {} and {}", QuoteShort(name), kTtl,
+                         kReceiveBuffer);
+    }
+    const int most = name == kTtl ? kMostTtl : std::numeric_limits<int>::max();
+    const auto number = ReadLikeLcm(value);
+    if (!number || *number < 0 || *number > most) {
+      return fmt::format("{} is {}, which is no number from 0 to {}", name, QuoteShort(value),
+                         most);
+    }
   }
   return "";
 }

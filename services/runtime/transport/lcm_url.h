@@ -41,9 +41,9 @@ struct MulticastAddress {
 /// unknown to LCM.
 std::optional<MulticastAddress> ParseMulticastUrl(std::string_view url);
 
-/// Names the first option of a udpm:// URL that LCM does not have, and the options that it has; ""
-/// if there is no such option. LCM itself ignores unknown options, also a mistyped ttl.
-std::string WhyNoOption(std::string_view url);
+/// Says what is wrong in a udpm:// URL: the address, the port, or the first wrong option; "" if
+/// nothing is. LCM itself ignores unknown options, also a mistyped ttl.
+std::string WhyWrongUdpm(std::string_view url);
 
 /// Whether two URLs name one network. For udpm this compares group and port, for tcpq host and
 /// port, otherwise the whole URL without its options.

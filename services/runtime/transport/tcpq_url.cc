@@ -1,6 +1,7 @@
 #include "services/runtime/transport/tcpq_url.h"
 
 #include <arpa/inet.h>
+#include <ifaddrs.h>
 #include <netdb.h>
 
 #include <array>
@@ -49,6 +50,31 @@ Endpoint Resolve(std::string_view host_and_port, std::string_view what) {
     endpoint.port = ParsePort(host_and_port.substr(colon + 1), what);
   }
   if (!host.empty()) endpoint.address = AddressOf(host, what);
+  return endpoint;
+}
+
+bool IsOfThisMachine(in_addr address) {
+  if (ntohl(address.s_addr) >> 24 == IN_LOOPBACKNET) return true;
+  ifaddrs* interfaces = nullptr;
+  if (getifaddrs(&interfaces) != 0) return false;
+  bool found = false;
+  for (const ifaddrs* one = interfaces; one != nullptr && !found; one = one->ifa_next) {
+    if (one->ifa_addr == nullptr || one->ifa_addr->sa_family != AF_INET) continue;
+    found = reinterpret_cast<const sockaddr_in*>(one->ifa_addr)->sin_addr.s_addr == address.s_addr;
+  }
+  freeifaddrs(interfaces);
+  return found;
+}
+
+Endpoint ResolveOwn(std::string_view host_and_port, std::string_view what) {
+  Endpoint endpoint = Resolve(host_and_port, what);
+  in_addr address{};
+  inet_pton(AF_INET, endpoint.address.c_str(), &address);
+  if (address.s_addr != htonl(INADDR_ANY) && !IsOfThisMachine(address)) {
+    throw InputError(
+        fmt::format("error: {}: {} is no address of this machine (`ip address` lists them)", what,
+                    endpoint.address));
+  }
   return endpoint;
 }
 

@@ -3,6 +3,8 @@
 // resolves names before LCM's programs see them.
 #pragma once
 
+#include <netinet/in.h>
+
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -24,6 +26,13 @@ struct Endpoint {
 /// Reads "HOST", "HOST:PORT" or "" (127.0.0.1), where HOST is a name or an IPv4 address.
 /// @throws InputError that names `what` if there is no such host or port
 Endpoint Resolve(std::string_view host_and_port, std::string_view what);
+
+/// Whether an address belongs to one of this machine's interfaces or to loopback (127.0.0.0/8).
+bool IsOfThisMachine(in_addr address);
+
+/// Resolve() for an address on which this process will listen. @throws InputError also if the
+/// address is neither of this machine nor 0.0.0.0
+Endpoint ResolveOwn(std::string_view host_and_port, std::string_view what);
 
 /// Resolve() for a URL, which is "tcpq://" and a text for Resolve(). @throws InputError also for
 /// port 0

@@ -9,6 +9,8 @@
 #include <map>
 #include <string>
 #include <tuple>
+#include <utility>
+#include <vector>
 
 #include "services/graph.h"
 #include "services/runtime/wire/wire.h"
@@ -56,15 +58,26 @@ TEST(LcmUrlTest, IsNoneWithAnythingElseInIt) {
   }
 }
 
-TEST(LcmUrlTest, MayHaveOnlyOptionsOfLcm) {
+TEST(LcmUrlTest, NamesWhatIsWrongInIt) {
   for (const char* url : {"udpm://", "udpm://?ttl=1", "udpm://239.1.1.1:7700?recv_buf_size=1&ttl=0",
-                          "tcpq://?tll=0", ""}) {
-    EXPECT_EQ(runtime::WhyNoOption(url), "") << url;
+                          "udpm://?recv_buf_size=0x200000", "tcpq://?tll=0", ""}) {
+    EXPECT_EQ(runtime::WhyWrongUdpm(url), "") << url;
   }
-  EXPECT_EQ(runtime::WhyNoOption("udpm://239.1.1.1?ttl=0&tll=1"),
-            "udpm has no option \"tll\"; its options are ttl and recv_buf_size");
-  EXPECT_EQ(runtime::WhyNoOption("udpm://?="),
-            "udpm has no option \"\"; its options are ttl and recv_buf_size");
+  const std::vector<std::pair<std::string, std::string>> wrong{
+      {"lab1", "\"lab1\" is no IPv4 address in numbers"},
+      {":7700", "\"\" is no IPv4 address in numbers"},
+      {"239.1.1.1:65536", "\"65536\" is no port (0 to 65535)"},
+      {"239.1.1.1:7x?ttl=0", "\"7x\" is no port (0 to 65535)"},
+      {"239.1.1.1:", "\"\" is no port (0 to 65535)"},
+      {"239.1.1.1?ttl=0&tll=1",
+       "udpm has no option \"tll\"; its options are ttl and recv_buf_size"},
+      {"?=", "udpm has no option \"\"; its options are ttl and recv_buf_size"},
+      {"?ttl=256", "ttl is \"256\", which is no number from 0 to 255"},
+      {"?ttl", "ttl is \"\", which is no number from 0 to 255"},
+      {"?ttl=0&recv_buf_size=2M",
+       "recv_buf_size is \"2M\", which is no number from 0 to 2147483647"},
+      {"?recv_buf_size=-1", "recv_buf_size is \"-1\", which is no number from 0 to 2147483647"}};
+  for (const auto& [rest, why] : wrong) EXPECT_EQ(runtime::WhyWrongUdpm("udpm://" + rest), why);
 }
 
 TEST(LcmUrlTest, NamesTheSameNetworkByGroupAndPort) {

@@ -38,5 +38,14 @@ TEST(TcpqUrlTest, RefusesWhatIsNoPort) {
             "error: tcpq://127.0.0.1:7700?ttl=1: \"7700?ttl=1\" is no port (0 to 65535)");
 }
 
+TEST(TcpqUrlTest, ListensOnlyOnAddressesOfThisMachine) {
+  for (const std::string own : {"", "127.0.0.1:0", "127.1.2.3:7701", "0.0.0.0"}) {
+    EXPECT_EQ(ResolveOwn(own, "--listen").ToString(), Resolve(own, "--listen").ToString());
+  }
+  // RFC 5737: no machine has an address of 203.0.113.0/24.
+  EXPECT_EQ(test::ErrorOf([] { ResolveOwn("203.0.113.7:7701", "--listen"); }),
+            "error: --listen: 203.0.113.7 is no address of this machine (`ip address` lists them)");
+}
+
 }  // namespace
 }  // namespace fogline::runtime::tcpq
