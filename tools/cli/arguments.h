@@ -38,11 +38,10 @@ class ScenarioArguments {
     if (with_seed) verb.add_option("--seed", seed_, "Seed instead of the scenario's own");
   }
 
-  /// @param more overrides of the verb, which prevail over those of the user
+  /// @param overrides those of the verb; the overrides of the user prevail
   /// @throws InputError
-  Scenario Load(const std::vector<std::string>& more = {}) const {
-    std::vector<std::string> overrides = overrides_;
-    overrides.insert(overrides.end(), more.begin(), more.end());
+  Scenario Load(std::vector<std::string> overrides = {}) const {
+    overrides.insert(overrides.end(), overrides_.begin(), overrides_.end());
     if (!seed_.empty()) overrides.push_back("/seed=" + seed_);
     Scenario scenario = LoadScenario(file_, overrides);
     runner::CheckPossible(scenario, file_);

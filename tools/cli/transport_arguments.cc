@@ -176,7 +176,7 @@ void TransportArguments::CheckHosts(const runner::ExperimentOptions& options) co
 void RunInRealtime(runner::ExperimentOptions& options, double speed) {
   if (options.transport == "direct" || options.transport.starts_with("memq")) {
     throw InputError(fmt::format(
-        "error: --realtime: --transport {} is one process; real time needs one for each role",
+        "error: --transport {}: one process; a run in real time needs a process for each role",
         options.transport));
   }
   if (options.pace != 0) {

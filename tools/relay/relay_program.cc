@@ -60,7 +60,7 @@ int RunRelay(const Arguments& arguments) {
   RelayOptions options = arguments.relay;
   options.limits.payload = arguments.message_mib * kMebibyte;
   options.queue_bytes = arguments.queue_mib * kMebibyte;
-  const runtime::tcpq::Endpoint listen = runtime::tcpq::Resolve(arguments.listen, "--listen");
+  const runtime::tcpq::Endpoint listen = runtime::tcpq::ResolveOwn(arguments.listen, "--listen");
   asio::io_context context(1);
   std::unique_ptr<Relay> relay;
   try {

@@ -150,13 +150,14 @@ std::string ReadToken() {
       "error: --tokens-on-stdin: a line is no token: 16 to 128 letters, digits, - and _");
 }
 
-/// @throws InputError if --listen names no address, a line of stdin is not a token, or both tokens
+/// @throws InputError if --listen names no address of this machine, a line of stdin is not a token,
+/// or both tokens
 ///     are equal
 ServerOptions OptionsOf(const ViewArguments& arguments) {
   ServerOptions options{
       .port = arguments.port, .origins = arguments.origins, .seat = arguments.seat};
   if (arguments.listen_said->count() == 0) return options;
-  const auto endpoint = runtime::tcpq::Resolve(arguments.listen, "--listen");
+  const auto endpoint = runtime::tcpq::ResolveOwn(arguments.listen, "--listen");
   options.address = endpoint.address;
   const bool has_port = arguments.listen.find(':') != std::string::npos;
   options.port = has_port ? endpoint.port : kDefaultPort;

@@ -84,5 +84,24 @@ TEST(DriveAtPageTest, RefusesOptionsOfThePageWithAnotherDevice) {
   }
 }
 
+TEST(DriveAtPageTest, RefusesWhatNoDriveCanFollowBeforeItBegins) {
+  const auto error_of = [](const std::string& option, const std::string& value) {
+    const Outcome outcome =
+        RunCommand({Program("fogline"), "drive", kDriveScenario, option, value});
+    EXPECT_EQ(outcome.code, 2);
+    return outcome.err;
+  };
+  EXPECT_EQ(error_of("--set", "/person/drives=false"),
+            "fogline drive: error: --set /person/drives=false: in this verb a person drives\n");
+  // RFC 5737: no machine has an address of 203.0.113.0/24.
+  EXPECT_EQ(
+      error_of("--listen", "203.0.113.7"),
+      "fogline drive: error: --listen: 203.0.113.7 is no address of this machine (`ip address` "
+      "lists them)\n");
+  EXPECT_EQ(error_of("--transport", "direct"),
+            "fogline drive: error: --transport direct: one process; a run in real time needs a "
+            "process for each role\n");
+}
+
 }  // namespace
 }  // namespace fogline::test

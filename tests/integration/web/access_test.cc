@@ -175,6 +175,17 @@ TEST_F(ViewAccessTest, SaysThatAPortIsBusy) {
   EXPECT_EQ(second.out, "");
 }
 
+TEST(ViewTokenTest, ListensOnlyOnAnAddressOfThisMachine) {
+  // RFC 5737: no machine has an address of 203.0.113.0/24.
+  for (const std::string program : {"fogline-web", "fogline-relay"}) {
+    const Outcome outcome = RunCommand({Program(program), "--listen", "203.0.113.7"});
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_THAT(outcome.err,
+                HasSubstr("error: --listen: 203.0.113.7 is no address of this machine"));
+    EXPECT_EQ(outcome.out, "");
+  }
+}
+
 TEST(ViewTokenTest, NeedsTheTokenWhenItListensForOthers) {
   Viewed viewed({"--lcm-url", runtime::FreshMulticastUrl()}, {"--listen", "127.0.0.1:0"});
   ASSERT_NE(viewed.port(), 0) << viewed.process().Err();

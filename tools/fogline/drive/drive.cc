@@ -8,9 +8,11 @@
 
 #include <fmt/core.h>
 
+#include "common/errors.h"
 #include "common/interrupt.h"
 #include "common/process/console.h"
 #include "services/log/log_of_run.h"
+#include "services/runtime/transport/tcpq_url.h"
 #include "tools/cli/arguments.h"
 #include "tools/cli/help.h"
 #include "tools/cli/run_outcome.h"
@@ -123,12 +125,20 @@ std::unique_ptr<processes::PageSeat> OpenPage(const DriveArguments& arguments, s
   return page;
 }
 
+/// Loads the scenario, in which a person drives. @throws InputError
+Scenario LoadDriven(const cli::ScenarioArguments& arguments) {
+  Scenario scenario = arguments.Load({"/person/drives=true"});
+  if (scenario.person.drives) return scenario;
+  throw InputError("error: --set /person/drives=false: in this verb a person drives");
+}
+
 int Drive(DriveArguments& arguments) {
+  if (!arguments.listen.empty()) runtime::tcpq::ResolveOwn(arguments.listen, "--listen");
   runner::ExperimentOptions& options = arguments.options;
   arguments.transport.Apply(options);
   cli::RunInRealtime(options, 1);
   options.announce = !arguments.quiet;
-  const Scenario scenario = arguments.scenario.Load({"/person/drives=true"});
+  const Scenario scenario = LoadDriven(arguments.scenario);
   cli::CheckPeriod(scenario, 1);
   WatchInterrupts();
   auto source = MakeSource(arguments, scenario.person);

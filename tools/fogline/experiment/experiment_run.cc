@@ -184,7 +184,7 @@ std::string ListenAddress(const RunTrialsArguments& arguments) {
         "and --seat-port name the ports",
         EscapeControls(arguments.listen)));
   }
-  return runtime::tcpq::Resolve(arguments.listen, "--listen").address;
+  return runtime::tcpq::ResolveOwn(arguments.listen, "--listen").address;
 }
 
 /// @throws InputError; std::runtime_error if a page cannot be served
