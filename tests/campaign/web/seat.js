@@ -11,6 +11,7 @@ import {readFrame} from "../../../tools/web/page/data/wire.js";
 import {background, scratch, until} from "./window.js";
 
 const {FOGLINE} = process.env;
+const HELD_MS = 1000;  // a key that has no effect is pressed again after this time
 
 /** The URL of a multicast network of this test alone. */
 export const freshNetwork = () =>
@@ -126,10 +127,16 @@ export async function begin(page) {
 
 /**
  * Holds the key to take over until the page says who drives, in words of this pattern. A short
- * press could have no effect while a busy machine sends nothing.
+ * press could have no effect while a busy machine sends nothing. If the page is silent for so long
+ * that the deadman acts, the held key has no effect any more. So the person presses it again.
  */
 export async function holdTakeOver(page, pattern) {
-  await page.keyboard.down("t");
-  await page.waitForFunction((wanted) => new RegExp(wanted).test(document.getElementById("who").textContent), pattern);
-  await page.keyboard.up("t");
+  await until(async () => {
+    await page.keyboard.down("t");
+    const told = page.waitForFunction(
+      (wanted) => new RegExp(wanted).test(document.getElementById("who").textContent), pattern, {timeout: HELD_MS});
+    const isTold = await told.then(() => true, () => false);
+    await page.keyboard.up("t");
+    return isTold;
+  }, `the page to say ${pattern}`);
 }
