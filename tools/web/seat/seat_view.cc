@@ -98,7 +98,8 @@ void SeatView::Look() {
   if (const auto message = seat_.Look(Clock::now())) Publish(*message);
   if (!seat_.lost() || std::exchange(told_lost_, true)) return;
   Client& client = *drivers_.at(*seat_.client()).client;
-  lines_.Print(fmt::format("{} is silent: no person is ready at the seat", client.address()));
+  lines_.Print(
+      fmt::format("{}: its page is silent, so no person is ready at the seat", client.address()));
   Say(client, "lost");
 }
 
