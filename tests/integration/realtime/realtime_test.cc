@@ -34,7 +34,7 @@ TEST(RealtimeTest, RefusesASpeedThatIsNoneOrThatNothingKeeps) {
   EXPECT_THAT(refused({"--realtime", "--speed", "nan"}),
               testing::HasSubstr("Value nan not in range"));
   EXPECT_THAT(refused({"--realtime", "--transport", "memq"}),
-              testing::HasSubstr("error: --realtime: "));
+              testing::HasSubstr("error: --transport memq: one process; a run in real time"));
 }
 
 TEST(RealtimeTest, UndisturbedItIsTheRunInLockstep) {
