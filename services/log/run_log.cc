@@ -243,7 +243,7 @@ class RunLogReader::Assembler {
 
   [[noreturn]] void RefuseRun() const {
     const std::string ids = others_.all().empty() ? "" : "; it has " + IdsOf(others_.all());
-    Refuse(fmt::format("--run {}: the log has no such run{}", run_.run_id, ids));
+    Refuse(fmt::format("the log has no run {}{}", run_.run_id, ids));
   }
 
   [[noreturn]] void Refuse(const std::string& why) const {

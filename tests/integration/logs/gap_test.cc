@@ -268,7 +268,7 @@ TEST_F(GapTest, ALogOfSeveralRunsNamesThemAndIsReadForTheChosenOne) {
   EXPECT_EQ(Fogline({"diff", both, both, "--run-b", "5"}).code, 2);
   const Outcome unknown = Fogline({"metrics", both, "--run", "5"});
   EXPECT_EQ(unknown.code, 2);
-  EXPECT_THAT(unknown.err, HasSubstr("--run 5: the log has no such run; it has "));
+  EXPECT_THAT(unknown.err, HasSubstr("the log has no run 5; it has "));
 }
 
 TEST_F(GapTest, ALogThatBeginsLateSaysWithItsDigestWithWhichStep) {

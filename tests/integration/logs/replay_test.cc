@@ -157,7 +157,7 @@ TEST_F(ReplayTest, ReadsTheChosenRunOfALogOfSeveralRuns) {
   EXPECT_EQ(steps(Replay({both, "--all", "--json", "--run", second})), 250);
   const Outcome unknown = Replay({both, "--all", "--run", "5"});
   EXPECT_EQ(unknown.code, 2);
-  EXPECT_THAT(unknown.err, HasSubstr("--run 5: the log has no such run; it has "));
+  EXPECT_THAT(unknown.err, HasSubstr("the log has no run 5; it has "));
 }
 
 TEST_F(ReplayTest, SaysWhatIsWrongWithItsArguments) {

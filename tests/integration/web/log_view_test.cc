@@ -44,7 +44,7 @@ TEST(LogViewTest, ShowsTheChosenRunOfALogOfTwo) {
   const Outcome unknown =
       RunCommand({Program("fogline"), "view", both, "--no-browser", "--run", "5"});
   EXPECT_EQ(unknown.code, 2);
-  EXPECT_THAT(unknown.err, HasSubstr("--run 5: the log has no such run; it has "));
+  EXPECT_THAT(unknown.err, HasSubstr("the log has no run 5; it has "));
 }
 
 TEST(LogViewTest, DescribesTheRunOfTheLog) {

@@ -338,7 +338,7 @@ TEST_F(LogWithGapsTest, OfSeveralRunsIsReadForTheFirstRunOrTheChosenOne) {
     ReadFile({.run_id = 99});
     FAIL();
   } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), HasSubstr("--run 99: the log has no such run; it has 7, 8"));
+    EXPECT_THAT(error.what(), HasSubstr("the log has no run 99; it has 7, 8"));
   }
 }
 
