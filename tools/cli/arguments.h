@@ -1,6 +1,7 @@
 // Arguments that several verbs share.
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <optional>
@@ -38,16 +39,22 @@ class ScenarioArguments {
     if (with_seed) verb.add_option("--seed", seed_, "Seed instead of the scenario's own");
   }
 
-  /// @param overrides those of the verb; the overrides of the user prevail
+  /// @param more overrides of the verb, which prevail over those of the user
   /// @throws InputError
-  Scenario Load(std::vector<std::string> overrides = {}) const {
-    overrides.insert(overrides.end(), overrides_.begin(), overrides_.end());
+  Scenario Load(const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> overrides = overrides_;
+    overrides.insert(overrides.end(), more.begin(), more.end());
     if (!seed_.empty()) overrides.push_back("/seed=" + seed_);
     Scenario scenario = LoadScenario(file_, overrides);
     runner::CheckPossible(scenario, file_);
     return scenario;
   }
   const std::filesystem::path& file() const { return file_; }
+
+  /// Whether the user has given this override, such as "/person/drives=false".
+  bool HasOverride(std::string_view text) const {
+    return std::ranges::find(overrides_, text) != overrides_.end();
+  }
 
   /// Refuses a --set of a field that the verb itself varies. `why` says what sets the field.
   /// @throws InputError

@@ -103,7 +103,11 @@ TEST_F(KeysInRealtimeTest, TheTerminalIsRestoredAfterAnError) {
 }
 
 TEST_F(KeysInRealtimeTest, AreRefusedWithoutATerminal) {
-  const Outcome outcome = RunCommand(Drive(100));
+  Words command = Drive(100);
+  EXPECT_THAT(RunCommand(command).err, HasSubstr("error: --keys: standard input is no terminal"));
+  // A whole section without "drives" does not take the person out of the drive.
+  command.insert(command.end(), {"--set", R"(/person={"override_by":"none"})"});
+  const Outcome outcome = RunCommand(command);
   EXPECT_EQ(outcome.code, 2);
   EXPECT_THAT(outcome.err, HasSubstr("error: --keys: standard input is no terminal"));
 }

@@ -127,9 +127,10 @@ std::unique_ptr<processes::PageSeat> OpenPage(const DriveArguments& arguments, s
 
 /// Loads the scenario, in which a person drives. @throws InputError
 Scenario LoadDriven(const cli::ScenarioArguments& arguments) {
-  Scenario scenario = arguments.Load({"/person/drives=true"});
-  if (scenario.person.drives) return scenario;
-  throw InputError("error: --set /person/drives=false: in this verb a person drives");
+  if (arguments.HasOverride("/person/drives=false")) {
+    throw InputError("error: --set /person/drives=false: in this verb a person drives");
+  }
+  return arguments.Load({"/person/drives=true"});
 }
 
 int Drive(DriveArguments& arguments) {
