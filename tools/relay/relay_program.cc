@@ -23,7 +23,7 @@ constexpr const char* kFooter =
 and a summary at the end. Ctrl-C, SIGTERM or SIGHUP ends it. Any program may
 connect: listen on 127.0.0.1 or on a network that you trust.
 
-Exit codes: 0 stopped, 2 bad usage, 3 cannot listen.
+Exit codes: 0 stopped, 2 bad usage or an address of another machine, 3 the port is taken.
 
 Examples:
   fogline-relay                              on this machine, port 7700

@@ -118,6 +118,10 @@ TEST(RelayTest, SaysWhereItListensAndWhatItHasDoneAndNamesAPortThatIsTaken) {
   EXPECT_EQ(second.err,
             "fogline-relay: error: cannot listen on " + here + ": Address already in use\n");
   EXPECT_EQ(RunCommand({Program("fogline-relay"), "--listen", "nowhere"}).code, 2);
+  // RFC 5737: no machine has an address of 203.0.113.0/24.
+  const Outcome foreign = RunCommand({Program("fogline-relay"), "--listen", "203.0.113.7"});
+  EXPECT_EQ(foreign.code, 2);
+  EXPECT_THAT(foreign.err, HasSubstr("203.0.113.7 is no address of this machine"));
   {
     runtime::Bus bus(relay.url());
     bus.Publish("A", Payload(1));
