@@ -1,6 +1,7 @@
 #include "services/runtime/transport/lcm_url.h"
 
 #include <arpa/inet.h>
+#include <ifaddrs.h>
 #include <netinet/in.h>
 
 #include <algorithm>
@@ -21,7 +22,7 @@ namespace {
 
 constexpr std::string_view kUdpm = "udpm://";
 constexpr std::string_view kTcpq = "tcpq://";
-constexpr std::uint16_t kLcmPort = 7667;
+constexpr int kMostPort = 65535;
 // The options of a udpm:// URL.
 constexpr std::string_view kTtl = "ttl";
 constexpr int kMostTtl = 255;  // the field has 8 bits (RFC 791, section 3.1)
@@ -46,30 +47,64 @@ std::string_view TakeUntil(char separator, std::string_view& text) {
   return part;
 }
 
-/// The value of an option as LCM reads it: decimal, octal or hexadecimal.
-std::optional<long> ReadLikeLcm(std::string_view value) {
-  const std::string text(value);
-  char* end = nullptr;
-  const long number = std::strtol(text.c_str(), &end, 0);
-  if (text.empty() || *end != '\0') return std::nullopt;
-  return number;
+/// What LCM takes for the missing parts of a udpm:// URL. Fogline, too, has 0 as the default of ttl
+/// (bus.h).
+MulticastAddress LcmsDefaults() {
+  return {.group = *GroupOf(kUdpm), .port = 7667, .ttl = 0, .receive_buffer = {}};
 }
 
-bool ReadOptions(std::string_view options, MulticastAddress& address) {
-  while (!options.empty()) {
+/// A number of a udpm:// URL: digits without sign. LCM would read a number with a leading 0 as
+/// octal or hexadecimal, so such a number is refused.
+std::optional<int> ReadNumber(std::string_view text) {
+  if (text.starts_with('-') || (text.size() > 1 && text.starts_with('0'))) return std::nullopt;
+  return ParseNumber<int>(text);
+}
+
+/// Reads the part "ADDRESS:PORT" of a udpm:// URL. @return what is wrong; "" if nothing is
+std::string ReadPlace(std::string_view place, MulticastAddress& address) {
+  if (place.empty()) return "";
+  const std::size_t colon = place.find(':');
+  if (colon == 0) return "the address before the port is missing";
+  address.group = place.substr(0, colon);
+  if (!ParseAddress(address.group)) {
+    return fmt::format("{} is no IPv4 address in numbers", QuoteShort(address.group));
+  }
+  if (colon == std::string_view::npos) return "";
+  const std::string_view text = place.substr(colon + 1);
+  const int port = ReadNumber(text).value_or(0);
+  if (port < 1 || port > kMostPort) {
+    return fmt::format("{} is no port (1 to {})", QuoteShort(text), kMostPort);
+  }
+  address.port = static_cast<std::uint16_t>(port);
+  return "";
+}
+
+/// Reads one option of a udpm:// URL. @return what is wrong; "" if nothing is
+std::string ReadOption(std::string_view name, std::string_view value, MulticastAddress& address) {
+  if (name != kTtl && name != kReceiveBuffer) {
+    return fmt::format("udpm has no option {}; its options are {} and {}", QuoteShort(name), kTtl,
+                       kReceiveBuffer);
+  }
+  const int most = name == kTtl ? kMostTtl : std::numeric_limits<int>::max();
+  const auto number = ReadNumber(value);
+  if (!number || *number > most) {
+    return fmt::format("{} is {}, which is no number from 0 to {}", name, QuoteShort(value), most);
+  }
+  if (name == kTtl) address.ttl = *number;
+  if (name == kReceiveBuffer) address.receive_buffer = *number;
+  return "";
+}
+
+/// Reads a udpm:// URL. @return what is wrong; "" if nothing is
+std::string ReadUdpm(std::string_view url, MulticastAddress& address) {
+  std::string_view options = url.substr(kUdpm.size());
+  std::string why = ReadPlace(TakeUntil('?', options), address);
+  while (why.empty() && !options.empty()) {
     std::string_view value = TakeUntil('&', options);
     const std::string_view name = TakeUntil('=', value);
-    const auto number = ParseNumber<int>(value);
-    if (!number || *number < 0) return false;
-    if (name == kTtl) {
-      address.ttl = *number;
-    } else if (name == kReceiveBuffer) {
-      address.receive_buffer = *number;
-    } else {
-      return false;
-    }
+    why = ReadOption(name, value, address);
   }
-  return true;
+  return why;
 }
 
 /// The host and port of a relay in a tcpq:// URL, with LCM's defaults for missing parts.
@@ -89,11 +124,25 @@ std::optional<RelayPlace> ParseRelayUrl(std::string_view url) {
   return place;
 }
 
+/// Whether an address belongs to one of this machine's interfaces or to loopback (127.0.0.0/8).
+bool IsOfThisMachine(in_addr address) {
+  if (ntohl(address.s_addr) >> 24 == IN_LOOPBACKNET) return true;
+  ifaddrs* interfaces = nullptr;
+  if (getifaddrs(&interfaces) != 0) return false;
+  bool found = false;
+  for (const ifaddrs* one = interfaces; one != nullptr && !found; one = one->ifa_next) {
+    if (one->ifa_addr == nullptr || one->ifa_addr->sa_family != AF_INET) continue;
+    found = reinterpret_cast<const sockaddr_in*>(one->ifa_addr)->sin_addr.s_addr == address.s_addr;
+  }
+  freeifaddrs(interfaces);
+  return found;
+}
+
 bool IsRelayOfThisMachine(std::string_view url) {
   const auto place = ParseRelayUrl(url);
   if (!place || !place->port || *place->port == 0) return false;
   const auto address = ParseAddress(place->host);
-  return address && address->s_addr != htonl(INADDR_ANY) && tcpq::IsOfThisMachine(*address);
+  return address && address->s_addr != htonl(INADDR_ANY) && IsOfThisMachine(*address);
 }
 
 }  // namespace
@@ -117,48 +166,15 @@ bool IsLcmUrl(std::string_view url) {
 
 std::optional<MulticastAddress> ParseMulticastUrl(std::string_view url) {
   if (!url.starts_with(kUdpm)) return std::nullopt;
-  std::string_view options = url.substr(kUdpm.size());
-  std::string_view place = TakeUntil('?', options);
-  // The default of ttl is 0, in LCM and in Fogline (bus.h).
-  MulticastAddress address{
-      .group = *GroupOf(url), .port = kLcmPort, .ttl = 0, .receive_buffer = {}};
-  TakeUntil(':', place);
-  if (!place.empty()) {
-    const auto port = ParseNumber<std::uint16_t>(place);
-    if (!port) return std::nullopt;
-    address.port = *port;
-  }
-  if (!ParseAddress(address.group) || !ReadOptions(options, address)) return std::nullopt;
+  MulticastAddress address = LcmsDefaults();
+  if (!ReadUdpm(url, address).empty()) return std::nullopt;
   return address;
 }
 
 std::string WhyWrongUdpm(std::string_view url) {
   if (!url.starts_with(kUdpm)) return "";
-  std::string_view options = url.substr(kUdpm.size());
-  const std::string_view place = TakeUntil('?', options);
-  const std::size_t colon = place.find(':');
-  const std::string_view address = place.substr(0, colon);
-  if (!place.empty() && !ParseAddress(address)) {
-    return fmt::format("{} is no IPv4 address in numbers", QuoteShort(address));
-  }
-  if (colon != std::string_view::npos && !ParseNumber<std::uint16_t>(place.substr(colon + 1))) {
-    return fmt::format("{} is no port (0 to 65535)", QuoteShort(place.substr(colon + 1)));
-  }
-  while (!options.empty()) {
-    std::string_view value = TakeUntil('&', options);
-    const std::string_view name = TakeUntil('=', value);
-    if (name != kTtl && name != kReceiveBuffer) {
-      return fmt::format("udpm has no option {}; its options are {} and {}", QuoteShort(name), kTtl,
-                         kReceiveBuffer);
-    }
-    const int most = name == kTtl ? kMostTtl : std::numeric_limits<int>::max();
-    const auto number = ReadLikeLcm(value);
-    if (!number || *number < 0 || *number > most) {
-      return fmt::format("{} is {}, which is no number from 0 to {}", name, QuoteShort(value),
-                         most);
-    }
-  }
-  return "";
+  MulticastAddress address = LcmsDefaults();
+  return ReadUdpm(url, address);
 }
 
 bool SameNetwork(std::string_view a, std::string_view b) {
@@ -174,7 +190,7 @@ bool MayBeAnnounced(std::string_view url) {
   if (url.size() > kMaxAnnounced) return false;
   if (url.starts_with(kTcpq)) return url != kTcpq && IsRelayOfThisMachine(url);
   const auto address = ParseMulticastUrl(url);
-  if (!address || !IsMulticast(address->group) || address->port == 0) return false;
+  if (!address || !IsMulticast(address->group)) return false;
   const int buffer = address->receive_buffer.value_or(kWideBuffer);
   return address->ttl <= 1 && buffer >= kLeastAnnouncedBuffer && buffer <= kWideBuffer;
 }

@@ -36,13 +36,12 @@ struct MulticastAddress {
   bool operator==(const MulticastAddress&) const = default;
 };
 
-/// The contents of a udpm:// URL. The result is nullopt if the text is not a udpm:// URL, if the
-/// host is not an IPv4 address in numbers, if the port is wrong, or if an option is wrong or
-/// unknown to LCM.
+/// The contents of a udpm:// URL; nullopt if the text is not a udpm:// URL, or WhyWrongUdpm().
 std::optional<MulticastAddress> ParseMulticastUrl(std::string_view url);
 
 /// Says what is wrong in a udpm:// URL: the address, the port, or the first wrong option; "" if
-/// nothing is. LCM itself ignores unknown options, also a mistyped ttl.
+/// nothing is, or if the text is no udpm:// URL. Fogline takes less than LCM does. LCM ignores
+/// unknown options, also a mistyped ttl, and it reads 010 as 8.
 std::string WhyWrongUdpm(std::string_view url);
 
 /// Whether two URLs name one network. For udpm this compares group and port, for tcpq host and

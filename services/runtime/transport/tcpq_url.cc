@@ -1,10 +1,13 @@
 #include "services/runtime/transport/tcpq_url.h"
 
 #include <arpa/inet.h>
-#include <ifaddrs.h>
 #include <netdb.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
 
 #include <array>
+#include <cerrno>
 
 #include <fmt/core.h>
 
@@ -40,6 +43,21 @@ std::string AddressOf(const std::string& host, std::string_view what) {
   return text.data();
 }
 
+/// Whether the kernel lets no process of this machine listen on an IPv4 address because the address
+/// is another machine's. A socket with any free port asks the kernel.
+bool IsForeign(const std::string& text) {
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  inet_pton(AF_INET, text.c_str(), &address.sin_addr);
+  const int probe = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  if (probe < 0) return false;
+  const bool foreign =
+      bind(probe, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) != 0 &&
+      errno == EADDRNOTAVAIL;
+  close(probe);
+  return foreign;
+}
+
 }  // namespace
 
 Endpoint Resolve(std::string_view host_and_port, std::string_view what) {
@@ -53,27 +71,13 @@ Endpoint Resolve(std::string_view host_and_port, std::string_view what) {
   return endpoint;
 }
 
-bool IsOfThisMachine(in_addr address) {
-  if (ntohl(address.s_addr) >> 24 == IN_LOOPBACKNET) return true;
-  ifaddrs* interfaces = nullptr;
-  if (getifaddrs(&interfaces) != 0) return false;
-  bool found = false;
-  for (const ifaddrs* one = interfaces; one != nullptr && !found; one = one->ifa_next) {
-    if (one->ifa_addr == nullptr || one->ifa_addr->sa_family != AF_INET) continue;
-    found = reinterpret_cast<const sockaddr_in*>(one->ifa_addr)->sin_addr.s_addr == address.s_addr;
-  }
-  freeifaddrs(interfaces);
-  return found;
-}
-
 Endpoint ResolveOwn(std::string_view host_and_port, std::string_view what) {
   Endpoint endpoint = Resolve(host_and_port, what);
-  in_addr address{};
-  inet_pton(AF_INET, endpoint.address.c_str(), &address);
-  if (address.s_addr != htonl(INADDR_ANY) && !IsOfThisMachine(address)) {
-    throw InputError(
-        fmt::format("error: {}: {} is no address of this machine (`ip address` lists them)", what,
-                    endpoint.address));
+  if (IsForeign(endpoint.address)) {
+    const std::string host(host_and_port.substr(0, host_and_port.find(':')));
+    throw InputError(fmt::format(
+        "error: {}: {} is no address of this machine (`ip address` lists them)", what,
+        host == endpoint.address ? host : fmt::format("\"{}\" ({})", host, endpoint.address)));
   }
   return endpoint;
 }

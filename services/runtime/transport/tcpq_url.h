@@ -3,8 +3,6 @@
 // resolves names before LCM's programs see them.
 #pragma once
 
-#include <netinet/in.h>
-
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -27,11 +25,8 @@ struct Endpoint {
 /// @throws InputError that names `what` if there is no such host or port
 Endpoint Resolve(std::string_view host_and_port, std::string_view what);
 
-/// Whether an address belongs to one of this machine's interfaces or to loopback (127.0.0.0/8).
-bool IsOfThisMachine(in_addr address);
-
-/// Resolve() for an address on which this process will listen. @throws InputError also if the
-/// address is neither of this machine nor 0.0.0.0
+/// Resolve() for an address on which a process of this machine will listen. @throws InputError also
+/// if the kernel says that this machine has no such address
 Endpoint ResolveOwn(std::string_view host_and_port, std::string_view what);
 
 /// Resolve() for a URL, which is "tcpq://" and a text for Resolve(). @throws InputError also for

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "services/graph.h"
+#include "services/runtime/transport/tcpq_url.h"
 #include "services/runtime/wire/wire.h"
 #include "tests/support/environment_url.h"
 
@@ -40,44 +41,56 @@ TEST(LcmUrlTest, HasLcmsDefaultsWhereItSaysNothing) {
   lcms.receive_buffer = 100;
   EXPECT_EQ(runtime::ParseMulticastUrl("udpm://?recv_buf_size=100"), lcms);
   const runtime::MulticastAddress near{
-      .group = "239.255.76.67", .port = 7700, .ttl = 1, .receive_buffer = {}};
-  EXPECT_EQ(runtime::ParseMulticastUrl("udpm://:7700?ttl=1"), near);
+      .group = "239.1.1.1", .port = 65535, .ttl = 1, .receive_buffer = {}};
+  EXPECT_EQ(runtime::ParseMulticastUrl("udpm://239.1.1.1:65535?ttl=1"), near);
   const runtime::MulticastAddress far{
       .group = "224.1.1.1", .port = 7667, .ttl = 3, .receive_buffer = 1};
   EXPECT_EQ(runtime::ParseMulticastUrl("udpm://224.1.1.1?recv_buf_size=1&ttl=3"), far);
 }
 
-TEST(LcmUrlTest, IsNoneWithAnythingElseInIt) {
-  for (const char* url :
-       {"", "udpm", "udpm:/", "tcpq://", "mpudpm://239.1.1.1", "udpm://localhost:7700",
-        "udpm://239.1.1.1:x", "udpm://239.1.1.1:70000", "udpm://239.1.1.1:-1",
-        "udpm://239.1.1.1:1:2", "udpm://239.1.1.1 :1", "udpm://239.1.1.1?ttl",
-        "udpm://?ttl=", "udpm://?ttl=-1", "udpm://?ttl=1x", "udpm://?ttl=1;reboot",
-        "udpm://?interface=eth0", "udpm://239.1.1.256", "udpm://239.1.1.1\n"}) {
+TEST(LcmUrlTest, IsNoneOfAGroupWithAnotherProvider) {
+  for (const char* url : {"", "udpm", "udpm:/", "tcpq://", "mpudpm://239.1.1.1"}) {
     EXPECT_EQ(runtime::ParseMulticastUrl(url), std::nullopt) << url;
+    EXPECT_EQ(runtime::WhyWrongUdpm(url), "") << url;
   }
 }
 
 TEST(LcmUrlTest, NamesWhatIsWrongInIt) {
   for (const char* url : {"udpm://", "udpm://?ttl=1", "udpm://239.1.1.1:7700?recv_buf_size=1&ttl=0",
-                          "udpm://?recv_buf_size=0x200000", "tcpq://?tll=0", ""}) {
+                          "udpm://?ttl=255&recv_buf_size=2147483647", "udpm://239.1.1.1:1"}) {
     EXPECT_EQ(runtime::WhyWrongUdpm(url), "") << url;
+    EXPECT_TRUE(runtime::ParseMulticastUrl(url)) << url;
   }
   const std::vector<std::pair<std::string, std::string>> wrong{
       {"lab1", "\"lab1\" is no IPv4 address in numbers"},
-      {":7700", "\"\" is no IPv4 address in numbers"},
-      {"239.1.1.1:65536", "\"65536\" is no port (0 to 65535)"},
-      {"239.1.1.1:7x?ttl=0", "\"7x\" is no port (0 to 65535)"},
-      {"239.1.1.1:", "\"\" is no port (0 to 65535)"},
+      {"239.1.1.256", "\"239.1.1.256\" is no IPv4 address in numbers"},
+      {"239.1.1.1 :1", "\"239.1.1.1 \" is no IPv4 address in numbers"},
+      {":7700", "the address before the port is missing"},
+      {"239.1.1.1:65536", "\"65536\" is no port (1 to 65535)"},
+      {"239.1.1.1:0", "\"0\" is no port (1 to 65535)"},
+      {"239.1.1.1:07700", "\"07700\" is no port (1 to 65535)"},
+      {"239.1.1.1:0x1e14", "\"0x1e14\" is no port (1 to 65535)"},
+      {"239.1.1.1:-1", "\"-1\" is no port (1 to 65535)"},
+      {"239.1.1.1:1:2", "\"1:2\" is no port (1 to 65535)"},
+      {"239.1.1.1:7x?ttl=0", "\"7x\" is no port (1 to 65535)"},
+      {"239.1.1.1:", "\"\" is no port (1 to 65535)"},
       {"239.1.1.1?ttl=0&tll=1",
        "udpm has no option \"tll\"; its options are ttl and recv_buf_size"},
       {"?=", "udpm has no option \"\"; its options are ttl and recv_buf_size"},
       {"?ttl=256", "ttl is \"256\", which is no number from 0 to 255"},
+      {"?ttl=010", "ttl is \"010\", which is no number from 0 to 255"},
+      {"?ttl=0x0", "ttl is \"0x0\", which is no number from 0 to 255"},
+      {"?ttl=-0", "ttl is \"-0\", which is no number from 0 to 255"},
+      {"?ttl=+1", "ttl is \"+1\", which is no number from 0 to 255"},
+      {"?ttl=1;reboot", "ttl is \"1;reboot\", which is no number from 0 to 255"},
       {"?ttl", "ttl is \"\", which is no number from 0 to 255"},
       {"?ttl=0&recv_buf_size=2M",
        "recv_buf_size is \"2M\", which is no number from 0 to 2147483647"},
       {"?recv_buf_size=-1", "recv_buf_size is \"-1\", which is no number from 0 to 2147483647"}};
-  for (const auto& [rest, why] : wrong) EXPECT_EQ(runtime::WhyWrongUdpm("udpm://" + rest), why);
+  for (const auto& [rest, why] : wrong) {
+    EXPECT_EQ(runtime::WhyWrongUdpm("udpm://" + rest), why);
+    EXPECT_EQ(runtime::ParseMulticastUrl("udpm://" + rest), std::nullopt) << rest;
+  }
 }
 
 TEST(LcmUrlTest, NamesTheSameNetworkByGroupAndPort) {
@@ -109,7 +122,7 @@ TEST(LcmUrlTest, MayBeAnnouncedIfItIsAGroupOrARelayOfThisMachine) {
   EXPECT_FALSE(runtime::MayBeAnnounced("udpm://?recv_buf_size=" + std::string(200, '0')));
 }
 
-TEST(LcmUrlTest, ARelayOfThisMachineHasAnAddressOfOneOfItsInterfaces) {
+TEST(LcmUrlTest, AProgramListensAndARelayIsAnnouncedAtEachAddressOfThisMachine) {
   ifaddrs* interfaces = nullptr;
   ASSERT_EQ(getifaddrs(&interfaces), 0);
   int tried = 0;
@@ -118,8 +131,9 @@ TEST(LcmUrlTest, ARelayOfThisMachineHasAnAddressOfOneOfItsInterfaces) {
     const auto& address = reinterpret_cast<const sockaddr_in*>(one->ifa_addr)->sin_addr;
     std::array<char, INET_ADDRSTRLEN> text{};
     inet_ntop(AF_INET, &address, text.data(), text.size());
-    const std::string url = std::string("tcpq://") + text.data() + ":7700";
-    EXPECT_TRUE(runtime::MayBeAnnounced(url)) << url;
+    const std::string own = std::string(text.data()) + ":7700";
+    EXPECT_EQ(runtime::tcpq::ResolveOwn(own, "--listen").ToString(), own);
+    EXPECT_TRUE(runtime::MayBeAnnounced("tcpq://" + own)) << own;
     ++tried;
   }
   freeifaddrs(interfaces);
