@@ -16,7 +16,7 @@ MeetingSender::MeetingSender(const std::string& own_url) {
   if (!address || SameNetwork(meeting, own_url)) return;
   const std::string url = fmt::format("udpm://{}:{}?ttl=0", address->group, address->port);
   if (!WhyNoMulticast(url).empty()) return;
-  const LcmSockets sockets({}, ReachOf(url), LcmSockets::Joins::kNothing);
+  const LcmSockets sockets(ReachOf(url));
   lcm_ = lcm_create(url.c_str());
 }
 

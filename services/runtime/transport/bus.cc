@@ -147,12 +147,9 @@ void Bus::FilterSockets() {
 }
 
 void Bus::Filter(const std::vector<sock_filter>& program) {
-  if (!filtered_) return;
-  for (const int socket : sockets_) {
-    if (AttachFilter(socket, program)) continue;
-    throw std::runtime_error(fmt::format("the kernel refuses a filter of {} instructions: {}",
-                                         program.size(), std::strerror(errno)));
-  }
+  if (!inbox_ || !filtered_ || AttachFilter(inbox_->socket(), program)) return;
+  throw std::runtime_error(fmt::format("the kernel refuses a filter of {} instructions: {}",
+                                       program.size(), std::strerror(errno)));
 }
 
 void Bus::SubscribeAll(Watcher watcher) {

@@ -4,8 +4,7 @@
 //
 // With udpm a bus reads its socket itself, because LCM's thread costs a second wake-up for each
 // message. Messages then wait in the kernel's buffer and, on request, in a backlog (KeepBacklog()).
-// LCM then only sends. With mpudpm, memq, and a udpm URL whose options Fogline does not know, LCM
-// also receives.
+// LCM then only sends. With mpudpm and memq, LCM also receives.
 #pragma once
 
 #include <cstdint>
@@ -161,7 +160,6 @@ class Bus {
   void OpenLcm();
   void OpenInbox();
   void TestInbox();
-  void ReceiveThroughLcm();
   void SubscribeThroughLcm(Topic& topic);
   bool Readable(Duration timeout);
   bool HasPacket(Duration timeout);
@@ -196,8 +194,7 @@ class Bus {
   std::optional<MessageSocket> inbox_;       // receives with udpm
   int fd_ = -1;
   std::int64_t replaced_ = 0;
-  std::vector<int> sockets_;  // the UDP sockets that receive: the socket of inbox_, or LCM's
-  bool filtered_ = true;      // false if the kernel has refused a filter
+  bool filtered_ = true;  // false if the kernel has refused a filter for inbox_
   // Set if messages of the group come over the route, which may change.
   std::optional<GroupMembership> membership_;
   TimePoint joined_{};  // when a silent bus last renewed its membership

@@ -83,17 +83,19 @@ void Bus::OpenLcm() {
   const LcmSockets::Reach reach = ReachOf(url_);
   {
     std::optional<LcmSockets> sockets;
-    if (udpm) sockets.emplace(std::vector<sock_filter>(), reach, LcmSockets::Joins::kNothing);
+    if (udpm) sockets.emplace(reach);
     lcm_.reset(lcm_create(url_.c_str()));
   }
   if (lcm_ == nullptr) FailToOpen(url_);
-  if (ParseMulticastUrl(url_)) {
+  if (udpm) {
     OpenInbox();
     TestInbox();
-  } else {
-    ReceiveThroughLcm();
+    if (reach == LcmSockets::Reach::kRoute) membership_.emplace(inbox_->socket(), url_);
+    return;
   }
-  if (udpm && reach == LcmSockets::Reach::kRoute) membership_.emplace(sockets_, url_);
+  // LCM receives in its own thread.
+  fd_ = lcm_get_fileno(lcm_.get());
+  if (fd_ < 0) FailToOpen(url_);
 }
 
 void Bus::OpenInbox() {
@@ -106,7 +108,6 @@ void Bus::OpenInbox() {
         fmt::format("error: cannot listen to \"{}\": {}", url_, error.code().message()));
   }
   fd_ = inbox_->fd();
-  sockets_ = {inbox_->socket()};
   filtered_ = inbox_->filtered();
 }
 
@@ -139,25 +140,6 @@ void Bus::TestInbox() {
   Filter(ChannelFilter({}));
   // The buffer may contain test messages of other processes. These messages are dropped.
   for (int i = 0; i < kDrained && inbox_->Wait(Duration::zero()); ++i) inbox_->Take();
-}
-
-/// Lets LCM receive in its own thread. @throws InputError if LCM cannot
-void Bus::ReceiveThroughLcm() {
-  // mpudpm gets no filter, because it announces its ports on an additional channel.
-  const bool udpm = url_.starts_with("udpm://");
-  std::optional<LcmSockets> sockets;
-  // Until LCM's self-test is over, each socket accepts only the messages of this test. The filter
-  // is attached before the socket can receive its first datagram.
-  if (udpm) sockets.emplace(ChannelFilter({{kSelfTest}}), ReachOf(url_));
-  fd_ = lcm_get_fileno(lcm_.get());
-  if (fd_ < 0) FailToOpen(url_);
-  if (!udpm) return;
-  sockets_ = sockets->receiving();
-  filtered_ = sockets->filtered();
-  if (url_.find("recv_buf_size") == std::string::npos) {
-    for (const int socket : sockets_) SetReceiveBuffer(socket);
-  }
-  Filter(ChannelFilter({}));
 }
 
 }  // namespace fogline::runtime

@@ -15,16 +15,12 @@
 #include "common/process/console.h"
 #include "services/runtime/transport/lcm_url.h"
 #include "services/runtime/transport/multicast_route.h"
-#include "services/runtime/wire/channel_filter.h"
 
 namespace fogline::runtime {
 namespace {
 
 thread_local LcmSockets* in_charge = nullptr;
 
-int Bind(int socket, const sockaddr* address, socklen_t size) {
-  return static_cast<int>(syscall(SYS_bind, socket, address, size));
-}
 int Connect(int socket, const sockaddr* address, socklen_t size) {
   return static_cast<int>(syscall(SYS_connect, socket, address, size));
 }
@@ -41,18 +37,9 @@ int InterfaceIndex(const std::string& interface) {
 
 }  // namespace
 
-LcmSockets::LcmSockets(std::vector<sock_filter> filter, Reach reach, Joins joins)
-    : filter_(std::move(filter)), reach_(reach), joins_(joins) {
-  in_charge = this;
-}
+LcmSockets::LcmSockets(Reach reach) : reach_(reach) { in_charge = this; }
 
 LcmSockets::~LcmSockets() { in_charge = nullptr; }
-
-int LcmSockets::OnBind(int socket, const sockaddr* address, socklen_t size) {
-  if (!filter_.empty()) refused_ = !AttachFilter(socket, filter_) || refused_;
-  receiving_.push_back(socket);
-  return Bind(socket, address, size);
-}
 
 int LcmSockets::OnConnect(int socket, const sockaddr* address, socklen_t size) const {
   const int result = Connect(socket, address, size);
@@ -60,19 +47,14 @@ int LcmSockets::OnConnect(int socket, const sockaddr* address, socklen_t size) c
   return reach_ == Reach::kLoopback ? 0 : result;
 }
 
-int LcmSockets::OnOption(int socket, int level, int name, const void* value, socklen_t size) {
-  const bool join = level == IPPROTO_IP && name == IP_ADD_MEMBERSHIP;
-  if (join && joins_ == Joins::kNothing) return 0;
+int LcmSockets::OnOption(int socket, int level, int name, const void* value, socklen_t size) const {
+  // LCM joins the group also in order to send, which needs no membership.
+  if (level == IPPROTO_IP && name == IP_ADD_MEMBERSHIP) return 0;
   const int result = SetOption(socket, level, name, value, size);
   if (reach_ != Reach::kLoopback || level != IPPROTO_IP) return result;
-  if (name == IP_MULTICAST_TTL) {  // LCM sets this option on the socket that sends
-    const in_addr loopback = Loopback();
-    return SetOption(socket, IPPROTO_IP, IP_MULTICAST_IF, &loopback, sizeof(loopback));
-  }
-  if (join && size >= sizeof(ip_mreq)) {
-    return JoinOnLoopback(socket, static_cast<const ip_mreq*>(value)->imr_multiaddr) ? 0 : -1;
-  }
-  return result;
+  if (name != IP_MULTICAST_TTL) return result;  // LCM sets this option on the socket that sends
+  const in_addr loopback = Loopback();
+  return SetOption(socket, IPPROTO_IP, IP_MULTICAST_IF, &loopback, sizeof(loopback));
 }
 
 bool JoinOnLoopback(int socket, const in_addr& group) {
@@ -89,8 +71,8 @@ LcmSockets::Reach ReachOf(const std::string& url) {
                                                         : LcmSockets::Reach::kRoute;
 }
 
-GroupMembership::GroupMembership(std::vector<int> sockets, const std::string& url)
-    : sockets_(std::move(sockets)), group_(GroupOf(url).value_or("")) {
+GroupMembership::GroupMembership(int socket, const std::string& url)
+    : socket_(socket), group_(GroupOf(url).value_or("")) {
   inet_pton(AF_INET, group_.c_str(), &joined_.imr_multiaddr);
   joined_.imr_ifindex = InterfaceIndex(RouteInterface(KernelTable("/proc/net/route"), group_));
 }
@@ -102,18 +84,15 @@ void GroupMembership::Renew() {
   if (index == joined_.imr_ifindex && HasGroup(KernelTable("/proc/net/igmp"), interface, group_)) {
     return;
   }
+  // A socket remembers a group even after its interface has lost the group. So the socket leaves
+  // the group in any case.
+  SetOption(socket_, IPPROTO_IP, IP_DROP_MEMBERSHIP, &joined_, sizeof(joined_));
+  joined_.imr_ifindex = index;
   std::string trouble;
-  for (const int socket : sockets_) {
-    // A socket remembers a group even after its interface has lost the group. So the socket leaves
-    // the group in any case.
-    SetOption(socket, IPPROTO_IP, IP_DROP_MEMBERSHIP, &joined_, sizeof(joined_));
-    ip_mreqn there = joined_;
-    there.imr_ifindex = index;
-    if (SetOption(socket, IPPROTO_IP, IP_ADD_MEMBERSHIP, &there, sizeof(there)) == 0) continue;
+  if (SetOption(socket_, IPPROTO_IP, IP_ADD_MEMBERSHIP, &joined_, sizeof(joined_)) != 0) {
     trouble =
         fmt::format("warning: cannot hear {} on {}: {}", group_, interface, std::strerror(errno));
   }
-  joined_.imr_ifindex = index;
   if (!trouble.empty() && trouble != trouble_) Notice(trouble);
   trouble_ = std::move(trouble);
 }
@@ -121,12 +100,6 @@ void GroupMembership::Renew() {
 }  // namespace fogline::runtime
 
 // These functions replace the functions of the C library with the same names, also in LCM's code.
-// So a filter is attached before bind(), and no datagram arrives before the filter.
-extern "C" int bind(int socket, const sockaddr* address, socklen_t size) noexcept {
-  return fogline::runtime::in_charge != nullptr
-             ? fogline::runtime::in_charge->OnBind(socket, address, size)
-             : fogline::runtime::Bind(socket, address, size);
-}
 extern "C" int connect(int socket, const sockaddr* address, socklen_t size) {
   return fogline::runtime::in_charge != nullptr
              ? fogline::runtime::in_charge->OnConnect(socket, address, size)

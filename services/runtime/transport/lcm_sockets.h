@@ -1,5 +1,6 @@
-// Controls LCM's UDP sockets, to which LCM gives no access. A filter is attached before the first
-// datagram arrives. A network that is limited to this machine uses the loopback interface.
+// Controls the UDP sockets with which LCM sends, and to which LCM gives no access. A network that
+// is limited to this machine uses the loopback interface. Fogline receives with sockets of its own
+// (udpm/group_socket.h).
 //
 // LCM uses the interface of the route to the group, even if all messages stay on the machine
 // (ttl=0). Traffic of this kind ends when the interface, its address or its route disappears, for
@@ -7,11 +8,9 @@
 // depend on any of these.
 #pragma once
 
-#include <linux/filter.h>
 #include <netinet/in.h>
 
 #include <string>
-#include <vector>
 
 namespace fogline::runtime {
 
@@ -26,36 +25,18 @@ class LcmSockets {
     kRoute,  ///< sends and receives over the route to the group
   };
 
-  enum class Joins {
-    kGroup,  ///< each socket joins the group, as usual in LCM
-    /// No socket joins the group. This is enough for messages that are only sent.
-    kNothing,
-  };
-
-  /// @param filter attached to each receiving socket before its first datagram; empty: no filter
-  LcmSockets(std::vector<sock_filter> filter, Reach reach, Joins joins = Joins::kGroup);
+  explicit LcmSockets(Reach reach);
   ~LcmSockets();
   LcmSockets(const LcmSockets&) = delete;
   LcmSockets& operator=(const LcmSockets&) = delete;
 
-  /// The sockets that receive.
-  const std::vector<int>& receiving() const { return receiving_; }
-  /// Whether there are sockets that receive, and the kernel has accepted the filter for each of
-  /// them.
-  bool filtered() const { return !receiving_.empty() && !refused_; }
-
-  // These functions replace bind(), connect() and setsockopt() of the C library, and return the
-  // same values.
-  int OnBind(int socket, const sockaddr* address, socklen_t size);
+  // These functions replace connect() and setsockopt() of the C library, and return the same
+  // values.
   int OnConnect(int socket, const sockaddr* address, socklen_t size) const;
-  int OnOption(int socket, int level, int name, const void* value, socklen_t size);
+  int OnOption(int socket, int level, int name, const void* value, socklen_t size) const;
 
  private:
-  std::vector<sock_filter> filter_;
   Reach reach_;
-  Joins joins_;
-  std::vector<int> receiving_;
-  bool refused_ = false;
 };
 
 /// Joins a group on loopback. If the route to the group leads over loopback, an earlier join has
@@ -69,20 +50,20 @@ bool LoopbackIsUp();
 /// How far a udpm:// URL reaches: kLoopback if ttl is 0 and loopback is up, otherwise kRoute.
 LcmSockets::Reach ReachOf(const std::string& url);
 
-/// Keeps sockets in the group of a udpm:// URL, on the interface to which the route to the group
+/// Keeps a socket in the group of a udpm:// URL, on the interface to which the route to the group
 /// leads. This interface may change. An interface that disappears or loses its last address also
 /// loses its groups.
 class GroupMembership {
  public:
-  /// @param sockets have just joined the group on the interface of the route
-  GroupMembership(std::vector<int> sockets, const std::string& url);
+  /// @param socket has just joined the group on the interface of the route
+  GroupMembership(int socket, const std::string& url);
   /// Joins the group again, on the interface of the current route, if the route leads to another
-  /// interface or the interface has lost the group. The sockets first leave the group on the
-  /// interface where they joined it. Prints on stderr why a socket cannot join.
+  /// interface or the interface has lost the group. The socket first leaves the group on the
+  /// interface where it joined the group. Prints on stderr why the socket cannot join.
   void Renew();
 
  private:
-  std::vector<int> sockets_;
+  int socket_;
   std::string group_;
   ip_mreqn joined_{};
   std::string trouble_;  // the last warning

@@ -83,7 +83,7 @@ PacketSocket::PacketSocket(const std::string& url, const Options& options)
       batch_(std::make_unique<Batch>(options.packet_bytes)),
       heard_(Clock::now()) {
   if (runtime::ReachOf(url) == runtime::LcmSockets::Reach::kRoute) {
-    membership_.emplace(std::vector<int>{fd()}, url);
+    membership_.emplace(fd(), url);
   }
 }
 

@@ -344,20 +344,26 @@ TEST(BusTest, RefusesAnOptionThatLcmWouldIgnore) {
                        ": udpm has no option \"tll\"; its options are ttl and recv_buf_size");
 }
 
-TEST(BusTest, ReceivesThroughLcmIfTheUrlHasANumberThatOnlyLcmReads) {
-  const std::string url = runtime::FreshMulticastUrl();
-  runtime::Bus bus(url + "&recv_buf_size=0x200000");
-  int received = 0;
-  std::vector<std::string> watched;
-  bus.Subscribe("C", [&received](runtime::Bytes) { ++received; });
-  bus.SubscribeAll(
-      [&watched](std::string_view channel, runtime::Bytes) { watched.emplace_back(channel); });
-  bus.Publish("OTHER", Payload(0));
-  bus.Publish("C", Payload(0));
-  while (received == 0 && bus.Wait(kLong)) {
+TEST(BusTest, ReceivesMpudpmThroughLcm) {
+  const std::string url = "mp" + runtime::FreshMulticastUrl();
+  runtime::Bus bus(url);
+  runtime::Bus sender(url);
+  std::set<std::string> heard;
+  bus.Subscribe("C", [&heard](runtime::Bytes) { heard.insert("C, subscribed"); });
+  bus.SubscribeAll([&heard](std::string_view channel, runtime::Bytes) {
+    if (!channel.starts_with("#!mpudpm")) heard.emplace(channel);
+  });
+  // LCM learns the port of a channel while it receives, and may lose the first messages.
+  constexpr int kTries = 50;
+  const std::set<std::string> all{"C", "C, subscribed", "OTHER"};
+  for (int i = 0; i < kTries && heard != all; ++i) {
+    sender.Publish("OTHER", Payload(0));
+    sender.Publish("C", Payload(0));
+    while (bus.Wait(milliseconds(100))) {
+    }
   }
-  EXPECT_EQ(received, 1);
-  EXPECT_NE(std::ranges::find(watched, "OTHER"), watched.end());
+  EXPECT_EQ(heard, all);
+  EXPECT_TRUE(bus.LcmReceives());
 }
 
 }  // namespace

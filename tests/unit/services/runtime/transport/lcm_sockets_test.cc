@@ -2,7 +2,6 @@
 
 #include <arpa/inet.h>
 #include <gtest/gtest.h>
-#include <lcm/lcm.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -10,9 +9,6 @@
 #include <cstdint>
 #include <string>
 #include <utility>
-
-#include "services/runtime/transport/bus.h"
-#include "services/runtime/wire/channel_filter.h"
 
 namespace fogline {
 namespace {
@@ -37,40 +33,6 @@ sockaddr_in Address(const char* text, std::uint16_t port = 0) {
   return address;
 }
 
-int Bind(runtime::LcmSockets& sockets, int socket) {
-  const sockaddr_in address = Address("127.0.0.1");
-  return sockets.OnBind(socket, reinterpret_cast<const sockaddr*>(&address), sizeof(address));
-}
-
-TEST(LcmSocketsTest, KnowWhetherEveryOneThatReceivesIsFiltered) {
-  runtime::LcmSockets sockets(runtime::ChannelFilter({}), kRoute);
-  EXPECT_FALSE(sockets.filtered()) << "there is none";
-  const UdpSocket one;
-  EXPECT_EQ(Bind(sockets, one), 0);
-  EXPECT_TRUE(sockets.filtered());
-  Bind(sockets, -1);
-  const UdpSocket other;
-  EXPECT_EQ(Bind(sockets, other), 0);
-  EXPECT_FALSE(sockets.filtered());
-}
-
-TEST(LcmSocketsTest, AreFilteredBeforeTheyAreBound) {
-  const std::string url = runtime::FreshMulticastUrl();
-  const runtime::LcmSockets sockets(runtime::ChannelFilter({{"LCM_SELF_TEST"}}), kRoute);
-  const runtime::Bus memory("memq://");
-  EXPECT_TRUE(sockets.receiving().empty());
-  lcm_t* network = lcm_create(url.c_str());
-  ASSERT_NE(network, nullptr);
-  EXPECT_GE(lcm_get_fileno(network), 0);
-  ASSERT_FALSE(sockets.receiving().empty());
-  for (const int socket : sockets.receiving()) {
-    socklen_t instructions = 0;
-    EXPECT_EQ(getsockopt(socket, SOL_SOCKET, SO_GET_FILTER, nullptr, &instructions), 0);
-    EXPECT_GT(instructions, 0U);
-  }
-  lcm_destroy(network);
-}
-
 /// The address of the interface over which a socket sends to multicast groups. 0.0.0.0 means that
 /// the route decides.
 std::string SendsOver(int socket) {
@@ -84,12 +46,28 @@ std::string SendsOver(int socket) {
 TEST(LcmSocketsTest, SendOverLoopbackOnlyWhatIsToStayOnThisMachine) {
   for (const auto& [reach, expected] :
        {std::pair(kLoopback, "127.0.0.1"), std::pair(kRoute, "0.0.0.0")}) {
-    const runtime::LcmSockets sockets({}, reach);
+    const runtime::LcmSockets sockets(reach);
     const UdpSocket socket;
     const unsigned char ttl = 0;
     EXPECT_EQ(setsockopt(socket, IPPROTO_IP, IP_MULTICAST_TTL, &ttl, sizeof(ttl)), 0);
     EXPECT_EQ(SendsOver(socket), expected);
   }
+}
+
+TEST(LcmSocketsTest, JoinNoGroupBecauseTheyOnlySend) {
+  const UdpSocket socket;
+  const ip_mreq membership{.imr_multiaddr = Address("239.255.76.67").sin_addr,
+                           .imr_interface = {.s_addr = htonl(INADDR_LOOPBACK)}};
+  const auto join = [&] {
+    return setsockopt(socket, IPPROTO_IP, IP_ADD_MEMBERSHIP, &membership, sizeof(membership));
+  };
+  {
+    const runtime::LcmSockets sockets(kLoopback);
+    EXPECT_EQ(join(), 0);
+  }
+  // Without an LcmSockets, the socket joins. This succeeds only because it was not a member before.
+  EXPECT_EQ(join(), 0);
+  EXPECT_NE(join(), 0);
 }
 
 TEST(LcmSocketsTest, ReachAsFarAsTheirUrlSays) {
