@@ -38,6 +38,8 @@ class LabCheck {
           fmt::format("{} is no LCM URL of a network, such as "
                       "\"udpm://239.255.76.67:7700?ttl=1\"",
                       QuoteShort(lab.url)));
+    } else if (const std::string why = runtime::WhyWrongUdpm(lab.url); !why.empty()) {
+      Add("/url", "text", fmt::format("{}: {}", QuoteShort(lab.url), why));
     } else if (lab.relay || !lab.relay_at.empty()) {
       Add("/url", "needed", "the relay has a URL of its own; leave out url, or relay");
     }

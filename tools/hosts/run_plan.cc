@@ -164,7 +164,7 @@ RunPlan MakePlan(const PlanWords& words) {
   }
   if (!plan.relay_at.empty()) {
     const std::string from = words.relay_at.empty() ? words.lab + ": /relay_at" : "--relay-at";
-    runtime::tcpq::Resolve(plan.relay_at, from);
+    runtime::tcpq::ResolveOwn(plan.relay_at, from);
   }
   plan.words = WordsOf(words);
   return plan;

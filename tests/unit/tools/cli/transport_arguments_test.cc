@@ -111,7 +111,7 @@ TEST(TransportArgumentsTest, PlaceRolesOnOtherMachines) {
   EXPECT_TRUE(options.hosts.places.contains(Role::kAcc));
   EXPECT_EQ(Read({"--on", "acc=lab2"}, "direct").transport, "udpm");
   EXPECT_EQ(Read({"--on", "acc=lab2", "--relay"}).transport, "tcpq");
-  EXPECT_EQ(Read({"--on", "acc=lab2", "--relay-at", "10.0.0.1"}).transport, "tcpq");
+  EXPECT_EQ(Read({"--on", "acc=lab2", "--relay-at", "127.0.0.1"}).transport, "tcpq");
   environment.Set("udpm://239.255.76.67:7700?ttl=1");
   EXPECT_EQ(Read({"--on", "acc=lab2"}, "direct").transport, "udpm://239.255.76.67:7700?ttl=1");
 }

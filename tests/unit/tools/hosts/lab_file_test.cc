@@ -49,6 +49,8 @@ TEST(LabFileTest, AMistakeIsNamedWithFileLineColumnAndField) {
       HasSubstr("/hosts/1/roles/0: the acc already runs on another machine (/hosts/0/roles/0)"));
   EXPECT_THAT(LabRefusal(R"("url": "lab2:7700", "hosts": [{"name": "a"}])"),
               HasSubstr("/url: \"lab2:7700\" is no LCM URL"));
+  EXPECT_THAT(LabRefusal(R"("url": "udpm://239.1.1.1:7700?tll=1", "hosts": [{"name": "a"}])"),
+              HasSubstr("/url: \"udpm://239.1.1.1:7700?tll=1\": udpm has no option \"tll\""));
   EXPECT_THAT(LabRefusal(R"("url": "tcpq://a", "relay": true, "hosts": [{"name": "a"}])"),
               HasSubstr("/url: the relay has a URL of its own"));
   EXPECT_THAT(LabRefusal(R"("hosts": [{"name": "a"}], "relay": 1)"),
