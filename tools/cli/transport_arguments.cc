@@ -36,6 +36,11 @@ std::string RefuseRecorder(const std::string& role) {
                                          : "";
 }
 
+/// Whether a run with this transport has all its roles in one process.
+bool IsOneProcess(const std::string& transport) {
+  return transport == "direct" || transport.starts_with("memq");
+}
+
 /// Adds the options that start roles on other machines.
 void AddPlanOptions(CLI::App& app, hosts::PlanWords& words) {
   app.add_option("--on", words.on,
@@ -138,7 +143,7 @@ void TransportArguments::Apply(runner::ExperimentOptions& options) const {
   options.same_build = same_build_;
   CheckHosts(options);
   if (external_.empty()) return;
-  if (options.transport == "direct" || options.transport.starts_with("memq")) {
+  if (IsOneProcess(options.transport)) {
     throw InputError(
         fmt::format("error: --external {}: no other process can join a run with --transport {}, "
                     "which is one process",
@@ -151,7 +156,7 @@ void TransportArguments::CheckHosts(const runner::ExperimentOptions& options) co
   if (plan.empty()) return;
   const auto [role, place] = *plan.places.begin();
   const std::string where = fmt::format("{} on {}", NameOf(role), plan.hosts[place].name);
-  if (options.transport == "direct" || options.transport.starts_with("memq")) {
+  if (IsOneProcess(options.transport)) {
     throw InputError(fmt::format("error: {}: a run with --transport {} is one process", where,
                                  options.transport));
   }
@@ -173,12 +178,15 @@ void TransportArguments::CheckHosts(const runner::ExperimentOptions& options) co
   }
 }
 
+void RequireProcesses(const std::string& transport, std::string_view what) {
+  if (!IsOneProcess(transport)) return;
+  throw InputError(fmt::format(
+      "error: --transport {}: all roles are in one process; {} needs a process for each role",
+      transport, what));
+}
+
 void RunInRealtime(runner::ExperimentOptions& options, double speed) {
-  if (options.transport == "direct" || options.transport.starts_with("memq")) {
-    throw InputError(fmt::format(
-        "error: --transport {}: one process; a run in real time needs a process for each role",
-        options.transport));
-  }
+  RequireProcesses(options.transport, "a run in real time");
   if (options.pace != 0) {
     throw InputError("error: --pace: limits the speed of lockstep; with --realtime use --speed");
   }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -42,6 +43,10 @@ class TransportArguments {
   bool no_verify_ = false;
   runtime::TrafficOptions traffic_;
 };
+
+/// @param what what needs a process for each role, such as "a live replay"
+/// @throws InputError if all roles of a run with this transport are in one process
+void RequireProcesses(const std::string& transport, std::string_view what);
 
 /// Sets the options for a run in real time.
 /// @param speed simulated seconds per second

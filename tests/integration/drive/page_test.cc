@@ -99,8 +99,8 @@ TEST(DriveAtPageTest, RefusesWhatNoDriveCanFollowBeforeItBegins) {
       "fogline drive: error: --listen: 203.0.113.7 is no address of this machine (`ip address` "
       "lists them)\n");
   EXPECT_EQ(error_of("--transport", "direct"),
-            "fogline drive: error: --transport direct: one process; a run in real time needs a "
-            "process for each role\n");
+            "fogline drive: error: --transport direct: all roles are in one process; a run in "
+            "real time needs a process for each role\n");
 }
 
 }  // namespace

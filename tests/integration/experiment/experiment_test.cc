@@ -350,7 +350,7 @@ TEST_F(ExperimentRealtimeTest, WrongArgumentsAreRefused) {
   EXPECT_THAT(none.err, HasSubstr("the experiment has participants 1 to 4"));
   const Outcome direct = Experiment("run", {"--participant", "1", "--transport", "direct"});
   EXPECT_EQ(direct.code, 2);
-  EXPECT_THAT(direct.err, HasSubstr("a trial is in real time"));
+  EXPECT_THAT(direct.err, HasSubstr("a trial needs a process for each role"));
 }
 
 }  // namespace

@@ -33,8 +33,10 @@ TEST(RealtimeTest, RefusesASpeedThatIsNoneOrThatNothingKeeps) {
   EXPECT_THAT(refused({"--speed", "5"}), testing::HasSubstr("--speed requires --realtime"));
   EXPECT_THAT(refused({"--realtime", "--speed", "nan"}),
               testing::HasSubstr("Value nan not in range"));
-  EXPECT_THAT(refused({"--realtime", "--transport", "memq"}),
-              testing::HasSubstr("error: --transport memq: one process; a run in real time"));
+  EXPECT_THAT(
+      refused({"--realtime", "--transport", "memq"}),
+      testing::HasSubstr("error: --transport memq: all roles are in one process; a run in real "
+                         "time needs a process for each role"));
 }
 
 TEST(RealtimeTest, UndisturbedItIsTheRunInLockstep) {

@@ -120,13 +120,7 @@ trials::SessionOptions SessionOf(const RunTrialsArguments& arguments, const Expe
   }
   if (options.pedals) options.overrides.push_back("/person/drives=true");
   arguments.transport.Apply(options.run);
-  const std::string& transport = options.run.transport;
-  if (transport == "direct" || transport.starts_with("memq")) {
-    throw InputError(fmt::format(
-        "error: --transport {}: is one process; a trial is in real time, with a process for each "
-        "role",
-        transport));
-  }
+  cli::RequireProcesses(options.run.transport, "a trial");
   return options;
 }
 
