@@ -151,8 +151,7 @@ std::string ReadToken() {
 }
 
 /// @throws InputError if --listen names no address of this machine, a line of stdin is not a token,
-/// or both tokens
-///     are equal
+///     or both tokens are equal
 ServerOptions OptionsOf(const ViewArguments& arguments) {
   ServerOptions options{
       .port = arguments.port, .origins = arguments.origins, .seat = arguments.seat};
@@ -179,8 +178,7 @@ bool HasChosenPort(const ViewArguments& arguments) {
 
 /// @throws std::runtime_error if the server cannot listen
 std::unique_ptr<Server> Listen(asio::io_context& context, const ViewArguments& arguments,
-                               View& view) {
-  ServerOptions options = OptionsOf(arguments);
+                               ServerOptions options, View& view) {
   const int tries = HasChosenPort(arguments) ? 1 : kPortsTried;
   for (int tried = 1;; ++tried) {
     try {
@@ -240,6 +238,7 @@ void RequirePage(const ViewArguments& arguments) {
 int RunView(const ViewArguments& arguments) {
   CheckTogether(arguments);
   RequirePage(arguments);
+  const ServerOptions options = OptionsOf(arguments);
   asio::io_context context(1);
   if (arguments.log.empty()) {
     const std::optional<runtime::SigningKey> key = runtime::KeyOf(arguments.traffic);
@@ -251,7 +250,7 @@ int RunView(const ViewArguments& arguments) {
     std::optional<SeatView> seat;
     if (arguments.seat) seat.emplace(context, view, key);
     View& shown = seat ? static_cast<View&>(*seat) : view;
-    const auto server = Listen(context, arguments, shown);
+    const auto server = Listen(context, arguments, options, shown);
     view.Show(*server);
     Serve(context, arguments, *server, [&] {
       if (seat) seat->Stop();
@@ -267,7 +266,7 @@ int RunView(const ViewArguments& arguments) {
   }
   const std::string& note = index.run().note;
   if (!note.empty()) Notice(fmt::format("{}: {}", PathText(arguments.log), note));
-  const auto server = Listen(context, arguments, view);
+  const auto server = Listen(context, arguments, options, view);
   Serve(context, arguments, *server, [] {});
   return kDone;
 }
