@@ -14,7 +14,7 @@ inline constexpr int kEnoughBuffer = 2 * 1024 * 1024;
 /// datagrams a second fills such a buffer in 5 ms. A larger buffer has room for the messages that
 /// come while a busy machine runs other processes.
 /// @param bytes the size; without the capability, the kernel limits it to net.core.rmem_max
-void SetReceiveBuffer(int socket, int bytes = kWideBuffer);
+void SetReceiveBuffer(int socket, int bytes);
 
 /// The size of a socket's receive buffer, in bytes.
 int ReceiveBuffer(int socket);

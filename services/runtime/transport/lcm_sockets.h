@@ -18,11 +18,13 @@ namespace fogline::runtime {
 /// of the object. A thread may have one such object at a time.
 class LcmSockets {
  public:
+  /// How far the messages of a network go.
   enum class Reach {
-    /// Sends over loopback; receives messages from loopback, and over the route if there is a
-    /// route.
+    /// LCM sends over loopback. A GroupSocket receives from loopback, and over the route if there
+    /// is
+    /// a route.
     kLoopback,
-    kRoute,  ///< sends and receives over the route to the group
+    kRoute,  ///< both use the route to the group
   };
 
   explicit LcmSockets(Reach reach);

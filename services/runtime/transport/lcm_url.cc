@@ -98,6 +98,7 @@ std::string ReadOption(std::string_view name, std::string_view value, MulticastA
 /// Reads a udpm:// URL. @return what is wrong; "" if nothing is
 std::string ReadUdpm(std::string_view url, MulticastAddress& address) {
   std::string_view options = url.substr(kUdpm.size());
+  if (url.ends_with('?') || url.ends_with('&')) return "an option is missing at its end";
   std::string why = ReadPlace(TakeUntil('?', options), address);
   while (why.empty() && !options.empty()) {
     std::string_view value = TakeUntil('&', options);
@@ -124,7 +125,8 @@ std::optional<RelayPlace> ParseRelayUrl(std::string_view url) {
   return place;
 }
 
-/// Whether an address belongs to one of this machine's interfaces or to loopback (127.0.0.0/8).
+/// Whether an address belongs to one of this machine's interfaces or to loopback (127.0.0.0/8). A
+/// program may listen on more addresses (tcpq::ResolveOwn()), but not every one of them is reached.
 bool IsOfThisMachine(in_addr address) {
   if (ntohl(address.s_addr) >> 24 == IN_LOOPBACKNET) return true;
   ifaddrs* interfaces = nullptr;

@@ -36,7 +36,8 @@ struct MulticastAddress {
   bool operator==(const MulticastAddress&) const = default;
 };
 
-/// The contents of a udpm:// URL; nullopt if the text is not a udpm:// URL, or WhyWrongUdpm().
+/// The contents of a udpm:// URL; nullopt if the text is not a udpm:// URL, or if it is
+/// wrong (WhyWrongUdpm()).
 std::optional<MulticastAddress> ParseMulticastUrl(std::string_view url);
 
 /// Says what is wrong in a udpm:// URL: the address, the port, or the first wrong option; "" if

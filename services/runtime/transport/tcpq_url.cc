@@ -13,6 +13,7 @@
 
 #include "common/errors.h"
 #include "common/parse_number.h"
+#include "services/runtime/transport/multicast_route.h"
 
 namespace fogline::runtime::tcpq {
 namespace {
@@ -43,19 +44,27 @@ std::string AddressOf(const std::string& host, std::string_view what) {
   return text.data();
 }
 
-/// Whether the kernel lets no process of this machine listen on an IPv4 address because the address
-/// is another machine's. A socket with any free port asks the kernel.
-bool IsForeign(const std::string& text) {
+/// Whether `call` fails with `reason` for a new socket of this type and the IPv4 address `text`.
+template <class Call>
+bool Refuses(int type, const std::string& text, const Call& call, int reason) {
   sockaddr_in address{};
   address.sin_family = AF_INET;
   inet_pton(AF_INET, text.c_str(), &address.sin_addr);
-  const int probe = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  const int probe = socket(AF_INET, type | SOCK_CLOEXEC, 0);
   if (probe < 0) return false;
-  const bool foreign =
-      bind(probe, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) != 0 &&
-      errno == EADDRNOTAVAIL;
+  const bool refused =
+      call(probe, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) != 0 &&
+      errno == reason;
   close(probe);
-  return foreign;
+  return refused;
+}
+
+/// Whether this machine has an IPv4 address at which clients can connect. The kernel decides. It
+/// also lets a socket listen on a multicast or broadcast address, to which no client can connect. A
+/// UDP socket may not connect to a broadcast address; this call sends no packet.
+bool IsOwn(const std::string& address) {
+  return !IsMulticast(address) && !Refuses(SOCK_STREAM, address, bind, EADDRNOTAVAIL) &&
+         !Refuses(SOCK_DGRAM, address, connect, EACCES);
 }
 
 }  // namespace
@@ -73,7 +82,7 @@ Endpoint Resolve(std::string_view host_and_port, std::string_view what) {
 
 Endpoint ResolveOwn(std::string_view host_and_port, std::string_view what) {
   Endpoint endpoint = Resolve(host_and_port, what);
-  if (IsForeign(endpoint.address)) {
+  if (!IsOwn(endpoint.address)) {
     const std::string host(host_and_port.substr(0, host_and_port.find(':')));
     throw InputError(fmt::format(
         "error: {}: {} is no address of this machine (`ip address` lists them)", what,

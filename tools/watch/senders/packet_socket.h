@@ -1,4 +1,4 @@
-// A UDP socket that receives the packets of a udpm:// network in addition to LCM's own socket.
+// A UDP socket that receives the packets of a udpm:// network in addition to the socket of the bus.
 #pragma once
 
 #include <cstddef>

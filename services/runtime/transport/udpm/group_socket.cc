@@ -22,7 +22,7 @@ void Require(bool succeeded, const std::string& url) {
   if (!succeeded) throw std::system_error(errno, std::generic_category(), url);
 }
 
-/// Joins the group where LCM's sockets join it (lcm_sockets.h).
+/// Joins the group on the interface of the route, and on loopback if the messages go over loopback.
 /// @return whether the socket has joined the group; if it has not, errno says why
 bool Join(int fd, const in_addr& group, const std::string& url) {
   const ip_mreq membership{.imr_multiaddr = group, .imr_interface = {}};

@@ -55,19 +55,22 @@ TEST(LcmSocketsTest, SendOverLoopbackOnlyWhatIsToStayOnThisMachine) {
 }
 
 TEST(LcmSocketsTest, JoinNoGroupBecauseTheyOnlySend) {
-  const UdpSocket socket;
-  const ip_mreq membership{.imr_multiaddr = Address("239.255.76.67").sin_addr,
-                           .imr_interface = {.s_addr = htonl(INADDR_LOOPBACK)}};
-  const auto join = [&] {
-    return setsockopt(socket, IPPROTO_IP, IP_ADD_MEMBERSHIP, &membership, sizeof(membership));
-  };
-  {
-    const runtime::LcmSockets sockets(kLoopback);
+  for (const auto reach : {kLoopback, kRoute}) {
+    const UdpSocket socket;
+    const ip_mreq membership{.imr_multiaddr = Address("239.255.76.67").sin_addr,
+                             .imr_interface = {.s_addr = htonl(INADDR_LOOPBACK)}};
+    const auto join = [&] {
+      return setsockopt(socket, IPPROTO_IP, IP_ADD_MEMBERSHIP, &membership, sizeof(membership));
+    };
+    {
+      const runtime::LcmSockets sockets(reach);
+      EXPECT_EQ(join(), 0);
+    }
+    // Without an LcmSockets, the socket joins. This succeeds only because it was not a member
+    // before.
     EXPECT_EQ(join(), 0);
+    EXPECT_NE(join(), 0);
   }
-  // Without an LcmSockets, the socket joins. This succeeds only because it was not a member before.
-  EXPECT_EQ(join(), 0);
-  EXPECT_NE(join(), 0);
 }
 
 TEST(LcmSocketsTest, ReachAsFarAsTheirUrlSays) {

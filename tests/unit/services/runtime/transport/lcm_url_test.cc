@@ -76,6 +76,8 @@ TEST(LcmUrlTest, NamesWhatIsWrongInIt) {
       {"239.1.1.1:", "\"\" is no port (1 to 65535)"},
       {"239.1.1.1?ttl=0&tll=1",
        "udpm has no option \"tll\"; its options are ttl and recv_buf_size"},
+      {"?", "an option is missing at its end"},
+      {"239.1.1.1?ttl=0&", "an option is missing at its end"},
       {"?=", "udpm has no option \"\"; its options are ttl and recv_buf_size"},
       {"?ttl=256", "ttl is \"256\", which is no number from 0 to 255"},
       {"?ttl=010", "ttl is \"010\", which is no number from 0 to 255"},
@@ -122,7 +124,7 @@ TEST(LcmUrlTest, MayBeAnnouncedIfItIsAGroupOrARelayOfThisMachine) {
   EXPECT_FALSE(runtime::MayBeAnnounced("udpm://?recv_buf_size=" + std::string(200, '0')));
 }
 
-TEST(LcmUrlTest, AProgramListensAndARelayIsAnnouncedAtEachAddressOfThisMachine) {
+TEST(LcmUrlTest, AProgramListensAndARelayIsAnnouncedAtEachAddressOfAnInterface) {
   ifaddrs* interfaces = nullptr;
   ASSERT_EQ(getifaddrs(&interfaces), 0);
   int tried = 0;

@@ -45,6 +45,11 @@ TEST(TcpqUrlTest, ListensOnlyOnAddressesOfThisMachine) {
   // RFC 5737: no machine has an address of 203.0.113.0/24.
   EXPECT_EQ(test::ErrorOf([] { ResolveOwn("203.0.113.7:7701", "--listen"); }),
             "error: --listen: 203.0.113.7 is no address of this machine (`ip address` lists them)");
+  for (const std::string group : {"239.255.76.67", "255.255.255.255", "127.255.255.255"}) {
+    EXPECT_EQ(
+        test::ErrorOf([&group] { ResolveOwn(group + ":7701", "--listen"); }),
+        "error: --listen: " + group + " is no address of this machine (`ip address` lists them)");
+  }
   // A host name is named with its address. inet_aton() takes this short form as a name.
   EXPECT_EQ(test::ErrorOf([] { ResolveOwn("203.28935", "--listen"); }),
             "error: --listen: \"203.28935\" (203.0.113.7) is no address of this machine (`ip "
