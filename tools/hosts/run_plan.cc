@@ -164,7 +164,12 @@ RunPlan MakePlan(const PlanWords& words) {
   }
   if (!plan.relay_at.empty()) {
     const std::string from = words.relay_at.empty() ? words.lab + ": /relay_at" : "--relay-at";
-    runtime::tcpq::ResolveOwn(plan.relay_at, from);
+    if (runtime::tcpq::ResolveOwn(plan.relay_at, from).address == "0.0.0.0") {
+      throw InputError(fmt::format(
+          "error: {}: 0.0.0.0 is each machine itself; name the address at which the other machines "
+          "reach this one",
+          from));
+    }
   }
   plan.words = WordsOf(words);
   return plan;

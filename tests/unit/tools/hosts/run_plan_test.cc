@@ -81,6 +81,10 @@ TEST(RunPlanTest, WrongPlacesAreNamed) {
   EXPECT_EQ(PlanRefusal({.on = {"fusion=lab2"}, .relay_at = "203.0.113.7"}),
             "error: --relay-at: 203.0.113.7 is no address of this machine (`ip address` lists "
             "them)");
+  EXPECT_EQ(
+      PlanRefusal({.on = {"fusion=lab2"}, .relay_at = "0.0.0.0:7700"}),
+      "error: --relay-at: 0.0.0.0 is each machine itself; name the address at which the other "
+      "machines reach this one");
   EXPECT_EQ(PlanRefusal({.relay = true}),
             "error: --relay: no role runs on another machine; see --on");
 }
