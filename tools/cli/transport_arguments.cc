@@ -36,11 +36,6 @@ std::string RefuseRecorder(const std::string& role) {
                                          : "";
 }
 
-/// Whether a run with this transport has all its roles in one process.
-bool IsOneProcess(const std::string& transport) {
-  return transport == "direct" || transport.starts_with("memq");
-}
-
 /// Adds the options that start roles on other machines.
 void AddPlanOptions(CLI::App& app, hosts::PlanWords& words) {
   app.add_option("--on", words.on,
@@ -176,6 +171,10 @@ void TransportArguments::CheckHosts(const runner::ExperimentOptions& options) co
     throw InputError(fmt::format("error: --external {0}: the run itself starts the {0} on {1}",
                                  NameOf(external), plan.hosts[plan.places.at(external)].name));
   }
+}
+
+bool IsOneProcess(const std::string& transport) {
+  return transport == "direct" || transport.starts_with("memq");
 }
 
 void RequireProcesses(const std::string& transport, std::string_view what) {

@@ -44,6 +44,9 @@ class TransportArguments {
   runtime::TrafficOptions traffic_;
 };
 
+/// Whether a run with this transport has all its roles in one process.
+bool IsOneProcess(const std::string& transport);
+
 /// @param what what needs a process for each role, such as "a live replay"
 /// @throws InputError if all roles of a run with this transport are in one process
 void RequireProcesses(const std::string& transport, std::string_view what);

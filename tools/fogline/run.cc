@@ -126,7 +126,7 @@ void ApplyOptions(RunArguments& arguments) {
   runner::ExperimentOptions& options = arguments.options;
   arguments.transport.Apply(options);
   const bool direct = options.transport == "direct";
-  if (arguments.view && (direct || options.transport.starts_with("memq"))) {
+  if (arguments.view && cli::IsOneProcess(options.transport)) {
     throw InputError(
         fmt::format("error: --view: no other process can see a run with --transport {}; "
                     "fogline view LOG shows its log",

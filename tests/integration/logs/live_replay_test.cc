@@ -143,8 +143,10 @@ TEST_F(LiveReplayTest, SaysWhatIsWrongWithItsArguments) {
   EXPECT_THAT(error({"--channels", "RADRA"}),
               HasSubstr("error: --channels RADRA: not one of \"RADAR\", \"LIDAR\""));
   EXPECT_THAT(error({"--channels", "TRUTH"}), HasSubstr("--channels TRUTH: not one of"));
-  EXPECT_THAT(error({"--transport", "memq"}),
-              HasSubstr("a live replay needs a process for each role"));
+  EXPECT_THAT(
+      error({"--transport", "memq"}),
+      HasSubstr("error: --transport memq: all roles are in one process; a live replay needs a "
+                "process for each role"));
   EXPECT_THAT(error({"--set", "/step_s=0.05"}), HasSubstr("--set /step_s"));
   EXPECT_THAT(error({"--all"}), HasSubstr("--live makes a run"));
 }
