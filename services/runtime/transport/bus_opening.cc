@@ -60,7 +60,7 @@ Bus::Bus(const std::string& url) : url_(WithDefaults(url)), in_memory_(url.start
   }
   // If the URL is empty, LCM uses its own default URL, which Fogline has not checked.
   if (url_.empty()) throw InputError("error: the LCM URL is empty");
-  if (const std::string why = WhyWrongUdpm(url_); !why.empty()) {
+  if (const std::string why = WhyWrongUdpm(url); !why.empty()) {
     throw InputError(fmt::format("error: {}: {}", url, why));
   }
   RequireMulticast(url_);

@@ -313,6 +313,16 @@ TEST(BusTest, RefusesAUrlThatLcmCannotOpen) {
   EXPECT_THROW(runtime::Bus("nosuchprovider://"), InputError);
 }
 
+/// The error of a bus with this URL; "" if there is none.
+std::string RefusalOf(const std::string& url) {
+  try {
+    const runtime::Bus bus(url);
+  } catch (const InputError& refused) {
+    return refused.what();
+  }
+  return "";
+}
+
 TEST(BusTest, SaysWhyItCannotListen) {
   // GIVEN a program that lets no other socket have its port
   const int owner = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
@@ -322,26 +332,23 @@ TEST(BusTest, SaysWhyItCannotListen) {
   socklen_t size = sizeof(address);
   getsockname(owner, reinterpret_cast<sockaddr*>(&address), &size);
   const std::string url = "udpm://239.255.76.67:" + std::to_string(ntohs(address.sin_port));
-  std::string error;
-  try {
-    const runtime::Bus bus(url);
-  } catch (const InputError& failure) {
-    error = failure.what();
-  }
+  const std::string error = RefusalOf(url);
   close(owner);
   EXPECT_EQ(error, "error: cannot listen to \"" + url + "?ttl=0\": Address already in use");
 }
 
 TEST(BusTest, RefusesAnOptionThatLcmWouldIgnore) {
   const std::string url = runtime::FreshMulticastUrl() + "&tll=1";
-  std::string error;
-  try {
-    const runtime::Bus bus(url);
-  } catch (const InputError& refused) {
-    error = refused.what();
+  EXPECT_EQ(
+      RefusalOf(url),
+      "error: " + url + ": udpm has no option \"tll\"; its options are ttl and recv_buf_size");
+}
+
+TEST(BusTest, NamesWhatIsWrongInTheUrlAsItIsGiven) {
+  for (const std::string url :
+       {"udpm://239.255.76.67:23456?", "udpm://239.255.76.67:23456?ttl=0&"}) {
+    EXPECT_EQ(RefusalOf(url), "error: " + url + ": an option is missing at its end");
   }
-  EXPECT_EQ(error, "error: " + url +
-                       ": udpm has no option \"tll\"; its options are ttl and recv_buf_size");
 }
 
 TEST(BusTest, ReceivesMpudpmThroughLcm) {
