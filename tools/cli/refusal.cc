@@ -90,8 +90,25 @@ std::string Misfit(const CLI::App& app, const CLI::App& command,
     if (hint.empty()) hint = FileHint(word);
     return fmt::format("no option {}{}", QuoteShort(name), hint);
   }
-  if (!command.get_subcommands({}).empty()) return NoSuchVerb(app, word);
+  if (!command.get_subcommands({}).empty()) return NoSuchVerb(command, word);
   return fmt::format("{} is one argument too many", QuoteShort(word));
+}
+
+/// The commands of a parsed command line: `app`, its verb, and the action of the verb.
+std::vector<const CLI::App*> CommandsOf(const CLI::App& app) {
+  std::vector<const CLI::App*> commands{&app};
+  while (!commands.back()->get_subcommands().empty()) {
+    commands.push_back(commands.back()->get_subcommands().front());
+  }
+  return commands;
+}
+
+std::string NameOf(const std::vector<const CLI::App*>& commands) {
+  std::string name;
+  for (const CLI::App* command : commands) {
+    name += (name.empty() ? "" : " ") + command->get_name();
+  }
+  return name;
 }
 
 std::string OneLine(std::string text) {
@@ -101,10 +118,7 @@ std::string OneLine(std::string text) {
 
 }  // namespace
 
-std::string CommandName(const CLI::App& app) {
-  const std::vector<CLI::App*> verbs = app.get_subcommands();
-  return verbs.empty() ? app.get_name() : app.get_name() + " " + verbs.front()->get_name();
-}
+std::string CommandName(const CLI::App& app) { return NameOf(CommandsOf(app)); }
 
 std::string NoSuchVerb(const CLI::App& app, const std::string& word) {
   std::vector<std::string_view> verbs;
@@ -126,6 +140,7 @@ void RefuseEmptyTexts(CLI::App& app) {
     for (CLI::Option* option : verb->get_options()) {
       option->transform(CLI::Validator(refuse, ""));  // before the option's own checks
     }
+    RefuseEmptyTexts(*verb);
   }
 }
 
@@ -142,19 +157,23 @@ std::vector<std::string> SeparateEmptyValues(const std::vector<std::string>& wor
 }
 
 std::string Refusal(const CLI::App& app, const CLI::ParseError& error) {
-  const std::vector<CLI::App*> verbs = app.get_subcommands();
+  std::vector<const CLI::App*> commands = CommandsOf(app);
+  const bool has_verb = commands.size() > 1;
   const bool is_extra = error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError);
   // A wrong word before the verb is an error of the program's command line, not of the verb's
   // command line.
-  const bool is_verb = !verbs.empty() && !(is_extra && verbs.front()->remaining().empty());
-  const CLI::App& command = is_verb ? *verbs.front() : app;
+  while (is_extra && commands.size() > 1 && commands.back()->remaining().empty()) {
+    commands.pop_back();
+  }
+  const CLI::App& command = *commands.back();
   const std::vector<std::string> misfits = command.remaining();
   // The verb may lack an argument because the argument's word was taken for an option.
   const bool is_missing =
-      error.get_exit_code() == static_cast<int>(CLI::ExitCodes::RequiredError) && is_verb;
-  const bool is_misfit = !misfits.empty() && (verbs.empty() || is_extra || is_missing);
+      error.get_exit_code() == static_cast<int>(CLI::ExitCodes::RequiredError) &&
+      commands.size() > 1;
+  const bool is_misfit = !misfits.empty() && (!has_verb || is_extra || is_missing);
   const std::string what = is_misfit ? Misfit(app, command, misfits) : OneLine(error.what());
-  const std::string name = is_verb ? CommandName(app) : app.get_name();
+  const std::string name = NameOf(commands);
   return fmt::format("{}: error: {} (see {} --help)", name, what, name);
 }
 

@@ -9,6 +9,7 @@
 namespace fogline::cli {
 
 /// The beginning of every error message: "fogline VERB" if the verb is known, otherwise "fogline".
+/// The action of a verb follows the verb, as in "fogline experiment run".
 std::string CommandName(const CLI::App& app);
 
 /// The error for a command line that has words but no verb, such as `fogline levitate --help`; ""
@@ -18,9 +19,9 @@ std::string UnknownVerb(const CLI::App& app);
 /// The error text for an unknown verb, such as `no verb "tabel"; did you mean "table"?`
 std::string NoSuchVerb(const CLI::App& app, const std::string& word);
 
-/// Makes every option and argument of the verbs of `app` refuse an empty text. An empty text often
-/// comes from a shell variable that is not set, as in --log "$UNSET". Without a refusal the verb
-/// would ignore the option.
+/// Makes every option and argument of the verbs of `app`, and of their actions, refuse an empty
+/// text. An empty text often comes from a shell variable that is not set, as in --log "$UNSET".
+/// Without a refusal the verb would ignore the option.
 void RefuseEmptyTexts(CLI::App& app);
 
 /// The words of a command line with "--log=" as two words, "--log" and "". Without this change,

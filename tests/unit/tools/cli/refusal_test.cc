@@ -27,6 +27,9 @@ class RefusalTest : public testing::Test {
     run->add_option("--pace", pace_);
     CLI::App* table = app_.add_subcommand("table");
     table->add_option("--seeds", seeds_);
+    CLI::App* experiment = app_.add_subcommand("experiment");
+    experiment->require_subcommand(1);
+    experiment->add_subcommand("export")->add_option("--out", out_);
   }
 
   /// @param words of the command line, in order. @return the error text; "" if the words are valid
@@ -45,6 +48,7 @@ class RefusalTest : public testing::Test {
   std::string scenario_;
   std::string set_;
   std::string seeds_;
+  std::string out_;
   double pace_ = 0;
 };
 
@@ -54,6 +58,20 @@ TEST_F(RefusalTest, IsNoneForAGoodCommandLine) {
 }
 
 TEST_F(RefusalTest, NamesTheProgramWithoutAVerb) { EXPECT_EQ(CommandName(app_), "fogline"); }
+
+TEST_F(RefusalTest, NamesTheActionOfAVerb) {
+  EXPECT_EQ(Of({"experiment", "export", "--uot", "x"}),
+            "fogline experiment export: error: no option \"--uot\"; did you mean \"--out\"? (see "
+            "fogline experiment export --help)");
+  EXPECT_EQ(CommandName(app_), "fogline experiment export");
+  EXPECT_EQ(Of({"experiment", "exprot"}),
+            "fogline experiment: error: no verb \"exprot\"; did you mean \"export\"? (see fogline "
+            "experiment --help)");
+  RefuseEmptyTexts(app_);
+  EXPECT_EQ(Of({"experiment", "export", "--out", ""}),
+            "fogline experiment export: error: --out: the text is empty (see fogline experiment "
+            "export --help)");
+}
 
 TEST_F(RefusalTest, SuggestsTheVerbThatWasMeant) {
   EXPECT_EQ(Of({"tabel"}),
