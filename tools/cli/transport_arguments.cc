@@ -119,7 +119,13 @@ void TransportArguments::Apply(runner::ExperimentOptions& options) const {
   options.traffic = traffic_;
   if (traffic_.key_file.empty()) options.traffic.key_file = options.hosts.key_file;
   // A wrong key is refused even if the run signs no messages.
-  runtime::KeyOf(options.traffic);
+  runtime::Check(options.traffic);
+  if (const std::string why = runtime::WhyWrongUdpm(options.transport); !why.empty()) {
+    const std::string_view source = !url_.empty()        ? "--lcm-url"
+                                    : said_->count() > 0 ? "--transport"
+                                                         : "LCM_DEFAULT_URL";
+    throw InputError(fmt::format("error: {} {}: {}", source, options.transport, why));
+  }
   if (options.transport == "direct" && !traffic_.faults.empty()) {
     throw InputError("error: --faults: a run with --transport direct has no messages");
   }

@@ -7,6 +7,21 @@
 #include "common/errors.h"
 
 namespace fogline::runtime {
+namespace {
+
+/// The faults; nullopt if the options name none. @throws InputError
+std::optional<FaultRates> FaultsOf(const TrafficOptions& options) {
+  if (options.faults.empty()) return std::nullopt;
+  const FaultRates rates = ParseFaults(options.faults);
+  if (rates.Damage() && options.key_file.empty()) {
+    throw InputError(
+        "error: --faults: truncate and flip need --key: without a signature no process notices "
+        "that a message was damaged (on a real network UDP's checksum does)");
+  }
+  return rates;
+}
+
+}  // namespace
 
 std::optional<SigningKey> KeyOf(const TrafficOptions& options) {
   if (!options.key_file.empty()) return SigningKey::Load(options.key_file);
@@ -19,16 +34,16 @@ std::optional<SigningKey> KeyOf(const TrafficOptions& options) {
   return std::nullopt;
 }
 
+void Check(const TrafficOptions& options) {
+  KeyOf(options);
+  FaultsOf(options);
+}
+
 void Apply(const TrafficOptions& options, std::optional<Role> role, Bus& bus) {
   if (const auto key = KeyOf(options)) bus.Secure(MessageSigner(*key, role));
-  if (options.faults.empty()) return;
-  const FaultRates rates = ParseFaults(options.faults);
-  if (rates.Damage() && options.key_file.empty()) {
-    throw InputError(
-        "error: --faults: truncate and flip need --key: without a signature no process notices "
-        "that a message was damaged (on a real network UDP's checksum does)");
+  if (const auto rates = FaultsOf(options)) {
+    bus.Impair(Faults(*rates, role.value_or(Role::kRunner)));
   }
-  bus.Impair(Faults(rates, role.value_or(Role::kRunner)));
 }
 
 std::vector<std::string> ToArguments(const TrafficOptions& options) {

@@ -22,6 +22,9 @@ inline constexpr const char* kKeyVariable = "FOGLINE_KEY";
 /// @throws InputError when the key's file is wrong, or FOGLINE_KEY is set but empty
 std::optional<SigningKey> KeyOf(const TrafficOptions& options);
 
+/// @throws InputError when the options, or the key's file, are wrong
+void Check(const TrafficOptions& options);
+
 /// Applies the options to a bus.
 /// @param role of this process; nullopt when the process has every role
 /// @throws InputError when the options, or the key's file, are wrong

@@ -98,6 +98,7 @@ TEST(DriveAtPageTest, RefusesWhatNoDriveCanFollowBeforeItBegins) {
       error_of("--listen", "203.0.113.7"),
       "fogline drive: error: --listen: 203.0.113.7 is no address of this machine (`ip address` "
       "lists them)\n");
+  EXPECT_EQ(error_of("--faults", "flip=0.1").rfind("fogline drive: error: --faults: ", 0), 0U);
   EXPECT_EQ(error_of("--transport", "direct"),
             "fogline drive: error: --transport direct: all roles are in one process; a run in "
             "real time needs a process for each role\n");
