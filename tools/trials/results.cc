@@ -62,6 +62,17 @@ void Results::Create() const {
   file.Finish();
 }
 
+FileLock Results::Begin(std::int64_t participant) const {
+  Create();
+  const std::filesystem::path folder = FolderOf(participant);
+  std::error_code failed;
+  std::filesystem::create_directory(folder, failed);
+  if (failed) {
+    throw InputError(fmt::format("{}: error: --results: {}", PathText(folder), failed.message()));
+  }
+  return {folder, FileLock::Kind::kOwn, "--participant", "session"};
+}
+
 std::filesystem::path Results::FolderOf(std::int64_t participant) const {
   return folder_ / fmt::format("participant-{:02}", participant);
 }

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "common/file_lock.h"
 #include "tools/trials/plan_file.h"
 #include "tools/trials/schedule.h"
 #include "tools/trials/trial_log.h"
@@ -34,6 +35,8 @@ class Results {
 
   /// Creates the folder, and copies the experiment's file into it. @throws InputError
   void Create() const;
+  /// Creates the folder of a participant, too, and locks it for a session. @throws InputError
+  FileLock Begin(std::int64_t participant) const;
 
   const std::filesystem::path& folder() const { return folder_; }
   std::filesystem::path FolderOf(std::int64_t participant) const;

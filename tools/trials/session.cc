@@ -8,7 +8,6 @@
 #include <fmt/core.h>
 
 #include "common/errors.h"
-#include "common/file_lock.h"
 #include "common/process/console.h"
 #include "common/text.h"
 #include "services/log/log_of_run.h"
@@ -183,14 +182,6 @@ class Session {
 
 SessionOutcome RunSession(const PlanFile& plan, const Results& results, SessionOptions options,
                           Desk& desk) {
-  results.Create();
-  const std::filesystem::path folder = results.FolderOf(options.participant);
-  std::error_code failed;
-  std::filesystem::create_directory(folder, failed);
-  if (failed) {
-    throw InputError(fmt::format("{}: error: --results: {}", PathText(folder), failed.message()));
-  }
-  const FileLock lock(folder, FileLock::Kind::kOwn, "--participant", "session");
   return Session(plan, results, std::move(options), desk).Run();
 }
 

@@ -35,8 +35,8 @@ struct SessionOutcome {
 };
 
 /// Makes the trials of a participant that are not done.
-/// @throws InputError for a folder that cannot be used; Interrupted; std::runtime_error if a run
-///     fails. The next session continues from there
+/// @pre the caller holds the lock of results.Begin() for this participant
+/// @throws Interrupted; std::runtime_error if a run fails. The next session continues from there
 SessionOutcome RunSession(const PlanFile& plan, const Results& results, SessionOptions options,
                           Desk& desk);
 

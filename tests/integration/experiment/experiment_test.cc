@@ -353,5 +353,29 @@ TEST_F(ExperimentRealtimeTest, WrongArgumentsAreRefused) {
   EXPECT_THAT(direct.err, HasSubstr("a trial needs a process for each role"));
 }
 
+TEST_F(ExperimentRealtimeTest, WhatASessionNeedsIsCheckedBeforeAnythingIsWritten) {
+  const auto refused = [this](const std::vector<std::string>& more, int code,
+                              const std::string& why) {
+    std::vector<std::string> words{"--participant", "1"};
+    words.insert(words.end(), more.begin(), more.end());
+    const Outcome outcome = Experiment("run", words);
+    EXPECT_EQ(outcome.code, code) << why;
+    EXPECT_EQ(outcome.out, "");
+    EXPECT_THAT(outcome.err, testing::StartsWith("fogline experiment run: error: " + why));
+    EXPECT_FALSE(std::filesystem::exists(results_)) << why;
+  };
+  refused({"--faults", "flip=0.1"}, 2, "--faults: truncate and flip need --key");
+  refused({"--lcm-url", "udpm://239.255.76.67:7700?ttl=x"}, 2,
+          "--lcm-url udpm://239.255.76.67:7700?ttl=x: ttl is \"x\"");
+  refused({"--lcm-url", "tcpq://127.0.0.1:1"}, 3, "");
+  refused({"--evdev", "/dev/null"}, 2, "");
+}
+
+TEST_F(ExperimentRealtimeTest, AnEmptyTextIsRefused) {
+  const Outcome outcome = Experiment("export", {"--out", ""});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("fogline experiment export: error: --out: the text is empty"));
+}
+
 }  // namespace
 }  // namespace fogline::test

@@ -4,6 +4,10 @@
 
 #include <filesystem>
 
+#include <CLI/CLI.hpp>
+
+#include "common/atomic_file.h"
+#include "tools/cli/action.h"
 #include "tools/cli/arguments.h"
 #include "tools/cli/help.h"
 #include "tools/trials/plan_file.h"

@@ -12,8 +12,11 @@
 #include <fmt/core.h>
 
 #include "common/errors.h"
+#include "common/file_lock.h"
 #include "common/interrupt.h"
 #include "common/text.h"
+#include "services/runtime/transport/bus.h"
+#include "services/runtime/transport/lcm_url.h"
 #include "services/runtime/transport/tcpq_url.h"
 #include "services/runtime/wire/step_ring.h"
 #include "tools/cli/transport_arguments.h"
@@ -169,6 +172,13 @@ void CheckPorts(const RunTrialsArguments& arguments) {
   }
 }
 
+/// Opens the device and the network of the session once, before a person waits for the first run.
+/// @throws InputError; std::runtime_error if the network cannot be reached
+void CheckMeans(const trials::SessionOptions& options) {
+  if (options.pedals) options.pedals(PersonSection());
+  if (runtime::IsLcmUrl(options.run.transport)) runtime::Bus bus(options.run.transport);
+}
+
 /// The numeric address of --listen; "" without --listen. @throws InputError
 std::string ListenAddress(const RunTrialsArguments& arguments) {
   if (arguments.listen.empty()) return "";
@@ -203,6 +213,8 @@ int RunTrials(const RunTrialsArguments& arguments) {
   CheckSeat(arguments, plan);
   CheckPorts(arguments);
   const trials::Results results(plan, arguments.plan.results());
+  CheckMeans(options);
+  const FileLock lock = results.Begin(arguments.participant);
   WatchInterrupts();
   const auto desk = MakeDesk(arguments, options.run.traffic);
   const trials::SessionOutcome outcome =
