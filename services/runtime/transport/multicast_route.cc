@@ -51,7 +51,7 @@ std::string InPlaceOfUnicast(std::string_view url) {
   return fmt::format(
       "write udpm://{}{}, the same on every machine; or tcpq://{} with `fogline-relay --listen {}` "
       "on that machine",
-      kDefaultGroup, colon == std::string_view::npos ? "" : place.substr(colon), place, place);
+      kDefaultGroup, colon == std::string_view::npos ? ":7667" : place.substr(colon), place, place);
 }
 
 std::string RouteError(const std::string& address) {

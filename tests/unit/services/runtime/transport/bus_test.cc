@@ -311,6 +311,9 @@ TEST(BusTest, RefusesAUrlThatLcmCannotOpen) {
   EXPECT_THROW(runtime::Bus("nonsense"), InputError);
   EXPECT_THROW(runtime::Bus(""), InputError);
   EXPECT_THROW(runtime::Bus("nosuchprovider://"), InputError);
+  testing::internal::CaptureStderr();
+  EXPECT_THROW(runtime::Bus("pigeon"), InputError);
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "") << "LCM prints nothing of its own";
 }
 
 /// The error of a bus with this URL; "" if there is none.

@@ -44,8 +44,8 @@ TEST(LcmUrlTest, HasLcmsDefaultsWhereItSaysNothing) {
       .group = "239.1.1.1", .port = 65535, .ttl = 1, .receive_buffer = {}};
   EXPECT_EQ(runtime::ParseMulticastUrl("udpm://239.1.1.1:65535?ttl=1"), near);
   const runtime::MulticastAddress far{
-      .group = "224.1.1.1", .port = 7667, .ttl = 3, .receive_buffer = 1};
-  EXPECT_EQ(runtime::ParseMulticastUrl("udpm://224.1.1.1?recv_buf_size=1&ttl=3"), far);
+      .group = "224.1.1.1", .port = 1, .ttl = 3, .receive_buffer = 1};
+  EXPECT_EQ(runtime::ParseMulticastUrl("udpm://224.1.1.1:1?recv_buf_size=1&ttl=3"), far);
 }
 
 TEST(LcmUrlTest, IsNoneOfAGroupWithAnotherProvider) {
@@ -65,6 +65,8 @@ TEST(LcmUrlTest, NamesWhatIsWrongInIt) {
       {"lab1", "\"lab1\" is no IPv4 address in numbers"},
       {"239.1.1.256", "\"239.1.1.256\" is no IPv4 address in numbers"},
       {"239.1.1.1 :1", "\"239.1.1.1 \" is no IPv4 address in numbers"},
+      {"239.1.1.1", "the port after the address is missing"},
+      {"239.1.1.1?ttl=0", "the port after the address is missing"},
       {":7700", "the address before the port is missing"},
       {"239.1.1.1:65536", "\"65536\" is no port (1 to 65535)"},
       {"239.1.1.1:0", "\"0\" is no port (1 to 65535)"},
@@ -74,10 +76,10 @@ TEST(LcmUrlTest, NamesWhatIsWrongInIt) {
       {"239.1.1.1:1:2", "\"1:2\" is no port (1 to 65535)"},
       {"239.1.1.1:7x?ttl=0", "\"7x\" is no port (1 to 65535)"},
       {"239.1.1.1:", "\"\" is no port (1 to 65535)"},
-      {"239.1.1.1?ttl=0&tll=1",
+      {"239.1.1.1:1?ttl=0&tll=1",
        "udpm has no option \"tll\"; its options are ttl and recv_buf_size"},
       {"?", "an option is missing at its end"},
-      {"239.1.1.1?ttl=0&", "an option is missing at its end"},
+      {"239.1.1.1:1?ttl=0&", "an option is missing at its end"},
       {"?=", "udpm has no option \"\"; its options are ttl and recv_buf_size"},
       {"?ttl=256", "ttl is \"256\", which is no number from 0 to 255"},
       {"?ttl=010", "ttl is \"010\", which is no number from 0 to 255"},
