@@ -61,9 +61,11 @@ bool Refuses(int type, const std::string& text, const Call& call, int reason) {
 
 /// Whether this machine has an IPv4 address at which clients can connect. The kernel decides. It
 /// also lets a socket listen on a multicast or broadcast address, to which no client can connect. A
-/// UDP socket may not connect to a broadcast address; this call sends no packet.
+/// UDP socket may not connect to the broadcast address of an interface; this call sends no packet.
+/// Without a route, the kernel does not say this of 255.255.255.255.
 bool IsOwn(const std::string& address) {
-  return !IsMulticast(address) && !Refuses(SOCK_STREAM, address, bind, EADDRNOTAVAIL) &&
+  return !IsMulticast(address) && address != "255.255.255.255" &&
+         !Refuses(SOCK_STREAM, address, bind, EADDRNOTAVAIL) &&
          !Refuses(SOCK_DGRAM, address, connect, EACCES);
 }
 
