@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import {test} from "node:test";
 
-import {begin, drives, freshNetwork, listener, seat, setPad, withFakePads} from "./seat.js";
+import {begin, drives, freshNetwork, listener, seat, setPad, startDrive, withFakePads} from "./seat.js";
 import {browser, DESKTOP, open, PHONE, until} from "./window.js";
 
 /** Opens a page that drives. @return the page, and the messages that the run gets from it */
@@ -286,6 +286,25 @@ test("everything works with the keyboard alone", async (t) => {
   assert.deepEqual(reached, ["setup-open", "begin"]);
   await page.keyboard.press("Enter");
   await drives(page, true);
+});
+
+test("when Tab comes back to the page, it reaches the button to take over before the next frame", async (t) => {
+  const {address} = await startDrive(t, {"/steps": 30000});
+  const page = await open(t, await browser(t), address);
+  await begin(page);
+  await page.waitForFunction(() => !document.getElementById("take-over").disabled);
+  await until(async () => {
+    await page.keyboard.press("Tab");
+    return !await page.evaluate(() => document.hasFocus());
+  }, "Tab to leave the page after its last button");
+  await page.waitForFunction(() => document.getElementById("take-over").disabled);
+  await page.evaluate(() => { foglineDrive.loop = () => {}; });  // no frame is drawn any more
+  const reached = [];
+  for (let i = 0; i < 3; ++i) {
+    await page.keyboard.press("Tab");
+    reached.push(await page.evaluate(() => document.activeElement.id));
+  }
+  assert.deepEqual(reached, ["setup-open", "begin", "take-over"]);
 });
 
 test("the page says nothing of conflict, threshold or condition", async (t) => {

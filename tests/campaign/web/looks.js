@@ -19,13 +19,18 @@ export const prepareLooks = (context) => context.addInitScript({path: IN_PAGE});
 /** The controls that the Tab key does not reach, or does not mark. */
 async function missedStops(page) {
   const count = await page.evaluate(() => looks.beginStops());
-  // After the last stop, the tab key continues with the first stop. Boxes that scroll may be stops,
-  // too.
+  // After the last stop, the tab key leaves the page, and then continues with the first stop. Boxes
+  // that scroll may be stops, too.
   for (let i = 0; i < count + 8; ++i) await page.keyboard.press("Tab");
-  return page.evaluate(() => {
+  // A page without the keyboard may look different in the next window. Tab does not enter a page
+  // that has no controls.
+  const isIn = () => page.evaluate(() => document.hasFocus());
+  if (count > 0 && !await isIn()) await page.keyboard.press("Tab");
+  const lost = count > 0 && !await isIn() ? ["Tab does not come back to the page"] : [];
+  return [...lost, ...await page.evaluate(() => {
     document.activeElement.blur();
     return looks.missedStops();
-  });
+  })];
 }
 
 /**

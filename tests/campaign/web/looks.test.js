@@ -76,9 +76,11 @@ test("the page of a drive looks well", async (t) => {
     foglineDrive.latency.values.push(250);
     foglineDrive.latency.recent.push({value: 250, at_ms: performance.now() + 60000});  // does not age
     dispatchEvent(new Event("blur"));
+    foglineDrive.set = () => {};  // the person stays away
   });
   await page.waitForFunction(() => ["away", "latency-warning"].every((id) => !document.getElementById(id).hidden));
   await looksWell(page, "a person who has left, and a delay");
+  await page.evaluate(() => { delete foglineDrive.set; });
   await page.click("#setup-open");
   await setPad(page);
   await page.selectOption("#device", "Test Wheel");

@@ -104,10 +104,14 @@ class Drive {
     if (this.person.begun) byId("begin").blur();  // the space bar would press the button again
   }
 
-  /** Sets a condition of driving, such as "focused", and sends the new input at once. */
+  /**
+   * Sets a condition of driving, such as "focused". Sends the new input and sets the buttons at
+   * once: a Tab or a click may come before the next frame.
+   */
   set(name, value) {
     this.person.set(name, value);
     this.pump();
+    this.drawPerson(this.told);
   }
 
   key(event, down) {
