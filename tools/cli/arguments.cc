@@ -135,19 +135,16 @@ NetworkArguments::NetworkArguments(CLI::App& verb, std::string_view what) {
                               what, runtime::kLcmDefaultUrl));
 }
 
-std::string NetworkArguments::Url() const {
-  const std::string url = runtime::NetworkUrl(url_);
-  const std::string said = fmt::format("{} {}", Follows() ? "LCM_DEFAULT_URL" : "--lcm-url", url);
+std::string CheckedNetworkUrl(const std::string& given) {
+  const std::string url = runtime::NetworkUrl(given);
+  const std::string_view source = given.empty() ? "LCM_DEFAULT_URL" : "--lcm-url";
   if (url.starts_with("memq:")) {
     throw InputError(
-        fmt::format("error: {}: other processes cannot look into the memory of a process; give the "
-                    "run a udpm:// URL",
-                    said));
+        fmt::format("error: {} {}: other processes cannot look into the memory of a process; give "
+                    "the run a udpm:// URL",
+                    source, url));
   }
-  if (!runtime::IsLcmUrl(url)) {
-    throw InputError(
-        fmt::format("error: {}: not an LCM network such as \"{}\"", said, runtime::kLcmDefaultUrl));
-  }
+  runtime::CheckUrl(source, url);
   return url;
 }
 

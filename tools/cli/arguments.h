@@ -117,15 +117,20 @@ void PrintBeside(const std::filesystem::path& document, std::string_view text);
 /// A build as 16 hexadecimal digits; null for an unknown build.
 nlohmann::ordered_json BuildJson(runtime::BuildId build);
 
+/// The network of a verb that looks at other processes, or talks to them, by the rule that every
+/// program uses (lcm_url.h).
+/// @param given the URL from --lcm-url; "" without --lcm-url
+/// @throws InputError if the URL is wrong, or no other process can reach the network (memq)
+std::string CheckedNetworkUrl(const std::string& given);
+
 /// The option --lcm-url of a verb that observes a network from outside.
 class NetworkArguments {
  public:
   /// @param what the end of the help text "LCM network ..."
   NetworkArguments(CLI::App& verb, std::string_view what);
 
-  /// The network to observe, by the rule that every program uses (lcm_url.h).
-  /// @throws InputError if other processes cannot observe the network of the URL
-  std::string Url() const;
+  /// The network to observe. @throws InputError as CheckedNetworkUrl()
+  std::string Url() const { return CheckedNetworkUrl(url_); }
   /// Whether the verb should follow announced runs. It does so if the command line names no
   /// network.
   bool Follows() const { return url_.empty(); }

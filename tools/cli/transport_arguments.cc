@@ -99,18 +99,13 @@ std::string TransportArguments::Unsaid(const hosts::RunPlan& plan) const {
   const std::string usual = transport_ == "direct" && !plan.empty() ? "udpm" : transport_;
   const bool as_processes = usual != "direct" || !external_.empty();
   if (!url || !as_processes) return usual;
-  if (!runtime::IsLcmUrl(*url)) {
-    throw InputError(fmt::format("error: LCM_DEFAULT_URL is {}, which is no LCM URL such as \"{}\"",
-                                 *url, runtime::kLcmDefaultUrl));
-  }
+  runtime::CheckUrl("LCM_DEFAULT_URL", *url);
   return *url;
 }
 
 void TransportArguments::Apply(runner::ExperimentOptions& options) const {
-  if (!url_.empty() && !runtime::IsLcmUrl(url_)) {
-    throw InputError(fmt::format("error: --lcm-url {}: not an LCM URL such as \"{}\"", url_,
-                                 runtime::kLcmDefaultUrl));
-  }
+  if (!url_.empty()) runtime::CheckUrl("--lcm-url", url_);
+  if (runtime::IsLcmUrl(transport_)) runtime::CheckUrl("--transport", transport_);
   options.hosts = hosts::MakePlan(hosts_);
   options.transport = !url_.empty()        ? url_
                       : said_->count() > 0 ? transport_
@@ -120,12 +115,6 @@ void TransportArguments::Apply(runner::ExperimentOptions& options) const {
   if (traffic_.key_file.empty()) options.traffic.key_file = options.hosts.key_file;
   // A wrong key is refused even if the run signs no messages.
   runtime::Check(options.traffic);
-  if (const std::string why = runtime::WhyWrongUdpm(options.transport); !why.empty()) {
-    const std::string_view source = !url_.empty()        ? "--lcm-url"
-                                    : said_->count() > 0 ? "--transport"
-                                                         : "LCM_DEFAULT_URL";
-    throw InputError(fmt::format("error: {} {}: {}", source, options.transport, why));
-  }
   if (options.transport == "direct" && !traffic_.faults.empty()) {
     throw InputError("error: --faults: a run with --transport direct has no messages");
   }

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <vector>
 
 #include <fmt/core.h>
@@ -23,16 +22,6 @@ namespace fogline::doctor {
 namespace {
 
 using Level = Finding::Level;
-
-/// The value of a URL's numeric option; `otherwise` if the URL lacks the option.
-int UrlOption(const std::string& url, const std::string& name, int otherwise) {
-  const std::size_t at = url.find(name + "=");
-  if (at == std::string::npos) return otherwise;
-  int value = otherwise;
-  const char* begin = url.data() + at + name.size() + 1;
-  std::from_chars(begin, url.data() + url.size(), value);
-  return value;
-}
 
 bool ExamineGroup(const std::string& url, const std::string& group, Findings& findings) {
   if (runtime::IsMulticast(group)) return true;
@@ -250,7 +239,7 @@ void ExamineNetwork(const std::string& url, Findings& findings) {
   if (url.starts_with("tcpq://")) return ExamineRelay(url, findings);
   const auto group = runtime::GroupOf(url);
   if (group && ExamineGroup(url, *group, findings)) {
-    const int ttl = UrlOption(url, "ttl", 0);
+    const int ttl = runtime::TtlOf(url);
     // mpudpm needs the route for every value of the ttl.
     const bool here = ttl == 0 && url.starts_with("udpm://");
     if (here ? ExamineOwnMachine(url, *group, findings) : ExamineRoute(*group, ttl, findings)) {

@@ -33,12 +33,11 @@ class LabCheck {
       CheckHost(fmt::format("/hosts/{}", i), lab.hosts[i]);
     }
     if (lab.url.empty()) return;
-    if (!runtime::IsLcmUrl(lab.url) || lab.url.starts_with("memq")) {
+    if (lab.url.starts_with("memq")) {
       Add("/url", "text",
-          fmt::format("{} is no LCM URL of a network, such as "
-                      "\"udpm://239.255.76.67:7700?ttl=1\"",
+          fmt::format("{}: other machines cannot look into the memory of this one",
                       QuoteShort(lab.url)));
-    } else if (const std::string why = runtime::WhyWrongUdpm(lab.url); !why.empty()) {
+    } else if (const std::string why = runtime::WhyWrongUrl(lab.url); !why.empty()) {
       Add("/url", "text", fmt::format("{}: {}", QuoteShort(lab.url), why));
     } else if (lab.relay || !lab.relay_at.empty()) {
       Add("/url", "needed", "the relay has a URL of its own; leave out url, or relay");

@@ -60,11 +60,8 @@ Bus::Bus(const std::string& url) : url_(WithDefaults(url)), in_memory_(url.start
   }
   // If the URL is empty, LCM uses its own default URL, which Fogline has not checked.
   if (url_.empty()) throw InputError("error: the LCM URL is empty");
-  if (!IsLcmUrl(url_)) {  // LCM would print a line of its own
-    throw InputError(
-        fmt::format("error: \"{}\" is no LCM URL such as \"{}\"", url, kLcmDefaultUrl));
-  }
-  if (const std::string why = WhyWrongUdpm(url); !why.empty()) {
+  // LCM would print a line of its own, and open some of the wrong URLs.
+  if (const std::string why = WhyWrongUrl(url); !why.empty()) {
     throw InputError(fmt::format("error: {}: {}", url, why));
   }
   RequireMulticast(url_);

@@ -21,8 +21,7 @@ class LcmSockets {
   /// How far the messages of a network go.
   enum class Reach {
     /// LCM sends over loopback. A GroupSocket receives from loopback, and over the route if there
-    /// is
-    /// a route.
+    /// is a route.
     kLoopback,
     kRoute,  ///< both use the route to the group
   };

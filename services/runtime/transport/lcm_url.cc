@@ -11,6 +11,7 @@
 
 #include <fmt/core.h>
 
+#include "common/errors.h"
 #include "common/parse_number.h"
 #include "common/text.h"
 #include "services/runtime/transport/kernel_limits.h"
@@ -21,12 +22,14 @@ namespace fogline::runtime {
 namespace {
 
 constexpr std::string_view kUdpm = "udpm://";
+constexpr std::string_view kMpudpm = "mpudpm://";
 constexpr std::string_view kTcpq = "tcpq://";
 constexpr int kMostPort = 65535;
-// The options of a udpm:// URL.
+// The options of a udpm:// or mpudpm:// URL.
 constexpr std::string_view kTtl = "ttl";
 constexpr int kMostTtl = 255;  // the field has 8 bits (RFC 791, section 3.1)
 constexpr std::string_view kReceiveBuffer = "recv_buf_size";
+constexpr std::string_view kPorts = "nports";  // mpudpm: number of ports
 // The longest URL that may be announced. A URL with all options of LCM takes 60 characters.
 constexpr std::size_t kMaxAnnounced = 200;
 // The least receive buffer that may be announced, in bytes. With a smaller buffer, a program that
@@ -47,20 +50,20 @@ std::string_view TakeUntil(char separator, std::string_view& text) {
   return part;
 }
 
-/// What LCM takes for the missing parts of a udpm:// URL. Fogline, too, has 0 as the default of ttl
-/// (bus.h).
+/// What LCM takes for the missing parts of a multicast URL. Fogline, too, has 0 as the default of
+/// ttl (bus.h).
 MulticastAddress LcmsDefaults() {
   return {.group = *GroupOf(kUdpm), .port = 7667, .ttl = 0, .receive_buffer = {}};
 }
 
-/// A number of a udpm:// URL: digits without sign. LCM would read a number with a leading 0 as
+/// A number of a multicast URL: digits without sign. LCM would read a number with a leading 0 as
 /// octal or hexadecimal, so such a number is refused.
 std::optional<int> ReadNumber(std::string_view text) {
   if (text.starts_with('-') || (text.size() > 1 && text.starts_with('0'))) return std::nullopt;
   return ParseNumber<int>(text);
 }
 
-/// Reads the part "ADDRESS:PORT" of a udpm:// URL. @return what is wrong; "" if nothing is
+/// Reads the part "ADDRESS:PORT" of a multicast URL. @return what is wrong; "" if nothing is
 std::string ReadPlace(std::string_view place, MulticastAddress& address) {
   if (place.empty()) return "";
   const std::size_t colon = place.find(':');
@@ -80,31 +83,39 @@ std::string ReadPlace(std::string_view place, MulticastAddress& address) {
   return "";
 }
 
-/// Reads one option of a udpm:// URL. @return what is wrong; "" if nothing is
-std::string ReadOption(std::string_view name, std::string_view value, MulticastAddress& address) {
-  if (name != kTtl && name != kReceiveBuffer) {
-    return fmt::format("udpm has no option {}; its options are {} and {}", QuoteShort(name), kTtl,
-                       kReceiveBuffer);
+/// Reads one option of a multicast URL. @return what is wrong; "" if nothing is
+std::string ReadOption(bool many_ports, std::string_view name, std::string_view value,
+                       MulticastAddress& address) {
+  if (name != kTtl && name != kReceiveBuffer && !(many_ports && name == kPorts)) {
+    return many_ports ? fmt::format("mpudpm has no option {}; its options are {}, {} and {}",
+                                    QuoteShort(name), kTtl, kReceiveBuffer, kPorts)
+                      : fmt::format("udpm has no option {}; its options are {} and {}",
+                                    QuoteShort(name), kTtl, kReceiveBuffer);
   }
-  const int most = name == kTtl ? kMostTtl : std::numeric_limits<int>::max();
+  const int least = name == kPorts ? 1 : 0;
+  const int most = name == kTtl     ? kMostTtl
+                   : name == kPorts ? kMostPort
+                                    : std::numeric_limits<int>::max();
   const auto number = ReadNumber(value);
-  if (!number || *number > most) {
-    return fmt::format("{} is {}, which is no number from 0 to {}", name, QuoteShort(value), most);
+  if (!number || *number < least || *number > most) {
+    return fmt::format("{} is {}, which is no number from {} to {}", name, QuoteShort(value), least,
+                       most);
   }
   if (name == kTtl) address.ttl = *number;
   if (name == kReceiveBuffer) address.receive_buffer = *number;
   return "";
 }
 
-/// Reads a udpm:// URL. @return what is wrong; "" if nothing is
-std::string ReadUdpm(std::string_view url, MulticastAddress& address) {
-  std::string_view options = url.substr(kUdpm.size());
+/// Reads a multicast URL (udpm:// or mpudpm://). @return what is wrong; "" if nothing is
+std::string ReadMulticast(std::string_view url, MulticastAddress& address) {
+  const bool many_ports = url.starts_with(kMpudpm);
+  std::string_view options = url.substr((many_ports ? kMpudpm : kUdpm).size());
   if (url.ends_with('?') || url.ends_with('&')) return "an option is missing at its end";
   std::string why = ReadPlace(TakeUntil('?', options), address);
   while (why.empty() && !options.empty()) {
     std::string_view value = TakeUntil('&', options);
     const std::string_view name = TakeUntil('=', value);
-    why = ReadOption(name, value, address);
+    why = ReadOption(many_ports, name, value, address);
   }
   return why;
 }
@@ -162,7 +173,7 @@ std::string NetworkUrl(const std::string& given) {
 }
 
 bool IsLcmUrl(std::string_view url) {
-  constexpr std::array<std::string_view, 4> kProviders{kUdpm, "mpudpm://", kTcpq, "memq://"};
+  constexpr std::array<std::string_view, 4> kProviders{kUdpm, kMpudpm, kTcpq, "memq://"};
   return std::ranges::any_of(
       kProviders, [url](std::string_view provider) { return url.starts_with(provider); });
 }
@@ -170,14 +181,27 @@ bool IsLcmUrl(std::string_view url) {
 std::optional<MulticastAddress> ParseMulticastUrl(std::string_view url) {
   if (!url.starts_with(kUdpm)) return std::nullopt;
   MulticastAddress address = LcmsDefaults();
-  if (!ReadUdpm(url, address).empty()) return std::nullopt;
+  if (!ReadMulticast(url, address).empty()) return std::nullopt;
   return address;
 }
 
-std::string WhyWrongUdpm(std::string_view url) {
-  if (!url.starts_with(kUdpm)) return "";
+int TtlOf(std::string_view url) {
   MulticastAddress address = LcmsDefaults();
-  return ReadUdpm(url, address);
+  ReadMulticast(url, address);
+  return address.ttl;
+}
+
+std::string WhyWrongUrl(std::string_view url) {
+  if (!IsLcmUrl(url)) return fmt::format("no LCM URL such as \"{}\"", kLcmDefaultUrl);
+  if (!url.starts_with(kUdpm) && !url.starts_with(kMpudpm)) return "";
+  MulticastAddress address = LcmsDefaults();
+  return ReadMulticast(url, address);
+}
+
+void CheckUrl(std::string_view source, const std::string& url) {
+  if (const std::string why = WhyWrongUrl(url); !why.empty()) {
+    throw InputError(fmt::format("error: {} {}: {}", source, url, why));
+  }
 }
 
 bool SameNetwork(std::string_view a, std::string_view b) {

@@ -37,13 +37,21 @@ struct MulticastAddress {
 };
 
 /// The contents of a udpm:// URL; nullopt if the text is not a udpm:// URL, or if it is
-/// wrong (WhyWrongUdpm()).
+/// wrong (WhyWrongUrl()).
 std::optional<MulticastAddress> ParseMulticastUrl(std::string_view url);
 
-/// Says what is wrong in a udpm:// URL: the address, the port, or the first wrong option; "" if
-/// nothing is, or if the text is no udpm:// URL. Fogline takes less than LCM does. LCM ignores
+/// The ttl of a udpm:// or mpudpm:// URL in which nothing is wrong.
+int TtlOf(std::string_view url);
+
+/// Says why a text is not the URL of an LCM network: it begins like none, or the address, the port
+/// or an option of udpm or mpudpm is wrong. "" if nothing is wrong. The address of a relay (tcpq)
+/// is read only when it is needed (tcpq_url.h). Fogline takes less than LCM does. LCM ignores
 /// unknown options, also a mistyped ttl, and it reads 010 as 8.
-std::string WhyWrongUdpm(std::string_view url);
+std::string WhyWrongUrl(std::string_view url);
+
+/// @param source of the URL, such as "--lcm-url". @throws InputError that names the source, if
+///     WhyWrongUrl() finds something
+void CheckUrl(std::string_view source, const std::string& url);
 
 /// Whether two URLs name one network. For udpm this compares group and port, for tcpq host and
 /// port, otherwise the whole URL without its options.

@@ -4,6 +4,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <bit>
 #include <cerrno>
 #include <cstdint>
@@ -47,11 +48,11 @@ bool IsMulticast(const std::string& address) {
 std::string InPlaceOfUnicast(std::string_view url) {
   std::string_view place = url.substr(url.find("://") + 3);
   place = place.substr(0, place.find('?'));
-  const std::size_t colon = place.find(':');
+  const std::size_t colon = std::min(place.find(':'), place.size());
   return fmt::format(
       "write udpm://{}{}, the same on every machine; or tcpq://{} with `fogline-relay --listen {}` "
       "on that machine",
-      kDefaultGroup, colon == std::string_view::npos ? ":7667" : place.substr(colon), place, place);
+      kDefaultGroup, place.substr(colon), place, place);
 }
 
 std::string RouteError(const std::string& address) {

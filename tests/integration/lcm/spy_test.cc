@@ -152,7 +152,8 @@ TEST(LogplayerTest, RefusesWhatItCannotPlay) {
   };
   EXPECT_THAT(error({"scenario/paper.json"}), testing::StartsWith("scenario/paper.json: error: "));
   EXPECT_THAT(error({"none.lcm"}), testing::StartsWith("none.lcm: error: "));
-  EXPECT_THAT(error({"none.lcm", "--lcm-url", "file://x"}), HasSubstr("not an LCM network"));
+  EXPECT_THAT(error({"none.lcm", "--lcm-url", "file://x"}),
+              HasSubstr("error: --lcm-url file://x: no LCM URL such as"));
 }
 
 /// Tests in which programs without a URL use the meeting address of this test.

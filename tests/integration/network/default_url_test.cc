@@ -71,7 +71,7 @@ TEST(DefaultUrlTest, IsNamedWhereItIsWrong) {
       {"env", "LCM_DEFAULT_URL=direct", Program("fogline"), "run", "scenario/paper.json"});
   EXPECT_EQ(run.code, 2);
   EXPECT_EQ(run.err,
-            "fogline run: error: LCM_DEFAULT_URL is direct, which is no LCM URL such as "
+            "fogline run: error: LCM_DEFAULT_URL direct: no LCM URL such as "
             "\"udpm://239.255.76.67:7667?ttl=0\"\n");
 }
 

@@ -201,7 +201,7 @@ TEST(WatchTest, RefusesUrlsThatNameNoNetwork) {
     EXPECT_EQ(memory.out, "");
     const Outcome file = RunCommand({Program("fogline"), verb, "--lcm-url", "file://run.lcm"});
     EXPECT_EQ(file.code, 2);
-    EXPECT_THAT(file.err, HasSubstr("not an LCM network"));
+    EXPECT_THAT(file.err, HasSubstr("error: --lcm-url file://run.lcm: no LCM URL such as"));
   }
 }
 

@@ -10,6 +10,7 @@
 #include "common/errors.h"
 #include "services/log/event_log.h"
 #include "services/runtime/transport/lcm_url.h"
+#include "tools/cli/arguments.h"
 #include "tools/cli/help.h"
 #include "tools/fogline/lcm/java_program.h"
 #include "tools/fogline/verbs.h"
@@ -50,11 +51,7 @@ struct LogplayerArguments {
 };
 
 int Logplayer(const LogplayerArguments& arguments) {
-  const std::string url = runtime::NetworkUrl(arguments.url);
-  if (!runtime::IsLcmUrl(url) || url.starts_with("memq:")) {
-    throw InputError(fmt::format("error: --lcm-url {}: not an LCM network such as \"{}\"", url,
-                                 runtime::kLcmDefaultUrl));
-  }
+  const std::string url = cli::CheckedNetworkUrl(arguments.url);
   const log::EventLogReader log(arguments.log);  // throws if the file is not an event log
   const fs::path java = RequireJava();
   const fs::path lcm = FindJar(arguments.jars, "lcm.jar", "liblcm-java");

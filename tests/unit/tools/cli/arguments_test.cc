@@ -220,7 +220,7 @@ TEST_F(NetworkArgumentsTest, RefuseWhatNoOtherProcessCanObserve) {
   EXPECT_THAT(ErrorOf([&] {
                 Url({"--lcm-url", "pigeon"});
               }),
-              StartsWith("error: --lcm-url pigeon: not an LCM network such as "));
+              StartsWith("error: --lcm-url pigeon: no LCM URL such as "));
   environment_.Set("memq://");
   CLI::App app;
   const cli::NetworkArguments unsaid(app, "to observe");

@@ -52,7 +52,7 @@ TEST(TransportArgumentsTest, TakeTheNetworkOfTheEnvironmentForARunOfProcesses) {
   EXPECT_EQ(Read({"--transport", "udpm"}).transport, "udpm");
   environment.Set("pigeon");
   EXPECT_EQ(Refusal({}),
-            "error: LCM_DEFAULT_URL is pigeon, which is no LCM URL such as "
+            "error: LCM_DEFAULT_URL pigeon: no LCM URL such as "
             "\"udpm://239.255.76.67:7667?ttl=0\"");
 }
 
@@ -76,7 +76,7 @@ TEST(TransportArgumentsTest, SetWhatTheRunDoes) {
 
 TEST(TransportArgumentsTest, RefuseContradictions) {
   EXPECT_EQ(Refusal({"--lcm-url", "pigeon"}),
-            "error: --lcm-url pigeon: not an LCM URL such as \"udpm://239.255.76.67:7667?ttl=0\"");
+            "error: --lcm-url pigeon: no LCM URL such as \"udpm://239.255.76.67:7667?ttl=0\"");
   EXPECT_EQ(Refusal({"--lcm-url", "udpm://239.255.76.67:70000"}),
             "error: --lcm-url udpm://239.255.76.67:70000: \"70000\" is no port (1 to 65535)");
   EXPECT_EQ(Refusal({"--faults", "flip=0.1"}).rfind("error: --faults: truncate and flip need", 0),

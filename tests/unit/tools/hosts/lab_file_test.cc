@@ -48,7 +48,7 @@ TEST(LabFileTest, AMistakeIsNamedWithFileLineColumnAndField) {
       LabRefusal(R"("hosts": [{"name": "a", "roles": ["acc"]}, {"name": "b", "roles": ["acc"]}])"),
       HasSubstr("/hosts/1/roles/0: the acc already runs on another machine (/hosts/0/roles/0)"));
   EXPECT_THAT(LabRefusal(R"("url": "lab2:7700", "hosts": [{"name": "a"}])"),
-              HasSubstr("/url: \"lab2:7700\" is no LCM URL"));
+              HasSubstr("/url: \"lab2:7700\": no LCM URL such as"));
   EXPECT_THAT(LabRefusal(R"("url": "udpm://239.1.1.1:7700?tll=1", "hosts": [{"name": "a"}])"),
               HasSubstr("/url: \"udpm://239.1.1.1:7700?tll=1\": udpm has no option \"tll\""));
   EXPECT_THAT(LabRefusal(R"("url": "tcpq://a", "relay": true, "hosts": [{"name": "a"}])"),

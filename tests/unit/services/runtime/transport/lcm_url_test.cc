@@ -51,14 +51,13 @@ TEST(LcmUrlTest, HasLcmsDefaultsWhereItSaysNothing) {
 TEST(LcmUrlTest, IsNoneOfAGroupWithAnotherProvider) {
   for (const char* url : {"", "udpm", "udpm:/", "tcpq://", "mpudpm://239.1.1.1"}) {
     EXPECT_EQ(runtime::ParseMulticastUrl(url), std::nullopt) << url;
-    EXPECT_EQ(runtime::WhyWrongUdpm(url), "") << url;
   }
 }
 
 TEST(LcmUrlTest, NamesWhatIsWrongInIt) {
   for (const char* url : {"udpm://", "udpm://?ttl=1", "udpm://239.1.1.1:7700?recv_buf_size=1&ttl=0",
                           "udpm://?ttl=255&recv_buf_size=2147483647", "udpm://239.1.1.1:1"}) {
-    EXPECT_EQ(runtime::WhyWrongUdpm(url), "") << url;
+    EXPECT_EQ(runtime::WhyWrongUrl(url), "") << url;
     EXPECT_TRUE(runtime::ParseMulticastUrl(url)) << url;
   }
   const std::vector<std::pair<std::string, std::string>> wrong{
@@ -92,9 +91,32 @@ TEST(LcmUrlTest, NamesWhatIsWrongInIt) {
        "recv_buf_size is \"2M\", which is no number from 0 to 2147483647"},
       {"?recv_buf_size=-1", "recv_buf_size is \"-1\", which is no number from 0 to 2147483647"}};
   for (const auto& [rest, why] : wrong) {
-    EXPECT_EQ(runtime::WhyWrongUdpm("udpm://" + rest), why);
+    EXPECT_EQ(runtime::WhyWrongUrl("udpm://" + rest), why);
     EXPECT_EQ(runtime::ParseMulticastUrl("udpm://" + rest), std::nullopt) << rest;
   }
+}
+
+TEST(LcmUrlTest, NamesWhatIsWrongWithOtherProviders) {
+  for (const char* url : {"mpudpm://", "mpudpm://239.1.1.1:7700?ttl=1&nports=3&recv_buf_size=0",
+                          "tcpq://", "tcpq://lab1:7700", "memq://"}) {
+    EXPECT_EQ(runtime::WhyWrongUrl(url), "") << url;
+  }
+  const std::vector<std::pair<std::string, std::string>> wrong{
+      {"mpudpm://239.1.1.1", "the port after the address is missing"},
+      {"mpudpm://?ttl=x", "ttl is \"x\", which is no number from 0 to 255"},
+      {"mpudpm://?nports=0", "nports is \"0\", which is no number from 1 to 65535"},
+      {"mpudpm://?port=1",
+       "mpudpm has no option \"port\"; its options are ttl, recv_buf_size and nports"},
+      {"udpm://?nports=3", "udpm has no option \"nports\"; its options are ttl and recv_buf_size"},
+      {"", "no LCM URL such as \"udpm://239.255.76.67:7667?ttl=0\""},
+      {"udpm:/", "no LCM URL such as \"udpm://239.255.76.67:7667?ttl=0\""}};
+  for (const auto& [url, why] : wrong) EXPECT_EQ(runtime::WhyWrongUrl(url), why);
+}
+
+TEST(LcmUrlTest, TellsTheTtl) {
+  EXPECT_EQ(runtime::TtlOf("udpm://"), 0);
+  EXPECT_EQ(runtime::TtlOf("udpm://239.1.1.1:7700?recv_buf_size=1&ttl=3"), 3);
+  EXPECT_EQ(runtime::TtlOf("mpudpm://?nports=2&ttl=1"), 1);
 }
 
 TEST(LcmUrlTest, NamesTheSameNetworkByGroupAndPort) {
