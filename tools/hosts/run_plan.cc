@@ -164,6 +164,9 @@ RunPlan MakePlan(const PlanWords& words) {
   }
   if (!plan.relay_at.empty()) {
     const std::string from = words.relay_at.empty() ? words.lab + ": /relay_at" : "--relay-at";
+    if (plan.relay_at.starts_with(':')) {
+      throw InputError(fmt::format("error: {}: the address before the port is missing", from));
+    }
     if (runtime::tcpq::ResolveOwn(plan.relay_at, from).address == "0.0.0.0") {
       throw InputError(fmt::format(
           "error: {}: 0.0.0.0 is each machine itself; name the address at which the other machines "
