@@ -13,6 +13,11 @@
 namespace fogline::cli {
 namespace {
 
+/// What the user calls the verbs of a command: the program has verbs, a verb has actions.
+std::string_view KindOfVerb(const CLI::App& command) {
+  return command.get_parent() == nullptr ? "verb" : "action";
+}
+
 /// The verbs that have this option, such as "fogline run, table"; "" if no verb has this option.
 std::string VerbsWith(const CLI::App& app, const std::string& option) {
   std::string verbs;
@@ -79,10 +84,11 @@ std::string Misfit(const CLI::App& app, const CLI::App& command,
   if (word.starts_with("-")) {
     const std::string name = word.substr(0, word.find('='));
     std::string hint = runtime::OptionMeant(command, name);
-    const std::string verbs = VerbsWith(app, name);
-    if (hint.empty() && !verbs.empty()) {
-      hint = &command == &app ? "; an option stands after its verb"
-                              : fmt::format("; it is an option of {}", verbs);
+    if (hint.empty() && !VerbsWith(command, name).empty()) {
+      hint = fmt::format("; an option stands after its {}", KindOfVerb(command));
+    }
+    if (const std::string verbs = VerbsWith(app, name); hint.empty() && !verbs.empty()) {
+      hint = fmt::format("; it is an option of {}", verbs);
     }
     if (hint.empty() && command.get_option_no_throw("--set") != nullptr) {
       hint = FieldHint(name, words);
@@ -120,10 +126,14 @@ std::string OneLine(std::string text) {
 
 std::string CommandName(const CLI::App& app) { return NameOf(CommandsOf(app)); }
 
-std::string NoSuchVerb(const CLI::App& app, const std::string& word) {
+std::string NoSuchVerb(const CLI::App& command, const std::string& word) {
   std::vector<std::string_view> verbs;
-  for (const CLI::App* verb : app.get_subcommands({})) verbs.push_back(verb->get_name());
-  return fmt::format("no verb {}{}", QuoteShort(word), DidYouMean(Nearest(word, verbs)));
+  for (const CLI::App* verb : command.get_subcommands({})) verbs.push_back(verb->get_name());
+  const auto meant = Nearest(word, verbs);
+  const bool is_program = command.get_parent() == nullptr;
+  return fmt::format(
+      "no {} {}{}", KindOfVerb(command), QuoteShort(word),
+      meant || is_program ? DidYouMean(meant) : fmt::format("; the actions are {}", Names(verbs)));
 }
 
 std::string UnknownVerb(const CLI::App& app) {
@@ -158,21 +168,19 @@ std::vector<std::string> SeparateEmptyValues(const std::vector<std::string>& wor
 
 std::string Refusal(const CLI::App& app, const CLI::ParseError& error) {
   std::vector<const CLI::App*> commands = CommandsOf(app);
-  const bool has_verb = commands.size() > 1;
-  const bool is_extra = error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError);
-  // A wrong word before the verb is an error of the program's command line, not of the verb's
-  // command line.
-  while (is_extra && commands.size() > 1 && commands.back()->remaining().empty()) {
-    commands.pop_back();
+  const auto code = static_cast<CLI::ExitCodes>(error.get_exit_code());
+  // A command may lack an argument because the argument's word was taken for an option, or stands
+  // before the command's name.
+  const bool may_misfit = commands.size() == 1 || code == CLI::ExitCodes::ExtrasError ||
+                          code == CLI::ExitCodes::RequiredError;
+  // The first wrong word is of the first command with such words.
+  const auto misfit = std::ranges::find_if(
+      commands, [](const CLI::App* command) { return !command->remaining().empty(); });
+  std::string what = OneLine(error.what());
+  if (may_misfit && misfit != commands.end()) {
+    what = Misfit(app, **misfit, (*misfit)->remaining());
+    commands.erase(misfit + 1, commands.end());
   }
-  const CLI::App& command = *commands.back();
-  const std::vector<std::string> misfits = command.remaining();
-  // The verb may lack an argument because the argument's word was taken for an option.
-  const bool is_missing =
-      error.get_exit_code() == static_cast<int>(CLI::ExitCodes::RequiredError) &&
-      commands.size() > 1;
-  const bool is_misfit = !misfits.empty() && (!has_verb || is_extra || is_missing);
-  const std::string what = is_misfit ? Misfit(app, command, misfits) : OneLine(error.what());
   const std::string name = NameOf(commands);
   return fmt::format("{}: error: {} (see {} --help)", name, what, name);
 }

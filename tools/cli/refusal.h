@@ -16,8 +16,9 @@ std::string CommandName(const CLI::App& app);
 /// for any other command line.
 std::string UnknownVerb(const CLI::App& app);
 
-/// The error text for an unknown verb, such as `no verb "tabel"; did you mean "table"?`
-std::string NoSuchVerb(const CLI::App& app, const std::string& word);
+/// The error text for an unknown verb of a program, or an unknown action of a verb, such as `no
+/// verb "tabel"; did you mean "table"?`
+std::string NoSuchVerb(const CLI::App& command, const std::string& word);
 
 /// Makes every option and argument of the verbs of `app`, and of their actions, refuse an empty
 /// text. An empty text often comes from a shell variable that is not set, as in --log "$UNSET".

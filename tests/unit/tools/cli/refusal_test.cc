@@ -29,7 +29,7 @@ class RefusalTest : public testing::Test {
     table->add_option("--seeds", seeds_);
     CLI::App* experiment = app_.add_subcommand("experiment");
     experiment->require_subcommand(1);
-    experiment->add_subcommand("export")->add_option("--out", out_);
+    experiment->add_subcommand("export")->add_option("--out", out_)->required();
   }
 
   /// @param words of the command line, in order. @return the error text; "" if the words are valid
@@ -65,8 +65,11 @@ TEST_F(RefusalTest, NamesTheActionOfAVerb) {
             "fogline experiment export --help)");
   EXPECT_EQ(CommandName(app_), "fogline experiment export");
   EXPECT_EQ(Of({"experiment", "exprot"}),
-            "fogline experiment: error: no verb \"exprot\"; did you mean \"export\"? (see fogline "
-            "experiment --help)");
+            "fogline experiment: error: no action \"exprot\"; did you mean \"export\"? (see "
+            "fogline experiment --help)");
+  EXPECT_EQ(Of({"experiment", "plan.json"}),
+            "fogline experiment: error: no action \"plan.json\"; the actions are \"export\" (see "
+            "fogline experiment --help)");
   RefuseEmptyTexts(app_);
   EXPECT_EQ(Of({"experiment", "export", "--out", ""}),
             "fogline experiment export: error: --out: the text is empty (see fogline experiment "
@@ -98,6 +101,16 @@ TEST_F(RefusalTest, TellsWhichVerbHasAnOption) {
   EXPECT_EQ(Of({"--seeds", "3"}),
             "fogline: error: no option \"--seeds\"; an option stands after its verb (see fogline "
             "--help)");
+}
+
+TEST_F(RefusalTest, NamesTheFirstWrongWordAndNotTheArgumentThatItWouldHaveGiven) {
+  const std::string after =
+      "fogline experiment: error: no option \"--out\"; an option stands after its action (see "
+      "fogline experiment --help)";
+  EXPECT_EQ(Of({"experiment", "--out", "x", "export"}), after);
+  EXPECT_EQ(Of({"experiment", "--out", "x", "export", "--uot", "x"}), after);
+  EXPECT_EQ(Of({"--foo", "experiment", "export"}),
+            "fogline: error: no option \"--foo\" (see fogline --help)");
 }
 
 TEST_F(RefusalTest, TellsHowAFieldOfTheScenarioIsSet) {
