@@ -250,6 +250,11 @@ std::int64_t DrawRunId() {
   return static_cast<std::int64_t>(id >> 2) + 1;  // positive, for easier reading
 }
 
+void CheckNetwork(const ExperimentOptions& options) {
+  if (options.transport == "tcpq") return;
+  const runtime::Bus bus(UrlOf(options.transport, !options.hosts.empty()));
+}
+
 BusRun RunOnBus(const Scenario& scenario, const ExperimentOptions& options,
                 const std::filesystem::path& log, const LogKeeper& keeper) {
   const auto hosts = hosts::Connect(options.hosts);

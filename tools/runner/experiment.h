@@ -115,6 +115,11 @@ struct ExperimentResult {
 /// @throws ScenarioError with the rule "impossible"
 void CheckPossible(const Scenario& scenario, const std::filesystem::path& file);
 
+/// Opens the network of a run once, and closes it, so that a caller can check it before a person
+/// waits for the run. A relay of the run's own (tcpq) is not started.
+/// @throws InputError, std::runtime_error as RunExperiment()
+void CheckNetwork(const ExperimentOptions& options);
+
 /// Runs a scenario to its end and reads the result from its log.
 /// @throws InputError for an invalid transport or log, Interrupted after Ctrl-C, std::runtime_error
 ///     with one line that names the cause when the run fails; a log stays readable

@@ -25,6 +25,11 @@ struct TrialRecord {
   std::int64_t attempts = 0;  // number of runs
   std::filesystem::path log;  // of the newest run; "" without a run
   TrialStory story;           // of the newest run; kOpen without a run
+
+  /// Whether the trial has no complete run.
+  bool NeedsRun() const {
+    return story.state == TrialState::kOpen || story.state == TrialState::kBroken;
+  }
 };
 
 class Results {

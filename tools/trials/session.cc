@@ -30,7 +30,7 @@ class Session {
     double pause_s = 0;
     for (const Trial& trial : schedule) {
       TrialRecord record = results_.Read(trial);
-      if (record.story.state == TrialState::kOpen || record.story.state == TrialState::kBroken) {
+      if (record.NeedsRun()) {
         Drive(trial, record, pause_s);
       } else if (record.story.state == TrialState::kToAsk) {
         ++outcome_.asked;

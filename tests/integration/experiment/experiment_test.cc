@@ -20,7 +20,9 @@
 #include "services/runtime/wire/wire.h"
 #include "tests/integration/experiment/page_session.h"
 #include "tests/support/command.h"
+#include "tests/support/network.h"
 #include "tests/support/web_client.h"
+#include "tests/unit/tools/trials/desk/taken_port.h"
 
 namespace fogline::test {
 namespace {
@@ -367,8 +369,34 @@ TEST_F(ExperimentRealtimeTest, WhatASessionNeedsIsCheckedBeforeAnythingIsWritten
   refused({"--faults", "flip=0.1"}, 2, "--faults: truncate and flip need --key");
   refused({"--lcm-url", "udpm://239.255.76.67:7700?ttl=x"}, 2,
           "--lcm-url udpm://239.255.76.67:7700?ttl=x: ttl is \"x\"");
-  refused({"--lcm-url", "tcpq://127.0.0.1:1"}, 3, "");
-  refused({"--evdev", "/dev/null"}, 2, "");
+  refused({"--lcm-url", "tcpq://127.0.0.1:1"}, 3, "no process listens on 127.0.0.1:1");
+  refused({"--evdev", "/dev/null"}, 2, "--evdev /dev/null: no input device");
+  refused({"--listen", "203.0.113.7"}, 2, "--listen: 203.0.113.7 is no address of this machine");
+  TakenPort taken(0);
+  ASSERT_TRUE(taken.Take());
+  const std::string port = std::to_string(taken.port());
+  refused({"--participant-port", port}, 2, "--participant-port " + port + ": cannot listen on");
+}
+
+TEST_F(ExperimentRealtimeTest, TheUsualNetworkIsAlsoCheckedBeforeAnythingIsWritten) {
+  if (const std::string why = WhyNoMachines(); !why.empty()) GTEST_SKIP() << why;
+  const Machine lonely("lab1");
+  lonely.Do("ip link set lo down");
+  const Outcome outcome =
+      RunCommand(lonely.On({Program("fogline"), "experiment", "run", file_, "--results", results_,
+                            "--participant", "1", "--no-page"}));
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("this machine has no route for multicast"));
+  EXPECT_EQ(outcome.out, "");
+  EXPECT_FALSE(std::filesystem::exists(results_));
+}
+
+TEST_F(ExperimentRealtimeTest, ASessionThatHasNothingToDriveNeedsNoNetwork) {
+  ASSERT_EQ(RunCommand(Session(1)).code, 0);
+  const Outcome outcome =
+      Experiment("run", {"--participant", "1", "--no-page", "--lcm-url", "tcpq://127.0.0.1:1"});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("participant 1: all trials are done; 0 runs now"));
 }
 
 TEST_F(ExperimentRealtimeTest, AnEmptyTextIsRefused) {

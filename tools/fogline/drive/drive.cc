@@ -143,6 +143,7 @@ int Drive(DriveArguments& arguments) {
   cli::CheckPeriod(scenario, 1);
   WatchInterrupts();
   auto source = MakeSource(arguments, scenario.person);
+  runner::CheckNetwork(options);
   log::LogOfRun log = options.log.empty() ? cli::FreshLog(arguments.scenario.file())
                                           : cli::PrepareLog(options.log, arguments.force);
   options.log = log.path();

@@ -1,4 +1,5 @@
 // fogline experiment run: the trials of one participant.
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -15,16 +16,16 @@
 #include "common/file_lock.h"
 #include "common/interrupt.h"
 #include "common/text.h"
-#include "services/runtime/transport/bus.h"
-#include "services/runtime/transport/lcm_url.h"
 #include "services/runtime/transport/tcpq_url.h"
 #include "services/runtime/wire/step_ring.h"
 #include "tools/cli/transport_arguments.h"
 #include "tools/drive/evdev_device.h"
 #include "tools/drive/terminal_keys.h"
 #include "tools/fogline/experiment/experiment_actions.h"
+#include "tools/runner/experiment.h"
 #include "tools/trials/desk/page_desk.h"
 #include "tools/trials/desk/terminal_desk.h"
+#include "tools/trials/results.h"
 #include "tools/trials/session.h"
 #include "tools/web/server/page.h"
 
@@ -172,11 +173,15 @@ void CheckPorts(const RunTrialsArguments& arguments) {
   }
 }
 
-/// Opens the device and the network of the session once, before a person waits for the first run.
+/// If a trial of the participant needs a run, opens the device and the network of the session once,
+/// before a person waits for the run.
 /// @throws InputError; std::runtime_error if the network cannot be reached
-void CheckMeans(const trials::SessionOptions& options) {
+void CheckMeans(const trials::Results& results, const trials::SessionOptions& options) {
+  if (std::ranges::none_of(results.ReadAll(options.participant), &trials::TrialRecord::NeedsRun)) {
+    return;
+  }
   if (options.pedals) options.pedals(PersonSection());
-  if (runtime::IsLcmUrl(options.run.transport)) runtime::Bus bus(options.run.transport);
+  runner::CheckNetwork(options.run);
 }
 
 /// The numeric address of --listen; "" without --listen. @throws InputError
@@ -191,20 +196,21 @@ std::string ListenAddress(const RunTrialsArguments& arguments) {
   return runtime::tcpq::ResolveOwn(arguments.listen, "--listen").address;
 }
 
-/// @throws InputError; std::runtime_error if a page cannot be served
-std::unique_ptr<trials::Desk> MakeDesk(const RunTrialsArguments& arguments,
-                                       const runtime::TrafficOptions& traffic) {
-  if (arguments.no_page) return std::make_unique<trials::TerminalDesk>();
-  auto desk = std::make_unique<trials::PageDesk>(
+/// Begins to serve the pages. @throws InputError; std::runtime_error if a page cannot be served
+std::unique_ptr<trials::PageDesk> ServePages(const RunTrialsArguments& arguments,
+                                             const runtime::TrafficOptions& traffic) {
+  return std::make_unique<trials::PageDesk>(
       trials::PageOptions{.listen = ListenAddress(arguments),
                           .participant_port = arguments.participant_port,
                           .experimenter_port = arguments.experimenter_port,
                           .seat_port = arguments.seat_port,
                           .traffic = traffic});
-  fmt::print("participant: {}\nexperimenter: {}\n", desk->participant_address(),
-             desk->experimenter_address());
+}
+
+void PrintAddresses(const trials::PageDesk& pages) {
+  fmt::print("participant: {}\nexperimenter: {}\n", pages.participant_address(),
+             pages.experimenter_address());
   std::fflush(stdout);
-  return desk;
 }
 
 int RunTrials(const RunTrialsArguments& arguments) {
@@ -213,12 +219,17 @@ int RunTrials(const RunTrialsArguments& arguments) {
   CheckSeat(arguments, plan);
   CheckPorts(arguments);
   const trials::Results results(plan, arguments.plan.results());
-  CheckMeans(options);
-  const FileLock lock = results.Begin(arguments.participant);
+  CheckMeans(results, options);
   WatchInterrupts();
-  const auto desk = MakeDesk(arguments, options.run.traffic);
+  const auto pages = arguments.no_page ? nullptr : ServePages(arguments, options.run.traffic);
+  // Nothing is written before this line. The addresses of a session that may not begin are not
+  // printed.
+  const FileLock lock = results.Begin(arguments.participant);
+  if (pages) PrintAddresses(*pages);
+  trials::TerminalDesk terminal;
+  trials::Desk& desk = pages ? static_cast<trials::Desk&>(*pages) : terminal;
   const trials::SessionOutcome outcome =
-      trials::RunSession(plan, results, std::move(options), *desk);
+      trials::RunSession(plan, results, std::move(options), desk);
   fmt::print("participant {}: all trials are done; {} runs now, in {}\n", arguments.participant,
              outcome.runs, PathText(results.FolderOf(arguments.participant)));
   return kDone;
