@@ -386,7 +386,7 @@ TEST_F(ExperimentRealtimeTest, TheUsualNetworkIsAlsoCheckedBeforeAnythingIsWritt
       RunCommand(lonely.On({Program("fogline"), "experiment", "run", file_, "--results", results_,
                             "--participant", "1", "--no-page"}));
   EXPECT_EQ(outcome.code, 2);
-  EXPECT_THAT(outcome.err, HasSubstr("this machine has no route for multicast"));
+  EXPECT_THAT(outcome.err, HasSubstr("Network is unreachable"));
   EXPECT_EQ(outcome.out, "");
   EXPECT_FALSE(std::filesystem::exists(results_));
 }
