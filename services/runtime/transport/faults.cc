@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <set>
 #include <utility>
 
 #include <fmt/core.h>
@@ -75,6 +76,7 @@ std::size_t Place(double uniform, std::size_t size) {
 
 FaultRates ParseFaults(std::string_view text) {
   FaultRates rates;
+  std::set<std::string_view> given;
   while (!text.empty()) {
     const std::string_view item = text.substr(0, text.find(','));
     text.remove_prefix(std::min(item.size() + 1, text.size()));
@@ -82,7 +84,9 @@ FaultRates ParseFaults(std::string_view text) {
     if (equals == std::string_view::npos) {
       throw FaultsError(fmt::format("\"{}\" has no value", item));
     }
-    Set(item.substr(0, equals), item.substr(equals + 1), rates);
+    const std::string_view name = item.substr(0, equals);
+    Set(name, item.substr(equals + 1), rates);
+    if (!given.insert(name).second) throw FaultsError(fmt::format("\"{}\" is given twice", name));
   }
   return rates;
 }

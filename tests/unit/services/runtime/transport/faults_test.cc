@@ -149,6 +149,7 @@ TEST(FaultsTest, AreRefusedWithAReason) {
   };
   EXPECT_THAT(why("los=0.1"), HasSubstr("--faults: \"los\" is no kind of fault; any of loss="));
   EXPECT_THAT(why("loss"), HasSubstr("\"loss\" has no value"));
+  EXPECT_THAT(why("loss=0.1,seed=1,loss=0.1"), HasSubstr("\"loss\" is given twice"));
   EXPECT_THAT(why("loss=0.1,,flip=0.1"), HasSubstr("\"\" has no value"));
   EXPECT_THAT(why("loss=a"), HasSubstr("loss=\"a\" is not a number"));
   EXPECT_THAT(why("loss="), HasSubstr("is not a number"));
