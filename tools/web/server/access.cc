@@ -6,8 +6,11 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cstdint>
 
 #include <fmt/core.h>
+
+#include "common/parse_number.h"
 
 namespace fogline::web {
 namespace {
@@ -25,6 +28,14 @@ std::string Lowered(std::string_view text) {
 bool IsAddressInNumbers(const std::string& name) {
   in_addr ignored{};
   return inet_pton(AF_INET, name.c_str(), &ignored) == 1;
+}
+
+/// Whether "HOST" has no port, or "HOST:PORT" has a port from 1 to 65535. HOST may be "[IPv6]".
+bool HasGoodPort(std::string_view host_and_port) {
+  const std::size_t from = host_and_port.starts_with('[') ? host_and_port.find(']') : 0;
+  const std::size_t colon = host_and_port.find(':', from);
+  if (colon == std::string_view::npos) return true;
+  return ParseNumber<std::uint16_t>(host_and_port.substr(colon + 1)).value_or(0) > 0;
 }
 
 }  // namespace
@@ -146,7 +157,7 @@ bool IsOrigin(std::string_view origin) {
   for (const std::string_view scheme : {"http://", "https://"}) {
     if (!text.starts_with(scheme)) continue;
     const std::string_view rest = std::string_view(text).substr(scheme.size());
-    return !rest.empty() && std::ranges::all_of(rest, [](char c) {
+    return !rest.empty() && HasGoodPort(rest) && std::ranges::all_of(rest, [](char c) {
       return c > ' ' && c < 127 && std::string_view("/?#@\\").find(c) == std::string_view::npos;
     });
   }

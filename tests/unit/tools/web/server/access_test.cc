@@ -149,8 +149,11 @@ TEST(AccessTest, ReadsAValueOfAQuery) {
 TEST(AccessTest, KnowsAnOriginFromOtherTexts) {
   EXPECT_TRUE(IsOrigin("http://localhost:8080"));
   EXPECT_TRUE(IsOrigin("https://app.example"));
-  for (const char* text : {"", "*", "null", "localhost:8080", "http://", "http://a/", "http://a b",
-                           "http://user@a", "file://"}) {
+  EXPECT_TRUE(IsOrigin("http://[::1]"));
+  EXPECT_TRUE(IsOrigin("http://[::1]:65535"));
+  for (const char* text :
+       {"", "*", "null", "localhost:8080", "http://", "http://a/", "http://a b", "http://user@a",
+        "file://", "http://a:99999", "http://a:0", "http://a:", "http://[::1]:x"}) {
     EXPECT_FALSE(IsOrigin(text)) << text;
   }
 }
