@@ -36,6 +36,11 @@ std::string RefuseRecorder(const std::string& role) {
                                          : "";
 }
 
+/// A transport for an error message. A URL may come from three sources (Apply()).
+std::string Said(const std::string& transport) {
+  return runtime::IsLcmUrl(transport) ? transport : "--transport " + transport;
+}
+
 /// Adds the options that start roles on other machines.
 void AddPlanOptions(CLI::App& app, hosts::PlanWords& words) {
   app.add_option("--on", words.on,
@@ -135,9 +140,9 @@ void TransportArguments::Apply(runner::ExperimentOptions& options) const {
   if (external_.empty()) return;
   if (IsOneProcess(options.transport)) {
     throw InputError(
-        fmt::format("error: --external {}: no other process can join a run with --transport {}, "
-                    "which is one process",
-                    external_.front(), options.transport));
+        fmt::format("error: --external {}: no other process can join a run with {}, which is one "
+                    "process",
+                    external_.front(), Said(options.transport)));
   }
 }
 
@@ -147,8 +152,8 @@ void TransportArguments::CheckHosts(const runner::ExperimentOptions& options) co
   const auto [role, place] = *plan.places.begin();
   const std::string where = fmt::format("{} on {}", NameOf(role), plan.hosts[place].name);
   if (IsOneProcess(options.transport)) {
-    throw InputError(fmt::format("error: {}: a run with --transport {} is one process", where,
-                                 options.transport));
+    throw InputError(
+        fmt::format("error: {}: a run with {} is one process", where, Said(options.transport)));
   }
   if (plan.relay && options.transport != "tcpq") {
     throw InputError(
@@ -174,9 +179,9 @@ bool IsOneProcess(const std::string& transport) {
 
 void RequireProcesses(const std::string& transport, std::string_view what) {
   if (!IsOneProcess(transport)) return;
-  throw InputError(fmt::format(
-      "error: --transport {}: all roles are in one process; {} needs a process for each role",
-      transport, what));
+  throw InputError(
+      fmt::format("error: {}: all roles are in one process; {} needs a process for each role",
+                  Said(transport), what));
 }
 
 void RunInRealtime(runner::ExperimentOptions& options, double speed) {

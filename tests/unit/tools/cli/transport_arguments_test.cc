@@ -89,6 +89,11 @@ TEST(TransportArgumentsTest, RefuseContradictions) {
   EXPECT_EQ(Refusal({"--transport", "memq", "--external", "acc"}),
             "error: --external acc: no other process can join a run with --transport memq, which "
             "is one process");
+  EXPECT_EQ(Refusal({"--lcm-url", "memq://", "--external", "acc"}),
+            "error: --external acc: no other process can join a run with memq://, which is one "
+            "process");
+  EXPECT_EQ(ErrorOf([] { cli::RequireProcesses("memq://", "a trial"); }),
+            "error: memq://: all roles are in one process; a trial needs a process for each role");
   try {
     Read({"--external", "recorder"});
     FAIL() << "a run cannot wait for a recorder";
