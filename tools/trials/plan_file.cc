@@ -1,5 +1,6 @@
 #include "tools/trials/plan_file.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -135,6 +136,67 @@ class PlanCheck {
   DiagnosticList& mistakes_;
 };
 
+/// The scenario of a condition, with its changes and `more` changes. @throws ScenarioError
+Scenario LoadChanged(const PlanFile& file, const ConditionSection& condition,
+                     const std::vector<std::string>& more) {
+  std::vector<std::string> overrides = condition.set;
+  overrides.insert(overrides.end(), more.begin(), more.end());
+  const std::filesystem::path path = file.file.parent_path() / condition.scenario;
+  Scenario scenario = LoadScenario(path, overrides);
+  runner::CheckPossible(scenario, path);
+  return scenario;
+}
+
+/// Checks the scenarios of all conditions. A mistake is at the change that makes it, or else at the
+/// name of the scenario's file.
+class ScenarioCheck {
+ public:
+  ScenarioCheck(const PlanFile& file, const JsonValue& root, DiagnosticList& mistakes)
+      : file_(file), root_(root), mistakes_(mistakes) {}
+
+  void Check(const std::string& list, const std::vector<ConditionSection>& conditions) {
+    for (std::size_t i = 0; i < conditions.size(); ++i) {
+      try {
+        LoadChanged(file_, conditions[i], {});
+      } catch (const ScenarioError& error) {
+        for (const Diagnostic& mistake : error.diagnostics()) {
+          Add(fmt::format("{}/{}", list, i), conditions[i], mistake);
+        }
+      }
+    }
+  }
+
+ private:
+  void Add(const std::string& condition, const ConditionSection& section,
+           const Diagnostic& mistake) {
+    const auto change = std::ranges::find_if(
+        section.set, [&](const std::string& text) { return mistake.file == "--set " + text; });
+    const bool is_change = change != section.set.end();
+    std::string what = is_change ? "" : PathText(mistake.file) + ": ";
+    if (mistake.line > 0)
+      what = fmt::format("{}:{}:{}: ", PathText(mistake.file), mistake.line, mistake.column);
+    if (!mistake.pointer.empty()) what += Shown(mistake.pointer) + ": ";
+    const std::string pointer =
+        is_change ? fmt::format("{}/set/{}", condition, change - section.set.begin())
+                  : condition + "/scenario";
+    mistakes_.Add(FindPlace(root_, pointer), pointer, mistake.rule, what + mistake.message);
+  }
+
+  const PlanFile& file_;
+  const JsonValue& root_;
+  DiagnosticList& mistakes_;
+};
+
+/// @throws ScenarioError if a condition has no scenario that can run
+void CheckScenarios(const PlanFile& file) {
+  DiagnosticList mistakes;
+  const JsonValue root = ParseJson(file.text, 0, mistakes).value();
+  ScenarioCheck check(file, root, mistakes);
+  check.Check("/conditions", file.plan.conditions);
+  check.Check("/practice", file.plan.practice);
+  if (!mistakes.empty()) mistakes.Throw({{.name = file.file.string(), .text = file.text}});
+}
+
 }  // namespace
 
 ExperimentPlan ParsePlan(std::string_view text, std::string_view name) {
@@ -154,21 +216,14 @@ PlanFile LoadPlan(const std::filesystem::path& file) {
   PlanFile loaded{.file = file, .text = std::move(read.text), .hash = "", .plan = {}};
   loaded.hash = runtime::HashOf(loaded.text);
   loaded.plan = ParsePlan(loaded.text, file.string());
-  for (const auto* list : {&loaded.plan.practice, &loaded.plan.conditions}) {
-    for (const ConditionSection& condition : *list) LoadCondition(loaded, condition);
-  }
+  CheckScenarios(loaded);
   return loaded;
 }
 
 Scenario LoadCondition(const PlanFile& file, const ConditionSection& condition,
                        const std::vector<std::string>& more) {
-  std::vector<std::string> overrides = condition.set;
-  overrides.insert(overrides.end(), more.begin(), more.end());
-  const std::filesystem::path path = file.file.parent_path() / condition.scenario;
   try {
-    Scenario scenario = LoadScenario(path, overrides);
-    runner::CheckPossible(scenario, path);
-    return scenario;
+    return LoadChanged(file, condition, more);
   } catch (const InputError& error) {
     throw InputError(fmt::format("{}: error: condition {}: {}", PathText(file.file),
                                  Quote(condition.name), error.what()));

@@ -91,18 +91,30 @@ TEST(PlanFileTest, AFileWithoutConditionsIsRefused) {
   EXPECT_THROW(ParsePlan("[]"), ScenarioError);
 }
 
-TEST(PlanFileTest, AConditionThatCannotBeRunIsNamed) {
+TEST(PlanFileTest, EachMistakeOfAScenarioIsNamedWithItsLineAndField) {
   const test::ScratchFolder folder;
   const std::string paper = (test::SourceDirectory() / "scenario/paper.json").string();
+  std::ofstream(folder.File("wrong.json")) << "{\n  \"steps\": 0, \"version\": 1\n}\n";
   std::ofstream(folder.File("e.json"))
-      << R"({"version": 1, "conditions": [{"name": "wild", "scenario": ")" << paper
-      << R"(", "set": ["/arbitrator/threshold=7"]}]})";
+      << "{\"version\": 1, \"conditions\": [\n{\"name\": \"wild\", \"scenario\": \"" << paper
+      << "\", \"set\": [\"/steps=1\", \"/arbitrator/threshold=7\"]},\n"
+      << R"({"name": "wrong", "scenario": "wrong.json"}], "practice": [{"name": "gone", )"
+      << "\n"
+      << R"("scenario": "gone.json"}]})";
   try {
     LoadPlan(folder.File("e.json"));
     FAIL() << "accepted";
-  } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), HasSubstr("e.json: error: condition \"wild\": "));
-    EXPECT_THAT(error.what(), HasSubstr("/arbitrator/threshold: 7 is outside [0, 1]"));
+  } catch (const ScenarioError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("e.json:2:"));
+    EXPECT_THAT(error.what(), HasSubstr(": error: /conditions/0/set/1: /arbitrator/threshold: 7 is "
+                                        "outside [0, 1]"));
+    EXPECT_THAT(error.what(), HasSubstr("e.json:3:"));
+    EXPECT_THAT(error.what(), HasSubstr(": error: /conditions/1/scenario: " +
+                                        folder.File("wrong.json") + ":2:12: /steps: 0 is outside"));
+    EXPECT_THAT(error.what(), HasSubstr("e.json:4:"));
+    EXPECT_THAT(error.what(), HasSubstr(": error: /practice/0/scenario: " +
+                                        folder.File("gone.json") + ": cannot be read"));
+    EXPECT_THAT(error.what(), HasSubstr("3 errors; "));
   }
 }
 
