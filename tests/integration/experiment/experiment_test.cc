@@ -20,6 +20,7 @@
 #include "services/runtime/wire/wire.h"
 #include "tests/integration/experiment/page_session.h"
 #include "tests/support/command.h"
+#include "tests/support/machine.h"
 #include "tests/support/network.h"
 #include "tests/support/web_client.h"
 #include "tests/unit/tools/trials/desk/taken_port.h"
@@ -379,7 +380,8 @@ TEST_F(ExperimentRealtimeTest, WhatASessionNeedsIsCheckedBeforeAnythingIsWritten
 }
 
 TEST_F(ExperimentRealtimeTest, TheUsualNetworkIsAlsoCheckedBeforeAnythingIsWritten) {
-  if (const std::string why = WhyNoMachines(); !why.empty()) GTEST_SKIP() << why;
+  if (const std::string why = WhyNoMachines(); !why.empty())
+    return MachineLacks("root, network namespaces or nftables: " + why);
   const Machine lonely("lab1");
   lonely.Do("ip link set lo down");
   const Outcome outcome =
