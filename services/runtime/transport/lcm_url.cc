@@ -63,6 +63,10 @@ std::optional<int> ReadNumber(std::string_view text) {
   return ParseNumber<int>(text);
 }
 
+std::string NoPort(std::string_view text) {
+  return fmt::format("{} is no port (1 to {})", QuoteShort(text), kMostPort);
+}
+
 /// Reads the part "ADDRESS:PORT" of a multicast URL. @return what is wrong; "" if nothing is
 std::string ReadPlace(std::string_view place, MulticastAddress& address) {
   if (place.empty()) return "";
@@ -76,9 +80,7 @@ std::string ReadPlace(std::string_view place, MulticastAddress& address) {
   if (colon == std::string_view::npos) return "the port after the address is missing";
   const std::string_view text = place.substr(colon + 1);
   const int port = ReadNumber(text).value_or(0);
-  if (port < 1 || port > kMostPort) {
-    return fmt::format("{} is no port (1 to {})", QuoteShort(text), kMostPort);
-  }
+  if (port < 1 || port > kMostPort) return NoPort(text);
   address.port = static_cast<std::uint16_t>(port);
   return "";
 }
@@ -132,8 +134,9 @@ std::optional<RelayPlace> ParseRelayUrl(std::string_view url) {
   if (!url.starts_with(kTcpq)) return std::nullopt;
   url.remove_prefix(kTcpq.size());
   if (url.empty()) url = "127.0.0.1";
+  const bool has_port = url.find(':') != std::string_view::npos;
   RelayPlace place{.host = TakeUntil(':', url), .port = tcpq::kDefaultPort};
-  if (!url.empty()) place.port = ParseNumber<std::uint16_t>(url);
+  if (has_port) place.port = ParseNumber<std::uint16_t>(url);
   return place;
 }
 
@@ -193,6 +196,9 @@ int TtlOf(std::string_view url) {
 
 std::string WhyWrongUrl(std::string_view url) {
   if (!IsLcmUrl(url)) return fmt::format("no LCM URL such as \"{}\"", kLcmDefaultUrl);
+  if (const auto relay = ParseRelayUrl(url); relay && relay->port.value_or(0) == 0) {
+    return NoPort(url.substr(url.find(':', kTcpq.size()) + 1));
+  }
   if (!url.starts_with(kUdpm) && !url.starts_with(kMpudpm)) return "";
   MulticastAddress address = LcmsDefaults();
   return ReadMulticast(url, address);

@@ -43,9 +43,9 @@ std::optional<MulticastAddress> ParseMulticastUrl(std::string_view url);
 /// The ttl of a udpm:// or mpudpm:// URL in which nothing is wrong.
 int TtlOf(std::string_view url);
 
-/// Says why a text is not the URL of an LCM network: it begins like none, or the address, the port
-/// or an option of udpm or mpudpm is wrong. "" if nothing is wrong. The address of a relay (tcpq)
-/// is read only when it is needed (tcpq_url.h). Fogline takes less than LCM does. LCM ignores
+/// Says why a text is not the URL of an LCM network: it begins like none, or the address of udpm or
+/// mpudpm, the port or an option is wrong. "" if nothing is wrong. The host of a relay (tcpq) is
+/// read only when it is needed (tcpq_url.h). Fogline takes less than LCM does. LCM ignores
 /// unknown options, also a mistyped ttl, and it reads 010 as 8.
 std::string WhyWrongUrl(std::string_view url);
 

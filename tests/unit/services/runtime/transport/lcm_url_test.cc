@@ -98,7 +98,7 @@ TEST(LcmUrlTest, NamesWhatIsWrongInIt) {
 
 TEST(LcmUrlTest, NamesWhatIsWrongWithOtherProviders) {
   for (const char* url : {"mpudpm://", "mpudpm://239.1.1.1:7700?ttl=1&nports=3&recv_buf_size=0",
-                          "tcpq://", "tcpq://lab1:7700", "memq://"}) {
+                          "tcpq://", "tcpq://lab1", "tcpq://lab1:7700", "tcpq://:1", "memq://"}) {
     EXPECT_EQ(runtime::WhyWrongUrl(url), "") << url;
   }
   const std::vector<std::pair<std::string, std::string>> wrong{
@@ -108,6 +108,10 @@ TEST(LcmUrlTest, NamesWhatIsWrongWithOtherProviders) {
       {"mpudpm://?port=1",
        "mpudpm has no option \"port\"; its options are ttl, recv_buf_size and nports"},
       {"udpm://?nports=3", "udpm has no option \"nports\"; its options are ttl and recv_buf_size"},
+      {"tcpq://lab1:99999", "\"99999\" is no port (1 to 65535)"},
+      {"tcpq://lab1:0", "\"0\" is no port (1 to 65535)"},
+      {"tcpq://:", "\"\" is no port (1 to 65535)"},
+      {"tcpq://lab1:7700?ttl=1", "\"7700?ttl=1\" is no port (1 to 65535)"},
       {"", "no LCM URL such as \"udpm://239.255.76.67:7667?ttl=0\""},
       {"udpm:/", "no LCM URL such as \"udpm://239.255.76.67:7667?ttl=0\""}};
   for (const auto& [url, why] : wrong) EXPECT_EQ(runtime::WhyWrongUrl(url), why);
