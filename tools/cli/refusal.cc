@@ -143,13 +143,8 @@ std::string UnknownVerb(const CLI::App& app) {
 }
 
 void RefuseEmptyTexts(CLI::App& app) {
-  const auto refuse = [](const std::string& text) -> std::string {
-    return text.empty() ? "the text is empty" : "";
-  };
   for (CLI::App* verb : app.get_subcommands({})) {
-    for (CLI::Option* option : verb->get_options()) {
-      option->transform(CLI::Validator(refuse, ""));  // before the option's own checks
-    }
+    for (CLI::Option* option : verb->get_options()) runtime::RefuseEmptyText(*option);
     RefuseEmptyTexts(*verb);
   }
 }

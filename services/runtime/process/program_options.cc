@@ -27,6 +27,11 @@ void AddRunIdOption(CLI::App& app, const std::string& name, std::optional<std::i
       ->type_name("ID");
 }
 
+void RefuseEmptyText(CLI::Option& option) {
+  option.transform(CLI::Validator(
+      [](const std::string& text) { return text.empty() ? "the text is empty" : ""; }, ""));
+}
+
 void AddTrafficOptions(CLI::App& app, TrafficOptions& options) {
   app.add_option("--key", options.key_file,
                  "Sign messages with the key in this file, and refuse unsigned ones")
@@ -58,12 +63,13 @@ ProgramOptions::~ProgramOptions() = default;
 void ProgramOptions::Text(const std::string& name, std::string& value, const std::string& help,
                           Help shown) {
   CLI::Option* const option = app_->add_option(name, value, help);
+  RefuseEmptyText(*option);
   if (shown == Help::kWithDefault) option->capture_default_str();
 }
 
 void ProgramOptions::RequiredText(const std::string& name, std::string& value,
                                   const std::string& help) {
-  app_->add_option(name, value, help)->required();
+  RefuseEmptyText(*app_->add_option(name, value, help)->required());
 }
 
 void ProgramOptions::Flag(const std::string& name, bool& value, const std::string& help) {

@@ -13,7 +13,8 @@
 
 namespace CLI {
 class App;
-}
+class Option;
+}  // namespace CLI
 
 namespace fogline::runtime {
 
@@ -21,6 +22,10 @@ namespace fogline::runtime {
 /// @param name such as "--run-id"
 void AddRunIdOption(CLI::App& app, const std::string& name, std::optional<std::int64_t>& run_id,
                     const std::string& help);
+
+/// Makes a command line refuse an empty text as the value of this option, before the option's own
+/// checks.
+void RefuseEmptyText(CLI::Option& option);
 
 /// Adds --key and --faults to a command line.
 void AddTrafficOptions(CLI::App& app, TrafficOptions& options);

@@ -76,7 +76,8 @@ TEST(ProgramOptionsTest, RefusesWhatIsOutOfRange) {
   const std::vector<std::vector<std::string>> wrong = {
       {"--count", "0"},  {"--count", "257"}, {"--count", "x"},    {"--wait", "-1"},
       {"--wait", "nan"}, {"--wait", "1e7"},  {"--unknown"},       {"more"},
-      {"--speed", "-3"}, {"--speed", "nan"}, {"--color", "blue"}, {"--color", "Red"}};
+      {"--speed", "-3"}, {"--speed", "nan"}, {"--color", "blue"}, {"--color", "Red"},
+      {"--file", ""}};
   for (const std::vector<std::string>& words : wrong) {
     Program program;
     EXPECT_EQ(program.Read(words), kBadInput) << words.back();
