@@ -6,7 +6,7 @@
 #include <set>
 #include <utility>
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include "common/errors.h"
 #include "common/text.h"
@@ -156,11 +156,10 @@ RunPlan MakePlan(const PlanWords& words) {
   }
   if (!words.relay_at.empty()) plan.relay_at = words.relay_at;
   plan.relay = plan.relay || words.relay || !words.relay_at.empty();
-  if (plan.empty() && (words.relay || !words.relay_at.empty() || !words.lab.empty())) {
+  plan.words = WordsOf(words);
+  if (plan.empty() && !plan.words.empty()) {
     throw InputError(fmt::format("error: {}: no role runs on another machine; see --on",
-                                 !words.lab.empty() ? "--lab " + words.lab
-                                 : words.relay      ? "--relay"
-                                                    : "--relay-at"));
+                                 fmt::join(plan.words, " ")));
   }
   if (!plan.relay_at.empty()) {
     const std::string from = words.relay_at.empty() ? words.lab + ": /relay_at" : "--relay-at";
@@ -174,7 +173,6 @@ RunPlan MakePlan(const PlanWords& words) {
           from));
     }
   }
-  plan.words = WordsOf(words);
   return plan;
 }
 

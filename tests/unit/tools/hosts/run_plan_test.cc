@@ -89,6 +89,8 @@ TEST(RunPlanTest, WrongPlacesAreNamed) {
       "machines reach this one");
   EXPECT_EQ(PlanRefusal({.relay = true}),
             "error: --relay: no role runs on another machine; see --on");
+  EXPECT_EQ(PlanRefusal({.ssh = "ssh -4"}),
+            "error: --ssh ssh -4: no role runs on another machine; see --on");
 }
 
 TEST(RunPlanTest, TheCommandLineComesBeforeTheLaboratorysFile) {
