@@ -159,7 +159,11 @@ int RunNew(RunArguments& arguments) {
         fmt::format("{}: error: {}", PathText(arguments.scenario.file()), kPersonNeedsRealtime));
   }
   if (options.realtime) cli::CheckPeriod(scenario, arguments.speed);
-  const bool has_log = !options.log.empty() || options.transport != "direct";
+  const bool direct = options.transport == "direct";
+  // A network that cannot be opened is refused before the log is made. A direct run opens one only
+  // for --external; its log, if any, is made by --log.
+  if (!direct) runner::CheckNetwork(options);
+  const bool has_log = !options.log.empty() || !direct;
   log::LogOfRun log = !has_log              ? log::LogOfRun()
                       : options.log.empty() ? cli::FreshLog(arguments.scenario.file())
                                             : cli::PrepareLog(options.log, arguments.force);

@@ -206,6 +206,17 @@ TEST(CommandLineTest, SaysWhatAFolderOrAnEmptyFileIsInPlaceOfALog) {
   }
 }
 
+TEST(CommandLineTest, ARunWhoseNetworkCannotBeOpenedMakesNoFolderForItsLog) {
+  const ScratchFolder folder;
+  const Outcome outcome = RunCommand(
+      {"sh", "-c", "cd \"$0\" && exec \"$@\"", folder.path().string(),
+       std::filesystem::absolute(Program("fogline")).string(), "run",
+       (SourceDirectory() / "scenario/paper.json").string(), "--lcm-url", "tcpq://127.0.0.1:1"});
+  EXPECT_EQ(outcome.code, 3);
+  EXPECT_THAT(outcome.err, HasSubstr("no process listens on 127.0.0.1:1"));
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+}
+
 TEST(CommandLineTest, ARunThatLacksDescriptorsFailsAndItsInputIsNotCalledBad) {
   const ScratchFolder folder;
   int failed = 0;
