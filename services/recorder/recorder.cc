@@ -9,6 +9,7 @@
 #include "services/log/about/log_graph.h"
 #include "services/recorder/record_rule.h"
 #include "services/runtime/lockstep/lockstep_rule.h"
+#include "services/runtime/transport/lcm_url.h"
 
 namespace fogline::recorder {
 namespace {
@@ -42,7 +43,7 @@ Recorder::Recorder(runtime::Bus& bus, std::optional<std::int64_t> run_id,
       existing_(existing),
       wall_clock_(wall_clock == WallClock::kYes) {
   // On a bus in memory, no other process can send a flood of requests.
-  const double at_most = bus.url().starts_with("memq:") ? kNoLimit : 1;
+  const double at_most = runtime::IsInMemory(bus.url()) ? kNoLimit : 1;
   node_.outputs().limiter() =
       runtime::RateLimiter(at_most * kAnswersPerSecond, at_most * kAnswersAtOnce);
   parts_.inputs.Of(IndexOf<truth_t>()).keep = [this](std::int64_t step, runtime::Arrival& arrival) {

@@ -82,8 +82,7 @@ log::LogOfRun PrepareLog(const std::filesystem::path& log, bool force) {
 
 log::LogOfRun FreshLog(const std::filesystem::path& scenario_file) {
   const std::filesystem::path folder = kDefaultFolder;
-  std::error_code ignored;  // Reserve() reports the error
-  std::filesystem::create_directories(folder, ignored);
+  RequireFolderOf(folder / "log", "--log");
   for (int number = 1;; ++number) {
     std::filesystem::path log =
         folder / fmt::format("{}-{}.lcm", scenario_file.stem().string(), number);
@@ -138,7 +137,7 @@ NetworkArguments::NetworkArguments(CLI::App& verb, std::string_view what) {
 std::string CheckedNetworkUrl(const std::string& given) {
   const std::string url = runtime::NetworkUrl(given);
   const std::string_view source = given.empty() ? "LCM_DEFAULT_URL" : "--lcm-url";
-  if (url.starts_with("memq:")) {
+  if (runtime::IsInMemory(url)) {
     throw InputError(
         fmt::format("error: {} {}: other processes cannot look into the memory of a process; give "
                     "the run a udpm:// URL",

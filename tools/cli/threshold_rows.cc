@@ -10,6 +10,7 @@
 #include "common/interrupt.h"
 #include "common/process/progress.h"
 #include "services/log/log_of_run.h"
+#include "tools/cli/action.h"
 #include "tools/cli/pairing.h"
 #include "tools/runner/side_by_side.h"
 

@@ -128,11 +128,10 @@ std::vector<double> RoundTripsUs(const std::string& url) {
 
 /// Examines whether this machine receives its own multicast messages. It sends real LCM messages to
 /// the group and port of the URL, because a firewall may pass only this port.
-void ExamineLoopback(const std::string& url, const std::string& group, int ttl,
-                     Findings& findings) {
-  constexpr std::uint16_t kLcmPort = 7667;
-  const auto address = runtime::ParseMulticastUrl(url);
-  const std::uint16_t port = address ? address->port : kLcmPort;
+void ExamineLoopback(const runtime::MulticastAddress& address, Findings& findings) {
+  const std::string& group = address.group;
+  const std::uint16_t port = address.port;
+  const int ttl = std::min(address.ttl, 1);
   std::vector<double> times_us;
   try {
     times_us = RoundTripsUs(fmt::format("udpm://{}:{}?ttl={}", group, port, ttl));
@@ -237,20 +236,17 @@ void ExamineRelay(const std::string& url, Findings& findings) {
 
 void ExamineNetwork(const std::string& url, Findings& findings) {
   if (url.starts_with("tcpq://")) return ExamineRelay(url, findings);
-  const auto group = runtime::GroupOf(url);
-  if (group && ExamineGroup(url, *group, findings)) {
-    const int ttl = runtime::TtlOf(url);
+  const runtime::MulticastAddress address = runtime::MulticastAddressOf(url);
+  if (ExamineGroup(url, address.group, findings)) {
     // mpudpm needs the route for every value of the ttl.
-    const bool here = ttl == 0 && url.starts_with("udpm://");
-    if (here ? ExamineOwnMachine(url, *group, findings) : ExamineRoute(*group, ttl, findings)) {
-      ExamineLoopback(url, *group, std::min(ttl, 1), findings);
+    const bool here = address.ttl == 0 && url.starts_with("udpm://");
+    if (here ? ExamineOwnMachine(url, address.group, findings)
+             : ExamineRoute(address.group, address.ttl, findings)) {
+      ExamineLoopback(address, findings);
     }
   }
   ExamineFilter(url, findings);
-  const auto address = runtime::ParseMulticastUrl(url);
-  ExamineReceiveBuffer(
-      address ? address->receive_buffer.value_or(runtime::kEnoughBuffer) : runtime::kEnoughBuffer,
-      findings);
+  ExamineReceiveBuffer(address.receive_buffer.value_or(runtime::kEnoughBuffer), findings);
 }
 
 }  // namespace fogline::doctor

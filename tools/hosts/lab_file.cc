@@ -33,9 +33,10 @@ class LabCheck {
       CheckHost(fmt::format("/hosts/{}", i), lab.hosts[i]);
     }
     if (lab.url.empty()) return;
-    if (lab.url.starts_with("memq")) {
+    if (runtime::IsInMemory(lab.url)) {
       Add("/url", "text",
-          fmt::format("{}: other machines cannot look into the memory of this one",
+          fmt::format("{}: other machines cannot look into the memory of this one; give a udpm:// "
+                      "URL",
                       QuoteShort(lab.url)));
     } else if (const std::string why = runtime::WhyWrongUrl(lab.url); !why.empty()) {
       Add("/url", "text", fmt::format("{}: {}", QuoteShort(lab.url), why));

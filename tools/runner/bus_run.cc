@@ -242,6 +242,12 @@ std::string UrlOf(const std::string& transport, bool far) {
                   transport));
 }
 
+/// Signs and impairs the runner's messages as the options say. @throws InputError
+void ApplyTraffic(const ExperimentOptions& options, runtime::Bus& bus) {
+  runtime::Apply(options.traffic,
+                 runtime::IsInMemory(bus.url()) ? std::nullopt : std::optional(Role::kRunner), bus);
+}
+
 }  // namespace
 
 std::int64_t DrawRunId() {
@@ -252,7 +258,8 @@ std::int64_t DrawRunId() {
 
 void CheckNetwork(const ExperimentOptions& options) {
   if (options.transport == "tcpq") return;
-  const runtime::Bus bus(UrlOf(options.transport, !options.hosts.empty()));
+  runtime::Bus bus(UrlOf(options.transport, !options.hosts.empty()));
+  ApplyTraffic(options, bus);
 }
 
 BusRun RunOnBus(const Scenario& scenario, const ExperimentOptions& options,
@@ -263,7 +270,7 @@ BusRun RunOnBus(const Scenario& scenario, const ExperimentOptions& options,
     relay.emplace(options.restarts, hosts ? hosts->RelayPlace() : "127.0.0.1:0");
   }
   runtime::Bus bus(relay ? relay->url() : UrlOf(options.transport, hosts != nullptr));
-  const bool in_memory = bus.url().starts_with("memq");
+  const bool in_memory = runtime::IsInMemory(bus.url());
   // If the runner is silent, roles on other machines wait for it for the same time as roles that a
   // person has started: the stall limit plus kGone.
   if (hosts) {
@@ -272,7 +279,7 @@ BusRun RunOnBus(const Scenario& scenario, const ExperimentOptions& options,
   const runtime::RunCoordinatorOptions conducting =
       MakeCoordinatorOptions(scenario, options, in_memory);
   if (!in_memory) options.on_network(conducting.run_id, bus.url());
-  runtime::Apply(options.traffic, in_memory ? std::nullopt : std::optional(Role::kRunner), bus);
+  ApplyTraffic(options, bus);
   if (!in_memory) options.on_run(conducting.run_id, bus.url());
   runtime::RunCoordinator coordinator(bus, conducting);
   const TimePoint began = Clock::now();

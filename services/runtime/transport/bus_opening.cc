@@ -51,7 +51,7 @@ constexpr const char* kSelfTest = "LCM_SELF_TEST";
 
 }  // namespace
 
-Bus::Bus(const std::string& url) : url_(WithDefaults(url)), in_memory_(url.starts_with("memq:")) {
+Bus::Bus(const std::string& url) : url_(WithDefaults(url)), in_memory_(IsInMemory(url)) {
   if (url_.starts_with("tcpq://")) {
     tcpq_ = std::make_unique<tcpq::Client>(url_);
     url_ = tcpq_->url();

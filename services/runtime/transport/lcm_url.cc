@@ -24,6 +24,7 @@ namespace {
 constexpr std::string_view kUdpm = "udpm://";
 constexpr std::string_view kMpudpm = "mpudpm://";
 constexpr std::string_view kTcpq = "tcpq://";
+constexpr std::string_view kMemq = "memq://";
 constexpr int kMostPort = 65535;
 // The options of a udpm:// or mpudpm:// URL.
 constexpr std::string_view kTtl = "ttl";
@@ -53,7 +54,7 @@ std::string_view TakeUntil(char separator, std::string_view& text) {
 /// What LCM takes for the missing parts of a multicast URL. Fogline, too, has 0 as the default of
 /// ttl (bus.h).
 MulticastAddress LcmsDefaults() {
-  return {.group = *GroupOf(kUdpm), .port = 7667, .ttl = 0, .receive_buffer = {}};
+  return {.group = *GroupOf(kUdpm), .port = 7667, .ports = 1, .ttl = 0, .receive_buffer = {}};
 }
 
 /// A number of a multicast URL: digits without sign. LCM would read a number with a leading 0 as
@@ -104,6 +105,7 @@ std::string ReadOption(bool many_ports, std::string_view name, std::string_view 
                        most);
   }
   if (name == kTtl) address.ttl = *number;
+  if (name == kPorts) address.ports = *number;
   if (name == kReceiveBuffer) address.receive_buffer = *number;
   return "";
 }
@@ -118,6 +120,11 @@ std::string ReadMulticast(std::string_view url, MulticastAddress& address) {
     std::string_view value = TakeUntil('&', options);
     const std::string_view name = TakeUntil('=', value);
     why = ReadOption(many_ports, name, value, address);
+  }
+  // LCM would go on with port 0 after port 65535.
+  if (why.empty() && address.port + address.ports - 1 > kMostPort) {
+    return fmt::format("the last of {} ports from {} on is above {}", address.ports, address.port,
+                       kMostPort);
   }
   return why;
 }
@@ -176,10 +183,12 @@ std::string NetworkUrl(const std::string& given) {
 }
 
 bool IsLcmUrl(std::string_view url) {
-  constexpr std::array<std::string_view, 4> kProviders{kUdpm, kMpudpm, kTcpq, "memq://"};
+  constexpr std::array<std::string_view, 4> kProviders{kUdpm, kMpudpm, kTcpq, kMemq};
   return std::ranges::any_of(
       kProviders, [url](std::string_view provider) { return url.starts_with(provider); });
 }
+
+bool IsInMemory(std::string_view url) { return url.starts_with(kMemq); }
 
 std::optional<MulticastAddress> ParseMulticastUrl(std::string_view url) {
   if (!url.starts_with(kUdpm)) return std::nullopt;
@@ -188,10 +197,10 @@ std::optional<MulticastAddress> ParseMulticastUrl(std::string_view url) {
   return address;
 }
 
-int TtlOf(std::string_view url) {
+MulticastAddress MulticastAddressOf(std::string_view url) {
   MulticastAddress address = LcmsDefaults();
   ReadMulticast(url, address);
-  return address.ttl;
+  return address;
 }
 
 std::string WhyWrongUrl(std::string_view url) {

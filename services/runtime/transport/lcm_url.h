@@ -26,10 +26,14 @@ inline std::string MeetingUrl() { return NetworkUrl(""); }
 /// Whether the text begins like the URL of an LCM network, including memq.
 bool IsLcmUrl(std::string_view url);
 
-/// The contents of a udpm:// URL, with LCM's defaults for missing parts.
+/// Whether the messages of a network stay in the memory of one process (memq).
+bool IsInMemory(std::string_view url);
+
+/// The contents of a udpm:// or mpudpm:// URL, with LCM's defaults for missing parts.
 struct MulticastAddress {
   std::string group;
   std::uint16_t port = 0;
+  int ports = 1;  // nports of mpudpm: the number of ports, from `port` on
   int ttl = 0;
   std::optional<int> receive_buffer;  // recv_buf_size, in bytes
 
@@ -40,8 +44,8 @@ struct MulticastAddress {
 /// wrong (WhyWrongUrl()).
 std::optional<MulticastAddress> ParseMulticastUrl(std::string_view url);
 
-/// The ttl of a udpm:// or mpudpm:// URL in which nothing is wrong.
-int TtlOf(std::string_view url);
+/// The contents of a udpm:// or mpudpm:// URL. @pre nothing is wrong in the URL (WhyWrongUrl())
+MulticastAddress MulticastAddressOf(std::string_view url);
 
 /// Says why a text is not the URL of an LCM network: it begins like none, or the address of udpm or
 /// mpudpm, the port or an option is wrong. "" if nothing is wrong. The host of a relay (tcpq) is

@@ -48,11 +48,12 @@ bool IsMulticast(const std::string& address) {
 std::string InPlaceOfUnicast(std::string_view url) {
   std::string_view place = url.substr(url.find("://") + 3);
   place = place.substr(0, place.find('?'));
-  const std::size_t colon = std::min(place.find(':'), place.size());
+  const std::size_t colon = place.find(':');
+  const std::string_view port = colon == std::string_view::npos ? ":7667" : place.substr(colon);
   return fmt::format(
       "write udpm://{}{}, the same on every machine; or tcpq://{} with `fogline-relay --listen {}` "
       "on that machine",
-      kDefaultGroup, place.substr(colon), place, place);
+      kDefaultGroup, port, place, place);
 }
 
 std::string RouteError(const std::string& address) {

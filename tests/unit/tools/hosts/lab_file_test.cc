@@ -51,6 +51,12 @@ TEST(LabFileTest, AMistakeIsNamedWithFileLineColumnAndField) {
               HasSubstr("/url: \"lab2:7700\": no LCM URL such as"));
   EXPECT_THAT(LabRefusal(R"("url": "udpm://239.1.1.1:7700?tll=1", "hosts": [{"name": "a"}])"),
               HasSubstr("/url: \"udpm://239.1.1.1:7700?tll=1\": udpm has no option \"tll\""));
+  EXPECT_THAT(LabRefusal(R"("url": "memq", "hosts": [{"name": "a"}])"),
+              HasSubstr("/url: \"memq\": no LCM URL such as"));
+  EXPECT_THAT(
+      LabRefusal(R"("url": "memq://", "hosts": [{"name": "a"}])"),
+      HasSubstr("/url: \"memq://\": other machines cannot look into the memory of this one; "
+                "give a udpm:// URL"));
   EXPECT_THAT(LabRefusal(R"("url": "tcpq://a", "relay": true, "hosts": [{"name": "a"}])"),
               HasSubstr("/url: the relay has a URL of its own"));
   EXPECT_THAT(LabRefusal(R"("hosts": [{"name": "a"}], "relay": 1)"),

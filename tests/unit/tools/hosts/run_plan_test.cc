@@ -77,9 +77,9 @@ TEST(RunPlanTest, WrongPlacesAreNamed) {
             "error: --on fusion=lab3: another --on has a machine for the fusion");
   EXPECT_EQ(PlanRefusal({.on = {"fusion=lab2"}, .relay_at = "10.0.0.1:99999"}),
             "error: --relay-at: \"99999\" is no port (0 to 65535)");
-  // RFC 5737: no machine has an address of 203.0.113.0/24.
   EXPECT_EQ(PlanRefusal({.on = {"fusion=lab2"}, .relay_at = ":7700"}),
             "error: --relay-at: the address before the port is missing");
+  // RFC 5737: no machine has an address of 203.0.113.0/24.
   EXPECT_EQ(PlanRefusal({.on = {"fusion=lab2"}, .relay_at = "203.0.113.7"}),
             "error: --relay-at: 203.0.113.7 is no address of this machine (`ip address` lists "
             "them)");

@@ -98,13 +98,16 @@ TEST(LcmUrlTest, NamesWhatIsWrongInIt) {
 
 TEST(LcmUrlTest, NamesWhatIsWrongWithOtherProviders) {
   for (const char* url : {"mpudpm://", "mpudpm://239.1.1.1:7700?ttl=1&nports=3&recv_buf_size=0",
-                          "tcpq://", "tcpq://lab1", "tcpq://lab1:7700", "tcpq://:1", "memq://"}) {
+                          "mpudpm://239.1.1.1:65000?nports=536", "tcpq://", "tcpq://lab1",
+                          "tcpq://lab1:7700", "tcpq://:1", "memq://"}) {
     EXPECT_EQ(runtime::WhyWrongUrl(url), "") << url;
   }
   const std::vector<std::pair<std::string, std::string>> wrong{
       {"mpudpm://239.1.1.1", "the port after the address is missing"},
       {"mpudpm://?ttl=x", "ttl is \"x\", which is no number from 0 to 255"},
       {"mpudpm://?nports=0", "nports is \"0\", which is no number from 1 to 65535"},
+      {"mpudpm://239.1.1.1:65000?nports=1000",
+       "the last of 1000 ports from 65000 on is above 65535"},
       {"mpudpm://?port=1",
        "mpudpm has no option \"port\"; its options are ttl, recv_buf_size and nports"},
       {"udpm://?nports=3", "udpm has no option \"nports\"; its options are ttl and recv_buf_size"},
@@ -117,10 +120,13 @@ TEST(LcmUrlTest, NamesWhatIsWrongWithOtherProviders) {
   for (const auto& [url, why] : wrong) EXPECT_EQ(runtime::WhyWrongUrl(url), why);
 }
 
-TEST(LcmUrlTest, TellsTheTtl) {
-  EXPECT_EQ(runtime::TtlOf("udpm://"), 0);
-  EXPECT_EQ(runtime::TtlOf("udpm://239.1.1.1:7700?recv_buf_size=1&ttl=3"), 3);
-  EXPECT_EQ(runtime::TtlOf("mpudpm://?nports=2&ttl=1"), 1);
+TEST(LcmUrlTest, HasTheContentsOfBothProvidersOfMulticast) {
+  EXPECT_EQ(runtime::MulticastAddressOf("udpm://").ttl, 0);
+  EXPECT_EQ(runtime::MulticastAddressOf("udpm://239.1.1.1:7700?recv_buf_size=1&ttl=3").ttl, 3);
+  const runtime::MulticastAddress many{
+      .group = "239.1.1.1", .port = 7700, .ports = 2, .ttl = 1, .receive_buffer = 5};
+  EXPECT_EQ(runtime::MulticastAddressOf("mpudpm://239.1.1.1:7700?nports=2&ttl=1&recv_buf_size=5"),
+            many);
 }
 
 TEST(LcmUrlTest, NamesTheSameNetworkByGroupAndPort) {
