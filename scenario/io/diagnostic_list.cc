@@ -100,6 +100,7 @@ void DiagnosticList::Throw(const std::vector<Source>& sources, std::string_view 
       counter = LineCounter(source.text);
     }
     entry.mistake.file = source.name;
+    entry.mistake.override_number = entry.place.source;
     if (source.has_lines) {
       counter.AdvanceTo(entry.place.offset);
       entry.mistake.line = counter.line();

@@ -1,6 +1,7 @@
 #include "tools/cli/transport_arguments.h"
 
 #include <algorithm>
+#include <tuple>
 #include <utility>
 
 #include <fmt/core.h>
@@ -14,10 +15,10 @@
 namespace fogline::cli {
 namespace {
 
-// The shortest step of a run in real time, in seconds of wall-clock time. In this time nine
-// processes must send and receive the messages of a step. The signs of life of these processes must
-// arrive within 64 steps.
-constexpr double kMinPeriodS = 0.005;
+// What may choose the transport of a run.
+constexpr const char* kTransportOption = "--transport";
+constexpr const char* kUrlOption = "--lcm-url";
+constexpr const char* kUrlVariable = "LCM_DEFAULT_URL";
 
 // The names of the roles that may be external. The recorder may not: the runner reads the result
 // from the log, so the recorder writes the log on the runner's machine.
@@ -36,9 +37,9 @@ std::string RefuseRecorder(const std::string& role) {
                                          : "";
 }
 
-/// A transport for an error message. A URL may come from three sources (Apply()).
-std::string Said(const std::string& transport) {
-  return runtime::IsLcmUrl(transport) ? transport : "--transport " + transport;
+/// The transport of a run and its source, for an error message.
+std::string Said(const runner::ExperimentOptions& options) {
+  return options.transport_source + " " + options.transport;
 }
 
 /// Adds the options that start roles on other machines.
@@ -66,14 +67,14 @@ void AddPlanOptions(CLI::App& app, hosts::PlanWords& words) {
 TransportArguments::TransportArguments(CLI::App& verb, std::string transport)
     : transport_(std::move(transport)) {
   said_ =
-      verb.add_option("--transport", transport_,
+      verb.add_option(kTransportOption, transport_,
                       fmt::format("direct: one process, no messages; memq: one process, LCM in "
                                   "memory; udpm: one process per role on a multicast port of its "
                                   "own; tcpq: the same over TCP, through a fogline-relay of its "
                                   "own; or an LCM URL{}",
                                   transport_ == "direct" ? " (with --on or --lab: udpm)" : ""))
           ->capture_default_str();
-  verb.add_option("--lcm-url", url_,
+  verb.add_option(kUrlOption, url_,
                   fmt::format("The same as --transport URL. Without either, processes{} use "
                               "$LCM_DEFAULT_URL, if set",
                               transport_ == "direct" ? " for --external" : ""))
@@ -97,24 +98,25 @@ TransportArguments::TransportArguments(CLI::App& verb, std::string transport)
   runtime::AddTrafficOptions(verb, traffic_);
 }
 
-std::string TransportArguments::Unsaid(const hosts::RunPlan& plan) const {
-  if (plan.relay) return "tcpq";
-  if (!plan.url.empty()) return plan.url;
-  const auto url = runtime::UrlOfEnvironment();
+std::pair<std::string, std::string> TransportArguments::Chosen(const hosts::RunPlan& plan) const {
+  if (!url_.empty()) return {url_, kUrlOption};
+  if (said_->count() > 0) return {transport_, kTransportOption};
+  if (plan.relay) return {"tcpq", "--relay"};
+  if (!plan.url.empty()) return {plan.url, "--lab"};
   const std::string usual = transport_ == "direct" && !plan.empty() ? "udpm" : transport_;
   const bool as_processes = usual != "direct" || !external_.empty();
-  if (!url || !as_processes) return usual;
-  runtime::CheckUrl("LCM_DEFAULT_URL", *url);
-  return *url;
+  const auto url = runtime::UrlOfEnvironment();
+  if (url && as_processes) return {*url, kUrlVariable};
+  return {usual, kTransportOption};
 }
 
 void TransportArguments::Apply(runner::ExperimentOptions& options) const {
-  if (!url_.empty()) runtime::CheckUrl("--lcm-url", url_);
-  if (runtime::IsLcmUrl(transport_)) runtime::CheckUrl("--transport", transport_);
   options.hosts = hosts::MakePlan(hosts_);
-  options.transport = !url_.empty()        ? url_
-                      : said_->count() > 0 ? transport_
-                                           : Unsaid(options.hosts);
+  std::tie(options.transport, options.transport_source) = Chosen(options.hosts);
+  const bool has_name = options.transport_source == kTransportOption || options.hosts.relay;
+  if (!has_name || runtime::IsLcmUrl(options.transport)) {
+    runtime::CheckUrl(options.transport_source, options.transport);
+  }
   options.wait = duration_cast<Duration>(std::chrono::duration<double>(wait_s_));
   options.traffic = traffic_;
   if (traffic_.key_file.empty()) options.traffic.key_file = options.hosts.key_file;
@@ -142,7 +144,7 @@ void TransportArguments::Apply(runner::ExperimentOptions& options) const {
     throw InputError(
         fmt::format("error: --external {}: no other process can join a run with {}, which is one "
                     "process",
-                    external_.front(), Said(options.transport)));
+                    external_.front(), Said(options)));
   }
 }
 
@@ -152,8 +154,7 @@ void TransportArguments::CheckHosts(const runner::ExperimentOptions& options) co
   const auto [role, place] = *plan.places.begin();
   const std::string where = fmt::format("{} on {}", NameOf(role), plan.hosts[place].name);
   if (IsOneProcess(options.transport)) {
-    throw InputError(
-        fmt::format("error: {}: a run with {} is one process", where, Said(options.transport)));
+    throw InputError(fmt::format("error: {}: a run with {} is one process", where, Said(options)));
   }
   if (plan.relay && options.transport != "tcpq") {
     throw InputError(
@@ -174,18 +175,18 @@ void TransportArguments::CheckHosts(const runner::ExperimentOptions& options) co
 }
 
 bool IsOneProcess(const std::string& transport) {
-  return transport == "direct" || transport.starts_with("memq");
+  return transport == "direct" || transport == "memq" || runtime::IsInMemory(transport);
 }
 
-void RequireProcesses(const std::string& transport, std::string_view what) {
-  if (!IsOneProcess(transport)) return;
+void RequireProcesses(const runner::ExperimentOptions& options, std::string_view what) {
+  if (!IsOneProcess(options.transport)) return;
   throw InputError(
       fmt::format("error: {}: all roles are in one process; {} needs a process for each role",
-                  Said(transport), what));
+                  Said(options), what));
 }
 
 void RunInRealtime(runner::ExperimentOptions& options, double speed) {
-  RequireProcesses(options.transport, "a run in real time");
+  RequireProcesses(options, "a run in real time");
   if (options.pace != 0) {
     throw InputError("error: --pace: limits the speed of lockstep; with --realtime use --speed");
   }
@@ -194,12 +195,8 @@ void RunInRealtime(runner::ExperimentOptions& options, double speed) {
 }
 
 void CheckPeriod(const Scenario& scenario, double speed) {
-  const double period_s = scenario.step_s / speed;
-  if (period_s >= kMinPeriodS) return;
-  throw InputError(fmt::format(
-      "error: --speed {:g}: a step of {:g} s would take {:.3g} ms of wall clock; the shortest is "
-      "{:g} ms",
-      speed, scenario.step_s, 1e3 * period_s, 1e3 * kMinPeriodS));
+  const std::string why = runner::WhyTooFast(scenario, speed);
+  if (!why.empty()) throw InputError(fmt::format("error: --speed {:g}: {}", speed, why));
 }
 
 }  // namespace fogline::cli

@@ -3,6 +3,7 @@
 
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -27,8 +28,8 @@ class TransportArguments {
   void Apply(runner::ExperimentOptions& options) const;
 
  private:
-  /// The transport of a run without --transport and --lcm-url.
-  std::string Unsaid(const hosts::RunPlan& plan) const;
+  /// The transport of a run, and the option or variable that has chosen it.
+  std::pair<std::string, std::string> Chosen(const hosts::RunPlan& plan) const;
   /// @throws InputError if roles on other machines cannot join the run
   void CheckHosts(const runner::ExperimentOptions& options) const;
 
@@ -48,8 +49,8 @@ class TransportArguments {
 bool IsOneProcess(const std::string& transport);
 
 /// @param what what needs a process for each role, such as "a live replay"
-/// @throws InputError if all roles of a run with this transport are in one process
-void RequireProcesses(const std::string& transport, std::string_view what);
+/// @throws InputError if all roles of a run with these options are in one process
+void RequireProcesses(const runner::ExperimentOptions& options, std::string_view what);
 
 /// Sets the options for a run in real time.
 /// @param speed simulated seconds per second

@@ -28,6 +28,11 @@
 namespace fogline::runner {
 namespace {
 
+// The shortest step of a run in real time, in seconds of wall-clock time. In this time nine
+// processes must send and receive the messages of a step. The signs of life of these processes must
+// arrive within 64 steps.
+constexpr double kMinPeriodS = 0.005;
+
 /// A temporary directory; the destructor removes it.
 class TemporaryDirectory {
  public:
@@ -305,6 +310,13 @@ void CheckPossible(const Scenario& scenario, const std::filesystem::path& file) 
                           .rule = "impossible",
                           .message = field ? what.substr(colon + 2) : what}});
   }
+}
+
+std::string WhyTooFast(const Scenario& scenario, double speed) {
+  const double period_s = scenario.step_s / speed;
+  if (period_s >= kMinPeriodS) return "";
+  return fmt::format("a step of {:g} s would take {:.3g} ms of wall clock; the shortest is {:g} ms",
+                     scenario.step_s, 1e3 * period_s, 1e3 * kMinPeriodS);
 }
 
 ExperimentResult RunExperiment(const Scenario& scenario, const ExperimentOptions& options) {

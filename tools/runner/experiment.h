@@ -40,6 +40,8 @@ struct ExperimentOptions {
   /// for each role, a multicast port for this run), tcpq (a process for each role, a TCP relay for
   /// this run), or an LCM URL (a process for each role on that network).
   std::string transport = "udpm";
+  /// The option or the variable that has chosen the transport, for error messages.
+  std::string transport_source = "--transport";
   /// Event log to write. If the path is empty, the run writes a temporary log, or no log with
   /// transport direct.
   std::filesystem::path log;
@@ -115,8 +117,13 @@ struct ExperimentResult {
 /// @throws ScenarioError with the rule "impossible"
 void CheckPossible(const Scenario& scenario, const std::filesystem::path& file);
 
-/// Opens the network of a run once, and closes it, so that a caller can check it before a person
-/// waits for the run. A relay of the run's own (tcpq) is not started.
+/// Says why a scenario cannot run in real time at this speed: its step would be shorter than nine
+/// processes need. "" if it can. @param speed simulated seconds per second
+std::string WhyTooFast(const Scenario& scenario, double speed);
+
+/// Opens the network of a run once, with the key and the faults of the run, and closes it. So a
+/// caller can check them before a person waits for the run, and before a file is written. A relay
+/// of the run's own (tcpq) is not started.
 /// @throws InputError, std::runtime_error as RunExperiment()
 void CheckNetwork(const ExperimentOptions& options);
 

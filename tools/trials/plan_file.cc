@@ -13,6 +13,7 @@
 
 #include "common/file.h"
 #include "common/text.h"
+#include "scenario/io/catalogue.h"
 #include "scenario/io/diagnostic_list.h"
 #include "scenario/io/json.h"
 #include "scenario/io/reader.h"
@@ -148,7 +149,7 @@ Scenario LoadChanged(const PlanFile& file, const ConditionSection& condition,
 }
 
 /// Checks the scenarios of all conditions. A mistake is at the change that makes it, or else at the
-/// name of the scenario's file.
+/// name of the scenario's file. If several conditions have this file, it is at the first of them.
 class ScenarioCheck {
  public:
   ScenarioCheck(const PlanFile& file, const JsonValue& root, DiagnosticList& mistakes)
@@ -157,34 +158,50 @@ class ScenarioCheck {
   void Check(const std::string& list, const std::vector<ConditionSection>& conditions) {
     for (std::size_t i = 0; i < conditions.size(); ++i) {
       try {
-        LoadChanged(file_, conditions[i], {});
+        const Scenario scenario = LoadChanged(file_, conditions[i], {});
+        CheckSpeed(conditions[i].name, scenario);
       } catch (const ScenarioError& error) {
         for (const Diagnostic& mistake : error.diagnostics()) {
-          Add(fmt::format("{}/{}", list, i), conditions[i], mistake);
+          Add(fmt::format("{}/{}", list, i), mistake);
         }
       }
     }
   }
 
+  /// The command that prints what is allowed in place of the first mistake.
+  const std::string& allowed() const { return allowed_; }
+
  private:
-  void Add(const std::string& condition, const ConditionSection& section,
-           const Diagnostic& mistake) {
-    const auto change = std::ranges::find_if(
-        section.set, [&](const std::string& text) { return mistake.file == "--set " + text; });
-    const bool is_change = change != section.set.end();
+  void CheckSpeed(const std::string& condition, const Scenario& scenario) {
+    const double speed = file_.plan.speed;
+    const std::string why = WhyNotAt(speed, scenario);
+    if (why.empty()) return;
+    mistakes_.Add(FindPlace(root_, "/speed"), "/speed", "range",
+                  fmt::format("{} in condition {}: {}", NumberText(speed), Quote(condition), why));
+  }
+
+  void Add(const std::string& condition, const Diagnostic& mistake) {
+    const bool is_change = mistake.override_number > 0;
     std::string what = is_change ? "" : PathText(mistake.file) + ": ";
     if (mistake.line > 0)
       what = fmt::format("{}:{}:{}: ", PathText(mistake.file), mistake.line, mistake.column);
     if (!mistake.pointer.empty()) what += Shown(mistake.pointer) + ": ";
     const std::string pointer =
-        is_change ? fmt::format("{}/set/{}", condition, change - section.set.begin())
+        is_change ? fmt::format("{}/set/{}", condition, mistake.override_number - 1)
                   : condition + "/scenario";
-    mistakes_.Add(FindPlace(root_, pointer), pointer, mistake.rule, what + mistake.message);
+    what += mistake.message;
+    if (!is_change && mistake.line > 0 && !in_files_.insert(what).second) return;
+    if (mistakes_.empty() && !mistake.pointer.empty()) {
+      allowed_ = "fogline check --explain " + NearestKnownPointer(mistake.pointer);
+    }
+    mistakes_.Add(FindPlace(root_, pointer), pointer, mistake.rule, std::move(what));
   }
 
   const PlanFile& file_;
   const JsonValue& root_;
   DiagnosticList& mistakes_;
+  std::set<std::string> in_files_;  // the mistakes of scenario files, each with its place
+  std::string allowed_{kAllowed};
 };
 
 /// @throws ScenarioError if a condition has no scenario that can run
@@ -194,10 +211,17 @@ void CheckScenarios(const PlanFile& file) {
   ScenarioCheck check(file, root, mistakes);
   check.Check("/conditions", file.plan.conditions);
   check.Check("/practice", file.plan.practice);
-  if (!mistakes.empty()) mistakes.Throw({{.name = file.file.string(), .text = file.text}});
+  if (!mistakes.empty()) {
+    mistakes.Throw({{.name = file.file.string(), .text = file.text}}, check.allowed());
+  }
 }
 
 }  // namespace
+
+std::string WhyNotAt(double speed, const Scenario& scenario) {
+  if (scenario.person.drives && speed != 1) return "a person drives at speed 1";
+  return runner::WhyTooFast(scenario, speed);
+}
 
 ExperimentPlan ParsePlan(std::string_view text, std::string_view name) {
   const std::vector<Source> sources{{.name = std::string(name), .text = text}};

@@ -25,9 +25,13 @@ struct PlanFile {
 };
 
 /// Reads an experiment, and checks that the scenario of each condition can be run.
-/// @throws InputError with every mistake of the file, or with the first condition that cannot be
-/// run
+/// @throws ScenarioError with every mistake of the file; if it has none, with every mistake of its
+///     scenarios. A mistake in a scenario's file is at the first condition with this file
 PlanFile LoadPlan(const std::filesystem::path& file);
+
+/// Says why trials with this scenario cannot be made at this speed. "" if they can.
+/// @param speed simulated seconds per second
+std::string WhyNotAt(double speed, const Scenario& scenario);
 
 /// The scenario of a condition.
 /// @param more overrides that prevail over those of the condition

@@ -120,7 +120,7 @@ int LiveReplay::Run(const std::filesystem::path& recorded, std::optional<std::in
   const Scenario scenario = LiveScenario(recorded, messages, overrides_);
   runner::ExperimentOptions options;
   options.transport = transport_;
-  cli::RequireProcesses(transport_, "a live replay");
+  cli::RequireProcesses(options, "a live replay");
   if (realtime_) {
     const double of_log = run.realtime ? run.realtime->speed : 1;
     const double speed = speed_ > 0 ? speed_ : of_log;

@@ -90,10 +90,13 @@ TEST(TransportArgumentsTest, RefuseContradictions) {
             "error: --external acc: no other process can join a run with --transport memq, which "
             "is one process");
   EXPECT_EQ(Refusal({"--lcm-url", "memq://", "--external", "acc"}),
-            "error: --external acc: no other process can join a run with memq://, which is one "
-            "process");
-  EXPECT_EQ(ErrorOf([] { cli::RequireProcesses("memq://", "a trial"); }),
-            "error: memq://: all roles are in one process; a trial needs a process for each role");
+            "error: --external acc: no other process can join a run with --lcm-url memq://, "
+            "which is one process");
+  const EnvironmentUrl environment;
+  environment.Set("memq://");
+  EXPECT_EQ(ErrorOf([] { cli::RequireProcesses(Read({}), "a trial"); }),
+            "error: LCM_DEFAULT_URL memq://: all roles are in one process; a trial needs a process "
+            "for each role");
   try {
     Read({"--external", "recorder"});
     FAIL() << "a run cannot wait for a recorder";

@@ -8,11 +8,14 @@
 #include <string>
 
 #include "tests/support/command.h"
+#include "tests/support/input_errors.h"
 
 namespace fogline::trials {
 namespace {
 
+using ::testing::EndsWith;
 using ::testing::HasSubstr;
+using ::testing::Not;
 using ::testing::SizeIs;
 using ::testing::StartsWith;
 
@@ -97,8 +100,10 @@ TEST(PlanFileTest, EachMistakeOfAScenarioIsNamedWithItsLineAndField) {
   std::ofstream(folder.File("wrong.json")) << "{\n  \"steps\": 0, \"version\": 1\n}\n";
   std::ofstream(folder.File("e.json"))
       << "{\"version\": 1, \"conditions\": [\n{\"name\": \"wild\", \"scenario\": \"" << paper
-      << "\", \"set\": [\"/steps=1\", \"/arbitrator/threshold=7\"]},\n"
-      << R"({"name": "wrong", "scenario": "wrong.json"}], "practice": [{"name": "gone", )"
+      << "\", \"set\": [\"/steps=1\", \"/arbitrator/threshold=7\", \"/lead/recorded/fil="
+      << std::string(200, 'x') << "\"]},\n"
+      << R"({"name": "wrong", "scenario": "wrong.json"},)"
+      << R"({"name": "again", "scenario": "wrong.json"}], "practice": [{"name": "gone", )"
       << "\n"
       << R"("scenario": "gone.json"}]})";
   try {
@@ -114,8 +119,30 @@ TEST(PlanFileTest, EachMistakeOfAScenarioIsNamedWithItsLineAndField) {
     EXPECT_THAT(error.what(), HasSubstr("e.json:4:"));
     EXPECT_THAT(error.what(), HasSubstr(": error: /practice/0/scenario: " +
                                         folder.File("gone.json") + ": cannot be read"));
-    EXPECT_THAT(error.what(), HasSubstr("3 errors; "));
+    EXPECT_THAT(error.what(), HasSubstr(": error: /conditions/0/set/2: /lead/recorded/fil: "));
+    EXPECT_THAT(error.what(), Not(HasSubstr("/conditions/2")));
+    EXPECT_THAT(error.what(), EndsWith("\n4 errors; what is allowed: fogline check --explain "
+                                       "/arbitrator/threshold"));
   }
+}
+
+TEST(PlanFileTest, ASpeedAtWhichNoTrialCanBeMadeIsRefused) {
+  const test::ScratchFolder folder;
+  const auto error_at = [&folder](const std::string& speed, const std::string& set) {
+    const std::string paper = (test::SourceDirectory() / "scenario/paper.json").string();
+    std::ofstream(folder.File("e.json"))
+        << "{\"version\": 1, \"speed\": " << speed << ",\n\"conditions\": [{\"name\": \"a\", "
+        << "\"scenario\": \"" << paper << "\", \"set\": [" << set << "]}]}";
+    return test::ErrorOf([&folder] { LoadPlan(folder.File("e.json")); });
+  };
+  EXPECT_EQ(error_at("20", ""), "");
+  EXPECT_THAT(error_at("50", ""),
+              HasSubstr("e.json:1:25: error: /speed: 50 in condition \"a\": a step of 0.1 s would "
+                        "take 2 ms of wall clock; the shortest is 5 ms"));
+  EXPECT_EQ(error_at("1", "\"/person/drives=true\""), "");
+  EXPECT_THAT(
+      error_at("2", "\"/person/drives=true\""),
+      HasSubstr("e.json:1:25: error: /speed: 2 in condition \"a\": a person drives at speed 1"));
 }
 
 }  // namespace
