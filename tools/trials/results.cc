@@ -1,5 +1,6 @@
 #include "tools/trials/results.h"
 
+#include <algorithm>
 #include <utility>
 
 #include <fmt/core.h>
@@ -25,6 +26,23 @@ bool HasBegun(const std::filesystem::path& log) {
   }
 }
 
+/// Says why a log is not of this trial: its facts name another trial, or it has none. "" if it is.
+std::string WhyForeign(const PlanFile& plan, const Trial& trial,
+                       const std::vector<trial_t>& facts) {
+  if (facts.empty()) return "the log has no facts of a trial";
+  for (const trial_t& fact : facts) {
+    if (fact.participant != trial.participant || fact.trial != trial.number ||
+        (fact.practice != 0) != trial.practice ||
+        fact.condition != ConditionOf(plan.plan, trial).name) {
+      return fmt::format("the log is of {} {} of participant {} in condition {}",
+                         fact.practice != 0 ? "practice run" : "trial", fact.trial,
+                         fact.participant, Quote(fact.condition));
+    }
+    if (fact.experiment_hash != plan.hash) return "the log is of another version of the experiment";
+  }
+  return "";
+}
+
 }  // namespace
 
 Results::Results(const PlanFile& plan, std::filesystem::path folder)
@@ -42,6 +60,7 @@ Results::Results(const PlanFile& plan, std::filesystem::path folder)
   }
   const FileText kept = ReadFile(Kept(), kMaxFileBytes);
   if (kept.error.empty() && kept.text == plan.text) return;
+  if (kept.error.empty() && !HaveLogs()) return;
   throw InputError(
       fmt::format("{}: error: --results: the experiment began with another version of {}, which is "
                   "{}; go on with that file, or give another folder",
@@ -49,8 +68,8 @@ Results::Results(const PlanFile& plan, std::filesystem::path folder)
 }
 
 void Results::Create() const {
-  std::error_code missing;
-  if (std::filesystem::exists(Kept(), missing)) return;
+  const FileText kept = ReadFile(Kept(), kMaxFileBytes);
+  if (kept.error.empty() && kept.text == plan_.text) return;
   RequireFolderOf(folder_, "--results");
   std::error_code failed;
   std::filesystem::create_directory(folder_, failed);
@@ -62,7 +81,14 @@ void Results::Create() const {
   file.Finish();
 }
 
-FileLock Results::Begin(std::int64_t participant) const {
+bool Results::HaveLogs() const {
+  std::error_code unreadable;
+  const std::filesystem::recursive_directory_iterator files(folder_, unreadable);
+  return std::any_of(begin(files), end(files),
+                     [](const auto& entry) { return entry.path().extension() == ".lcm"; });
+}
+
+std::unique_ptr<FileLock> Results::Begin(std::int64_t participant) const {
   Create();
   const std::filesystem::path folder = FolderOf(participant);
   std::error_code failed;
@@ -70,7 +96,7 @@ FileLock Results::Begin(std::int64_t participant) const {
   if (failed) {
     throw InputError(fmt::format("{}: error: --results: {}", PathText(folder), failed.message()));
   }
-  return {folder, FileLock::Kind::kOwn, "--participant", "session"};
+  return std::make_unique<FileLock>(folder, FileLock::Kind::kOwn, "--participant", "session");
 }
 
 std::filesystem::path Results::FolderOf(std::int64_t participant) const {
@@ -94,6 +120,11 @@ TrialRecord Results::Read(const Trial& trial) const {
   if (record.attempts == 0) return record;
   record.log = LogOf(trial, record.attempts);
   record.story = ReadStory(record.log);
+  const TrialStory& story = record.story;
+  if (story.state == TrialState::kBroken && story.facts.empty()) return record;
+  if (std::string why = WhyForeign(plan_, trial, story.facts); !why.empty()) {
+    record.story = {.state = TrialState::kBroken, .note = std::move(why)};
+  }
   return record;
 }
 

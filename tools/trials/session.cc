@@ -82,7 +82,7 @@ class Session {
     std::vector<trial_t> facts =
         RunLogged(scenario, path, BaseOf(trial, attempt, scenario.seed), std::move(pedals));
     ++outcome_.runs;
-    record = results_.Read(trial);
+    record = {.trial = trial, .attempts = attempt, .log = path, .story = ReadStory(path)};
     if (record.story.state == TrialState::kBroken) {
       throw std::runtime_error(fmt::format("{}: {}", PathText(path), record.story.note));
     }

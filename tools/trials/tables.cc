@@ -163,6 +163,9 @@ class TableMaker {
       for (const TrialRecord& record : results_.ReadAll(participant)) {
         if (record.story.state != TrialState::kDone) ++tables_.missing;
         if (record.attempts > 0) Add(record, order);
+        if (record.attempts > 0 && !record.story.note.empty()) {
+          tables_.faults.push_back(PathText(record.log) + ": " + record.story.note);
+        }
       }
     }
     return std::move(tables_);

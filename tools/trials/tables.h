@@ -17,8 +17,9 @@ struct Tables {
   /// A row for each answer, measure and marker: participant, trial, condition, kind, item, value,
   /// unit.
   std::string values;
-  std::int64_t rows = 0;     // of `trials`
-  std::int64_t missing = 0;  // trials that are not done, practice runs included
+  std::int64_t rows = 0;            // of `trials`
+  std::int64_t missing = 0;         // trials that are not done, practice runs included
+  std::vector<std::string> faults;  // of logs, as "LOG: fault"
 };
 
 /// Reads the newest log of each trial. Cells without a value are empty. Texts are quoted as in RFC

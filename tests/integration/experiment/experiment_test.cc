@@ -18,12 +18,10 @@
 #include "services/log/event_log.h"
 #include "services/log/log_seal.h"
 #include "services/runtime/wire/wire.h"
+#include "tests/integration/experiment/experiment_fixture.h"
 #include "tests/integration/experiment/page_session.h"
 #include "tests/support/command.h"
-#include "tests/support/machine.h"
-#include "tests/support/network.h"
 #include "tests/support/web_client.h"
-#include "tests/unit/tools/trials/desk/taken_port.h"
 
 namespace fogline::test {
 namespace {
@@ -32,85 +30,7 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::SizeIs;
 
-constexpr int kParticipants = 4;
-// The answers of one run: Enter, six scales of workload, one scale of sleepiness. They differ for
-// each participant and run.
-std::string AnswersOf(int participant, int run) {
-  std::string lines = "\n";
-  for (int scale = 0; scale < 6; ++scale) {
-    lines += fmt::format("{}\n", 5 * (participant + run + scale));
-  }
-  return lines + fmt::format("{}\n", participant + run);
-}
-
-/// An experiment with four participants and three conditions. Each run has 80 steps of 0.1 s, at
-/// ten times real speed.
-class ExperimentRealtimeTest : public ::testing::Test {
- protected:
-  ExperimentRealtimeTest() {
-    const std::string paper = (SourceDirectory() / "scenario/paper.json").string();
-    const auto condition = [&paper](const std::string& name, double threshold) {
-      return nlohmann::json{
-          {"name", name},
-          {"scenario", paper},
-          {"set", {"/steps=80", fmt::format("/arbitrator/threshold={}", threshold)}}};
-    };
-    const nlohmann::json plan{
-        {"version", 1},
-        {"title", "Test"},
-        {"participants", kParticipants},
-        {"seeds", "trial"},
-        {"speed", 10},
-        {"conditions", {condition("low", 0.2), condition("mid", 0.5), condition("high", 0.8)}},
-        {"breaks", {{{"after_trial", 1}, {"at_least_s", 0.1}}}},
-        {"questionnaires",
-         {{{"name", "tlx"}, {"kind", "nasa_tlx"}}, {{"name", "kss"}, {"kind", "kss"}}}}};
-    std::ofstream(file_) << plan.dump(2);
-  }
-
-  /// A shell command that makes the trials of a participant from run `first` on, with the answers
-  /// of AnswersOf().
-  std::vector<std::string> Session(int participant, int first = 1) const {
-    const std::string input = folder_.File(fmt::format("answers-{}-{}.txt", participant, first));
-    std::ofstream answers(input);
-    for (int run = first; run <= 3; ++run) answers << AnswersOf(participant, run);
-    return {"sh", "-c",
-            fmt::format("exec {} experiment run {} --results {} --participant {} --no-page < {}",
-                        Program("fogline"), file_, results_, participant, input)};
-  }
-
-  Outcome Experiment(const std::string& action, const std::vector<std::string>& more = {}) const {
-    std::vector<std::string> command{Program("fogline"), "experiment", action, file_,
-                                     "--results",        results_};
-    command.insert(command.end(), more.begin(), more.end());
-    return RunCommand(command);
-  }
-
-  /// The rows of trials.csv, by the names of the columns. @param code 1 if trials are missing
-  std::vector<std::map<std::string, std::string>> ExportedTrials(int code = 0) const {
-    const std::string out = folder_.File("tables");
-    const Outcome outcome = Experiment("export", {"--out", out, "--force"});
-    EXPECT_EQ(outcome.code, code) << outcome.err;
-    std::istringstream lines(Content(out + "/trials.csv"));
-    std::vector<std::vector<std::string>> table;
-    for (std::string line; std::getline(lines, line);) {
-      auto& row = table.emplace_back();
-      std::istringstream cells(line + ",");
-      for (std::string cell; std::getline(cells, cell, ',');) row.push_back(cell);
-    }
-    std::vector<std::map<std::string, std::string>> rows;
-    for (std::size_t i = 1; i < table.size(); ++i) {
-      EXPECT_EQ(table[i].size(), table[0].size()) << "row " << i;
-      auto& row = rows.emplace_back();
-      for (std::size_t k = 0; k < table[i].size(); ++k) row[table[0][k]] = table[i][k];
-    }
-    return rows;
-  }
-
-  ScratchFolder folder_;
-  std::string file_ = folder_.File("experiment.json");
-  std::string results_ = folder_.File("results");
-};
+class ExperimentRealtimeTest : public ExperimentFixture {};
 
 TEST_F(ExperimentRealtimeTest, ASessionThatIsKilledInARunLosesNothing) {
   ASSERT_EQ(RunCommand(Session(1)).code, 0);
@@ -334,77 +254,34 @@ TEST_F(ExperimentRealtimeTest, AMeasureThatMissingMessagesMakeUnknownHasNoValue)
   EXPECT_EQ(row.at("min_host_gap_m"), whole.at("min_host_gap_m"));
 }
 
-TEST_F(ExperimentRealtimeTest, ATitleThatNoLogCanHoldIsRefusedBeforeTheFirstRun) {
-  auto plan = nlohmann::json::parse(Content(file_));
-  std::string title;
-  for (int i = 0; i < 60; ++i) title += "\u00e4";  // two bytes each
-  plan["title"] = title;
-  std::ofstream(file_) << plan.dump(2);
-  const Outcome outcome = RunCommand(Session(1));
-  EXPECT_EQ(outcome.code, 2);
-  EXPECT_THAT(outcome.err, AllOf(HasSubstr(file_), HasSubstr("/title: \"\u00e4"),
-                                 HasSubstr("has 120 bytes; at most 100 are allowed")));
-  EXPECT_FALSE(std::filesystem::exists(results_));
-}
-
-TEST_F(ExperimentRealtimeTest, WrongArgumentsAreRefused) {
-  const Outcome none = Experiment("run", {"--participant", "5"});
-  EXPECT_EQ(none.code, 2);
-  EXPECT_THAT(none.err, HasSubstr("the experiment has participants 1 to 4"));
-  const Outcome direct = Experiment("run", {"--participant", "1", "--transport", "direct"});
-  EXPECT_EQ(direct.code, 2);
-  EXPECT_THAT(direct.err, HasSubstr("a trial needs a process for each role"));
-}
-
-TEST_F(ExperimentRealtimeTest, WhatASessionNeedsIsCheckedBeforeAnythingIsWritten) {
-  const auto refused = [this](const std::vector<std::string>& more, int code,
-                              const std::string& why) {
-    std::vector<std::string> words{"--participant", "1"};
-    words.insert(words.end(), more.begin(), more.end());
-    const Outcome outcome = Experiment("run", words);
-    EXPECT_EQ(outcome.code, code) << why;
-    EXPECT_EQ(outcome.out, "");
-    EXPECT_THAT(outcome.err, testing::StartsWith("fogline experiment run: error: " + why));
-    EXPECT_FALSE(std::filesystem::exists(results_)) << why;
-  };
-  refused({"--faults", "flip=0.1"}, 2, "--faults: truncate and flip need --key");
-  refused({"--lcm-url", "udpm://239.255.76.67:7700?ttl=x"}, 2,
-          "--lcm-url udpm://239.255.76.67:7700?ttl=x: ttl is \"x\"");
-  refused({"--lcm-url", "tcpq://127.0.0.1:1"}, 3, "no process listens on 127.0.0.1:1");
-  refused({"--evdev", "/dev/null"}, 2, "--evdev /dev/null: no input device");
-  refused({"--listen", "203.0.113.7"}, 2, "--listen: 203.0.113.7 is no address of this machine");
-  TakenPort taken(0);
-  ASSERT_TRUE(taken.Take());
-  const std::string port = std::to_string(taken.port());
-  refused({"--participant-port", port}, 2, "--participant-port " + port + ": cannot listen on");
-}
-
-TEST_F(ExperimentRealtimeTest, TheUsualNetworkIsAlsoCheckedBeforeAnythingIsWritten) {
-  if (const std::string why = WhyNoMachines(); !why.empty())
-    return MachineLacks("root, network namespaces or nftables: " + why);
-  const Machine lonely("lab1");
-  lonely.Do("ip link set lo down");
-  const Outcome outcome =
-      RunCommand(lonely.On({Program("fogline"), "experiment", "run", file_, "--results", results_,
-                            "--participant", "1", "--no-page"}));
-  EXPECT_EQ(outcome.code, 2);
-  EXPECT_THAT(outcome.err, HasSubstr("Network is unreachable"));
-  EXPECT_EQ(outcome.out, "");
-  EXPECT_FALSE(std::filesystem::exists(results_));
-}
-
-TEST_F(ExperimentRealtimeTest, ASessionThatHasNothingToDriveNeedsNoNetwork) {
+TEST_F(ExperimentRealtimeTest, ALogOfAnotherTrialIsNotTakenForThisOne) {
   ASSERT_EQ(RunCommand(Session(1)).code, 0);
-  const Outcome outcome =
-      Experiment("run", {"--participant", "1", "--no-page", "--lcm-url", "tcpq://127.0.0.1:1"});
-  EXPECT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_THAT(outcome.out, HasSubstr("participant 1: all trials are done; 0 runs now"));
-}
-
-TEST_F(ExperimentRealtimeTest, AnEmptyTextIsRefused) {
-  const Outcome outcome = Experiment("export", {"--out", ""});
-  EXPECT_EQ(outcome.code, 2);
-  EXPECT_THAT(outcome.err, HasSubstr("fogline experiment export: error: --out: the text is empty"));
+  // GIVEN a log under the name of another participant's trial, and one of a run without a trial
+  const std::filesystem::path other = std::filesystem::path(results_) / "participant-02";
+  std::filesystem::create_directory(other);
+  const std::filesystem::path own = std::filesystem::path(results_) / "participant-01";
+  std::filesystem::copy_file(own / "trial-1-low.lcm", other / "trial-1-mid.lcm");
+  ASSERT_EQ(RunCommand({Program("fogline"), "run", "scenario/paper.json", "--quiet", "--log",
+                        (other / "trial-2-high.lcm").string()})
+                .code,
+            0);
+  const Outcome status = Experiment("status");
+  EXPECT_EQ(status.code, 1);
+  EXPECT_THAT(status.out, AllOf(HasSubstr("3 of 12 trials"),
+                                HasSubstr("the log is of trial 1 of participant 1 in condition "
+                                          "\"low\""),
+                                HasSubstr("the log has no facts of a trial")));
+  // THEN the tables name both logs, and have no answer and no measure of them.
+  const auto rows = ExportedTrials(1);
+  ASSERT_THAT(rows, SizeIs(5));
+  for (const auto& row : {rows[3], rows[4]}) {
+    EXPECT_EQ(row.at("state"), "broken");
+    EXPECT_EQ(row.at("kss.sleepiness"), "");
+    EXPECT_EQ(row.at("collision"), "");
+  }
+  // AND the trials are run again, into logs of their own.
+  EXPECT_EQ(RunCommand(Session(2)).code, 0);
+  EXPECT_THAT(Experiment("status").out, HasSubstr("6 of 12 trials"));
 }
 
 }  // namespace

@@ -3,10 +3,14 @@
 #pragma once
 
 #include <filesystem>
+#include <system_error>
 
+#include <fmt/core.h>
 #include <CLI/CLI.hpp>
 
 #include "common/atomic_file.h"
+#include "common/errors.h"
+#include "common/text.h"
 #include "tools/cli/action.h"
 #include "tools/cli/arguments.h"
 #include "tools/cli/help.h"
@@ -25,6 +29,13 @@ class PlanArguments {
   trials::PlanFile Load() const { return trials::LoadPlan(file_); }
   std::filesystem::path results() const {
     return results_.empty() ? std::filesystem::path(kDefaultFolder) / file_.stem() : results_;
+  }
+  /// @throws InputError if --results names no folder
+  void RequireResults() const {
+    std::error_code missing;
+    if (results_.empty() || std::filesystem::exists(results_, missing)) return;
+    throw InputError(
+        fmt::format("{}: error: --results: there is no such folder", PathText(results_)));
   }
 
  private:

@@ -84,6 +84,7 @@ void PrintParticipant(const ExperimentPlan& plan, std::int64_t participant,
 
 int PrintStatus(const StatusArguments& arguments) {
   const trials::PlanFile plan = arguments.plan.Load();
+  arguments.plan.RequireResults();
   const trials::Results results(plan, arguments.plan.results());
   nlohmann::ordered_json participants = nlohmann::ordered_json::array();
   std::int64_t done = 0;
@@ -152,6 +153,7 @@ int ExportTables(const TablesArguments& arguments) {
     RefuseToReplace(file, "--out", arguments.force, "table of an experiment", trials::IsTrialTable);
   }
   const trials::PlanFile plan = arguments.plan.Load();
+  arguments.plan.RequireResults();
   const trials::Results results(plan, arguments.plan.results());
   WatchInterrupts();
   const trials::Tables tables = trials::MakeTables(plan, results);
@@ -161,6 +163,7 @@ int ExportTables(const TablesArguments& arguments) {
   files.Add(values).Write(tables.values);
   files.Finish();
   fmt::print("{}\n{}\n", PathText(rows), PathText(values));
+  for (const std::string& fault : tables.faults) Complain(EscapeControls(fault));
   if (tables.missing == 0) return kDone;
   Complain(
       fmt::format("fogline experiment: {} trials and practice runs are not done", tables.missing));

@@ -124,7 +124,7 @@ trials::SessionOptions SessionOf(const RunTrialsArguments& arguments, const Expe
   }
   if (options.pedals) options.overrides.push_back("/person/drives=true");
   arguments.transport.Apply(options.run);
-  cli::RequireProcesses(options.run.transport, "a trial");
+  cli::RequireProcesses(options.run, "a trial");
   return options;
 }
 
@@ -158,6 +158,21 @@ void CheckSeat(const RunTrialsArguments& arguments, const trials::PlanFile& plan
       Quote(driven->name)));
 }
 
+/// Checks that the trials can be made at the speed of --speed, with the person of --keys or
+/// --evdev.
+/// @throws InputError
+void CheckSpeed(const trials::PlanFile& plan, const trials::SessionOptions& options) {
+  for (const auto* list : {&plan.plan.practice, &plan.plan.conditions}) {
+    for (const ConditionSection& condition : *list) {
+      const Scenario scenario = trials::LoadCondition(plan, condition, options.overrides);
+      const std::string why = trials::WhyNotAt(options.speed, scenario);
+      if (why.empty()) continue;
+      throw InputError(fmt::format("error: speed {:g} in condition {}: {}", options.speed,
+                                   Quote(condition.name), why));
+    }
+  }
+}
+
 /// @throws InputError if two pages have the same port
 void CheckPorts(const RunTrialsArguments& arguments) {
   const std::array<std::pair<const char*, std::uint16_t>, 3> ports{
@@ -176,10 +191,12 @@ void CheckPorts(const RunTrialsArguments& arguments) {
 /// If a trial of the participant needs a run, opens the device and the network of the session once,
 /// before a person waits for the run.
 /// @throws InputError; std::runtime_error if the network cannot be reached
-void CheckMeans(const trials::Results& results, const trials::SessionOptions& options) {
-  if (std::ranges::none_of(results.ReadAll(options.participant), &trials::TrialRecord::NeedsRun)) {
-    return;
-  }
+void CheckMeans(const ExperimentPlan& plan, const trials::Results& results,
+                const trials::SessionOptions& options) {
+  const auto needs_run = [&results](const trials::Trial& trial) {
+    return results.Read(trial).NeedsRun();
+  };
+  if (std::ranges::none_of(trials::ScheduleOf(plan, options.participant), needs_run)) return;
   if (options.pedals) options.pedals(PersonSection());
   runner::CheckNetwork(options.run);
 }
@@ -216,15 +233,19 @@ void PrintAddresses(const trials::PageDesk& pages) {
 int RunTrials(const RunTrialsArguments& arguments) {
   const trials::PlanFile plan = arguments.plan.Load();
   trials::SessionOptions options = SessionOf(arguments, plan.plan);
+  CheckSpeed(plan, options);
   CheckSeat(arguments, plan);
   CheckPorts(arguments);
   const trials::Results results(plan, arguments.plan.results());
-  CheckMeans(results, options);
+  // If another session has the participant, the error says so. It would have the pages' ports, too.
+  const bool has_begun = std::filesystem::exists(results.FolderOf(arguments.participant));
+  auto lock = has_begun ? results.Begin(arguments.participant) : nullptr;
+  CheckMeans(plan.plan, results, options);
   WatchInterrupts();
   const auto pages = arguments.no_page ? nullptr : ServePages(arguments, options.run.traffic);
-  // Nothing is written before this line. The addresses of a session that may not begin are not
-  // printed.
-  const FileLock lock = results.Begin(arguments.participant);
+  // The first session of a participant has written nothing before this line. The addresses of a
+  // session that may not begin are not printed.
+  if (!lock) lock = results.Begin(arguments.participant);
   if (pages) PrintAddresses(*pages);
   trials::TerminalDesk terminal;
   trials::Desk& desk = pages ? static_cast<trials::Desk&>(*pages) : terminal;

@@ -68,8 +68,15 @@ TEST(ResultsTest, AFolderBelongsToOneVersionOfAnExperiment) {
   const Results results(plan, folder.path() / "r");
   results.Create();
   EXPECT_NO_THROW(Results(plan, folder.path() / "r"));
+  // Without a log the file may change.
   PlanFile other = Plan();
   other.text = "{ }\n";
+  Results(other, folder.path() / "r").Create();
+  EXPECT_EQ(test::Content(folder.File("r/experiment.json")), other.text);
+  results.Create();
+  EXPECT_EQ(test::Content(folder.File("r/experiment.json")), plan.text);
+  std::filesystem::create_directories(results.FolderOf(1));
+  std::ofstream(results.FolderOf(1) / "trial-1-fog.lcm") << "no log";
   try {
     Results(other, folder.path() / "r");
     FAIL() << "accepted";

@@ -50,6 +50,7 @@ class TablesTest : public ::testing::Test {
     trial_t answer{};
     answer.header.run_id = story.run_id;
     answer.participant = answer.trial = answer.attempt = 1;
+    answer.condition = "fog";
     answer.kind = trial_t::ANSWER;
     answer.questionnaire = "speed";
     answer.item = "guess";
@@ -95,6 +96,7 @@ TEST_F(TablesTest, ATrialHasTheMeasuresOfItsFirstRequest) {
       test::SourceDirectory() / "scenario/dense_fog.json",
       {"/steps=120", "/fog/start_s=1", "/fog/duration_s=4", "/arbitrator/take_over/mode=requested",
        "/arbitrator/take_over/time/mean_s=2", "/arbitrator/take_over/time/std_s=0.01"}));
+  Answer(6);
   const runner::LoggedRun run = runner::ReadLoggedRun(log_);
   ASSERT_FALSE(run.result.take_overs.empty());
   const metrics::TakeOverMeasures& first = run.result.take_overs[0];
@@ -126,6 +128,7 @@ TEST_F(TablesTest, ARunWithoutARequestHasNoMeasuresOfOne) {
   Scenario scenario;
   scenario.steps = 20;
   Run(scenario);
+  Answer(6);
   const std::map<std::string, std::string> row = Row();
   ASSERT_TRUE(row.contains("requests"));
   EXPECT_EQ(row.at("requests"), "0");
