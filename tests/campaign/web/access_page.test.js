@@ -19,7 +19,7 @@ test("a page without the key says what is missing", async (t) => {
   const log = recordedRun(scratch(t));
   const address = await view(t, [log, "--listen", "127.0.0.1"]);
   const page = await open(t, await browser(t), address.replace(/#.*/, ""));
-  await page.waitForFunction(() => document.getElementById("problem").textContent.includes("contains a key"));
+  await page.waitForFunction(() => document.getElementById("problem").textContent.includes("contains a token"));
   page.trouble = page.trouble.filter((words) => !words.includes("WebSocket"));  // of the refusal
 });
 

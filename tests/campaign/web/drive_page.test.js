@@ -229,7 +229,7 @@ test("with --listen only the driver's token gives the seat", async (t) => {
   await page.waitForFunction(() => foglineDrive.state === "yours");
   assert.ok(!page.url().includes("token"), page.url());
   const wrong = await open(t, started, drive.replace(/#.*/, new URL(view).hash));
-  await wrong.waitForFunction(() => document.getElementById("problem").textContent.includes("contains a key"));
+  await wrong.waitForFunction(() => document.getElementById("problem").textContent.includes("contains a token"));
   await wrong.close();  // otherwise it tries again
   wrong.trouble = wrong.trouble.filter((words) => !words.includes("WebSocket"));  // of the refusal
 });
@@ -305,6 +305,23 @@ test("when Tab comes back to the page, it reaches the button to take over before
     reached.push(await page.evaluate(() => document.activeElement.id));
   }
   assert.deepEqual(reached, ["setup-open", "begin", "take-over"]);
+});
+
+test("a changed condition of driving shows who drives now, also between two frames", async (t) => {
+  const {address} = await startDrive(t, {"/steps": 30000});
+  const page = await open(t, await browser(t), address);
+  await begin(page);
+  await page.waitForFunction(() => !document.getElementById("take-over").disabled);
+  // A message says that the human drives. Neither a frame nor the next message comes in this call.
+  const areDisabled = await page.evaluate(() => {
+    const HUMAN = 1;  // host_command_t
+    Object.assign(foglineDrive.newest.frame.HOST_COMMAND, {mode: HUMAN, lambda_human: 1});
+    const buttons = ["take-over", "give-back"].map((id) => document.getElementById(id));
+    const before = buttons.map(({disabled}) => disabled);
+    foglineDrive.set("focused", true);
+    return [before, buttons.map(({disabled}) => disabled)];
+  });
+  assert.deepEqual(areDisabled, [[false, true], [true, false]]);
 });
 
 test("the page says nothing of conflict, threshold or condition", async (t) => {

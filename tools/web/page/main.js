@@ -292,7 +292,7 @@ class Page {
     sayOrigin(this);
     if (state === "refused") {
       this.complain("The server does not answer. If it listens for other machines, open exactly " +
-                    "the address that it has printed: the address contains a key.");
+                    "the address that it has printed: the address contains a token.");
     } else {
       byId("problem").hidden = true;
     }

@@ -30,12 +30,21 @@ bool IsAddressInNumbers(const std::string& name) {
   return inet_pton(AF_INET, name.c_str(), &ignored) == 1;
 }
 
-/// Whether "HOST" has no port, or "HOST:PORT" has a port from 1 to 65535. HOST may be "[IPv6]".
-bool HasGoodPort(std::string_view host_and_port) {
-  const std::size_t from = host_and_port.starts_with('[') ? host_and_port.find(']') : 0;
-  const std::size_t colon = host_and_port.find(':', from);
-  if (colon == std::string_view::npos) return true;
-  return ParseNumber<std::uint16_t>(host_and_port.substr(colon + 1)).value_or(0) > 0;
+/// Whether a browser may write this text after the scheme of an origin: "HOST" or "HOST:PORT",
+/// where HOST may be "[IPv6]" and PORT is a number from 1 to 65535.
+bool IsHostAndPort(std::string_view text) {
+  std::size_t end = text.find(':');
+  if (text.starts_with('[')) {
+    const std::size_t bracket = text.find(']');
+    if (bracket == std::string_view::npos) return false;
+    end = bracket + 1;
+  }
+  const std::string_view host = text.substr(0, end);
+  const std::string_view port = text.substr(host.size());
+  if (host.empty()) return false;
+  if (port.empty()) return true;
+  return port.starts_with(':') && !port.starts_with(":0") &&
+         ParseNumber<std::uint16_t>(port.substr(1)).has_value();
 }
 
 }  // namespace
@@ -157,9 +166,10 @@ bool IsOrigin(std::string_view origin) {
   for (const std::string_view scheme : {"http://", "https://"}) {
     if (!text.starts_with(scheme)) continue;
     const std::string_view rest = std::string_view(text).substr(scheme.size());
-    return !rest.empty() && HasGoodPort(rest) && std::ranges::all_of(rest, [](char c) {
-      return c > ' ' && c < 127 && std::string_view("/?#@\\").find(c) == std::string_view::npos;
-    });
+    return IsHostAndPort(rest) && std::ranges::all_of(rest, [](char c) {
+             return c > ' ' && c < 127 &&
+                    std::string_view("/?#@\\").find(c) == std::string_view::npos;
+           });
   }
   return false;
 }

@@ -110,8 +110,9 @@ class Drive {
    */
   set(name, value) {
     this.person.set(name, value);
+    const state = this.tell();
     this.pump();
-    this.drawPerson(this.told);
+    this.drawPerson(state);
   }
 
   key(event, down) {
@@ -167,8 +168,8 @@ class Drive {
     setAttribute(byId("origin"), "data-state", {open: "live", ended: "behind"}[state] ?? "lost");
     say(byId("origin-words"), words);
     byId("problem").hidden = state !== "refused";
-    say(byId("problem"), state !== "refused" ? "" : "The seat does not answer. Open exactly the address " +
-        "that the program has printed: for other machines the address contains a key.");
+    say(byId("problem"), state !== "refused" ? "" : "No seat answers. The page of view alone has none. " +
+        "Open exactly the address that the program has printed: for other machines the address contains a token.");
     this.sender.begin();
     this.latency.forget();
     if (state !== "open") this.sit("");
@@ -241,10 +242,16 @@ class Drive {
     this.drawLatency();
   }
 
+  /** What the newest messages say of who drives; they also come while no frame is drawn. */
+  tell() {
+    const {frame = {}} = this.newest ?? {};
+    this.told = told(frame.HOST_COMMAND, frame.TRUTH, this.connection);
+    return this.told;
+  }
+
   draw() {
     const {frame = {}, run} = this.newest ?? {};
-    const state = told(frame.HOST_COMMAND, frame.TRUTH, this.connection);
-    this.told = state;
+    const state = this.tell();
     const time_s = Number(frame.HOST_COMMAND?.header.utime ?? 0) / 1e6;
     const lead_s = run?.scenario?.arbitrator?.take_over?.lead_s ?? 10;
     const left = state.asks ? countdown(this.request, time_s, lead_s) : null;

@@ -153,7 +153,8 @@ TEST(AccessTest, KnowsAnOriginFromOtherTexts) {
   EXPECT_TRUE(IsOrigin("http://[::1]:65535"));
   for (const char* text :
        {"", "*", "null", "localhost:8080", "http://", "http://a/", "http://a b", "http://user@a",
-        "file://", "http://a:99999", "http://a:0", "http://a:", "http://[::1]:x"}) {
+        "file://", "http://a:99999", "http://a:0", "http://a:", "http://[::1]:x", "http://:8080",
+        "http://[::1", "http://[::1]8080", "http://a:08080", "http://a:-1"}) {
     EXPECT_FALSE(IsOrigin(text)) << text;
   }
 }
