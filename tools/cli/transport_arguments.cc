@@ -19,6 +19,7 @@ namespace {
 constexpr const char* kTransportOption = "--transport";
 constexpr const char* kUrlOption = "--lcm-url";
 constexpr const char* kUrlVariable = "LCM_DEFAULT_URL";
+constexpr const char* kRelayFlag = "--relay";
 
 // The names of the roles that may be external. The recorder may not: the runner reads the result
 // from the log, so the recorder writes the log on the runner's machine.
@@ -54,7 +55,7 @@ void AddPlanOptions(CLI::App& app, hosts::PlanWords& words) {
   app.add_option("--ssh", words.ssh,
                  "Command in place of ssh, with its options, such as 'ssh -p 2222' (default: "
                  "$FOGLINE_SSH, or ssh)");
-  app.add_flag("--relay", words.relay,
+  app.add_flag(kRelayFlag, words.relay,
                "With --on: messages go over TCP through a fogline-relay on this machine, because "
                "the network carries no multicast");
   app.add_option("--relay-at", words.relay_at,
@@ -101,7 +102,7 @@ TransportArguments::TransportArguments(CLI::App& verb, std::string transport)
 std::pair<std::string, std::string> TransportArguments::Chosen(const hosts::RunPlan& plan) const {
   if (!url_.empty()) return {url_, kUrlOption};
   if (said_->count() > 0) return {transport_, kTransportOption};
-  if (plan.relay) return {"tcpq", "--relay"};
+  if (plan.relay) return {"tcpq", kRelayFlag};
   if (!plan.url.empty()) return {plan.url, "--lab"};
   const std::string usual = transport_ == "direct" && !plan.empty() ? "udpm" : transport_;
   const bool as_processes = usual != "direct" || !external_.empty();
@@ -113,9 +114,10 @@ std::pair<std::string, std::string> TransportArguments::Chosen(const hosts::RunP
 void TransportArguments::Apply(runner::ExperimentOptions& options) const {
   options.hosts = hosts::MakePlan(hosts_);
   std::tie(options.transport, options.transport_source) = Chosen(options.hosts);
-  const bool has_name = options.transport_source == kTransportOption || options.hosts.relay;
-  if (!has_name || runtime::IsLcmUrl(options.transport)) {
-    runtime::CheckUrl(options.transport_source, options.transport);
+  const std::string& source = options.transport_source;
+  const bool may_be_name = source == kTransportOption || source == kRelayFlag;
+  if (!may_be_name || runtime::IsLcmUrl(options.transport)) {
+    runtime::CheckUrl(source, options.transport);
   }
   options.wait = duration_cast<Duration>(std::chrono::duration<double>(wait_s_));
   options.traffic = traffic_;

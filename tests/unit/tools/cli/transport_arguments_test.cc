@@ -77,6 +77,8 @@ TEST(TransportArgumentsTest, SetWhatTheRunDoes) {
 TEST(TransportArgumentsTest, RefuseContradictions) {
   EXPECT_EQ(Refusal({"--lcm-url", "pigeon"}),
             "error: --lcm-url pigeon: no LCM URL such as \"udpm://239.255.76.67:7667?ttl=0\"");
+  EXPECT_EQ(Refusal({"--on", "fusion=lab2", "--relay", "--lcm-url", "tcpq"}),
+            "error: --lcm-url tcpq: no LCM URL such as \"udpm://239.255.76.67:7667?ttl=0\"");
   EXPECT_EQ(Refusal({"--lcm-url", "udpm://239.255.76.67:70000"}),
             "error: --lcm-url udpm://239.255.76.67:70000: \"70000\" is no port (1 to 65535)");
   EXPECT_EQ(Refusal({"--faults", "flip=0.1"}).rfind("error: --faults: truncate and flip need", 0),
