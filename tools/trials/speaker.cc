@@ -49,18 +49,13 @@ void Speaker::Work(const std::string& url, const runtime::TrafficOptions& traffi
     const std::lock_guard lock(mutex_);
     step_ = truth->header.step;
     utime_ = truth->header.utime;
-    if (!facts_.empty()) return;
-    trial_t begin = base_;
-    begin.header.step = step_;
-    begin.header.utime = utime_;
-    begin.kind = trial_t::BEGIN;
-    begin.unix_us = UnixMicros();
-    facts_.push_back(std::move(begin));
+    Begin();
   });
   std::vector<std::uint8_t> bytes;
   while (!over_) {
     bus.Wait(kSendEvery);
     const std::lock_guard lock(mutex_);
+    if (step_ < 0) continue;  // before the first TRUTH, the recorder may not listen yet
     for (; sent_ < facts_.size(); ++sent_) {
       runtime::Encode(facts_[sent_], bytes);
       bus.Publish(ChannelOf<trial_t>().name, bytes);
@@ -68,14 +63,20 @@ void Speaker::Work(const std::string& url, const runtime::TrafficOptions& traffi
   }
 }
 
+void Speaker::Begin() {
+  if (!facts_.empty()) return;
+  trial_t begin = base_;
+  begin.kind = trial_t::BEGIN;
+  begin.header.step = step_;
+  begin.header.utime = utime_;
+  begin.unix_us = UnixMicros();
+  facts_.push_back(std::move(begin));
+}
+
 void Speaker::Mark(const std::string& text) {
   const std::lock_guard lock(mutex_);
   trial_t marker = base_;
-  if (facts_.empty()) {  // before the first TRUTH
-    marker.kind = trial_t::BEGIN;
-    marker.unix_us = UnixMicros();
-    facts_.push_back(marker);
-  }
+  Begin();
   marker.kind = trial_t::MARKER;
   marker.header.step = step_;
   marker.header.utime = utime_;
@@ -89,6 +90,7 @@ std::vector<trial_t> Speaker::End() {
   over_ = true;
   if (thread_.joinable()) thread_.join();
   const std::lock_guard lock(mutex_);
+  Begin();
   return facts_;
 }
 

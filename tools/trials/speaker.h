@@ -16,7 +16,8 @@ namespace fogline::trials {
 
 class Speaker {
  public:
-  /// Sends the fact BEGIN when the first TRUTH of the run comes.
+  /// Sends the fact BEGIN when the first TRUTH of the run comes. From then on the recorder listens,
+  /// so earlier facts are kept until then.
   /// @param base a fact with the values that all facts of the trial share
   /// @throws std::runtime_error as RequireReadable(), before the first fact is sent
   Speaker(const std::string& url, std::int64_t run_id, const runtime::TrafficOptions& traffic,
@@ -30,11 +31,13 @@ class Speaker {
   /// from any thread.
   void Mark(const std::string& text);
 
-  /// Ends the thread. @return every fact so far; a fact may be missing in the log, because a
-  /// network can lose messages
+  /// Ends the thread. @return every fact so far, at least BEGIN; a fact may be missing in the log,
+  /// because a network can lose messages
   std::vector<trial_t> End();
 
  private:
+  /// Adds the fact BEGIN if it is missing. @pre mutex_ is locked
+  void Begin();
   void Work(const std::string& url, const runtime::TrafficOptions& traffic);
 
   trial_t base_;
