@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <set>
 #include <utility>
@@ -176,8 +177,9 @@ class ScenarioCheck {
     const double speed = file_.plan.speed;
     const std::string why = WhyNotAt(speed, scenario);
     if (why.empty()) return;
-    mistakes_.Add(FindPlace(root_, "/speed"), "/speed", "range",
-                  fmt::format("{} in condition {}: {}", NumberText(speed), Quote(condition), why));
+    Keep("/speed", "range",
+         fmt::format("{}: in condition {}: {}", NumberText(speed), Quote(condition), why),
+         std::string(kAllowed));
   }
 
   void Add(const std::string& condition, const Diagnostic& mistake) {
@@ -190,17 +192,31 @@ class ScenarioCheck {
         is_change ? fmt::format("{}/set/{}", condition, mistake.override_number - 1)
                   : condition + "/scenario";
     what += mistake.message;
-    if (!is_change && mistake.line > 0 && !in_files_.insert(what).second) return;
-    if (mistakes_.empty() && !mistake.pointer.empty()) {
-      allowed_ = "fogline check --explain " + NearestKnownPointer(mistake.pointer);
+    // Whether a run is impossible depends on the changes, too. A mistake of the file does not.
+    const bool is_of_file = !is_change && mistake.rule != "impossible";
+    if (is_of_file && !in_files_.insert(what).second) return;
+    Keep(pointer, mistake.rule, std::move(what),
+         mistake.pointer.empty()
+             ? std::string(kAllowed)
+             : "fogline check --explain " + NearestKnownPointer(mistake.pointer));
+  }
+
+  /// @param allowed the command that prints what is allowed in place of this mistake
+  void Keep(const std::string& pointer, std::string_view rule, std::string what,
+            std::string allowed) {
+    const Place place = FindPlace(root_, pointer);
+    if (place.offset < first_) {
+      first_ = place.offset;
+      allowed_ = std::move(allowed);
     }
-    mistakes_.Add(FindPlace(root_, pointer), pointer, mistake.rule, std::move(what));
+    mistakes_.Add(place, pointer, rule, std::move(what));
   }
 
   const PlanFile& file_;
   const JsonValue& root_;
   DiagnosticList& mistakes_;
   std::set<std::string> in_files_;  // the mistakes of scenario files, each with its place
+  std::uint32_t first_ = std::numeric_limits<std::uint32_t>::max();  // place of the first mistake
   std::string allowed_{kAllowed};
 };
 

@@ -137,12 +137,12 @@ TEST(PlanFileTest, ASpeedAtWhichNoTrialCanBeMadeIsRefused) {
   };
   EXPECT_EQ(error_at("20", ""), "");
   EXPECT_THAT(error_at("50", ""),
-              HasSubstr("e.json:1:25: error: /speed: 50 in condition \"a\": a step of 0.1 s would "
+              HasSubstr("e.json:1:25: error: /speed: 50: in condition \"a\": a step of 0.1 s would "
                         "take 2 ms of wall clock; the shortest is 5 ms"));
   EXPECT_EQ(error_at("1", "\"/person/drives=true\""), "");
   EXPECT_THAT(
       error_at("2", "\"/person/drives=true\""),
-      HasSubstr("e.json:1:25: error: /speed: 2 in condition \"a\": a person drives at speed 1"));
+      HasSubstr("e.json:1:25: error: /speed: 2: in condition \"a\": a person drives at speed 1"));
 }
 
 }  // namespace
