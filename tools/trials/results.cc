@@ -26,11 +26,30 @@ bool HasBegun(const std::filesystem::path& log) {
   }
 }
 
-/// Says why a log is not of this trial: its facts name another trial, or it has none. "" if it is.
-std::string WhyForeign(const PlanFile& plan, const Trial& trial,
-                       const std::vector<trial_t>& facts) {
-  if (facts.empty()) return "the log has no facts of a trial";
-  for (const trial_t& fact : facts) {
+/// Whether a log without facts has a run that this trial could have made: in real time, of the
+/// trial's scenario. A crash after a run can leave such a log if the network has lost all facts.
+bool HasRunOf(const PlanFile& plan, const Trial& trial, const TrialStory& story) {
+  if (!story.scenario || story.speed <= 0) return false;
+  std::vector<std::string> seed;
+  if (trial.seed >= 0) seed.push_back(fmt::format("/seed={}", trial.seed));
+  try {
+    Scenario expected = LoadCondition(plan, ConditionOf(plan.plan, trial), seed);
+    expected.person.drives = story.scenario->person.drives;  // an option may seat the person
+    expected.lead.sumo.version = story.scenario->lead.sumo.version;
+    return PrintScenario(expected) == PrintScenario(*story.scenario);
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
+/// Says why a log is not of this trial: its facts name another trial or another version of the
+/// experiment, or its run is another one. "" if it is.
+std::string WhyForeign(const PlanFile& plan, const Trial& trial, const TrialStory& story) {
+  if (story.facts.empty()) {
+    const bool may_be = story.state == TrialState::kBroken || HasRunOf(plan, trial, story);
+    return may_be ? "" : "the log has no facts of a trial, and its run is not that of the trial";
+  }
+  for (const trial_t& fact : story.facts) {
     if (fact.participant != trial.participant || fact.trial != trial.number ||
         (fact.practice != 0) != trial.practice ||
         fact.condition != ConditionOf(plan.plan, trial).name) {
@@ -60,16 +79,16 @@ Results::Results(const PlanFile& plan, std::filesystem::path folder)
   }
   const FileText kept = ReadFile(Kept(), kMaxFileBytes);
   if (kept.error.empty() && kept.text == plan.text) return;
-  if (kept.error.empty() && !HaveLogs()) return;
   throw InputError(
       fmt::format("{}: error: --results: the experiment began with another version of {}, which is "
-                  "{}; go on with that file, or give another folder",
-                  PathText(folder_), PathText(plan.file), PathText(Kept())));
+                  "{}; go on with that file, or give another folder{}",
+                  PathText(folder_), PathText(plan.file), PathText(Kept()),
+                  HasNoLog() ? "; this folder has no log yet and may be removed" : ""));
 }
 
 void Results::Create() const {
-  const FileText kept = ReadFile(Kept(), kMaxFileBytes);
-  if (kept.error.empty() && kept.text == plan_.text) return;
+  std::error_code missing;
+  if (std::filesystem::exists(Kept(), missing)) return;
   RequireFolderOf(folder_, "--results");
   std::error_code failed;
   std::filesystem::create_directory(folder_, failed);
@@ -81,11 +100,13 @@ void Results::Create() const {
   file.Finish();
 }
 
-bool Results::HaveLogs() const {
-  std::error_code unreadable;
-  const std::filesystem::recursive_directory_iterator files(folder_, unreadable);
-  return std::any_of(begin(files), end(files),
-                     [](const auto& entry) { return entry.path().extension() == ".lcm"; });
+bool Results::HasNoLog() const {
+  std::error_code error;
+  std::filesystem::recursive_directory_iterator file(folder_, error);
+  for (; !error && file != end(file); file.increment(error)) {
+    if (file->path().extension() == ".lcm") return false;
+  }
+  return !error;
 }
 
 std::unique_ptr<FileLock> Results::Begin(std::int64_t participant) const {
@@ -120,9 +141,7 @@ TrialRecord Results::Read(const Trial& trial) const {
   if (record.attempts == 0) return record;
   record.log = LogOf(trial, record.attempts);
   record.story = ReadStory(record.log);
-  const TrialStory& story = record.story;
-  if (story.state == TrialState::kBroken && story.facts.empty()) return record;
-  if (std::string why = WhyForeign(plan_, trial, story.facts); !why.empty()) {
+  if (std::string why = WhyForeign(plan_, trial, record.story); !why.empty()) {
     record.story = {.state = TrialState::kBroken, .note = std::move(why)};
   }
   return record;

@@ -35,12 +35,11 @@ struct TrialRecord {
 
 class Results {
  public:
-  /// @throws InputError if the folder has logs of another experiment, or of another version of this
-  ///     one
+  /// @throws InputError if the folder has the results of another experiment, or of another version
+  ///     of this one
   Results(const PlanFile& plan, std::filesystem::path folder);
 
-  /// Creates the folder, and copies the experiment's file into it. Until the folder has a log, the
-  /// file may change. @throws InputError
+  /// Creates the folder, and copies the experiment's file into it. @throws InputError
   void Create() const;
   /// Creates the folder of a participant, too, and locks it for a session. @throws InputError
   std::unique_ptr<FileLock> Begin(std::int64_t participant) const;
@@ -51,14 +50,15 @@ class Results {
   std::filesystem::path LogOf(const Trial& trial, std::int64_t attempt) const;
 
   /// The newest run of a trial. If the newest log has no step, its run never began. Then this log
-  /// does not count, and the next run gets its name. A log whose facts name another trial counts as
-  /// the log of a broken run.
+  /// does not count, and the next run gets its name. A log of another trial, or of another
+  /// version of the experiment, counts as the log of a broken run.
   TrialRecord Read(const Trial& trial) const;
   /// All practice runs and trials of a participant, in their order.
   std::vector<TrialRecord> ReadAll(std::int64_t participant) const;
 
  private:
-  bool HaveLogs() const;
+  /// Whether the folder certainly has no log.
+  bool HasNoLog() const;
   std::filesystem::path Kept() const { return folder_ / "experiment.json"; }
 
   const PlanFile& plan_;

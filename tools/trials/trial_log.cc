@@ -66,6 +66,7 @@ TrialStory ReadStory(const std::filesystem::path& log) {
     story.last_utime = std::max<std::int64_t>(run.steps - 1, 0) *
                        static_cast<std::int64_t>(run.scenario.step_s * kMicrosPerSecond + 0.5);
     story.speed = run.realtime ? run.realtime->speed : 0;
+    story.scenario = run.scenario;
     story.note = run.note;
     story.seal = run.seal;
     story.altered = run.altered;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "fogline/trial_t.hpp"
+#include "scenario/sections/scenario.h"
 #include "services/log/log_seal.h"
 #include "services/runtime/wire/message_signer.h"
 
@@ -32,6 +33,7 @@ struct TrialStory {
   double speed = 1;                  // simulated seconds per second
   std::string note;                  // fault of the log; "" if it has none
   std::vector<trial_t> facts;        // each fact once, by its sequence
+  std::optional<Scenario> scenario;  // none if the log cannot be read
   std::optional<log::LogSeal> seal;  // none if the run broke off
   bool altered = false;              // the log differs from its seal
 };

@@ -28,6 +28,7 @@ namespace {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
+using ::testing::Not;
 using ::testing::SizeIs;
 
 class ExperimentRealtimeTest : public ExperimentFixture {};
@@ -271,7 +272,13 @@ TEST_F(ExperimentRealtimeTest, ALogOfAnotherTrialIsNotTakenForThisOne) {
                                 HasSubstr("the log is of trial 1 of participant 1 in condition "
                                           "\"low\""),
                                 HasSubstr("the log has no facts of a trial")));
-  // THEN the tables name both logs, and have no answer and no measure of them.
+  // THEN the export names both logs, and its tables have no answer and no measure of them.
+  const Outcome tables = Experiment("export", {"--out", folder_.File("tables")});
+  EXPECT_THAT(tables.err, AllOf(HasSubstr((other / "trial-1-mid.lcm").string() +
+                                          ": the log is of trial 1 of participant 1"),
+                                HasSubstr((other / "trial-2-high.lcm").string() +
+                                          ": the log has no facts of a trial"),
+                                Not(HasSubstr((own / "trial").string()))));
   const auto rows = ExportedTrials(1);
   ASSERT_THAT(rows, SizeIs(5));
   for (const auto& row : {rows[3], rows[4]}) {

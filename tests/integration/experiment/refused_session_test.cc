@@ -85,12 +85,14 @@ TEST_F(RefusedSessionRealtimeTest, WrongSpeedsAndFoldersAreRefused) {
   }
   const Outcome fast = Experiment("run", {"--participant", "1", "--no-page", "--speed", "1000"});
   EXPECT_EQ(fast.code, 2);
-  EXPECT_THAT(fast.err, HasSubstr("error: speed 1000 in condition \"low\": a step of 0.1 s would "
-                                  "take 0.1 ms"));
+  EXPECT_THAT(fast.err,
+              HasSubstr("error: --speed 1000: in condition \"low\": a step of 0.1 s would "
+                        "take 0.1 ms"));
   const Outcome driven = Experiment("run", {"--participant", "1", "--keys"});
   EXPECT_EQ(driven.code, 2);
   EXPECT_THAT(driven.err,
-              HasSubstr("error: speed 10 in condition \"low\": a person drives at speed 1"));
+              HasSubstr(file_ + ": error: /speed: 10: in condition \"low\": a person drives at "
+                                "speed 1"));
   EXPECT_FALSE(std::filesystem::exists(results_));
 }
 

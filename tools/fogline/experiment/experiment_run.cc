@@ -158,17 +158,19 @@ void CheckSeat(const RunTrialsArguments& arguments, const trials::PlanFile& plan
       Quote(driven->name)));
 }
 
-/// Checks that the trials can be made at the speed of --speed, with the person of --keys or
-/// --evdev.
-/// @throws InputError
-void CheckSpeed(const trials::PlanFile& plan, const trials::SessionOptions& options) {
+/// Checks that all trials can be made at the speed of --speed, and with the person of --keys or
+/// --evdev. @throws InputError
+void CheckSpeed(const RunTrialsArguments& arguments, const trials::PlanFile& plan,
+                const trials::SessionOptions& options) {
+  const std::string where =
+      arguments.speed ? fmt::format("error: --speed {:g}", options.speed)
+                      : fmt::format("{}: error: /speed: {:g}", PathText(plan.file), options.speed);
   for (const auto* list : {&plan.plan.practice, &plan.plan.conditions}) {
     for (const ConditionSection& condition : *list) {
       const Scenario scenario = trials::LoadCondition(plan, condition, options.overrides);
       const std::string why = trials::WhyNotAt(options.speed, scenario);
       if (why.empty()) continue;
-      throw InputError(fmt::format("error: speed {:g} in condition {}: {}", options.speed,
-                                   Quote(condition.name), why));
+      throw InputError(fmt::format("{}: in condition {}: {}", where, Quote(condition.name), why));
     }
   }
 }
@@ -233,12 +235,13 @@ void PrintAddresses(const trials::PageDesk& pages) {
 int RunTrials(const RunTrialsArguments& arguments) {
   const trials::PlanFile plan = arguments.plan.Load();
   trials::SessionOptions options = SessionOf(arguments, plan.plan);
-  CheckSpeed(plan, options);
+  CheckSpeed(arguments, plan, options);
   CheckSeat(arguments, plan);
   CheckPorts(arguments);
   const trials::Results results(plan, arguments.plan.results());
   // If another session has the participant, the error says so. It would have the pages' ports, too.
-  const bool has_begun = std::filesystem::exists(results.FolderOf(arguments.participant));
+  std::error_code missing;
+  const bool has_begun = std::filesystem::exists(results.FolderOf(arguments.participant), missing);
   auto lock = has_begun ? results.Begin(arguments.participant) : nullptr;
   CheckMeans(plan.plan, results, options);
   WatchInterrupts();

@@ -22,6 +22,7 @@
 namespace fogline::trials {
 namespace {
 
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 /// An experiment with one trial, which has been run.
@@ -45,12 +46,13 @@ class TablesTest : public ::testing::Test {
     runner::RunExperiment(scenario, {.transport = "direct", .log = log_});
   }
   /// Adds the end of the trial, and its answer.
-  void Answer(double value) const {
+  void Answer(double value, const std::string& experiment_hash = "") const {
     const TrialStory story = ReadStory(log_);
     trial_t answer{};
     answer.header.run_id = story.run_id;
     answer.participant = answer.trial = answer.attempt = 1;
     answer.condition = "fog";
+    answer.experiment_hash = experiment_hash;
     answer.kind = trial_t::ANSWER;
     answer.questionnaire = "speed";
     answer.item = "guess";
@@ -89,6 +91,17 @@ TEST_F(TablesTest, AUnitWithACommaIsOneCell) {
   Answer(6);
   EXPECT_THAT(MakeTables(plan_, results_).values,
               HasSubstr("\n1,1,0,fog,answer,speed.guess,6,\"km/h, estimated\",\n"));
+}
+
+TEST_F(TablesTest, ALogOfAnotherVersionOfTheExperimentIsAFault) {
+  Scenario scenario;
+  scenario.steps = 20;
+  Run(scenario);
+  Answer(6, "of another version");
+  const Tables tables = MakeTables(plan_, results_);
+  EXPECT_THAT(tables.faults,
+              ElementsAre(log_.string() + ": the log is of another version of the experiment"));
+  EXPECT_EQ(Row().at("state"), "broken");
 }
 
 TEST_F(TablesTest, ATrialHasTheMeasuresOfItsFirstRequest) {
