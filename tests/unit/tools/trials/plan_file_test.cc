@@ -126,6 +126,21 @@ TEST(PlanFileTest, EachMistakeOfAScenarioIsNamedWithItsLineAndField) {
   }
 }
 
+TEST(PlanFileTest, AMissingFileIsNamedOnceAndTheFirstMistakeIsExplained) {
+  const test::ScratchFolder folder;
+  const std::string paper = (test::SourceDirectory() / "scenario/paper.json").string();
+  // "practice" comes first in the text, but is checked after "conditions".
+  std::ofstream(folder.File("e.json"))
+      << R"({"version": 1, "practice": [{"name": "p", "scenario": ")" << paper
+      << R"(", "set": ["/arbitrator/threshold=7"]}], "conditions": [)"
+      << R"({"name": "a", "scenario": "gone.json"}, {"name": "b", "scenario": "gone.json"}]})";
+  const std::string error = test::ErrorOf([&folder] { LoadPlan(folder.File("e.json")); });
+  EXPECT_THAT(error, HasSubstr("/conditions/0/scenario: " + folder.File("gone.json")));
+  EXPECT_THAT(error, Not(HasSubstr("/conditions/1")));
+  EXPECT_THAT(error, EndsWith("\n2 errors; what is allowed: fogline check --explain "
+                              "/arbitrator/threshold"));
+}
+
 TEST(PlanFileTest, ASpeedAtWhichNoTrialCanBeMadeIsRefused) {
   const test::ScratchFolder folder;
   const auto error_at = [&folder](const std::string& speed, const std::string& set) {
