@@ -34,7 +34,7 @@ bool HasRunOf(const PlanFile& plan, const Trial& trial, const TrialStory& story)
   if (trial.seed >= 0) seed.push_back(fmt::format("/seed={}", trial.seed));
   try {
     Scenario expected = LoadCondition(plan, ConditionOf(plan.plan, trial), seed);
-    expected.person.drives = story.scenario->person.drives;  // an option may seat the person
+    if (story.scenario->person.drives) expected.person.drives = true;  // as --keys sets it
     expected.lead.sumo.version = story.scenario->lead.sumo.version;
     return PrintScenario(expected) == PrintScenario(*story.scenario);
   } catch (const InputError&) {
@@ -77,18 +77,21 @@ Results::Results(const PlanFile& plan, std::filesystem::path folder)
     throw InputError(fmt::format("{}: error: --results: the folder has other files, and no {}",
                                  PathText(folder_), PathText(Kept().filename())));
   }
+  CheckKept();
+}
+
+void Results::CheckKept() const {
   const FileText kept = ReadFile(Kept(), kMaxFileBytes);
-  if (kept.error.empty() && kept.text == plan.text) return;
+  if (kept.error.empty() && kept.text == plan_.text) return;
   throw InputError(
       fmt::format("{}: error: --results: the experiment began with another version of {}, which is "
-                  "{}; go on with that file, or give another folder{}",
-                  PathText(folder_), PathText(plan.file), PathText(Kept()),
-                  HasNoLog() ? "; this folder has no log yet and may be removed" : ""));
+                  "{}; go on with that file, or give another folder",
+                  PathText(folder_), PathText(plan_.file), PathText(Kept())));
 }
 
 void Results::Create() const {
   std::error_code missing;
-  if (std::filesystem::exists(Kept(), missing)) return;
+  if (std::filesystem::exists(Kept(), missing)) return CheckKept();  // another session has made it
   RequireFolderOf(folder_, "--results");
   std::error_code failed;
   std::filesystem::create_directory(folder_, failed);
@@ -98,15 +101,6 @@ void Results::Create() const {
   AtomicFile file(Kept());
   file.Write(plan_.text);
   file.Finish();
-}
-
-bool Results::HasNoLog() const {
-  std::error_code error;
-  std::filesystem::recursive_directory_iterator file(folder_, error);
-  for (; !error && file != end(file); file.increment(error)) {
-    if (file->path().extension() == ".lcm") return false;
-  }
-  return !error;
 }
 
 std::unique_ptr<FileLock> Results::Begin(std::int64_t participant) const {

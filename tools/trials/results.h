@@ -57,8 +57,8 @@ class Results {
   std::vector<TrialRecord> ReadAll(std::int64_t participant) const;
 
  private:
-  /// Whether the folder certainly has no log.
-  bool HasNoLog() const;
+  /// @throws InputError if the kept file is that of another version of the experiment
+  void CheckKept() const;
   std::filesystem::path Kept() const { return folder_ / "experiment.json"; }
 
   const PlanFile& plan_;

@@ -124,14 +124,14 @@ class Session {
 
   /// Asks the questions that have no answer yet, and ends the trial.
   void AskAfter(TrialRecord& record) {
-    trial_t base = BaseOf(record.trial, record.attempts, 0);
+    const std::int64_t seed = record.story.scenario.value().seed;
+    trial_t base = BaseOf(record.trial, record.attempts, seed);
     base.header = {.run_id = record.story.run_id,
                    .step = record.story.steps - 1,
                    .utime = record.story.last_utime};
-    if (!record.story.facts.empty()) base.seed = record.story.facts.front().seed;
     for (const QuestionnaireSection& questionnaire : QuestionsAfter(plan_.plan, record.trial)) {
       if (IsAnswered(record.story, questionnaire)) continue;
-      const std::vector<Answer> answers = desk_.Ask(NextOf(record.trial, base.seed), questionnaire);
+      const std::vector<Answer> answers = desk_.Ask(NextOf(record.trial, seed), questionnaire);
       std::vector<trial_t> facts;
       for (std::size_t i = 0; i < answers.size(); ++i) {
         trial_t fact = base;

@@ -23,7 +23,7 @@ constexpr Duration kSendEvery = milliseconds(10);
 
 Speaker::Speaker(const std::string& url, std::int64_t run_id,
                  const runtime::TrafficOptions& traffic, trial_t base)
-    : base_(std::move(base)) {
+    : base_(std::move(base)), made_us_(UnixMicros()) {
   base_.header = {.run_id = run_id, .step = -1, .utime = 0};
   RequireReadable(base_);
   thread_ = std::thread([this, url, traffic] {
@@ -49,7 +49,7 @@ void Speaker::Work(const std::string& url, const runtime::TrafficOptions& traffi
     const std::lock_guard lock(mutex_);
     step_ = truth->header.step;
     utime_ = truth->header.utime;
-    Begin();
+    Begin(UnixMicros());
   });
   std::vector<std::uint8_t> bytes;
   while (!over_) {
@@ -63,20 +63,20 @@ void Speaker::Work(const std::string& url, const runtime::TrafficOptions& traffi
   }
 }
 
-void Speaker::Begin() {
+void Speaker::Begin(std::int64_t unix_us) {
   if (!facts_.empty()) return;
   trial_t begin = base_;
   begin.kind = trial_t::BEGIN;
   begin.header.step = step_;
   begin.header.utime = utime_;
-  begin.unix_us = UnixMicros();
+  begin.unix_us = unix_us;
   facts_.push_back(std::move(begin));
 }
 
 void Speaker::Mark(const std::string& text) {
   const std::lock_guard lock(mutex_);
   trial_t marker = base_;
-  Begin();
+  Begin(UnixMicros());
   marker.kind = trial_t::MARKER;
   marker.header.step = step_;
   marker.header.utime = utime_;
@@ -90,7 +90,7 @@ std::vector<trial_t> Speaker::End() {
   over_ = true;
   if (thread_.joinable()) thread_.join();
   const std::lock_guard lock(mutex_);
-  Begin();
+  Begin(made_us_);
   return facts_;
 }
 

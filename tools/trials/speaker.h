@@ -37,7 +37,7 @@ class Speaker {
 
  private:
   /// Adds the fact BEGIN if it is missing. @pre mutex_ is locked
-  void Begin();
+  void Begin(std::int64_t unix_us);
   void Work(const std::string& url, const runtime::TrafficOptions& traffic);
 
   trial_t base_;
@@ -46,6 +46,7 @@ class Speaker {
   std::size_t sent_ = 0;
   std::int64_t step_ = -1;
   std::int64_t utime_ = 0;
+  std::int64_t made_us_;  // when the speaker was made, in microseconds since 1970 (UTC)
   std::atomic<bool> over_ = false;
   std::thread thread_;
 };

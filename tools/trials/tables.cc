@@ -98,6 +98,10 @@ void AddInputLatency(const std::optional<log::InputLatency>& latency, std::vecto
       });
 }
 
+bool HasBegin(const TrialStory& story) {
+  return !story.facts.empty() && story.facts.front().kind == trial_t::BEGIN;
+}
+
 /// The measures of a run. A measure that is unknown, because messages are missing, has no value.
 std::vector<Value> MetricsOf(const runner::LoggedRun& run) {
   std::vector<Value> values;
@@ -201,7 +205,7 @@ class TableMaker {
     tables_.trials += fmt::format(
         "{},{},{},{},{},{},{},{},{},{}{}\n", head, order, seed, record.attempts,
         has_run ? NumberText(story.speed) : "", NameOf(story.state), complete,
-        story.facts.empty() ? "" : UtcText(story.facts.front().unix_us), markers.size(),
+        HasBegin(story) ? UtcText(story.facts.front().unix_us) : "", markers.size(),
         Cell(record.log.lexically_relative(results_.folder()).string()), Cells(answers, measures));
     for (const std::vector<Value>* values :
          std::initializer_list<const std::vector<Value>*>{&answers, &measures, &markers}) {

@@ -27,6 +27,7 @@ namespace fogline::test {
 namespace {
 
 using ::testing::AllOf;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::Not;
 using ::testing::SizeIs;
@@ -253,6 +254,53 @@ TEST_F(ExperimentRealtimeTest, AMeasureThatMissingMessagesMakeUnknownHasNoValue)
   EXPECT_EQ(row.at("complete"), "0");
   EXPECT_EQ(row.at("human_time_s"), "");
   EXPECT_EQ(row.at("min_host_gap_m"), whole.at("min_host_gap_m"));
+}
+
+TEST_F(ExperimentRealtimeTest, ALogThatHasLostItsFactsIsKnownByItsScenario) {
+  // GIVEN two complete logs without facts, as after a crash. They change places.
+  ASSERT_EQ(RunCommand(Session(1)).code, 0);
+  const std::filesystem::path own = std::filesystem::path(results_) / "participant-01";
+  const std::string first = (own / "trial-1-low.lcm").string();
+  const std::string second = (own / "trial-2-mid.lcm").string();
+  for (const std::string& log : {first, second}) {
+    const std::string part = folder_.File("part.lcm");
+    {
+      log::EventLogReader reader(log);
+      log::EventLogWriter writer(part);
+      while (const auto event = reader.Next()) {
+        if (event->channel == "TRIAL" || event->channel == log::kLogSealChannel) continue;
+        writer.Write(event->channel, event->utime, event->data);
+      }
+    }
+    std::filesystem::rename(part, log);
+  }
+  const auto states = [this] {
+    std::vector<std::string> found;
+    const auto status = nlohmann::json::parse(Experiment("status", {"--json"}).out);
+    for (const auto& trial : status["participants"][0]["trials"]) found.push_back(trial["state"]);
+    return found;
+  };
+  EXPECT_THAT(states(), ElementsAre("to_ask", "to_ask", "done"));
+  std::filesystem::rename(first, folder_.File("low.lcm"));
+  std::filesystem::rename(second, first);
+  std::filesystem::rename(folder_.File("low.lcm"), second);
+  EXPECT_THAT(states(), ElementsAre("broken", "broken", "done"));
+  // THEN each log is asked at its own place, and its facts have the seed of its run.
+  std::filesystem::rename(first, folder_.File("mid.lcm"));
+  std::filesystem::rename(second, first);
+  std::filesystem::rename(folder_.File("mid.lcm"), second);
+  const std::string answers = folder_.File("answers.txt");
+  for (int run : {1, 2}) std::ofstream(answers, std::ios::app) << AnswersOf(1, run).substr(1);
+  const Outcome again = RunCommand(
+      {"sh", "-c",
+       fmt::format("exec {} experiment run {} --results {} --participant 1 --no-page < {}",
+                   Program("fogline"), file_, results_, answers)});
+  EXPECT_EQ(again.code, 0) << again.err;
+  const auto rows = ExportedTrials(1);
+  ASSERT_THAT(rows, SizeIs(3));
+  EXPECT_EQ(rows[1].at("seed"), "2");
+  EXPECT_EQ(rows[1].at("kss.sleepiness"), "3");
+  EXPECT_EQ(rows[1].at("begun"), "") << "the log has no BEGIN";
 }
 
 TEST_F(ExperimentRealtimeTest, ALogOfAnotherTrialIsNotTakenForThisOne) {

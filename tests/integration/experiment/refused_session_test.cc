@@ -90,9 +90,8 @@ TEST_F(RefusedSessionRealtimeTest, WrongSpeedsAndFoldersAreRefused) {
                         "take 0.1 ms"));
   const Outcome driven = Experiment("run", {"--participant", "1", "--keys"});
   EXPECT_EQ(driven.code, 2);
-  EXPECT_THAT(driven.err,
-              HasSubstr(file_ + ": error: /speed: 10: in condition \"low\": a person drives at "
-                                "speed 1"));
+  EXPECT_THAT(driven.err, HasSubstr("error: --keys: a person drives at speed 1, but /speed of " +
+                                    file_ + " is 10; give --speed 1"));
   EXPECT_FALSE(std::filesystem::exists(results_));
 }
 

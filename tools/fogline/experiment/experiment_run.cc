@@ -162,15 +162,19 @@ void CheckSeat(const RunTrialsArguments& arguments, const trials::PlanFile& plan
 /// --evdev. @throws InputError
 void CheckSpeed(const RunTrialsArguments& arguments, const trials::PlanFile& plan,
                 const trials::SessionOptions& options) {
-  const std::string where =
-      arguments.speed ? fmt::format("error: --speed {:g}", options.speed)
-                      : fmt::format("{}: error: /speed: {:g}", PathText(plan.file), options.speed);
   for (const auto* list : {&plan.plan.practice, &plan.plan.conditions}) {
     for (const ConditionSection& condition : *list) {
       const Scenario scenario = trials::LoadCondition(plan, condition, options.overrides);
       const std::string why = trials::WhyNotAt(options.speed, scenario);
       if (why.empty()) continue;
-      throw InputError(fmt::format("{}: in condition {}: {}", where, Quote(condition.name), why));
+      if (arguments.speed) {
+        throw InputError(fmt::format("error: --speed {}: in condition {}: {}",
+                                     NumberText(options.speed), Quote(condition.name), why));
+      }
+      // The speed of the file suits the conditions of the file, in which no person drives.
+      throw InputError(fmt::format("error: {}: {}, but /speed of {} is {}; give --speed 1",
+                                   arguments.keys ? "--keys" : "--evdev", why, PathText(plan.file),
+                                   NumberText(options.speed)));
     }
   }
 }

@@ -66,8 +66,10 @@ TEST(SpeakerTest, KeepsAnEarlyMarkerUntilTheRecorderListens) {
 
 TEST(SpeakerTest, EndsWithTheBeginningEvenIfNoStepHasCome) {
   Speaker speaker("memq://", 7, {}, Base());
+  const std::int64_t made_us = UnixMicros();
   const std::vector<trial_t> facts = speaker.End();
   ASSERT_EQ(facts.size(), 1U);
+  EXPECT_LE(facts[0].unix_us, made_us);
   EXPECT_EQ(facts[0].kind, trial_t::BEGIN);
   EXPECT_EQ(facts[0].trial, 2);
 }
