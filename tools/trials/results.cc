@@ -1,6 +1,6 @@
 #include "tools/trials/results.h"
 
-#include <algorithm>
+#include <chrono>
 #include <utility>
 
 #include <fmt/core.h>
@@ -15,6 +15,9 @@
 namespace fogline::trials {
 
 namespace {
+
+// Longest wait while another session writes the experiment's file. This takes milliseconds.
+constexpr Duration kPatience = std::chrono::seconds(5);
 
 /// Whether a run has begun to write this log. A file that cannot be read also counts as begun,
 /// because it may contain data.
@@ -90,14 +93,16 @@ void Results::CheckKept() const {
 }
 
 void Results::Create() const {
-  std::error_code missing;
-  if (std::filesystem::exists(Kept(), missing)) return CheckKept();  // another session has made it
   RequireFolderOf(folder_, "--results");
   std::error_code failed;
   std::filesystem::create_directory(folder_, failed);
   if (failed) {
     throw InputError(fmt::format("{}: error: --results: {}", PathText(folder_), failed.message()));
   }
+  // Another session may have made the file since the constructor looked, or is making it now.
+  const FileLock lock(folder_, FileLock::Kind::kOwn, "--results", "session", kPatience);
+  std::error_code missing;
+  if (std::filesystem::exists(Kept(), missing)) return CheckKept();
   AtomicFile file(Kept());
   file.Write(plan_.text);
   file.Finish();

@@ -82,13 +82,17 @@ class Session {
     std::vector<trial_t> facts =
         RunLogged(scenario, path, BaseOf(trial, attempt, scenario.seed), std::move(pedals));
     ++outcome_.runs;
-    record = {.trial = trial, .attempts = attempt, .log = path, .story = ReadStory(path)};
-    if (record.story.state == TrialState::kBroken) {
-      throw std::runtime_error(fmt::format("{}: {}", PathText(path), record.story.note));
-    }
+    record = {.trial = trial, .attempts = attempt, .log = path, .story = ReadComplete(path)};
     // The network may have lost facts of the run. AddFacts() adds the facts that the log lacks.
     AddFacts(path, record.story, facts, key());
-    record.story = ReadStory(path);
+    record.story = ReadComplete(path);
+  }
+
+  /// @throws std::runtime_error if the log has no complete run
+  static TrialStory ReadComplete(const std::filesystem::path& log) {
+    TrialStory story = ReadStory(log);
+    if (story.state != TrialState::kBroken) return story;
+    throw std::runtime_error(fmt::format("{}: {}", PathText(log), story.note));
   }
 
   std::vector<trial_t> RunLogged(const Scenario& scenario, const std::filesystem::path& path,
@@ -165,7 +169,7 @@ class Session {
       fact.unix_us = UnixMicros();
     }
     AddFacts(record.log, record.story, facts, key());
-    record.story = ReadStory(record.log);
+    record.story = ReadComplete(record.log);
   }
 
   const runtime::SigningKey* key() const { return key_ ? &*key_ : nullptr; }

@@ -76,7 +76,7 @@ void Speaker::Begin(std::int64_t unix_us) {
 void Speaker::Mark(const std::string& text) {
   const std::lock_guard lock(mutex_);
   trial_t marker = base_;
-  Begin(UnixMicros());
+  Begin(made_us_);
   marker.kind = trial_t::MARKER;
   marker.header.step = step_;
   marker.header.utime = utime_;

@@ -92,6 +92,8 @@ TEST_F(RefusedSessionRealtimeTest, WrongSpeedsAndFoldersAreRefused) {
   EXPECT_EQ(driven.code, 2);
   EXPECT_THAT(driven.err, HasSubstr("error: --keys: a person drives at speed 1, but /speed of " +
                                     file_ + " is 10; give --speed 1"));
+  const Outcome device = Experiment("run", {"--participant", "1", "--evdev", "/dev/null"});
+  EXPECT_THAT(device.err, HasSubstr("error: --evdev /dev/null: a person drives at speed 1, but"));
   EXPECT_FALSE(std::filesystem::exists(results_));
 }
 

@@ -172,9 +172,10 @@ void CheckSpeed(const RunTrialsArguments& arguments, const trials::PlanFile& pla
                                      NumberText(options.speed), Quote(condition.name), why));
       }
       // The speed of the file suits the conditions of the file, in which no person drives.
-      throw InputError(fmt::format("error: {}: {}, but /speed of {} is {}; give --speed 1",
-                                   arguments.keys ? "--keys" : "--evdev", why, PathText(plan.file),
-                                   NumberText(options.speed)));
+      throw InputError(
+          fmt::format("error: {}: {}, but /speed of {} is {}; give --speed 1",
+                      arguments.keys ? "--keys" : "--evdev " + PathText(arguments.device), why,
+                      PathText(plan.file), NumberText(options.speed)));
     }
   }
 }

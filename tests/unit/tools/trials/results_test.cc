@@ -81,6 +81,19 @@ TEST(ResultsTest, AFolderBelongsToOneVersionOfAnExperiment) {
   }
 }
 
+TEST(ResultsTest, TheFileOfTheFirstOfTwoSessionsIsKept) {
+  const test::ScratchFolder folder;
+  const PlanFile plan = Plan();
+  PlanFile other = Plan();
+  other.text = "{ }\n";
+  const Results first(plan, folder.path() / "r");
+  const Results second(other, folder.path() / "r");
+  first.Create();
+  EXPECT_THAT(test::ErrorOf([&second] { second.Create(); }),
+              HasSubstr("another version of e.json"));
+  EXPECT_EQ(test::Content(folder.File("r/experiment.json")), plan.text);
+}
+
 TEST(ResultsTest, AFolderWithOtherFilesIsRefused) {
   const test::ScratchFolder folder;
   std::ofstream(folder.File("thesis.txt")) << "text";

@@ -64,6 +64,16 @@ TEST(SpeakerTest, KeepsAnEarlyMarkerUntilTheRecorderListens) {
   EXPECT_THAT(kinds, ElementsAre(trial_t::BEGIN, trial_t::MARKER));
 }
 
+TEST(SpeakerTest, TheTimeOfALateMarkerIsNotThatOfTheBeginning) {
+  Speaker speaker("memq://", 7, {}, Base());
+  const std::int64_t made_us = UnixMicros();
+  speaker.Mark("late");
+  const std::vector<trial_t> facts = speaker.End();
+  ASSERT_EQ(facts.size(), 2U);
+  EXPECT_LE(facts[0].unix_us, made_us);
+  EXPECT_GE(facts[1].unix_us, made_us);
+}
+
 TEST(SpeakerTest, EndsWithTheBeginningEvenIfNoStepHasCome) {
   Speaker speaker("memq://", 7, {}, Base());
   const std::int64_t made_us = UnixMicros();
