@@ -258,7 +258,10 @@ std::int64_t DrawRunId() {
 
 void CheckNetwork(const ExperimentOptions& options) {
   if (options.transport == "tcpq") return;
-  runtime::Bus bus(UrlOf(options.transport, !options.hosts.empty()));
+  const std::string url = UrlOf(options.transport, !options.hosts.empty());
+  // Checked first, because LCM may print a line of its own when a network of mpudpm is closed.
+  if (runtime::KeyOf(options.traffic)) runtime::RequireSignable(url);
+  runtime::Bus bus(url);
   ApplyTraffic(options, bus);
 }
 

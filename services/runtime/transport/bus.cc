@@ -88,11 +88,14 @@ std::int64_t Bus::replaced() const { return tcpq_ ? tcpq_->replaced() : replaced
 
 std::string Bus::WhyCutOff() const { return tcpq_ && tcpq_->lost() ? tcpq_->trouble() : ""; }
 
+void RequireSignable(std::string_view url) {
+  if (!url.starts_with("mpudpm://")) return;
+  throw InputError(
+      "error: --key: mpudpm has no filter, so every message reaches LCM's parser; use udpm");
+}
+
 void Bus::Secure(const MessageSigner& signer) {
-  if (url_.starts_with("mpudpm://")) {
-    throw InputError(
-        "error: --key: mpudpm has no filter, so every message reaches LCM's parser; use udpm");
-  }
+  RequireSignable(url_);
   if (!filtered_) {
     throw InputError(
         "error: --key: the kernel accepts no socket filter, which keeps fragments and floods from "

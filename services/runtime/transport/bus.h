@@ -50,6 +50,10 @@ class NetworkClosed : public InputError {
   using InputError::InputError;
 };
 
+/// @throws InputError if messages of a network cannot be signed: mpudpm has no filter, so fragments
+///     and floods would reach a process before their signature is checked
+void RequireSignable(std::string_view url);
+
 /// One connection to an LCM network, for one thread. With memq:// a message reaches only the
 /// subscribers of the same object.
 class Bus {
@@ -68,8 +72,7 @@ class Bus {
 
   /// From now on, the bus signs the messages that it sends, and refuses messages without a correct
   /// signature.
-  /// @throws InputError with mpudpm, or if the kernel accepts no filter: fragments and floods would
-  ///     reach this process before their signature is checked.
+  /// @throws InputError as RequireSignable(), or if the kernel accepts no filter
   void Secure(const MessageSigner& signer);
   bool secured() const { return signer_.has_value(); }
   /// Starts a backlog: with udpm, a thread takes the messages out of the kernel's buffer
