@@ -46,6 +46,9 @@ fs::path FolderOf(const fs::path& file) {
   return file.has_parent_path() ? file.parent_path() : fs::path(".");
 }
 
+// Names of temporary files begin with this text.
+constexpr std::string_view kTemporary = ".fogline-";
+
 /// The file to which a name refers after all symbolic links are resolved.
 struct Target {
   fs::path path;
@@ -100,7 +103,7 @@ fs::path RandomName(const fs::path& folder) {
   if (getrandom(random.data(), sizeof(random), 0) != sizeof(random)) {
     throw std::runtime_error(fmt::format("no random numbers: {}", std::strerror(errno)));
   }
-  return folder / fmt::format(".fogline-{:016x}{:016x}", random[0], random[1]);
+  return folder / fmt::format("{}{:016x}{:016x}", kTemporary, random[0], random[1]);
 }
 
 /// Makes a new file with the permissions of the umask. @return a descriptor, or -1 with errno
@@ -163,6 +166,10 @@ AtomicFile::~AtomicFile() {
   if (device_ >= 0) close(device_);
 }
 
+bool AtomicFile::IsTemporary(const fs::path& file) {
+  return file.filename().native().starts_with(kTemporary);
+}
+
 fs::path AtomicFile::part() const { return fmt::format("/proc/self/fd/{}", fd_); }
 
 void AtomicFile::Write(std::string_view text) {
@@ -189,6 +196,19 @@ void AtomicFile::Finish() {
   if (device_ >= 0) return HandOver();
   if (std::rename(part_.c_str(), target_.c_str()) != 0) Fail(errno);
   part_.clear();
+}
+
+bool AtomicFile::FinishNew() {
+  Close();
+  int failed = renameat2(AT_FDCWD, part_.c_str(), AT_FDCWD, target_.c_str(), RENAME_NOREPLACE);
+  if (failed == 0) {
+    part_.clear();
+    return true;
+  }
+  // NFS knows no RENAME_NOREPLACE. The destructor removes the file's first name.
+  if (errno == EINVAL) failed = link(part_.c_str(), target_.c_str());
+  if (failed != 0 && errno != EEXIST) Fail(errno);
+  return failed == 0;
 }
 
 void AtomicFile::HandOver() {

@@ -30,6 +30,9 @@ class AtomicFile {
   /// Adds text to the file. @throws std::runtime_error when the disk is full
   void Write(std::string_view text);
 
+  /// Whether a file has a name of a temporary file.
+  static bool IsTemporary(const std::filesystem::path& file);
+
   /// Path of the temporary file. A library can open this path and write the content, in place of
   /// Write().
   std::filesystem::path part() const;
@@ -46,6 +49,12 @@ class AtomicFile {
   /// Replaces the old file of this name, or writes everything into the pipe or device.
   /// @throws std::runtime_error, Interrupted
   void Finish();
+
+  /// Gives the file its name only if no file has this name, also if several processes do so at the
+  /// same time. @pre the file is no stream
+  /// @return false if there is a file of this name, which stays unchanged
+  /// @throws std::runtime_error
+  bool FinishNew();
 
   /// Whether Finish() writes into a pipe or device.
   bool is_stream() const { return device_ >= 0; }

@@ -1,6 +1,6 @@
 #include "tools/trials/results.h"
 
-#include <chrono>
+#include <algorithm>
 #include <utility>
 
 #include <fmt/core.h>
@@ -16,9 +16,6 @@ namespace fogline::trials {
 
 namespace {
 
-// Longest wait while another session writes the experiment's file. This takes milliseconds.
-constexpr Duration kPatience = std::chrono::seconds(5);
-
 /// Whether a run has begun to write this log. A file that cannot be read also counts as begun,
 /// because it may contain data.
 bool HasBegun(const std::filesystem::path& log) {
@@ -27,6 +24,14 @@ bool HasBegun(const std::filesystem::path& log) {
   } catch (const InputError&) {
     return true;
   }
+}
+
+/// Whether a folder has more than temporary files. Another session may write one of these now.
+bool HasOtherFiles(const std::filesystem::path& folder) {
+  std::error_code unreadable;
+  const std::filesystem::directory_iterator entries(folder, unreadable);
+  return !std::ranges::all_of(
+      entries, [](const auto& entry) { return AtomicFile::IsTemporary(entry.path()); });
 }
 
 /// Whether a log without facts has a run that this trial could have made: in real time, of the
@@ -70,13 +75,14 @@ std::string WhyForeign(const PlanFile& plan, const Trial& trial, const TrialStor
 Results::Results(const PlanFile& plan, std::filesystem::path folder)
     : plan_(plan), folder_(std::move(folder)) {
   std::error_code missing;
+  if (!std::filesystem::exists(folder_, missing)) return;
+  if (!std::filesystem::is_directory(folder_, missing)) {
+    throw InputError(
+        fmt::format("{}: error: --results: it is a file, not a folder", PathText(folder_)));
+  }
+  if (!HasOtherFiles(folder_)) return;
+  // Looked for last, because another session may just have made it.
   if (!std::filesystem::exists(Kept(), missing)) {
-    if (!std::filesystem::exists(folder_, missing)) return;
-    if (!std::filesystem::is_directory(folder_, missing)) {
-      throw InputError(
-          fmt::format("{}: error: --results: it is a file, not a folder", PathText(folder_)));
-    }
-    if (std::filesystem::is_empty(folder_, missing)) return;
     throw InputError(fmt::format("{}: error: --results: the folder has other files, and no {}",
                                  PathText(folder_), PathText(Kept().filename())));
   }
@@ -99,13 +105,11 @@ void Results::Create() const {
   if (failed) {
     throw InputError(fmt::format("{}: error: --results: {}", PathText(folder_), failed.message()));
   }
-  // Another session may have made the file since the constructor looked, or is making it now.
-  const FileLock lock(folder_, FileLock::Kind::kOwn, "--results", "session", kPatience);
   std::error_code missing;
   if (std::filesystem::exists(Kept(), missing)) return CheckKept();
   AtomicFile file(Kept());
   file.Write(plan_.text);
-  file.Finish();
+  if (!file.FinishNew()) CheckKept();  // another session was faster
 }
 
 std::unique_ptr<FileLock> Results::Begin(std::int64_t participant) const {

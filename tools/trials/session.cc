@@ -92,7 +92,7 @@ class Session {
   static TrialStory ReadComplete(const std::filesystem::path& log) {
     TrialStory story = ReadStory(log);
     if (story.state != TrialState::kBroken) return story;
-    throw std::runtime_error(fmt::format("{}: {}", PathText(log), story.note));
+    throw std::runtime_error(FaultText(log, story));
   }
 
   std::vector<trial_t> RunLogged(const Scenario& scenario, const std::filesystem::path& path,

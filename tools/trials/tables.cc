@@ -167,19 +167,15 @@ class TableMaker {
       for (const TrialRecord& record : results_.ReadAll(participant)) {
         if (record.story.state != TrialState::kDone) ++tables_.missing;
         if (record.attempts > 0) Add(record, order);
-        if (record.story.state == TrialState::kBroken) AddFault(record);
+        if (record.story.state == TrialState::kBroken) {
+          tables_.faults.push_back(FaultText(record.log, record.story));
+        }
       }
     }
     return std::move(tables_);
   }
 
  private:
-  void AddFault(const TrialRecord& record) {
-    const std::string log = PathText(record.log);
-    const std::string& note = record.story.note;  // that of an unreadable log begins with its path
-    tables_.faults.push_back(note.starts_with(log) ? note : log + ": " + note);
-  }
-
   void Add(const TrialRecord& record, const std::string& order) {
     ++tables_.rows;
     const TrialStory& story = record.story;

@@ -80,6 +80,12 @@ TrialStory ReadStory(const std::filesystem::path& log) {
   return story;
 }
 
+std::string FaultText(const std::filesystem::path& log, const TrialStory& story) {
+  const std::string path = PathText(log);
+  // The note of an unreadable log begins with the log's path.
+  return story.note.starts_with(path) ? story.note : path + ": " + story.note;
+}
+
 void RequireReadable(const trial_t& fact) {
   if (runtime::WrongIn(fact) == nullptr) return;
   throw std::runtime_error(fmt::format(
@@ -92,7 +98,7 @@ void AddFacts(const std::filesystem::path& log, const TrialStory& story,
               const std::vector<trial_t>& facts, const runtime::SigningKey* key) {
   std::ranges::for_each(facts, RequireReadable);
   if (story.altered) {
-    throw std::runtime_error(fmt::format("{}: {}; nothing is added", PathText(log), story.note));
+    throw std::runtime_error(FaultText(log, story) + "; nothing is added");
   }
   const auto is_there = [&story](const trial_t& fact) {
     return std::ranges::any_of(

@@ -31,7 +31,7 @@ struct TrialStory {
   std::int64_t steps = 0;
   std::int64_t last_utime = 0;       // simulated time of the last step, us
   double speed = 1;                  // simulated seconds per second
-  std::string note;                  // fault of the log; "" if it has none
+  std::string note;                  // fault of the log; "" if it has none; see FaultText()
   std::vector<trial_t> facts;        // each fact once, by its sequence
   std::optional<Scenario> scenario;  // none if the log cannot be read
   std::optional<log::LogSeal> seal;  // none if the run broke off
@@ -40,6 +40,9 @@ struct TrialStory {
 
 /// Reads a log. A log that cannot be read counts as the log of a broken run, and the note says why.
 TrialStory ReadStory(const std::filesystem::path& log);
+
+/// The fault of a log, after its path.
+std::string FaultText(const std::filesystem::path& log, const TrialStory& story);
 
 /// @throws std::runtime_error if a text of the fact is too long, or a number is out of range:
 ///     recorder and readers ignore such a fact (runtime::WrongIn)

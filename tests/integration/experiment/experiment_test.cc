@@ -299,6 +299,7 @@ TEST_F(ExperimentRealtimeTest, ALogThatHasLostItsFactsIsKnownByItsScenario) {
   EXPECT_EQ(again.code, 0) << again.err;
   const auto rows = ExportedTrials(1);
   ASSERT_THAT(rows, SizeIs(3));
+  EXPECT_EQ(rows[1].at("seed"), "2");
   log::EventLogReader reader(second);
   std::vector<std::int64_t> seeds;
   while (const auto event = reader.Next()) {

@@ -50,6 +50,19 @@ TEST_F(AtomicFileTest, HasItsNameOnlyWhenItIsFinished) {
   EXPECT_EQ(Content(file_), "whole");
 }
 
+TEST_F(AtomicFileTest, OnlyTheFirstOfTwoNewFilesGetsTheName) {
+  {
+    AtomicFile first(file_);
+    AtomicFile second(file_);
+    first.Write("first");
+    second.Write("second");
+    EXPECT_TRUE(first.FinishNew());
+    EXPECT_FALSE(second.FinishNew());
+    EXPECT_EQ(Content(file_), "first");
+  }
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_.path()), {}), 1);
+}
+
 TEST_F(AtomicFileTest, ReplacesNoFolder) {
   const std::string folder = folder_.path().string();
   EXPECT_EQ(ErrorOf([&] { AtomicFile file(folder); }),

@@ -3,9 +3,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
+#include <barrier>
 #include <fstream>
 #include <string>
+#include <thread>
 
+#include "common/atomic_file.h"
 #include "common/errors.h"
 #include "tests/support/command.h"
 #include "tests/support/input_errors.h"
@@ -81,17 +85,40 @@ TEST(ResultsTest, AFolderBelongsToOneVersionOfAnExperiment) {
   }
 }
 
-TEST(ResultsTest, TheFileOfTheFirstOfTwoSessionsIsKept) {
+TEST(ResultsTest, TwoFirstSessionsKeepOneFileOfTheExperiment) {
+  constexpr int kRounds = 50;
   const test::ScratchFolder folder;
   const PlanFile plan = Plan();
   PlanFile other = Plan();
   other.text = "{ }\n";
-  const Results first(plan, folder.path() / "r");
-  const Results second(other, folder.path() / "r");
-  first.Create();
-  EXPECT_THAT(test::ErrorOf([&second] { second.Create(); }),
-              HasSubstr("another version of e.json"));
-  EXPECT_EQ(test::Content(folder.File("r/experiment.json")), plan.text);
+  for (int round = 0; round < kRounds; ++round) {
+    const std::filesystem::path results = folder.path() / std::to_string(round);
+    std::array<std::string, 2> errors;
+    {
+      std::barrier start(2);
+      const auto session = [&](const PlanFile& own, std::string& error) {
+        start.arrive_and_wait();
+        error = test::ErrorOf([&] { Results(own, results).Create(); });
+      };
+      const std::jthread first([&] { session(plan, errors[0]); });
+      const std::jthread second([&] { session(other, errors[1]); });
+    }
+    const bool first_made_it = errors[0].empty();
+    EXPECT_THAT(errors[first_made_it ? 1 : 0], HasSubstr("another version of e.json"));
+    EXPECT_EQ(errors[first_made_it ? 0 : 1], "");
+    EXPECT_EQ(test::Content((results / "experiment.json").string()),
+              first_made_it ? plan.text : other.text);
+  }
+}
+
+TEST(ResultsTest, AFolderInWhichASessionBeginsIsAccepted) {
+  const test::ScratchFolder folder;
+  const PlanFile plan = Plan();
+  AtomicFile file(folder.path() / "experiment.json");
+  file.Write(plan.text);
+  EXPECT_NO_THROW(Results(plan, folder.path()));
+  file.Finish();
+  EXPECT_NO_THROW(Results(plan, folder.path()).Create());
 }
 
 TEST(ResultsTest, AFolderWithOtherFilesIsRefused) {

@@ -19,6 +19,7 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::SizeIs;
+using ::testing::StartsWith;
 
 /// The sealed log of a run of 20 steps.
 class TrialLogTest : public ::testing::Test {
@@ -128,6 +129,16 @@ TEST_F(TrialLogTest, AFileThatIsNoLogIsThatOfABrokenRun) {
   EXPECT_EQ(ReadStory(log_).state, TrialState::kBroken);
   std::ofstream(log_) << "no log";
   EXPECT_EQ(ReadStory(log_).state, TrialState::kBroken);
+}
+
+TEST_F(TrialLogTest, TheTextOfAFaultNamesTheLogOnce) {
+  std::filesystem::resize_file(log_, std::filesystem::file_size(log_) / 2);
+  const std::string early = ReadStory(log_).note;
+  EXPECT_EQ(FaultText(log_, ReadStory(log_)), log_.string() + ": " + early);
+  std::ofstream(log_) << "no log";
+  const std::string unreadable = ReadStory(log_).note;
+  EXPECT_THAT(unreadable, StartsWith(log_.string() + ": error: "));
+  EXPECT_EQ(FaultText(log_, ReadStory(log_)), unreadable);
 }
 
 }  // namespace
