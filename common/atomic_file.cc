@@ -46,8 +46,9 @@ fs::path FolderOf(const fs::path& file) {
   return file.has_parent_path() ? file.parent_path() : fs::path(".");
 }
 
-// Names of temporary files begin with this text.
+// The name of a temporary file is this text and 32 hexadecimal digits.
 constexpr std::string_view kTemporary = ".fogline-";
+constexpr std::size_t kRandomDigits = 32;
 
 /// The file to which a name refers after all symbolic links are resolved.
 struct Target {
@@ -167,7 +168,9 @@ AtomicFile::~AtomicFile() {
 }
 
 bool AtomicFile::IsTemporary(const fs::path& file) {
-  return file.filename().native().starts_with(kTemporary);
+  const std::string name = file.filename().string();
+  return name.size() == kTemporary.size() + kRandomDigits && name.starts_with(kTemporary) &&
+         name.find_first_not_of("0123456789abcdef", kTemporary.size()) == std::string::npos;
 }
 
 fs::path AtomicFile::part() const { return fmt::format("/proc/self/fd/{}", fd_); }
@@ -200,15 +203,14 @@ void AtomicFile::Finish() {
 
 bool AtomicFile::FinishNew() {
   Close();
-  int failed = renameat2(AT_FDCWD, part_.c_str(), AT_FDCWD, target_.c_str(), RENAME_NOREPLACE);
-  if (failed == 0) {
-    part_.clear();
-    return true;
-  }
-  // NFS knows no RENAME_NOREPLACE. The destructor removes the file's first name.
-  if (errno == EINVAL) failed = link(part_.c_str(), target_.c_str());
-  if (failed != 0 && errno != EEXIST) Fail(errno);
-  return failed == 0;
+  if (link(part_.c_str(), target_.c_str()) == 0) return true;  // ~AtomicFile() removes the old name
+  if (errno == EEXIST) return false;
+  if (errno != EPERM && errno != EOPNOTSUPP && errno != ENOSYS) Fail(errno);
+  // The file system has no hard links (FAT).
+  std::error_code unknown;
+  if (fs::exists(target_, unknown)) return false;
+  Finish();
+  return true;
 }
 
 void AtomicFile::HandOver() {

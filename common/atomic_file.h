@@ -12,9 +12,9 @@ namespace fogline {
 
 /// Writes a file under a random name in the folder of the target file, and renames it at the end.
 /// So several processes can write the same file at the same time. Each process writes a complete
-/// file, and the file that is renamed last remains. If the name is a link, the link stays and its
-/// target is replaced. A terminal, /dev/null, a pipe and /dev/stdout cannot be replaced; Finish()
-/// writes the content into them.
+/// file, and the file that is renamed last remains (with FinishNew(): the first). If the name is a
+/// link, the link stays and its target is replaced. A terminal, /dev/null, a pipe and /dev/stdout
+/// cannot be replaced; Finish() writes the content into them.
 ///
 /// A process that must leave no temporary file after an interrupt calls WatchInterrupts()
 /// (interrupt.h). Then only kill -9 leaves a file with a random name, ".fogline-*".
@@ -22,7 +22,7 @@ class AtomicFile {
  public:
   /// @throws InputError if the file cannot be created, or a folder or block device has its name
   explicit AtomicFile(std::filesystem::path file);
-  /// Removes the temporary file, except after a successful Finish().
+  /// Removes the temporary file, if it still exists.
   ~AtomicFile();
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
@@ -30,7 +30,7 @@ class AtomicFile {
   /// Adds text to the file. @throws std::runtime_error when the disk is full
   void Write(std::string_view text);
 
-  /// Whether a file has a name of a temporary file.
+  /// Whether a file has the name of a temporary file.
   static bool IsTemporary(const std::filesystem::path& file);
 
   /// Path of the temporary file. A library can open this path and write the content, in place of
@@ -50,8 +50,8 @@ class AtomicFile {
   /// @throws std::runtime_error, Interrupted
   void Finish();
 
-  /// Gives the file its name only if no file has this name, also if several processes do so at the
-  /// same time. @pre the file is no stream
+  /// Gives the file its name only if no file has this name. If several processes do so at the same
+  /// time, only one succeeds, except on a file system without hard links. @pre !is_stream()
   /// @return false if there is a file of this name, which stays unchanged
   /// @throws std::runtime_error
   bool FinishNew();

@@ -1,6 +1,5 @@
 #include "tools/trials/results.h"
 
-#include <algorithm>
 #include <utility>
 
 #include <fmt/core.h>
@@ -26,12 +25,19 @@ bool HasBegun(const std::filesystem::path& log) {
   }
 }
 
-/// Whether a folder has more than temporary files. Another session may write one of these now.
+/// Whether a folder has more than temporary files. Another session may be writing one of these.
+/// @throws InputError if the folder cannot be read
 bool HasOtherFiles(const std::filesystem::path& folder) {
-  std::error_code unreadable;
-  const std::filesystem::directory_iterator entries(folder, unreadable);
-  return !std::ranges::all_of(
-      entries, [](const auto& entry) { return AtomicFile::IsTemporary(entry.path()); });
+  std::error_code failed;
+  std::filesystem::directory_iterator entry(folder, failed);
+  while (!failed && entry != std::filesystem::directory_iterator()) {
+    if (!AtomicFile::IsTemporary(entry->path())) return true;
+    entry.increment(failed);
+  }
+  if (!failed) return false;
+  ThrowIfExhausted(failed.value(), PathText(folder));
+  throw InputError(
+      fmt::format("{}: error: --results: cannot read: {}", PathText(folder), failed.message()));
 }
 
 /// Whether a log without facts has a run that this trial could have made: in real time, of the

@@ -63,6 +63,17 @@ TEST_F(AtomicFileTest, OnlyTheFirstOfTwoNewFilesGetsTheName) {
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_.path()), {}), 1);
 }
 
+TEST_F(AtomicFileTest, KnowsTheNamesOfItsTemporaryFiles) {
+  const AtomicFile file(file_);
+  for (const auto& entry : std::filesystem::directory_iterator(folder_.path())) {
+    EXPECT_TRUE(AtomicFile::IsTemporary(entry.path())) << entry.path();
+  }
+  EXPECT_FALSE(IsEmpty());
+  EXPECT_FALSE(AtomicFile::IsTemporary(file_));
+  EXPECT_FALSE(AtomicFile::IsTemporary(".fogline-older-run.lcm"));
+  EXPECT_FALSE(AtomicFile::IsTemporary(".fogline-older-of-the-very-long-names.lcm"));
+}
+
 TEST_F(AtomicFileTest, ReplacesNoFolder) {
   const std::string folder = folder_.path().string();
   EXPECT_EQ(ErrorOf([&] { AtomicFile file(folder); }),

@@ -1,13 +1,16 @@
 #include "tools/trials/results.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <array>
 #include <barrier>
 #include <fstream>
+#include <stdexcept>
 #include <string>
 #include <thread>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
 #include "common/atomic_file.h"
 #include "common/errors.h"
@@ -85,7 +88,20 @@ TEST(ResultsTest, AFolderBelongsToOneVersionOfAnExperiment) {
   }
 }
 
-TEST(ResultsTest, TwoFirstSessionsKeepOneFileOfTheExperiment) {
+TEST(ResultsTest, TheFileOfTheFirstOfTwoSessionsIsKept) {
+  const test::ScratchFolder folder;
+  const PlanFile plan = Plan();
+  PlanFile other = Plan();
+  other.text = "{ }\n";
+  const Results first(plan, folder.path() / "r");
+  const Results second(other, folder.path() / "r");
+  first.Create();
+  EXPECT_THAT(test::ErrorOf([&second] { second.Create(); }),
+              HasSubstr("another version of e.json"));
+  EXPECT_EQ(test::Content(folder.File("r/experiment.json")), plan.text);
+}
+
+TEST(ResultsTest, TwoFirstSessionsAtTheSameTimeKeepOneFileOfTheExperiment) {
   constexpr int kRounds = 50;
   const test::ScratchFolder folder;
   const PlanFile plan = Plan();
@@ -98,7 +114,7 @@ TEST(ResultsTest, TwoFirstSessionsKeepOneFileOfTheExperiment) {
       std::barrier start(2);
       const auto session = [&](const PlanFile& own, std::string& error) {
         start.arrive_and_wait();
-        error = test::ErrorOf([&] { Results(own, results).Create(); });
+        error = test::ErrorOf<std::exception>([&] { Results(own, results).Create(); });
       };
       const std::jthread first([&] { session(plan, errors[0]); });
       const std::jthread second([&] { session(other, errors[1]); });
@@ -125,9 +141,25 @@ TEST(ResultsTest, AFolderWithOtherFilesIsRefused) {
   const test::ScratchFolder folder;
   std::ofstream(folder.File("thesis.txt")) << "text";
   const PlanFile plan = Plan();
-  EXPECT_THROW(Results(plan, folder.path()), InputError);
+  const AtomicFile temporary(folder.path() / "experiment.json");
+  EXPECT_EQ(test::ErrorOf([&] { Results(plan, folder.path()); }),
+            folder.path().string() +
+                ": error: --results: the folder has other files, and no experiment.json");
   EXPECT_EQ(test::ErrorOf([&] { Results(plan, folder.File("thesis.txt")); }),
             folder.File("thesis.txt") + ": error: --results: it is a file, not a folder");
+}
+
+TEST(ResultsTest, AFolderThatCannotBeReadIsRefused) {
+  const test::ScratchFolder folder;
+  const PlanFile plan = Plan();
+  rlimit before{};
+  getrlimit(RLIMIT_NOFILE, &before);
+  const rlimit none{.rlim_cur = 0, .rlim_max = before.rlim_max};
+  setrlimit(RLIMIT_NOFILE, &none);
+  const std::string error =
+      test::ErrorOf<std::runtime_error>([&] { Results(plan, folder.path()); });
+  setrlimit(RLIMIT_NOFILE, &before);
+  EXPECT_THAT(error, HasSubstr("Too many open files"));
 }
 
 }  // namespace
