@@ -99,10 +99,11 @@ Seat::~Seat() {
 
 void Seat::Run(const std::string& url, std::int64_t run_id,
                const runtime::TrafficOptions& traffic) {
-  runtime::Bus bus(url);
   // The messages of a seat have no --faults, because a seat is not a part of the run. It signs as
   // the runner (DRIVER_INPUT in services/graph.h).
-  runtime::Apply({.key_file = traffic.key_file, .faults = ""}, Role::kRunner, bus);
+  const auto opened =
+      runtime::OpenBus(url, {.key_file = traffic.key_file, .faults = ""}, Role::kRunner);
+  runtime::Bus& bus = *opened;
   InputMaker maker(run_id, runtime::DrawSeatInstance(), source_->kind(), source_->name());
   bus.Subscribe(ChannelOf<truth_t>().name, [&](runtime::Arrival& arrival) {
     if (const auto* truth = arrival.As<truth_t>()) maker.SawTruth(truth->header);

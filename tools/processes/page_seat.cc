@@ -28,16 +28,15 @@ runtime::TrafficOptions OnlyKey(const runtime::TrafficOptions& traffic) {
 
 bool WaitForPerson(std::int64_t run_id, const std::string& url,
                    const runtime::TrafficOptions& traffic, const std::function<void()>& look) {
-  runtime::Bus bus(url);
-  runtime::Apply(OnlyKey(traffic), Role::kDriver, bus);
+  const auto bus = runtime::OpenBus(url, OnlyKey(traffic), Role::kDriver);
   bool present = false;
-  bus.Subscribe(ChannelOf<driver_input_t>().name, [&](runtime::Arrival& arrival) {
+  bus->Subscribe(ChannelOf<driver_input_t>().name, [&](runtime::Arrival& arrival) {
     const auto* input = arrival.As<driver_input_t>();
     const bool ours = input != nullptr && input->header.run_id == run_id;
     present = present || (ours && input->present);
   });
   while (!present && !WasInterrupted()) {
-    bus.Wait(kLook);
+    bus->Wait(kLook);
     look();
   }
   return present;

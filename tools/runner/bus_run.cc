@@ -242,10 +242,9 @@ std::string UrlOf(const std::string& transport, bool far) {
                   transport));
 }
 
-/// Signs and impairs the runner's messages as the options say. @throws InputError
-void ApplyTraffic(const ExperimentOptions& options, runtime::Bus& bus) {
-  runtime::Apply(options.traffic,
-                 runtime::IsInMemory(bus.url()) ? std::nullopt : std::optional(Role::kRunner), bus);
+/// The role that the runner's bus signs and impairs as. In memory it does so for every role.
+std::optional<Role> SenderOn(const std::string& url) {
+  return runtime::IsInMemory(url) ? std::nullopt : std::optional(Role::kRunner);
 }
 
 }  // namespace
@@ -259,10 +258,7 @@ std::int64_t DrawRunId() {
 void CheckNetwork(const ExperimentOptions& options) {
   if (options.transport == "tcpq") return;
   const std::string url = UrlOf(options.transport, !options.hosts.empty());
-  // Checked first, because LCM may print a line of its own when a network of mpudpm is closed.
-  if (runtime::KeyOf(options.traffic)) runtime::RequireSignable(url);
-  runtime::Bus bus(url);
-  ApplyTraffic(options, bus);
+  runtime::OpenBus(url, options.traffic, SenderOn(url));
 }
 
 BusRun RunOnBus(const Scenario& scenario, const ExperimentOptions& options,
@@ -282,7 +278,7 @@ BusRun RunOnBus(const Scenario& scenario, const ExperimentOptions& options,
   const runtime::RunCoordinatorOptions conducting =
       MakeCoordinatorOptions(scenario, options, in_memory);
   if (!in_memory) options.on_network(conducting.run_id, bus.url());
-  ApplyTraffic(options, bus);
+  runtime::Apply(options.traffic, SenderOn(bus.url()), bus);
   if (!in_memory) options.on_run(conducting.run_id, bus.url());
   runtime::RunCoordinator coordinator(bus, conducting);
   const TimePoint began = Clock::now();

@@ -41,9 +41,8 @@ Speaker::Speaker(const std::string& url, std::int64_t run_id,
 Speaker::~Speaker() { End(); }
 
 void Speaker::Work(const std::string& url, const runtime::TrafficOptions& traffic) {
-  runtime::Bus bus(url);
-  runtime::Apply(traffic, Role::kRunner, bus);
-  bus.Subscribe(ChannelOf<truth_t>().name, [this](runtime::Arrival& arrival) {
+  const auto bus = runtime::OpenBus(url, traffic, Role::kRunner);
+  bus->Subscribe(ChannelOf<truth_t>().name, [this](runtime::Arrival& arrival) {
     const auto* truth = arrival.As<truth_t>();
     if (truth == nullptr || truth->header.run_id != base_.header.run_id) return;
     const std::lock_guard lock(mutex_);
@@ -53,12 +52,12 @@ void Speaker::Work(const std::string& url, const runtime::TrafficOptions& traffi
   });
   std::vector<std::uint8_t> bytes;
   while (!over_) {
-    bus.Wait(kSendEvery);
+    bus->Wait(kSendEvery);
     const std::lock_guard lock(mutex_);
     if (step_ < 0) continue;  // before the first TRUTH, the recorder may not listen yet
     for (; sent_ < facts_.size(); ++sent_) {
       runtime::Encode(facts_[sent_], bytes);
-      bus.Publish(ChannelOf<trial_t>().name, bytes);
+      bus->Publish(ChannelOf<trial_t>().name, bytes);
     }
   }
 }

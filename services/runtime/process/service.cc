@@ -98,10 +98,9 @@ class Service {
   const RunNews& news() { return work_->node().parts().run; }
 
   /// Joins a network. If the process cannot join the network, it stays on its current network.
-  /// @throws as Bus()
+  /// @throws as OpenBus()
   void Join(const std::string& url, std::optional<std::int64_t> run_id) {
-    auto bus = std::make_unique<Bus>(url);
-    Apply(arguments_.traffic, arguments_.role, *bus);
+    auto bus = OpenBus(url, arguments_.traffic, arguments_.role);
     work_ = make_(*bus, run_id);
     bus_ = std::move(bus);
     starts_over_ = false;

@@ -50,8 +50,9 @@ class NetworkClosed : public InputError {
   using InputError::InputError;
 };
 
-/// @throws InputError if messages of a network cannot be signed: mpudpm has no filter, so fragments
-///     and floods would reach a process before their signature is checked
+/// @throws InputError if a network takes no key: mpudpm has no filter, so fragments and floods
+/// would
+///     reach a process before their signature is checked
 void RequireSignable(std::string_view url);
 
 /// One connection to an LCM network, for one thread. With memq:// a message reaches only the

@@ -39,6 +39,15 @@ void Check(const TrafficOptions& options) {
   FaultsOf(options);
 }
 
+std::unique_ptr<Bus> OpenBus(const std::string& url, const TrafficOptions& options,
+                             std::optional<Role> role) {
+  // Checked first, because LCM may print a line of its own when a network of mpudpm is closed.
+  if (KeyOf(options)) RequireSignable(url);
+  auto bus = std::make_unique<Bus>(url);
+  Apply(options, role, *bus);
+  return bus;
+}
+
 void Apply(const TrafficOptions& options, std::optional<Role> role, Bus& bus) {
   if (const auto key = KeyOf(options)) bus.Secure(MessageSigner(*key, role));
   if (const auto rates = FaultsOf(options)) {

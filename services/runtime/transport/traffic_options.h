@@ -2,6 +2,7 @@
 // `fogline run` and for every service (process/program_options.h reads them).
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -24,6 +25,13 @@ std::optional<SigningKey> KeyOf(const TrafficOptions& options);
 
 /// @throws InputError when the options, or the key's file, are wrong
 void Check(const TrafficOptions& options);
+
+/// Opens a network with the options.
+/// @param role as in Apply()
+/// @throws as Bus(), and InputError when the options, or the key's file, are wrong, or the network
+///     takes no key
+std::unique_ptr<Bus> OpenBus(const std::string& url, const TrafficOptions& options,
+                             std::optional<Role> role);
 
 /// Applies the options to a bus.
 /// @param role of this process; nullopt when the process has every role

@@ -36,8 +36,7 @@ std::vector<Role> LiveRoles::roles() const {
 void LiveRoles::Join(std::int64_t run_id, const std::string& url) {
   for (const Role role : roles()) {
     auto part = std::make_unique<Part>();
-    part->bus = std::make_unique<runtime::Bus>(url);
-    runtime::Apply(traffic_, role, *part->bus);
+    part->bus = runtime::OpenBus(url, traffic_, role);
     part->node = std::make_unique<RecordedNode>(*part->bus, role, run_id, messages_);
     part->thread = std::thread([this, &part = *part] { TakePart(part); });
     parts_.push_back(std::move(part));
