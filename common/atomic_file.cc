@@ -206,10 +206,15 @@ bool AtomicFile::FinishNew() {
   if (link(part_.c_str(), target_.c_str()) == 0) return true;  // ~AtomicFile() removes the old name
   if (errno == EEXIST) return false;
   if (errno != EPERM && errno != EOPNOTSUPP && errno != ENOSYS) Fail(errno);
-  // The file system has no hard links (FAT).
-  std::error_code unknown;
-  if (fs::exists(target_, unknown)) return false;
-  Finish();
+  // The file system has no hard links.
+  if (renameat2(AT_FDCWD, part_.c_str(), AT_FDCWD, target_.c_str(), RENAME_NOREPLACE) != 0) {
+    if (errno == EEXIST) return false;
+    if (errno != EINVAL && errno != ENOSYS) Fail(errno);
+    std::error_code unknown;
+    if (fs::status(target_, unknown).type() != fs::file_type::not_found) return false;
+    if (std::rename(part_.c_str(), target_.c_str()) != 0) Fail(errno);
+  }
+  part_.clear();
   return true;
 }
 
