@@ -51,8 +51,7 @@ class NetworkClosed : public InputError {
 };
 
 /// @throws InputError if a network takes no key: mpudpm has no filter, so fragments and floods
-/// would
-///     reach a process before their signature is checked
+///     would reach a process before their signature is checked
 void RequireSignable(std::string_view url);
 
 /// One connection to an LCM network, for one thread. With memq:// a message reaches only the
