@@ -285,7 +285,7 @@ void AddEvents(CLI::App& app, cli::Action& action) {
       "command of the log.\n"
       "Then lists the times of each request, from the start of the run, and its outcome and\n"
       "measures (services/metrics/README.md defines them). With the mode instant\n"
-      "of take_over the driver is not asked, so there are no requests and acknowledgements.\n\n"
+      "of take_over the human is not asked, so there are no requests and acknowledgements.\n\n"
       "Examples:\n"
       "  fogline run scenario/paper.json --set /arbitrator/take_over/mode=requested --log "
       "logs/asked.lcm\n"

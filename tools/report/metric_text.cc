@@ -68,7 +68,7 @@ std::string_view OutcomeText(metrics::TakeOverEnd end) {
     case metrics::TakeOverEnd::kWithdrawn:
       return "withdrawn";
     case metrics::TakeOverEnd::kFallback:
-      return "fallback to the driver";
+      return "fallback to the human";
     case metrics::TakeOverEnd::kUnknown:
       return "unknown: the log ends first";
   }

@@ -144,7 +144,7 @@ std::string RequestsSection(std::span<const ReportRun> runs) {
   if (!content.empty()) {
     content +=
         "<p class=\"note\">Times begin with the request. The other measures are of the interval "
-        "from the request until the driver has recovered, the automation drives again, or the car "
+        "from the request until the human has recovered, the automation drives again, or the car "
         "stands after a minimal risk manoeuvre.</p>\n";
   }
   content += UnknownNotes(runs, &ReportRun::unknown_take_overs);

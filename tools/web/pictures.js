@@ -50,7 +50,7 @@ async function window(t, started, file) {
   const page = await open(t, started, await view(t, [log]), {size: {width: WIDTH, height: 1000}, ...SCHEME});
   await page.waitForFunction(() => foglinePage.log?.events.length > 0);
   const step = await page.evaluate(() => (
-    foglinePage.log.events.findLast(({text}) => text === "transfer to the driver").step));
+    foglinePage.log.events.findLast(({text}) => text === "transfer to the human").step));
   await goTo(page, step + 3);
   await page.waitForFunction(() => foglinePage.scene.view && foglinePage.curves.charts.length > 0);
   // The picture ends where the health of the run begins. Otherwise the time bar would cover the

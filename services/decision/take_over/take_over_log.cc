@@ -8,7 +8,7 @@
 namespace fogline::take_over {
 namespace {
 
-constexpr std::string_view kToDriver = "transfer to the driver";
+constexpr std::string_view kToHuman = "transfer to the human";
 constexpr std::string_view kToAutomation = "return to automation";
 
 const TakeOverStateInfo* StateOf(std::int8_t mode) {
@@ -28,7 +28,7 @@ std::string_view LoggedOf(std::int8_t from, std::int8_t to) {
     if (row != kTakeOverTable.end()) return row->logged;
   }
   if (to == arbitration_t::MINIMAL_RISK) return "manoeuvre begins: inputs have failed";
-  if (HumanDrives(to)) return kToDriver;
+  if (HumanDrives(to)) return kToHuman;
   if (to == arbitration_t::AUTOMATION) return kToAutomation;
   return "change of state";
 }
@@ -71,7 +71,7 @@ std::string_view TextOf(const TakeOverEntry& entry, const PersonSection& person)
     return "override by the person";
   }
   if (entry.to != arbitration_t::HANDOVER) return entry.logged;
-  return person.drives ? "acknowledgement by the person" : "acknowledgement (modelled driver)";
+  return person.drives ? "acknowledgement by the person" : "acknowledgement (driver model)";
 }
 
 void TakeOverLog::Add(const arbitration_t& command, std::optional<double> human_mps2) {
@@ -165,7 +165,7 @@ void TakeOverLog::AddDecided(const arbitration_t& command, std::optional<double>
                         .from = command.mode,
                         .to = command.mode,
                         .transfer = true,
-                        .logged = human ? kToDriver : kToAutomation});
+                        .logged = human ? kToHuman : kToAutomation});
   }
   if (HumanDrives(command.mode)) Drive(command, human_mps2);
   last_ = command;
@@ -176,8 +176,8 @@ void TakeOverLog::Change(const arbitration_t& command, std::int8_t from, bool tr
   const bool share_changes = has_share != HumanDrives(from);
   std::string_view logged = LoggedOf(from, command.mode);
   if (share_changes && !transfer) {
-    if (has_share) logged = "driver takes part";
-    if (command.mode == arbitration_t::AUTOMATION) logged = "driver is released";
+    if (has_share) logged = "human takes part";
+    if (command.mode == arbitration_t::AUTOMATION) logged = "human is released";
   }
   entries_.push_back({.step = command.header.step,
                       .earliest_step = earliest_,
@@ -249,7 +249,7 @@ void TakeOverLog::Drive(const arbitration_t& command, std::optional<double> huma
                       .utime = command.header.utime,
                       .from = command.mode,
                       .to = command.mode,
-                      .logged = "first effective input of the driver"});
+                      .logged = "first effective input of the human"});
   if (unknown_offer_) entries_.back().earliest_step = std::min(earliest_, *unknown_offer_);
   if (asked_ && !requests_.empty()) requests_.back().effective = command.header.step;
 }

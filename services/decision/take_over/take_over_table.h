@@ -96,45 +96,45 @@ using Row = TakeOverRow;
 ///     (6.3). A car that stands after a manoeuvre stays locked.
 inline constexpr std::array kTakeOverTable{
     //  state          event          guard   next           authority    logged
-    Row{kAutomated,    kOverride,     kAny,   kRecovering,   kHuman,      "transfer to the driver"},
+    Row{kAutomated,    kOverride,     kAny,   kRecovering,   kHuman,      "transfer to the human"},
     Row{kAutomated,    kWanted,       kAny,   kDemand,       kEasing,     "request to take over"},
 
-    Row{kDemand,       kOverride,     kAny,   kRecovering,   kHuman,      "transfer to the driver"},
+    Row{kDemand,       kOverride,     kAny,   kRecovering,   kHuman,      "transfer to the human"},
     Row{kDemand,       kSevere,       kAny,   kMrmEmergency, kHard,       "emergency manoeuvre"},
     Row{kDemand,       kAcknowledged, kAny,   kHandover,     kEasing,     "acknowledgement"},
     Row{kDemand,       kDeadline,     kAny,   kMrmComfort,   kComfort,    "comfortable manoeuvre"},
     Row{kDemand,       kEscalation,   kAny,   kUrgentDemand, kEasing,     "escalation"},
 
-    Row{kUrgentDemand, kOverride,     kAny,   kRecovering,   kHuman,      "transfer to the driver"},
+    Row{kUrgentDemand, kOverride,     kAny,   kRecovering,   kHuman,      "transfer to the human"},
     Row{kUrgentDemand, kSevere,       kAny,   kMrmEmergency, kHard,       "emergency manoeuvre"},
     Row{kUrgentDemand, kAcknowledged, kAny,   kHandover,     kEasing,     "acknowledgement"},
     Row{kUrgentDemand, kDeadline,     kAny,   kMrmComfort,   kComfort,    "comfortable manoeuvre"},
 
-    Row{kHandover,     kOverride,     kAny,   kRecovering,   kHuman,      "transfer to the driver"},
-    Row{kHandover,     kReady,        kAny,   kRecovering,   kHuman,      "transfer to the driver"},
+    Row{kHandover,     kOverride,     kAny,   kRecovering,   kHuman,      "transfer to the human"},
+    Row{kHandover,     kReady,        kAny,   kRecovering,   kHuman,      "transfer to the human"},
     Row{kHandover,     kSevere,       kAny,   kMrmEmergency, kHard,       "emergency manoeuvre"},
     Row{kHandover,     kDeadline,     kAny,   kMrmComfort,   kComfort,    "comfortable manoeuvre"},
 
     Row{kRecovering,   kGone,         kAny,   kMrmComfort,   kComfort,    "comfortable manoeuvre"},
-    Row{kRecovering,   kRecovered,    kAny,   kManual,       kHuman,      "driver recovered"},
+    Row{kRecovering,   kRecovered,    kAny,   kManual,       kHuman,      "human recovered"},
 
     Row{kManual,       kGone,         kAny,   kMrmComfort,   kComfort,    "comfortable manoeuvre"},
     Row{kManual,       kCalm,         kFresh, kAutomated,    kAutomation, "return to automation"},
 
     Row{kMrmComfort,   kStandstill,   kAny,   kMrmDone,      kHard,       "standstill, locked"},
-    Row{kMrmComfort,   kReady,        kAny,   kRecovering,   kHuman,      "driver ends manoeuvre"},
-    Row{kMrmComfort,   kOverride,     kAny,   kRecovering,   kHuman,      "driver ends manoeuvre"},
+    Row{kMrmComfort,   kReady,        kAny,   kRecovering,   kHuman,      "human ends manoeuvre"},
+    Row{kMrmComfort,   kOverride,     kAny,   kRecovering,   kHuman,      "human ends manoeuvre"},
     Row{kMrmComfort,   kSevere,       kAny,   kMrmEmergency, kHard,       "emergency manoeuvre"},
     Row{kMrmComfort,   kOverdue,      kAny,   kMrmEmergency, kHard,       "emergency manoeuvre"},
 
     Row{kMrmEmergency, kStandstill,   kAny,   kMrmDone,      kHard,       "standstill, locked"},
-    Row{kMrmEmergency, kReady,        kAny,   kRecovering,   kHuman,      "driver ends manoeuvre"},
-    Row{kMrmEmergency, kOverride,     kAny,   kRecovering,   kHuman,      "driver ends manoeuvre"},
+    Row{kMrmEmergency, kReady,        kAny,   kRecovering,   kHuman,      "human ends manoeuvre"},
+    Row{kMrmEmergency, kOverride,     kAny,   kRecovering,   kHuman,      "human ends manoeuvre"},
     Row{kMrmEmergency, kOverdue,      kAny,   kMrmFailed,    kHard,       "manoeuvre fails"},
 
     Row{kMrmFailed,    kStandstill,   kAny,   kMrmDone,      kHard,       "standstill, locked"},
-    Row{kMrmFailed,    kReady,        kAny,   kRecovering,   kHuman,      "driver ends manoeuvre"},
-    Row{kMrmFailed,    kOverride,     kAny,   kRecovering,   kHuman,      "driver ends manoeuvre"},
+    Row{kMrmFailed,    kReady,        kAny,   kRecovering,   kHuman,      "human ends manoeuvre"},
+    Row{kMrmFailed,    kOverride,     kAny,   kRecovering,   kHuman,      "human ends manoeuvre"},
 };
 }  // namespace internal
 // clang-format on

@@ -138,7 +138,7 @@ function assertMeasures(log, sent) {
   assert.equal(measured.input_latency.inputs, sent);
   const [{events}] = JSON.parse(run(FOGLINE, "events", log, "--json"));
   const texts = events.map(({event}) => event);
-  for (const text of ["request to take over", "acknowledgement by the person", "transfer to the driver",
+  for (const text of ["request to take over", "acknowledgement by the person", "transfer to the human",
                       "return to automation"]) {
     assert.ok(texts.includes(text), `${text} is not one of: ${texts.join(", ")}`);
   }

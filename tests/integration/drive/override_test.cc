@@ -53,7 +53,7 @@ TEST(OverrideInRealtimeTest, ABrakeTakesOverWithoutARequestUntilThePersonGivesBa
   const auto events = EventsOf(kBrakes, {"/person/drives=true", "/person/override_by=brake",
                                          "/arbitrator/take_over/recovery_s=1"});
   EXPECT_EQ(TextsOf(events), (Words{"activation of the automation", "override by the person",
-                                    "first effective input of the driver", "driver recovered",
+                                    "first effective input of the human", "human recovered",
                                     "return to automation"}))
       << events;
   EXPECT_THAT(events["requests"], IsEmpty());
@@ -70,7 +70,7 @@ TEST(ReturnInRealtimeTest, APersonWhoComesBackEndsTheManoeuvreByAnAnswer) {
   const Words texts =
       TextsOf(EventsOf("0 0 0 1 1; 1 0.2 0 0 1; 2.5 0 0 0 0; 3.5 0 0 0 1; 4.5 0 0 1 1", settings));
   EXPECT_THAT(texts, Contains("manoeuvre begins: person gone"));
-  EXPECT_THAT(texts, Contains("driver ends manoeuvre"));
+  EXPECT_THAT(texts, Contains("human ends manoeuvre"));
   EXPECT_THAT(texts, Not(Contains("manoeuvre begins: inputs or person gone")));
 }
 

@@ -126,7 +126,7 @@ TEST_F(DrivenRunInRealtimeTest, SaysThatThePersonHasAcknowledged) {
   std::vector<std::string> texts;
   for (const auto& event : events["events"]) texts.push_back(event["event"]);
   EXPECT_THAT(texts, testing::Contains("acknowledgement by the person"));
-  EXPECT_THAT(texts, testing::Contains("transfer to the driver"));
+  EXPECT_THAT(texts, testing::Contains("transfer to the human"));
   ASSERT_EQ(events["requests"].size(), 1U);
   // The seat's script begins at the first TRUTH that the seat receives. From then on the button is
   // pressed.
@@ -136,7 +136,7 @@ TEST_F(DrivenRunInRealtimeTest, SaysThatThePersonHasAcknowledged) {
                   "/arbitrator/take_over/mode=requested", "--log", folder_.File("drawn.lcm")});
   ASSERT_EQ(drawn.code, 0) << drawn.err;
   const Outcome text = RunCommand({Program("fogline"), "events", folder_.File("drawn.lcm")});
-  EXPECT_THAT(text.out, HasSubstr("acknowledgement (modelled driver)"));
+  EXPECT_THAT(text.out, HasSubstr("acknowledgement (driver model)"));
 }
 
 TEST_F(DrivenRunInRealtimeTest, RefusesCountsAndNamesInputsThatAreWrong) {

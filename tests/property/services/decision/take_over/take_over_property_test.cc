@@ -199,7 +199,7 @@ class Sequence {
   }
 
   /// Notes the first step in which the driver's command differs from the last command before the
-  /// transfer to the driver.
+  /// transfer to the human.
   void NoteTheDriver(take_over::TakeOverState before, std::int64_t step,
                      const take_over::TakeOverOutcome& out) {
     if (out.state == kDemand && before == kAutomated) effective_.reset();

@@ -25,10 +25,9 @@ TEST(LateTakeOverLogTest, HasNoRequestThatBeganBeforeTheFirstCommand) {
   Add(log, Command(12, arbitration_t::AUTOMATION));
   EXPECT_THAT(log.requests(), IsEmpty());
   EXPECT_TRUE(log.BeganInRequest());
-  EXPECT_THAT(Texts(log),
-              ElementsAre("first command of the log", "acknowledgement", "transfer to the driver",
-                          "first effective input of the driver", "driver recovered",
-                          "return to automation"));
+  EXPECT_THAT(Texts(log), ElementsAre("first command of the log", "acknowledgement",
+                                      "transfer to the human", "first effective input of the human",
+                                      "human recovered", "return to automation"));
   EXPECT_EQ(take_over::NameOfMode(log.entries()[0].from), "DEMAND");
   EXPECT_TRUE(log.entries()[0].first);
   EXPECT_FALSE(log.entries()[1].first);
@@ -96,7 +95,7 @@ TEST(LateTakeOverLogTest, SaysThatAnInputMayHaveBeenEffectiveBeforeIfOffersAreMi
   log.Add(Command(4, arbitration_t::RECOVERING, -3), std::nullopt);
   Add(log, Command(5, arbitration_t::RECOVERING, -3));
   const take_over::TakeOverEntry& last = log.entries().back();
-  EXPECT_EQ(last.logged, "first effective input of the driver");
+  EXPECT_EQ(last.logged, "first effective input of the human");
   EXPECT_EQ(last.step, 5);
   EXPECT_EQ(last.earliest_step, 3);
 }
@@ -139,10 +138,9 @@ TEST(LateTakeOverLogTest, SeesThatARunHasRequestsInALateLogThatBeginsWithTheDriv
   Add(log, Command(9, arbitration_t::RECOVERING));
   Add(log, Emergency(10, arbitration_t::EMERGENCY_BRAKING, 1));
   Add(log, Command(11, arbitration_t::RECOVERING));
-  EXPECT_THAT(Texts(log),
-              ElementsAre("first command of the log", "comfortable manoeuvre",
-                          "driver ends manoeuvre", "first effective input of the driver",
-                          "emergency braking begins", "emergency braking ends"));
+  EXPECT_THAT(Texts(log), ElementsAre("first command of the log", "comfortable manoeuvre",
+                                      "human ends manoeuvre", "first effective input of the human",
+                                      "emergency braking begins", "emergency braking ends"));
   take_over::TakeOverLog shared;
   Add(shared, Shared(7, arbitration_t::HUMAN, 0.3));
   Add(shared, Shared(8, arbitration_t::EMERGENCY_BRAKING, 0.3));

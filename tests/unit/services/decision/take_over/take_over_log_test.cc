@@ -26,8 +26,8 @@ TEST(TakeOverLogTest, TellsARequestFromItsBeginningToTheDriversFirstInput) {
   Add(log, Command(6, arbitration_t::HUMAN));
   Add(log, Command(7, arbitration_t::AUTOMATION));
   EXPECT_THAT(Texts(log), ElementsAre("activation of the automation", "request to take over",
-                                      "escalation", "acknowledgement", "transfer to the driver",
-                                      "first effective input of the driver", "driver recovered",
+                                      "escalation", "acknowledgement", "transfer to the human",
+                                      "first effective input of the human", "human recovered",
                                       "return to automation"));
   EXPECT_THAT(
       log.requests(),
@@ -78,8 +78,8 @@ TEST(TakeOverLogTest, HasTransfersAndNoRequestsWhereTheDriverNeedNotBeAsked) {
   Add(log, Command(2, arbitration_t::HUMAN, 1.5));
   Add(log, Command(3, arbitration_t::AUTOMATION, 1));
   Add(log, Command(4, arbitration_t::MINIMAL_RISK, -1));
-  EXPECT_THAT(Texts(log), ElementsAre("activation of the automation", "transfer to the driver",
-                                      "first effective input of the driver", "return to automation",
+  EXPECT_THAT(Texts(log), ElementsAre("activation of the automation", "transfer to the human",
+                                      "first effective input of the human", "return to automation",
                                       "manoeuvre begins: inputs have failed"));
   EXPECT_THAT(log.requests(), IsEmpty());
 }
@@ -104,8 +104,8 @@ TEST(TakeOverLogTest, TellsATransferWhereARampPassesTheHalfAndNotWhereItBegins) 
   log.Add(Shared(6, arbitration_t::AUTOMATION, 0.2), 0);
   EXPECT_THAT(Texts(log),
               ElementsAre("activation of the automation", "request to take over", "acknowledgement",
-                          "driver takes part", "transfer to the driver", "driver recovered",
-                          "first effective input of the driver", "driver is released",
+                          "human takes part", "transfer to the human", "human recovered",
+                          "first effective input of the human", "human is released",
                           "return to automation"));
   EXPECT_THAT(Transfers(log), ElementsAre(3, 6));
   EXPECT_THAT(log.requests(),
@@ -163,7 +163,7 @@ TEST(TakeOverLogTest, TellsATransferThatEmergencyBrakingHides) {
   Add(log, Emergency(2, arbitration_t::EMERGENCY_BRAKING, 1));
   Add(log, Command(3, arbitration_t::HUMAN, -9));
   EXPECT_THAT(Texts(log), ElementsAre("activation of the automation", "emergency braking begins",
-                                      "transfer to the driver", "emergency braking ends"));
+                                      "transfer to the human", "emergency braking ends"));
   EXPECT_THAT(Transfers(log), ElementsAre(2));
 }
 
@@ -189,7 +189,7 @@ TEST(TakeOverLogTest, SaysWhoHasAcknowledged) {
       .from = arbitration_t::REQUEST, .to = arbitration_t::HANDOVER, .logged = "acknowledgement"};
   const PersonSection drives{.drives = true};
   EXPECT_EQ(take_over::TextOf(answer, drives), "acknowledgement by the person");
-  EXPECT_EQ(take_over::TextOf(answer, {}), "acknowledgement (modelled driver)");
+  EXPECT_EQ(take_over::TextOf(answer, {}), "acknowledgement (driver model)");
   const take_over::TakeOverEntry other{
       .from = arbitration_t::HANDOVER, .to = arbitration_t::HANDOVER, .logged = "something"};
   EXPECT_EQ(take_over::TextOf(other, drives), "something");
@@ -201,14 +201,14 @@ TEST(TakeOverLogTest, SaysThatAPersonHasOverridden) {
   for (const std::int8_t from :
        {arbitration_t::AUTOMATION, arbitration_t::REQUEST, arbitration_t::REQUEST_URGENT}) {
     const take_over::TakeOverEntry entry{
-        .from = from, .to = arbitration_t::RECOVERING, .logged = "transfer to the driver"};
+        .from = from, .to = arbitration_t::RECOVERING, .logged = "transfer to the human"};
     EXPECT_EQ(take_over::TextOf(entry, overrides), "override by the person");
-    EXPECT_EQ(take_over::TextOf(entry, drives), "transfer to the driver");
+    EXPECT_EQ(take_over::TextOf(entry, drives), "transfer to the human");
   }
   const take_over::TakeOverEntry answered{.from = arbitration_t::HANDOVER,
                                           .to = arbitration_t::RECOVERING,
-                                          .logged = "transfer to the driver"};
-  EXPECT_EQ(take_over::TextOf(answered, overrides), "transfer to the driver");
+                                          .logged = "transfer to the human"};
+  EXPECT_EQ(take_over::TextOf(answered, overrides), "transfer to the human");
 }
 
 TEST(TakeOverLogTest, MakesNoRequestOfAnOverrideAndLeavesTheLastOneAsItWas) {
@@ -221,8 +221,8 @@ TEST(TakeOverLogTest, MakesNoRequestOfAnOverrideAndLeavesTheLastOneAsItWas) {
   };
   override_at(0);
   EXPECT_THAT(log.requests(), IsEmpty());
-  EXPECT_THAT(Texts(log), ElementsAre("activation of the automation", "transfer to the driver",
-                                      "first effective input of the driver", "driver recovered",
+  EXPECT_THAT(Texts(log), ElementsAre("activation of the automation", "transfer to the human",
+                                      "first effective input of the human", "human recovered",
                                       "return to automation"));
   EXPECT_THAT(Transfers(log), ElementsAre(1, 3));
   Add(log, Command(10, arbitration_t::REQUEST));
@@ -273,9 +273,9 @@ TEST(TakeOverLogTest, TakesAnOverrideBehindEmergencyBrakingForTheSame) {
   Add(log, Command(3, arbitration_t::RECOVERING, -3));
   Add(log, Command(4, arbitration_t::HUMAN, -3));
   EXPECT_THAT(Texts(log),
-              ElementsAre("activation of the automation", "transfer to the driver",
-                          "first effective input of the driver", "emergency braking begins",
-                          "emergency braking ends", "driver recovered"));
+              ElementsAre("activation of the automation", "transfer to the human",
+                          "first effective input of the human", "emergency braking begins",
+                          "emergency braking ends", "human recovered"));
 }
 
 TEST(TakeOverLogTest, TakesTheStateBehindEmergencyBrakingForTheSameAfterAnOverride) {
@@ -286,10 +286,10 @@ TEST(TakeOverLogTest, TakesTheStateBehindEmergencyBrakingForTheSameAfterAnOverri
   Add(log, Emergency(3, arbitration_t::EMERGENCY_BRAKING, 0.6));
   Add(log, Command(4, arbitration_t::RECOVERING, -3));
   EXPECT_THAT(Texts(log),
-              ElementsAre("activation of the automation", "transfer to the driver",
-                          "first effective input of the driver", "return to automation",
-                          "transfer to the driver", "emergency braking begins", "driver takes part",
-                          "first effective input of the driver", "emergency braking ends"));
+              ElementsAre("activation of the automation", "transfer to the human",
+                          "first effective input of the human", "return to automation",
+                          "transfer to the human", "emergency braking begins", "human takes part",
+                          "first effective input of the human", "emergency braking ends"));
 }
 
 }  // namespace
