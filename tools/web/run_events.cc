@@ -64,12 +64,26 @@ void RunEvents::Add(const arbitration_t& command, std::optional<double> human_mp
   take_over_.Add(command, human_mps2);
   for (const take_over::TakeOverEntry& entry : take_over_.TakeEntries()) {
     if (!entry.first) {
-      Note(entry, may_lack_commands_ ? entry.step : entry.earliest_step, KindOf(entry),
-           std::string(take_over::TextOf(entry, person_)));
+      NoteChange(entry);
     } else if (entry.to != arbitration_t::AUTOMATION && entry.to != arbitration_t::HUMAN) {
       Note(entry, entry.step, KindOf(entry),
            fmt::format("state {}", take_over::NameOfMode(entry.to)));
     }
+  }
+}
+
+void RunEvents::NoteChange(const take_over::TakeOverEntry& entry) {
+  const std::int64_t earliest = may_lack_commands_ ? entry.step : entry.earliest_step;
+  const std::size_t place = events_.size();
+  Note(entry, earliest, KindOf(entry), std::string(take_over::TextOf(entry, person_)));
+  if (events_.size() > place) changes_.push_back({place, entry, earliest});
+}
+
+void RunEvents::set_person(const PersonSection& person) {
+  person_ = person;
+  for (const Change& change : changes_) {
+    events_[change.place].text = std::string(take_over::TextOf(change.entry, person_)) +
+                                 log::InOneOfTheSteps(change.earliest, change.entry.step);
   }
 }
 

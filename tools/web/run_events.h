@@ -38,9 +38,9 @@ class RunEvents {
   /// command then happened in the step of the command. Applies to commands that are added
   /// afterwards.
   void set_may_lack_commands(bool may_lack) { may_lack_commands_ = may_lack; }
-  /// Sets the section of the run's scenario that says whether a person drives. It changes the texts
-  /// of the commands that are added afterwards.
-  void set_person(const PersonSection& person) { person_ = person; }
+  /// Sets the section of the run's scenario that says whether a person drives. The texts of earlier
+  /// events change, too, because a viewer may get the scenario after the first steps.
+  void set_person(const PersonSection& person);
   void Add(const truth_t& truth);
   /// @param human_mps2 the driver's offer in this step; nullopt if the offer is unknown
   void Add(const arbitration_t& command, std::optional<double> human_mps2);
@@ -51,9 +51,17 @@ class RunEvents {
   const take_over::TakeOverLog& take_over() const { return take_over_; }
 
  private:
+  /// An event of the take-over log, whose text depends on the person.
+  struct Change {
+    std::size_t place;  // of the event in events_
+    take_over::TakeOverEntry entry;
+    std::int64_t earliest;  // as in Note()
+  };
+
   /// @param earliest the first step in which the event may have happened
   template <class Message>
   void Note(const Message& message, std::int64_t earliest, std::string_view kind, std::string text);
+  void NoteChange(const take_over::TakeOverEntry& entry);
   void NoteCollision(const truth_t& truth, std::int64_t earliest);
   void NoteAlarm(const arbitration_t& command, std::int64_t earliest);
 
@@ -66,6 +74,7 @@ class RunEvents {
   bool alarm_ = false;
   std::int8_t collision_ = truth_t::COLLISION_NONE;
   std::vector<RunEvent> events_;
+  std::vector<Change> changes_;
   std::size_t left_out_ = 0;
 };
 

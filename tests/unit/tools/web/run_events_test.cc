@@ -101,5 +101,33 @@ TEST(RunEventsTest, NameAPersonWhoMayHaveGone) {
   }
 }
 
+TEST(RunEventsTest, NameAPersonAlsoInEventsThatCameBeforeTheScenario) {
+  RunEvents events;
+  arbitration_t command{};
+  command.mode = arbitration_t::HUMAN;
+  command.lambda_human = 1;
+  command.threshold = 0.5;
+  events.Add(command, std::nullopt);
+  command.header.step = 3;
+  command.doc = 0.8;
+  command.mode = arbitration_t::MINIMAL_RISK;
+  command.lambda_human = 0;
+  events.Add(command, std::nullopt);
+  const auto texts = [&events] {
+    std::vector<std::string> all;
+    for (const RunEvent& event : events.events()) all.push_back(event.text);
+    return all;
+  };
+  const std::vector<std::string> unknown = texts();
+  ASSERT_EQ(unknown.size(), 3U);
+  EXPECT_EQ(unknown[2], "manoeuvre begins: inputs have failed, in one of the steps 1 to 3");
+  events.set_person({.drives = true});
+  EXPECT_EQ(texts(), (std::vector<std::string>{
+                         unknown[0], unknown[1],
+                         "manoeuvre begins: inputs or person gone, in one of the steps 1 to 3"}));
+  events.set_person({});
+  EXPECT_EQ(texts(), unknown);
+}
+
 }  // namespace
 }  // namespace fogline::web

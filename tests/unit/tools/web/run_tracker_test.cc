@@ -144,6 +144,13 @@ TEST(RunTrackerTest, NamesAPersonInTheEventsOfARunThatAPersonDrives) {
   person.Truth(0, false, kBegin);  // it is played again
   EXPECT_EQ(stop(person, 5), "manoeuvre begins: inputs or person gone");
   person.Part(0, kBegin, run_t::STOP);
+  // The scenario comes after the events, which are then told with the words for a person.
+  Speaker late(tracker, 7, person.text());
+  late.Part(0, kBegin);
+  EXPECT_EQ(stop(late, 7), "manoeuvre begins: inputs have failed");
+  late.AllParts(kBegin);
+  EXPECT_EQ(tracker.TakeEvents().back().text, "manoeuvre begins: inputs or person gone");
+  late.Part(0, kBegin, run_t::STOP);
   model.AllParts(kBegin);
   EXPECT_EQ(stop(model, 6), "manoeuvre begins: inputs have failed");
 }
