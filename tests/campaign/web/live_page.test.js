@@ -147,11 +147,15 @@ test("the page says when the run has ended, and when the program has", async (t)
   const says = (words) => page.waitForFunction(
     (wanted) => document.getElementById("origin-words").textContent === wanted, words);
   await says("The run has ended");
-  await page.waitForFunction(() => document.getElementById("reason").textContent.startsWith("The run has ended."));
+  const who = (words) => page.waitForFunction((wanted) => document.getElementById("who").textContent === wanted, words);
+  await who("The run has ended");
+  assert.match(await page.locator("#reason").innerText(), /^In its last step: Automation drives\. The Degree of Conflict/);
+  assert.equal(await page.locator("#now").getAttribute("data-side"), "ended");
   assert.equal(await page.locator("#live").getAttribute("aria-pressed"), "false");
   assert.equal(await page.locator("#play").getAttribute("aria-label"), "Play");
   await page.click("#play");  // shows the run again from its first step
   await page.waitForFunction(() => Number(document.body.dataset.step) < 100);
+  await who("Automation drives");  // at the shown moment
   await says("The run has ended");
   server.kill("SIGTERM");
   await says("The program has ended");

@@ -1,5 +1,5 @@
 // The strip at the top: the side that drives, since when, and why; the request to take over with
-// its countdown.
+// its countdown; the end of the run.
 
 import {byId, say, setAttribute} from "../draw/dom.js";
 import {decimal, seconds, withUnit} from "../draw/format.js";
@@ -35,6 +35,7 @@ export function reason({mode, lambda_human, doc, threshold}, hasPerson = false) 
 }
 
 const STANDS = "Minimal risk manoeuvre: the car stands";
+const ENDED = "The run has ended";
 
 /**
  * How a run begins that this page then shows.
@@ -71,17 +72,18 @@ export class Now {
       return "unknown";
     }
     const mode = modeOf(command.mode, command.lambda_human);
-    const words = mode.name === "MINIMAL_RISK" && stands(frame.TRUTH) ? STANDS : mode.words;
-    setAttribute(this.strip, "data-side", mode.side);
+    const drives = mode.name === "MINIMAL_RISK" && stands(frame.TRUTH) ? STANDS : mode.words;
+    const words = isOver ? ENDED : drives;
+    setAttribute(this.strip, "data-side", isOver ? "ended" : mode.side);
     say(this.words, words);
     const since = drivingSince(modes, lambdas, time);
     const lasted = since === null ? ""
       : ` ${LASTS[mode.side]} ${seconds(time - since, run.step_s)}.`;
     const hasPerson = run.scenario?.person?.drives;
     const gone = hasPerson && frame.DRIVER_COMMAND?.readiness === 0 ? " No person is ready at the seat." : "";
-    say(this.reason, (isOver ? "The run has ended. " : "") + reason(command, hasPerson) + gone + lasted);
-    this.drawRequest(requestAt(modes.times, modes.values, time,
-                               run.scenario?.arbitrator?.take_over?.lead_s ?? 10));
+    say(this.reason, (isOver ? `In its last step: ${drives}. ` : "") + reason(command, hasPerson) + gone + lasted);
+    const lead_s = run.scenario?.arbitrator?.take_over?.lead_s ?? 10;
+    this.drawRequest(isOver ? null : requestAt(modes.times, modes.values, time, lead_s));
     this.announce(words);
     return mode.side;
   }
