@@ -126,11 +126,12 @@ const STATES = {
 };
 
 /**
- * Opens a page of an experiment. @return {page, show}: the page, and a function that makes it show
- * a state
+ * Opens a page of an experiment. @return {page, show, sent}: the page, a function that makes it show
+ * a state, and the objects that it has sent
  */
 async function experiment(t, main, options = {}) {
   let state = STATES[main][0];
+  const sent = [];
   const page = await open(t, await browser(t), ADDRESS, {...options, prepare: async (context) => {
     await prepareLooks(context);
     await context.route(`${ADDRESS}**`, (route) => {
@@ -139,14 +140,17 @@ async function experiment(t, main, options = {}) {
       return existsSync(file) ? route.fulfill({path: file, contentType: TYPES[path.extname(file)]})
                               : route.fulfill({status: 404});
     });
-    await context.routeWebSocket(/\/ws/, (socket) => socket.send(JSON.stringify(state)));
+    await context.routeWebSocket(/\/ws/, (socket) => {
+      socket.onMessage((frame) => sent.push(JSON.parse(frame)));
+      socket.send(JSON.stringify(state));
+    });
   }});
   const show = async (wanted) => {
     state = wanted;
     await page.reload();
     await page.waitForFunction(() => document.getElementById("title").textContent !== "Connecting");
   };
-  return {page, show};
+  return {page, show, sent};
 }
 
 for (const [main, who] of [["index.html", "participant"], ["experimenter.html", "experimenter"]]) {
@@ -158,6 +162,27 @@ for (const [main, who] of [["index.html", "participant"], ["experimenter.html", 
     }
   });
 }
+
+test("a scale without an answer is named below the scale, and nothing is sent", async (t) => {
+  const {page, show, sent} = await experiment(t, "index.html");
+  await show(ASKING);
+  const marked = () => page.evaluate(() => [...document.querySelectorAll("[role=radiogroup]")].map((scale) => (
+    scale.getAttribute("aria-invalid") === "true" && scale.querySelector(".missing").offsetHeight > 0)));
+  const focused = () => page.evaluate(() => document.activeElement.name);
+  await page.check('input[name="item-0"][value="50"]');
+  await page.click("#questions button");
+  assert.deepEqual(await marked(), [false, true, true]);
+  assert.equal(await focused(), "item-1");
+  await looksWell(page, "missing answers");
+  await page.check('input[name="item-1"][value="3"]');
+  assert.deepEqual(await marked(), [false, false, true]);
+  await page.click("#questions button");
+  assert.equal(await focused(), "item-2");
+  assert.deepEqual(sent, []);
+  await page.check('input[name="item-2"][value="7"]');
+  await page.click("#questions button");
+  assert.deepEqual(sent, [{op: "answers", state: 1, values: ["50", "3", "7", ""]}]);
+});
 
 test("a scale with few marks is one row, and its ends are named below them", async (t) => {
   const {page, show} = await experiment(t, "index.html", {size: PHONE});

@@ -22,26 +22,55 @@ function scaleOf(item, index) {
     // Rounded to the precision of the step, so that 0.1 + 0.2 is 0.3.
     const value = String(Number((item.min + i * item.step).toPrecision(12)));
     marks.push(make("label", {},
-      make("input", {type: "radio", name: `item-${index}`, value, required: ""}), value));
+      make("input", {type: "radio", name: `item-${index}`, value}), value));
   }
   return [
     make("div", {class: "scale"}, ...marks),
     make("div", {class: "ends"}, make("span", {}, item.low), make("span", {}, item.high)),
+    make("p", {class: "missing", id: `missing-${index}`, hidden: ""}, "Please choose a mark."),
   ];
 }
 
 function questionOf(item, index) {
-  const answer = item.kind === "text"
-    ? [make("textarea", {name: `item-${index}`, rows: "3", maxlength: "120", "aria-label": item.text})]
-    : scaleOf(item, index);
-  return make("fieldset", {}, make("legend", {}, item.text), ...answer);
+  const legend = make("legend", {}, item.text);
+  if (item.kind === "text") {
+    return make("fieldset", {}, legend,
+      make("textarea", {name: `item-${index}`, rows: "3", maxlength: "120", "aria-label": item.text}));
+  }
+  return make("fieldset", {role: "radiogroup", "aria-describedby": `missing-${index}`}, legend,
+              ...scaleOf(item, index));
+}
+
+/** Shows below a scale whether its answer is missing. */
+function markMissing(scale, isMissing) {
+  scale.setAttribute("aria-invalid", String(isMissing));
+  scale.querySelector(".missing").hidden = !isMissing;
+}
+
+/**
+ * Whether each scale has an answer. Text may be missing. Marks the scales without an answer, and
+ * moves the focus to the first of them. A browser's own message would cover the scale.
+ */
+function hasAllAnswers(form) {
+  const scales = [...form.querySelectorAll("[role=radiogroup]")];
+  const missing = scales.filter((scale) => !scale.querySelector(":checked"));
+  for (const scale of scales) markMissing(scale, missing.includes(scale));
+  if (missing.length === 0) return true;
+  missing[0].querySelector("input").focus({preventScroll: true});
+  missing[0].scrollIntoView({block: "center"});
+  return false;
 }
 
 function showQuestions(state) {
   const form = byId("questions");
   form.replaceChildren(...state.items.map(questionOf), make("button", {type: "submit"}, "Next"));
+  form.onchange = ({target}) => {
+    const scale = target.closest("[role=radiogroup]");
+    if (scale) markMissing(scale, false);
+  };
   form.onsubmit = (event) => {
     event.preventDefault();
+    if (!hasAllAnswers(form)) return;
     const data = new FormData(form);
     const values = state.items.map((_, i) =>
       String(data.get(`item-${i}`) ?? "").replace(/\s+/g, " ").trim());
