@@ -68,8 +68,8 @@ int RunRelay(const Arguments& arguments) {
         context, asio::ip::tcp::endpoint(asio::ip::make_address(listen.address), listen.port),
         options);
   } catch (const boost::system::system_error& error) {
-    throw std::runtime_error(
-        fmt::format("cannot listen on {}: {}", listen.ToString(), error.code().message()));
+    throw InputError("error: --listen: " +
+                     runtime::tcpq::CannotListen(listen, error.code().message()));
   }
   asio::signal_set signals(context);
   for (const int signal : EndingSignals()) signals.add(signal);

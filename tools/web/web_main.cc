@@ -176,7 +176,8 @@ bool HasChosenPort(const ViewArguments& arguments) {
   return arguments.port_said->count() > 0 || arguments.listen.find(':') != std::string::npos;
 }
 
-/// @throws std::runtime_error if the server cannot listen
+/// @throws InputError if the server cannot listen at the port that the user has chosen;
+///     std::runtime_error if it can listen at no port
 std::unique_ptr<Server> Listen(asio::io_context& context, const ViewArguments& arguments,
                                ServerOptions options, View& view) {
   const int tries = HasChosenPort(arguments) ? 1 : kPortsTried;
@@ -189,8 +190,11 @@ std::unique_ptr<Server> Listen(asio::io_context& context, const ViewArguments& a
         ++options.port;
         continue;
       }
-      throw std::runtime_error(fmt::format("cannot listen on {}:{}: {}", options.address,
-                                           options.port, error.code().message()));
+      const std::string why =
+          runtime::tcpq::CannotListen({options.address, options.port}, error.code().message());
+      if (!HasChosenPort(arguments)) throw std::runtime_error(why);
+      const bool by_port = arguments.port_said->count() > 0;
+      throw InputError(fmt::format("error: {}: {}", by_port ? "--port" : "--listen", why));
     }
   }
 }

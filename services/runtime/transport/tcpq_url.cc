@@ -8,6 +8,7 @@
 
 #include <array>
 #include <cerrno>
+#include <cstring>
 
 #include <fmt/core.h>
 
@@ -44,19 +45,27 @@ std::string AddressOf(const std::string& host, std::string_view what) {
   return text.data();
 }
 
-/// Whether `call` fails with `reason` for a new socket of this type and the IPv4 address `text`.
+/// errno of `call` for a new socket of this type and a place; 0 if the call succeeds, or if there
+/// is no socket.
 template <class Call>
-bool Refuses(int type, const std::string& text, const Call& call, int reason) {
+int ErrorOf(int type, const Endpoint& place, const Call& call) {
   sockaddr_in address{};
   address.sin_family = AF_INET;
-  inet_pton(AF_INET, text.c_str(), &address.sin_addr);
+  address.sin_port = htons(place.port);
+  inet_pton(AF_INET, place.address.c_str(), &address.sin_addr);
   const int probe = socket(AF_INET, type | SOCK_CLOEXEC, 0);
-  if (probe < 0) return false;
-  const bool refused =
-      call(probe, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) != 0 &&
-      errno == reason;
+  if (probe < 0) return 0;
+  const bool fails = call(probe, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) != 0;
+  const int error = fails ? errno : 0;
   close(probe);
-  return refused;
+  return error;
+}
+
+/// Listens as a server does: at a port of which only closed connections are left, too.
+int BindAndListen(int socket, const sockaddr* address, socklen_t size) {
+  const int yes = 1;
+  setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof(yes));
+  return bind(socket, address, size) != 0 ? -1 : listen(socket, 1);
 }
 
 /// Whether this machine has an IPv4 address at which clients can connect. The kernel decides. It
@@ -65,8 +74,8 @@ bool Refuses(int type, const std::string& text, const Call& call, int reason) {
 /// Without a route, the kernel does not say this of 255.255.255.255.
 bool IsOwn(const std::string& address) {
   return !IsMulticast(address) && address != "255.255.255.255" &&
-         !Refuses(SOCK_STREAM, address, bind, EADDRNOTAVAIL) &&
-         !Refuses(SOCK_DGRAM, address, connect, EACCES);
+         ErrorOf(SOCK_STREAM, {address, 0}, bind) != EADDRNOTAVAIL &&
+         ErrorOf(SOCK_DGRAM, {address, 0}, connect) != EACCES;
 }
 
 }  // namespace
@@ -91,6 +100,16 @@ Endpoint ResolveOwn(std::string_view host_and_port, std::string_view what) {
         host == endpoint.address ? host : fmt::format("\"{}\" ({})", host, endpoint.address)));
   }
   return endpoint;
+}
+
+std::string CannotListen(const Endpoint& place, std::string_view reason) {
+  return fmt::format("cannot listen on {}: {}", place.ToString(), reason);
+}
+
+void RequireFree(const Endpoint& place, std::string_view what) {
+  const int error = ErrorOf(SOCK_STREAM, place, BindAndListen);
+  if (error == 0) return;
+  throw InputError(fmt::format("error: {}: {}", what, CannotListen(place, strerror(error))));
 }
 
 Endpoint ResolveUrl(std::string_view url) {

@@ -29,6 +29,13 @@ Endpoint Resolve(std::string_view host_and_port, std::string_view what);
 /// if the kernel says that this machine has no such address
 Endpoint ResolveOwn(std::string_view host_and_port, std::string_view what);
 
+/// Checks that a process of this machine can listen at a place now. Another program may take the
+/// port afterwards. @throws InputError that names `what` if the place cannot be had
+void RequireFree(const Endpoint& place, std::string_view what);
+
+/// The words for a place at which a process cannot listen.
+std::string CannotListen(const Endpoint& place, std::string_view reason);
+
 /// Resolve() for a URL, which is "tcpq://" and a text for Resolve(). @throws InputError also for
 /// port 0
 Endpoint ResolveUrl(std::string_view url);

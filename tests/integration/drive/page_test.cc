@@ -8,6 +8,7 @@
 #include "tests/integration/drive/driven_run.h"
 #include "tests/integration/drive/page_person.h"
 #include "tests/integration/web/viewed.h"
+#include "tests/unit/tools/trials/desk/taken_port.h"
 
 namespace fogline::test {
 namespace {
@@ -98,6 +99,11 @@ TEST(DriveAtPageTest, RefusesWhatNoDriveCanFollowBeforeItBegins) {
       error_of("--listen", "203.0.113.7"),
       "fogline drive: error: --listen: 203.0.113.7 is no address of this machine (`ip address` "
       "lists them)\n");
+  TakenPort taken(0);
+  ASSERT_TRUE(taken.Take());
+  const std::string place = "127.0.0.1:" + std::to_string(taken.port());
+  EXPECT_EQ(error_of("--listen", place), "fogline drive: error: --listen: cannot listen on " +
+                                             place + ": Address already in use\n");
   EXPECT_EQ(error_of("--faults", "flip=0.1").rfind("fogline drive: error: --faults: ", 0), 0U);
   EXPECT_EQ(error_of("--transport", "direct"),
             "fogline drive: error: --transport direct: all roles are in one process; a run in "

@@ -114,9 +114,9 @@ TEST(RelayTest, SaysWhereItListensAndWhatItHasDoneAndNamesAPortThatIsTaken) {
   EXPECT_EQ(relay.url(), "tcpq://127.0.0.1:" + std::to_string(relay.port()));
   const std::string here = "127.0.0.1:" + std::to_string(relay.port());
   const Outcome second = RunCommand({Program("fogline-relay"), "--listen", here});
-  EXPECT_EQ(second.code, 3);
-  EXPECT_EQ(second.err,
-            "fogline-relay: error: cannot listen on " + here + ": Address already in use\n");
+  EXPECT_EQ(second.code, 2);
+  EXPECT_EQ(second.err, "fogline-relay: error: --listen: cannot listen on " + here +
+                            ": Address already in use\n");
   EXPECT_EQ(RunCommand({Program("fogline-relay"), "--listen", "nowhere"}).code, 2);
   // RFC 5737: no machine has an address of 203.0.113.0/24.
   const Outcome foreign = RunCommand({Program("fogline-relay"), "--listen", "203.0.113.7"});

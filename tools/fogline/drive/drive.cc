@@ -134,7 +134,13 @@ Scenario LoadDriven(const cli::ScenarioArguments& arguments) {
 }
 
 int Drive(DriveArguments& arguments) {
-  if (!arguments.listen.empty()) runtime::tcpq::ResolveOwn(arguments.listen, "--listen");
+  if (!arguments.listen.empty()) {
+    const auto place = runtime::tcpq::ResolveOwn(arguments.listen, "--listen");
+    // Without a port, fogline-web takes one that is free.
+    if (arguments.listen.find(':') != std::string::npos) {
+      runtime::tcpq::RequireFree(place, "--listen");
+    }
+  }
   runner::ExperimentOptions& options = arguments.options;
   arguments.transport.Apply(options);
   cli::RunInRealtime(options, 1);

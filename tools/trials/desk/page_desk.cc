@@ -14,13 +14,13 @@
 
 #include <fmt/core.h>
 #include <boost/asio/io_context.hpp>
-#include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/post.hpp>
 #include <nlohmann/json.hpp>
 
 #include "common/clock.h"
 #include "common/errors.h"
 #include "common/process/console.h"
+#include "services/runtime/transport/tcpq_url.h"
 #include "tools/processes/page_seat.h"
 #include "tools/trials/desk/page_state.h"
 #include "tools/trials/desk/run_page.h"
@@ -94,17 +94,17 @@ std::string AddressOf(const PageOptions& options) {
 
 /// An address with a port, and the option that sets the port.
 struct Place {
-  std::string address;
-  std::uint16_t port;  // 0: any free port
+  runtime::tcpq::Endpoint endpoint;  // port 0: any free port
   const char* option;
+
+  std::string OptionText() const { return fmt::format("{} {}", option, endpoint.port); }
 };
 
 /// @throws InputError if the user has chosen the port; otherwise std::runtime_error
 [[noreturn]] void CannotListen(const Place& place, const boost::system::system_error& error) {
-  const std::string why =
-      fmt::format("cannot listen on {}:{}: {}", place.address, place.port, error.code().message());
-  if (place.port == 0) throw std::runtime_error(why);
-  throw InputError(fmt::format("error: {} {}: {}", place.option, place.port, why));
+  const std::string why = runtime::tcpq::CannotListen(place.endpoint, error.code().message());
+  if (place.endpoint.port == 0) throw std::runtime_error(why);
+  throw InputError(fmt::format("error: {}: {}", place.OptionText(), why));
 }
 
 /// Starts a server. @throws as CannotListen() if the address is not of this machine, or the port is
@@ -112,23 +112,12 @@ struct Place {
 std::unique_ptr<web::Server> Listen(asio::io_context& context, const Place& place,
                                     std::span<const web::Asset> files, web::View& view) {
   try {
-    return std::make_unique<web::Server>(
-        context,
-        web::ServerOptions{
-            .address = place.address, .port = place.port, .token = web::DrawToken(), .origins = {}},
-        files, view);
-  } catch (const boost::system::system_error& error) {
-    CannotListen(place, error);
-  }
-}
-
-/// Checks that fogline-web can listen at this place. This check comes before the participant
-/// begins.
-/// @throws as CannotListen()
-void RequireFree(asio::io_context& context, const Place& place) {
-  using asio::ip::tcp;
-  try {
-    const tcp::acceptor tried(context, {asio::ip::make_address(place.address), place.port});
+    return std::make_unique<web::Server>(context,
+                                         web::ServerOptions{.address = place.endpoint.address,
+                                                            .port = place.endpoint.port,
+                                                            .token = web::DrawToken(),
+                                                            .origins = {}},
+                                         files, view);
   } catch (const boost::system::system_error& error) {
     CannotListen(place, error);
   }
@@ -154,14 +143,16 @@ class PageDesk::Pages {
           Take(client, experimenter_view_, &PageState::FromExperimenter, frame);
         }),
         participant_(Listen(context_,
-                            {AddressOf(options), options.participant_port, "--participant-port"},
+                            {{AddressOf(options), options.participant_port}, "--participant-port"},
                             participant_files_, participant_view_)),
-        experimenter_(Listen(context_,
-                             {AddressOf(options), options.experimenter_port, "--experimenter-port"},
-                             experimenter_files_, experimenter_view_)),
+        experimenter_(Listen(
+            context_, {{AddressOf(options), options.experimenter_port}, "--experimenter-port"},
+            experimenter_files_, experimenter_view_)),
         traffic_(options.traffic),
         run_page_(ForRuns(options)) {
-    RequireFree(context_, {AddressOf(options), options.seat_port, "--seat-port"});
+    // fogline-web listens at this place in each run. The check comes before the participant begins.
+    const Place seat{{AddressOf(options), options.seat_port}, "--seat-port"};
+    runtime::tcpq::RequireFree(seat.endpoint, seat.OptionText());
     Publish();
     thread_ = std::thread([this] { context_.run(); });
   }

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/input_errors.h"
+#include "tests/unit/tools/trials/desk/taken_port.h"
 
 namespace fogline::runtime::tcpq {
 namespace {
@@ -54,6 +55,16 @@ TEST(TcpqUrlTest, ListensOnlyOnAddressesOfThisMachine) {
   EXPECT_EQ(test::ErrorOf([] { ResolveOwn("203.28935", "--listen"); }),
             "error: --listen: \"203.28935\" (203.0.113.7) is no address of this machine (`ip "
             "address` lists them)");
+}
+
+TEST(TcpqUrlTest, APortThatAnotherProgramHasIsNotFree) {
+  test::TakenPort taken(0);
+  ASSERT_TRUE(taken.Take());
+  const Endpoint place{.address = "127.0.0.1", .port = taken.port()};
+  EXPECT_EQ(test::ErrorOf([&place] { RequireFree(place, "--listen"); }),
+            "error: --listen: cannot listen on " + place.ToString() + ": Address already in use");
+  EXPECT_NO_THROW(RequireFree({.address = "127.0.0.1", .port = 0}, "--listen"));
+  EXPECT_NO_THROW(RequireFree({.address = "127.0.0.2", .port = taken.port()}, "--listen"));
 }
 
 }  // namespace
