@@ -31,8 +31,7 @@ RainCoefficients RainCoefficientsOf(double frequency_ghz, Polarization polarizat
 double RainAttenuation_dbpkm(double rain_mmph, const RainCoefficients& rain);
 
 /// Maximum range under this one-way attenuation gamma >= 0. Without attenuation, the maximum range
-/// is R_c = `clear_range_m`. The radar equation, with the loss on the way to the target and back,
-/// is
+/// is R_c = `clear_range_m`. The radar equation, with the loss to the target and back, is
 ///     R^-4 10^(-2 gamma R / 10) = R_c^-4,
 /// or R e^(q R) = R_c with q = gamma ln(10) / 20. Its solution is R = W(q R_c) / q, where W is
 /// Lambert's function.
