@@ -21,6 +21,21 @@ std::optional<FaultRates> FaultsOf(const TrafficOptions& options) {
   return rates;
 }
 
+/// What the options do to the messages of a bus.
+struct Treatment {
+  /// @throws InputError when the options, or the key's file, are wrong
+  explicit Treatment(const TrafficOptions& options)
+      : key(KeyOf(options)), faults(FaultsOf(options)) {}
+
+  void Apply(std::optional<Role> role, Bus& bus) const {
+    if (key) bus.Secure(MessageSigner(*key, role));
+    if (faults) bus.Impair(Faults(*faults, role.value_or(Role::kRunner)));
+  }
+
+  std::optional<SigningKey> key;
+  std::optional<FaultRates> faults;
+};
+
 }  // namespace
 
 std::optional<SigningKey> KeyOf(const TrafficOptions& options) {
@@ -34,25 +49,20 @@ std::optional<SigningKey> KeyOf(const TrafficOptions& options) {
   return std::nullopt;
 }
 
-void Check(const TrafficOptions& options) {
-  KeyOf(options);
-  FaultsOf(options);
-}
+void Check(const TrafficOptions& options) { Treatment{options}; }
 
 std::unique_ptr<Bus> OpenBus(const std::string& url, const TrafficOptions& options,
                              std::optional<Role> role) {
+  const Treatment treatment(options);
   // Checked first, because LCM may print a line of its own when a network of mpudpm is closed.
-  if (KeyOf(options)) RequireSignable(url);
+  if (treatment.key) RequireSignable(url);
   auto bus = std::make_unique<Bus>(url);
-  Apply(options, role, *bus);
+  treatment.Apply(role, *bus);
   return bus;
 }
 
 void Apply(const TrafficOptions& options, std::optional<Role> role, Bus& bus) {
-  if (const auto key = KeyOf(options)) bus.Secure(MessageSigner(*key, role));
-  if (const auto rates = FaultsOf(options)) {
-    bus.Impair(Faults(*rates, role.value_or(Role::kRunner)));
-  }
+  Treatment(options).Apply(role, bus);
 }
 
 std::vector<std::string> ToArguments(const TrafficOptions& options) {
