@@ -23,7 +23,8 @@ constexpr const char* kFooter =
 and a summary at the end. Ctrl-C, SIGTERM or SIGHUP ends it. Any program may
 connect: listen on 127.0.0.1 or on a network that you trust.
 
-Exit codes: 0 stopped, 2 bad usage or an address of another machine, 3 the port is taken.
+Exit codes: 0 stopped, 2 bad usage, an address of another machine, or a port that another
+program has, 3 any other error.
 
 Examples:
   fogline-relay                              on this machine, port 7700
@@ -68,8 +69,7 @@ int RunRelay(const Arguments& arguments) {
         context, asio::ip::tcp::endpoint(asio::ip::make_address(listen.address), listen.port),
         options);
   } catch (const boost::system::system_error& error) {
-    throw InputError("error: --listen: " +
-                     runtime::tcpq::CannotListen(listen, error.code().message()));
+    runtime::tcpq::ThrowCannotListen(listen, "--listen", error.code());
   }
   asio::signal_set signals(context);
   for (const int signal : EndingSignals()) signals.add(signal);

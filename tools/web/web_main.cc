@@ -158,7 +158,7 @@ ServerOptions OptionsOf(const ViewArguments& arguments) {
   if (arguments.listen_said->count() == 0) return options;
   const auto endpoint = runtime::tcpq::ResolveOwn(arguments.listen, "--listen");
   options.address = endpoint.address;
-  const bool has_port = arguments.listen.find(':') != std::string::npos;
+  const bool has_port = runtime::tcpq::HasPort(arguments.listen);
   options.port = has_port ? endpoint.port : kDefaultPort;
   const auto next_token = arguments.tokens_on_stdin ? ReadToken : DrawToken;
   options.token = next_token();
@@ -173,11 +173,11 @@ ServerOptions OptionsOf(const ViewArguments& arguments) {
 
 /// Whether the user has chosen the port. Otherwise the program tries the next ports if one is busy.
 bool HasChosenPort(const ViewArguments& arguments) {
-  return arguments.port_said->count() > 0 || arguments.listen.find(':') != std::string::npos;
+  return arguments.port_said->count() > 0 || runtime::tcpq::HasPort(arguments.listen);
 }
 
-/// @throws InputError if the server cannot listen at the port that the user has chosen;
-///     std::runtime_error if it can listen at no port
+/// @throws as runtime::tcpq::ThrowCannotListen() for a port that the user has chosen; otherwise
+///     std::runtime_error if it can listen at none of the ports
 std::unique_ptr<Server> Listen(asio::io_context& context, const ViewArguments& arguments,
                                ServerOptions options, View& view) {
   const int tries = HasChosenPort(arguments) ? 1 : kPortsTried;
@@ -190,11 +190,14 @@ std::unique_ptr<Server> Listen(asio::io_context& context, const ViewArguments& a
         ++options.port;
         continue;
       }
-      const std::string why =
-          runtime::tcpq::CannotListen({options.address, options.port}, error.code().message());
-      if (!HasChosenPort(arguments)) throw std::runtime_error(why);
+      if (!HasChosenPort(arguments)) {
+        throw std::runtime_error(fmt::format("cannot listen on {}:{} to {}: {}", options.address,
+                                             options.port - tried + 1, options.port,
+                                             error.code().message()));
+      }
       const bool by_port = arguments.port_said->count() > 0;
-      throw InputError(fmt::format("error: {}: {}", by_port ? "--port" : "--listen", why));
+      runtime::tcpq::ThrowCannotListen({options.address, options.port},
+                                       by_port ? "--port" : "--listen", error.code());
     }
   }
 }

@@ -8,7 +8,7 @@
 
 #include <array>
 #include <cerrno>
-#include <cstring>
+#include <stdexcept>
 
 #include <fmt/core.h>
 
@@ -102,14 +102,21 @@ Endpoint ResolveOwn(std::string_view host_and_port, std::string_view what) {
   return endpoint;
 }
 
-std::string CannotListen(const Endpoint& place, std::string_view reason) {
-  return fmt::format("cannot listen on {}: {}", place.ToString(), reason);
+bool HasPort(std::string_view host_and_port) {
+  return host_and_port.find(':') != std::string_view::npos;
+}
+
+void ThrowCannotListen(const Endpoint& place, std::string_view what, std::error_code why) {
+  const std::string words = fmt::format("cannot listen on {}: {}", place.ToString(), why.message());
+  const bool of_port = why == std::errc::address_in_use || why == std::errc::permission_denied ||
+                       why == std::errc::address_not_available;
+  if (place.port == 0 || !of_port) throw std::runtime_error(words);
+  throw InputError(fmt::format("error: {}: {}", what, words));
 }
 
 void RequireFree(const Endpoint& place, std::string_view what) {
   const int error = ErrorOf(SOCK_STREAM, place, BindAndListen);
-  if (error == 0) return;
-  throw InputError(fmt::format("error: {}: {}", what, CannotListen(place, strerror(error))));
+  if (error != 0) ThrowCannotListen(place, what, {error, std::generic_category()});
 }
 
 Endpoint ResolveUrl(std::string_view url) {

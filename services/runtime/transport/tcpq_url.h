@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <system_error>
 
 namespace fogline::runtime::tcpq {
 
@@ -29,12 +30,18 @@ Endpoint Resolve(std::string_view host_and_port, std::string_view what);
 /// if the kernel says that this machine has no such address
 Endpoint ResolveOwn(std::string_view host_and_port, std::string_view what);
 
-/// Checks that a process of this machine can listen at a place now. Another program may take the
-/// port afterwards. @throws InputError that names `what` if the place cannot be had
-void RequireFree(const Endpoint& place, std::string_view what);
+/// Whether this text for Resolve() names a port.
+bool HasPort(std::string_view host_and_port);
 
-/// The words for a place at which a process cannot listen.
-std::string CannotListen(const Endpoint& place, std::string_view reason);
+/// Says that a process cannot listen at a place.
+/// @throws InputError that names `what` if the port is busy, or is not for this user;
+///     std::runtime_error for other reasons, and for port 0, which is any free port
+[[noreturn]] void ThrowCannotListen(const Endpoint& place, std::string_view what,
+                                    std::error_code why);
+
+/// Checks that a process of this machine can listen at a place now. Another program may take the
+/// port afterwards. @throws as ThrowCannotListen()
+void RequireFree(const Endpoint& place, std::string_view what);
 
 /// Resolve() for a URL, which is "tcpq://" and a text for Resolve(). @throws InputError also for
 /// port 0

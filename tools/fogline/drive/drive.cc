@@ -137,7 +137,7 @@ int Drive(DriveArguments& arguments) {
   if (!arguments.listen.empty()) {
     const auto place = runtime::tcpq::ResolveOwn(arguments.listen, "--listen");
     // Without a port, fogline-web takes one that is free.
-    if (arguments.listen.find(':') != std::string::npos) {
+    if (runtime::tcpq::HasPort(arguments.listen)) {
       runtime::tcpq::RequireFree(place, "--listen");
     }
   }

@@ -100,15 +100,7 @@ struct Place {
   std::string OptionText() const { return fmt::format("{} {}", option, endpoint.port); }
 };
 
-/// @throws InputError if the user has chosen the port; otherwise std::runtime_error
-[[noreturn]] void CannotListen(const Place& place, const boost::system::system_error& error) {
-  const std::string why = runtime::tcpq::CannotListen(place.endpoint, error.code().message());
-  if (place.endpoint.port == 0) throw std::runtime_error(why);
-  throw InputError(fmt::format("error: {}: {}", place.OptionText(), why));
-}
-
-/// Starts a server. @throws as CannotListen() if the address is not of this machine, or the port is
-/// not free
+/// Starts a server. @throws as runtime::tcpq::ThrowCannotListen()
 std::unique_ptr<web::Server> Listen(asio::io_context& context, const Place& place,
                                     std::span<const web::Asset> files, web::View& view) {
   try {
@@ -119,7 +111,7 @@ std::unique_ptr<web::Server> Listen(asio::io_context& context, const Place& plac
                                                             .origins = {}},
                                          files, view);
   } catch (const boost::system::system_error& error) {
-    CannotListen(place, error);
+    runtime::tcpq::ThrowCannotListen(place.endpoint, place.OptionText(), error.code());
   }
 }
 

@@ -64,7 +64,14 @@ TEST(TcpqUrlTest, APortThatAnotherProgramHasIsNotFree) {
   EXPECT_EQ(test::ErrorOf([&place] { RequireFree(place, "--listen"); }),
             "error: --listen: cannot listen on " + place.ToString() + ": Address already in use");
   EXPECT_NO_THROW(RequireFree({.address = "127.0.0.1", .port = 0}, "--listen"));
-  EXPECT_NO_THROW(RequireFree({.address = "127.0.0.2", .port = taken.port()}, "--listen"));
+  EXPECT_THROW(ThrowCannotListen({.address = "127.0.0.1", .port = 0}, "--listen",
+                                 std::make_error_code(std::errc::address_in_use)),
+               std::runtime_error);
+  EXPECT_EQ(test::ErrorOf<std::runtime_error>([&place] {
+              ThrowCannotListen(place, "--listen",
+                                std::make_error_code(std::errc::too_many_files_open));
+            }),
+            "cannot listen on " + place.ToString() + ": Too many open files");
 }
 
 }  // namespace

@@ -26,7 +26,7 @@ TEST(TrafficOptionsTest, AreCheckedBeforeTheNetworkIsOpened) {
   EXPECT_EQ(ErrorOfOpening("mpudpm://239.255.76.67:7700?ttl=0", {.key_file = key, .faults = ""}),
             "error: --key: mpudpm has no filter, so every message reaches LCM's parser; use udpm");
   const std::string of_network =
-      ErrorOfOpening(kNoNetwork, {.key_file = key, .faults = "drop=0.1"});
+      ErrorOfOpening(kNoNetwork, {.key_file = key, .faults = "loss=0.1"});
   EXPECT_NE(of_network.find("no.such.address"), std::string::npos) << of_network;
 }
 
