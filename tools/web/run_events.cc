@@ -14,6 +14,7 @@ namespace {
 std::string_view KindOf(const take_over::TakeOverEntry& entry) {
   if (InEmergency(entry.from) || InEmergency(entry.to)) return "braking";
   if (entry.transfer) return "transfer";
+  if (entry.from == entry.to && !entry.first) return "input";
   return InMinimalRisk(entry.to) ? "manoeuvre" : "request";
 }
 

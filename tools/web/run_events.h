@@ -20,7 +20,7 @@ struct RunEvent {
   std::int64_t step = 0;
   double time_s = 0;
   std::string_view
-      kind;  // "fog", "transfer", "request", "alarm", "manoeuvre", "braking", "collision"
+      kind;  // "fog", "transfer", "request", "input", "alarm", "manoeuvre", "braking", "collision"
   std::string text;
 };
 

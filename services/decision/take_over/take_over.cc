@@ -142,7 +142,7 @@ void TakeOver::LoseAuthority() {
   manoeuvre_ = models::MinimalRisk(LimitsOf(section_), step_s_);
 }
 
-// Begins a request, and draws the time of the modelled driver's answer. Later events do not change
+// Begins a request, and draws the time of the driver model's answer. Later events do not change
 // this time.
 void TakeOver::Ask(std::int64_t step) {
   request_ = TakeOverRequest{.requested = step};
@@ -156,7 +156,7 @@ void TakeOver::Ask(std::int64_t step) {
   if (!absent) answer_step_ = step + StepsUntil(time_s, step_s_);
 }
 
-// The answer of a person is valid until the next request, like the answer of the modelled driver.
+// The answer of a person is valid until the next request, like the answer of the driver model.
 void TakeOver::HearAnswer(std::int64_t step, const TakeOverInputs& inputs) {
   if (!awaits_answer_ || !inputs.acknowledged) return;
   awaits_answer_ = false;

@@ -9,7 +9,7 @@ namespace fogline::take_over {
 namespace {
 
 constexpr std::string_view kToHuman = "transfer to the human";
-constexpr std::string_view kToAutomation = "return to automation";
+constexpr std::string_view kToAutomation = "transfer to the automation";
 
 const TakeOverStateInfo* StateOf(std::int8_t mode) {
   const auto* info = std::ranges::find(kTakeOverStates, mode, &TakeOverStateInfo::mode);

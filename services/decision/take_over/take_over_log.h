@@ -36,7 +36,7 @@ struct TakeOverEntry {
 };
 
 /// The text of an entry, for a person who reads it. For an acknowledgement, the text says whether a
-/// person has acknowledged, or whether the answer of the modelled driver was drawn. The text also
+/// person has acknowledged, or whether the answer of the driver model was drawn. The text also
 /// says whether a person has overridden.
 /// @param person section of the scenario of this run
 std::string_view TextOf(const TakeOverEntry& entry, const PersonSection& person);

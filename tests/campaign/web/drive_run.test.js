@@ -139,7 +139,7 @@ function assertMeasures(log, sent) {
   const [{events}] = JSON.parse(run(FOGLINE, "events", log, "--json"));
   const texts = events.map(({event}) => event);
   for (const text of ["request to take over", "acknowledgement by the person", "transfer to the human",
-                      "return to automation"]) {
+                      "transfer to the automation"]) {
     assert.ok(texts.includes(text), `${text} is not one of: ${texts.join(", ")}`);
   }
 }
@@ -352,7 +352,7 @@ test("the page warns while the picture follows the inputs too late, and not long
    */
   const shows = (fits, warned) => until(async () => {
     await page.keyboard.press("ArrowUp");
-    const delay_ms = parseInt(await page.locator("#latency").innerText(), 10);  // NaN before the first measurement
+    const delay_ms = parseInt(await page.locator("#latency").textContent(), 10);  // NaN before the first measurement
     return fits(delay_ms) && await warning.isVisible() === warned;
   }, `a delay ${warned ? "with the" : "without a"} warning`);
   await shows((delay_ms) => delay_ms <= 100, false);

@@ -54,7 +54,7 @@ TEST(OverrideInRealtimeTest, ABrakeTakesOverWithoutARequestUntilThePersonGivesBa
                                          "/arbitrator/take_over/recovery_s=1"});
   EXPECT_EQ(TextsOf(events), (Words{"activation of the automation", "override by the person",
                                     "first effective input of the human", "human recovered",
-                                    "return to automation"}))
+                                    "transfer to the automation"}))
       << events;
   EXPECT_THAT(events["requests"], IsEmpty());
 }

@@ -27,7 +27,7 @@ TEST(LateTakeOverLogTest, HasNoRequestThatBeganBeforeTheFirstCommand) {
   EXPECT_TRUE(log.BeganInRequest());
   EXPECT_THAT(Texts(log), ElementsAre("first command of the log", "acknowledgement",
                                       "transfer to the human", "first effective input of the human",
-                                      "human recovered", "return to automation"));
+                                      "human recovered", "transfer to the automation"));
   EXPECT_EQ(take_over::NameOfMode(log.entries()[0].from), "DEMAND");
   EXPECT_TRUE(log.entries()[0].first);
   EXPECT_FALSE(log.entries()[1].first);
@@ -138,7 +138,7 @@ TEST(LateTakeOverLogTest, SeesThatARunHasRequestsInALateLogThatBeginsWithTheDriv
   Add(log, Command(9, arbitration_t::RECOVERING));
   Add(log, Emergency(10, arbitration_t::EMERGENCY_BRAKING, 1));
   Add(log, Command(11, arbitration_t::RECOVERING));
-  EXPECT_THAT(Texts(log), ElementsAre("first command of the log", "comfortable manoeuvre",
+  EXPECT_THAT(Texts(log), ElementsAre("first command of the log", "manoeuvre: comfortable stop",
                                       "human ends manoeuvre", "first effective input of the human",
                                       "emergency braking begins", "emergency braking ends"));
   take_over::TakeOverLog shared;
@@ -155,7 +155,7 @@ TEST(LateTakeOverLogTest, TakesNoRampForAChangeOfState) {
   Add(log, Shared(8, arbitration_t::EMERGENCY_BRAKING, 0.55));
   Add(log, Shared(9, arbitration_t::AUTOMATION, 0.3));
   EXPECT_THAT(Texts(log), ElementsAre("first command of the log", "emergency braking begins",
-                                      "return to automation", "emergency braking ends"));
+                                      "transfer to the automation", "emergency braking ends"));
 }
 
 TEST(LateTakeOverLogTest, HasTheTransfersOfALateLog) {

@@ -26,9 +26,9 @@ TEST(TakeOverLogTest, TellsARequestFromItsBeginningToTheDriversFirstInput) {
   Add(log, Command(6, arbitration_t::HUMAN));
   Add(log, Command(7, arbitration_t::AUTOMATION));
   EXPECT_THAT(Texts(log), ElementsAre("activation of the automation", "request to take over",
-                                      "escalation", "acknowledgement", "transfer to the human",
-                                      "first effective input of the human", "human recovered",
-                                      "return to automation"));
+                                      "urgent request to take over", "acknowledgement",
+                                      "transfer to the human", "first effective input of the human",
+                                      "human recovered", "transfer to the automation"));
   EXPECT_THAT(
       log.requests(),
       ElementsAre(take_over::TakeOverRequest{
@@ -64,9 +64,9 @@ TEST(TakeOverLogTest, TellsOfAManoeuvreThatEndsInTheLock) {
   Add(log, Command(1, arbitration_t::MRM_COMFORT));
   Add(log, Command(2, arbitration_t::MRM_EMERGENCY));
   Add(log, Command(3, arbitration_t::MRM_DONE));
-  EXPECT_THAT(Texts(log),
-              ElementsAre("activation of the automation", "request to take over",
-                          "comfortable manoeuvre", "emergency manoeuvre", "standstill, locked"));
+  EXPECT_THAT(Texts(log), ElementsAre("activation of the automation", "request to take over",
+                                      "manoeuvre: comfortable stop", "manoeuvre: emergency stop",
+                                      "standstill, locked"));
   EXPECT_THAT(log.requests(), ElementsAre(take_over::TakeOverRequest{
                                   .requested = 0, .manoeuvre = 1, .standstill = 3}));
 }
@@ -78,9 +78,10 @@ TEST(TakeOverLogTest, HasTransfersAndNoRequestsWhereTheDriverNeedNotBeAsked) {
   Add(log, Command(2, arbitration_t::HUMAN, 1.5));
   Add(log, Command(3, arbitration_t::AUTOMATION, 1));
   Add(log, Command(4, arbitration_t::MINIMAL_RISK, -1));
-  EXPECT_THAT(Texts(log), ElementsAre("activation of the automation", "transfer to the human",
-                                      "first effective input of the human", "return to automation",
-                                      "manoeuvre begins: inputs have failed"));
+  EXPECT_THAT(Texts(log),
+              ElementsAre("activation of the automation", "transfer to the human",
+                          "first effective input of the human", "transfer to the automation",
+                          "manoeuvre begins: inputs have failed"));
   EXPECT_THAT(log.requests(), IsEmpty());
 }
 
@@ -106,7 +107,7 @@ TEST(TakeOverLogTest, TellsATransferWhereARampPassesTheHalfAndNotWhereItBegins) 
               ElementsAre("activation of the automation", "request to take over", "acknowledgement",
                           "human takes part", "transfer to the human", "human recovered",
                           "first effective input of the human", "human is released",
-                          "return to automation"));
+                          "transfer to the automation"));
   EXPECT_THAT(Transfers(log), ElementsAre(3, 6));
   EXPECT_THAT(log.requests(),
               ElementsAre(take_over::TakeOverRequest{
@@ -223,7 +224,7 @@ TEST(TakeOverLogTest, MakesNoRequestOfAnOverrideAndLeavesTheLastOneAsItWas) {
   EXPECT_THAT(log.requests(), IsEmpty());
   EXPECT_THAT(Texts(log), ElementsAre("activation of the automation", "transfer to the human",
                                       "first effective input of the human", "human recovered",
-                                      "return to automation"));
+                                      "transfer to the automation"));
   EXPECT_THAT(Transfers(log), ElementsAre(1, 3));
   Add(log, Command(10, arbitration_t::REQUEST));
   Add(log, Command(11, arbitration_t::HANDOVER));
@@ -287,7 +288,7 @@ TEST(TakeOverLogTest, TakesTheStateBehindEmergencyBrakingForTheSameAfterAnOverri
   Add(log, Command(4, arbitration_t::RECOVERING, -3));
   EXPECT_THAT(Texts(log),
               ElementsAre("activation of the automation", "transfer to the human",
-                          "first effective input of the human", "return to automation",
+                          "first effective input of the human", "transfer to the automation",
                           "transfer to the human", "emergency braking begins", "human takes part",
                           "first effective input of the human", "emergency braking ends"));
 }
