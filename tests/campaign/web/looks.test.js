@@ -117,11 +117,11 @@ const STATES = {
   "index.html": [
     {...BOTH, stage: "waiting"},
     {...BOTH, stage: "waiting", wait_s: 950},
-    {...ASKING, refused: "The answers do not fit the questions."},
+    {...ASKING, refused: "the session does not wait for this now"},
     {...BOTH, stage: "finished"}],
   "experimenter.html": [
     {...DESK, stage: "waiting"},
-    {...DESK, stage: "driving", view: `${ADDRESS}#token=0`, refused: "it does not fit the state"},
+    {...DESK, stage: "driving", view: `${ADDRESS}#token=0`, refused: "no run is under way"},
     {...DESK, stage: "asking", questionnaire: "workload"}],
 };
 
@@ -168,14 +168,18 @@ test("a scale without an answer is named below the scale, and nothing is sent", 
   await show(ASKING);
   const marked = () => page.evaluate(() => [...document.querySelectorAll("[role=radiogroup]")].map((scale) => (
     scale.getAttribute("aria-invalid") === "true" && scale.querySelector(".missing").offsetHeight > 0)));
+  const described = () => page.evaluate(() => [...document.querySelectorAll("[role=radiogroup]")].map((scale) => (
+    document.getElementById(scale.getAttribute("aria-describedby"))?.textContent ?? "")));
   const focused = () => page.evaluate(() => document.activeElement.name);
   await page.check('input[name="item-0"][value="50"]');
   await page.click("#questions button");
   assert.deepEqual(await marked(), [false, true, true]);
+  assert.deepEqual(await described(), ["", "Please choose an answer.", "Please choose an answer."]);
   assert.equal(await focused(), "item-1");
   await looksWell(page, "missing answers");
   await page.check('input[name="item-1"][value="3"]');
   assert.deepEqual(await marked(), [false, false, true]);
+  assert.deepEqual(await described(), ["", "", "Please choose an answer."]);
   await page.click("#questions button");
   assert.equal(await focused(), "item-2");
   assert.deepEqual(sent, []);
@@ -184,11 +188,14 @@ test("a scale without an answer is named below the scale, and nothing is sent", 
   assert.deepEqual(sent, [{op: "answers", state: 1, values: ["50", "3", "7", ""]}]);
 });
 
-test("a scale with few marks is one row, and its ends are named below them", async (t) => {
+test("a scale with few marks is one row; a finger can choose each mark of a scale with many", async (t) => {
   const {page, show} = await experiment(t, "index.html", {size: PHONE});
   await show(ASKING);
   const rows = await page.evaluate(() => [...document.querySelectorAll(".scale")].map((row) => (
     new Set([...row.children].map((mark) => mark.getBoundingClientRect().top)).size)));
-  assert.deepEqual(rows.slice(0, 2), [1, 1]);
-  assert.ok(rows[2] > 1);
+  assert.equal(rows[1], 1);
+  assert.ok(rows[0] > 1 && rows[2] > rows[0]);
+  const narrowest = await page.evaluate(() => Math.min(
+    ...[...document.querySelectorAll(".scale label")].map((mark) => mark.getBoundingClientRect().width)));
+  assert.ok(narrowest >= 24, `${narrowest} px`);  // WCAG 2.2, 2.5.8
 });

@@ -14,6 +14,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kNoRun = "no run is under way";
+constexpr const char* kNotNow = "the session does not wait for this now";
 // Largest number of lines on the experimenter's page.
 constexpr std::size_t kMostLines = 200;
 
@@ -154,9 +155,13 @@ std::optional<PageMessage> PageState::FromParticipant(std::string_view frame,
     return PageMessage{.kind = PageMessage::Kind::kBegin, .answers = {}, .text = ""};
   }
   const auto values = json.find("values");
-  if (op != "answers" || stage_ != Stage::kAsking || values == json.end() || !values->is_array() ||
-      values->size() != questionnaire_.items.size()) {
-    why = "it does not fit the state";
+  if (op != "answers" || stage_ != Stage::kAsking) {
+    why = kNotNow;
+    return std::nullopt;
+  }
+  const std::size_t wanted = questionnaire_.items.size();
+  if (values == json.end() || !values->is_array() || values->size() != wanted) {
+    why = fmt::format("the number of answers is not {}", wanted);
     return std::nullopt;
   }
   PageMessage message{.kind = PageMessage::Kind::kAnswers, .answers = {}, .text = ""};
@@ -186,7 +191,7 @@ std::optional<PageMessage> PageState::FromExperimenter(std::string_view frame,
   }
   const std::string text = Text(json, "text");
   if (op != "marker") {
-    why = "it does not fit the state";
+    why = kNotNow;
   } else if (stage_ != Stage::kDriving) {
     why = kNoRun;
   } else if (text.empty() || HasControlCharacter(text) ||

@@ -12,6 +12,7 @@ const WORDS = {
   finished: "All runs are done.",
 };
 let last = {};
+let marked = "";  // the marker that was sent last, until the session has taken it
 
 const send = connect(show, showProblem);
 
@@ -19,17 +20,25 @@ byId("begin").onclick = () => send({op: "begin", state: last.state});
 byId("marker").onsubmit = (event) => {
   event.preventDefault();
   const input = byId("marker-text");
-  if (send({op: "marker", text: input.value.trim()})) input.value = "";
+  const text = input.value.trim();
+  if (!send({op: "marker", text})) return;
+  marked = text;
+  input.value = "";
 };
 
 function show(state) {
   last = state;
+  if (state.lines.some(({text}) => text === `marker: ${marked}`)) marked = "";
+  if (state.refused && byId("marker-text").value === "") byId("marker-text").value = marked;
   showProblem(state.refused ? `Not accepted: ${state.refused}.` : "");
   byId("title").textContent = `Participant ${state.participant}, ${titleOf(state).toLowerCase()}`;
   const words = state.wait_s > 0 ? "The participant has a break." : WORDS[state.stage];
   const isOver = state.stage === "finished";
   byId("words").textContent = state.condition && !isOver ? `Condition: ${state.condition}. ${words}` : words;
-  byId("begin").hidden = state.stage !== "waiting" || state.wait_s > 0;
+  byId("begin").hidden = byId("begin-hint").hidden = state.stage !== "waiting" || state.wait_s > 0;
+  byId("begin-hint").textContent = state.drives
+    ? "This button does what “Begin” does on the participant’s page: it opens the seat there."
+    : "This button does what “Begin” does on the participant’s page: the run begins at once.";
   byId("marker").hidden = state.stage !== "driving";
   const view = byId("view");
   // Before and after a run nobody answers at the address of its view.
@@ -43,7 +52,7 @@ function show(state) {
     const time = document.createElement("time");
     time.dateTime = new Date(at_ms).toISOString();
     time.textContent = new Date(at_ms).toLocaleTimeString("en-GB");
-    row.append(time, ` ${text}`);
+    row.append(time, text);
     return row;
   }));
 }

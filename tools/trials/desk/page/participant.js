@@ -25,26 +25,30 @@ function scaleOf(item, index) {
       make("input", {type: "radio", name: `item-${index}`, value}), value));
   }
   return [
+    make("div", {class: "ends"}, ...[[item.min, item.low], [item.max, item.high]]
+      .map(([mark, words]) => make("span", {}, words === "" ? "" : `${mark}: ${words}`))),
     make("div", {class: "scale"}, ...marks),
-    make("div", {class: "ends"}, make("span", {}, item.low), make("span", {}, item.high)),
-    make("p", {class: "missing", id: `missing-${index}`, hidden: ""}, "Please choose a mark."),
+    make("p", {class: "missing", id: `missing-${index}`, hidden: ""}, "Please choose an answer."),
   ];
 }
 
 function questionOf(item, index) {
   const legend = make("legend", {}, item.text);
   if (item.kind === "text") {
+    legend.append(" ", make("span", {class: "hint"}, "(optional)"));
     return make("fieldset", {}, legend,
       make("textarea", {name: `item-${index}`, rows: "3", maxlength: "120", "aria-label": item.text}));
   }
-  return make("fieldset", {role: "radiogroup", "aria-describedby": `missing-${index}`}, legend,
-              ...scaleOf(item, index));
+  return make("fieldset", {role: "radiogroup", "aria-required": "true"}, legend, ...scaleOf(item, index));
 }
 
 /** Shows below a scale whether its answer is missing. */
 function markMissing(scale, isMissing) {
+  const words = scale.querySelector(".missing");
   scale.setAttribute("aria-invalid", String(isMissing));
-  scale.querySelector(".missing").hidden = !isMissing;
+  if (isMissing) scale.setAttribute("aria-describedby", words.id);
+  else scale.removeAttribute("aria-describedby");
+  words.hidden = !isMissing;
 }
 
 /**
@@ -101,13 +105,15 @@ function goToSeat(address) {
 
 /** What a page without buttons and questions says. */
 function wordsOf({stage, drives}) {
-  if (stage === "finished") return "Thank you.";
+  if (stage === "finished") return "Thank you. Please tell the experimenter that you are done.";
+  if (stage === "asking") return "Please answer about the run that has just ended.";
   if (stage === "seating" || stage === "ended" || (stage === "driving" && drives)) return "Please wait.";
   return stage === "driving" ? "The run is under way." : "";
 }
 
 function show(state) {
-  showProblem(state.refused ?? "");
+  const what = state.stage === "asking" ? "Your answers were not saved" : "This had no effect";
+  showProblem(state.refused ? `${what}: ${state.refused}. Please try again, or tell the experimenter.` : "");
   if (state.state === shown) return;
   shown = state.state;
   stopCount();
