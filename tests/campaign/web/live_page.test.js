@@ -25,7 +25,7 @@ test("a live run is shown as it goes: the newest step, all roles, no loss", asyn
   assert.equal(await page.locator("#origin-words").innerText(), "Live");
   assert.equal(await page.locator("#title").innerText(),
                "A dense fog bank: the LiDAR loses the preceding car");
-  assert.equal(await page.locator("#who").innerText(), "Automation drives");
+  assert.equal(await page.locator("#who").innerText(), "The automation drives");
   await page.waitForFunction(() => document.querySelectorAll("#roles tbody tr").length === 9);
   await page.waitForFunction(() => document.querySelectorAll("#senders tbody tr").length >= 9);
   await page.waitForFunction(() => /^All 9 roles answer\. No packet to this viewer was lost/.test(
@@ -149,17 +149,27 @@ test("the page says when the run has ended, and when the program has", async (t)
   await says("The run has ended");
   const who = (words) => page.waitForFunction((wanted) => document.getElementById("who").textContent === wanted, words);
   await who("The run has ended");
-  assert.match(await page.locator("#reason").innerText(), /^In its last step: Automation drives\. The Degree of Conflict/);
+  assert.match(await page.locator("#reason").innerText(), /^In its last step: “The automation drives”\. The Degree of Conflict/);
   assert.equal(await page.locator("#now").getAttribute("data-side"), "ended");
-  assert.equal(await page.locator("#live").getAttribute("aria-pressed"), "false");
+  assert.ok(await page.locator("#live").isHidden());
   assert.equal(await page.locator("#play").getAttribute("aria-label"), "Play");
   await page.click("#play");  // shows the run again from its first step
   await page.waitForFunction(() => Number(document.body.dataset.step) < 100);
-  await who("Automation drives");  // at the shown moment
+  await who("The automation drives");  // at the shown moment
   await says("The run has ended");
   server.kill("SIGTERM");
   await says("The program has ended");
   page.trouble = page.trouble.filter((words) => !words.includes("WebSocket"));  // no server answers
+});
+
+test("a run that is interrupted has ended, too", async (t) => {
+  const network = url();
+  const page = await open(t, await browser(t), await view(t, ["--lcm-url", network]));
+  await page.waitForFunction(() => foglinePage.hello);
+  const interrupted = run(t, network, "--pace", "1");
+  await page.waitForFunction(() => Number(document.body.dataset.step) > 5);
+  interrupted.kill("SIGINT");
+  await page.waitForFunction(() => document.getElementById("who").textContent === "The run has ended");
 });
 
 test("the page finds the server again after it was away", async (t) => {

@@ -37,7 +37,7 @@ test("three moments of a log show who drives, and the log's own numbers", async 
   const log = recordedRun(folder);
   const numbers = numbersOf(folder, log);
   const page = await open(t, await browser(t), await view(t, [log]));
-  for (const [step, words] of [[50, "Automation drives"], [300, "The human drives"], [650, "Automation drives"]]) {
+  for (const [step, words] of [[50, "The automation drives"], [300, "The human drives"], [650, "The automation drives"]]) {
     await goTo(page, step);
     const [truth, lidar, radar] = ["TRUTH", "LIDAR", "RADAR"].map((channel) => numbers(channel, step));
     assert.equal(await text(page, "#who"), words);
@@ -163,12 +163,14 @@ test("a request to take over counts down, and the page says who drives", async (
   await goTo(page, 200);
   assert.equal(await page.locator("#request").isVisible(), false);
   await goTo(page, 310);
-  assert.equal(await text(page, "#who"), "Automation drives and urgently asks the human to take over");
+  assert.equal(await text(page, "#who"), "The automation drives and urgently asks the human to take over");
   assert.equal(await text(page, "#request-left"), "6.0\u00a0s");
   await goTo(page, 400);
   assert.equal(await page.locator("#request").isVisible(), false);
   await page.waitForFunction(() => document.getElementById("announcement").textContent ===
     "Minimal risk manoeuvre: comfortable stop.");
+  assert.match(await text(page, "#reason"),
+    /^Neither the automation nor the human goes on driving\. The human has not taken over in time\. The manoeuvre/);
 });
 
 test("a link opens its moment, and an event of the list is a jump away", async (t) => {

@@ -6,7 +6,7 @@ import {Catalogue} from "./data/catalogue.js";
 import {Clock} from "./data/clock.js";
 import {Curves} from "./parts/curves.js";
 import {byId, darkScheme, reducedMotion, say, setAttribute} from "./draw/dom.js";
-import {Health} from "./parts/health.js";
+import {hasStopped, Health} from "./parts/health.js";
 import {listenForKeys} from "./parts/keys.js";
 import {LiveStore} from "./data/live_store.js";
 import {LogStore} from "./data/log_store.js";
@@ -70,7 +70,6 @@ class Page {
   listen() {
     darkScheme.addEventListener("change", () => {
       this.theme = readTheme();
-      this.scene.setScheme();
       this.build();
     });
     const sizes = new ResizeObserver(() => {
@@ -291,8 +290,9 @@ class Page {
     this.connection = state;
     sayOrigin(this);
     if (state === "refused") {
-      this.complain("The server does not answer. If it listens for other machines, open exactly " +
-                    "the address that it has printed: the address contains a token.");
+      if (!this.hello) say(byId("who"), "No connection");
+      this.complain("The server does not answer. If it has ended, start it again. If it listens for other machines, " +
+                    "open exactly the address that it has printed: the address contains a token.");
     } else {
       byId("problem").hidden = true;
     }
@@ -354,7 +354,7 @@ class Page {
     const time = store.timeOf(shown);
     const {modes, lambdas} = this.why;
     const moment = {frame: this.frame, step: shown, time, run, theme, length_m: this.length_m, isLive: this.isLive, hello: this.hello,
-                    isOver: this.isOver && shown === store.lastStep, ahead_s: frame ? this.aheadOf(step) : 0, moves: clock.state !== "paused"};
+                    isOver: this.isOver && shown === store.lastStep, ahead_s: frame ? this.aheadOf(step) : 0, moves: clock.state === "playing" || (clock.state === "live" && !this.isOver)};
     sayOrigin(this);
     const {rest_ms} = this.budget.now;
     moment.side = this.now.draw(moment, modes, lambdas);
@@ -375,7 +375,7 @@ class Page {
     if (this.isLive && this.healthIsNew) {
       this.healthIsNew = false;
       const {store} = this;
-      this.isOver = Boolean(store.frame(store.lastStep)?.TRUTH?.last);
+      this.isOver = Boolean(store.frame(store.lastStep)?.TRUTH?.last) || hasStopped(this.lastHealth, store.run);
       this.health.drawLive(this.lastHealth, store.run, store.statuses, this.isOver);
     }
     if (!this.isLive && this.log && this.healthLog !== this.log) {

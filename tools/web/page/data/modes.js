@@ -2,33 +2,38 @@
 
 /** The sides that can drive. The page shows each side by a colour, a shape and a pattern. */
 export const SIDES = {
-  automation: {words: "Automation drives", short: "automation"},
+  automation: {words: "The automation drives", short: "automation"},
   human: {words: "The human drives", short: "human"},
   risk: {words: "Minimal risk manoeuvre", short: "minimal risk"},
   unknown: {words: "It is not known who drives", short: "unknown"},
 };
 
 const MODES = [
-  {name: "AUTOMATION", side: "automation", words: "Automation drives"},
+  {name: "AUTOMATION", side: "automation", words: "The automation drives"},
   {name: "HUMAN", side: "human", words: "The human drives"},
   {name: "MINIMAL_RISK", side: "risk", words: "Minimal risk manoeuvre: the car stops by itself"},
   {name: "REQUEST", side: "automation", asks: true,
-   words: "Automation drives and asks the human to take over"},
+   words: "The automation drives and asks the human to take over"},
   {name: "REQUEST_URGENT", side: "automation", asks: true, urgent: true,
-   words: "Automation drives and urgently asks the human to take over"},
+   words: "The automation drives and urgently asks the human to take over"},
   {name: "HANDOVER", side: "automation", asks: true,
-   words: "Automation drives; the human has answered"},
+   words: "The automation drives; the human has answered"},
   {name: "RECOVERING", side: "human", words: "The human drives, just after taking over"},
-  {name: "MRM_COMFORT", side: "risk", words: "Minimal risk manoeuvre: comfortable stop"},
-  {name: "MRM_EMERGENCY", side: "risk", words: "Minimal risk manoeuvre: emergency stop"},
-  {name: "MRM_DONE", side: "risk", words: "Minimal risk manoeuvre: the car stands, locked"},
-  {name: "MRM_FAILED", side: "risk", words: "Minimal risk manoeuvre: the brake has no effect"},
+  {name: "MRM_COMFORT", side: "risk", stops: true,
+   words: "Minimal risk manoeuvre: comfortable stop"},
+  {name: "MRM_EMERGENCY", side: "risk", stops: true,
+   words: "Minimal risk manoeuvre: emergency stop"},
+  {name: "MRM_DONE", side: "risk", stops: true,
+   words: "Minimal risk manoeuvre: the car stands, locked"},
+  {name: "MRM_FAILED", side: "risk", stops: true,
+   words: "Minimal risk manoeuvre: the brake has no effect"},
   {name: "COLLISION_WARNING", side: null, words: "Collision warning"},
   {name: "EMERGENCY_BRAKING", side: "risk", words: "Emergency braking"},
 ];
 
 /**
- * The description {name, side, words, asks, urgent} of a mode. In a collision warning the same side
+ * The description {name, side, words, asks, urgent, stops} of a mode. `stops`: of a manoeuvre of a run
+ * with requests. In a collision warning the same side
  * drives as before.
  */
 export function modeOf(mode, lambda_human = 0) {
@@ -103,6 +108,25 @@ export function requestAt(times, modes, time, lead_s) {
   while (place > 0 && modeOf(modes[place - 1]).asks) --place;
   const left_s = Math.max(0, times[place] + lead_s - time);
   return {since_s: times[place], left_s, share: lead_s > 0 ? left_s / lead_s : 0};
+}
+
+/** Spans in which a request is open, as spansOf() gives them. @param modes series of HOST_COMMAND.mode */
+export function requestSpans(modes, from, to, end) {
+  const {times, values} = modes.within(from, to);
+  const asks = Array.from(values, (mode) => Number(Boolean(modeOf(mode).asks)));
+  return spansOf(times, asks, end).filter(({value}) => value);
+}
+
+/**
+ * The manoeuvre of a time: {first, before}, the descriptions of its first mode and of the mode before
+ * it; null without a manoeuvre. `before` is null if it is not known. `times` and `modes` as in
+ * requestAt().
+ */
+export function manoeuvreAt(times, modes, time) {
+  let place = upTo(times, time);
+  if (place < 0 || !modeOf(modes[place]).stops) return null;
+  while (place > 0 && modeOf(modes[place - 1]).stops) --place;
+  return {first: modeOf(modes[place]), before: place > 0 ? modeOf(modes[place - 1]) : null};
 }
 
 /** Index of the last value that is at most `x`; -1 if there is none. `values` ascend. */

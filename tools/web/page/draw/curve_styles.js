@@ -1,11 +1,12 @@
 // The style of the chosen curves. It does not use the document.
 
-export const DASHES = [[], [8, 4], [2, 3], [8, 3, 2, 3], [14, 4], [4, 4], [1, 4], [12, 3, 3, 3, 3, 3]];
+export const DASHES = [[1, 4], [12, 3, 3, 3, 3, 3], [2, 3], [8, 3, 2, 3], [4, 4], [8, 4], [], [14, 4]];
 
 // The sensors have the same colours and patterns as in the other parts of the page. So the other
-// fields take the places of the sensors last.
+// fields take the places of the sensors last. Just before, they take the places whose colours are near
+// to those of the sides that drive.
 const OWN_PLACE = {RADAR: 2, LIDAR: 3};
-const ORDER = [0, 1, 4, 5, 6, 7, 2, 3];
+const ORDER = [6, 5, 7, 4, 0, 1, 2, 3];
 
 /**
  * A place in the palette for each field. The first field of a sensor gets the sensor's place. Every

@@ -1,16 +1,12 @@
-// Loads the driver's view, and shows it in the light or dark colours of the system.
+// Loads the driver's view.
 
-import {byId, darkScheme, make} from "./dom.js";
+import {byId, make} from "./dom.js";
 
 const VIEW_FILE = "./driver_view.js";  // this file contains three.js, and is loaded separately
 
-/** Gives the view the light or dark colours of the system. */
-export function setScheme(view) {
-  view.setScheme(darkScheme.matches ? "dark" : "light");
-}
-
 /**
- * Loads the view into its canvas, in light colours.
+ * Loads the view into its canvas. The view has the same colours in every scheme, so that all people
+ * see the same road.
  * @return the view; null if it cannot be shown; the page then shows the reason
  */
 export async function loadView() {

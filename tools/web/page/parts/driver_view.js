@@ -30,10 +30,7 @@ const DASH = {length_m: 6, period_m: 18};
 const POST_PERIOD_M = 50;
 const FIELD_OF_VIEW = 24;  // vertical, in degrees
 const MOST_RATIO = 2;    // pixels of the picture per pixel of the page
-const COLOURS = {
-  light: {sky: "#cdd5db", asphalt: "#565b60", verge: "#8a937c", marking: "#f1f1ec", car: "#39485a"},
-  dark: {sky: "#59636d", asphalt: "#30353a", verge: "#3b4337", marking: "#c3c7c8", car: "#222c38"},
-};
+const COLOURS = {sky: "#cdd5db", asphalt: "#565b60", verge: "#8a937c", marking: "#f1f1ec", car: "#39485a"};
 
 /** Whether the browser has no graphics processor. Smooth edges would then take too much time. */
 function drawsInSoftware() {
@@ -77,9 +74,9 @@ function row(geometry, material, period_m, places) {
 }
 
 /** A car whose rear is at z = 0, seen from behind. */
-function makeCar(colours) {
+function makeCar() {
   const car = new Group();
-  const body = lambert(colours.car);
+  const body = lambert(COLOURS.car);
   const dark = lambert("#14181c");
   car.add(box(1.82, 0.62, 4.5, body, 0, 0.62, -2.25));
   car.add(box(1.56, 0.52, 2.3, body, 0, 1.17, -2.1));
@@ -112,7 +109,7 @@ export class DriverView {
     this.camera = new PerspectiveCamera(FIELD_OF_VIEW, 2, 0.2, ROAD_M);
     this.camera.position.set(0, EYE.height_m, 0);
     this.camera.rotation.x = -0.07;
-    this.setScheme("light");
+    this.makeScene();
     this.warmUp();
   }
 
@@ -130,18 +127,17 @@ export class DriverView {
     this.renderer.clear();
   }
 
-  setScheme(name) {
-    const colours = COLOURS[name];
+  makeScene() {
     const scene = new Scene();
-    scene.background = new Color(colours.sky);
-    scene.fog = new Fog(colours.sky, 0, 1);
+    scene.background = new Color(COLOURS.sky);
+    scene.fog = new Fog(COLOURS.sky, 0, 1);
     scene.add(new AmbientLight("#ffffff", 2));
     const sun = new DirectionalLight("#ffffff", 1.2);
     sun.position.set(-3, 8, 6);
     scene.add(sun);
-    scene.add(strip(600, basic(colours.verge), 0, -0.02));
-    scene.add(strip(2 * LANE_M + 2.6, basic(colours.asphalt), -LANE_M / 2));
-    const marking = basic(colours.marking);
+    scene.add(strip(600, basic(COLOURS.verge), 0, -0.02));
+    scene.add(strip(2 * LANE_M + 2.6, basic(COLOURS.asphalt), -LANE_M / 2));
+    const marking = basic(COLOURS.marking);
     scene.add(strip(0.16, marking, LANE_M / 2, 0.01), strip(0.16, marking, -1.5 * LANE_M, 0.01));
     const dash = new PlaneGeometry(0.16, DASH.length_m);
     dash.rotateX(-Math.PI / 2);
@@ -151,7 +147,7 @@ export class DriverView {
     const band = new CylinderGeometry(0.075, 0.075, 0.2, 6);
     this.posts = row(post, lambert("#f0f0ea"), POST_PERIOD_M, posts);
     this.bands = row(band, lambert("#202428"), POST_PERIOD_M, posts.map(([x]) => [x, 0.72]));
-    const {car, brake} = makeCar(colours);
+    const {car, brake} = makeCar();
     this.lead = car;
     this.brake = brake;
     scene.add(this.dashes, this.posts, this.bands, car);

@@ -48,7 +48,7 @@ function roleRow(role, status, isOver) {
     make("th", {scope: "row"}, mark(kind), role.role),
     cell(isOver ? "ended" : role.silent ? `${role.state}, silent` : role.state ?? "", {class: "text"}),
     cell(count(role.step)),
-    cell(`${decimal(role.age_s, 1)} s`),
+    cell(isOver ? "–" : `${decimal(role.age_s, 1)} s`),
     cell(`${count(role.repairs_asked)} / ${count(role.repairs_served)}`),
     cell(refusals(role.refused)),
     cell(role.cpu_percent == null ? "–" : `${decimal(role.cpu_percent, 0)} %`),
@@ -62,14 +62,14 @@ function senderRow({address, received, lost, late, duplicates}) {
     cell(count(late)), cell(count(duplicates)));
 }
 
-function channelRow(channel) {
+function channelRow(channel, isOver) {
   return make("tr", {},
     make("th", {scope: "row"}, channel.channel),
     cell(channel.type ?? "unknown", {class: "text"}),
     cell(count(channel.messages)),
-    cell(`${decimal(channel.rate_hz, 1)} Hz`),
+    cell(isOver ? "–" : `${decimal(channel.rate_hz, 1)} Hz`),
     cell(channel.jitter_ms == null ? "–" : `${decimal(channel.jitter_ms, 1)} ms`),
-    cell(`${decimal(channel.age_s, 1)} s`),
+    cell(isOver ? "–" : `${decimal(channel.age_s, 1)} s`),
     cell(count(channel.lost ?? 0)), cell(count(channel.late ?? 0)),
     cell(count(channel.undecodable)));
 }
@@ -79,6 +79,9 @@ function shownRun(traffic, run) {
   const runs = traffic?.runs ?? [];
   return run ? runs.find(({run_id}) => run_id === run.run_id) : runs.at(-1);
 }
+
+/** Whether the runner has said that the shown run has ended, also before its last step. */
+export const hasStopped = (health, run) => Boolean(run) && shownRun(health.traffic, run)?.phase === "STOP";
 
 export class Health {
   constructor() {
@@ -93,28 +96,31 @@ export class Health {
     table.querySelector("tbody").replaceChildren(...rows);
   }
 
-  /** Shows a `health` frame of a live run. @param isOver whether the run's last step has come */
+  /** Shows a `health` frame of a live run. @param isOver whether the run has ended */
   drawLive(health, run, statuses, isOver) {
     const shown = shownRun(health.traffic, run);
     const roles = shown?.roles ?? [];
     this.fill("roles", roles.map((role) => roleRow(role, statuses.get(role.role), isOver)));
     this.fill("senders", (health.senders ?? []).map(senderRow));
-    const channels = [...(shown?.channels ?? []), ...(health.traffic?.others ?? [])];
-    this.fill("channels", channels.map(channelRow));
+    const ofRun = (shown?.channels ?? []).map((channel) => channelRow(channel, isOver));
+    const others = (health.traffic?.others ?? []).map((channel) => channelRow(channel, false));
+    this.fill("channels", [...ofRun, ...others]);
     const bad = roles.filter((role) => grade(role, statuses.get(role.role), isOver) === "bad");
     this.conclude(bad, roles, health, isOver);
   }
 
   conclude(bad, roles, health, isOver) {
-    const losses = lossesOf(health, count);
+    const isSilent = roles.length === 0 && !health.senders?.length && !health.traffic?.others?.length;
+    const losses = isSilent ? {count: 0, words: ""} : lossesOf(health, count);
     const names = bad.map(({role}) => role).join(", ");
-    const first = roles.length === 0 ? "No role has reported yet."
+    const first = isSilent ? "Nothing has come yet."
+      : roles.length === 0 ? "No role has reported yet."
       : bad.length === 0 ? (isOver ? "The run has ended." : `All ${roles.length} roles answer.`)
       : bad.length === 1 ? `One role is in trouble: ${names}.`
       : `${bad.length} roles are in trouble: ${names}.`;
-    const overall = bad.length ? "bad" : losses.count ? "note" : "good";
+    const overall = bad.length ? "bad" : losses.count ? "note" : roles.length === 0 ? "none" : "good";
     setAttribute(this.summary, "data-grade", overall);
-    say(this.summary, `${first} ${losses.words}`);
+    say(this.summary, `${first} ${losses.words}`.trim());
     const {viewers = 1, drivers = 0} = health;
     const url = health.traffic?.lcm_url;
     const facts = [url && `Network ${url}`, viewers === 1 ? "1 viewer" : `${count(viewers)} viewers`,

@@ -7,9 +7,9 @@ const TEN = 10;
 /** The keys in the order of the overlay: [{keys, words, does(act, event)}]. */
 const KEYS = [
   {keys: [" "], shown: "Space", words: "play or pause", does: (act) => act.toggle()},
-  {keys: ["ArrowLeft"], shown: "←", words: "one step back; with Shift ten",
+  {keys: ["ArrowLeft"], shown: "←", words: "one step back (with Shift: ten)",
    does: (act, {shiftKey}) => act.step(shiftKey ? -TEN : -1)},
-  {keys: ["ArrowRight"], shown: "→", words: "one step forward; with Shift ten",
+  {keys: ["ArrowRight"], shown: "→", words: "one step forward (with Shift: ten)",
    does: (act, {shiftKey}) => act.step(shiftKey ? TEN : 1)},
   {keys: [","], shown: ",", words: "to the previous event", does: (act) => act.jump(-1)},
   {keys: ["."], shown: ".", words: "to the next event", does: (act) => act.jump(1)},

@@ -4,7 +4,7 @@
 import {byId, say, setAttribute} from "../draw/dom.js";
 import {decimal, seconds, withUnit} from "../draw/format.js";
 import {stands} from "../data/cars.js";
-import {drivingSince, modeOf, requestAt, SIDES} from "../data/modes.js";
+import {drivingSince, manoeuvreAt, modeOf, requestAt, SIDES} from "../data/modes.js";
 
 const ANNOUNCE_AFTER_MS = 400;  // otherwise a quick move through time would read out each change
 
@@ -15,22 +15,33 @@ const LASTS = {
 // Reasons for modes whose reason is not the Degree of Conflict. The page says this reason first.
 const REASONS = {
   COLLISION_WARNING: "The car ahead is too near. ",
-  EMERGENCY_BRAKING: "A collision is near. ",
+  EMERGENCY_BRAKING: "A collision is near.",
 };
 const NO_DRIVER = "Neither the automation nor the human goes on driving. ";
 
+/** Why a manoeuvre has begun, as services/decision/take_over/take_over_table.h has it. */
+function causeOf({first, before}) {
+  if (before?.side === "human") return "The human no longer drives.";
+  if (!before?.asks) return "";
+  return first.name === "MRM_EMERGENCY" ? "The situation became severe before the human took over."
+                                        : "The human has not taken over in time.";
+}
+
 /**
- * The reason why the side of this HOST_COMMAND drives, as text. The mode MINIMAL_RISK lasts until
- * the end of the run, whatever the conflict is then.
+ * The reason why the side of this HOST_COMMAND drives, as text. The conflict is no reason for a
+ * manoeuvre or for emergency braking.
  * @param hasPerson whether a person drives in this run, who can leave the seat
+ * @param manoeuvre as manoeuvreAt() gives it
  */
-export function reason({mode, lambda_human, doc, threshold}, hasPerson = false) {
-  const {name, side} = modeOf(mode, lambda_human);
+export function reason({mode, lambda_human, doc, threshold}, hasPerson = false, manoeuvre = null) {
+  const {name} = modeOf(mode, lambda_human);
   if (name === "MINIMAL_RISK") {
     return NO_DRIVER + (hasPerson ? "Inputs have failed, or the person has gone." : "Inputs have failed.");
   }
+  if (manoeuvre) return (NO_DRIVER + causeOf(manoeuvre)).trim();
+  if (name === "EMERGENCY_BRAKING") return REASONS[name];
   const compared = doc >= threshold ? "at or above" : "below";
-  return (REASONS[name] ?? (side === "risk" ? NO_DRIVER : "")) +
+  return (REASONS[name] ?? "") +
     `The Degree of Conflict ${decimal(doc, 2)} is ${compared} the threshold ${decimal(threshold, 2)}.`;
 }
 
@@ -68,6 +79,7 @@ export class Now {
       say(this.words, isLive ? "Waiting for a run" : SIDES.unknown.words);
       say(this.reason, isLive ? hint(run.run_id !== "", hello) : "");
       setAttribute(this.strip, "data-side", "unknown");
+      setAttribute(this.strip, "data-asks", "false");
       this.request.hidden = true;
       return "unknown";
     }
@@ -80,10 +92,13 @@ export class Now {
     const lasted = since === null ? ""
       : ` ${LASTS[mode.side]} ${seconds(time - since, run.step_s)}.`;
     const hasPerson = run.scenario?.person?.drives;
-    const gone = hasPerson && frame.DRIVER_COMMAND?.readiness === 0 ? " No person is ready at the seat." : "";
-    say(this.reason, (isOver ? `In its last step: ${drives}. ` : "") + reason(command, hasPerson) + gone + lasted);
+    const why = reason(command, hasPerson, manoeuvreAt(modes.times, modes.values, time));
+    const gone = hasPerson && !isOver && frame.DRIVER_COMMAND?.readiness === 0 ? " No person is ready at the seat." : "";
+    say(this.reason, (isOver ? `In its last step: “${drives}”. ` : "") + why + gone + lasted);
     const lead_s = run.scenario?.arbitrator?.take_over?.lead_s ?? 10;
-    this.drawRequest(isOver ? null : requestAt(modes.times, modes.values, time, lead_s));
+    const request = isOver ? null : requestAt(modes.times, modes.values, time, lead_s);
+    setAttribute(this.strip, "data-asks", String(request !== null));
+    this.drawRequest(request);
     this.announce(words);
     return mode.side;
   }

@@ -3,11 +3,12 @@
 import {timeGap} from "../data/cars.js";
 import {byId, say, setAttribute} from "../draw/dom.js";
 import {decimal, kmh, visibility, withUnit} from "../draw/format.js";
-import {loadView, setScheme} from "../draw/view_file.js";
+import {loadView} from "../draw/view_file.js";
 import {Road, roadInWords} from "./road.js";
 
 const WORDS_EVERY_MS = 1000;
 const AFTER_PICTURE_MS = 100;
+const MOST_FOG_M = 1000;  // of the visibility in fog, by the definition of meteorology
 const LONG_S = 60;  // the digits of a longer time gap say nothing
 
 export class Scene {
@@ -29,13 +30,8 @@ export class Scene {
     this.isLoading = true;
     setTimeout(async () => {
       this.view = await loadView();
-      this.setScheme();
+      this.drawn = "";
     }, AFTER_PICTURE_MS);
-  }
-
-  setScheme() {
-    if (this.view) setScheme(this.view);
-    this.drawn = "";
   }
 
   /**
@@ -49,7 +45,7 @@ export class Scene {
     const {clientWidth, clientHeight} = this.road.canvas;
     const view = byId("driver-view");
     const drawn = `${step} ${ahead_s} ${side} ${clientWidth} ${clientHeight} ${view.clientWidth} ` +
-      `${view.clientHeight} ${frame.TRUTH.header.run_id}`;
+      `${view.clientHeight} ${frame.TRUTH.header.run_id} ${moment.moves}`;
     if (drawn === this.drawn && frame === this.frame) return;
     this.drawn = drawn;
     this.frame = frame;
@@ -69,6 +65,8 @@ export class Scene {
     const words = gap_s > LONG_S ? `over ${LONG_S}` : decimal(gap_s, 2);
     say(byId("gap-time"), gap_s === null ? "" : `time gap ${withUnit(words, "s")}`);
     say(byId("sight-now"), visibility(truth.fog_visibility_m));
+    const isHidden = truth.fog_present && truth.fog_visibility_m > MOST_FOG_M;
+    say(byId("sight-fog"), isHidden ? "fog: LiDAR only" : truth.fog_present ? "in fog" : "");
     setAttribute(byId("gap-now"), "data-value", String(truth.host_gap_m));
     setAttribute(byId("speed-now"), "data-value", String(truth.host_speed_mps));
     byId("collision").hidden = truth.collision === 0;

@@ -2,13 +2,13 @@
 
 import {byId, fitCanvas, hatch, make, say, setAttribute} from "../draw/dom.js";
 import {clockTime, count, decimal, seconds, timeDecimals} from "../draw/format.js";
-import {sideSpans, spansOf} from "../data/modes.js";
+import {requestSpans, sideSpans, spansOf} from "../data/modes.js";
 import {SPEEDS} from "../data/clock.js";
 
 const TRACK_HZ = 4;
 const LONG_S = 600;  // a run of this time or more is long
 export const EVENT_MARKS = {
-  fog: "≋", transfer: "⇄", request: "◎", alarm: "!", manoeuvre: "△", braking: "▼", collision: "✕"};
+  fog: "≋", transfer: "⇄", request: "◎", input: "➤", alarm: "!", manoeuvre: "△", braking: "▼", collision: "✕"};
 
 export class Timebar {
   /** @param act {toggle, step, jump, goTo, speed, live, link} */
@@ -56,8 +56,8 @@ export class Timebar {
     setAttribute(this.play, "aria-label", running ? "Pause" : "Play");
     setAttribute(this.play, "data-running", String(running));
     if (this.speed.value !== String(clock.speed)) this.speed.value = String(clock.speed);
-    this.speed.disabled = clock.state === "live";
-    this.liveButton.hidden = !isLive;
+    this.speed.disabled = follows;
+    this.liveButton.hidden = !isLive || isOver;
     setAttribute(this.liveButton, "aria-pressed", String(follows));
     this.drawTrack(store, modes, lambdas, events, theme);
   }
@@ -104,6 +104,7 @@ export class Timebar {
       fill(span, theme[side], 9, 8);
       if (patterns[side]) fill(span, patterns[side], 9, 8);
     }
+    for (const span of requestSpans(modes, -Infinity, Infinity, lastTime)) fill(span, theme.risk, 6, 3);
     pen.fillStyle = theme.ink;
     for (const {time_s} of events) pen.fillRect(Math.round(x(time_s)) - 0.5, 2, 1.5, height - 4);
   }
@@ -138,7 +139,16 @@ export class Timebar {
       if (i === place) button.setAttribute("aria-current", "true");
       else button.removeAttribute("aria-current");
     });
+    keepInSight(list, list.children[place]);
   }
+}
+
+/** Scrolls a box that scrolls, and nothing else, until it shows an item. */
+function keepInSight(box, item) {
+  if (!item) return;
+  const isAbove = item.offsetTop < box.scrollTop;
+  const isBelow = item.offsetTop + item.offsetHeight > box.scrollTop + box.clientHeight;
+  if (isAbove || isBelow) box.scrollTop = item.offsetTop - (box.clientHeight - item.offsetHeight) / 2;
 }
 
 /** The last step of the run; of a live run the last one that it will have. */

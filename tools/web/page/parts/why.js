@@ -6,7 +6,7 @@ import {drawNow, extremes, fillSpan, joined, makeChart, stepped, TOP, widened}
 import {byId, hatch, say} from "../draw/dom.js";
 import {decimal, withUnit} from "../draw/format.js";
 import {MOST_POINTS} from "../data/log_store.js";
-import {sideSpans, spansOf, upTo} from "../data/modes.js";
+import {requestSpans, sideSpans, spansOf, upTo} from "../data/modes.js";
 import {Series, whereValid} from "../data/series.js";
 import {withAlpha} from "../draw/theme.js";
 
@@ -95,7 +95,10 @@ export class Why {
       below: (chart) => {
         this.drawFog(chart);
         const height = BAND.height * devicePixelRatio;
-        drawBand(chart, this.sideSpans(), this.theme, TOP * devicePixelRatio, height);
+        const top = TOP * devicePixelRatio;
+        drawBand(chart, this.sideSpans(), this.theme, top, height);
+        const requests = requestSpans(this.modes, this.range[0], this.shownEnd, this.shownEnd);
+        for (const {from, to} of requests) fillSpan(chart, from, to, this.theme.risk, top, height / 3);
       }});
   }
 

@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import {test} from "node:test";
 
-import {drivingSince, modeOf, requestAt, sideSpans, spansOf, upTo}
+import {drivingSince, manoeuvreAt, modeOf, requestAt, requestSpans, sideSpans, spansOf, upTo}
   from "../../../../../../tools/web/page/data/modes.js";
 import {Series} from "../../../../../../tools/web/page/data/series.js";
 import {describedTypes} from "../real_log.js";
@@ -56,6 +56,26 @@ test("a request counts down from its first step, through all modes that ask", ()
   assert.equal(requestAt(times, modes, 4, 2).left_s, 0);
   assert.equal(requestAt(times, modes, 5, 10), null);
   assert.equal(requestAt([], [], 5, 10), null);
+});
+
+test("a request lasts through all modes that ask", () => {
+  const modes = seriesOf([[0, 0], [1, 3], [2, 4], [3, 5], [4, 6], [6, 3]]);
+  assert.deepEqual(requestSpans(modes, -Infinity, Infinity, 8),
+                   [{from: 1, to: 4, value: 1}, {from: 6, to: 8, value: 1}]);
+});
+
+test("a manoeuvre is known by its first mode and the mode before it", () => {
+  const names = (times, modes, time) => {
+    const found = manoeuvreAt(times, modes, time);
+    return found && [found.first.name, found.before?.name ?? null];
+  };
+  const times = [0, 1, 2, 3, 4];
+  assert.deepEqual(names(times, [0, 4, 7, 8, 9], 4.5), ["MRM_COMFORT", "REQUEST_URGENT"]);
+  assert.deepEqual(names(times, [0, 4, 7, 8, 9], 2), ["MRM_COMFORT", "REQUEST_URGENT"]);
+  assert.deepEqual(names(times, [0, 1, 8, 6, 1], 2.5), ["MRM_EMERGENCY", "HUMAN"]);
+  assert.equal(names(times, [0, 1, 8, 6, 1], 3), null);
+  assert.deepEqual(names([5, 6], [7, 9], 6), ["MRM_COMFORT", null]);
+  assert.equal(names([], [], 6), null);
 });
 
 test("the last value up to x is found", () => {

@@ -6,9 +6,9 @@ import {DASHES, placesOf} from "../../../../../../tools/web/page/draw/curve_styl
 const places = (...channels) => placesOf(channels.map((channel) => ({channel})));
 
 test("radar and LiDAR keep their colours, whatever else is chosen", () => {
-  assert.deepEqual(places("TRUTH", "RADAR", "LIDAR", "TRUTH"), [0, 2, 3, 1]);
+  assert.deepEqual(places("TRUTH", "RADAR", "LIDAR", "TRUTH"), [6, 2, 3, 5]);
   assert.deepEqual(places("LIDAR", "RADAR"), [3, 2]);
-  assert.deepEqual(places("TRUTH", "TRUTH", "TRACK", "LIDAR"), [0, 1, 4, 3]);
+  assert.deepEqual(places("TRUTH", "TRUTH", "TRACK", "LIDAR"), [6, 5, 7, 3]);
 });
 
 test("no two curves look alike", () => {
