@@ -16,7 +16,7 @@ import {ratesOf} from "./ramps.js";
 import {SeatWire, takeDriverToken} from "./seat_wire.js";
 import {LEAST_GAP_MS, LOOK_EVERY_MS, Sender} from "./sender.js";
 import {Setup} from "./setup.js";
-import {Answer, countdown, LEAVING, told, whyAwayInWords} from "./told.js";
+import {Answer, countdown, LEAVING, PROGRAM_ENDED, told, whyAwayInWords} from "./told.js";
 
 // A person waits for the next frame after each input. So this page already draws less if it misses
 // one of three frames of 60 Hz, or if inputs are late.
@@ -64,6 +64,7 @@ class Drive {
     addEventListener("pagehide", () => this.set("visible", false));
     for (const name of ["gamepadconnected", "gamepaddisconnected"]) addEventListener(name, () => this.pump());
     byId("begin").addEventListener("click", () => this.begin());
+    byId("go-on").addEventListener("click", () => this.set("focused", document.hasFocus()));
     byId("try-sound").addEventListener("click", () => {
       this.alarm.allow();
       this.alarm.context?.resume().then(() => this.alarm.change());
@@ -165,6 +166,7 @@ class Drive {
     this.connection = state;
     const words = {open: "Connected", ended: "The program has ended", lost: "No connection, trying again",
                    refused: "No connection"}[state];
+    setAttribute(document.body, "data-connection", state);
     setAttribute(byId("origin"), "data-state", {open: "live", ended: "behind"}[state] ?? "lost");
     say(byId("origin-words"), words);
     byId("problem").hidden = state !== "refused";
@@ -276,12 +278,14 @@ class Drive {
     say(byId("announcement"), words);
     const request = byId("request");
     request.hidden = !asks;
-    byId("meanwhile").hidden = !asks;
+    byId("meanwhile").hidden = byId("setup-request").hidden = !asks;
     setAttribute(request, "data-urgent", String(urgent));
     if (!left) return;
     say(byId("request-words"), words);
     const left_s = withUnit(decimal(Math.ceil(left.left_s), 0), "s");
-    say(byId("request-left"), left.atMost ? `at most ${left_s}` : left_s);
+    const leftWords = left.atMost ? `at most ${left_s}` : left_s;
+    say(byId("request-left"), leftWords);
+    say(byId("setup-request"), `${words}: ${leftWords}. Close this dialog to answer.`);
     byId("request-bar").value = left.share;
   }
 
@@ -289,7 +293,8 @@ class Drive {
     const {side, isFinal, mayEnd, hasAuthority} = state;
     const why = this.person.whyAway();
     const seat = this.refused ? "refused" : "no seat";
-    const words = this.state === "" ? ""
+    const isGone = this.connection === "ended";
+    const words = isGone ? PROGRAM_ENDED : this.state === "" ? ""
       : whyAwayInWords(this.state === "taken" ? seat : why, {hasLeft: this.hasLeft, side, isFinal, mayEnd});
     const now = performance.now();
     const leaves = this.person.begun && this.leaving.asks(now);
@@ -302,14 +307,18 @@ class Drive {
     say(byId("begin"), this.person.begun ? leave : "Begin");
     setAttribute(byId("begin"), "data-begun", String(this.person.begun));
     setAttribute(document.body, "data-present", String(why === ""));
-    byId("begin").disabled = this.connection === "ended" || (isFinal && !this.person.begun);
+    const isBlurred = why === "blurred" && this.state === "yours";
+    byId("go-on").hidden = !isBlurred;
+    byId("begin").hidden = isBlurred;
+    byId("begin").disabled = isGone || (isFinal && !this.person.begun);
     byId("take-over").disabled = why !== "" || isFinal || hasAuthority || (side !== "automation" && side !== "risk");
     byId("give-back").disabled = why !== "" || side !== "human";
     const {throttle = 0, brake = 0} = this.input ?? {};
     byId("throttle").value = throttle;
     byId("brake").value = brake;
-    say(byId("device-name"), this.person.device.name);
-    byId("arrow-keys").hidden = this.person.device.kind !== "keyboard";
+    const {name, kind} = this.person.device;
+    say(byId("device-name"), this.setup.lacks.length === 0 ? name : `${name} (not calibrated)`);
+    setAttribute(byId("keys-of-drive"), "data-keyboard", String(kind === "keyboard"));
   }
 
   drawRoad(truth) {
@@ -334,6 +343,7 @@ class Drive {
     const isHigh = this.told.side !== "unknown" && this.latency.isHigh(now);
     const words = newest === null ? "not measured yet" : withUnit(decimal(newest, 0), "ms");
     const longest = `; the longest of the last inputs: ${withUnit(decimal(highest, 0), "ms")}`;
+    say(byId("resolution"), `${decimal(100 * this.budget.now.ratio, 0)} %`);
     say(byId("latency"), isHigh && highest > newest ? words + longest : words);
     byId("latency-warning").hidden = !isHigh;
   }

@@ -41,6 +41,12 @@ export class Setup {
     }
   }
 
+  /** The names of the pedals that the device needs before the person can drive with it. */
+  get lacks() {
+    if (this.person.device.kind === "keyboard") return [];
+    return PEDALS.filter((name) => this.edited[name] === null);
+  }
+
   end() {
     this.lesson = null;
     return this.dialog.open;
@@ -162,6 +168,8 @@ export class Setup {
   show() {
     const {device} = this.person;
     byId("calibration").hidden = device.kind === "keyboard";
+    say(byId("setup-lack"), this.lacks.length === 0 ? ""
+      : `You cannot drive with this device yet: learn the ${this.lacks.join(" and the ")}.`);
     for (const name of [...PEDALS, ...BUTTONS]) {
       const isLearning = this.lesson?.name === name;
       say(byId(`learn-${name}`), isLearning ? (PEDALS.includes(name) ? "Done" : "Waiting") : "Learn");

@@ -118,12 +118,15 @@ export class Answer {
 /** The words after the first press of “Leave the seat” while the human has the authority. */
 export const LEAVING = "If you leave now, no person drives. The car may stop for the rest of the run.";
 
+/** The words below “The program has ended”. */
+export const PROGRAM_ENDED = "If you take part in a study, please tell the experimenter.";
+
 const WHY_AWAY = {
   "not begun": "Press “Begin” when you are ready.",
   "no seat": "Another page has the seat. Press “Begin” to ask for it.",
   refused: "Another person drives. Press “Begin” to ask again.",
   hidden: "This page was hidden, so you do not drive.",
-  blurred: "Another window has the keyboard, so you do not drive. Click here to go on.",
+  blurred: "Another window has the keyboard, so you do not drive. Press “Go on”.",
   busy: "A dialog is open, so you do not drive.",
   unplugged: "The device is unplugged, so you do not drive. Plug it in, or choose another one.",
   "not calibrated": "Calibrate the device first (button “Device”).",
