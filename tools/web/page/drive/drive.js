@@ -99,7 +99,8 @@ class Drive {
 
   begin() {
     this.alarm.allow();
-    if (this.person.begun && !this.leaving.press(this.told.hasAuthority && !this.told.isFinal, performance.now())) return;
+    const isMissed = (this.told.hasAuthority || this.told.asks) && !this.told.isFinal;
+    if (this.person.begun && !this.leaving.press(isMissed, performance.now())) return;
     this.hasLeft = this.person.begun;
     this.set("begun", !this.person.begun);
     if (this.person.begun) byId("begin").blur();  // the space bar would press the button again
@@ -278,10 +279,12 @@ class Drive {
     say(byId("announcement"), words);
     const request = byId("request");
     request.hidden = !asks;
-    byId("meanwhile").hidden = byId("setup-request").hidden = !asks;
+    setAttribute(document.body, "data-asks", String(asks));
+    byId("setup-request").hidden = !asks;
     setAttribute(request, "data-urgent", String(urgent));
     if (!left) return;
-    say(byId("request-words"), words);
+    // A person without the keyboard must first come back.
+    say(byId("request-words"), byId("go-on").hidden ? words : "First “Go on”");
     const left_s = withUnit(decimal(Math.ceil(left.left_s), 0), "s");
     const leftWords = left.atMost ? `at most ${left_s}` : left_s;
     say(byId("request-left"), leftWords);
@@ -301,6 +304,7 @@ class Drive {
     const answer = leaves ? LEAVING : why === "" ? this.answer.words(state, now) : "";
     say(byId("away"), words);
     byId("away").hidden = words === "" || answer !== "";
+    byId("meanwhile").hidden = !state.asks || words !== "" || answer !== "";  // there is room for one of them
     say(byId("answer"), answer);
     byId("answer").hidden = answer === "";
     const leave = leaves ? "Press again to leave" : "Leave the seat";

@@ -1,5 +1,5 @@
-// Asks a person who drives for a second press before the seat is empty: one press by mistake would
-// end the drive.
+// Asks a person who drives, or who is asked to, for a second press before the seat is empty: one press
+// by mistake would end the drive.
 
 const WITHIN_MS = 4000;  // the time for the second press
 
@@ -8,9 +8,9 @@ export class Leaving {
     this.until_ms = -Infinity;
   }
 
-  /** @param drives whether the human drives. @return whether this press leaves the seat */
-  press(drives, now_ms) {
-    const leaves = !drives || this.asks(now_ms);
+  /** @param isMissed whether the run needs the person now. @return whether this press leaves the seat */
+  press(isMissed, now_ms) {
+    const leaves = !isMissed || this.asks(now_ms);
     this.until_ms = leaves ? -Infinity : now_ms + WITHIN_MS;
     return leaves;
   }

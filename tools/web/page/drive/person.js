@@ -176,8 +176,8 @@ export class Person {
   whyNotReady() {
     if (!this.begun) return "not begun";
     if (!this.visible) return "hidden";
-    if (!this.focused) return "blurred";
     if (this.busy) return "busy";
+    if (!this.focused) return "blurred";
     if (this.device.kind === "keyboard") return "";
     if (!this.pad) return "unplugged";
     return isComplete(this.calibration) && this.pedals(0) ? "" : "not calibrated";

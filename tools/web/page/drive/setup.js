@@ -167,6 +167,7 @@ export class Setup {
 
   show() {
     const {device} = this.person;
+    byId("forget").disabled = Object.values(this.edited).every((one) => one === null);
     byId("calibration").hidden = device.kind === "keyboard";
     say(byId("setup-lack"), this.lacks.length === 0 ? ""
       : `You cannot drive with this device yet: learn the ${this.lacks.join(" and the ")}.`);

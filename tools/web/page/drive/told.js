@@ -115,7 +115,7 @@ export class Answer {
   }
 }
 
-/** The words after the first press of “Leave the seat” while the human has the authority. */
+/** The words after the first of the two presses of “Leave the seat” that leaving.js asks for. */
 export const LEAVING = "If you leave now, no person drives. The car may stop for the rest of the run.";
 
 /** The words below “The program has ended”. */
@@ -126,7 +126,7 @@ const WHY_AWAY = {
   "no seat": "Another page has the seat. Press “Begin” to ask for it.",
   refused: "Another person drives. Press “Begin” to ask again.",
   hidden: "This page was hidden, so you do not drive.",
-  blurred: "Another window has the keyboard, so you do not drive. Press “Go on”.",
+  blurred: "Another window has the keyboard: press “Go on”.",
   busy: "A dialog is open, so you do not drive.",
   unplugged: "The device is unplugged, so you do not drive. Plug it in, or choose another one.",
   "not calibrated": "Calibrate the device first (button “Device”).",
