@@ -290,7 +290,7 @@ class Page {
     this.connection = state;
     sayOrigin(this);
     if (state === "refused") {
-      if (!this.hello) say(byId("who"), "No connection");
+      if (!this.hello) for (const id of ["who", "title"]) say(byId(id), "No connection");
       this.complain("The server does not answer. If it has ended, start it again. If it listens for other machines, " +
                     "open exactly the address that it has printed: the address contains a token.");
     } else {

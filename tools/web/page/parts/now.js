@@ -1,7 +1,7 @@
 // The strip at the top: the side that drives, since when, and why; the request to take over with
 // its countdown; the end of the run.
 
-import {byId, say, setAttribute} from "../draw/dom.js";
+import {byId, make, say, setAttribute} from "../draw/dom.js";
 import {decimal, seconds, withUnit} from "../draw/format.js";
 import {stands} from "../data/cars.js";
 import {drivingSince, manoeuvreAt, modeOf, requestAt, SIDES} from "../data/modes.js";
@@ -49,14 +49,21 @@ const STANDS = "Minimal risk manoeuvre: the car stands";
 const ENDED = "The run has ended";
 
 /**
- * How a run begins that this page then shows.
+ * How a run begins that this page then shows: {words, command}.
  * @param isKnown whether the page knows the run. hello {url, follows, waits_for_person} of the server
  */
 function hint(isKnown, {url, follows, waits_for_person}) {
-  if (waits_for_person) return "The drive begins when the participant presses “Begin” at the seat.";
-  if (isKnown) return "The run has not sent a step. It waits for roles, or it has just begun.";
+  if (waits_for_person) return {words: "The drive begins when the participant presses “Begin” at the seat."};
+  if (isKnown) return {words: "The run has not sent a step. It waits for roles, or it has just begun."};
   const network = follows ? "" : ` --lcm-url '${url}'`;
-  return `Start one, such as: fogline run scenario/dense_fog.json --pace 1${network}`;
+  return {words: "Start one, such as: ", command: `fogline run scenario/dense_fog.json --pace 1${network}`};
+}
+
+/** Shows words and a command, in which no line breaks within an option. */
+function showHint(place, {words, command = ""}) {
+  if (place.textContent === words + command) return;
+  const parts = command.split(/(--\S+)/).map((part, i) => (i % 2 ? make("span", {class: "option"}, part) : part));
+  place.replaceChildren(words, ...(command === "" ? [] : [make("code", {}, ...parts)]));
 }
 
 export class Now {
@@ -77,7 +84,7 @@ export class Now {
     const command = frame?.HOST_COMMAND;
     if (!command) {
       say(this.words, isLive ? "Waiting for a run" : SIDES.unknown.words);
-      say(this.reason, isLive ? hint(run.run_id !== "", hello) : "");
+      showHint(this.reason, isLive ? hint(run.run_id !== "", hello) : {words: ""});
       setAttribute(this.strip, "data-side", "unknown");
       setAttribute(this.strip, "data-asks", "false");
       this.request.hidden = true;

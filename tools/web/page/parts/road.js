@@ -250,7 +250,8 @@ function drawGaps({pen, width, bottom, theme, x, length_m}, cars, frame) {
     pen.textAlign = "center";
     pen.fillStyle = short ? theme.risk : theme.ink;
     pen.font = `600 13px ${theme.font}`;
-    pen.fillText(`${short ? "▼ " : ""}${decimal(gap_m, 1)} m`, (from + to) / 2, y + 15);
+    const words = short ? `▼ ${decimal(gap_m, 1)} < ${decimal(safe_m, 1)} m` : `${decimal(gap_m, 1)} m`;
+    pen.fillText(words, (from + to) / 2, y + 15);
     pen.font = `12px ${theme.font}`;
   }
 }
