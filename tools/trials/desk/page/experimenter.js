@@ -30,7 +30,8 @@ function show(state) {
   last = state;
   if (state.lines.some(({text}) => text === `marker: ${marked}`)) marked = "";
   if (state.refused && byId("marker-text").value === "") byId("marker-text").value = marked;
-  showProblem(state.refused ? `Not accepted: ${state.refused}.` : "");
+  const what = marked === "" ? "This had no effect" : "The marker was not saved";
+  showProblem(state.refused ? `${what}: ${state.refused}.` : "");
   byId("title").textContent = `Participant ${state.participant}, ${titleOf(state).toLowerCase()}`;
   const words = state.wait_s > 0 ? "The participant has a break." : WORDS[state.stage];
   const isOver = state.stage === "finished";

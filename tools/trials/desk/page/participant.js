@@ -84,12 +84,18 @@ function showQuestions(state) {
   };
 }
 
+/** "1 min 40 s" */
+function timeInWords(time_s) {
+  const [minutes, seconds] = [Math.floor(time_s / 60), time_s % 60];
+  return minutes === 0 ? `${seconds} s` : `${minutes} min ${seconds} s`;
+}
+
 function showWait(state) {
   const button = byId("begin");
   button.onclick = () => send({op: "begin", state: state.state});
   stopCount = countDown(state.wait_s, (left) => {
     button.disabled = state.wait_s > 0;
-    byId("words").textContent = state.wait_s > 0 ? `You have a break. It ends in ${left} s.`
+    byId("words").textContent = state.wait_s > 0 ? `You have a break. It ends in ${timeInWords(left)}.`
       : state.drives ? "You drive in this run. “Begin” opens the seat, and the run begins when you are ready there."
       : "Begin when you are ready.";
   });
@@ -112,8 +118,10 @@ function wordsOf({stage, drives}) {
 }
 
 function show(state) {
-  const what = state.stage === "asking" ? "Your answers were not saved" : "This had no effect";
-  showProblem(state.refused ? `${what}: ${state.refused}. Please try again, or tell the experimenter.` : "");
+  if (state.refused) console.warn(state.refused);
+  showProblem(!state.refused ? ""
+    : state.stage === "asking" ? "Your answers were not saved. Please try again, or tell the experimenter."
+    : "This had no effect. Please wait, or tell the experimenter.");
   if (state.state === shown) return;
   shown = state.state;
   stopCount();
