@@ -21,6 +21,8 @@ import {Answer, countdown, LEAVING, PROGRAM_ENDED, told, whyAwayInWords} from ".
 // A person waits for the next frame after each input. So this page already draws less if it misses
 // one of three frames of 60 Hz, or if inputs are late.
 const SLOW_MS = 22;
+// The click that gives the window the keyboard again comes up to this time after the focus.
+const CLICK_MS = 500;
 const GONE_MS = 5000;  // after this time without the server, the page goes back
 
 class Drive {
@@ -38,6 +40,7 @@ class Drive {
     this.view = null;
     this.instance = "";
     this.state = "";         // of the seat: yours, taken, lost; "": unknown
+    this.backAt_ms = -Infinity;  // when the window got the keyboard again
     this.hasLeft = false;    // whether the person had begun, and has left the seat
     this.refused = false;    // whether this page has asked for the seat, but another page has it
     this.back = backOf(location.hash, location.hostname);
@@ -59,7 +62,10 @@ class Drive {
     addEventListener("keydown", (event) => this.key(event, true));
     addEventListener("keyup", (event) => this.key(event, false));
     addEventListener("blur", () => this.set("focused", false));
-    addEventListener("focus", () => this.set("focused", true));
+    addEventListener("focus", () => {
+      if (!byId("go-on").hidden) this.backAt_ms = performance.now();
+      this.set("focused", true);
+    });
     document.addEventListener("visibilitychange", () => this.set("visible", !document.hidden));
     addEventListener("pagehide", () => this.set("visible", false));
     for (const name of ["gamepadconnected", "gamepaddisconnected"]) addEventListener(name, () => this.pump());
@@ -99,7 +105,8 @@ class Drive {
 
   begin() {
     this.alarm.allow();
-    const isMissed = (this.told.hasAuthority || this.told.asks) && !this.told.isFinal;
+    const {hasAuthority, asks, answered, isFinal} = this.told;
+    const isMissed = (hasAuthority || asks || answered) && !isFinal;
     if (this.person.begun && !this.leaving.press(isMissed, performance.now())) return;
     this.hasLeft = this.person.begun;
     this.set("begun", !this.person.begun);
@@ -288,7 +295,8 @@ class Drive {
     const left_s = withUnit(decimal(Math.ceil(left.left_s), 0), "s");
     const leftWords = left.atMost ? `at most ${left_s}` : left_s;
     say(byId("request-left"), leftWords);
-    say(byId("setup-request"), `${words}: ${leftWords}. Close this dialog to answer.`);
+    say(byId("setup-words"), `${words}. Close this dialog to answer.`);
+    say(byId("setup-left"), leftWords);
     byId("request-bar").value = left.share;
   }
 
@@ -311,7 +319,8 @@ class Drive {
     say(byId("begin"), this.person.begun ? leave : "Begin");
     setAttribute(byId("begin"), "data-begun", String(this.person.begun));
     setAttribute(document.body, "data-present", String(why === ""));
-    const isBlurred = why === "blurred" && this.state === "yours";
+    // The button stays for the click: another button in its place would take the click.
+    const isBlurred = (why === "blurred" || now - this.backAt_ms < CLICK_MS) && this.state === "yours";
     byId("go-on").hidden = !isBlurred;
     byId("begin").hidden = isBlurred;
     byId("begin").disabled = isGone || (isFinal && !this.person.begun);

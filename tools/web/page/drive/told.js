@@ -118,7 +118,7 @@ export class Answer {
 /** The words after the first of the two presses of “Leave the seat” that leaving.js asks for. */
 export const LEAVING = "If you leave now, no person drives. The car may stop for the rest of the run.";
 
-/** The words below “The program has ended”. */
+/** The words below the end of a drive whose program has ended. */
 export const PROGRAM_ENDED = "If you take part in a study, please tell the experimenter.";
 
 const WHY_AWAY = {
