@@ -143,6 +143,7 @@ class Page {
 
   begin(hello) {
     this.hello = hello;
+    say(byId("title"), "Waiting for a run");
     this.catalogue = new Catalogue(hello);
     this.events = [];
     this.log = null;
@@ -202,9 +203,9 @@ class Page {
     setAttribute(byId("title"), "title", run.title);  // a narrow window cuts the text off
     document.title = `${run.title || "Run"} – Fogline`;
     this.length_m = run.scenario?.world?.vehicle_length_m ?? 4.5;
+    if (this.isLive) this.events = [];  // all events come again, in the words for this scenario
     if (!isNew) return;
     this.isOver = false;
-    this.events = [];
     this.frame = null;
     if (this.isLive) {
       this.build();
@@ -333,7 +334,8 @@ class Page {
    * last speeds.
    */
   aheadOf(step) {
-    if (reducedMotion.matches || this.clock.state === "paused") return 0;
+    const {state} = this.clock;
+    if (reducedMotion.matches || state === "paused" || (state === "live" && this.isOver)) return 0;
     const {step_s, pace} = this.run;
     const ahead_s = this.clock.state === "live"
       ? ((performance.now() - this.store.taken_ms) / 1000) * (pace || 0)
@@ -354,7 +356,7 @@ class Page {
     const time = store.timeOf(shown);
     const {modes, lambdas} = this.why;
     const moment = {frame: this.frame, step: shown, time, run, theme, length_m: this.length_m, isLive: this.isLive, hello: this.hello,
-                    isOver: this.isOver && shown === store.lastStep, ahead_s: frame ? this.aheadOf(step) : 0, moves: clock.state === "playing" || (clock.state === "live" && !this.isOver)};
+                    isOver: this.isOver && shown >= store.lastStep, ahead_s: frame ? this.aheadOf(step) : 0, moves: clock.state === "playing" || (clock.state === "live" && !this.isOver)};
     sayOrigin(this);
     const {rest_ms} = this.budget.now;
     moment.side = this.now.draw(moment, modes, lambdas);

@@ -27,14 +27,14 @@ const MODES = [
    words: "Minimal risk manoeuvre: the car stands, locked"},
   {name: "MRM_FAILED", side: "risk", stops: true,
    words: "Minimal risk manoeuvre: the brake has no effect"},
-  {name: "COLLISION_WARNING", side: null, words: "Collision warning"},
-  {name: "EMERGENCY_BRAKING", side: "risk", words: "Emergency braking"},
+  {name: "COLLISION_WARNING", side: null, hides: true, words: "Collision warning"},
+  {name: "EMERGENCY_BRAKING", side: "risk", hides: true, words: "Emergency braking"},
 ];
 
 /**
- * The description {name, side, words, asks, urgent, stops} of a mode. `stops`: of a manoeuvre of a run
- * with requests. In a collision warning the same side
- * drives as before.
+ * The description {name, side, words, asks, urgent, stops, hides} of a mode. In a collision warning the
+ * same side drives as before. `stops`: the mode is one of the stages of a minimal risk manoeuvre.
+ * `hides`: the mode says nothing of a request or a manoeuvre.
  */
 export function modeOf(mode, lambda_human = 0) {
   const known = MODES[mode];
@@ -110,23 +110,32 @@ export function requestAt(times, modes, time, lead_s) {
   return {since_s: times[place], left_s, share: lead_s > 0 ? left_s / lead_s : 0};
 }
 
-/** Spans in which a request is open, as spansOf() gives them. @param modes series of HOST_COMMAND.mode */
+/**
+ * Spans in which a request is open, as spansOf() gives them. Emergency braking does not end a
+ * request. @param modes series of HOST_COMMAND.mode
+ */
 export function requestSpans(modes, from, to, end) {
   const {times, values} = modes.within(from, to);
-  const asks = Array.from(values, (mode) => Number(Boolean(modeOf(mode).asks)));
+  const asks = [];
+  for (const mode of values) {
+    const {asks: isOpen = false, hides} = modeOf(mode);
+    asks.push(hides ? asks.at(-1) ?? 0 : Number(isOpen));
+  }
   return spansOf(times, asks, end).filter(({value}) => value);
 }
 
 /**
  * The manoeuvre of a time: {first, before}, the descriptions of its first mode and of the mode before
- * it; null without a manoeuvre. `before` is null if it is not known. `times` and `modes` as in
- * requestAt().
+ * it, behind emergency braking; null without a manoeuvre. `before` is null if it is not known. `times`
+ * and `modes` as in requestAt().
  */
 export function manoeuvreAt(times, modes, time) {
   let place = upTo(times, time);
   if (place < 0 || !modeOf(modes[place]).stops) return null;
   while (place > 0 && modeOf(modes[place - 1]).stops) --place;
-  return {first: modeOf(modes[place]), before: place > 0 ? modeOf(modes[place - 1]) : null};
+  const first = modeOf(modes[place]);
+  do --place; while (place >= 0 && modeOf(modes[place]).hides);
+  return {first, before: place < 0 ? null : modeOf(modes[place])};
 }
 
 /** Index of the last value that is at most `x`; -1 if there is none. `values` ascend. */

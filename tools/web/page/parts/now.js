@@ -20,7 +20,8 @@ const REASONS = {
 const NO_DRIVER = "Neither the automation nor the human goes on driving. ";
 
 /** Why a manoeuvre has begun, as services/decision/take_over/take_over_table.h has it. */
-function causeOf({first, before}) {
+function causeOf(manoeuvre) {
+  const {first, before} = manoeuvre ?? {};
   if (before?.side === "human") return "The human no longer drives.";
   if (!before?.asks) return "";
   return first.name === "MRM_EMERGENCY" ? "The situation became severe before the human took over."
@@ -34,11 +35,11 @@ function causeOf({first, before}) {
  * @param manoeuvre as manoeuvreAt() gives it
  */
 export function reason({mode, lambda_human, doc, threshold}, hasPerson = false, manoeuvre = null) {
-  const {name} = modeOf(mode, lambda_human);
+  const {name, stops} = modeOf(mode, lambda_human);
   if (name === "MINIMAL_RISK") {
     return NO_DRIVER + (hasPerson ? "Inputs have failed, or the person has gone." : "Inputs have failed.");
   }
-  if (manoeuvre) return (NO_DRIVER + causeOf(manoeuvre)).trim();
+  if (stops) return (NO_DRIVER + causeOf(manoeuvre)).trim();
   if (name === "EMERGENCY_BRAKING") return REASONS[name];
   const compared = doc >= threshold ? "at or above" : "below";
   return (REASONS[name] ?? "") +
@@ -83,8 +84,8 @@ export class Now {
   draw({frame, time, run, isLive, isOver, hello}, modes, lambdas) {
     const command = frame?.HOST_COMMAND;
     if (!command) {
-      say(this.words, isLive ? "Waiting for a run" : SIDES.unknown.words);
-      showHint(this.reason, isLive ? hint(run.run_id !== "", hello) : {words: ""});
+      say(this.words, isOver ? ENDED : isLive ? "Waiting for a run" : SIDES.unknown.words);
+      showHint(this.reason, isOver ? {words: "It has sent no step."} : isLive ? hint(run.run_id !== "", hello) : {words: ""});
       setAttribute(this.strip, "data-side", "unknown");
       setAttribute(this.strip, "data-asks", "false");
       this.request.hidden = true;

@@ -9,8 +9,8 @@ function originInWords({connection, isLive, waits, isOver, log, clock}) {
   if (connection === "ended") return "The program has ended";
   if (connection !== "open") return "No connection, trying again";
   if (!isLive) return log ? log.file : "Connecting";
-  if (waits) return "Connected";
-  return isOver ? "The run has ended" : OF_LIVE[clock.state];
+  if (isOver) return "The run has ended";
+  return waits ? "Connected" : OF_LIVE[clock.state];
 }
 
 /** Shows the origin of the data. @param page {connection, isLive, waits, isOver, hello, log, clock} */

@@ -62,6 +62,8 @@ test("a request lasts through all modes that ask", () => {
   const modes = seriesOf([[0, 0], [1, 3], [2, 4], [3, 5], [4, 6], [6, 3]]);
   assert.deepEqual(requestSpans(modes, -Infinity, Infinity, 8),
                    [{from: 1, to: 4, value: 1}, {from: 6, to: 8, value: 1}]);
+  const braking = seriesOf([[0, 0], [1, 3], [2, 12], [3, 4], [4, 12], [5, 0]]);
+  assert.deepEqual(requestSpans(braking, -Infinity, Infinity, 8), [{from: 1, to: 5, value: 1}]);
 });
 
 test("a manoeuvre is known by its first mode and the mode before it", () => {
@@ -75,6 +77,9 @@ test("a manoeuvre is known by its first mode and the mode before it", () => {
   assert.deepEqual(names(times, [0, 1, 8, 6, 1], 2.5), ["MRM_EMERGENCY", "HUMAN"]);
   assert.equal(names(times, [0, 1, 8, 6, 1], 3), null);
   assert.deepEqual(names([5, 6], [7, 9], 6), ["MRM_COMFORT", null]);
+  assert.deepEqual(names(times, [0, 3, 12, 8, 9], 4), ["MRM_EMERGENCY", "REQUEST"]);
+  assert.deepEqual(names(times, [0, 1, 11, 12, 7], 4), ["MRM_COMFORT", "HUMAN"]);
+  assert.deepEqual(names([1, 2], [12, 7], 2), ["MRM_COMFORT", null]);
   assert.equal(names([], [], 6), null);
 });
 
