@@ -14,8 +14,8 @@ namespace {
 std::string_view KindOf(const take_over::TakeOverEntry& entry) {
   if (InEmergency(entry.from) || InEmergency(entry.to)) return "braking";
   if (entry.transfer) return "transfer";
-  if (entry.from == entry.to && !entry.first) return "input";
-  return InMinimalRisk(entry.to) ? "manoeuvre" : "request";
+  if (InMinimalRisk(entry.to)) return "manoeuvre";
+  return entry.from == entry.to && !entry.first ? "input" : "request";
 }
 
 bool IsAlarm(const arbitration_t& command) { return command.doc >= command.threshold; }

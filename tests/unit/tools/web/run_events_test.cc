@@ -1,5 +1,6 @@
 #include "tools/web/run_events.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 namespace fogline::web {
@@ -99,6 +100,32 @@ TEST(RunEventsTest, NameAPersonWhoMayHaveGone) {
     EXPECT_EQ(events.events().back().text, drives ? "manoeuvre begins: inputs or person gone"
                                                   : "manoeuvre begins: inputs have failed");
   }
+}
+
+TEST(RunEventsTest, TellAnInputFromARequestAndAManoeuvre) {
+  RunEvents events;
+  arbitration_t command{};
+  command.threshold = 0.5;
+  events.Add(command, 0.0);
+  command.header.step = 1;
+  command.mode = arbitration_t::HUMAN;
+  command.lambda_human = 1;
+  events.Add(command, -2.0);
+  ASSERT_FALSE(events.events().empty());
+  EXPECT_EQ(events.events().back().kind, "input");
+  EXPECT_EQ(events.events().back().text, "first effective input of the human");
+  // Emergency braking hides the modes before a manoeuvre in a run that is joined late.
+  RunEvents late;
+  command.header.step = 300;
+  command.mode = arbitration_t::EMERGENCY_BRAKING;
+  late.Add(command, std::nullopt);
+  command.header.step = 301;
+  command.mode = arbitration_t::MRM_COMFORT;
+  command.lambda_human = 0;
+  late.Add(command, std::nullopt);
+  ASSERT_FALSE(late.events().empty());
+  for (const RunEvent& event : late.events()) EXPECT_NE(event.kind, "input") << event.text;
+  EXPECT_THAT(late.events(), testing::Contains(testing::Field(&RunEvent::kind, "manoeuvre")));
 }
 
 TEST(RunEventsTest, NameAPersonAlsoInEventsThatCameBeforeTheScenario) {
