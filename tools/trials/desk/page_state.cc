@@ -127,6 +127,7 @@ std::string PageState::ForExperimenter() const {
   return Json{{"state", number_},
               {"stage", WordOf(stage_)},
               {"participant", next_.trial.participant},
+              {"drives", next_.seat},
               {"practice", next_.trial.practice},
               {"run", next_.trial.number},
               {"of", next_.of},

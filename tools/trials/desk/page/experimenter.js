@@ -12,25 +12,35 @@ const WORDS = {
   finished: "All runs are done.",
 };
 let last = {};
-let marked = "";  // the marker that was sent last, until the session has taken it
+let pending = null;  // the marker that was sent last, until it is in the list: {text, before}
 
 const send = connect(show, showProblem);
 
-byId("begin").onclick = () => send({op: "begin", state: last.state});
+byId("begin").onclick = () => {
+  pending = null;
+  send({op: "begin", state: last.state});
+};
 byId("marker").onsubmit = (event) => {
   event.preventDefault();
-  const input = byId("marker-text");
-  const text = input.value.trim();
-  if (!send({op: "marker", text})) return;
-  marked = text;
-  input.value = "";
+  const text = byId("marker-text").value.trim();
+  if (send({op: "marker", text})) pending = {text, before: timesMarked(last, text)};
 };
+
+/** How often a marker is in the list. */
+const timesMarked = ({lines}, text) => lines.filter((line) => line.text === `marker: ${text}`).length;
+
+/** Empties the field of the marker when the marker is in the list. A refused marker stays there. */
+function takePending(state) {
+  if (!pending || timesMarked(state, pending.text) <= pending.before) return;
+  const input = byId("marker-text");
+  if (input.value.trim() === pending.text) input.value = "";
+  pending = null;
+}
 
 function show(state) {
   last = state;
-  if (state.lines.some(({text}) => text === `marker: ${marked}`)) marked = "";
-  if (state.refused && byId("marker-text").value === "") byId("marker-text").value = marked;
-  const what = marked === "" ? "This had no effect" : "The marker was not saved";
+  takePending(state);
+  const what = pending ? "The marker was not saved" : "This had no effect";
   showProblem(state.refused ? `${what}: ${state.refused}.` : "");
   byId("title").textContent = `Participant ${state.participant}, ${titleOf(state).toLowerCase()}`;
   const words = state.wait_s > 0 ? "The participant has a break." : WORDS[state.stage];

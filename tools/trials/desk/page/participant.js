@@ -119,9 +119,7 @@ function wordsOf({stage, drives}) {
 
 function show(state) {
   if (state.refused) console.warn(state.refused);
-  showProblem(!state.refused ? ""
-    : state.stage === "asking" ? "Your answers were not saved. Please try again, or tell the experimenter."
-    : "This had no effect. Please wait, or tell the experimenter.");
+  showProblem(state.refused ? "This was not taken. Please try again, or tell the experimenter." : "");
   if (state.state === shown) return;
   shown = state.state;
   stopCount();

@@ -37,6 +37,9 @@ TEST(PageStateTest, TheParticipantSeesNothingOfConditionSeedOrView) {
   state.Wait(NextRun(), 30);
   expect_silence();
   EXPECT_THAT(state.ForExperimenter(), HasSubstr("secret-condition, seed 4711"));
+  EXPECT_EQ(json::parse(state.ForExperimenter())["drives"],
+            json::parse(state.ForParticipant())["drives"]);
+  EXPECT_TRUE(json::parse(state.ForExperimenter())["drives"].is_boolean());
   state.OpenRun("http://127.0.0.1:7690/", "");
   state.Drive();
   state.Tell("marker: yawns");
