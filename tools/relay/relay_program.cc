@@ -23,8 +23,8 @@ constexpr const char* kFooter =
 and a summary at the end. Ctrl-C, SIGTERM or SIGHUP ends it. Any program may
 connect: listen on 127.0.0.1 or on a network that you trust.
 
-Exit codes: 0 stopped, 2 bad usage, an address of another machine, or a port that another
-program has, 3 any other error.
+Exit codes: 0 stopped, 2 bad usage, an address of another machine, or a port that it
+cannot have, 3 any other error.
 
 Examples:
   fogline-relay                              on this machine, port 7700

@@ -191,8 +191,10 @@ std::unique_ptr<Server> Listen(asio::io_context& context, const ViewArguments& a
         continue;
       }
       if (!HasChosenPort(arguments)) {
-        throw std::runtime_error(fmt::format("cannot listen on {}:{} to {}: {}", options.address,
-                                             options.port - tried + 1, options.port,
+        const int first = options.port - tried + 1;
+        const std::string ports =
+            tried == 1 ? std::to_string(first) : fmt::format("{} to {}", first, options.port);
+        throw std::runtime_error(fmt::format("cannot listen on {}:{}: {}", options.address, ports,
                                              error.code().message()));
       }
       const bool by_port = arguments.port_said->count() > 0;

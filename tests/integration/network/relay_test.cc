@@ -118,7 +118,7 @@ TEST(RelayTest, SaysWhereItListensAndWhatItHasDoneAndNamesAPortThatIsTaken) {
   EXPECT_EQ(second.err, "fogline-relay: error: --listen: cannot listen on " + here +
                             ": Address already in use\n");
   EXPECT_THAT(RunCommand({Program("fogline-relay"), "--help"}).out,
-              HasSubstr("2 bad usage, an address of another machine, or a port that another"));
+              HasSubstr("2 bad usage, an address of another machine, or a port that it"));
   EXPECT_EQ(RunCommand({Program("fogline-relay"), "--listen", "nowhere"}).code, 2);
   // RFC 5737: no machine has an address of 203.0.113.0/24.
   const Outcome foreign = RunCommand({Program("fogline-relay"), "--listen", "203.0.113.7"});
