@@ -21,8 +21,7 @@ import {Answer, countdown, LEAVING, PROGRAM_ENDED, told, whyAwayInWords} from ".
 // A person waits for the next frame after each input. So this page already draws less if it misses
 // one of three frames of 60 Hz, or if inputs are late.
 const SLOW_MS = 22;
-// The click that gives the window the keyboard again comes up to this time after the focus.
-const CLICK_MS = 500;
+const WITH_FOCUS_MS = 500;  // a press within this time after the focus has given the window the keyboard
 const GONE_MS = 5000;  // after this time without the server, the page goes back
 
 class Drive {
@@ -40,7 +39,8 @@ class Drive {
     this.view = null;
     this.instance = "";
     this.state = "";         // of the seat: yours, taken, lost; "": unknown
-    this.backAt_ms = -Infinity;  // when the window got the keyboard again
+    this.backAt_ms = -Infinity;  // when “Go on” was shown, and the window got the keyboard
+    this.isForFocus = false;     // whether the present press has given the window the keyboard
     this.hasLeft = false;    // whether the person had begun, and has left the seat
     this.refused = false;    // whether this page has asked for the seat, but another page has it
     this.back = backOf(location.hash, location.hostname);
@@ -69,7 +69,14 @@ class Drive {
     document.addEventListener("visibilitychange", () => this.set("visible", !document.hidden));
     addEventListener("pagehide", () => this.set("visible", false));
     for (const name of ["gamepadconnected", "gamepaddisconnected"]) addEventListener(name, () => this.pump());
-    byId("begin").addEventListener("click", () => this.begin());
+    // A press with the focus was meant for “Go on”, which was in this place.
+    byId("begin").addEventListener("pointerdown", ({timeStamp}) => {
+      this.isForFocus = timeStamp - this.backAt_ms < WITH_FOCUS_MS;
+    });
+    byId("begin").addEventListener("click", () => {
+      if (!this.isForFocus) this.begin();
+      this.isForFocus = false;
+    });
     byId("go-on").addEventListener("click", () => this.set("focused", document.hasFocus()));
     byId("try-sound").addEventListener("click", () => {
       this.alarm.allow();
@@ -105,8 +112,8 @@ class Drive {
 
   begin() {
     this.alarm.allow();
-    const {hasAuthority, asks, answered, isFinal} = this.told;
-    const isMissed = (hasAuthority || asks || answered) && !isFinal;
+    const {side, hasAuthority, asks, answered, isFinal} = this.told;
+    const isMissed = (side === "risk" || hasAuthority || asks || answered) && !isFinal;
     if (this.person.begun && !this.leaving.press(isMissed, performance.now())) return;
     this.hasLeft = this.person.begun;
     this.set("begun", !this.person.begun);
@@ -295,7 +302,8 @@ class Drive {
     const left_s = withUnit(decimal(Math.ceil(left.left_s), 0), "s");
     const leftWords = left.atMost ? `at most ${left_s}` : left_s;
     say(byId("request-left"), leftWords);
-    say(byId("setup-words"), `${words}. Close this dialog to answer.`);
+    const first = this.setup.lacks.length === 0 ? "Close" : "Choose the keyboard and close";
+    say(byId("setup-words"), `${words}. ${first} this dialog to answer.`);
     say(byId("setup-left"), leftWords);
     byId("request-bar").value = left.share;
   }
@@ -319,8 +327,7 @@ class Drive {
     say(byId("begin"), this.person.begun ? leave : "Begin");
     setAttribute(byId("begin"), "data-begun", String(this.person.begun));
     setAttribute(document.body, "data-present", String(why === ""));
-    // The button stays for the click: another button in its place would take the click.
-    const isBlurred = (why === "blurred" || now - this.backAt_ms < CLICK_MS) && this.state === "yours";
+    const isBlurred = why === "blurred" && this.state === "yours";
     byId("go-on").hidden = !isBlurred;
     byId("begin").hidden = isBlurred;
     byId("begin").disabled = isGone || (isFinal && !this.person.begun);
