@@ -169,7 +169,8 @@ test("a scale without an answer is named below the scale, and nothing is sent", 
   const marked = () => page.evaluate(() => [...document.querySelectorAll("[role=radiogroup]")].map((scale) => (
     scale.getAttribute("aria-invalid") === "true" && scale.querySelector(".missing").offsetHeight > 0)));
   const described = () => page.evaluate(() => [...document.querySelectorAll("[role=radiogroup]")].map((scale) => (
-    document.getElementById(scale.getAttribute("aria-describedby"))?.textContent ?? "")));
+    scale.getAttribute("aria-describedby").split(" ").map((id) => document.getElementById(id))
+      .filter((words) => words.matches(".missing")).map((words) => words.textContent).join())));
   const focused = () => page.evaluate(() => document.activeElement.name);
   await page.check('input[name="item-0"][value="50"]');
   await page.click("#questions button");

@@ -60,15 +60,17 @@ std::vector<web::Asset> FilesOf(std::string_view main, std::string_view script) 
 class PageView final : public web::View {
  public:
   using Read = std::function<void(web::Client&, std::string_view)>;
-  explicit PageView(Read read) : read_(std::move(read)) {}
+  using State = std::function<std::string()>;
+  /// @param state gives the state as JSON
+  PageView(Read read, State state) : read_(std::move(read)), state_(std::move(state)) {}
 
-  void Show(std::string state) {
-    state_ = std::move(state);
-    for (const auto& [id, client] : clients_) client->Send(web::TextFrame(state_));
+  void Show() {
+    const std::string state = state_();
+    for (const auto& [id, client] : clients_) client->Send(web::TextFrame(state));
   }
   void Opened(web::Client& client) override {
     clients_[client.id()] = &client;
-    if (!state_.empty()) client.Send(web::TextFrame(state_));
+    client.Send(web::TextFrame(state_()));
   }
   void Received(web::Client& client, std::string_view bytes, bool binary) override {
     if (!binary) read_(client, bytes);
@@ -77,14 +79,14 @@ class PageView final : public web::View {
   void Closed(web::Client& client) override { clients_.erase(client.id()); }
   /// Tells a client why its frame was refused.
   void Refuse(web::Client& client, const std::string& why) const {
-    nlohmann::ordered_json json = nlohmann::ordered_json::parse(state_);
+    nlohmann::ordered_json json = nlohmann::ordered_json::parse(state_());
     json["refused"] = why;
     client.Send(web::TextFrame(json.dump()));
   }
 
  private:
   Read read_;
-  std::string state_;
+  State state_;
   std::map<std::uint64_t, web::Client*> clients_;
 };
 
@@ -128,12 +130,22 @@ RunPageOptions ForRuns(const PageOptions& options) {
 class PageDesk::Pages {
  public:
   explicit Pages(const PageOptions& options)
-      : participant_view_([this](web::Client& client, std::string_view frame) {
-          Take(client, participant_view_, &PageState::FromParticipant, frame);
-        }),
-        experimenter_view_([this](web::Client& client, std::string_view frame) {
-          Take(client, experimenter_view_, &PageState::FromExperimenter, frame);
-        }),
+      : participant_view_(
+            [this](web::Client& client, std::string_view frame) {
+              Take(client, participant_view_, &PageState::FromParticipant, frame);
+            },
+            [this] {
+              const std::lock_guard lock(mutex_);
+              return state_.ForParticipant();
+            }),
+        experimenter_view_(
+            [this](web::Client& client, std::string_view frame) {
+              Take(client, experimenter_view_, &PageState::FromExperimenter, frame);
+            },
+            [this] {
+              const std::lock_guard lock(mutex_);
+              return state_.ForExperimenter();
+            }),
         participant_(Listen(context_,
                             {{AddressOf(options), options.participant_port}, "--participant-port"},
                             participant_files_, participant_view_)),
@@ -253,15 +265,8 @@ class PageDesk::Pages {
 
   void Publish() {
     asio::post(context_, [this] {
-      std::string participant;
-      std::string experimenter;
-      {
-        const std::lock_guard lock(mutex_);
-        participant = state_.ForParticipant();
-        experimenter = state_.ForExperimenter();
-      }
-      participant_view_.Show(std::move(participant));
-      experimenter_view_.Show(std::move(experimenter));
+      participant_view_.Show();
+      experimenter_view_.Show();
     });
   }
 

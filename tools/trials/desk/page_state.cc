@@ -15,6 +15,8 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* kNoRun = "no run is under way";
 constexpr const char* kNotNow = "the session does not wait for this now";
+// Until the session says that the next run can begin, a page waits at least for this time.
+constexpr double kLeastWait_s = 0.1;
 // Largest number of lines on the experimenter's page.
 constexpr std::size_t kMostLines = 200;
 
@@ -70,8 +72,15 @@ void PageState::Enter(Stage stage) {
 
 void PageState::Wait(const Next& next, double wait_s) {
   next_ = next;
-  wait_s_ = wait_s;
+  breaks_ = wait_s > 0;
+  break_end_ =
+      Clock::now() + std::chrono::duration_cast<Duration>(std::chrono::duration<double>(wait_s));
   Enter(Stage::kWaiting);
+}
+
+double PageState::Wait_s(TimePoint now) const {
+  if (stage_ != Stage::kWaiting || !breaks_) return 0;
+  return std::max(kLeastWait_s, Seconds(break_end_ - now));
 }
 
 void PageState::OpenRun(std::string view, std::string seat) {
@@ -107,13 +116,13 @@ void PageState::Tell(std::string line, std::chrono::system_clock::time_point at)
   lines_.push_back({at_ms, std::move(line)});
 }
 
-std::string PageState::ForParticipant() const {
+std::string PageState::ForParticipant(TimePoint now) const {
   Json json{
       {"state", number_},          {"stage", WordOf(stage_)}, {"practice", next_.trial.practice},
       {"run", next_.trial.number}, {"of", next_.of},          {"drives", next_.seat}};
   const bool is_run = stage_ == Stage::kSeating || stage_ == Stage::kDriving;
   if (next_.seat && is_run) json["seat"] = seat_;
-  if (stage_ == Stage::kWaiting) json["wait_s"] = wait_s_;
+  if (stage_ == Stage::kWaiting) json["wait_s"] = Wait_s(now);
   if (stage_ == Stage::kAsking) {
     json["items"] = Json::array();
     for (const ItemSection& item : questionnaire_.items) json["items"].push_back(JsonOf(item));
@@ -121,7 +130,7 @@ std::string PageState::ForParticipant() const {
   return json.dump();
 }
 
-std::string PageState::ForExperimenter() const {
+std::string PageState::ForExperimenter(TimePoint now) const {
   Json lines = Json::array();
   for (const Line& line : lines_) lines.push_back({{"at_ms", line.at_ms}, {"text", line.text}});
   return Json{{"state", number_},
@@ -131,7 +140,7 @@ std::string PageState::ForExperimenter() const {
               {"practice", next_.trial.practice},
               {"run", next_.trial.number},
               {"of", next_.of},
-              {"wait_s", stage_ == Stage::kWaiting ? wait_s_ : 0},
+              {"wait_s", Wait_s(now)},
               {"condition", next_.for_experimenter},
               {"questionnaire", stage_ == Stage::kAsking ? questionnaire_.name : ""},
               {"view", view_},
@@ -148,7 +157,7 @@ std::optional<PageMessage> PageState::FromParticipant(std::string_view frame,
     why = "it answers another state";
     return std::nullopt;
   }
-  if (op == "begin" && stage_ == Stage::kWaiting && wait_s_ > 0) {
+  if (op == "begin" && stage_ == Stage::kWaiting && breaks_) {
     why = "the break is not over";
     return std::nullopt;
   }
@@ -186,7 +195,7 @@ std::optional<PageMessage> PageState::FromExperimenter(std::string_view frame,
   const Json json = Parse(frame);
   const std::string op = Text(json, "op");
   const auto state = json.find("state");
-  const bool can_begin = stage_ == Stage::kWaiting && wait_s_ == 0;
+  const bool can_begin = stage_ == Stage::kWaiting && !breaks_;
   if (op == "begin" && can_begin && state != json.end() && *state == number_) {
     return PageMessage{.kind = PageMessage::Kind::kBegin, .answers = {}, .text = ""};
   }

@@ -59,9 +59,10 @@ class PageState {
 
   /// JSON for the page of the participant. It does not contain the condition, the seed, the
   /// threshold or the address of the view.
-  std::string ForParticipant() const;
+  /// @param now the time from which on a page counts a break down
+  std::string ForParticipant(TimePoint now = Clock::now()) const;
   /// JSON for the page of the experimenter.
-  std::string ForExperimenter() const;
+  std::string ForExperimenter(TimePoint now = Clock::now()) const;
 
   /// Reads a frame of the participant's page: {"op": "begin", "state": n}, or {"op": "answers",
   /// "state": n, "values": ["5", ...]} with a text for each item.
@@ -79,11 +80,14 @@ class PageState {
   };
 
   void Enter(Stage stage);
+  /// Remaining time of the break, s; 0 only if the next run can begin.
+  double Wait_s(TimePoint now) const;
 
   Stage stage_ = Stage::kStarting;
   std::int64_t number_;
   Next next_;
-  double wait_s_ = 0;
+  bool breaks_ = false;  // whether the next run cannot begin yet
+  TimePoint break_end_;
   QuestionnaireSection questionnaire_;
   std::string view_;
   std::string seat_;

@@ -1,5 +1,5 @@
 // The experimenter's page: the condition, the events, and the markers.
-import {connect, showProblem, titleOf} from "./link.js";
+import {connect, countDown, showProblem, timeInWords, titleOf} from "./link.js";
 
 const byId = (id) => document.getElementById(id);
 const WORDS = {
@@ -12,40 +12,60 @@ const WORDS = {
   finished: "All runs are done.",
 };
 let last = {};
-let pending = null;  // the marker that was sent last, until it is in the list: {text, before}
+let stopCount = () => {};
+let counted = "";  // the state whose words the page shows
+let pending = null;  // the marker that was sent last, until it is in the list: {text, after_ms}
+let refusal = "";    // stays until the next message, and until the next run
 
 const send = connect(show, showProblem);
 
 byId("begin").onclick = () => {
   pending = null;
+  refusal = "";
   send({op: "begin", state: last.state});
 };
 byId("marker").onsubmit = (event) => {
   event.preventDefault();
   const text = byId("marker-text").value.trim();
-  if (send({op: "marker", text})) pending = {text, before: timesMarked(last, text)};
+  refusal = "";
+  if (send({op: "marker", text})) pending = {text, after_ms: last.lines.at(-1)?.at_ms ?? 0};
 };
 
-/** How often a marker is in the list. */
-const timesMarked = ({lines}, text) => lines.filter((line) => line.text === `marker: ${text}`).length;
-
-/** Empties the field of the marker when the marker is in the list. A refused marker stays there. */
-function takePending(state) {
-  if (!pending || timesMarked(state, pending.text) <= pending.before) return;
+/** Empties the field of the marker when the marker is in the list. */
+function takePending({lines}) {
+  const isSaved = ({text, at_ms}) => text === `marker: ${pending?.text}` && at_ms > pending.after_ms;
+  if (!lines.some(isSaved)) return;
   const input = byId("marker-text");
   if (input.value.trim() === pending.text) input.value = "";
   pending = null;
 }
 
+/** Keeps what the session has refused. A marker of an earlier run does not come into the next run. */
+function keepRefusal({refused, stage}) {
+  if (refused) refusal = `${pending ? `The marker “${pending.text}” was not saved` : "This had no effect"}: ${refused}.`;
+  if (stage !== "driving" || last.stage === "driving") return;
+  refusal = byId("marker-text").value = "";
+  pending = null;
+}
+
+/** Shows the condition and what happens now. A break is counted down. */
+function showWords(state) {
+  counted = `${state.state} ${state.stage}`;
+  stopCount();
+  const condition = state.condition && state.stage !== "finished" ? `Condition: ${state.condition}. ` : "";
+  stopCount = countDown(state.stage === "waiting" ? state.wait_s : 0, (left) => {
+    const words = left > 0 ? `The participant has a break, for ${timeInWords(left)} more.` : WORDS[state.stage];
+    byId("words").textContent = condition + words;
+  });
+}
+
 function show(state) {
-  last = state;
   takePending(state);
-  const what = pending ? "The marker was not saved" : "This had no effect";
-  showProblem(state.refused ? `${what}: ${state.refused}.` : "");
+  keepRefusal(state);
+  last = state;
+  showProblem(refusal);
   byId("title").textContent = `Participant ${state.participant}, ${titleOf(state).toLowerCase()}`;
-  const words = state.wait_s > 0 ? "The participant has a break." : WORDS[state.stage];
-  const isOver = state.stage === "finished";
-  byId("words").textContent = state.condition && !isOver ? `Condition: ${state.condition}. ${words}` : words;
+  if (counted !== `${state.state} ${state.stage}`) showWords(state);
   byId("begin").hidden = byId("begin-hint").hidden = state.stage !== "waiting" || state.wait_s > 0;
   byId("begin-hint").textContent = state.drives
     ? "This button does what “Begin” does on the participant’s page: it opens the seat there."

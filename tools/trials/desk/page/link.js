@@ -62,6 +62,12 @@ export function titleOf(state) {
   return `${state.practice ? "Practice run" : "Run"} ${state.run} of ${state.of}`;
 }
 
+/** "1 min 40 s" */
+export function timeInWords(time_s) {
+  const [minutes, seconds] = [Math.floor(time_s / 60), time_s % 60];
+  return minutes === 0 ? `${seconds} s` : `${minutes} min ${seconds} s`;
+}
+
 /** Counts a wait down, and calls onTick with the whole seconds that are left; 0 at the end. */
 export function countDown(seconds, onTick) {
   const end = performance.now() + 1000 * seconds;

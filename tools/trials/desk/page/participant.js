@@ -1,11 +1,17 @@
 // The participant's page: the next run, and the questions after it.
-import {connect, countDown, showProblem, titleOf} from "./link.js";
+import {connect, countDown, showProblem, timeInWords, titleOf} from "./link.js";
 
 const byId = (id) => document.getElementById(id);
 let shown = -1;  // number of the state that the page shows
 let stopCount = () => {};
 
-const send = connect(show, showProblem);
+/** Says that the connection is gone. Answers that are not sent yet stay in the form. */
+function onBroken(words) {
+  showProblem(byId("questions").hidden ? words : `${words} Your answers stay here.`);
+}
+
+const send = connect(show, onBroken);
+let refused = -1;  // number of the state in which the session has refused a message
 
 /** The element with these attributes and children. */
 function make(tag, attributes, ...children) {
@@ -25,7 +31,7 @@ function scaleOf(item, index) {
       make("input", {type: "radio", name: `item-${index}`, value}), value));
   }
   return [
-    make("div", {class: "ends"}, ...[[item.min, item.low], [item.max, item.high]]
+    make("div", {class: "ends", id: `ends-${index}`}, ...[[item.min, item.low], [item.max, item.high]]
       .map(([mark, words]) => make("span", {}, words === "" ? "" : `${mark}: ${words}`))),
     make("div", {class: "scale"}, ...marks),
     make("p", {class: "missing", id: `missing-${index}`, hidden: ""}, "Please choose an answer."),
@@ -39,15 +45,15 @@ function questionOf(item, index) {
     return make("fieldset", {}, legend,
       make("textarea", {name: `item-${index}`, rows: "3", maxlength: "120", "aria-label": item.text}));
   }
-  return make("fieldset", {role: "radiogroup", "aria-required": "true"}, legend, ...scaleOf(item, index));
+  return make("fieldset", {role: "radiogroup", "aria-required": "true", "aria-describedby": `ends-${index}`}, legend, ...scaleOf(item, index));
 }
 
 /** Shows below a scale whether its answer is missing. */
 function markMissing(scale, isMissing) {
   const words = scale.querySelector(".missing");
   scale.setAttribute("aria-invalid", String(isMissing));
-  if (isMissing) scale.setAttribute("aria-describedby", words.id);
-  else scale.removeAttribute("aria-describedby");
+  const {id} = scale.querySelector(".ends");
+  scale.setAttribute("aria-describedby", isMissing ? `${words.id} ${id}` : id);
   words.hidden = !isMissing;
 }
 
@@ -75,19 +81,14 @@ function showQuestions(state) {
   form.onsubmit = (event) => {
     event.preventDefault();
     if (!hasAllAnswers(form)) return;
+    refused = -1;
     const data = new FormData(form);
     const values = state.items.map((_, i) =>
       String(data.get(`item-${i}`) ?? "").replace(/\s+/g, " ").trim());
     if (!send({op: "answers", state: state.state, values})) {
-      showProblem("The connection is broken. Your answers stay here; please try again.");
+      onBroken("The connection is broken. This page tries again.");
     }
   };
-}
-
-/** "1 min 40 s" */
-function timeInWords(time_s) {
-  const [minutes, seconds] = [Math.floor(time_s / 60), time_s % 60];
-  return minutes === 0 ? `${seconds} s` : `${minutes} min ${seconds} s`;
 }
 
 function showWait(state) {
@@ -118,8 +119,11 @@ function wordsOf({stage, drives}) {
 }
 
 function show(state) {
-  if (state.refused) console.warn(state.refused);
-  showProblem(state.refused ? "This was not taken. Please try again, or tell the experimenter." : "");
+  if (state.refused) {
+    console.warn(state.refused);
+    refused = state.state;
+  }
+  showProblem(state.state === refused ? "This was not taken. Please try again, or tell the experimenter." : "");
   if (state.state === shown) return;
   shown = state.state;
   stopCount();
@@ -129,6 +133,10 @@ function show(state) {
   byId("begin").hidden = state.stage !== "waiting";
   byId("questions").hidden = state.stage !== "asking";
   if (state.stage === "waiting") showWait(state);
-  if (state.stage === "asking") showQuestions(state);
+  if (state.stage === "asking") {
+    showQuestions(state);
+    byId("title").focus();
+    scrollTo(0, 0);
+  }
   if (state.seat) goToSeat(state.seat);
 }

@@ -27,6 +27,23 @@ QuestionnaireSection Questions() {
   return WithItems(questionnaire);
 }
 
+TEST(PageStateTest, APageThatIsOpenedInABreakGetsTheTimeThatIsLeft) {
+  PageState state(1);
+  const TimePoint before = Clock::now();
+  state.Wait(NextRun(), 30);
+  const TimePoint after = Clock::now();
+  const auto wait_s = [&state](TimePoint now) {
+    const double of_participant = json::parse(state.ForParticipant(now))["wait_s"].get<double>();
+    EXPECT_EQ(json::parse(state.ForExperimenter(now))["wait_s"].get<double>(), of_participant);
+    return of_participant;
+  };
+  EXPECT_GE(wait_s(before + milliseconds(10'000)), 20);
+  EXPECT_LE(wait_s(after + milliseconds(10'000)), 20);
+  EXPECT_GT(wait_s(after + milliseconds(40'000)), 0);  // until the session ends the break
+  state.Wait(NextRun(), 0);
+  EXPECT_EQ(wait_s(after), 0);
+}
+
 TEST(PageStateTest, TheParticipantSeesNothingOfConditionSeedOrView) {
   PageState state(1);
   const auto expect_silence = [&state] {
