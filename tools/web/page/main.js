@@ -143,6 +143,7 @@ class Page {
 
   begin(hello) {
     this.hello = hello;
+    Object.assign(this, {frame: null, isOver: false});
     say(byId("title"), "Waiting for a run");
     this.catalogue = new Catalogue(hello);
     this.events = [];
@@ -292,8 +293,8 @@ class Page {
     sayOrigin(this);
     if (state === "refused") {
       if (!this.hello) for (const id of ["who", "title"]) say(byId(id), "No connection");
-      this.complain("The server does not answer. If it has ended, start it again. If it listens for other machines, " +
-                    "open exactly the address that it has printed: the address contains a token.");
+      this.complain("The server does not answer, or it refuses this address. Open exactly the address that it has " +
+                    "printed: for other machines it contains a token. If the server has ended, start it again.");
     } else {
       byId("problem").hidden = true;
     }
@@ -334,10 +335,9 @@ class Page {
    * last speeds.
    */
   aheadOf(step) {
-    const {state} = this.clock;
+    const [{state}, {step_s, pace}] = [this.clock, this.run];
     if (reducedMotion.matches || state === "paused" || (state === "live" && this.isOver)) return 0;
-    const {step_s, pace} = this.run;
-    const ahead_s = this.clock.state === "live"
+    const ahead_s = state === "live"
       ? ((performance.now() - this.store.taken_ms) / 1000) * (pace || 0)
       : this.clock.time - this.store.timeOf(step);
     return Math.min(step_s, Math.max(0, ahead_s));

@@ -100,14 +100,18 @@ export function drivingSince(modes, lambdas, time) {
 /**
  * The request that is open at a time: {since_s, left_s, share}; null if no request is open. `times`
  * and `modes` come from HOST_COMMAND up to this time. lead_s comes from the scenario. A request
- * begins with the first of the successive modes that ask.
+ * begins with the first of the successive modes that ask. Emergency braking does not end it.
  */
 export function requestAt(times, modes, time, lead_s) {
-  let place = upTo(times, time);
-  if (place < 0 || !modeOf(modes[place]).asks) return null;
-  while (place > 0 && modeOf(modes[place - 1]).asks) --place;
-  const left_s = Math.max(0, times[place] + lead_s - time);
-  return {since_s: times[place], left_s, share: lead_s > 0 ? left_s / lead_s : 0};
+  let begin = -1;
+  for (let place = upTo(times, time); place >= 0; --place) {
+    const {asks, hides} = modeOf(modes[place]);
+    if (asks) begin = place;
+    else if (!hides) break;
+  }
+  if (begin < 0) return null;
+  const left_s = Math.max(0, times[begin] + lead_s - time);
+  return {since_s: times[begin], left_s, share: lead_s > 0 ? left_s / lead_s : 0};
 }
 
 /**

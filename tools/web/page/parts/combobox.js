@@ -34,6 +34,7 @@ export class Combobox {
                                    "aria-selected": "false"}, "No field has these words."));
     }
     this.list.hidden = false;
+    this.list.scrollIntoView({block: "nearest"});
     this.show();
   }
 

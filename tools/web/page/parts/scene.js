@@ -1,6 +1,6 @@
 // The scene: the driver's view with its instruments, and the road from above.
 
-import {timeGap} from "../data/cars.js";
+import {carsOf, timeGap} from "../data/cars.js";
 import {byId, say, setAttribute} from "../draw/dom.js";
 import {decimal, kmh, visibility, withUnit} from "../draw/format.js";
 import {loadView} from "../draw/view_file.js";
@@ -41,6 +41,7 @@ export class Scene {
    */
   draw(moment, {ratio, every}) {
     const {frame, ahead_s, step, side} = moment;
+    byId("no-road").hidden = Boolean(frame?.TRUTH);
     if (!frame?.TRUTH) return;
     const {clientWidth, clientHeight} = this.road.canvas;
     const view = byId("driver-view");
@@ -73,13 +74,13 @@ export class Scene {
   }
 
   /** Describes the pictures in words, for readers who do not see them. */
-  describe({frame, length_m}) {
+  describe({frame, length_m, moves}) {
     const now = performance.now();
-    if (now - this.wordsAt < WORDS_EVERY_MS) return;
+    if (moves && now - this.wordsAt < WORDS_EVERY_MS) return;
     this.wordsAt = now;
     const {TRUTH: truth} = frame;
     setAttribute(byId("road"), "aria-label", roadInWords(frame, length_m));
-    const lamps = truth.preceding_acceleration_mps2 < -0.7 ? "Its brake lamps shine. " : "";
+    const lamps = carsOf(truth, 0)[0].brakes ? "Its brake lamps shine. " : "";
     setAttribute(byId("driver-view"), "aria-label",
       `The driver’s view: the preceding car is ${decimal(truth.host_gap_m, 1)} m ahead. ${lamps}` +
       `The visibility is ${visibility(truth.fog_visibility_m)}.`);

@@ -132,8 +132,8 @@ export class Timebar {
     this.drawn = events;
     this.drawnRun = run.run_id;
     const place = events.findLastIndex((event) => event.step <= step);
-    if (place === this.current) return;
-    this.current = place;
+    if (`${place} ${list.clientHeight}` === this.current) return;
+    this.current = `${place} ${list.clientHeight}`;
     [...list.children].forEach((item, i) => {
       const button = item.firstElementChild;
       if (i === place) button.setAttribute("aria-current", "true");

@@ -56,6 +56,9 @@ test("a request counts down from its first step, through all modes that ask", ()
   assert.equal(requestAt(times, modes, 4, 2).left_s, 0);
   assert.equal(requestAt(times, modes, 5, 10), null);
   assert.equal(requestAt([], [], 5, 10), null);
+  assert.equal(requestAt([0, 1, 2, 3], [0, 3, 12, 3], 3.5, 10).left_s, 7.5, "emergency braking between");
+  assert.equal(requestAt([0, 1, 2], [0, 3, 12], 2.5, 10).since_s, 1);
+  assert.equal(requestAt([0, 1], [0, 12], 2, 10), null);
 });
 
 test("a request lasts through all modes that ask", () => {
