@@ -1,11 +1,18 @@
 // Viewers do not disturb a run in real time.
 #include <gtest/gtest.h>
+#include <pthread.h>
+#include <sched.h>
 
+#include <atomic>
 #include <memory>
+#include <stdexcept>
+#include <string>
 #include <thread>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 
+#include "common/clock.h"
 #include "services/runtime/transport/bus.h"
 #include "tests/integration/web/viewed.h"
 #include "tests/support/machine.h"
@@ -39,37 +46,94 @@ class Reader {
   std::jthread thread_;
 };
 
-/// The number of deadlines that a run of one minute at 100 Hz misses.
-/// @param viewers the number of viewers
-std::int64_t MissedWith(int viewers) {
+/// Notices when the machine itself stands still, such as a virtual machine whose processors are
+/// taken away. A thread on each processor sleeps 1 ms again and again. It has the highest priority,
+/// so if it wakes up late, every process on this processor was late.
+class StallWitness {
+ public:
+  /// Half of the period of a run at 100 Hz. The roles of a run need far less than the other half.
+  static constexpr Duration kStall = milliseconds(5);
+
+  /// @throws std::runtime_error if this process may not have real-time priority
+  StallWitness() {
+    for (unsigned processor = 0; processor < std::thread::hardware_concurrency(); ++processor) {
+      threads_.emplace_back([this](const std::stop_token& stop) { Watch(stop); });
+      cpu_set_t only{};
+      CPU_SET(processor, &only);
+      const sched_param most{.sched_priority = sched_get_priority_max(SCHED_FIFO)};
+      const pthread_t thread = threads_.back().native_handle();
+      if (pthread_setaffinity_np(thread, sizeof only, &only) != 0 ||
+          pthread_setschedparam(thread, SCHED_FIFO, &most) != 0) {
+        throw std::runtime_error("this process may not have real-time priority");
+      }
+    }
+  }
+
+  /// Number of stalls until now.
+  int stalls() const { return stalls_; }
+
+ private:
+  void Watch(const std::stop_token& stop) {
+    constexpr Duration kSleep = milliseconds(1);
+    TimePoint before = Clock::now();
+    while (!stop.stop_requested()) {
+      std::this_thread::sleep_for(kSleep);
+      const TimePoint now = Clock::now();
+      if (now - before > kSleep + kStall) ++stalls_;
+      before = now;
+    }
+  }
+
+  std::atomic<int> stalls_ = 0;
+  std::vector<std::jthread> threads_;
+};
+
+struct Watched {
+  std::int64_t missed = 0;  // deadlines
+  int stalls = 0;           // of the machine
+};
+
+/// A run of 5 s at 100 Hz with 20 viewers.
+Watched RunWithViewers() {
   const ScratchFolder folder;
   const std::string url = runtime::FreshMulticastUrl();
   Viewed viewed({"--lcm-url", url});
   EXPECT_NE(viewed.port(), 0) << viewed.process().Err();
   std::vector<std::unique_ptr<Reader>> readers;
-  for (int i = 0; i < viewers; ++i) readers.push_back(std::make_unique<Reader>(viewed.port()));
+  for (int i = 0; i < 20; ++i) readers.push_back(std::make_unique<Reader>(viewed.port()));
+  const StallWitness witness;
   const Outcome run = RunCommand({Program("fogline"), "run", "scenario/paper.json", "--realtime",
-                                  "--set", "/step_s=0.01", "--set", "/steps=6000", "--lcm-url", url,
+                                  "--set", "/step_s=0.01", "--set", "/steps=500", "--lcm-url", url,
                                   "--log", folder.File("run.lcm"), "--json", "--quiet"});
+  const int stalls = witness.stalls();
   EXPECT_EQ(run.code, 0) << run.err;
   for (const auto& reader : readers) {
-    EXPECT_GT(reader->End(), 1000);
+    EXPECT_GT(reader->End(), 100);
   }
   EXPECT_EQ(viewed.End(), 0);
-  return nlohmann::json::parse(run.out)["realtime"]["deadline_misses"];
+  return {.missed = nlohmann::json::parse(run.out)["realtime"]["deadline_misses"],
+          .stalls = stalls};
 }
 
 TEST(ViewersInRealtimeTest, TwentyViewersCostNoDeadline) {
-  // If a run without viewers also misses deadlines, the machine has disturbed the attempt.
-  constexpr int kAttempts = 5;
-  for (int attempt = 0; attempt < kAttempts; ++attempt) {
-    const std::int64_t before = MissedWith(0);
-    const std::int64_t with = MissedWith(20);
-    if (with == 0) return;
-    if (MissedWith(0) + before > 0) continue;
-    FAIL() << with << " deadlines missed with 20 viewers, none without";
+  constexpr int kRuns = 12;  // one minute
+  constexpr int kAttempts = 60;
+  try {
+    const StallWitness possible;
+  } catch (const std::runtime_error&) {
+    return MachineLacks("real-time priority");
   }
-  MachineLacks("time: it misses deadlines without viewers, too");
+  int whole = 0;
+  for (int attempt = 0; attempt < kAttempts && whole < kRuns; ++attempt) {
+    const Watched run = RunWithViewers();
+    if (run.missed == 0) {
+      ++whole;
+      continue;
+    }
+    // If the machine has stood still, its stall may have cost the deadline.
+    ASSERT_GT(run.stalls, 0) << run.missed << " deadlines missed with 20 viewers";
+  }
+  if (whole < kRuns) return MachineLacks("time: it stands still again and again");
 }
 
 }  // namespace
