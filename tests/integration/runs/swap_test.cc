@@ -326,9 +326,9 @@ TEST(SwapTest, OfTwoProcessesOfOneRoleOneDrivesAndTheOtherLeavesTheRunAlone) {
   const std::string url = runtime::FreshMulticastUrl();
   ListeningDriver one(bare, url);
   ListeningDriver two(bare, url);
-  // The run has real speed. So it has not ended when a busy machine starts one of the drivers late.
+  // The run takes 12.5 s. So it has not ended when a busy machine starts one of the drivers late.
   auto command = RunWithExternalDriver(Program("fogline"), url, elsewhere.File("run.lcm"));
-  command.insert(command.end(), {"--pace", "1"});
+  command.insert(command.end(), {"--pace", "4"});
   const Outcome run = RunCommand(command);
   EXPECT_EQ(run.code, 0) << run.err;
   EXPECT_THAT(run.err, testing::AnyOf(HasSubstr("the driver has come (pid " + one.pid() + " on "),
