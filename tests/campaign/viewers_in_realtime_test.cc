@@ -51,8 +51,8 @@ class Reader {
 /// so if it wakes up late, every process on this processor was late.
 class StallWitness {
  public:
-  /// Half of the period of a run at 100 Hz. The roles of a run need far less than the other half.
-  static constexpr Duration kStall = milliseconds(5);
+  /// A shorter stall costs no deadline at 100 Hz: the roles of a run need less than the other 3 ms.
+  static constexpr Duration kStall = milliseconds(7);
 
   /// @throws std::runtime_error if this process may not have real-time priority
   StallWitness() {
@@ -69,8 +69,8 @@ class StallWitness {
     }
   }
 
-  /// Number of stalls until now.
-  int stalls() const { return stalls_; }
+  /// The longest stall until now.
+  Duration longest() const { return longest_; }
 
  private:
   void Watch(const std::stop_token& stop) {
@@ -79,18 +79,21 @@ class StallWitness {
     while (!stop.stop_requested()) {
       std::this_thread::sleep_for(kSleep);
       const TimePoint now = Clock::now();
-      if (now - before > kSleep + kStall) ++stalls_;
+      Duration longest = longest_;
+      const Duration late = now - before - kSleep;
+      while (late > longest && !longest_.compare_exchange_weak(longest, late)) {
+      }
       before = now;
     }
   }
 
-  std::atomic<int> stalls_ = 0;
+  std::atomic<Duration> longest_ = Duration::zero();
   std::vector<std::jthread> threads_;
 };
 
 struct Watched {
   std::int64_t missed = 0;  // deadlines
-  int stalls = 0;           // of the machine
+  Duration stall{};         // the longest of the machine
 };
 
 /// A run of 5 s at 100 Hz with 20 viewers.
@@ -105,14 +108,14 @@ Watched RunWithViewers() {
   const Outcome run = RunCommand({Program("fogline"), "run", "scenario/paper.json", "--realtime",
                                   "--set", "/step_s=0.01", "--set", "/steps=500", "--lcm-url", url,
                                   "--log", folder.File("run.lcm"), "--json", "--quiet"});
-  const int stalls = witness.stalls();
+  const Duration stall = witness.longest();
   EXPECT_EQ(run.code, 0) << run.err;
   for (const auto& reader : readers) {
     EXPECT_GT(reader->End(), 100);
   }
   EXPECT_EQ(viewed.End(), 0);
   return {.missed = nlohmann::json::parse(run.out)["realtime"]["deadline_misses"],
-          .stalls = stalls};
+          .stall = stall};
 }
 
 TEST(ViewersInRealtimeTest, TwentyViewersCostNoDeadline) {
@@ -131,7 +134,7 @@ TEST(ViewersInRealtimeTest, TwentyViewersCostNoDeadline) {
       continue;
     }
     // If the machine has stood still, its stall may have cost the deadline.
-    ASSERT_GT(run.stalls, 0) << run.missed << " deadlines missed with 20 viewers";
+    ASSERT_GE(run.stall, StallWitness::kStall) << run.missed << " deadlines missed with 20 viewers";
   }
   if (whole < kRuns) return MachineLacks("time: it stands still again and again");
 }
