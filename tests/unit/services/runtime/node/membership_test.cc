@@ -288,7 +288,7 @@ TEST_F(ExternalRoleTest, GoesWhenAnotherProcessHasItsPlace) {
 
 TEST_F(ExternalRoleTest, GoesToARunThatWaitsForItOnlyWhenItsOwnRunnerIsSilent) {
   const std::int64_t another = Script::kRunId + 1;
-  script_.PollUpTo(node_, Clock::now() + milliseconds(1900));
+  script_.PollUpTo(node_, Clock::now() + milliseconds(1000));
   SayHolder(another, 0);
   EXPECT_FALSE(own_.released()) << "the runner may be there";
   script_.PollUpTo(node_, Clock::now() + milliseconds(2100));
