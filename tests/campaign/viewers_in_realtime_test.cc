@@ -114,8 +114,7 @@ Watched RunWithViewers() {
     EXPECT_GT(reader->End(), 100);
   }
   EXPECT_EQ(viewed.End(), 0);
-  return {.missed = nlohmann::json::parse(run.out)["realtime"]["deadline_misses"],
-          .stall = stall};
+  return {.missed = nlohmann::json::parse(run.out)["realtime"]["deadline_misses"], .stall = stall};
 }
 
 TEST(ViewersInRealtimeTest, TwentyViewersCostNoDeadline) {

@@ -152,7 +152,8 @@ class DeadlineRuleTest : public RealtimeRulesTest {
     Go();
     // The deadline of a step counts from the step's tick. On a busy machine the tick may be far
     // behind GO. So At() counts from the last tick.
-    script_.bus().Subscribe(ChannelOf<ego_t>().name, [this](runtime::Bytes) { go_ = Clock::now(); });
+    script_.bus().Subscribe(ChannelOf<ego_t>().name,
+                            [this](runtime::Bytes) { go_ = Clock::now(); });
   }
   std::vector<arbitration_t>& commands_ = script_.Listen<arbitration_t>();
   runtime::StepNode<arbitrator::Arbitrator, arbitrator::FailsafeArbitrator> node_{script_.bus(),
