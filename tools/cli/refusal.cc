@@ -142,10 +142,13 @@ std::string UnknownVerb(const CLI::App& app) {
   return fmt::format("{0}: error: {1} (see {0} --help)", app.get_name(), Misfit(app, app, words));
 }
 
-void RefuseEmptyTexts(CLI::App& app) {
+void RefuseIgnoredValues(CLI::App& app) {
   for (CLI::App* verb : app.get_subcommands({})) {
-    for (CLI::Option* option : verb->get_options()) runtime::RefuseEmptyText(*option);
-    RefuseEmptyTexts(*verb);
+    for (CLI::Option* option : verb->get_options()) {
+      runtime::RefuseEmptyText(*option);
+      if (option->get_items_expected_max() == 0) option->disable_flag_override();
+    }
+    RefuseIgnoredValues(*verb);
   }
 }
 
@@ -171,7 +174,7 @@ std::string Refusal(const CLI::App& app, const CLI::ParseError& error) {
   // The first wrong word is of the first command with such words.
   const auto misfit = std::ranges::find_if(
       commands, [](const CLI::App* command) { return !command->remaining().empty(); });
-  std::string what = OneLine(error.what());
+  std::string what = OneLine(runtime::WhatIsWrong(error));
   if (may_misfit && misfit != commands.end()) {
     what = Misfit(app, **misfit, (*misfit)->remaining());
     commands.erase(misfit + 1, commands.end());

@@ -20,10 +20,11 @@ std::string UnknownVerb(const CLI::App& app);
 /// verb "tabel"; did you mean "table"?`
 std::string NoSuchVerb(const CLI::App& command, const std::string& word);
 
-/// Makes every option and argument of the verbs of `app`, and of their actions, refuse an empty
-/// text. An empty text often comes from a shell variable that is not set, as in --log "$UNSET".
-/// Without a refusal the verb would ignore the option.
-void RefuseEmptyTexts(CLI::App& app);
+/// Makes the verbs of `app`, and their actions, refuse values that they would ignore:
+/// - an empty text for an option or argument. It often comes from a shell variable that is not set,
+///   as in --log "$UNSET".
+/// - a value for a flag, as in --force=no.
+void RefuseIgnoredValues(CLI::App& app);
 
 /// The words of a command line with "--log=" as two words, "--log" and "". Without this change,
 /// CLI11 would take the next word as the value of --log.

@@ -82,7 +82,7 @@ int Main(std::vector<std::string> arguments, std::initializer_list<AddVerb> verb
     fmt::print("{}", ToText(Complete(app, arguments)));
     return kDone;
   }
-  RefuseEmptyTexts(app);
+  RefuseIgnoredValues(app);
   try {
     app.parse(std::move(arguments));
   } catch (const CLI::Success& asked) {  // --help, --version

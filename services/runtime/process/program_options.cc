@@ -52,6 +52,27 @@ std::string OptionMeant(const CLI::App& command, const std::string& mistyped) {
   return DidYouMean(Nearest(mistyped, views));
 }
 
+std::string WhatIsWrong(const CLI::ParseError& error) {
+  // The texts of CLI11 begin with the name of the option, but for the prefix.
+  static const std::string kNoNumber = "Could not convert: ";
+  static const std::string kNoFlag = " was given a disallowed flag override";
+  static const std::string kNoValue = " required ";
+  const std::string what = error.what();
+  if (what.starts_with(kNoNumber)) {
+    const std::size_t equals = what.find(" = ");
+    return fmt::format("{}: {} is no number",
+                       what.substr(kNoNumber.size(), equals - kNoNumber.size()),
+                       QuoteShort(what.substr(equals + 3)));
+  }
+  if (what.ends_with(kNoFlag)) {
+    return "--" + what.substr(0, what.size() - kNoFlag.size()) + " takes no value";
+  }
+  if (what.ends_with(" missing") && what.find(kNoValue) != std::string::npos) {
+    return what.substr(0, what.find(": ")) + ": the value is missing";
+  }
+  return what;
+}
+
 ProgramOptions::ProgramOptions(const std::string& name, const std::string& purpose,
                                const std::string& version)
     : app_(std::make_unique<CLI::App>(purpose, name)) {
@@ -73,7 +94,7 @@ void ProgramOptions::RequiredText(const std::string& name, std::string& value,
 }
 
 void ProgramOptions::Flag(const std::string& name, bool& value, const std::string& help) {
-  app_->add_flag(name, value, help);
+  app_->add_flag(name, value, help)->disable_flag_override();
 }
 
 void ProgramOptions::Count(const std::string& name, std::size_t& value, const std::string& help,
@@ -118,7 +139,7 @@ std::optional<int> ProgramOptions::Parse(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     std::vector<std::string> unknown = app_->remaining();
     std::erase(unknown, "--");
-    std::string what = error.what();
+    std::string what = WhatIsWrong(error);
     if (!unknown.empty()) {
       const std::string word = unknown.front().substr(0, unknown.front().find('='));
       what = word.starts_with("-")

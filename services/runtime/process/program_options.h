@@ -14,6 +14,7 @@
 namespace CLI {
 class App;
 class Option;
+class ParseError;
 }  // namespace CLI
 
 namespace fogline::runtime {
@@ -34,6 +35,10 @@ void AddTrafficOptions(CLI::App& app, TrafficOptions& options);
 /// "--log"?`;
 /// "" if no option is near.
 std::string OptionMeant(const CLI::App& command, const std::string& mistyped);
+
+/// What is wrong with a command line, in plain words where CLI11 has its own, such as `--force
+/// takes no value`. The text may have several lines.
+std::string WhatIsWrong(const CLI::ParseError& error);
 
 /// The options of a program without verbs. Only the source file of this class includes CLI11,
 /// because its headers take seconds to compile. A variable that is given to a function gets its

@@ -344,7 +344,7 @@ TEST(CommandLineTest, BeginsEveryRefusalWithTheVerb) {
             "fogline run: error: --pace: Value fast not in range 0 to 1000 (see "
             "fogline run --help)\n");
   EXPECT_EQ(ErrorOf({"run", "scenario/paper.json", "--seed"}),
-            "fogline run: error: --seed: 1 required TEXT missing (see fogline run --help)\n");
+            "fogline run: error: --seed: the value is missing (see fogline run --help)\n");
   EXPECT_EQ(ErrorOf({"table", "scenario/paper.json", "--seeds", "2:1"}).substr(0, 40),
             "fogline table: error: --seeds 2:1: neith");
   EXPECT_EQ(ErrorOf({"check"}), "fogline check: error: FILE is missing\n");

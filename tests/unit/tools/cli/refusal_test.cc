@@ -70,7 +70,7 @@ TEST_F(RefusalTest, NamesTheActionOfAVerb) {
   EXPECT_EQ(Of({"experiment", "plan.json"}),
             "fogline experiment: error: no action \"plan.json\"; the actions are \"export\" (see "
             "fogline experiment --help)");
-  RefuseEmptyTexts(app_);
+  RefuseIgnoredValues(app_);
   EXPECT_EQ(Of({"experiment", "export", "--out", ""}),
             "fogline experiment export: error: --out: the text is empty (see fogline experiment "
             "export --help)");
@@ -135,6 +135,13 @@ TEST_F(RefusalTest, NamesTheWordThatWasTakenForAnOptionRatherThanTheArgumentThat
   EXPECT_EQ(Of({"run", "--", "-dash.json"}), "");
 }
 
+TEST_F(RefusalTest, SaysInPlainWordsWhatAnOptionNeeds) {
+  EXPECT_EQ(Of({"run", "paper.json", "--pace", "x"}),
+            "fogline run: error: --pace: \"x\" is no number (see fogline run --help)");
+  EXPECT_EQ(Of({"run", "paper.json", "--pace"}),
+            "fogline run: error: --pace: the value is missing (see fogline run --help)");
+}
+
 TEST_F(RefusalTest, IsOneLineWhateverAWordContains) {
   const std::string refusal = Of({"run", "paper.json", "--pace", "a\nb\x1b"});
   EXPECT_EQ(refusal.find('\n'), std::string::npos) << refusal;
@@ -142,9 +149,9 @@ TEST_F(RefusalTest, IsOneLineWhateverAWordContains) {
 }
 
 /// A program with a verb that has options of all types.
-class EmptyTextsTest : public testing::Test {
+class IgnoredValuesTest : public testing::Test {
  protected:
-  EmptyTextsTest() {
+  IgnoredValuesTest() {
     CLI::App* run = app_.add_subcommand("run");
     run->add_option("SCENARIO", scenario_);
     run->add_option("--log", log_);
@@ -153,7 +160,7 @@ class EmptyTextsTest : public testing::Test {
     run->add_option("--explain", explain_);
     run->add_option("--pace", pace_)->check(NumberIn(0, 10));
     run->add_flag("--force", force_);
-    RefuseEmptyTexts(app_);
+    RefuseIgnoredValues(app_);
   }
 
   /// @return the error text; "" if the words are valid
@@ -184,7 +191,7 @@ class EmptyTextsTest : public testing::Test {
   bool force_ = false;
 };
 
-TEST_F(EmptyTextsTest, AreRefusedWithTheNameOfTheirOption) {
+TEST_F(IgnoredValuesTest, EmptyTextsAreRefusedWithTheNameOfTheirOption) {
   for (const char* name : {"--log", "--output", "--set", "--explain", "--pace"}) {
     ExpectRefusal(name);
   }
@@ -192,12 +199,12 @@ TEST_F(EmptyTextsTest, AreRefusedWithTheNameOfTheirOption) {
             "fogline run: error: --output: the text is empty (see fogline run --help)");
 }
 
-TEST_F(EmptyTextsTest, AreRefusedWithTheNameOfTheirArgument) {
+TEST_F(IgnoredValuesTest, EmptyTextsAreRefusedWithTheNameOfTheirArgument) {
   EXPECT_EQ(Of({"run", ""}),
             "fogline run: error: SCENARIO: the text is empty (see fogline run --help)");
 }
 
-TEST_F(EmptyTextsTest, AreNoConcernOfOtherTexts) {
+TEST_F(IgnoredValuesTest, OtherTextsAreTaken) {
   EXPECT_EQ(Of({"run", "paper.json", "--log", "a.lcm", "-o", "b", "--set", "/a=", "--set=/b=1",
                 "--explain=/", "--pace", "2", "--force"}),
             "");
@@ -205,6 +212,14 @@ TEST_F(EmptyTextsTest, AreNoConcernOfOtherTexts) {
   EXPECT_THAT(set_, ElementsAre("/a=", "/b=1"));
   EXPECT_EQ(explain_, "/");
   EXPECT_TRUE(force_);
+}
+
+TEST_F(IgnoredValuesTest, AreRefusedForAFlag) {
+  for (const char* word : {"--force=no", "--force=3"}) {
+    EXPECT_EQ(Of({"run", "paper.json", word}),
+              "fogline run: error: --force takes no value (see fogline run --help)");
+    EXPECT_FALSE(force_);
+  }
 }
 
 TEST(SeparateEmptyValuesTest, LeavesWordsBehindTheEndOfOptionsAsTheyAre) {

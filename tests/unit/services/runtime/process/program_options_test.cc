@@ -77,12 +77,12 @@ TEST(ProgramOptionsTest, RefusesWhatIsOutOfRange) {
       {"--count", "0"},  {"--count", "257"}, {"--count", "x"},    {"--wait", "-1"},
       {"--wait", "nan"}, {"--wait", "1e7"},  {"--unknown"},       {"more"},
       {"--speed", "-3"}, {"--speed", "nan"}, {"--color", "blue"}, {"--color", "Red"},
-      {"--file", ""}};
+      {"--file", ""},    {"--quiet=3"},      {"--file"}};
   for (const std::vector<std::string>& words : wrong) {
     Program program;
     EXPECT_EQ(program.Read(words), kBadInput) << words.back();
     EXPECT_THAT(program.error, StartsWith("fogline-it: error: "));
-    EXPECT_THAT(program.error, HasSubstr(words.front()));
+    EXPECT_THAT(program.error, HasSubstr(words.front().substr(0, words.front().find('='))));
     EXPECT_THAT(program.error, EndsWith(" (see fogline-it --help)\n"));
     EXPECT_EQ(program.out, "");
   }
