@@ -17,8 +17,10 @@
 #include "common/atomic_file.h"
 #include "common/file.h"
 #include "common/json.h"
+#include "common/parse_number.h"
 #include "common/process/console.h"
 #include "common/text.h"
+#include "scenario/io/catalogue.h"
 #include "services/log/event_log.h"
 #include "services/runtime/transport/lcm_url.h"
 #include "tools/report/metric_text.h"
@@ -47,6 +49,16 @@ void ScenarioArguments::RefuseOverrideOf(std::string_view pointer, std::string_v
     if (std::string_view(one).substr(0, one.find('=')) != pointer) continue;
     throw InputError(fmt::format("error: --set {}: {}", pointer, why));
   }
+}
+
+const std::string& ScenarioArguments::CheckedSeed() const {
+  const IntegerSpec& range = FindField("/seed")->As<IntegerField>()->spec;
+  const auto seed = ParseNumber<std::int64_t>(seed_);
+  if (!seed || *seed < range.min || *seed > range.max) {
+    throw InputError(fmt::format("error: --seed: {} is no seed: a whole number from {} to {}",
+                                 QuoteShort(seed_), range.min, range.max));
+  }
+  return seed_;
 }
 
 log::LogOfRun PrepareLog(const std::filesystem::path& log, bool force) {

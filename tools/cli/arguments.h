@@ -44,7 +44,7 @@ class ScenarioArguments {
   Scenario Load(const std::vector<std::string>& more = {}) const {
     std::vector<std::string> overrides = overrides_;
     overrides.insert(overrides.end(), more.begin(), more.end());
-    if (!seed_.empty()) overrides.push_back("/seed=" + seed_);
+    if (!seed_.empty()) overrides.push_back("/seed=" + CheckedSeed());
     Scenario scenario = LoadScenario(file_, overrides);
     runner::CheckPossible(scenario, file_);
     return scenario;
@@ -61,9 +61,12 @@ class ScenarioArguments {
   void RefuseOverrideOf(std::string_view pointer, std::string_view why) const;
 
  private:
+  /// The text of --seed. @throws InputError if it is no seed
+  const std::string& CheckedSeed() const;
+
   std::filesystem::path file_;
   std::vector<std::string> overrides_;
-  std::string seed_;  // checked together with all other fields
+  std::string seed_;
 };
 
 /// Prepares a log file for writing. The function refuses a log that another run is writing. It

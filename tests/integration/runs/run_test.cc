@@ -279,7 +279,11 @@ TEST(RunTest, RefusesBadArgumentsWithExitCode2AndOneClearLine) {
   EXPECT_NE(error({"--external", "driver", "--transport", "memq"}).find("one process"),
             std::string::npos);
   EXPECT_NE(error({"--pace", "-1"}).find("--pace"), std::string::npos);
-  EXPECT_NE(error({"--seed", "x"}).find("/seed"), std::string::npos);
+  for (const char* seed : {"x", "1.5", "9007199254740992"}) {
+    EXPECT_EQ(error({"--seed", seed}),
+              "fogline run: error: --seed: \"" + std::string(seed) +
+                  "\" is no seed: a whole number from 0 to 9007199254740991\n");
+  }
   EXPECT_NE(error({"--set", "/arbitrator/threshold=2"}).find("/arbitrator/threshold"),
             std::string::npos);
   EXPECT_EQ(RunCommand({fogline, "run", "no/such.json"}).code, 2);
