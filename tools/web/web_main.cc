@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cstdint>
 #include <cstdio>
+#include <cstdlib>
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -75,7 +76,9 @@ struct ViewArguments {
   explicit ViewArguments(CLI::App& verb) : network(verb, "to show") {
     verb.add_option("LOG", log, "Log to show; without it, the run that is on the network");
     verb.add_option("--key", traffic.key_file,
-                    "Show only messages that are signed with the key in this file");
+                    fmt::format("Show only messages that are signed with the key in this file "
+                                "(default: ${})",
+                                runtime::kKeyVariable));
     listen_said = verb.add_option("--listen", listen,
                                   "ADDRESS[:PORT] of this machine at which others may look, too");
     port_said = verb.add_option("--port", port,
@@ -236,6 +239,16 @@ void Serve(asio::io_context& context, const ViewArguments& arguments, Server& se
   context.run_for(kEndLimit);
 }
 
+/// The key of a live view. A log needs no key, so it does not matter there that the variable is
+/// set.
+/// @throws InputError
+std::optional<runtime::SigningKey> KeyOf(const ViewArguments& arguments) {
+  runtime::TrafficOptions traffic = arguments.traffic;
+  const char* const variable = std::getenv(runtime::kKeyVariable);
+  if (traffic.key_file.empty() && variable != nullptr) traffic.key_file = variable;
+  return runtime::KeyOf(traffic);
+}
+
 /// @throws std::runtime_error if there is no page for a browser
 void RequirePage(const ViewArguments& arguments) {
   const std::string why(WhyNoPage());
@@ -250,7 +263,7 @@ int RunView(const ViewArguments& arguments) {
   const ServerOptions options = OptionsOf(arguments);
   asio::io_context context(1);
   if (arguments.log.empty()) {
-    const std::optional<runtime::SigningKey> key = runtime::KeyOf(arguments.traffic);
+    const std::optional<runtime::SigningKey> key = KeyOf(arguments);
     LiveView view(context, {.url = arguments.network.Url(),
                             .follows = arguments.network.Follows(),
                             .run = arguments.run,

@@ -241,6 +241,9 @@ TEST(ViewOptionsTest, RefusesContradictions) {
   EXPECT_THAT(refusal({"--open-at", "5"}), HasSubstr("LOG is missing"));
   EXPECT_THAT(refusal({"a.lcm", "--lcm-url", "udpm://239.255.76.67:7667"}), HasSubstr("--lcm-url"));
   EXPECT_THAT(refusal({"a.lcm", "--key", "key"}), HasSubstr("--key"));
+  EXPECT_THAT(RunCommand({"env", "FOGLINE_KEY=key", Program("fogline"), "view", "no.lcm"}).err,
+              HasSubstr("no.lcm"))
+      << "a log needs no key";
   EXPECT_THAT(refusal({"--allow-origin", "*"}), HasSubstr("this is not an origin such as"));
   EXPECT_THAT(refusal({"--listen", "127.0.0.1", "--port", "1"}), HasSubstr("--port"));
   EXPECT_THAT(refusal({"--listen", "no.such.host.invalid"}), HasSubstr("--listen"));

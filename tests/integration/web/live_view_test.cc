@@ -310,6 +310,20 @@ TEST(LiveViewTest, ShowsOnlySignedMessagesIfItHasAKey) {
   EXPECT_EQ(ReceiveOp(client, "health")["unverified"], 1);
 }
 
+TEST(LiveViewTest, TakesItsKeyFromTheVariableAsARunDoes) {
+  const ScratchFolder folder;
+  const std::string url = runtime::FreshMulticastUrl();
+  const std::string key = folder.File("key");
+  ASSERT_EQ(RunCommand({Program("fogline"), "keygen", key}).code, 0);
+  Viewed viewed(Viewed::Started{{"env", "FOGLINE_KEY=" + key, Program("fogline"), "view",
+                                 "--no-browser", "--port", "0", "--lcm-url", url}});
+  ASSERT_NE(viewed.port(), 0) << viewed.process().Err();
+  WebClient client(viewed.port());
+  runtime::Bus(url).Publish("TRUTH", std::vector<std::uint8_t>(100));
+  const TimePoint end = Clock::now() + kPatience;
+  while (ReceiveOp(client, "health")["unverified"] != 1) ASSERT_LT(Clock::now(), end);
+}
+
 TEST(LiveViewTest, GivesFoxglovesClientsMessagesAsJson) {
   const ScratchFolder folder;
   const std::string url = runtime::FreshMulticastUrl();
