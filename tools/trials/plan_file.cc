@@ -41,13 +41,7 @@ class PlanCheck {
     CheckConditions("/conditions", plan.conditions);
     CheckConditions("/practice", plan.practice);
     if (plan.conditions.empty()) Add("/conditions", "needed", "an experiment needs a condition");
-    const auto trials = static_cast<std::int64_t>(plan.conditions.size());
-    for (std::size_t i = 0; i < plan.breaks.size(); ++i) {
-      if (plan.breaks[i].after_trial < trials) continue;
-      Add(fmt::format("/breaks/{}/after_trial", i), "range",
-          fmt::format("no trial comes after trial {}: there are {} conditions",
-                      plan.breaks[i].after_trial, trials));
-    }
+    CheckBreaks(plan);
     std::set<std::string> names;
     for (std::size_t i = 0; i < plan.questionnaires.size(); ++i) {
       const std::string pointer = fmt::format("/questionnaires/{}", i);
@@ -94,6 +88,21 @@ class PlanCheck {
       CheckName(pointer + "/name", conditions[i].name, names);
       if (conditions[i].scenario.empty()) {
         Add(pointer + "/scenario", "needed", "a scenario file is needed");
+      }
+    }
+  }
+
+  void CheckBreaks(const ExperimentPlan& plan) {
+    const auto trials = static_cast<std::int64_t>(plan.conditions.size());
+    std::set<std::int64_t> others;
+    for (std::size_t i = 0; i < plan.breaks.size(); ++i) {
+      const std::string pointer = fmt::format("/breaks/{}/after_trial", i);
+      const std::int64_t trial = plan.breaks[i].after_trial;
+      if (trial >= trials) {
+        Add(pointer, "range",
+            fmt::format("no trial comes after trial {}: there are {} conditions", trial, trials));
+      } else if (!others.insert(trial).second) {
+        Add(pointer, "duplicate", fmt::format("two breaks come after trial {}", trial));
       }
     }
   }

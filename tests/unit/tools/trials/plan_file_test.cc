@@ -88,6 +88,16 @@ TEST(PlanFileTest, ATextThatAFactOfALogCannotHoldIsRefused) {
   EXPECT_THAT(unit(51), HasSubstr("has 102 bytes; at most 100 are allowed"));
 }
 
+TEST(PlanFileTest, TwoBreaksAfterOneTrialAreRefused) {
+  const auto error = test::ErrorOf<ScenarioError>([] {
+    ParsePlan(R"({"version": 1, "conditions": [{"name": "a", "scenario": "a.json"},
+                  {"name": "b", "scenario": "a.json"}],
+                  "breaks": [{"after_trial": 1}, {"after_trial": 1, "at_least_s": 60}]})",
+              "e.json");
+  });
+  EXPECT_THAT(error, HasSubstr("/breaks/1/after_trial: two breaks come after trial 1"));
+}
+
 TEST(PlanFileTest, AFileWithoutConditionsIsRefused) {
   EXPECT_THROW(ParsePlan(R"({"version": 1})"), ScenarioError);
   EXPECT_THROW(ParsePlan(R"({"version": 1, "conditions": []})"), ScenarioError);
