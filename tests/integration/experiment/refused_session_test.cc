@@ -133,6 +133,13 @@ TEST_F(RefusedSessionRealtimeTest, ASessionThatHasNothingToDriveNeedsNoNetwork) 
   EXPECT_THAT(outcome.out, HasSubstr("participant 1: all trials are done; 0 runs now"));
 }
 
+TEST_F(RefusedSessionRealtimeTest, WithoutStdinASessionEndsTheLineOfItsPromptAndSaysWhy) {
+  const Outcome outcome = Experiment("run", {"--participant", "1", "--no-page"});
+  EXPECT_EQ(outcome.code, 3);
+  EXPECT_THAT(outcome.out, testing::EndsWith("Enter begins it: \n"));
+  EXPECT_THAT(outcome.err, HasSubstr("error: standard input has ended before the last answer"));
+}
+
 TEST_F(RefusedSessionRealtimeTest, AnEmptyTextIsRefused) {
   const Outcome outcome = Experiment("export", {"--out", ""});
   EXPECT_EQ(outcome.code, 2);

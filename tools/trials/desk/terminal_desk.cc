@@ -39,6 +39,16 @@ std::string ScaleText(const ItemSection& item) {
 
 std::string TerminalDesk::ReadLine() {
   std::fflush(stdout);
+  try {
+    return WaitForLine();
+  } catch (...) {
+    fmt::print("\n");  // ends the line of the prompt, so that an error has a line of its own
+    std::fflush(stdout);
+    throw;
+  }
+}
+
+std::string TerminalDesk::WaitForLine() {
   for (;;) {
     if (const std::size_t end = unread_.find('\n'); end != std::string::npos) {
       std::string line = unread_.substr(0, end);

@@ -20,9 +20,11 @@ class TerminalDesk final : public Desk {
   void Finish() override;
 
  private:
-  /// The next line of stdin, without its line feed.
+  /// The next line of stdin, without its line feed. stdout ends with a prompt. If no line comes,
+  /// the prompt's line ends.
   /// @throws Interrupted; std::runtime_error at the end of stdin
   std::string ReadLine();
+  std::string WaitForLine();
 
   std::string unread_;
 };
