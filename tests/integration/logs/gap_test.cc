@@ -358,20 +358,28 @@ TEST_F(GapTest, AFileOfLcmLoggerThatBeganInTheMiddleOfARunIsUsed) {
   bus.Subscribe("TRUTH", [&step](runtime::Bytes truth) {
     step = runtime::ReadInt64(truth, runtime::kStepOffset);
   });
+  Background driver({Program("fogline-driver"), "--lcm-url", bus.url()});
   Background run({Program("fogline"), "run", "scenario/paper.json", "--quiet", "--pace", "25",
-                  "--set", "/steps=300", "--log", folder_.File("own.lcm"), "--lcm-url", bus.url()});
+                  "--set", "/steps=300", "--external", "driver", "--stall-timeout", "100", "--log",
+                  folder_.File("own.lcm"), "--lcm-url", bus.url()});
   const TimePoint end = Clock::now() + kPatience;
   while (step < 40 && Clock::now() < end) bus.Wait(milliseconds(10));
   ASSERT_GE(step, 40);
-  // WHEN lcm-logger joins, and the run ends
+  // WHEN lcm-logger joins while the run waits for its driver, and the run ends
+  driver.Signal(SIGSTOP);
   const std::string log = folder_.File("late.lcm");
   Background logger(
       {"lcm-logger", "--quiet", "--flush-interval=10", "--lcm-url=" + bus.url(), log});
+  const auto publish_until_logged = [&](const std::string& channel) {
+    while (Content(log).find(channel) == std::string::npos && Clock::now() < end) {
+      bus.Publish(channel, std::vector<std::uint8_t>(runtime::kHeaderEnd));
+      bus.Wait(milliseconds(10));
+    }
+  };
+  publish_until_logged("DURING_RUN");
+  driver.Signal(SIGCONT);
   ASSERT_EQ(run.Wait(), 0) << run.Err();
-  while (Content(log).find("AFTER_RUN") == std::string::npos && Clock::now() < end) {
-    bus.Publish("AFTER_RUN", std::vector<std::uint8_t>(runtime::kHeaderEnd));
-    bus.Wait(milliseconds(10));
-  }
+  publish_until_logged("AFTER_RUN");
   logger.Signal(SIGINT);
   ASSERT_EQ(logger.Wait(), 0);
   // THEN the verbs show the steps that the log has. lcm-logger may have lost some messages of these
