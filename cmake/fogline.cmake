@@ -66,7 +66,8 @@ function(fogline_add_campaign name timeout_s)
   endif()
 endfunction()
 
-# fogline_build_campaign_programs(): adds the test campaign.Programs. All campaigns come before.
+# fogline_build_campaign_programs(): adds the test campaign.Programs. Call it after all calls of
+# fogline_add_campaign().
 function(fogline_build_campaign_programs)
   get_property(programs GLOBAL PROPERTY FOGLINE_CAMPAIGN_PROGRAMS)
   list(REMOVE_DUPLICATES programs)
@@ -75,8 +76,8 @@ function(fogline_build_campaign_programs)
     PROPERTIES FIXTURES_SETUP campaign_programs)
 endfunction()
 
-# The time limit of a test of the plain set, in seconds. It is some times kPatience
-# (tests/support/command.h), because it only ends a test that hangs on a busy machine.
+# The time limit of a test of the plain set, in seconds. The limit is several times kPatience
+# (tests/support/command.h), so that it ends only tests that hang, even on a busy machine.
 set(FOGLINE_TEST_LIMIT_S 900)
 
 # fogline_add_test_program(NAME LIBS...): builds every NAME/**/*_test.cc into the program NAME_tests.
@@ -91,9 +92,10 @@ function(fogline_add_test_program name)
     set_source_files_properties("${source}" PROPERTIES UNITY_GROUP ${group})
   endforeach()
   set_target_properties(${name}_tests PROPERTIES UNITY_BUILD ${FOGLINE_UNITY} UNITY_BUILD_MODE GROUP)
-  # All test programs share one precompiled header, because it takes 86 MB. It has no matchers of
-  # GoogleMock, because they would take 18 MB more and only some of the files use them. A shared
-  # header needs equal definitions, so all of them link boost_asio, which has some.
+  # All test programs share one precompiled header, because it takes 86 MB. The header does not
+  # contain the matchers of GoogleMock, because they would take 18 MB more, and only some of the
+  # files use them. A shared header needs the same compile definitions in all programs. boost_asio
+  # has such definitions, so all test programs link it.
   get_property(precompiled GLOBAL PROPERTY FOGLINE_PRECOMPILED_TESTS)
   if(precompiled)
     target_precompile_headers(${name}_tests REUSE_FROM ${precompiled})
@@ -112,7 +114,8 @@ endfunction()
 # one test of ctest. The names of the tests begin with NAME: "unit.RadarTest.Name".
 function(fogline_add_tests name)
   fogline_add_test_program(${name} ${ARGN})
-  # Of the tests of runs in real time, only one runs at a time: two would take each other's time.
+  # Only one test of a run in real time runs at a time, because two such tests would delay each
+  # other.
   set(realtime "*InRealtime*:*RealtimeTest.*:*UnderLoad*:DeafRoleTest.*:RealtimeHorizonTest.*")
   gtest_discover_tests(${name}_tests TEST_PREFIX "${name}." DISCOVERY_MODE PRE_TEST
     TEST_FILTER "-${realtime}"

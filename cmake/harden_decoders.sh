@@ -1,15 +1,15 @@
 #!/bin/sh
 # harden_decoders.sh HEADER...: adds missing checks to the decoders that lcm-gen has written.
 #
-# LCM's decoders trust lengths that come from the network, and do not overwrite every part of an
-# object:
+# LCM's decoders check the lengths in a message too late or only in part, and do not overwrite every
+# part of an object:
 #
 # 1. An array is allocated before its length is checked: a message of 100 bytes can claim 16 GB. The check
 #    refuses a length below 0 or above the number of bytes left in the message.
 # 2. A string may lack its terminator, have the length 0 or less, or have a zero byte before its
 #    end. If such a message were encoded again, its bytes would differ. The check refuses all three.
-# 3. If an array of numbers is empty in the message, the decoder does not touch it: the object would
-#    keep the elements of an earlier message. The array is cleared first.
+# 3. If an array of numbers is empty in the message, the decoder does not change the object's array.
+#    Then the object would keep the elements of an earlier message. The array is cleared first.
 #
 # The script fails if it cannot add all these checks. The installed lcm-gen then writes other code
 # than Debian 12's lcm-gen. The script works for any message type.

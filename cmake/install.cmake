@@ -12,10 +12,10 @@ foreach(service IN LISTS FOGLINE_SERVICES)
 endforeach()
 install(TARGETS ${FOGLINE_PROGRAMS} RUNTIME DESTINATION bin COMPONENT fogline)
 
-if(TARGET fogline_sumo)  # load_sumo.h finds it there
+if(TARGET fogline_sumo)  # load_sumo.h looks for the module there
   install(TARGETS fogline_sumo LIBRARY DESTINATION lib/fogline COMPONENT fogline)
 endif()
-# lib/fogline has what the programs alone use.
+# lib/fogline has the libraries that only the programs use.
 install(TARGETS fogline_hear_loopback LIBRARY DESTINATION lib/fogline COMPONENT fogline)
 install(DIRECTORY scenario/ DESTINATION share/fogline/scenario COMPONENT fogline
   PATTERN "bad" EXCLUDE PATTERN "io" EXCLUDE PATTERN "sections" EXCLUDE

@@ -11,8 +11,8 @@ if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
   set(CMAKE_BUILD_TYPE Release CACHE STRING "Debug, Release, RelWithDebInfo" FORCE)
 endif()
 
-# The option for code whose speed does not matter, such as that of command lines and JSON: it takes
-# long to compile. GCC needs a quarter less time with -Og than with -O1.
+# The option for code whose speed does not matter, such as code for command lines and JSON. Such
+# code takes long to compile. GCC needs a quarter less time with -Og than with -O1.
 set(FOGLINE_COLD_CODE $<$<CONFIG:Release>:-Og>)
 # The option for code that mostly waits for the network or the disk.
 set(FOGLINE_IO_CODE $<$<CONFIG:Release>:-O2>)
@@ -20,7 +20,8 @@ set(FOGLINE_IO_CODE $<$<CONFIG:Release>:-O2>)
 # Compiles several source files as one, because the headers take most of the compiler's time. If the
 # option is OFF, a change of one file compiles only that file.
 option(FOGLINE_UNITY "Compile several source files at once" ON)
-# tools/mutate changes one file of a library at a time, and no file of a test.
+# The option is for tools/mutate, which changes one file of a library at a time, and no file of a
+# test.
 option(FOGLINE_UNITY_TESTS_ONLY "Compile only tests in this way" OFF)
 set(CMAKE_UNITY_BUILD ${FOGLINE_UNITY})
 if(FOGLINE_UNITY_TESTS_ONLY)
@@ -40,8 +41,8 @@ if(CCACHE_PROGRAM AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
 endif()
 
 # Debug, release and -march=native builds give the same results. The compiler uses no fused
-# multiply-add, because it rounds once instead of twice. Eigen does not vectorise, because vector
-# code adds in another order.
+# multiply-add, because a fused multiply-add rounds once instead of twice. Eigen does not vectorise,
+# because vector code adds in another order.
 add_compile_options(-ffp-contract=off)
 add_compile_definitions(EIGEN_DONT_VECTORIZE)
 add_compile_options(-Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-missing-field-initializers)
@@ -58,8 +59,8 @@ if(FOGLINE_WERROR)
   add_compile_options(-Werror)
 endif()
 
-# Every thread counts, and each line counts where it stands: an inlined function has no lines of its
-# own.
+# The counters are atomic, so the counts of all threads are right. Functions are not inlined,
+# because an inlined function has no lines of its own.
 option(FOGLINE_COVERAGE "Count the lines that are executed (tools/test --coverage)" OFF)
 if(FOGLINE_COVERAGE)
   add_compile_options(--coverage -fprofile-update=atomic -fno-inline)
@@ -73,8 +74,9 @@ if(FOGLINE_SANITIZE)
   add_link_options(-fsanitize=${FOGLINE_SANITIZE})
 endif()
 
-# Programs have no symbols, which would make the build folder 30 MB larger. RelWithDebInfo keeps them,
-# and so do programs with sanitizers, whose reports name functions.
+# Release programs have no symbols, because symbols would make the build folder 30 MB larger.
+# Programs of other build types keep their symbols. Programs with sanitizers keep them, too, because
+# the reports of sanitizers name functions.
 set(FOGLINE_STRIP $<$<CONFIG:Release>:-s>)
 if(NOT FOGLINE_SANITIZE)
   add_link_options(${FOGLINE_STRIP})

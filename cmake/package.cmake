@@ -1,12 +1,12 @@
 # `ninja -C build fogline_packages` makes Debian packages in build/packages: fogline (programs,
 # scenarios, man pages, completion, systemd unit), fogline-dev (headers, static libraries, CMake
-# package, .lcm files), and python3-fogline-lab if there is a component `python`. They need lintian's
-# package tools: dpkg-dev, fakeroot, file, help2man, man-db.
+# package, .lcm files), and python3-fogline-lab if there is a component `python`. The command needs
+# Debian's packages dpkg-dev, file and help2man.
 set(FOGLINE_MAINTAINER "the Fogline authors <fogline@fogline.invalid>" CACHE STRING
   "Maintainer of the Debian packages, as NAME <ADDRESS>")
 
-# A package has the files of its component, and those of NAME-system: files outside of the prefix and
-# documents, which `cmake --install` does not install.
+# A package has the files of two components: NAME and NAME-system. The component NAME-system has the
+# files outside of the prefix, and the documents. `cmake --install` does not install this component.
 set(parts fogline dev)
 get_cmake_property(components COMPONENTS)
 if("python" IN_LIST components)
@@ -60,13 +60,14 @@ set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 
 set(CPACK_DEBIAN_FOGLINE_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_FOGLINE_PACKAGE_SHLIBDEPS ON)
-# dpkg-shlibdeps does not see matio, because the program loads it by itself (matio_library.h).
+# dpkg-shlibdeps does not find matio, because the program loads matio at run time (matio_library.h).
 get_property(matio_package GLOBAL PROPERTY FOGLINE_MATIO_PACKAGE)
 set(CPACK_DEBIAN_FOGLINE_PACKAGE_DEPENDS "${matio_package}")
 set(CPACK_DEBIAN_FOGLINE_PACKAGE_RECOMMENDS "liblcm-bin, gnuplot-nox | gnuplot")
 set(CPACK_DEBIAN_FOGLINE_PACKAGE_SUGGESTS
   "default-jre, fogline-dev, libjchart2d-java, liblcm-java, openssh-client")
-# CPack would write a postinst and a postrm that call ldconfig, which knows no file in lib/fogline.
+# CPack would write a postinst and a postrm that call ldconfig. This call is of no use, because
+# ldconfig does not search lib/fogline.
 foreach(file IN ITEMS conffiles postinst prerm postrm)
   list(APPEND CPACK_DEBIAN_FOGLINE_PACKAGE_CONTROL_EXTRA "${package_files}/fogline/${file}")
 endforeach()

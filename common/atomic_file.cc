@@ -133,8 +133,8 @@ int Open(const Target& target) {
     }
     return fcntl(*target.descriptor, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
   }
-  // Without O_NONBLOCK, open() would wait until a process reads the pipe. With O_NONBLOCK, open()
-  // fails.
+  // If no process reads the pipe, open() fails with O_NONBLOCK. Without O_NONBLOCK, open() would
+  // wait for a reader.
   const int fd = open(target.path.c_str(), O_WRONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
   if (fd >= 0) fcntl(fd, F_SETFL, fcntl(fd, F_GETFL) & ~O_NONBLOCK);
   return fd;

@@ -12,9 +12,9 @@ namespace fogline {
 
 /// Writes a file under a random name in the folder of the target file, and renames it at the end.
 /// So several processes can write the same file at the same time. Each process writes a complete
-/// file, and the file that is renamed last remains (with FinishNew(): the first). If the name is a
-/// link, the link stays and its target is replaced. A terminal, /dev/null, a pipe and /dev/stdout
-/// cannot be replaced; Finish() writes the content into them.
+/// file. The file that is renamed last remains; with FinishNew(), the first file remains. If the
+/// name is a link, the link stays and its target is replaced. A terminal, /dev/null, a pipe and
+/// /dev/stdout cannot be replaced; Finish() writes the content into them.
 ///
 /// A process that must leave no temporary file after an interrupt calls WatchInterrupts()
 /// (interrupt.h). Then only kill -9 leaves a file with a random name, ".fogline-*".
@@ -99,16 +99,17 @@ inline constexpr const char* kDefaultFolder = "logs";
 /// AtomicFile writes into the existing file and renames no file.
 bool IsReplaceable(const std::filesystem::path& file);
 
-/// Opens a pipe, a device or an open descriptor for writing (not IsReplaceable()). @return a
-/// descriptor
+/// Opens a pipe, a device or an open descriptor for writing; for these, IsReplaceable() is false.
+/// @return a descriptor
 /// @throws InputError "FILE: error: --out: cannot write: no process reads this pipe"
 int OpenStream(const std::filesystem::path& file, std::string_view option);
 
 /// Whether the file is stdout. In this case, the program should write no other text to stdout.
 bool IsStdout(const std::filesystem::path& file);
 
-/// Throws if the parent folder of a new file or folder does not exist, because the parent's name is
-/// probably mistyped. If the missing folder is kDefaultFolder, the function creates it instead.
+/// Throws if the parent folder of a new file or folder does not exist. In this case, the parent's
+/// name is probably mistyped. If the missing folder is kDefaultFolder, the function creates it
+/// instead.
 /// @param option the command line option that names the new file or folder, such as "--out"
 void RequireFolderOf(const std::filesystem::path& file, std::string_view option);
 

@@ -21,7 +21,7 @@ constexpr std::size_t kMaxExcerpt = 100;
 // the product of the lengths.
 constexpr std::size_t kMaxCompared = 64;
 
-// A suggestion may differ from the word by one edit for each three characters. One edit is always
+// A suggestion may differ from the word by one edit for every three characters. One edit is always
 // allowed. If a word of at least kMinBeginning bytes is the beginning of a name (for example the
 // name without its unit), the distance counts as one edit.
 constexpr std::size_t kCharactersPerEdit = 3;

@@ -1,8 +1,8 @@
 // Finds the inputs and outputs of an algorithm from the types of its Step function. The graph table
 // (graph.h) then gives the channels and the role of the algorithm.
 //
-// An algorithm may have one more input, which it uses only in some scenarios: an input on demand.
-// An algorithm with such an input has these two functions.
+// An algorithm may have one more input, an input on demand. The algorithm uses this input only in
+// some scenarios. An algorithm with such an input has these two functions.
 //
 //     static bool UsesOnDemandInput(const Scenario& scenario);  // whether the input is used
 //     void SetOnDemandInput(const M& message);                  // called before each Step, if used
@@ -156,7 +156,7 @@ struct AlgorithmTraits {
   static_assert(internal::Writes(kRole, std::type_identity<Outputs>{}),
                 "the outputs of Step are not the channels that kGraph expects from this role; see "
                 "its rows in services/graph.h");
-  // kGraph may allow the role an input on demand that this algorithm does not have.
+  // kGraph may allow an input on demand that this algorithm does not have.
   static_assert(internal::MayReadOnDemand(kRole, std::type_identity<OnDemand>{}),
                 "kGraph does not let this role read the message of SetOnDemandInput on demand");
   static_assert(

@@ -16,10 +16,10 @@
 namespace fogline {
 
 // Every role that computes messages, in the order of evaluation within a step. A row is
-// ROLE(folder, Class, purpose). The role is the class fogline::FOLDER::CLASS of
-// services/FOLDER/FOLDER.h, its name is FOLDER, its program is fogline-FOLDER, and its value is
-// Role::kCLASS. services/closed_loop/algorithms.h checks that each row has a folder, and that each
-// folder of a role has a row.
+// ROLE(folder, Class, purpose). The class of the role is fogline::FOLDER::CLASS in
+// services/FOLDER/FOLDER.h. The name of the role is FOLDER. Its program is fogline-FOLDER, and its
+// value is Role::kCLASS. services/closed_loop/algorithms.h checks that each row has a folder, and
+// that each folder of a role has a row.
 #define FOGLINE_ROLES(ROLE)                                                         \
   ROLE(world, World, "moves the cars and is the clock of the run")                  \
   ROLE(radar, Radar, "measures range and range rate; fog hardly affects it")        \
@@ -231,8 +231,8 @@ constexpr std::int64_t LagOf(Role producer, Role reader) {
 }
 
 /// Whether every role except the world reads only channels of roles that come before it in kRoles.
-/// Then each of these roles uses only messages of its own step. The world begins a step, and uses
-/// messages of the previous step.
+/// If this is true, each of these roles uses only messages of its own step. The world begins a
+/// step, and uses messages of the previous step.
 constexpr bool RolesAreInOrder() {
   for (const ChannelInfo& channel : kChannels) {
     for (const RoleInfo& reader : kRoles) {

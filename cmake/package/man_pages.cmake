@@ -32,7 +32,7 @@ endfunction()
 function(verbs output)
   execute_process(COMMAND "${PROGRAM_FOLDER}/fogline" --complete ${ARGN} "" OUTPUT_VARIABLE lines
     COMMAND_ERROR_IS_FATAL ANY)
-  string(REGEX REPLACE "\t[^\n]*" "" lines "${lines}")  # a meaning may have a ";"
+  string(REGEX REPLACE "\t[^\n]*" "" lines "${lines}")  # a meaning may contain ";"
   string(REGEX MATCHALL "[^\n]+" lines "${lines}")
   set(${output} "${lines}" PARENT_SCOPE)
 endfunction()

@@ -57,7 +57,7 @@ class WithoutSignals {
   bool was_pending_ = false;
 };
 
-/// Writes to stderr. A write waits for room until a limit at most, which may be 0.
+/// Writes to stderr. A write waits for room, but not longer than a limit. The limit may be 0.
 ///
 /// A pipe or terminal is opened a second time, by its name in /proc, so that writes to it do not
 /// wait. O_NONBLOCK on descriptor 2 itself would affect all processes to which the shell has given

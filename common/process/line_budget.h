@@ -15,7 +15,7 @@ namespace fogline {
 
 class LineBudget {
  public:
-  /// @param program its name begins each line
+  /// @param program name of the program; each line begins with this name
   explicit LineBudget(std::string program) : program_(std::move(program)) {}
 
   void Print(const std::string& line) {

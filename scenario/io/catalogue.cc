@@ -44,7 +44,8 @@ std::string WithIndicesOf(std::string_view pointer, std::string_view pattern) {
 // All fields of `file`, in which each list gets one item. `file` must outlive the result.
 template <class File>
 FieldList CatalogueOf(File& file) {
-  // The contents of a list can have lists of their own, so the number of fields may grow twice.
+  // An item of a list can contain lists, so each pass may add fields. The loop ends after a pass
+  // that adds no field.
   for (std::size_t known = 0; known < AllFields(file).size();) {
     const FieldList fields = AllFields(file);
     known = fields.size();

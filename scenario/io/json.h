@@ -43,8 +43,8 @@ struct JsonMember {
 const JsonMember* FindMember(const JsonObject& object, std::string_view key);
 JsonMember* FindMember(JsonObject& object, std::string_view key);
 
-/// Place of the value with this pointer. If the tree lacks this value, the place of its nearest
-/// parent in the tree.
+/// Place of the value with this pointer. If the tree lacks this value, the result is the place of
+/// its nearest parent in the tree.
 Place FindPlace(const JsonValue& root, std::string_view pointer);
 
 /// Description of the value for a message: `the text "abc"`, `the number 3`, `null`, `a list`.

@@ -57,8 +57,8 @@ Scenario ParseScenario(std::string_view text, std::string_view name = "scenario"
 /// @pre every value of `scenario` is within the range of its field
 std::string PrintScenario(const Scenario& scenario);
 
-/// JSON schema (draft-07) of scenario files, made from the descriptions of the fields. The schema
-/// accepts exactly the JSON documents without duplicate keys that ParseScenario accepts.
+/// JSON schema (draft-07) of scenario files, made from the descriptions of the fields. Of the JSON
+/// documents without duplicate keys, the schema accepts exactly those that ParseScenario() accepts.
 std::string ScenarioSchema();
 
 /// JSON schema (draft-07) of the files of experiments with people (sections/plans/experiment.h).

@@ -16,7 +16,7 @@ namespace {
 constexpr std::string_view kExample = "must be /pointer=value, such as /arbitrator/threshold=0.8";
 
 // A hint for an override without the slash at its beginning, or with dots: for "fog/model=beam" and
-// "fog.model=beam" it suggests "/fog/model". "" if there is no such field.
+// "fog.model=beam" the hint suggests "/fog/model". "" if there is no such field.
 std::string FormHint(std::string_view text) {
   std::string pointer = fmt::format("/{}", text.substr(0, text.find('=')));
   std::replace(pointer.begin(), pointer.end(), '.', '/');
@@ -44,7 +44,7 @@ JsonValue* FindItem(JsonArray& items, std::string_view segment) {
 
 // The value at `pointer`, which names a known field. Adds missing sections of the path. If a list
 // has no such item, the function notes this mistake and returns null. If a section of the path has
-// a value of a wrong type, it returns null, and ReadScenario() notes this mistake.
+// a value of a wrong type, the function returns null, and ReadScenario() notes this mistake.
 JsonValue* Walk(JsonValue& root, std::string_view pointer, Place place, DiagnosticList& mistakes) {
   JsonValue* at = &root;
   std::size_t begin = 0;

@@ -98,7 +98,7 @@ struct TransferSection {
                 "Autoware's vehicle_cmd_gate on transition: 0.5");
 };
 
-/// Policy adaptive: a threshold that moves with the situation,
+/// Policy adaptive: a threshold that depends on the situation,
 /// clip(threshold + readiness_gain (1 - A) - visibility_gain_m / MOR - closing_gain_s max(0, 1/TTC
 /// of the follower) - braking_gain_s2pm max(0, host's braking), least, most). A is the driver's
 /// readiness, MOR the visibility, and TTC the time to collision.

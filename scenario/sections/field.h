@@ -49,8 +49,8 @@ struct ListSpec {
   std::int64_t max_items;
 };
 
-/// Longest text in a scenario file, in characters (Unicode code points). No character of a text is
-/// a control character (C0, DEL, C1), so a text can be shown on any terminal.
+/// Longest text in a scenario file, in characters (Unicode code points). A text has no control
+/// characters (C0, DEL, C1), so it can be shown on any terminal.
 inline constexpr std::int64_t kMaxTextLength = 4096;
 
 /// If the field `choice` beside a section has the value `value`, the file must have the section. At
@@ -83,8 +83,8 @@ struct ChoiceNames {
   static constexpr auto kDocs = ColumnOf(ChoicesOf(Enum()), &Choice::doc);
 };
 
-/// A line of a source file. SourceLine converts to the type of each line above it. For overloads,
-/// the nearest line is the best match.
+/// A line of a source file. SourceLine<N> converts to SourceLine<M> for every line M above line N.
+/// In overload resolution, the nearest line above is the best match.
 template <int number>
 struct SourceLine : SourceLine<number - 1> {};
 template <>

@@ -96,7 +96,7 @@ double AccController::CommandOf(double control, double acceleration_mps2) const 
 // may brake harder than the automation may. A longitudinal vehicle never follows its command
 // exactly. For such a vehicle, the value is the u of the last step, but limited to values near the
 // u that would keep the acceleration. The two u differ by at most T_e jerk_max / K_e. While u
-// changes at the jerk limit, the model's engine has this difference. Because of this limit, u
+// changes at the jerk limit, the model's engine lags by this difference. Because of this limit, u
 // cannot drift away while the human drives.
 double AccController::PreviousControl(double acceleration_mps2) const {
   const double holding = -acceleration_mps2 / section_.engine_gain;

@@ -88,11 +88,12 @@ QpSolver::Result QpSolver::Solve(const Eigen::VectorXd& linear, const Eigen::Vec
   return result;
 }
 
-// Step 0 of the method of Goldfarb & Idnani (qp.h), but from the last active set instead of an
-// empty set. The function finds the minimum at which the limits of this set are equalities. The
-// function drops limits with negative multipliers. Let N = Q R be the normals of the limits, b the
-// values of the limits, y = L'x, and y0 the y of the unconstrained minimum. Then y = y0 + Q t with
-// R't = b - N'y0, and the multipliers are the lambda with R lambda = t.
+// This function is step 0 of the method of Goldfarb & Idnani (qp.h), but it starts from the last
+// active set instead of an empty set. The function finds the minimum at which the limits of this
+// set are equalities. The function drops limits with negative multipliers. Let N = Q R be the
+// normals of the limits, b the values of the limits, y = L'x, and y0 the y of the unconstrained
+// minimum. Then y = y0 + Q t with R't = b - N'y0, and the multipliers are the lambda with
+// R lambda = t.
 void QpSolver::StartFromActiveSet(const Eigen::VectorXd& linear, const Eigen::VectorXd& lower,
                                   const Eigen::VectorXd& upper) {
   scaled_.noalias() = inverse_factor_.triangularView<Eigen::Lower>() * -linear;

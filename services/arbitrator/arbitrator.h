@@ -60,9 +60,9 @@ class Arbitrator {
   const arbitration_t& Choose(const ego_t& ego, const track_t& track,
                               const accel_command_t& automation, const driver_command_t& driver);
 
-  /// Applies emergency braking: may replace acceleration and mode of the command, also while the
-  /// human drives. The mode of a manoeuvre stays unchanged. Call Guard() once per decision, after
-  /// Choose(). Step() calls Guard() itself.
+  /// Applies emergency braking, which may replace acceleration and mode of the command, also while
+  /// the human drives. The mode of a manoeuvre stays unchanged. Call Guard() once per decision,
+  /// after Choose(). Step() calls Guard() itself.
   void Guard(const ego_t& ego, const track_t& track, arbitration_t& command);
 
   /// Whether the last decision wants the human to drive, also while the transfer is still in
@@ -87,7 +87,7 @@ class Arbitrator {
   void Overrule(const arbitration_t& sent);
 
  private:
-  /// What a policy with a rule of its own (neither kThreshold nor kNever) requests, for the DoC in
+  /// The request of a policy with a rule of its own (neither kThreshold nor kNever), for the DoC in
   /// out_.
   policies::EngagementRequest OwnRequest(const ego_t& ego, const track_t& track,
                                          const accel_command_t& automation,

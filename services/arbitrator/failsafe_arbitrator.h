@@ -51,8 +51,8 @@ class FailsafeArbitrator {
   /// Text about the fallback that replaces the arbitrator's regular decision; "" if there is no
   /// fallback.
   std::string_view fallback() const { return FallbackText(decision_); }
-  /// status_t::HOST if the host is in a minimal risk manoeuvre, or has stopped after it, and no
-  /// command ends this state; otherwise 0.
+  /// status_t::HOST if the host is in a minimal risk manoeuvre that lasts until the end of the run,
+  /// or stands until the end of the run after a manoeuvre; otherwise 0.
   std::int8_t minimal_risk() const { return IsLocked(out_.mode) ? status_t::HOST : std::int8_t{0}; }
   /// The decision of the last step.
   Decision decision() const { return decision_; }

@@ -20,7 +20,7 @@ namespace fogline::arbitrator {
 ///           the automation from L <= ln(beta/(1 - alpha)) on;
 ///           after every decision, a new test begins from L = 0
 ///
-/// Then a change of this result waits until min_dwell_s since the last change has passed. The
+/// A change of this result then waits until min_dwell_s has passed since the last change. The
 /// test's probabilities of error are alpha and beta if the DoC is a probability and its steps are
 /// independent. The DoC of a windowed z is not a probability, and its steps depend on each other.
 /// So the test then makes more errors. If the DoC is a posterior, it already contains the evidence

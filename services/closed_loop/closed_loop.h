@@ -102,7 +102,7 @@ class ClosedLoop {
   void Run(std::int64_t run_id, Visit&& visit) {
     if (person_) throw InputError(std::string(kPersonNeedsRealtime));
     // The algorithms are evaluated in their order. So an input is of the same step if its producer
-    // comes before its reader, and of the previous step otherwise (LagOf() in graph.h).
+    // comes before its reader. Otherwise the input is of the previous step (LagOf() in graph.h).
     const EndOfRun end(first().algorithm);
     Messages messages;
     messages.Put(first().algorithm.Start(run_id));

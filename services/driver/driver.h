@@ -25,7 +25,7 @@ class Driver {
   /// @throws InputError if a step is so short that the reaction time is more than 254 steps
   explicit Driver(const Scenario& scenario);
 
-  /// Whether the driver needs HOST_COMMAND, because the awareness depends on who drives.
+  /// Whether the driver needs HOST_COMMAND, because the awareness depends on which side drives.
   static bool UsesOnDemandInput(const Scenario& scenario) {
     return scenario.human.loses_awareness && !scenario.person.drives;
   }
@@ -34,9 +34,9 @@ class Driver {
 
   /// Whether a person drives. SetLiveInput() is then called before every Step().
   static bool UsesLiveInput(const Scenario& scenario) { return scenario.person.drives; }
-  /// Takes the input of the person; nullptr if no person drives. The next offer is a function of
-  /// this input alone (services/models/driver/pedal_response.h). Without a person the pedals are
-  /// released, and the readiness is 0.
+  /// Takes the input of the person; nullptr if no person is there. The next offer is a function of
+  /// this input alone (services/models/driver/pedal_response.h). If no person is there, the pedals
+  /// are released, and the readiness is 0.
   void SetLiveInput(const driver_input_t* input);
 
   /// The acceleration that the driver offers. Call Step() in the order of steps. The result depends

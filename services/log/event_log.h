@@ -41,9 +41,10 @@ struct WrittenLog {
   std::uint32_t checksum = 0;
 };
 
-/// Size of the end of a log, in bytes, that contains everything after the last complete step. A
-/// killed recorder leaves at most kRingSteps incomplete steps and a torn event there, which it has
-/// not reported. The 128 KiB of each channel have space for 87 of its largest messages.
+/// Size, in bytes, of the last part of a log. This part contains everything after the last complete
+/// step. A killed recorder leaves at most kRingSteps incomplete steps and a torn event in this
+/// part, and has not reported them. The 128 KiB of each channel have space for 87 of its largest
+/// messages.
 inline constexpr std::int64_t kTailBytes = static_cast<std::int64_t>(kNumChannels) * (128 << 10);
 
 /// Appends events to a new file, or continues an old file after a given LogHead.

@@ -28,7 +28,7 @@ void VisitLatency(const InputLatency& l, Visitor&& visit) {
 }
 
 /// Collects the latencies of a run. A seat sends each measurement once. A message that repeats the
-/// measurement and the driver_input_t.time_us of the one before does not count.
+/// seat's previous measurement, with the same driver_input_t.time_us, does not count.
 class InputLatencyAccumulator {
  public:
   /// Adds the next DRIVER_INPUT of the log.

@@ -50,7 +50,7 @@ class LogOfRun {
 /// ended normally without a step.
 /// @param option the command line option that names the log, such as "--log"
 /// @param patience how long to wait until the processes of the killed run have ended
-/// @return one line that says what was found; "" if there is no older log
+/// @return one line about the older log; "" if there is no older log
 /// @throws InputError if another run is writing the log
 std::string TakeBackOlder(const std::filesystem::path& log, std::string_view option,
                           Duration patience = Duration::zero());

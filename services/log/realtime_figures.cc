@@ -7,9 +7,9 @@
 namespace fogline::log {
 namespace {
 
-// The last steps are kept, because a STATUS may stand in the log behind later steps than the one
-// that it names. A role that stands still names the same step for a long time. If that step is no
-// longer kept, the number of lost messages is a lower bound.
+// The last steps are kept, because in the log a STATUS may come after steps that are later than the
+// step that it names. A role that computes no step names the same step for a long time. If this
+// step is not kept any more, the number of lost messages is a lower bound.
 constexpr std::size_t kKeptSteps = 1024;
 
 }  // namespace
@@ -45,7 +45,7 @@ void RealtimeAccumulator::AddStep(const runtime::ChannelSet& there) {
   due_.erase(due_.begin(), end);
 }
 
-// All steps up to that of the STATUS were added, and `after` later steps.
+// The step of the STATUS and all steps before it were added, and `after` later steps.
 void RealtimeAccumulator::Check(Process& process) {
   process.is_checked = true;
   const std::int64_t after = steps_ - 1 - process.status.header.step;

@@ -35,10 +35,11 @@ struct RealtimeFigures {
   // At least this number of the missed messages was published. Messages that came too late for the
   // recorder do not count here.
   std::int64_t unlogged_messages = 0;
-  // The channels of these messages, apart from messages before the first TRUTH of the log. Also the
-  // channels that lack a message of which no STATUS says whether it was published: the log has no
-  // STATUS of the producer, or the log has no seal and the message is of a step after the last
-  // STATUS of the producer.
+  // The channels of these messages, apart from messages before the first TRUTH of the log. The set
+  // also has each channel that lacks a message of which no STATUS says whether it was published.
+  // This is the case if the log has no STATUS of the producer. In a log without a seal, this is
+  // also the case if the message is of a step after the last STATUS of the producer, or if several
+  // processes have been the producer.
   runtime::ChannelSet unlogged_channels;
   // Whether the log has a STATUS of the world. All figures except `speed` and `missed_messages`
   // come from STATUS, so without it they are unknown.
@@ -91,7 +92,7 @@ class RealtimeAccumulator {
   RealtimeFigures Result(bool has_all = true) const;
 
  private:
-  /// A process, and what its last STATUS says.
+  /// A process, with its last STATUS.
   struct Process {
     status_t status;
     bool is_checked = false;                            // whether `unlogged` is of this STATUS
@@ -101,7 +102,8 @@ class RealtimeAccumulator {
   /// Compares the number of published messages with the number of logged messages.
   void Check(Process& process);
   bool HasStatus(Role role) const;
-  /// Whether the log lacks a message of a channel of which no STATUS says whether it was published.
+  /// Whether the log lacks a message of a channel, and no STATUS says whether this message was
+  /// published.
   bool MayLack(std::size_t channel, bool has_all) const;
   /// Lower bound of the number of messages of a channel that were published but are not in the log.
   /// Messages that came too late for the recorder do not count here.
@@ -119,7 +121,7 @@ class RealtimeAccumulator {
   // start of the process.
   std::map<std::pair<std::string, std::int64_t>, Process> last_;
   std::deque<runtime::ChannelSet> kept_;       // the channels that each of the last steps has
-  std::multimap<std::int64_t, Process*> due_;  // by the step of the STATUS, which is not here yet
+  std::multimap<std::int64_t, Process*> due_;  // by the step of the STATUS; this step comes later
 };
 
 }  // namespace fogline::log

@@ -50,9 +50,9 @@ Remains ReadRemains(const std::filesystem::path& file, const LogFront& front,
                     const std::function<void(std::int64_t steps)>& alive = {},
                     std::int64_t tail = kTailBytes);
 
-/// Describes bytes after the complete steps of a log in lockstep that no interrupted run leaves; ""
-/// if there are no such bytes. An interrupted run leaves only some incomplete steps, a torn event
-/// or a seal.
+/// Describes unusual bytes after the complete steps of a log in lockstep; "" if there are none.
+/// After its complete steps, an interrupted run leaves only some incomplete steps, a torn event or
+/// a seal. All other bytes are unusual.
 /// @throws InputError if the file is not an event log
 std::string OddEnd(const std::filesystem::path& file, const LogFront& front,
                    const Remains& remains);

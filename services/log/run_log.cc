@@ -129,7 +129,8 @@ class RunLogReader::Assembler {
   std::optional<std::int64_t> Tail() const {
     if (pending_.empty()) return std::nullopt;
     const auto& [newest, messages] = *pending_.rbegin();
-    // A run ends with such a step, so the missing messages of this step are gaps.
+    // If TRUTH has `last`, the run ends with this step, so the missing messages of this step are
+    // gaps.
     truth_t truth{};
     if (runtime::Decode(messages.messages[IndexOf<truth_t>()], truth) && truth.last) return {};
     auto step = pending_.rbegin();

@@ -46,7 +46,8 @@ struct RunLog {
   // messages of one step and channel differ. In lockstep, the log must also have all messages.
   bool ended = false;
   // Whether `ended` is true and, in real time, STATUS says that no published message is missing. If
-  // the log has no sound seal, STATUS must say so up to the last step that lacks a message.
+  // the log has no sound seal, STATUS must say this for all steps up to the last step that lacks a
+  // message.
   bool complete = false;
   // Why the log is not complete, or what was ignored; "" if there is no such remark.
   std::string note;
@@ -82,9 +83,9 @@ class RunLogReader {
   /// message, and may be incomplete or empty. The bytes of the step are valid for the lifetime of
   /// the reader. After an exception, Next() returns nullptr.
   /// @throws InputError at the end of the log if the log has no scenario, lacks the chosen run, or
-  /// has another scenario than the given one. In real time, also at the first message of a run with
-  /// an invalid scenario. Also at a message with the type of another version of Fogline; the error
-  /// then names this version.
+  /// has another scenario than the given one. In real time, Next() also throws at the first message
+  /// of a run with an invalid scenario. Next() also throws at a message with the type of another
+  /// version of Fogline; the error then names this version.
   const StepMessages* Next();
   /// The number of the step that Next() has returned.
   std::int64_t step() const;

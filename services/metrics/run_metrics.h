@@ -54,10 +54,10 @@ struct RunMetrics {
   std::optional<double> collision_time_s;
 
   /// Redundant human engagement: share of the steps in clear air in which the human is engaged, %.
-  /// This definition is our interpretation. With the words of Sourav & Cheng 2024, the 0 % that
-  /// they print beside an SI of 80.79 % would be impossible. Engaged means lambda_H > 0, as
-  /// HumanIsEngaged() in services/host_modes.h. In traded control an engaged human drives. In
-  /// shared control, an engaged human may have only a small part of the authority.
+  /// This definition is our interpretation. With the literal meaning of the words of Sourav & Cheng
+  /// 2024, the 0 % that they print beside an SI of 80.79 % would be impossible. Engaged means
+  /// lambda_H > 0, as HumanIsEngaged() in services/host_modes.h. In traded control an engaged human
+  /// drives. In shared control, an engaged human may have only a small part of the authority.
   std::optional<double> rhe_pct;
   /// Time during which the human is engaged, s. This time ends when the last step begins, because
   /// the command of the last step is never carried out.

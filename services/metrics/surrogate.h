@@ -1,6 +1,6 @@
 // Surrogate measures of safety between a car and the car ahead of it. The measures say how near a
-// collision is. Gaps are bumper to bumper, speeds along the lane. The car ahead is assumed to keep
-// its speed, except where a measure states another assumption.
+// collision is. Gaps are measured from bumper to bumper, and speeds along the lane. The car ahead
+// is assumed to keep its speed, except where a measure states another assumption.
 #pragma once
 
 #include <optional>

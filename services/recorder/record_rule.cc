@@ -19,8 +19,8 @@ constexpr std::int64_t kMaxOpen = runtime::kRingSteps / 2;
 // At most this many STATUS, DRIVER_INPUT and TRIAL messages may wait to be written: several from
 // each role in each open step.
 constexpr std::size_t kMaxHeard = 4096;
-// At most as many DRIVER_INPUT messages are logged in a second as this number of seats may send. So
-// a flood of messages cannot fill the memory or the disk.
+// A number of seats. In a second, the recorder logs at most as many DRIVER_INPUT messages as these
+// seats may send. So a flood of messages cannot fill the memory or the disk.
 constexpr double kSeats = 4;
 
 }  // namespace

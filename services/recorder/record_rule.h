@@ -3,8 +3,8 @@
 // producer can still have it. A step that stays incomplete is written without the missing messages.
 // RUN tells the recorder that a step is under way, even if no message of the step has come. Each
 // STATUS, each DRIVER_INPUT and each TRIAL is also written into the log, after the step in which it
-// came, because the states of the roles, the acts of a person and the facts of a trial are part of
-// the record.
+// came. The reason is that the states of the roles, the acts of a person and the facts of a trial
+// are part of the record.
 #pragma once
 
 #include <array>
@@ -74,7 +74,7 @@ class RecordRule final : public runtime::FireRule {
 
   runtime::Parts& parts_;
   runtime::RealtimeWatch watch_;
-  Duration overdue_;  // how long the recorder waits before it asks for a message
+  Duration overdue_;  // time that the recorder waits before it asks for a message
   std::array<Open, runtime::kRingSteps> open_{};
   std::array<Refused, kNumChannels> refused_{};  // by index in Inputs::all()
   std::deque<Heard> heard_;

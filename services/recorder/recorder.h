@@ -21,7 +21,7 @@ class RecordRule;
 
 class Recorder final : public runtime::Work {
  public:
-  /// What the recorder does with an existing file.
+  /// Treatment of an existing file.
   enum class Existing { kReplace, kResume };
   /// Whether the log has the wall clock of each step. In real time the log always has it.
   enum class WallClock { kNo, kYes };
@@ -59,8 +59,8 @@ class Recorder final : public runtime::Work {
   /// Writes the STATUS, DRIVER_INPUT and TRIAL messages that came in this step or before
   /// (RecordRule::TakeEvents).
   void WriteEvents(std::int64_t step);
-  /// Writes into STATUS how much of the log the operating system has, and the checksum of this
-  /// part.
+  /// Writes into STATUS how many bytes of the log the operating system has, and the checksum of the
+  /// bytes from log_begin on.
   void TellWritten();
   void AnswerRecent(std::string_view channel, runtime::StepRange steps, TimePoint now);
   /// Answers some of the requests. @return the time of the next call

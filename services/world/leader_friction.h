@@ -20,7 +20,7 @@ class LeaderFriction {
   /// road
   LeaderFriction(const Scenario& scenario, models::GradeProfile road);
 
-  /// The acceleration of the profile, limited to what friction allows at this place.
+  /// The acceleration of the profile, limited to the braking that friction allows at this place.
   /// @param profile_mps2 acceleration of the profile
   double Limited(double profile_mps2, double position_m) const;
 

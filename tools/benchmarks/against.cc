@@ -26,7 +26,7 @@ double RowsPerSecond(const Tree& tree, int rows) {
   return rows / nlohmann::json::parse(result.out)["wall_s"].get<double>();
 }
 
-/// Microseconds of a step of a run of nine processes. The result is the difference between a long
+/// Microseconds per step of a run with nine processes. The result is the difference between a long
 /// and a short run, because both include the same cost of starting processes.
 double MicrosecondsPerStep(const Tree& tree, int steps) {
   constexpr int kShort = 100;

@@ -1,6 +1,6 @@
-// Measures the cost of LCM itself, with processes that only receive and send, and with a reader of
-// logs. They use only LCM's own library. The benchmarks compare Fogline's lockstep and log reading
-// with them.
+// Measures the cost of LCM itself: the cost of processes that only receive and send, and of a
+// reader of logs. These processes and this reader use only LCM's own library. The benchmarks
+// compare Fogline's lockstep and log reading with this cost.
 #pragma once
 
 #include <filesystem>

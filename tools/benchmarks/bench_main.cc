@@ -1,4 +1,4 @@
-// fogline-bench: measures Fogline, and what it is compared with, in one run on this machine.
+// fogline-bench: measures Fogline and its references in one run on this machine.
 // (Another program, fogline-bench-steps, measures the cost of a single Step.)
 #include <algorithm>
 #include <cstdio>

@@ -48,8 +48,8 @@ struct Finding {
 
   bool Meets(double limit) const;
   bool met() const { return note.empty() && Meets(comparison.goal); }
-  /// "met", "missed" or "not measured"; "bar 2 met" if only the intermediate goal `bar`, here 2, is
-  /// met.
+  /// "met", "missed", "not measured", or a text such as "bar 2 met". This text means that only the
+  /// intermediate goal `bar` is met, and that its value is 2.
   std::string Verdict() const;
 };
 

@@ -1,4 +1,4 @@
-// Sweeps and logs: the effect of a second core, of the number of runs and of the size of a log.
+// Sweeps and logs: the effect of a second core, the memory of a sweep, the time to read a log.
 #include <nlohmann/json.hpp>
 
 #include "tools/benchmarks/bare_lcm.h"

@@ -62,8 +62,8 @@ double SumoSeconds(int steps) {
       .wall_s;
 }
 
-/// Updates of single cars by SUMO per second. The result is the difference between a long and a
-/// short run, because both include the same cost of loading.
+/// Number of updates of single cars that SUMO makes per second. The result is the difference
+/// between a long and a short run, because both include the same cost of loading.
 double SumoUpdatesPerSecond(int steps) {
   constexpr int kShort = 1'000;
   return kCars * steps / (SumoSeconds(kShort + steps) - SumoSeconds(kShort));

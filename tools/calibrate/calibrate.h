@@ -28,7 +28,7 @@ struct Calibration {
 /// target. The result depends only on the problem and on the number of evaluations. The result is
 /// empty if `go_on` returned false before the first evaluation was complete.
 /// @param max_evaluations at least 1
-/// @throws InputError if the scenario can run at no evaluated point
+/// @throws InputError if the scenario cannot run at any evaluated point
 std::optional<Calibration> Calibrate(const Objective& objective, int max_evaluations,
                                      const GoOn& go_on, const SearchProgress& progress);
 

@@ -16,8 +16,8 @@
 namespace fogline::calibrate {
 namespace {
 
-// Residual, in points, of a seed whose runs do not have the measure. The value is the largest
-// magnitude of a published SI, which is in [-1000, 100] %.
+// Residual, in points, of a seed whose runs do not have the measure. A published SI is in
+// [-1000, 100] %. The value is the largest magnitude in this range.
 constexpr double kMissingResidualPts = 1000;
 
 double Square(double x) { return x * x; }

@@ -26,8 +26,8 @@ std::optional<double> AsNumber(const JsonValue& value) {
   return std::nullopt;
 }
 
-/// Reads a number of a target row into `field`, a field of a published row (scenario), because both
-/// kinds of rows have the same fields and ranges. A missing number becomes NaN.
+/// Reads a number of a target row into `field`. `field` belongs to a published row of a scenario,
+/// because both kinds of rows have the same fields and ranges. A missing number becomes NaN.
 void ReadField(const JsonObject& object, const Field& field, DiagnosticList& diagnostics) {
   const auto& [value, spec] = *field.As<NumberField>();
   *value = std::nan("");

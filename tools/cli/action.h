@@ -11,7 +11,8 @@ namespace fogline::cli {
 /// Action of the chosen verb; returns the exit code (common/exit_code.h).
 using Action = std::function<int()>;
 
-/// An action that throws this ends with the exit code kCheckFailed, and its text is printed.
+/// If an action throws this exception, the text of the exception is printed, and the exit code is
+/// kCheckFailed.
 class CheckFailed : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

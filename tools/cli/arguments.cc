@@ -76,8 +76,8 @@ log::LogOfRun PrepareLog(const std::filesystem::path& log, bool force) {
   }
   if (const std::string older = log::TakeBackOlder(log, "--log"); !older.empty()) Complain(older);
   // The lock makes the file if the file is missing. If two runs start at the same time, only one of
-  // them gets the lock. This need not be the run that made the file, so the size decides whether
-  // the file is new. Even --force does not replace a file that another run is writing.
+  // them gets the lock. The other run may have made the file, so the size decides whether the file
+  // is new. Even --force does not replace a file that another run is writing.
   auto lock = std::make_unique<FileLock>(log, FileLock::Kind::kOwn, "--log", "run");
   if (std::filesystem::is_empty(log, ignored)) return {log, std::move(lock)};
   if (!force) {

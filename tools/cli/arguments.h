@@ -120,8 +120,8 @@ void PrintBeside(const std::filesystem::path& document, std::string_view text);
 /// A build as 16 hexadecimal digits; null for an unknown build.
 nlohmann::ordered_json BuildJson(runtime::BuildId build);
 
-/// The network of a verb that looks at other processes, or talks to them, by the rule that every
-/// program uses (lcm_url.h).
+/// The network of a verb that observes other processes, or sends messages to them. Every program
+/// finds its network by the same rule (lcm_url.h).
 /// @param given the URL from --lcm-url; "" without --lcm-url
 /// @throws InputError if the URL is wrong, or no other process can reach the network (memq)
 std::string CheckedNetworkUrl(const std::string& given);
@@ -134,8 +134,7 @@ class NetworkArguments {
 
   /// The network to observe. @throws InputError as CheckedNetworkUrl()
   std::string Url() const { return CheckedNetworkUrl(url_); }
-  /// Whether the verb should follow announced runs. It does so if the command line names no
-  /// network.
+  /// Whether the verb should follow announced runs: true if the command line names no network.
   bool Follows() const { return url_.empty(); }
 
  private:

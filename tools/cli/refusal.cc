@@ -13,7 +13,7 @@
 namespace fogline::cli {
 namespace {
 
-/// What the user calls the verbs of a command: the program has verbs, a verb has actions.
+/// The user's word for a subcommand of this command: the program has verbs, and a verb has actions.
 std::string_view KindOfVerb(const CLI::App& command) {
   return command.get_parent() == nullptr ? "verb" : "action";
 }
@@ -171,7 +171,7 @@ std::string Refusal(const CLI::App& app, const CLI::ParseError& error) {
   // before the command's name.
   const bool may_misfit = commands.size() == 1 || code == CLI::ExitCodes::ExtrasError ||
                           code == CLI::ExitCodes::RequiredError;
-  // The first wrong word is of the first command with such words.
+  // The first wrong word belongs to the first command that has wrong words.
   const auto misfit = std::ranges::find_if(
       commands, [](const CLI::App* command) { return !command->remaining().empty(); });
   std::string what = OneLine(runtime::WhatIsWrong(error));

@@ -26,8 +26,8 @@ std::string NoSuchVerb(const CLI::App& command, const std::string& word);
 /// - a value for a flag, as in --force=no.
 void RefuseIgnoredValues(CLI::App& app);
 
-/// The words of a command line with "--log=" as two words, "--log" and "". Without this change,
-/// CLI11 would take the next word as the value of --log.
+/// The words of a command line. A word such as "--log=" becomes two words, "--log" and "". Without
+/// this change, CLI11 would take the next word as the value of --log.
 std::vector<std::string> SeparateEmptyValues(const std::vector<std::string>& words);
 
 /// The error message, in one line, for a refused command line: "fogline VERB: error: ... (see

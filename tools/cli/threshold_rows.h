@@ -28,8 +28,8 @@ struct TableRuns {
   int jobs = 1;                       // number of runs at the same time
 };
 
-/// Makes each run of a table as a run of its own, by RunExperiment(). Every number of jobs gives
-/// the same rows, bit for bit. Call WatchInterrupts() before it.
+/// Makes each run of a table separately, by RunExperiment(). Every number of jobs gives the same
+/// rows, bit for bit. Call WatchInterrupts() before it.
 /// @throws CheckFailed if a run fails its verification; all exceptions of RunExperiment()
 std::vector<sweep::ThresholdRow> RowsByRuns(const TableRuns& runs, const Scenario& scenario,
                                             std::span<const double> thresholds,

@@ -15,7 +15,7 @@
 namespace fogline::cli {
 namespace {
 
-// What may choose the transport of a run.
+// The options and the variable that may choose the transport of a run.
 constexpr const char* kTransportOption = "--transport";
 constexpr const char* kUrlOption = "--lcm-url";
 constexpr const char* kUrlVariable = "LCM_DEFAULT_URL";

@@ -19,8 +19,8 @@ namespace fogline::cli {
 class TransportArguments {
  public:
   /// @param transport default transport. If it is direct, but roles are on other machines, the
-  /// default is udpm. If the default starts the roles as processes, and $LCM_DEFAULT_URL is set,
-  /// this URL is the default instead.
+  /// default is udpm. If $LCM_DEFAULT_URL is set, this URL is the default instead. But if the
+  /// default is direct, and no role is external, $LCM_DEFAULT_URL is ignored.
   TransportArguments(CLI::App& verb, std::string transport);
 
   /// Sets the transport, the options of its traffic, and the roles that are started elsewhere.
@@ -48,7 +48,7 @@ class TransportArguments {
 /// Whether a run with this transport has all its roles in one process.
 bool IsOneProcess(const std::string& transport);
 
-/// @param what what needs a process for each role, such as "a live replay"
+/// @param what the feature that needs a process for each role, such as "a live replay"
 /// @throws InputError if all roles of a run with these options are in one process
 void RequireProcesses(const runner::ExperimentOptions& options, std::string_view what);
 

@@ -104,7 +104,8 @@ int Main(std::vector<std::string> arguments, std::initializer_list<AddVerb> verb
   return Run(app, action);
 }
 
-/// Whether a command line asks for completion. Then its other words are the words to complete.
+/// Whether a command line asks for completion. Then its other words are the command line to
+/// complete.
 bool AsksForCompletion(int argc, char** argv) {
   return argc > 1 && std::string_view(argv[1]) == kComplete;
 }

@@ -75,7 +75,8 @@ std::string UserName() {
   return user != nullptr ? user->pw_name : std::to_string(getuid());
 }
 
-/// Examines whether the kernel grants what a role in real time asks for (RunBeforeOthers()).
+/// Examines whether the kernel grants the priority and the locked memory that a role in real time
+/// asks for (RunBeforeOthers()).
 void ExaminePriority(const std::filesystem::path& programs, Findings& findings) {
   const auto report = [&](std::string_view what, int error) {
     findings.push_back(
@@ -102,7 +103,7 @@ void ExaminePriority(const std::filesystem::path& programs, Findings& findings) 
 void ExamineWakeUp(Findings& findings) {
   constexpr int kSleeps = 200;
   constexpr Duration kSleep = milliseconds(1);
-  constexpr double kTooLateMs = 5;  // a run in real time counts a step that begins so late as late
+  constexpr double kTooLateMs = 5;  // in real time a step counts as late if it begins so late
   const Priority priority;
   std::vector<double> late_ms;
   TimePoint due = Clock::now();

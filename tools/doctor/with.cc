@@ -32,9 +32,10 @@ using Level = Finding::Level;
 
 constexpr std::string_view kChannel = "FOGLINE_DOCTOR";
 constexpr Duration kSayEvery = milliseconds(100);
-// If the other doctor is heard, but does not say within this time that it hears this doctor, it
-// does not hear this doctor. In this time this doctor sends 30 messages, so at least one arrives
-// even on a network that loses most messages.
+// After the first message of the other doctor, this doctor waits this long for a message in which
+// the other doctor says that it hears this doctor. If no such message comes, the other doctor does
+// not hear this doctor. In this time this doctor sends 30 messages, so at least one arrives even on
+// a network that loses most messages.
 constexpr Duration kAnswers = milliseconds(3000);
 // A doctor that knows the result continues to send for this time. So the other doctor learns the
 // result, too.

@@ -1,5 +1,5 @@
-// Two keys as pedals. While a key is down, its pedal moves at a fixed rate. So a key can give every
-// travel of the pedal, not only none and full.
+// Two keys as pedals. While a key is down, its pedal moves at a fixed rate. So a key can set every
+// position of the pedal, not only released and full.
 #pragma once
 
 #include <algorithm>

@@ -4,7 +4,7 @@ function files = paper_figures(runs, folder)
 %   paper_figures('run.mat', 'figures') draws the run in run.mat into the folder figures, as
 %   speeds.svg, gaps.svg, conflict.svg and accelerations.svg.
 %   paper_figures({'with.mat', 'without.mat'}, 'figures') draws the runs side by side.
-%   The result is a list of the files. It runs in Octave and in MATLAB, without a display:
+%   The result is a list of the files. The function runs in Octave and in MATLAB, without a display:
 %
 %     fogline run scenario/paper.json --log with.lcm
 %     fogline run scenario/paper.json --set /arbitrator/policy=none --log without.lcm

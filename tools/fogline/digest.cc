@@ -76,7 +76,8 @@ std::string_view SealState(const log::RunLog& run) {
 }
 
 /// Whether the log is a copy of the log of a run in real time. The results of such a run are in
-/// STATUS messages, but the seal of a copy does not cover STATUS messages. So nothing proves them.
+/// STATUS messages, but the seal of a copy does not cover STATUS messages. So the seal of a copy
+/// does not prove the results.
 bool IsUnprovenCopy(const log::RunLog& run) { return run.realtime && SealState(run) == "copy"; }
 
 int RunDigest(const DigestArguments& arguments) {

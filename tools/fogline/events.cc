@@ -85,8 +85,8 @@ const metrics::TakeOverMeasures* MeasuresOf(const RunEvents& events,
   return found == events.measures.end() ? nullptr : &*found;
 }
 
-/// Of HOST_COMMAND and DRIVER_COMMAND, the channels of which the log of a run in real time may lack
-/// published messages.
+/// The set has HOST_COMMAND and DRIVER_COMMAND, each only if the log of a run in real time may lack
+/// published messages of this channel.
 runtime::ChannelSet UnloggedCommands(const log::RunLog& run) {
   runtime::ChannelSet commands;
   commands.set(IndexOf<arbitration_t>()).set(IndexOf<driver_command_t>());
@@ -94,7 +94,7 @@ runtime::ChannelSet UnloggedCommands(const log::RunLog& run) {
 }
 
 /// Whether an event may have happened before the step in which it is listed, because commands are
-/// missing. In real time, a step may have no command. So an event is late only if published
+/// missing. In real time, a step may have no command, so the result is true only if published
 /// messages may be missing.
 bool MayBeEarlier(const RunEvents& events, const take_over::TakeOverEntry& entry) {
   return entry.earliest_step != entry.step &&

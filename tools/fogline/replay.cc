@@ -1,4 +1,4 @@
-// fogline replay: checks whether a role still computes the messages that a log has.
+// fogline replay: checks whether a role computes the same messages as those in a log.
 #include <algorithm>
 #include <memory>
 #include <optional>

@@ -160,8 +160,8 @@ int RunNew(RunArguments& arguments) {
   }
   if (options.realtime) cli::CheckPeriod(scenario, arguments.speed);
   const bool direct = options.transport == "direct";
-  // A network that cannot be opened is refused before the log is made. A direct run opens one only
-  // for --external; its log, if any, is made by --log.
+  // A network that cannot be opened is refused before the log is made. A direct run has no network,
+  // and has a log only with --log.
   if (!direct) runner::CheckNetwork(options);
   const bool has_log = !options.log.empty() || !direct;
   log::LogOfRun log = !has_log              ? log::LogOfRun()

@@ -22,8 +22,8 @@ class HostGroup {
   std::string RelayPlace() const;
   /// Gives the key to every machine, and lets it examine its way to the network of the run.
   /// @param silence time without a message of the runner after which a machine ends its roles
-  /// @throws std::runtime_error with the name of a machine and what is wrong there; InputError if
-  ///     the key cannot be read; Interrupted
+  /// @throws std::runtime_error with the name of a machine and its problem; InputError if the key
+  ///     cannot be read; Interrupted
   void Check(const std::string& url, const runtime::TrafficOptions& traffic, Duration silence);
 
   /// The machine of a role; nullptr: this machine.

@@ -16,7 +16,7 @@
 
 namespace fogline::hosts {
 
-/// What a machine must know of a run before it starts roles.
+/// The data of a run that a machine needs before it starts roles.
 struct RunOnHost {
   std::string url;
   std::string key;  // text of the key's file; "": messages are not signed
@@ -80,7 +80,7 @@ class RemoteHost : public processes::RolePlace {
   std::map<pid_t, Process> processes_;
   std::map<Role, nlohmann::json> starts_;  // answers to the last order to start a role
   std::vector<Exit> exits_;
-  std::string lost_;                      // why the connection has ended; "": it has not
+  std::string lost_;                      // why the connection has ended; "" while it is open
   std::optional<TimePoint> asked_since_;  // time of the oldest unanswered sign of life
   TimePoint alive_at_{};
 };

@@ -1,5 +1,5 @@
-// Which roles of a run are started on which other machines, as the command line and a laboratory's
-// file say.
+// The plan of a run: the roles that are started on other machines, from the command line and from a
+// laboratory's file.
 #pragma once
 
 #include <map>
@@ -54,8 +54,8 @@ std::string WhyNoRemoteRole(std::string_view name);
 /// @throws InputError if the text names no machine
 HostPlan ReadHost(std::string_view text, std::string_view where);
 
-/// Checks a destination for ssh. ssh would take a destination that begins with - for an option.
-/// @return what is wrong with the destination; "" if it is good
+/// Checks a destination for ssh. ssh would read a destination that begins with - as an option.
+/// @return the fault of the destination; "" if it has none
 std::string WhyNoDestination(std::string_view destination);
 
 /// Makes the plan of a run. --on takes precedence over the role's place in the laboratory's file.

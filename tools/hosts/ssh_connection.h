@@ -26,17 +26,17 @@ class SshConnection {
   SshConnection& operator=(const SshConnection&) = delete;
 
   JsonLines& lines() { return *lines_; }
-  /// Reads what ssh and `fogline host` print on stderr, and checks whether ssh has ended.
+  /// Reads the output of ssh and `fogline host` on stderr, and checks whether ssh has ended.
   void Look();
   /// Whether ssh runs.
   bool open() const { return pid_ >= 0; }
-  /// Keeps a line of stdout that is not a message, such as what the shell there prints at its
-  /// start.
+  /// Keeps a line of stdout that is not a message, such as a line that the shell there prints at
+  /// its start.
   void Keep(const std::string& line) { printed_.Append(line + "\n"); }
 
   /// The last lines that ssh and `fogline host` have printed on stderr, and the lines of Keep().
   std::vector<std::string> TakeLines() { return printed_.Take(); }
-  /// How the connection ended and, if a remedy is known, what the user can do; in one line.
+  /// One line that says how the connection ended, with a remedy for the user if one is known.
   /// @pre not open()
   /// @param lines the last lines that were printed
   std::string HowItEnded(const std::vector<std::string>& lines) const;

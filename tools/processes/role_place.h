@@ -35,7 +35,7 @@ class RolePlace {
     Role role;
     pid_t pid;
     std::string how;                 // such as "exited with code 3" or "was killed by signal 9"
-    bool killed;                     // whether a signal ended it; it then printed no reason
+    bool killed;                     // whether a signal ended it; then it printed no reason
     std::vector<std::string> lines;  // the last lines that the process printed
   };
   /// The processes that have ended since the last call. Call it every few tens of milliseconds.

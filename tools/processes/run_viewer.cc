@@ -15,8 +15,8 @@ namespace {
 
 // fogline-web listens after about 50 ms. A run waits for it no longer than this limit.
 constexpr Duration kPageLimit = milliseconds(1000);
-// fogline-web reads the log before it listens, which may take seconds. The run is over then, so
-// this does not delay the run.
+// fogline-web reads the log before it listens. The reading may take seconds, but it does not delay
+// the run, because the run is over.
 constexpr Duration kLogLimit = milliseconds(10'000);
 constexpr Duration kLookEvery = milliseconds(50);  // interval between checks of a wait
 

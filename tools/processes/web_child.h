@@ -30,7 +30,8 @@ class WebChild {
   ///     read the arguments of a process, but not its stdin
   /// @throws std::runtime_error if fogline-web cannot be started
   void Start(const std::vector<std::string>& arguments, const std::string& input = "");
-  /// Waits until fogline-web has printed this number of addresses, which it does when it listens.
+  /// Waits until fogline-web has printed this number of addresses. fogline-web prints them when it
+  /// listens.
   /// @return false after the limit, if fogline-web ends, or if a signal asks this program to end
   bool Listens(std::size_t addresses, Duration limit);
   /// The addresses that fogline-web has printed since its start, in this order.

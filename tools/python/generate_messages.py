@@ -26,7 +26,7 @@ NUMBERS = {
 
 
 class Field(NamedTuple):
-    """One member of a message. A dimension is a number, or the name of the field that counts."""
+    """A member of a message. A dimension is a number, or the name of the field with the number."""
 
     name: str
     type: str
@@ -93,7 +93,7 @@ def default(field: Field) -> str:
 class Coder:
     """Makes the text of `_read` and `_write` of one struct.
 
-    Neighbouring numbers of a fixed count are one *run*: one call of struct for all of them.
+    Adjacent numbers are one *run* if their count is fixed. One call of struct handles a whole run.
     """
 
     def __init__(self, struct: Struct, structs: dict):
@@ -103,7 +103,7 @@ class Coder:
         self.reads: list[str] = []
         self.writes: list[str] = []
         self.values: list[str] = []  # arguments of the constructor
-        self.run: list[str] = []  # what the open run writes
+        self.run: list[str] = []  # values that the open run writes
         self.format = ""  # of the open run
         self.length = 0  # numbers in the open run
         counts: dict[str, list[str]] = {}
@@ -156,7 +156,7 @@ class Coder:
         return None
 
     def add_list(self, field: Field) -> None:
-        """A text, or a list whose length another field tells."""
+        """Adds a text, or a list whose length is in another field."""
         if not field.dims:
             read, write = "read_text(data, at)", f"write_text(self.{field.name})"
         else:

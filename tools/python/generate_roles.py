@@ -2,7 +2,7 @@
 
 usage: generate_roles.py OUT GRAPH
 
-GRAPH is the output of `fogline graph --json`, so the table of services/graph.h decides.
+GRAPH is the output of `fogline graph --json`, so the roles come from the table in services/graph.h.
 """
 
 import json

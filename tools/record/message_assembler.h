@@ -19,7 +19,7 @@ namespace fogline::record {
 /// A message as its sender has sent it.
 struct Message {
   std::string_view channel;
-  std::int64_t unix_us = 0;  // when its last packet came, in us since 1970
+  std::int64_t unix_us = 0;  // arrival of its last packet, in us since 1970
   runtime::Bytes data;
 };
 

@@ -17,8 +17,8 @@ namespace {
 // Number of packets after which Drain() returns, so that the caller can do its other work.
 constexpr int kDrained = 4096;
 
-/// The messages of udpm, assembled from packets. The numbers in the packets show what the log
-/// lacks.
+/// The messages of udpm, assembled from packets. The numbers in the packets show how many messages
+/// the log lacks.
 class MulticastSource final : public TrafficSource {
  public:
   MulticastSource(const std::string& url, int buffer_bytes, watch::Senders& senders)

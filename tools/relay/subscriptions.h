@@ -20,7 +20,7 @@ class Subscriptions {
   explicit Subscriptions(std::size_t limit);
 
   /// Adds an expression; the same expression may be added several times. The number and the total
-  /// length of the expressions are limited. @return what is wrong with the expression; "" if it was
+  /// length of the expressions are limited. @return why the expression was not added; "" if it was
   /// added
   std::string Add(std::string_view pattern);
 

@@ -37,7 +37,7 @@ struct Verification {
     std::string why;
   };
   std::vector<Role> roles;        // roles that were computed again
-  std::vector<LeftOut> left_out;  // roles that could not be computed again
+  std::vector<LeftOut> left_out;  // roles that were not computed again
   struct Failure {
     Role role;
     Difference first;  // `a` in the log, `b` computed here

@@ -1,5 +1,6 @@
 # cmake -DOUT=FILE.cc -DDIR=FOLDER -DHAS_UPLOT=BOOL -P assets.cmake: writes the definitions for
-# assets.h. Each file becomes a raw string, or several files one. So the program contains its page, and needs no path to the page at run time.
+# assets.h. Each raw string contains one file, or several files one after the other. So the program
+# contains its pages, and needs no path to them at run time.
 set(uplot ../../node_modules/uplot)
 set(assets
   kPageHtml=page.html

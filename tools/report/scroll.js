@@ -1,4 +1,5 @@
-// Marks tables that are wider than their containers by a shade at the hidden side and a line below.
+// Marks each table that is wider than its container. The marks are a shade at the hidden side and a
+// line of text below the table.
 
 /** Marks whether a table's container can be scrolled, and whether it hides columns on the right. */
 function markScroll(element) {

@@ -1,5 +1,5 @@
-// One self-contained HTML page of studies. Each study has its question, and its answer in words,
-// figures with intervals, and tables. This file only draws its input. It starts no run.
+// One self-contained HTML page of studies. Each study has a question, an answer in words, figures
+// with intervals, and tables. This file only draws its input. It starts no run.
 #pragma once
 
 #include <limits>

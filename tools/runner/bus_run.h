@@ -24,7 +24,7 @@ struct BusRun {
   std::optional<log::RealtimePriority> priority;  // only in real time, if the run has begun
   runtime::RoleBuilds builds{};                   // the builds that the roles have reported
   std::vector<runtime::OtherBuild> other_builds;  // the builds that differ from the runner's build
-  std::vector<log::WrittenLog> written;           // what each recorder last reported about the log
+  std::vector<log::WrittenLog> written;           // the last report of each recorder about the log
 };
 
 /// A run id that no other run has.

@@ -29,8 +29,8 @@ namespace fogline::runner {
 namespace {
 
 // The shortest step of a run in real time, in seconds of wall-clock time. In this time nine
-// processes must send and receive the messages of a step. The signs of life of these processes must
-// arrive within 64 steps.
+// processes must send and receive the messages of a step. The STATUS messages of these processes
+// must arrive within 64 steps.
 constexpr double kMinPeriodS = 0.005;
 
 /// A temporary directory; the destructor removes it.
@@ -174,7 +174,7 @@ LoggedRun ReadSteps(const std::filesystem::path& log, const log::ReadOptions& op
   MessageMeasures measures;
   metrics::SampleDecoder decoder;
   std::optional<std::int64_t> first;  // the first step with TRUTH
-  runtime::ChannelSet heard;          // the channels of which a step with TRUTH has a message
+  runtime::ChannelSet heard;          // the channels with a message in some step that has TRUTH
   bool has_last = false;              // whether the log has the TRUTH of the last step
   const runtime::ChannelSet all = log::OwnStepChannels();
   log::RunLogReader reader(log, options);

@@ -110,15 +110,15 @@ struct ExperimentResult {
   std::optional<log::RealtimeFigures> realtime;       // only for a run in real time
 };
 
-/// Checks whether a run of this scenario is possible, before any process starts. For this it
-/// constructs every part of a run, without a step. So it finds fields whose values are valid one by
-/// one, but invalid together.
+/// Checks whether a run of this scenario is possible, before any process starts. The function
+/// constructs every part of a run, but computes no step. So it finds fields whose values are valid
+/// alone, but not together.
 /// @param file name of the scenario for the user
 /// @throws ScenarioError with the rule "impossible"
 void CheckPossible(const Scenario& scenario, const std::filesystem::path& file);
 
-/// Says why a scenario cannot run in real time at this speed: its step would be shorter than nine
-/// processes need. "" if it can. @param speed simulated seconds per second
+/// The reason why a scenario cannot run in real time at this speed: its step would be shorter than
+/// nine processes need. "" if the scenario can run. @param speed simulated seconds per second
 std::string WhyTooFast(const Scenario& scenario, double speed);
 
 /// Opens the network of a run once, with the key and the faults of the run, and closes it. So a
@@ -137,7 +137,7 @@ struct LoggedRun : log::RunLog {
   ExperimentResult result;
 };
 /// Reads a run with the samples of all its steps. If the options allow gaps, a step that lacks
-/// TRUTH has no sample, and take-overs have no measures if these are unknown.
+/// TRUTH has no sample, and result.take_overs is empty if the measures of take-overs are unknown.
 /// @throws InputError
 LoggedRun ReadLoggedRun(const std::filesystem::path& log, const log::ReadOptions& options = {});
 /// Reads a run without samples, in memory that does not grow with the length of the run.

@@ -15,7 +15,7 @@
 
 namespace fogline::runner {
 
-/// What the runner knows about the roles of a run, for the log.
+/// The facts about the roles of a run that the runner writes into the log.
 struct LoggedRoles {
   runtime::RoleBuilds builds{};                     // the build that each role has reported
   std::optional<log::RealtimePriority> priority{};  // only in real time, if it was examined

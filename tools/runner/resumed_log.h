@@ -12,8 +12,8 @@ namespace fogline::runner {
 
 /// A log of a run in lockstep that has ended early, or is complete. A lock keeps other runs from
 /// using the log while this object exists. The constructor does not change the file, even if it
-/// refuses the log. There is one exception: a killed run was to replace an older log, and had not
-/// begun. Then the constructor restores the older log, and says so on stderr.
+/// refuses the log. There is one exception: if a killed run had not begun, and its log was to
+/// replace an older log, the constructor restores the older log, and says so on stderr.
 class ResumedLog {
  public:
   /// @param key the key that must have signed the seal, if there is a seal; nullptr: a seal must

@@ -243,8 +243,8 @@ std::vector<Restarts> Supervisor::restarts() const {
                           .count = child->policy.restarts(),
                           .last = child->death});
     } else {
-      // If the newest process of the role has come late, the run may have ended before the process
-      // before it had been silent long enough to count as ended.
+      // If a new process of the role came shortly before the end of the run, the previous process
+      // may not have been silent long enough to count as ended.
       const bool late = member.rival && member.status && member.heard < member.rival_since;
       const int elsewhere = member.replaced + (late ? 1 : 0);
       if (elsewhere == 0) continue;

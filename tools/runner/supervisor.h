@@ -1,8 +1,8 @@
 // The supervisor of a run's processes, on this machine and on others. It starts and watches the
 // processes. It restarts a process that is killed, hangs or is deaf. A process that exits by itself
 // has printed the reason, and is not started again. In lockstep its exit ends the run. A run in
-// real time goes on without it if RunCoordinator::GoesOnWithout() says so, the process was not
-// deaf, and restarts are allowed.
+// real time goes on without this process if RunCoordinator::GoesOnWithout() is true, the process
+// was not deaf, and restarts are allowed.
 #pragma once
 
 #include <functional>

@@ -1,4 +1,4 @@
-// Adjusts the p-values of several tests for their number.
+// Adjusts the p-values of several tests for the number of tests.
 #pragma once
 
 #include <span>

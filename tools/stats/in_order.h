@@ -24,9 +24,9 @@ inline constexpr int kUnitsPerJob = 4;
 /// Computes the units from `begin` up to, but not including, `end` on `jobs` threads.
 /// `compute(worker, unit)` is called with a worker that `make_worker()` made for the thread.
 /// `consume(unit, result)` takes the results, in order of units, and returns false to stop.
-/// `consume` sees the same results for every `jobs`. An exception of `consume` reaches the caller.
-/// If a unit cannot be computed, the units before this unit are delivered first. Then the exception
-/// of this unit reaches the caller.
+/// `consume` sees the same results for every value of `jobs`. An exception of `consume` reaches the
+/// caller. If a unit cannot be computed, the units before this unit are delivered first. Then the
+/// exception of this unit reaches the caller.
 template <class MakeWorker, class Compute, class Consume>
 void ComputeInOrder(std::int64_t begin, std::int64_t end, int jobs, const MakeWorker& make_worker,
                     const Compute& compute, const Consume& consume) {
@@ -50,8 +50,8 @@ void ComputeInOrder(std::int64_t begin, std::int64_t end, int jobs, const MakeWo
     }
     return std::make_shared<Batch>(Batch{next++, std::nullopt, nullptr});
   };
-  // The exception of a unit is thrown when the unit is delivered, in order. So the same units are
-  // delivered before it for every value of `jobs`.
+  // The exception of a unit is thrown when the unit is delivered, in order. So for every value of
+  // `jobs`, the same units are delivered before the exception.
   const auto work = [&](Item batch) {
     if (!go_on) return batch;
     try {

@@ -18,12 +18,12 @@ struct Summary {
   std::optional<double> mean;
   /// Standard deviation of the values, with n - 1.
   std::optional<double> deviation;
-  /// Half the width of the 95 % confidence interval of the mean, t deviation / sqrt(n) with
+  /// Half the width of the 95 % confidence interval of the mean: t * deviation / sqrt(n), with
   /// Student's t of n - 1 degrees of freedom. The interval describes the uncertainty of the mean,
   /// and not the spread of the values.
   std::optional<double> ci95;
-  /// 5th and 95th percentile of the values, which need not be normally distributed: linear
-  /// interpolation between the two nearest values (Hyndman & Fan 1996, definition 7).
+  /// 5th and 95th percentile of the values, by linear interpolation between the two nearest values
+  /// (Hyndman & Fan 1996, definition 7). The values need not be normally distributed.
   std::optional<double> p5;
   std::optional<double> p95;
 };

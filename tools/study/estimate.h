@@ -1,4 +1,4 @@
-// A mean over runs with its interval, and the verdict on the sign that the interval permits.
+// A mean over runs with its interval. The interval gives a verdict on the sign of the mean.
 #pragma once
 
 #include <cstdint>

@@ -49,7 +49,8 @@ struct StudyFile {
   std::string content;
 };
 
-/// Result of a study. It does not depend on the number of threads, the clock or the machine.
+/// Result of a study. It does not depend on the number of threads or the clock. On another machine
+/// it is the same if the machine's C library computes the same last bits.
 struct StudyResult {
   report::StudySection section;  // the section's claims are empty until they are checked
   std::vector<Claim> claims;

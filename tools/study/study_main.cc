@@ -129,8 +129,8 @@ void Write(const std::filesystem::path& path, const std::string& content) {
   file.Finish();
 }
 
-/// The command that makes the same files again. The command omits the folder and the number of
-/// threads, because the files do not depend on these two.
+/// The command that makes the same files again from the scenarios in the default folder. The
+/// command omits --out and --jobs, because the content of the files does not depend on them.
 std::string CommandOf(const StudyArguments& arguments) {
   std::string command = fmt::format("fogline study {}", arguments.name);
   if (!arguments.seeds.empty()) command += fmt::format(" --seeds {}", arguments.seeds);

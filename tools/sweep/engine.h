@@ -58,9 +58,9 @@ class SweepWorker {
 using UnitConsumer = std::function<bool(std::int64_t unit, const std::vector<SweepRow>& rows)>;
 
 /// Computes the units from `begin` up to, but not including, `end` on `jobs` threads. The consumer
-/// gets the same rows for every `jobs`. An exception of the consumer reaches the caller. If a row
-/// cannot be computed, the units before this row are delivered first. Then the exception of the row
-/// reaches the caller.
+/// gets the same rows for every value of `jobs`. An exception of the consumer reaches the caller.
+/// If a row cannot be computed, the units before this row are delivered first. Then the exception
+/// of the row reaches the caller.
 void RunSweep(const SweepPlan& plan, std::int64_t begin, std::int64_t end, int jobs,
               const UnitConsumer& consume);
 

@@ -13,8 +13,9 @@ namespace {
 /// Largest number of points of an axis "first:last:count".
 constexpr std::int64_t kMaxPoints = 1'000'000;
 
-/// Largest number of rows of a sweep. More rows would take one core for years. ShardBegin()
-/// multiplies the rows by the number of a shard, and this product is far within 64 bits.
+/// Largest number of rows of a sweep. With more rows, a sweep on one core would take more than a
+/// year. A sweep has at most as many units as rows. ShardEnd() multiplies the number of units by
+/// the number of a shard, and this product is far within 64 bits.
 constexpr std::int64_t kMaxRows = 100'000'000'000;
 
 /// Largest number of shards of a sweep.

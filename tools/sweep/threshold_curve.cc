@@ -32,7 +32,8 @@ std::vector<ThresholdRow> SweepThresholds(const Scenario& scenario,
     axis.values.push_back(fmt::format("{}", threshold));
     rows.emplace_back().threshold = threshold;
   }
-  // A unit of this plan is a seed. The rows of a unit are the thresholds, and share one paired run.
+  // A unit of this plan has the rows of one seed: a row for each threshold. These rows share one
+  // paired run.
   const SweepPlan plan(scenario, {axis}, seeds);
   RunSweep(plan, 0, plan.units(), jobs,
            [&](std::int64_t unit, const std::vector<SweepRow>& results) {

@@ -158,8 +158,9 @@ Scenario LoadChanged(const PlanFile& file, const ConditionSection& condition,
   return scenario;
 }
 
-/// Checks the scenarios of all conditions. A mistake is at the change that makes it, or else at the
-/// name of the scenario's file. If several conditions have this file, it is at the first of them.
+/// Checks the scenarios of all conditions. A mistake is reported at the change that causes it, or
+/// else at the name of the scenario's file. If several conditions have this file, the mistake is
+/// reported at the first of them.
 class ScenarioCheck {
  public:
   ScenarioCheck(const PlanFile& file, const JsonValue& root, DiagnosticList& mistakes)
@@ -178,7 +179,7 @@ class ScenarioCheck {
     }
   }
 
-  /// The command that prints what is allowed in place of the first mistake.
+  /// The command that prints the allowed content for the place of the first mistake.
   const std::string& allowed() const { return allowed_; }
 
  private:
@@ -201,7 +202,8 @@ class ScenarioCheck {
         is_change ? fmt::format("{}/set/{}", condition, mistake.override_number - 1)
                   : condition + "/scenario";
     what += mistake.message;
-    // Whether a run is impossible depends on the changes, too. A mistake of the file does not.
+    // Whether a run is impossible depends on the changes, too. A mistake of the file does not
+    // depend on them.
     const bool is_of_file = !is_change && mistake.rule != "impossible";
     if (is_of_file && !in_files_.insert(what).second) return;
     Keep(pointer, mistake.rule, std::move(what),
@@ -210,7 +212,7 @@ class ScenarioCheck {
              : "fogline check --explain " + NearestKnownPointer(mistake.pointer));
   }
 
-  /// @param allowed the command that prints what is allowed in place of this mistake
+  /// @param allowed the command that prints the allowed content for the place of this mistake
   void Keep(const std::string& pointer, std::string_view rule, std::string what,
             std::string allowed) {
     const Place place = FindPlace(root_, pointer);

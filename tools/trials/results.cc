@@ -25,7 +25,8 @@ bool HasBegun(const std::filesystem::path& log) {
   }
 }
 
-/// Whether a folder has more than temporary files. Another session may be writing one of these.
+/// Whether a folder has files that are not temporary. Another session may be writing a temporary
+/// file.
 /// @throws InputError if the folder cannot be read
 bool HasOtherFiles(const std::filesystem::path& folder) {
   std::error_code failed;
@@ -57,7 +58,7 @@ bool HasRunOf(const PlanFile& plan, const Trial& trial, const TrialStory& story)
 }
 
 /// Says why a log is not of this trial: its facts name another trial or another version of the
-/// experiment, or its run is another one. "" if it is.
+/// experiment, or its run is another one. "" if the log is of this trial.
 std::string WhyForeign(const PlanFile& plan, const Trial& trial, const TrialStory& story) {
   if (story.facts.empty()) {
     const bool may_be = story.state == TrialState::kBroken || HasRunOf(plan, trial, story);
@@ -87,7 +88,7 @@ Results::Results(const PlanFile& plan, std::filesystem::path folder)
         fmt::format("{}: error: --results: it is a file, not a folder", PathText(folder_)));
   }
   if (!HasOtherFiles(folder_)) return;
-  // Looked for last, because another session may just have made it.
+  // The program looks for this file last, because another session may just have created it.
   if (!std::filesystem::exists(Kept(), missing)) {
     throw InputError(fmt::format("{}: error: --results: the folder has other files, and no {}",
                                  PathText(folder_), PathText(Kept().filename())));

@@ -16,9 +16,9 @@ namespace fogline::trials {
 
 class Speaker {
  public:
-  /// Sends the fact BEGIN when the first TRUTH of the run comes. From then on the recorder listens,
-  /// so earlier facts are kept until then. BEGIN has the time at which this TRUTH came, or the
-  /// time when the speaker was made if a marker or the end comes first.
+  /// Sends the fact BEGIN when the first TRUTH of the run comes. Before this TRUTH the recorder may
+  /// not listen yet, so earlier facts are kept until then. BEGIN has the time at which this TRUTH
+  /// came. If a marker or the end comes first, BEGIN has the time at which the speaker was made.
   /// @param base a fact with the values that all facts of the trial share
   /// @throws std::runtime_error as RequireReadable(), before the first fact is sent
   Speaker(const std::string& url, std::int64_t run_id, const runtime::TrafficOptions& traffic,

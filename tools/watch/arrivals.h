@@ -21,10 +21,9 @@ struct ArrivalView {
 };
 
 /// Counts arrivals, interval by interval. Jitter is the sample standard deviation of the times
-/// between successive arrivals, computed by the recurrence of Welford (Technometrics 4, 1962). RFC
-/// 3550's interarrival jitter needs the clock of the sender. This jitter does not, because the
-/// clock of a paced run, or of a log that is played fast, differs in speed from the receiver's
-/// clock.
+/// between successive arrivals, computed by the recurrence of Welford (Technometrics 4, 1962). The
+/// interarrival jitter of RFC 3550 is not used, because it needs a clock of the sender that is as
+/// fast as the receiver's clock. A paced run, and a log that is played fast, have no such clock.
 class Arrivals {
  public:
   void Add(std::size_t bytes, TimePoint now);

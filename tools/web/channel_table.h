@@ -28,7 +28,7 @@ class ChannelTable {
   /// Limit for the other channels, because any program on the network can invent names.
   static constexpr std::size_t kMostOthers = 4096;
 
-  /// Returns the number of a channel. Adds a new channel.
+  /// Returns the number of a channel. Adds the channel if it is new.
   /// @param bytes a message of the channel; its first bytes name its type
   /// @return nullopt if there are too many channels
   std::optional<ChannelId> IdOf(std::string_view name, runtime::Bytes bytes);

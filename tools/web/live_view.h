@@ -69,7 +69,7 @@ class LiveView final : public View {
     Client* client = nullptr;
     std::uint64_t place = 0;
     std::optional<RequestId> history;           // set while the client gets earlier messages
-    std::int64_t sent = 0;                      // number of messages of the history so far
+    std::int64_t sent = 0;                      // number of history messages sent so far
     std::optional<foxglove::Session> foxglove;  // set if the client speaks Foxglove's protocol
   };
   /// Number of statistics, each over one second. One of them ends every 250 ms, so every health

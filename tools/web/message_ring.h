@@ -25,7 +25,7 @@ struct RingMessage {
 class MessageRing {
  public:
   static constexpr std::size_t kMostBytes = 64 << 20;
-  static constexpr double kMost_ms = 60'000;  // approximate age of the oldest message
+  static constexpr double kMost_ms = 60'000;  // approximate limit for the age of a message
   static constexpr std::size_t kChunkBytes = 64 << 10;
 
   void Add(const RingMessage& message);
@@ -36,8 +36,8 @@ class MessageRing {
   std::uint64_t end() const { return end_; }
 
   /// Complete messages from `place` on, together at most about kChunkBytes. Each message has: u16
-  /// channel, f64 wall_ms, u32 size (little endian), and the bytes. The view is valid until the
-  /// next Add(). It is "" at the end.
+  /// channel, f64 wall_ms, u32 size (little endian), and the bytes. The result is "" if `place` is
+  /// the end. It is valid until the next Add().
   /// @pre begin() <= place, and place is the beginning of a message or the end
   std::string_view From(std::uint64_t place) const;
 
@@ -48,7 +48,8 @@ class MessageRing {
     std::string bytes;
   };
 
-  /// Drops messages that are too old, and messages for which a new chunk leaves no room.
+  /// Drops messages that are too old. Also drops the oldest messages until a new chunk of `room`
+  /// bytes fits into kMostBytes.
   void Trim(double now_ms, std::size_t room);
 
   std::deque<Chunk> chunks_;

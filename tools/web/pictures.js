@@ -11,7 +11,8 @@ import {background, browser, goTo, open, root, scratch, until, view} from "../..
 const {FOGLINE} = process.env;
 const MOST_BYTES = 250000;  // limit for a picture, so that a clone stays small
 const WIDTH = 1280;         // of a picture; GitHub shows it in about 850 pixels
-const COLOURS = 256;        // of a picture; more would need three times the bytes for no gain
+// Number of colours of a picture. More would need three times the bytes for no visible gain.
+const COLOURS = 256;
 const SCHEME = {colorScheme: "light"};
 
 /** Waits until the browser has drawn everything that the page has asked for. */
@@ -42,7 +43,8 @@ async function report(t, started, file) {
 }
 
 /**
- * Makes the picture of the window: a run in dense fog, 0.3 s after the last take-over by the human.
+ * Makes the picture of the page of `fogline view`: a run in dense fog, 0.3 s after the last
+ * take-over by the human.
  */
 async function window(t, started, file) {
   const log = path.join(scratch(t), "dense_fog-1.lcm");
@@ -59,7 +61,7 @@ async function window(t, started, file) {
     document.getElementById("health").offsetTop + document.getElementById("timebar").offsetHeight));
   await page.setViewportSize({width: WIDTH, height});
   await page.waitForFunction((wanted) => document.getElementById("who").textContent === wanted, "The human drives");
-  await page.waitForTimeout(1000);  // the charts draw at most once in this time
+  await page.waitForTimeout(1000);  // the charts pause for at most this time between two drawings
   await drawn(page);
   await page.screenshot({path: file});
 }
@@ -88,7 +90,10 @@ async function drive(t, started, file) {
   await page.screenshot({path: file});
 }
 
-/** Begins the next run at the participant's page, and waits for its questions. @param during the run */
+/**
+ * Begins the next run at the participant's page, and waits for its questions. @param during is
+ * called during the run
+ */
 async function makeRun(page, during = async () => {}) {
   await page.click("#begin");
   await page.waitForFunction(() => document.getElementById("words").textContent === "The run is under way.");
@@ -155,7 +160,7 @@ async function attempt(make) {
 for (const name of process.argv.slice(2)) {
   const file = path.join(root, `docs/${name}.png`);
   await attempt(async (t) => PICTURES[name](t, await browser(t), file));
-  // Without the time of writing, equal pictures have equal bytes.
+  // Removes the time of writing, so that equal pictures have equal bytes.
   execFileSync("convert", [file, "-strip", "+dither", "-colors", String(COLOURS), "-define", "png:compression-level=9",
                            file]);
   const {size} = statSync(file);

@@ -1,6 +1,6 @@
 // The events of a run, found in its messages: fog, transfers, requests, alarms, manoeuvres,
-// emergency braking, collisions. A live run and its log give the same events, apart from the steps
-// that the text of an event after missing messages names.
+// emergency braking, collisions. A live run and its log give the same events. Only the text of an
+// event after missing messages may name other steps.
 #pragma once
 
 #include <cstddef>
@@ -25,17 +25,17 @@ struct RunEvent {
 };
 
 /// Finds the events. Takes the messages of a run in the order of their steps. Messages may be
-/// missing. A message that comes again, or too late, is ignored. If the first message is not of
-/// step 0, as in a run that is joined later, the fog, alarm or collision in this message is no
-/// event, because it may have begun before. If messages before an event are missing, its text names
-/// the steps in which it may have happened.
+/// missing. A message that comes again, or too late, is ignored. The first message may be of a step
+/// after step 0, as in a run that is joined later. The fog, alarm or collision in this message is
+/// then no event, because it may have begun before. If messages before an event are missing, the
+/// text of the event names the steps in which the event may have happened.
 class RunEvents {
  public:
   /// Limit for the stored events. A DoC that moves around its threshold causes many alarms.
   static constexpr std::size_t kMost = 5000;
 
-  /// Sets whether a step may have no command without any loss, as in real time. An event in a
-  /// command then happened in the step of the command. Applies to commands that are added
+  /// Sets whether a step may have no command although no message is lost, as in real time. If so,
+  /// an event in a command happened in the step of this command. Applies to commands that are added
   /// afterwards.
   void set_may_lack_commands(bool may_lack) { may_lack_commands_ = may_lack; }
   /// Sets the section of the run's scenario that says whether a person drives. The texts of earlier

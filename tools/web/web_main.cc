@@ -234,7 +234,8 @@ void Serve(asio::io_context& context, const ViewArguments& arguments, Server& se
   context.run();
   server.Stop();
   stop_view();
-  // Tells the clients that the program ends. run_for() returns when the last connection is closed.
+  // Tells the clients that the program ends. run_for() returns when the last connection is closed,
+  // and at the latest after kEndLimit.
   context.restart();
   context.run_for(kEndLimit);
 }
@@ -249,7 +250,9 @@ std::optional<runtime::SigningKey> KeyOf(const ViewArguments& arguments) {
   return runtime::KeyOf(traffic);
 }
 
-/// @throws std::runtime_error if there is no page for a browser
+/// Checks that this build has a page for a browser. Prints only a warning for a missing page if the
+/// user wants no browser.
+/// @throws std::runtime_error if the page is missing and the user wants a browser
 void RequirePage(const ViewArguments& arguments) {
   const std::string why(WhyNoPage());
   if (why.empty()) return;

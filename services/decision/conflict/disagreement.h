@@ -37,7 +37,7 @@ class DisagreementSource {
   /// the rule:
   ///   hold      the last measured disagreement; before the first one nullopt
   ///   skip      nullopt
-  ///   conflict d = missing_conflict_m, with the last stated standard deviations
+  ///   conflict  d = missing_conflict_m, with the last stated standard deviations
   std::optional<Disagreement> Next(const Evidence& evidence);
   void Reset();
 

@@ -16,12 +16,13 @@ namespace fogline::policies {
 double TimeUntilHardBraking(double gap_m, double closing_mps, double host_braking_mps2,
                             double limit_mps2);
 
-/// The paper's rule, if the driver is available. A driver who already drives is available, and so
-/// is a driver in a host without a follower. Any other driver is available if the take-over time is
-/// less than the time until the follower has to brake harder than comfort_mps2, and less than
-/// horizon_s. The take-over time here is the 95th percentile of its distribution, plus unready_s
-/// times (1 minus the driver's readiness). If the driver is not available, the automation continues
-/// to drive. Marberger et al. 2018 define availability as the time budget minus the required time.
+/// If the driver is available, the policy is the paper's rule. A driver who already drives is
+/// available. A driver in a host without a follower is available, too. Any other driver is
+/// available if the take-over time is less than the time until the follower has to brake harder
+/// than comfort_mps2, and less than horizon_s. The take-over time here is the 95th percentile of
+/// its distribution, plus unready_s times (1 minus the driver's readiness). If the driver is not
+/// available, the automation continues to drive. Marberger et al. 2018 define availability as the
+/// time budget minus the required time.
 ///
 /// The fusion never uses the sensor that is to blame, as in policy Isolate. The fusion does not
 /// know whether the driver is available. While the driver drives, the track is not used. When the

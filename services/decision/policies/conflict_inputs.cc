@@ -15,7 +15,7 @@ constexpr std::size_t kLidarRange = 2;
 double Square(double x) { return x * x; }
 
 // Variance in m2 of the distance that the filter predicts for the next step, from its covariance
-// P. The variance is element (0, 0) first row of F P F' + Q (services/fusion/ekf.h).
+// P. The variance is element (0, 0) of F P F' + Q (services/fusion/ekf.h).
 double NextDistanceVariance(const double (&covariance)[3][3], double step_s,
                             double jerk_density_m2ps5) {
   const std::array<double, 3> row{1, step_s, step_s * step_s / 2};  // of F

@@ -47,7 +47,7 @@ class Witness {
                                    const lidar_t& lidar);
 
  private:
-  /// What is needed to undo the filter's use of a sensor's range.
+  /// The values that are needed to undo the filter's use of a sensor's range.
   struct Sensor {
     std::size_t value;  // index in track_t's arrays
     double noise_m2;    // variance of the noise that the filter assumes

@@ -76,7 +76,7 @@ inline EngagementRequest Compare(double doc, double threshold) {
   return {.lambda_human = doc < threshold ? 0.0 : 1.0, .threshold = threshold, .firm = false};
 }
 
-/// The request of a policy whose automation drives at any conflict.
+/// The request of a policy under which the automation drives at any conflict.
 inline EngagementRequest StayAutomated(double threshold) {
   return {.lambda_human = 0, .threshold = threshold, .firm = true};
 }
@@ -114,7 +114,8 @@ class EngagementPolicy {
   /// policy overrides it, once per step, after the filter's prediction if there is a track.
   virtual SensorSelection SelectSensors(const FusionView& /*view*/) { return {}; }
 
-  /// The policy's decision in the arbitrator. Called once per decision, and only with Rule::kOwn.
+  /// The policy's decision in the arbitrator. The arbitrator calls this function once per decision,
+  /// and only with Rule::kOwn.
   virtual EngagementRequest Decide(const ArbitratorView& view) = 0;
 };
 

@@ -25,7 +25,7 @@ struct TakeOverInputs {
   double speed_mps = 0;            // speed of the host
   double applied_mps2 = 0;         // last sent command; at first the applied acceleration
   const track_t* track = nullptr;  // nullptr if no preceding car is known
-  // Inputs whether a person's answer is awaited who drives; always false for the model of a driver.
+  // Inputs of a person who drives; always false for the model of a driver.
   bool acknowledged = false;  // the driver answers now
   bool gives_back = false;    // the driver wants the automation to drive
 };
@@ -43,7 +43,7 @@ inline constexpr double kStandstill_mps = 0.01;
 
 /// A stage of the manoeuvre is overdue after this multiple of the time that the brake needs on a
 /// level road. Our choice: with 2, a stage is not overdue if a descent of 7 % and slow brakes
-/// reduce a comfortable 1.5 m/s2 by half.
+/// reduce a comfortable deceleration of 1.5 m/s2 by half.
 inline constexpr double kOverdueFactor = 2.0;
 
 /// The state machine of take_over_table.h, with these conditions and decelerations. t is the time
@@ -57,9 +57,10 @@ inline constexpr double kOverdueFactor = 2.0;
 ///                      and readiness >= required_readiness
 ///     escalation       t >= escalation_s
 ///     deadline         t >= lead_s
-///     easing a = min(a_A, max(-slow_down_mps2, a' - j h))
-///     manoeuvre        services/models/minimal_risk with jerk j and the decelerations
-///                      clip(-a_A, comfort, emergency) and emergency of its two stages
+///     easing           a = min(a_A, max(-slow_down_mps2, a' - j h))
+///     manoeuvre        services/models/minimal_risk with jerk j. The deceleration is
+///                      clip(-a_A, comfort, emergency) in the first stage, and emergency in the
+///                      second stage.
 ///
 /// So the manoeuvre brakes at least as hard as the automation would, up to the emergency's
 /// deceleration. A driver who is not absent is late if and only if T > lead_s. Between

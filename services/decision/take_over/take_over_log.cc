@@ -16,8 +16,9 @@ const TakeOverStateInfo* StateOf(std::int8_t mode) {
   return info == kTakeOverStates.end() ? nullptr : info;
 }
 
-/// The text of the table for this change of state. Some changes are not in the table: the driver
-/// need not be asked, or inputs have failed in real time. Such a change gets a separate text.
+/// The text of the table for this change of state. Some changes are not in the table, because the
+/// driver need not be asked, or because inputs have failed in real time. Such a change gets a
+/// separate text.
 std::string_view LoggedOf(std::int8_t from, std::int8_t to) {
   const TakeOverStateInfo* a = StateOf(from);
   const TakeOverStateInfo* b = StateOf(to);
@@ -40,8 +41,8 @@ bool IsUnanswered(std::int8_t mode) {
          mode == arbitration_t::REQUEST_URGENT;
 }
 
-/// Whether only a run with requests has this command: its mode is a state of a request, or the mode
-/// names the side with less authority.
+/// Whether only a run with requests can have this command. This is true if the mode is a state of a
+/// request, or if the mode names the side with less authority.
 bool ShowsRequests(const arbitration_t& command) {
   if (command.mode == arbitration_t::AUTOMATION) return HumanDrives(command.lambda_human);
   if (command.mode == arbitration_t::HUMAN) return !HumanDrives(command.lambda_human);

@@ -19,13 +19,13 @@ std::string_view NameOfMode(std::int8_t mode);
 
 /// An event of a step. If a driver's input became effective, or lambda_H passed one half on a ramp,
 /// `from` and `to` are the same mode. If emergency braking or its warning begins or ends, `from`
-/// and `to` are the modes of the commands; so are those of the first entry if the log begins late.
-/// For other events, `from` and `to` are the modes that the commands would have without emergency
-/// braking.
+/// and `to` are the modes of the commands. The same is true for the first entry if the log begins
+/// late. For other events, `from` and `to` are the modes that the commands would have without
+/// emergency braking.
 struct TakeOverEntry {
   std::int64_t step = 0;  // the first step whose command shows the event
-  // The event may have happened from this step on; earlier than `step` if the log lacks commands
-  // before it. For an effective input, also if it lacks offers of the driver.
+  // The first step in which the event may have happened. It is before `step` if the log lacks the
+  // commands just before `step`, or, for an effective input, if the log lacks offers of the driver.
   std::int64_t earliest_step = 0;
   std::int64_t utime = 0;
   std::int8_t from = 0;  // mode before the event
@@ -43,11 +43,11 @@ std::string_view TextOf(const TakeOverEntry& entry, const PersonSection& person)
 
 /// Collects the events and the requests of a run from its commands (HOST_COMMAND), in the order of
 /// steps. Some commands may be missing. If the first command after such a gap belongs to a request
-/// that begins in the gap, the request is not one of the requests.
+/// that begins in the gap, requests() does not contain this request.
 ///
 /// If the commands of the first steps are missing, the earlier events are unknown. The first entry
-/// then says which mode the first command has. A request that may be open in this command is not
-/// one of the requests, because the step of the request is unknown (BeganInRequest()).
+/// then says which mode the first command has. requests() does not contain a request that may be
+/// open in this command, because the step of the request is unknown (BeganInRequest()).
 ///
 /// The mode of a command says whether the driver has a share of the authority, and lambda_H is this
 /// share. The share may be 0 at first, and may grow later. So there are two different events.
@@ -99,9 +99,9 @@ class TakeOverLog {
   // input. The second says whether the driver was asked.
   std::optional<double> before_share_mps2_;
   bool asked_ = false;
-  // Whether the driver has, or had, authority without an open request. Two events lead to this: an
-  // override, and the absence of a person who had taken over. So does a request whose beginning the
-  // log lacks.
+  // Whether the driver has, or had, authority without an open request. Three events lead to this:
+  // an override, the absence of a person who had taken over, and a request whose beginning the log
+  // lacks.
   bool unasked_ = false;
   bool asks_ = false;  // whether a command has shown that this is a run with requests
   // The first command is not of step 0, and emergency braking has hidden the state since then.

@@ -26,7 +26,7 @@ std::string StepLacks(std::int64_t step, const std::string& what) {
   return fmt::format("step {} lacks {}", step, what);
 }
 
-/// What the first step that was not read lacks.
+/// Text about the messages that the first unread step lacks.
 std::string Lacks(const UnreadSteps& unread, std::int64_t step) {
   if (unread.first == step) return StepLacks(step, NamesOfChannels(unread.lacks));
   return StepLacks(step,

@@ -16,7 +16,7 @@ struct UnreadSteps {
   bool are_end = false;       // whether all are incomplete, as at the end of a run that ends early
 };
 
-/// What a reader has found out about a log, apart from RunLog.
+/// Facts that a reader has found out about a log, apart from RunLog.
 struct LogRemarks {
   std::string torn;        // how the file was cut off; "" if it was not
   std::string alteration;  // how the log differs from its seal; "" if not

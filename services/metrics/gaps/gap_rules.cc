@@ -18,8 +18,8 @@ Channels Of() {
 
 /// The steps that a measure needs.
 enum class Needs : std::uint8_t {
-  kAnyStep,    // without a value, every step: a missing step might have one
-  kLaterStep,  // any later step says it again
+  kAnyStep,    // without a value, every step, because a missing step might have a value
+  kLaterStep,  // without a value, the last step, which repeats a value of any earlier step
   kEveryStep,
   kEveryStepFromTheBeginning
 };

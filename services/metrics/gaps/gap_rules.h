@@ -16,7 +16,7 @@ struct Lack {
   std::bitset<kNumChannels> every;     // the channels of which no step with TRUTH has a message
   bool beginning = false;              // whether the first steps are missing
   bool end = false;                    // whether the log ends before the run
-  bool last = false;                   // whether TRUTH is missing, also that of the last step
+  bool last = false;                   // whether TRUTH is missing, also in the last step
   // Whether a request to take over may have been open before the first HOST_COMMAND of the log.
   bool beginning_of_request = false;
 
@@ -29,8 +29,8 @@ struct Lack {
 /// its channels is missing. If it also depends on the beginning of the run, it is unknown if the
 /// beginning is missing. Extremes and means are computed from the steps that the log has. They are
 /// unknown if the log has no message of a channel, or if they have no value and a missing step
-/// might give one. A collision is in every later TRUTH. A measure that the table does not have is
-/// known only if nothing is missing.
+/// might give one. Every TRUTH after a collision repeats the collision. A measure that the table
+/// does not have is known only if nothing is missing.
 bool IsKnown(std::string_view measure, bool has_value, const Lack& lack);
 
 /// The same for a value that VisitMetrics() gives.

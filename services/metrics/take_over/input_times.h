@@ -19,8 +19,8 @@ inline constexpr double kMovement = 0.01;
 /// Fills in first_movement_time_s and pedal_on_time_s of the requests of a run.
 ///
 /// The time of an input is header.utime, the time of the newest TRUTH that the seat had received
-/// when the input came. So the resolution is one step of the run, and a person who sees the request
-/// late, because of the network or the screen, has a longer time. Only inputs after the request and
+/// when the input came. So the resolution is one step of the run. If a person sees the request late
+/// because of the network or the screen, the times are longer. Only inputs after the request and
 /// within its judged interval count.
 class InputTimes {
  public:

@@ -32,8 +32,8 @@ class TakeOverAccumulator {
 
   /// The measures of each request so far, in order of time.
   std::vector<TakeOverMeasures> Result() const;
-  /// Empties the measures that are unknown if the last step of the run was not added: those of a
-  /// judged interval that has not ended, and the outcome if it may still change.
+  /// Empties the measures that are unknown if the last step of the run was not added. These are the
+  /// measures of a judged interval that has not ended, and the outcome if it may still change.
   /// @param requests of Result()
   void CutOff(std::vector<TakeOverMeasures>& requests) const;
   /// Whether the log may lack the beginning of a request (TakeOverLog::BeganInRequest). Result()

@@ -14,7 +14,7 @@ enum class TakeOverEnd : std::uint8_t {
   kTakenOver,      // the driver got a share of the authority before any manoeuvre
   kTakenOverLate,  // the driver ended a minimal risk manoeuvre
   kMinimalRisk,    // a minimal risk manoeuvre, and the driver did not take over
-  kWithdrawn,      // the automation drives on, and the driver had no share of the authority
+  kWithdrawn,      // the automation drives again, and the driver had no share of the authority
   kFallback,       // the driver drives without an answer, because inputs have failed
   kUnknown,        // the log lacks the end of the run, and with it the end of the request
 };
@@ -37,10 +37,10 @@ struct TakeOverMeasures {
   /// Length of the judged interval, s.
   std::optional<double> judged_s = 0;
 
-  /// Only if a person drives (input_times.h): first_movement_time_s is the time to the first
-  /// DRIVER_INPUT in which the person has moved a pedal, or pressed the button for taking over,
-  /// since the request, s. pedal_on_time_s is the time to the first DRIVER_INPUT in which a pedal
-  /// has reached the threshold for taking over, s.
+  /// The next two times exist only if a person drives (input_times.h). first_movement_time_s is the
+  /// time to the first DRIVER_INPUT in which the person has moved a pedal since the request, or has
+  /// pressed the button for taking over, s. pedal_on_time_s is the time to the first DRIVER_INPUT
+  /// in which a pedal has reached the threshold for taking over, s.
   std::optional<double> first_movement_time_s;
   std::optional<double> pedal_on_time_s;
   /// Time to the acknowledgement, the driver's first answer that the arbitrator has received, s.

@@ -1,5 +1,5 @@
 // Advanced emergency braking: the state machine that warns, brakes and releases. The state machine
-// uses only what a car knows of the car ahead.
+// uses only values that a car can know of the car ahead.
 #pragma once
 
 #include <cstdint>

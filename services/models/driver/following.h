@@ -1,5 +1,5 @@
 // Car-following models that compute the acceleration, as the IDM does. This file has only formulas;
-// fog_sight.h and human_driver.h decide what the driver perceives.
+// fog_sight.h and human_driver.h compute the situation that the driver perceives.
 #pragma once
 
 #include "scenario/sections/control.h"

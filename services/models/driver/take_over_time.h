@@ -17,7 +17,7 @@ namespace fogline::models {
 ///                  s = z - sqrt(z^2 - 2 ln(t / m))
 ///
 /// mean, std and P(late) are mean_s, std_s and late_probability of TakeOverParameters. Z is a
-/// standard normal number, and z is the same number in both last rows. SUMO (MSDevice_ToC) draws
+/// standard normal number, and z is the same number in SUMO and by lead. SUMO (MSDevice_ToC) draws
 /// again if a value is negative. After 100 negative values, SUMO takes the mean. So P(T > t) is
 /// larger than P(late) for a lead time of minutes. SUMO itself has a table for (t - m) / z.
 class TakeOverTime {

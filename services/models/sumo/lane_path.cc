@@ -51,8 +51,8 @@ Names LanesOf(const std::string& edge) {
 
 /// Finds the longest way from a lane along edges. Of equally long ways, the class takes the way on
 /// the rightmost lanes. If each lane leads to several lanes, there are very many ways. So the class
-/// searches each lane of an edge only once: the longest way from a lane does not depend on the way
-/// to this lane.
+/// searches each lane of an edge only once. This is sufficient, because the longest way from a lane
+/// does not depend on the way to this lane.
 class LongestWay {
  public:
   /// Function that returns the lanes from `lane` to `next`, which is a lane of the next edge.

@@ -114,8 +114,8 @@ void SumoTraffic::Load() {
        fmt::format("{}", step_s),
        // The acceleration is constant within a step, as in services/models/vehicle/motion.h.
        "--step-method.ballistic", "--seed", fmt::format("{}", setup_.seed % kSeeds),
-       // No car disappears because it stands for a long time, or because another car comes too
-       // close.
+       // With these options, SUMO does not remove a car that stands for a long time, or that is too
+       // close to another car.
        "--time-to-teleport", "-1", "--collision.action", "none"});
   libsumo::Simulation::step(setup_.start_s);
 }

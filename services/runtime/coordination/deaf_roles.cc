@@ -19,9 +19,10 @@ constexpr int kDeafPeriods = 5;
 constexpr Duration kSteady = milliseconds(600);
 // A network that loses 30 % of all messages loses this many in a row with probability 6e-6.
 constexpr std::int64_t kSureMessages = 10;
-// A role counts as ahead of its producer if it is more than this many steps beyond the step that
-// follows from the producer's STATUS and the time since then. The producer may be further than
-// that, because its STATUS takes up to 100 ms to arrive, which is the time of five steps at 50 Hz.
+// The step of a producer is estimated from its STATUS and the time since then. A role counts as
+// ahead of the producer if it is more than this many steps beyond the estimate. The producer itself
+// may be beyond the estimate, because its STATUS takes up to 100 ms to arrive. This is the time of
+// five steps at 50 Hz.
 constexpr std::int64_t kAhead = 5;
 
 }  // namespace

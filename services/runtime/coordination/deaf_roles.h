@@ -62,9 +62,9 @@ class DeafRoles {
   };
 
   std::optional<Deafness> Missing(Role role, Duration limit) const;
-  /// Whether the producer has published so many messages since the last one that came that even a
-  /// bad network would not lose all of them: kSureMessages, or half of the messages that are due in
-  /// the missed time if these are fewer.
+  /// Whether the producer has published so many messages that even a bad network would not lose all
+  /// of them. The messages since the last one that came are counted. They are enough if they are at
+  /// least kSureMessages, or at least half of the messages that are due in the missed time.
   bool IsSure(const Ear& ear, Role from) const;
   /// Whether the role's STATUS messages show that the role computes one step after another.
   bool Computes(Role role, TimePoint now) const;

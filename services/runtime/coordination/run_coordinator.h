@@ -139,7 +139,8 @@ class RunCoordinator {
     std::int32_t pid = 0;
     bool operator==(const Process&) const = default;
   };
-  /// What the coordinator knows about the processes of a role, most of it from their STATUS.
+  /// The coordinator's information about the processes of a role. Most of it comes from their
+  /// STATUS.
   struct Member {
     std::optional<status_t> status;  // last STATUS of the accepted instance
     TimePoint heard{};
@@ -149,9 +150,9 @@ class RunCoordinator {
     std::optional<status_t> rival;  // another instance that claims this role
     TimePoint rival_since{};
     TimePoint rival_heard{};
-    // The last process that was refused the role. A role that the runner has started is refused to
-    // any other process immediately. An external role is refused to a second process that still
-    // claims it although it must have received a RUN that names the first process.
+    // The last process to which the role was refused. If the runner has started the role, any other
+    // process is refused immediately. If the role is external, RUN first names the process that has
+    // the role. A second process that still claims the role after this is refused.
     std::optional<status_t> refused;
     // `undead` is the time at which an instance that counts as dead began to send again;
     // `undead_heard` is the time of its last STATUS.

@@ -13,7 +13,7 @@
 namespace fogline::runtime {
 namespace {
 
-// A beacon says when its run began. The listener accepts a beginning that is up to this much in the
+// A beacon says when its run began. The listener accepts a time that is at most this far in the
 // future. Runner and listener read the same clock, but this clock may be set back between the two
 // readings.
 constexpr std::int64_t kClockSlack_us = 1'000'000;

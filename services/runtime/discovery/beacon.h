@@ -1,5 +1,5 @@
-// Lets programs that were given no URL find a run: the runner announces the run at the address
-// where such programs listen (lcm_url.h, MeetingUrl()).
+// A runner announces its run at the address where programs without a URL listen (lcm_url.h,
+// MeetingUrl()). So these programs find the run.
 #pragma once
 
 #include <optional>

@@ -15,7 +15,7 @@ namespace fogline::runtime {
 class MeetingSender {
  public:
   /// Sends nothing if `own_url` is the meeting address itself, or if the meeting address is not a
-  /// multicast group or has no route. @param own_url the network that the messages are about
+  /// multicast group or has no route. @param own_url the network that the messages name
   explicit MeetingSender(const std::string& own_url);
   ~MeetingSender();
   MeetingSender(const MeetingSender&) = delete;

@@ -31,8 +31,8 @@ class RunSeeker {
   bool InVain(TimePoint now);
   /// Gives up the run that was tried last: Look() does not return this run for the time kTryAgain.
   /// In this time the role can join a run at the meeting address itself. The exclusion ends earlier
-  /// if an announcement says that the run does not wait for the role: if a later announcement says
-  /// that the run waits for the role, the role has become free again.
+  /// if an announcement says that the run does not wait for the role. If the run then waits for the
+  /// role again, the role has become free since the failed try.
   void GiveUp(TimePoint now);
   /// From now on, Look() does not return this run, because the role already takes part in it.
   void Ignore(std::int64_t run_id) { own_ = run_id; }

@@ -33,7 +33,7 @@ class WaitingNotice {
  private:
   TimePoint due_{};
   std::optional<MeetingSender> meeting_;
-  std::string url_;  // the network that the messages of meeting_ are about
+  std::string url_;  // the network that the messages of meeting_ name
   std::vector<std::uint8_t> buffer_;
 };
 

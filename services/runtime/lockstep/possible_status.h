@@ -1,5 +1,5 @@
 // Checks whether the numbers of a STATUS can be true. A STATUS comes from the network or from a
-// file, so its numbers may be wrong, but sums or differences of them must not overflow.
+// file, so its numbers may be wrong. Sums and differences of these numbers must not overflow.
 #pragma once
 
 #include "fogline/status_t.hpp"

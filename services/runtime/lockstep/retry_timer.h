@@ -21,8 +21,8 @@ class RetryTimer {
     return ask_at_;
   }
 
-  /// Notes that the node asks now. AskedInVain(), called after it, sets the time of the next
-  /// request: the interval becomes a quarter longer.
+  /// Asked() notes that the node asks now. AskedInVain() then sets the time of the next request:
+  /// the interval becomes a quarter longer.
   void Asked(TimePoint now) { asked_ = now; }
   void AskedInVain(TimePoint now) {
     wait_ = std::min(wait_ + wait_ / 4, kLongest);

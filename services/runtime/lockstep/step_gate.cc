@@ -42,8 +42,8 @@ void StepGate::OnGo(const run_t& run, TimePoint now) {
   if (started_) return;
   started_ = true;
   pace_ = std::max(0.0, run.pace);
-  // A world that joins late computes the old steps without waiting, and keeps to the pace only from
-  // there on.
+  // A world that joins late computes the old steps without waiting, and keeps to the pace only in
+  // later steps.
   start_ = now;
   start_ -= Due(std::max<std::int64_t>(0, run.progress)) - now;
 }

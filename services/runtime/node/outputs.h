@@ -31,7 +31,8 @@ class Outputs {
   /// stored.
   /// @throws std::runtime_error if the output is too large
   void Publish(std::size_t channel, std::int64_t step, Bytes bytes);
-  /// The limit for answers to requests for steps before the two newest ones, and for STATUS.
+  /// The limit for answers to requests. It counts answers with STATUS, and answers with steps
+  /// before the two newest steps.
   RateLimiter& limiter() { return limiter_; }
 
  private:

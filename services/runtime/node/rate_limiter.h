@@ -1,6 +1,5 @@
-// A rate limiter (token bucket) for the requests that a process answers: it allows a burst of
-// answers, and then a fixed number of answers per second. So a flood of RESEND gets a limited
-// number of answers, and the run goes on.
+// A rate limiter (token bucket). It allows a burst of messages, and then a fixed number of messages
+// per second. For example, a flood of RESEND gets a limited number of answers, and the run goes on.
 #pragma once
 
 #include <algorithm>
@@ -12,12 +11,12 @@ namespace fogline::runtime {
 
 class RateLimiter {
  public:
-  /// @param per_second answers that may be sent per second
-  /// @param burst answers that may be sent in one burst
+  /// @param per_second messages that are allowed per second
+  /// @param burst messages that are allowed in one burst
   constexpr RateLimiter(double per_second, double burst)
       : per_second_(per_second), burst_(burst), left_(burst) {}
 
-  /// Whether one more message may be sent now.
+  /// Whether one more message is allowed now.
   bool Has(TimePoint now) {
     const std::chrono::duration<double> passed = now - filled_;
     if (passed.count() > 0) {
@@ -27,7 +26,7 @@ class RateLimiter {
     return left_ >= 1;
   }
 
-  /// Like Has(); if the result is true, the message counts as sent.
+  /// Like Has(); if the result is true, the message is counted.
   bool Take(TimePoint now) {
     if (!Has(now)) return false;
     left_ -= 1;

@@ -1,4 +1,4 @@
-// What a role knows about its run, from the runner's RUN or from the option --run-id.
+// A role's information about its run. It comes from the runner's RUN or from the option --run-id.
 #pragma once
 
 #include <cstdint>

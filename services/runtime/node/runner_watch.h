@@ -1,5 +1,5 @@
-// What a role knows about its runner: whether the runner is alive, how long to wait for the runner,
-// and whether the runner's run has a place for the role.
+// A role's information about its runner: whether the runner is alive, how long to wait for the
+// runner, and whether the runner's run has a place for the role.
 #pragma once
 
 #include <algorithm>
@@ -29,9 +29,9 @@ inline Seat SeatIn(const run_t& run, std::string_view role, std::int64_t instanc
 class RunnerWatch {
  public:
   /// A runner sends RUN five times a second. If no RUN comes for this time (ten missing messages),
-  /// a role joins another run that waits for the role. A runner is not held up for so long on a
-  /// machine that is not overloaded. If a person stops a runner (Ctrl-Z), the role may join another
-  /// run before the runner continues.
+  /// a role joins another run that waits for the role. Only an overloaded machine holds up a runner
+  /// for so long. If a person stops a runner (Ctrl-Z), the role may join another run before the
+  /// runner continues.
   static constexpr Duration kSilent = milliseconds(2000);
   /// If no other run waits for the role, the role leaves its run after the sum of the stall limit
   /// and this time. After the stall limit the run has ended, except if the runner itself is paused

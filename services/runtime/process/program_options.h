@@ -31,9 +31,8 @@ void RefuseEmptyText(CLI::Option& option);
 /// Adds --key and --faults to a command line.
 void AddTrafficOptions(CLI::App& app, TrafficOptions& options);
 
-/// The option of a command line that a mistyped option probably means, as `; did you mean
-/// "--log"?`;
-/// "" if no option is near.
+/// Returns a suggestion for a mistyped option, such as `; did you mean "--log"?`; "" if no option
+/// of the command line is similar.
 std::string OptionMeant(const CLI::App& command, const std::string& mistyped);
 
 /// What is wrong with a command line, in plain words where CLI11 has its own, such as `--force
@@ -46,7 +45,7 @@ std::string WhatIsWrong(const CLI::ParseError& error);
 class ProgramOptions {
  public:
   /// @param name of the program, such as "fogline-radar"
-  /// @param version what --version prints
+  /// @param version the text that --version prints
   ProgramOptions(const std::string& name, const std::string& purpose, const std::string& version);
   ~ProgramOptions();
 

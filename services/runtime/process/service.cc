@@ -94,7 +94,7 @@ class Service {
   void Say(const std::string& what) const { Notice(fmt::format("{}: {}", arguments_.name, what)); }
 
   OwnStatus& own() { return work_->node().parts().own; }
-  /// What the role knows about its run.
+  /// The role's information about its run.
   const RunNews& news() { return work_->node().parts().run; }
 
   /// Joins a network. If the process cannot join the network, it stays on its current network.
@@ -238,8 +238,8 @@ class Service {
     Say(fmt::format("{}; waiting for a run on {} again", why, bus_->url()));
   }
 
-  /// Whether a runner has started this process: the runner names its run, and the process ends with
-  /// the runner.
+  /// Whether a runner has started this process. The runner gives such a process the id of its run,
+  /// and the process ends when the runner ends.
   bool IsOfARunner() const { return arguments_.run_id && EndsWithItsParent(); }
 
   /// Sends a notice that the role waits, if a notice is due. A role that a runner has started sends

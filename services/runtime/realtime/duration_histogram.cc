@@ -5,9 +5,8 @@
 
 namespace fogline::runtime {
 
-// The cell of a duration. Rounded down to a multiple of 2^e us, the duration is m 2^e us, with the
-// exponent e >= 0 and m in [64, 128). Below 64 us, e is 0 and m is the duration in us. The index of
-// the cell is 64 e + m.
+// Returns the index of a duration's cell, 64 e + m. A duration of 64 us or more is rounded down to
+// m 2^e us, where e >= 0 and m is in [64, 128). Below 64 us, e is 0 and m is the duration in us.
 std::size_t DurationHistogram::CellOf(std::int64_t us) {
   const auto value = static_cast<std::uint64_t>(us);
   const auto width = static_cast<int>(std::bit_width(value));

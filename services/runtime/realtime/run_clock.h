@@ -1,8 +1,8 @@
 // The clock by which a role judges its inputs in real time: the wall clock without the world's
-// pauses. If the world's process pauses, all other roles stop publishing a step later, although
-// only the world is to blame. By this clock, their messages do not become old during the pause. The
-// world itself receives no inputs during its pause, and by this clock they do not become old
-// either.
+// pauses. If the world's process pauses, all other roles stop publishing after one more step,
+// although only the world is to blame. By this clock, their messages do not become old during the
+// pause. The world itself receives no inputs during its pause. By this clock, its inputs do not
+// become old either.
 #pragma once
 
 #include <algorithm>

@@ -9,10 +9,10 @@
 
 namespace fogline::runtime {
 
-/// A seat has the driver, which means that its messages are used, while its newest message is less
-/// than `deadman` old and says that a person is present. In this time the messages of other seats
-/// are refused. When this seat is silent, or its person has left, the next message of a person at
-/// any seat counts.
+/// The messages of the seat that has the driver are used. A seat has the driver while its newest
+/// message is less than `deadman` old and says that a person is present. In this time the messages
+/// of other seats are refused. When this seat is silent, or its person has left, the next message
+/// of a person at any seat counts.
 ///
 /// The class reads no clock: its caller passes the time.
 class SeatGate {

@@ -280,7 +280,7 @@ void Bus::Drain() {
   RequireNoHandler();
   for (int i = 0; i < kDrained; ++i) {
     if (waiting_ > 0) {
-      Handle();  // memq; without the reading of the clock in Wait()
+      Handle();  // memq; Wait() would also read the clock
     } else if (!Wait(Duration::zero())) {
       return;
     }
@@ -335,8 +335,8 @@ std::optional<Bytes> Bus::Verified(const Topic& topic, Bytes bytes) {
   };
   if (!signer_) {
     // The bytes go to the decoder as they are. The decoder refuses a message with a signature after
-    // its payload. By chance, an unsigned payload may end like a signature. This payload must still
-    // be read.
+    // its payload. By chance, an unsigned payload may end like a signature. Such a payload must
+    // still be read.
     count(&Unverified::no_key);
     return bytes;
   }

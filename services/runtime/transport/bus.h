@@ -50,8 +50,8 @@ class NetworkClosed : public InputError {
   using InputError::InputError;
 };
 
-/// @throws InputError if a network takes no key: mpudpm has no filter, so fragments and floods
-///     would reach a process before their signature is checked
+/// @throws InputError if a network cannot be used with a key. This is the case for mpudpm: it has
+///     no filter, so fragments and floods would reach a process before their signature is checked.
 void RequireSignable(std::string_view url);
 
 /// One connection to an LCM network, for one thread. With memq:// a message reaches only the

@@ -48,7 +48,7 @@ int LcmSockets::OnConnect(int socket, const sockaddr* address, socklen_t size) c
 }
 
 int LcmSockets::OnOption(int socket, int level, int name, const void* value, socklen_t size) const {
-  // LCM joins the group also in order to send, which needs no membership.
+  // LCM joins the group even if it only sends. Sending needs no membership.
   if (level == IPPROTO_IP && name == IP_ADD_MEMBERSHIP) return 0;
   const int result = SetOption(socket, level, name, value, size);
   if (reach_ != Reach::kLoopback || level != IPPROTO_IP) return result;

@@ -1,6 +1,6 @@
-// Controls the UDP sockets with which LCM sends, and to which LCM gives no access. A network that
-// is limited to this machine uses the loopback interface. Fogline receives with sockets of its own
-// (udpm/group_socket.h).
+// LCM sends with UDP sockets to which it gives no access. This code controls these sockets. A
+// network that is limited to this machine uses the loopback interface. Fogline receives with
+// sockets of its own (udpm/group_socket.h).
 //
 // LCM uses the interface of the route to the group, even if all messages stay on the machine
 // (ttl=0). Traffic of this kind ends when the interface, its address or its route disappears, for
@@ -23,7 +23,7 @@ class LcmSockets {
     /// LCM sends over loopback. A GroupSocket receives from loopback, and over the route if there
     /// is a route.
     kLoopback,
-    kRoute,  ///< both use the route to the group
+    kRoute,  ///< LCM and the GroupSocket use the route to the group
   };
 
   explicit LcmSockets(Reach reach);
@@ -60,7 +60,7 @@ class GroupMembership {
   GroupMembership(int socket, const std::string& url);
   /// Joins the group again, on the interface of the current route, if the route leads to another
   /// interface or the interface has lost the group. The socket first leaves the group on the
-  /// interface where it joined the group. Prints on stderr why the socket cannot join.
+  /// interface where it joined the group. If the socket cannot join, prints the reason on stderr.
   void Renew();
 
  private:

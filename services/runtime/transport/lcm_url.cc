@@ -51,8 +51,8 @@ std::string_view TakeUntil(char separator, std::string_view& text) {
   return part;
 }
 
-/// What LCM takes for the missing parts of a multicast URL. Fogline, too, has 0 as the default of
-/// ttl (bus.h).
+/// LCM's values for the missing parts of a multicast URL. Fogline's default of ttl is also 0
+/// (bus.h).
 MulticastAddress LcmsDefaults() {
   return {.group = *GroupOf(kUdpm), .port = 7667, .ports = 1, .ttl = 0, .receive_buffer = {}};
 }
@@ -68,7 +68,7 @@ std::string NoPort(std::string_view text) {
   return fmt::format("{} is no port (1 to {})", QuoteShort(text), kMostPort);
 }
 
-/// Reads the part "ADDRESS:PORT" of a multicast URL. @return what is wrong; "" if nothing is
+/// Reads the part "ADDRESS:PORT" of a multicast URL. @return what is wrong; "" if nothing is wrong
 std::string ReadPlace(std::string_view place, MulticastAddress& address) {
   if (place.empty()) return "";
   const std::size_t colon = place.find(':');
@@ -86,7 +86,7 @@ std::string ReadPlace(std::string_view place, MulticastAddress& address) {
   return "";
 }
 
-/// Reads one option of a multicast URL. @return what is wrong; "" if nothing is
+/// Reads one option of a multicast URL. @return what is wrong; "" if nothing is wrong
 std::string ReadOption(bool many_ports, std::string_view name, std::string_view value,
                        MulticastAddress& address) {
   if (name != kTtl && name != kReceiveBuffer && !(many_ports && name == kPorts)) {
@@ -110,7 +110,7 @@ std::string ReadOption(bool many_ports, std::string_view name, std::string_view 
   return "";
 }
 
-/// Reads a multicast URL (udpm:// or mpudpm://). @return what is wrong; "" if nothing is
+/// Reads a multicast URL (udpm:// or mpudpm://). @return what is wrong; "" if nothing is wrong
 std::string ReadMulticast(std::string_view url, MulticastAddress& address) {
   const bool many_ports = url.starts_with(kMpudpm);
   std::string_view options = url.substr((many_ports ? kMpudpm : kUdpm).size());
@@ -148,7 +148,7 @@ std::optional<RelayPlace> ParseRelayUrl(std::string_view url) {
 }
 
 /// Whether an address belongs to one of this machine's interfaces or to loopback (127.0.0.0/8). A
-/// program may listen on more addresses (tcpq::ResolveOwn()), but not every one of them is reached.
+/// program may listen on more addresses (tcpq::ResolveOwn()), but clients cannot reach all of them.
 bool IsOfThisMachine(in_addr address) {
   if (ntohl(address.s_addr) >> 24 == IN_LOOPBACKNET) return true;
   ifaddrs* interfaces = nullptr;

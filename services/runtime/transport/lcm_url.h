@@ -47,10 +47,10 @@ std::optional<MulticastAddress> ParseMulticastUrl(std::string_view url);
 /// The contents of a udpm:// or mpudpm:// URL. @pre nothing is wrong in the URL (WhyWrongUrl())
 MulticastAddress MulticastAddressOf(std::string_view url);
 
-/// Says why a text is not the URL of an LCM network: it begins like none, or the address of udpm or
-/// mpudpm, the port or an option is wrong. "" if nothing is wrong. The host of a relay (tcpq) is
-/// read only when it is needed (tcpq_url.h). Fogline takes less than LCM does. LCM ignores
-/// unknown options, also a mistyped ttl, and it reads 010 as 8.
+/// Says what is wrong in a URL of an LCM network; "" if nothing is wrong. An error can be in the
+/// beginning of the text, in the address of udpm or mpudpm, in the port, or in an option. The host
+/// of a relay (tcpq) is read only when it is needed (tcpq_url.h). Fogline accepts fewer URLs than
+/// LCM does. LCM ignores unknown options, also a mistyped ttl, and it reads 010 as 8.
 std::string WhyWrongUrl(std::string_view url);
 
 /// @param source of the URL, such as "--lcm-url". @throws InputError that names the source, if

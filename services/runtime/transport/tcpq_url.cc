@@ -61,17 +61,18 @@ int ErrorOf(int type, const Endpoint& place, const Call& call) {
   return error;
 }
 
-/// Listens as a server does: at a port of which only closed connections are left, too.
+/// Listens as a server does: also at a port that only closed connections still use.
 int BindAndListen(int socket, const sockaddr* address, socklen_t size) {
   const int yes = 1;
   setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof(yes));
   return bind(socket, address, size) != 0 ? -1 : listen(socket, 1);
 }
 
-/// Whether this machine has an IPv4 address at which clients can connect. The kernel decides. It
-/// also lets a socket listen on a multicast or broadcast address, to which no client can connect. A
-/// UDP socket may not connect to the broadcast address of an interface; this call sends no packet.
-/// Without a route, the kernel does not say this of 255.255.255.255.
+/// Whether an IPv4 address belongs to this machine, and clients can connect to it. bind() fails if
+/// the address does not belong to this machine. But bind() accepts multicast and broadcast
+/// addresses, to which no client can connect. connect() of a UDP socket sends no packet, and fails
+/// with EACCES for a broadcast address. But without a route, connect() does not report this error
+/// for 255.255.255.255.
 bool IsOwn(const std::string& address) {
   return !IsMulticast(address) && address != "255.255.255.255" &&
          ErrorOf(SOCK_STREAM, {address, 0}, bind) != EADDRNOTAVAIL &&

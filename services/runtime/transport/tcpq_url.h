@@ -34,10 +34,9 @@ Endpoint ResolveOwn(std::string_view host_and_port, std::string_view what);
 bool HasPort(std::string_view host_and_port);
 
 /// Says that a process cannot listen at a place.
-/// @throws InputError that names `what` if the port is busy or not for this user, or if this
-/// machine
-///     does not have the address; std::runtime_error for other reasons, and for port 0, which is
-///     any free port
+/// @throws InputError that names `what` if the port is busy, if this user may not use the port, or
+///     if this machine does not have the address; std::runtime_error for other reasons, and for
+///     port 0 (any free port)
 [[noreturn]] void ThrowCannotListen(const Endpoint& place, std::string_view what,
                                     std::error_code why);
 

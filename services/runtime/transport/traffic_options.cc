@@ -21,7 +21,7 @@ std::optional<FaultRates> FaultsOf(const TrafficOptions& options) {
   return rates;
 }
 
-/// What the options do to the messages of a bus.
+/// The effect of the options on the messages of a bus.
 struct Treatment {
   /// @throws InputError when the options, or the key's file, are wrong
   explicit Treatment(const TrafficOptions& options)

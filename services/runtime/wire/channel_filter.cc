@@ -123,8 +123,8 @@ std::vector<sock_filter> WholeMessages() {
 std::vector<sock_filter> ChannelFilter(std::vector<Wanted> wanted) {
   std::vector<sock_filter> program = WholeMessages();
   // If a filter reads beyond the end of a datagram, the kernel drops the datagram. Therefore short
-  // names are compared first: a name that is compared before the matching name is not longer than
-  // the matching name, so its comparison stays within the datagram.
+  // names are compared first. A name that is compared before the matching name is at most as long
+  // as the matching name. So its comparison stays within the datagram.
   std::ranges::stable_sort(wanted, {}, [](const Wanted& one) { return one.channel.size(); });
   for (const Wanted& one : wanted) AppendWanted(one, program);
   program.push_back(Take(kNothing));

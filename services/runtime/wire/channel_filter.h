@@ -36,7 +36,7 @@ struct Wanted {
 
 /// A filter program that takes only LCM datagrams ("LC02": int32 sequence number, channel, 0, data)
 /// on these channels. It drops fragments of large messages ("LC03"), and datagrams that are longer
-/// than the longest channel name, kMaxMessageBytes of data and a signature require.
+/// than a message with the longest channel name, kMaxMessageBytes of data and a signature.
 /// @throws std::logic_error if the contents of a channel need more instructions than a jump can
 ///     skip
 std::vector<sock_filter> ChannelFilter(std::vector<Wanted> wanted);

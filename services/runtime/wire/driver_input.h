@@ -1,5 +1,5 @@
-// What a DRIVER_INPUT may contain, and how often a seat may send one. All programs that send or
-// read DRIVER_INPUT use these limits.
+// The limits of the contents of a DRIVER_INPUT, and of the rate at which a seat may send it. All
+// programs that send or read DRIVER_INPUT use these limits.
 #pragma once
 
 #include <algorithm>

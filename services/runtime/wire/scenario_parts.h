@@ -1,5 +1,5 @@
-// How a scenario is sent over LCM: in parts, each of which fits into one datagram. The receiver
-// puts the parts together.
+// A scenario is sent over LCM in parts. Each part fits into one datagram. The receiver puts the
+// parts together.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// What a TRIAL may contain. All programs that send or read TRIAL use these limits.
+// The limits of the contents of a TRIAL. All programs that send or read TRIAL use these limits.
 #pragma once
 
 #include <algorithm>

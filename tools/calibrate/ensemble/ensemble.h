@@ -38,7 +38,7 @@ CalibrationProblem WithFreshSeeds(CalibrationProblem problem, sweep::SeedRange f
 
 /// Searches for an ensemble. `fresh` is the problem of `searched` with other seeds. The result does
 /// not depend on the number of threads. An interrupted search returns the sets found so far.
-/// @throws InputError if the scenario can run at no evaluated point
+/// @throws InputError if the scenario cannot run at any evaluated point
 ParameterEnsemble FindEnsemble(const Objective& searched, const Objective& fresh,
                                const EnsembleRules& rules, const GoOn& go_on,
                                const EnsembleProgress& progress);

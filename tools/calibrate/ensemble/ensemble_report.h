@@ -23,8 +23,8 @@ struct EnsembleReport {
 /// Name of the file of the set with this index: "set-3.json" for index 2.
 std::string SetFileName(std::size_t index);
 
-/// `text`, the text of the scenario's file, with the title and the description of a set. Title and
-/// description say how the set was made.
+/// `text` with the title and the description of a set. `text` is the text of the scenario's file.
+/// The description says how the set was made.
 std::string WithOrigin(const EnsembleReport& report, std::size_t index, std::string_view text);
 
 /// The text of a set's file: WithOrigin() with the values of the set.

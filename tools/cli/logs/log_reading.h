@@ -1,5 +1,5 @@
 // The options of verbs that can read a log with gaps, a log of several runs, or a log without its
-// scenario. Also the messages that these verbs print about such a log.
+// scenario. This file also has the messages that these verbs print about such a log.
 #pragma once
 
 #include <cstdint>
@@ -50,9 +50,9 @@ std::vector<std::string> UnknownMeasures(const runner::ExperimentResult& result)
 /// The same as text, such as "rhe_pct, transfers", or "all measures"; "" if all are known.
 std::string UnknownMeasuresText(const runner::ExperimentResult& result);
 
-/// The requests to take over of a run whose measures are unknown, such as "the measures of
-/// take-overs"; "" if all requests and their measures are known, or if the run cannot have
-/// requests.
+/// Names the unknown requests to take over of a run, and the unknown measures of requests, such as
+/// "the measures of take-overs"; "" if all requests and their measures are known, or if the run
+/// cannot have requests.
 std::string UnknownTakeOvers(const runner::LoggedRun& run);
 
 /// Prints on stderr which results of a run are unknown because its log has gaps.

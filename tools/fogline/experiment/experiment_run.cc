@@ -171,7 +171,8 @@ void CheckSpeed(const RunTrialsArguments& arguments, const trials::PlanFile& pla
         throw InputError(fmt::format("error: --speed {}: in condition {}: {}",
                                      NumberText(options.speed), Quote(condition.name), why));
       }
-      // The speed of the file suits the conditions of the file, in which no person drives.
+      // The file's speed fits the conditions in the file. It may not fit the person who drives with
+      // --keys or --evdev.
       throw InputError(
           fmt::format("error: {}: {}, but /speed of {} is {}; give --speed 1",
                       arguments.keys ? "--keys" : "--evdev " + PathText(arguments.device), why,
@@ -244,15 +245,16 @@ int RunTrials(const RunTrialsArguments& arguments) {
   CheckSeat(arguments, plan);
   CheckPorts(arguments);
   const trials::Results results(plan, arguments.plan.results());
-  // If another session has the participant, the error says so. It would have the pages' ports, too.
+  // If another session has this participant, Begin() reports this. A later call of Begin() would be
+  // too late: the pages would fail first, because the other session has their ports, too.
   std::error_code missing;
   const bool has_begun = std::filesystem::exists(results.FolderOf(arguments.participant), missing);
   auto lock = has_begun ? results.Begin(arguments.participant) : nullptr;
   CheckMeans(plan.plan, results, options);
   WatchInterrupts();
   const auto pages = arguments.no_page ? nullptr : ServePages(arguments, options.run.traffic);
-  // The first session of a participant has written nothing before this line. The addresses of a
-  // session that may not begin are not printed.
+  // Before this line, the first session of a participant has written nothing. If the session cannot
+  // begin, no addresses are printed.
   if (!lock) lock = results.Begin(arguments.participant);
   if (pages) PrintAddresses(*pages);
   trials::TerminalDesk terminal;

@@ -5,8 +5,8 @@
     run = fl.run("scenario/paper.json", set={"/arbitrator/threshold": 0.8})
     run.log.TRACK[["time_s", "state.0"]]
 
-Reading a log and listening to a network need only the standard library. pandas is imported where
-a table is asked for. docs/python.md is a tutorial.
+Reading a log and listening to a network need only the standard library. pandas is imported only
+when the caller asks for a table. docs/python.md is a tutorial.
 """
 
 from fogline_lab.errors import (BadInput, CheckFailed, FoglineError, IncompleteLog, LogError,

@@ -1,7 +1,6 @@
 """The bytes of messages, as LCM encodes them: big endian, after the fingerprint of the type.
 
-The classes of `fogline_lab.messages` use these functions. Nothing but the standard library is
-needed.
+The classes of `fogline_lab.messages` use these functions. Only the standard library is needed.
 """
 
 from __future__ import annotations
@@ -13,7 +12,8 @@ from typing import Any, ClassVar, NamedTuple, Sequence, TypeVar
 # A signed message has these bytes after its payload: mark, key id, sender, tag.
 SIGNATURE_MARK = b"FLS1"
 SIGNATURE_BYTES = 24
-# The most elements of a list. A message fits one datagram, so a longer list is no message.
+# Largest number of elements of a list. A message fits into one datagram, so no message has a longer
+# list.
 MOST_ELEMENTS = 1 << 16
 
 _LENGTH = struct.Struct(">i")
@@ -72,7 +72,7 @@ class Message:
         raise NotImplementedError
 
     def _fault(self) -> str:
-        """What is wrong with the first field that cannot be encoded; "" if none is found."""
+        """A text about the first field that cannot be encoded; "" if none is found."""
         for field in self.FIELDS:
             value = getattr(self, field.name)
             if _fits(value, field.type, field.dims):
@@ -139,7 +139,7 @@ def write_numbers(letter: str, numbers: Sequence) -> bytes:
 
 
 def read_text(data: Any, at: int) -> tuple[str, int]:
-    """A text and the place after it. Bytes that are no UTF-8 stay as surrogates."""
+    """A text and the place after it. Bytes that are not UTF-8 become surrogates."""
     (length,) = _LENGTH.unpack_from(data, at)
     begin, end = at + 4, at + 4 + length
     if length < 1 or end > len(data):

@@ -1,4 +1,5 @@
-"""The errors of this package. Their texts are those of the program or the file concerned."""
+"""The errors of this package. The text of an error is the output of the program, or says what is
+wrong, for example with a file or a network."""
 
 from __future__ import annotations
 
@@ -8,12 +9,11 @@ class FoglineError(Exception):
 
 
 class LogError(FoglineError, ValueError):
-    """A file is no event log, or a log lacks what was asked for."""
+    """A file cannot be read as an event log, or a log lacks the requested data."""
 
 
 class ProgramError(FoglineError, RuntimeError):
-    """`fogline` has failed. The text is what it printed on stderr, `out` what it printed on stdout.
-    """
+    """`fogline` has failed. The text is its output on stderr; `out` is its output on stdout."""
 
     def __init__(self, text: str, command: list[str], code: int, out: str = "") -> None:
         super().__init__(text or f"{' '.join(command)}: exit code {code}")
@@ -27,8 +27,8 @@ class CheckFailed(ProgramError):
 
 
 class IncompleteLog(UserWarning):
-    """What the program tells of a log is that of a part of the run. The text says what is missing.
-    """
+    """The program has examined only a part of a run, because the log is not complete. The text says
+    what is missing."""
 
 
 class BadInput(ProgramError, ValueError):
@@ -36,4 +36,4 @@ class BadInput(ProgramError, ValueError):
 
 
 class RunFailed(ProgramError):
-    """Exit code 3 or another one: the run has failed."""
+    """Exit code 3, or any code other than 0, 1 and 2: the run has failed."""

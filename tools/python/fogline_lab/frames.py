@@ -17,8 +17,8 @@ if TYPE_CHECKING:
 
 _NUMPY = {"boolean": "?", "int8_t": "i1", "int16_t": ">i2", "int32_t": ">i4", "int64_t": ">i8",
           "float": ">f4", "double": ">f8"}
-# Messages that are copied out of the file at once. The indices of a copy need 8 bytes for each
-# byte, so a larger number costs memory and saves no time.
+# Number of messages that are copied out of the file at once. The indices of a copy need 8 bytes for
+# each byte, so a larger number costs memory and saves no time.
 _AT_ONCE = 10_000
 
 
@@ -31,7 +31,7 @@ def frame_of(log: Log, channel: str) -> pandas.DataFrame:
         table = _table_of_numbers(log, channel, kind)
     if channel not in STEP_CHANNELS:
         return table.drop(columns="utime").reset_index(drop=True)
-    # The same step may come twice: from a repair that lcm-logger has recorded, too.
+    # lcm-logger also records repairs, so the same step may come twice.
     table = table.drop_duplicates("step").sort_values("step", kind="stable")
     return table.drop(columns="utime").set_index("step")
 
@@ -49,13 +49,13 @@ def _table_of_numbers(log: Log, channel: str, kind: type[Message]) -> pandas.Dat
     events = log.events_of(channel)
     begins = numpy.asarray(events.begins, dtype=numpy.int64)
     sizes = numpy.asarray(events.ends, dtype=numpy.int64) - begins
-    # The size of a message tells how long its lists are, because all lists of a type have one
-    # count.
+    # All lists of variable length in a message have the same length. So the size of the message
+    # determines this length.
     tables = []
     for size in numpy.unique(sizes):
         group = begins[sizes == size]
         tables.append(_table_of_equals(log, channel, kind, group, int(size)))
-    # A group of another run has no rows here, but may have more columns.
+    # A table is empty if its messages are of another run. Such a table may have more columns.
     tables = [table for table in tables if len(table)] or tables[:1]
     return pandas.concat(tables, ignore_index=True) if len(tables) > 1 else tables[0]
 
@@ -83,8 +83,8 @@ def _table_of_equals(log: Log, channel: str, kind: type[Message], begins: numpy.
 
 
 def _layout(kind: type[Message], example: Message) -> tuple[numpy.dtype, dict[str, int]]:
-    """Where the fields of a message lie, for messages with lists as long as those of the example;
-    and the values of the fields that count."""
+    """The layout of messages whose lists are as long as those of the example, and the values of the
+    fields that count elements."""
     counts: dict[str, int] = {}
     parts: list[tuple] = [("fingerprint", ">u8")]
     for field in kind.FIELDS:
@@ -110,7 +110,7 @@ def _gather(data: Any, begins: numpy.ndarray, layout: numpy.dtype) -> Iterator[n
 
 
 def _native(column: numpy.ndarray) -> numpy.ndarray:
-    """The column in this machine's order of bytes."""
+    """The column in this machine's byte order."""
     return column.astype(column.dtype.newbyteorder("="))
 
 

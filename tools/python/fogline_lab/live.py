@@ -19,7 +19,7 @@ _SELF_TEST = "LCM_SELF_TEST"
 # A run announces itself every 0.5 s. Without a beacon for this long it counts as ended
 # (services/runtime/discovery/announcements.h).
 _GONE_S = 3.0
-# How often it is checked whether a run has ended.
+# Longest time between two checks whether a run has ended.
 _LOOK_EVERY_S = 0.25
 
 
@@ -47,13 +47,13 @@ class Live:
                 print(message.header.step, message.host_gap_m)
 
     url: an LCM network, udpm:// or tcpq://. Without it, Live follows the newest run that is
-        announced on this machine, as `fogline top` does, and else listens to $LCM_DEFAULT_URL or
-        LCM's default address.
+        announced on this machine, as `fogline top` does. While no run is announced, Live listens
+        to $LCM_DEFAULT_URL, or to LCM's default address if this variable is not set.
     channels: yields only messages on these channels.
     timeout_s: the iteration ends when no message has come for this time; None: it never ends.
 
-    Live sends nothing. It sees what reaches this machine: a lost message is not asked for again.
-    Messages that cannot be decoded are counted by their channel in `refused`.
+    Live publishes no messages. So it does not ask for lost messages, and yields only those that
+    reach this machine. Messages that cannot be decoded are counted by their channel in `refused`.
 
     Raises BadInput for a bad URL, FoglineError if the network cannot be joined or is lost.
     """
@@ -73,7 +73,7 @@ class Live:
 
     @property
     def url(self) -> str:
-        """The network to which it listens at present."""
+        """The URL of the network to which Live listens at present."""
         return self.run.url if self.run and self._followed else self._url
 
     def __enter__(self) -> Live:
@@ -94,19 +94,19 @@ class Live:
         while True:
             while self._heard:
                 yield self._heard.popleft()
-                last = time.monotonic()  # the time that the caller takes is no silence
+                last = time.monotonic()  # the time that the caller needs does not count
             if self._base is None:
                 return
             left = None if self._timeout_s is None else self._timeout_s + last - time.monotonic()
             self._wait(left if left is None else max(0.0, left))
-            # What has come while this process got no processor time is there, too.
+            # _wait() has also taken the messages that came while this process had no processor.
             if left is not None and left <= 0 and not self._heard:
                 return
 
     # ----------------------------------------------------------------------------------------------
 
     def _wait(self, limit_s: float | None) -> None:
-        """Waits for messages, and takes them in."""
+        """Waits for messages, and stores them."""
         wait_s = _LOOK_EVERY_S if self._follows else limit_s
         if limit_s is not None and wait_s is not None:
             wait_s = min(wait_s, limit_s)
@@ -121,7 +121,7 @@ class Live:
                 self._leave()
         if self._follows:
             self._follow(time.monotonic())
-        self.refused += Counter()  # drops the zeros
+        self.refused += Counter()  # removes counts of zero
 
     def _take_from_base(self, channel: str, payload: bytes) -> None:
         if channel == BEACON_CHANNEL and self._follows:
@@ -142,8 +142,8 @@ class Live:
             self.refused[channel] += 1
 
     def _take_beacon(self, payload: bytes) -> None:
-        """Notes an announced run. A beacon does not leave its machine, so one of another host is
-        refused."""
+        """Stores an announced run. A beacon does not leave its machine, so a beacon of another host
+        is refused."""
         try:
             beacon = beacon_t.decode(payload)
         except ValueError:
@@ -159,7 +159,7 @@ class Live:
             self._runs[run.run_id] = (run, time.monotonic())
 
     def _follow(self, now: float) -> None:
-        """Goes to the network of the newest run; leaves that of a run that is over."""
+        """Joins the network of the newest run, and leaves the network of a run that is over."""
         self._runs = {
             run.run_id: (run, heard) for run, heard in self._runs.values() if now - heard < _GONE_S
         }
@@ -168,7 +168,7 @@ class Live:
         if newest == self.run:
             return
         if self._followed is not None:
-            # Takes in what the run has sent before its end was announced.
+            # Takes the messages that the run sent before it announced its end.
             try:
                 self._followed.read(self._take)
             except FoglineError:

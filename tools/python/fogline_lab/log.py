@@ -27,8 +27,8 @@ HEADER_END = HEADER_AT + _HEADER.size
 
 
 class Events(NamedTuple):
-    """The events of one channel, in the order of the file: where the bytes of each message begin
-    and end in the file, and the time of each event in us."""
+    """The events of one channel, in the order of the file. `begins` and `ends` have the offsets in
+    the file at which the bytes of each message begin and end. `times` has the times in us."""
 
     begins: list[int]
     ends: list[int]
@@ -38,9 +38,10 @@ class Events(NamedTuple):
 class Log:
     """The log of a run. Open it with `read_log`.
 
-    `log.TRACK`, and every other channel by its name, is a pandas DataFrame. For a channel with a
-    message in each step, its index is the step, so columns of two channels can be subtracted. A
-    step whose message is missing has no row. For other channels the index counts the events.
+    Each channel is a pandas DataFrame, which is an attribute with the channel's name: `log.TRACK`.
+    For a channel with a message in each step, the index is the step, so columns of two channels can
+    be subtracted. A step whose message is missing has no row. For other channels the index counts
+    the events.
 
     The columns are `time_s` (simulated time, s) and the fields with the names and units of
     lcmtypes/. A list has a column for each value: `state.0`, `state.1`, ...; a matrix is written
@@ -64,7 +65,7 @@ class Log:
         if run is not None and run not in self.runs:
             raise LogError(f"{self.path}: no run {run}; its runs: {self.runs}")
 
-    # ---- what is in the file ---------------------------------------------------------------------
+    # ---- the contents of the file ----------------------------------------------------------------
 
     @property
     def channels(self) -> list[str]:
@@ -73,7 +74,7 @@ class Log:
 
     @property
     def runs(self) -> list[int]:
-        """The ids of the runs in the file. The first is read, unless `read_log` got another one."""
+        """The ids of the runs in the file. Log reads the first run, unless `read_log` got an id."""
         ids: dict[int, None] = {}
         for name, events in self._events.items():
             if name not in ("RUN", "STATUS", "RESEND"):
@@ -154,8 +155,8 @@ class Log:
     def metrics(self) -> dict[str, Any]:
         """The measures of the run, as `fogline metrics` computes them from the log.
 
-        If the log is not complete, they are those of the steps that are there, with None for a
-        measure that needs every step. The warning IncompleteLog then says what is missing.
+        If the log is not complete, the measures are those of the steps in the log. A measure that
+        needs every step is then None, and the warning IncompleteLog says what is missing.
         """
         return self._tell("metrics")["metrics"]
 
@@ -163,8 +164,8 @@ class Log:
     def events(self) -> list[dict[str, Any]]:
         """The events of the run: step, time_s, event, transfer, from, to (`fogline events`).
 
-        If the log is not complete, they are those of the steps that are there. The warning
-        IncompleteLog then says what is missing. An event that may have happened before, in a gap,
+        If the log is not complete, the events are those of the steps in the log. The warning
+        IncompleteLog then says what is missing. If an event may have happened earlier, in a gap, it
         has earliest_step.
         """
         return self._tell("events")["events"]
@@ -178,12 +179,12 @@ class Log:
         return self._ask("digest")["digest"]
 
     def _ask(self, verb: str) -> dict[str, Any]:
-        """What `fogline VERB` says of this run."""
+        """The result of `fogline VERB` for this run."""
         chosen = ["--run", str(self.run_id)] if self.run_id else []
         return program.call_json(verb, self.path, *chosen)[0]
 
     def _tell(self, verb: str) -> dict[str, Any]:
-        """The same, with a warning in place of the error for a log that is not complete."""
+        """As _ask(), but with a warning in place of the error if the log is not complete."""
         try:
             return self._ask(verb)
         except CheckFailed as error:
@@ -234,14 +235,14 @@ def read_log(path: str | os.PathLike[str], run: int | None = None) -> Log:
 
     run: the id of a run in a file with several runs (`Log.runs`); default: the first one.
 
-    A log may have gaps, a torn end, or begin late: there is then no row for what is missing.
+    A log may have gaps, begin late, or end within an event. A message that is missing has no row.
     Raises LogError if the file cannot be read, is no event log, or has no such run.
     """
     return Log(path, run)
 
 
 def _index(data: Any, path: str) -> tuple[dict[str, Events], str]:
-    """The events of each channel, and what is wrong with the end of the file ("": nothing)."""
+    """The events of each channel, and the fault of the end of the file; "" if there is none."""
     by_name: dict[bytes, Events] = {}
     at, size, torn = 0, len(data), ""
     unpack, header = _EVENT.unpack_from, _EVENT.size

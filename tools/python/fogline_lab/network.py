@@ -1,7 +1,7 @@
 """LCM networks: the messages that others send, by UDP multicast (udpm) or from a relay (tcpq).
 
-Only the standard library is needed. LCM's own library is not used, because Debian has none for
-Python. Sources: lcm_udpm.c, lcm_tcpq.c and TCPService.java of LCM 1.3.1.
+Only the standard library is needed. LCM's own library for Python is not used, because Debian does
+not have it. Sources: lcm_udpm.c, lcm_tcpq.c and TCPService.java of LCM 1.3.1.
 """
 
 from __future__ import annotations
@@ -23,11 +23,11 @@ _DEFAULT_RELAY_PORT = 7700
 _WHOLE, _FRAGMENT = 0x4C433032, 0x4C433033
 _WHOLE_HEAD, _FRAGMENT_HEAD = struct.Struct(">II"), struct.Struct(">IIIIHH")
 _DATAGRAM_BYTES = 1 << 16
-# What is waiting for the rest of its fragments: the most messages, and the most bytes of one.
+# Limits for messages that wait for fragments: number of messages, and bytes of one message.
 _MOST_PARTIAL, _MOST_BYTES = 64, 4 << 20
-# A reader hands on its messages after so many datagrams or pieces, also if more wait.
+# A call of read() returns after this many datagrams or pieces, also if more wait.
 _MOST_AT_ONCE = 1000
-# The kernel keeps datagrams in this many bytes until they are read (net.core.rmem_max limits it).
+# Size of the kernel's buffer for datagrams, in bytes (net.core.rmem_max limits it).
 _RECEIVE_BYTES = 2 << 20
 
 _RELAY_MAGIC, _CLIENT_MAGIC, _RELAY_VERSION = 0x287617FA, 0x287617FB, 0x0100
@@ -52,7 +52,7 @@ def network_url(url: str | None) -> str:
 
 
 def address_of(url: str) -> Address:
-    """Raises BadInput for a URL that is neither udpm:// nor tcpq://."""
+    """The network of a URL. Raises BadInput if the URL is not a valid udpm:// or tcpq:// URL."""
     kind, found, rest = url.partition("://")
     place, _, options = rest.partition("?")
     host, _, port = place.partition(":")
@@ -74,18 +74,19 @@ def address_of(url: str) -> Address:
         ) from None
 
 
-# What a network calls with each message: channel and payload.
+# A network calls this function with the channel and the payload of each message.
 Receiver = Callable[[str, bytes], None]
 
 
 class Fragments:
-    """Puts the datagrams of LCM together."""
+    """Assembles messages from the datagrams of LCM."""
 
     def __init__(self) -> None:
         self._partial: dict[tuple, tuple[str, bytearray, set[int], int]] = {}
 
     def take(self, datagram: bytes, sender: tuple, receiver: Receiver) -> bool:
-        """Calls the receiver if a message is whole. @return False for what is not of LCM."""
+        """Calls the receiver if a message is complete. @return False if the datagram is not LCM's.
+        """
         try:
             mark, number = _WHOLE_HEAD.unpack_from(datagram)
             if mark == _WHOLE:
@@ -149,12 +150,13 @@ class Multicast:
                 self.socket.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP, membership)
             except OSError as error:
                 failures.append(error)
-        # If the route leads over loopback, the second try finds the group joined.
+        # If the route leads over loopback, the second call fails: the group is joined already.
         if len(failures) == 2:
             raise failures[0]
 
     def read(self, receiver: Receiver) -> int:
-        """Hands on the messages that have come. @return the datagrams that are not of LCM"""
+        """Calls the receiver with each message. @return the number of datagrams that are not LCM's
+        """
         strange = 0
         for _ in range(_MOST_AT_ONCE):
             try:
@@ -169,7 +171,7 @@ class Multicast:
 
 
 class Relay:
-    """Listens to all channels of a relay. Sends nothing but the subscription."""
+    """Listens to all channels of a relay. Sends only the subscription."""
 
     def __init__(self, address: Address) -> None:
         where = f"{address.host}:{address.port}"
@@ -207,7 +209,7 @@ class Relay:
         return 0
 
     def _take(self, receiver: Receiver) -> bool:
-        """Hands on the first message. @return whether there was a whole one"""
+        """If the first message is complete, calls the receiver with it. @return whether it was"""
         if not self._greeted:
             if len(self._received) < 8:
                 return False
@@ -242,14 +244,14 @@ class Relay:
 
 
 def open_network(url: str) -> Multicast | Relay:
-    """Joins a network to listen. Raises BadInput for a bad URL, FoglineError if that fails."""
+    """Joins a network to listen. Raises BadInput for a bad URL, FoglineError if joining fails."""
     address = address_of(url)
     return Multicast(address) if address.kind == "udpm" else Relay(address)
 
 
 def may_be_followed(url: str) -> bool:
-    """Whether a program may join this network if it knows the network only from a message: a
-    multicast group whose traffic ends at the next router or before, or a relay of this machine."""
+    """Whether a program may join a network that it knows only from a message. It may join a
+    multicast group whose traffic does not pass the next router, and a relay of this machine."""
     try:
         address = address_of(url)
         packed = socket.inet_pton(socket.AF_INET, address.host)

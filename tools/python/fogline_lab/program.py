@@ -1,4 +1,4 @@
-"""Calls the program `fogline`, and reads what it prints."""
+"""Calls the program `fogline`, and reads its output."""
 
 from __future__ import annotations
 
@@ -21,17 +21,16 @@ if TYPE_CHECKING:
 
     from fogline_lab.log import Log
 
-# True: the program's own bar on stderr; a function: is called with done and total.
+# True: the program's own bar on stderr. A function is called with the numbers done and total.
 Progress = Union[bool, Callable[[int, int], None], None]
 
-# The program's bar: "[===   ]  40 %  row 40/100  800/s  3 s left". It is drawn over the last one.
+# The program's bar: "[===   ]  40 %  row 40/100  800/s  3 s left". A new bar replaces the old one.
 _ERASE = "\r\033[K"
 _BAR = re.compile(r"\[[= ]*\] +\d+ % +\w+ (\d+)/(\d+)")
 
 
 def fogline_program() -> str:
-    """The path of `fogline`: that of the build or installation of this package, else that in PATH.
-    """
+    """The path of `fogline` in the build or installation of this package, or else in PATH."""
     here = Path(__file__).resolve()
     for above in here.parents:
         program = above / "bin" / "fogline"
@@ -44,7 +43,7 @@ def fogline_program() -> str:
 
 
 def call(*arguments: str, progress: Progress = None) -> str:
-    """Runs `fogline ARGUMENTS`. Returns what it prints on stdout.
+    """Runs `fogline ARGUMENTS`. Returns its output on stdout.
 
     Raises ProgramError (CheckFailed, BadInput or RunFailed) with the program's text.
     """
@@ -103,8 +102,9 @@ def _call_with_terminal(command: list[str], progress: Any) -> tuple[str, str, in
 
 
 def _listen(terminal: int, progress: Any, lines: list[str], failures: list[BaseException]) -> None:
-    """Shows or reports the bars that come from a terminal, and keeps all other text. It reads on
-    after an exception of `progress`: the program would wait for ever at a full terminal."""
+    """Shows or reports the bars that come from a terminal, and keeps all other text. After an
+    exception of `progress` this function continues to read, because the program would otherwise
+    wait for ever at a full terminal."""
     shown = False
     while True:
         try:
@@ -182,7 +182,7 @@ def options_of(options: Mapping[str, Any]) -> list[str]:
 
 
 def _word(value: Any) -> str:
-    """A value as the command line has it: a text as it is, anything else as JSON."""
+    """A value for the command line: a text without a change, any other value as JSON."""
     return value if isinstance(value, str) else json.dumps(value, default=_plain)
 
 
@@ -203,7 +203,8 @@ def run(scenario: str | os.PathLike[str], set: Mapping[str, Any] | None = None,
 
     set: fields of the scenario to change: {"/arbitrator/threshold": 0.8}.
     progress: True shows a bar, False shows none, a function is called with done and total steps;
-        default: a bar if a person sees stderr. What the function raises is raised after the run.
+        default: a bar if a person sees stderr. An exception of the function is raised after the
+        run.
     options: the options of `fogline run`, with _ for -: seed=7, transport="direct",
         log="run.lcm", external="driver", lcm_url="udpm://...", realtime=True.
 
@@ -235,7 +236,8 @@ def sweep(scenario: str | os.PathLike[str], grid: Mapping[str, Any] | None = Non
     grid: values of fields: {"/arbitrator/threshold": [0.2, 0.5, 0.8]}, or as the program takes
         them: {"/fog/bias_m": "0.2:0.4:21"}.
     seeds: range(1, 101) or "1:100"; default: the scenario's own seed.
-    out: the CSV file, which a repeated sweep goes on with; default: a file that is removed.
+    out: the CSV file. If it has a part of the rows of this sweep, the sweep continues after them.
+        Default: a temporary file.
 
     Returns a row for each run and a column for each measure.
     """

@@ -24,9 +24,9 @@ class Role:
 
         fl.serve(MyDriver)
 
-    A class makes its outputs from its inputs and from `self` alone, without clock, files or random
-    numbers of other kinds. Then a process that is started again in the middle of a run makes the
-    same outputs again.
+    A class makes its outputs only from its inputs and from `self`. It uses no clock, no files and
+    no random numbers from other sources. Then a process that is started again in the middle of a
+    run makes the same outputs again.
     """
 
     ROLE: ClassVar[str] = ""  # name of the role
@@ -41,8 +41,9 @@ class Role:
         self.scenario = scenario
 
     def step(self, *messages: Any) -> Any:
-        """Computes a step: from a message of each channel that the role reads, the message that it
-        writes (a tuple if it writes two). The header of the result is filled in.
+        """Computes a step. The arguments are the messages that the role reads, one of each channel.
+        The result is the message that the role writes (a tuple if it writes two). This package
+        fills in the header of the result.
 
         A driver and an ACC may return a number: the acceleration in m/s2.
         """
@@ -72,8 +73,8 @@ def serve(role: type[Role], arguments: Sequence[str] | None = None) -> None:
     arguments: the command line (--lcm-url, --key, --run-id, --wait, --help); default: that of the
         program.
 
-    Lockstep, repair, real time and signatures are those of every role, because the process is run
-    by the same code. An exception in step() ends the run, and is named by it.
+    Lockstep, repair, real time and signatures are as in every other role, because the process runs
+    the same code. An exception in step() ends the run, and the run names the exception.
 
     Raises FoglineError if this build has no extension module for roles, TypeError if the class is
     derived from none of the roles.
@@ -85,8 +86,8 @@ def serve(role: type[Role], arguments: Sequence[str] | None = None) -> None:
 
 
 def _runtime() -> Any:
-    """The extension module. It brings its own versions of three functions for sockets, which LCM's
-    library uses only if it is loaded with them (RTLD_DEEPBIND)."""
+    """The extension module. It has its own versions of three functions for sockets. LCM's library
+    uses these versions only if the module is loaded with RTLD_DEEPBIND."""
     flags = sys.getdlopenflags()
     sys.setdlopenflags(flags | os.RTLD_DEEPBIND)
     try:
@@ -101,8 +102,8 @@ def _runtime() -> Any:
     return module
 
 
-# What a step that returns an acceleration alone leaves open. A command of no person has the
-# sequence -1 (driver_command_t).
+# The message of a step that returns only an acceleration. The input_sequence is -1, because the
+# command is not made from the input of a person (driver_command_t).
 def _command_of(role: Role, acceleration_mps2: float) -> Message:
     kind = role.WRITES[0]
     if kind is driver_command_t:
@@ -118,7 +119,7 @@ def _names(kinds: Sequence[type[Message]]) -> str:
 
 
 class RoleFailed(Exception):
-    """What the run shows of an exception in a role."""
+    """An exception in a role, with the text that the run shows."""
 
 
 class _Factory:
@@ -171,7 +172,7 @@ class _Instance:
         # A copy, because a step may change its inputs.
         first = inputs[0].header
         header = header_t(first.run_id, first.step, first.utime)
-        if role.BEGINS:  # its inputs are those of the step before
+        if role.BEGINS:  # the inputs of this role are those of the previous step
             header.step += 1
             header.utime = header.step * self._step_us
         try:

@@ -35,7 +35,7 @@ class RecordedMessages {
 
 /// The channels with these names, separated by commas: "RADAR,LIDAR".
 /// @throws InputError if a name is not a channel with a message in each step, or if the world sends
-///     this channel. The world is the clock of the run, so its messages cannot be recorded ones
+///     this channel. The world is the clock of the run, so its messages cannot come from a log
 std::vector<std::size_t> RecordedChannels(std::string_view names);
 
 }  // namespace fogline::replay

@@ -22,7 +22,7 @@ struct TrackDifference {
   std::array<StateDifference, 3> states{{{"distance_m"}, {"speed_mps"}, {"acceleration_mps2"}}};
   std::int64_t compared = 0;      // steps in which both tracks are valid
   std::int64_t valid_in_one = 0;  // steps in which only one track is valid
-  std::int64_t not_in_both = 0;   // steps that only one of the logs has
+  std::int64_t not_in_both = 0;   // steps for which only one of the logs has a TRACK
 };
 
 /// Compares the TRACK of two logs. @throws InputError if a log cannot be read

@@ -71,7 +71,7 @@ class Streams {
   posix_spawn_file_actions_t actions_;
 };
 
-/// A running gnuplot. gnuplot reads the script as a file and not as typed input, so that it ends at
+/// A running gnuplot. gnuplot reads the script as a file and not as typed input. So gnuplot ends at
 /// the first error. gnuplot does not report a failed write. On a full disk it would write a part of
 /// the picture, and end without an error. So gnuplot writes into a pipe, and this program writes
 /// the file.

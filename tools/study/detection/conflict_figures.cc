@@ -9,7 +9,7 @@ namespace fogline::study {
 namespace {
 
 /// Selects the series that the page shows at first: the Degree of Conflict, the three measures with
-/// the shortest delays, and the detector with the longest delay.
+/// the shortest delays, and the measure with the longest delay.
 void ShowTelling(report::StudyFigure& figure, const ConflictSet& set) {
   constexpr std::size_t kSoonest = 3;
   std::vector<std::size_t> ranked = Ranked(set);

@@ -19,8 +19,8 @@
 
 namespace fogline::study {
 
-/// Visibilities from thin to dense fog, m (meteorological optical range). At about 95 m and below,
-/// the LiDAR in fog model beam loses a car 36 m ahead.
+/// Visibilities from thin to dense fog, m (meteorological optical range). With the fog model `beam`
+/// and a visibility of at most about 95 m, the LiDAR loses a car 36 m ahead.
 inline constexpr std::array kVisibilities_m{300.0, 150.0, 100.0, 75.0, 50.0};
 /// Mean time to a false alarm for which thresholds are calibrated, s: six false alarms an hour.
 inline constexpr double kArlZero_s = 600;

@@ -11,7 +11,7 @@
 
 namespace fogline::study {
 
-/// Visibility at which fog model bias has the bias of paper.json, m.
+/// Visibility at which the fog model `bias` has the bias of paper.json, m.
 inline constexpr double kReferenceVisibility_m = 60;
 /// Length of the fog in paper.json, s.
 inline constexpr double kFog_s = 11;
@@ -36,13 +36,14 @@ struct ConflictSituation {
 };
 
 /// A scenario without fog that lasts kClearRun_s after the warm-up. The measures know the mounting
-/// offset of the sensors: measure_offset_m is the range of the radar minus that of the LiDAR. The
+/// offset of the sensors: measure_offset_m is the radar's offset minus the LiDAR's offset. The
 /// human always drives.
 /// @throws InputError
 Scenario ScenarioInClearAir(const StudyContext& context, const ConflictSituation& situation);
 
 /// The scenario of ScenarioInClearAir(), but with fog. The fog begins after the warm-up and lasts
-/// kFog_s, until the end. The bias of fog model bias is in inverse proportion to the visibility.
+/// kFog_s, until the end. In the fog model `bias`, the bias is inversely proportional to the
+/// visibility.
 /// @throws InputError
 Scenario ScenarioInFog(const StudyContext& context, const ConflictSituation& situation,
                        double visibility_m);

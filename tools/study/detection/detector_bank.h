@@ -38,10 +38,10 @@ struct Detector {
   std::size_t measure = 0;  // index in ComparedMeasures()
   bool window = false;      // averages the score over the window of the Degree of Conflict
   bool sign = false;        // makes the score negative if the LiDAR's range is too long
-  bool is_quick = false;    // needs no prediction and little time (RunClearAir())
+  bool is_quick = false;    // needs little time, and no prediction of the filter (SensorBench)
 };
 
-/// A detector for each of ComparedMeasures(), in the same order. After them, three more detectors
+/// A detector for each of ComparedMeasures(), in the same order. Then follow three more detectors
 /// for each measure of a single step: its combinations with window, sign or both.
 const std::vector<Detector>& Detectors();
 /// Index in Detectors(). @throws std::out_of_range

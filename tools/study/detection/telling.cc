@@ -8,10 +8,10 @@
 namespace fogline::study {
 namespace {
 
-/// A condition ranks detectors only if at least one detector finds this share of the fogs.
+/// A condition ranks detectors only if some detector finds at least this share of the fogs.
 constexpr double kLeastFound = 0.1;
-/// A condition does not rank detectors if this share of them alarm at about the same time. It is
-/// below 1, because some detectors may hardly detect any fog.
+/// A condition does not rank detectors if this share of them raises the alarm at about the same
+/// time. The share is below 1, because some detectors may hardly detect any fog.
 constexpr double kMostDetectors = 0.9;
 
 bool HaveEqualAlarms(const AlarmTimes& a, const AlarmTimes& b) {

@@ -1,5 +1,5 @@
-// Finds detectors with the same alarms, which count as one detector. Also finds the conditions that
-// can rank detectors.
+// Finds the detectors with the same alarms, because they count as one detector. Also finds the
+// conditions that can rank detectors.
 #pragma once
 
 #include <cstddef>
@@ -15,16 +15,16 @@ struct AlarmTimes {
   std::vector<double> further;  // in runs that only some detectors have; empty for other detectors
 };
 
-/// For each detector, the index of the detector that stands for it, which may be the detector
-/// itself. Detectors with the same alarms in all compared runs count as one of them, the one with
-/// the most runs. The further runs of two detectors are compared only if both have equally many,
-/// because then they are the same runs.
+/// For each detector, the index of the detector that it counts as. Detectors with the same alarms
+/// in all compared runs count as one of them, the one with the most runs. Every other detector
+/// counts as itself. The further runs of two detectors are compared only if both detectors have
+/// equally many further runs, because then these are the same runs.
 std::vector<std::size_t> OneOfEqualAlarms(std::span<const AlarmTimes> detectors);
 
 /// Whether a condition ranks detectors; if not, the reason.
 enum class Telling {
   kRanks,
-  kAllAtOnce,  // nine of ten detectors alarm at about the same time as the first detector
+  kAllAtOnce,  // nine of ten detectors raise the alarm at about the same time as the first one
   kHardlyAny,  // every detector finds less than a tenth of the fogs
 };
 /// "ranked", "all raise the alarm at once" or "hardly any alarm".

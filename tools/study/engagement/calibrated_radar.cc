@@ -15,7 +15,7 @@ double StandstillWithoutOffset(const Scenario& scenario) {
 }
 
 std::vector<std::string> CalibratedRadar(const Scenario& scenario) {
-  // Seven decimals, because the offset in paper.json, a result of calibration, has seven decimals.
+  // The centre has seven decimals, because the offsets in scenario/ensemble have seven decimals.
   const double centre = scenario.arbitrator.doc_centre_m - scenario.radar.bias_m;
   return {"/radar/bias_m=0", fmt::format("/arbitrator/doc_centre_m={:.7f}", centre),
           fmt::format("/acc/standstill_m={:.4f}", StandstillWithoutOffset(scenario))};

@@ -1,4 +1,4 @@
-// Study `takeover`: a driver who needs time to take over, and what the automation does meanwhile.
+// Study `takeover`: a driver who needs time to take over, and the automation during this time.
 #include <algorithm>
 #include <array>
 
@@ -81,7 +81,7 @@ std::vector<StudyVariant> MainVariants() {
   return variants;
 }
 
-/// Each fog with both humans and realistic noise.
+/// Each fog with each human, and with realistic noise.
 std::vector<StudyCase> NoisyCases() {
   std::vector<StudyCase> cases;
   for (const FogMode& fog : FogModes()) {

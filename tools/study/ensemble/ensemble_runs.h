@@ -18,7 +18,8 @@ struct EnsembleRuns {
 };
 
 /// Runs only the cases and variants of a study that the claims compare. Claims of one study that
-/// have a case in common run all their cases with all their variants. All sets have the same seeds.
+/// have a case in common share runs: all their cases with all their variants. All sets have the
+/// same seeds.
 /// @throws InputError, StudyStopped; std::out_of_range if a quoted claim does not exist in its
 /// study
 EnsembleRuns RunEnsemble(const StudyContext& context, std::span<const EnsembleSet> sets,

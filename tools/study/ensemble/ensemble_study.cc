@@ -53,7 +53,8 @@ std::vector<Placed> Places() {
 }
 
 /// The verdict on a part of a finding in one set, such as "holds". If the part has several claims
-/// and not all hold, their numbers follow: "opposite (3 hold, 1 opposite, 2 undecided)".
+/// and not all hold, the text also counts the outcomes: "opposite (3 hold, 1 opposite, 2
+/// undecided)".
 std::string VerdictText(const Placed& placed, const JudgedClaims& judged, std::size_t set) {
   std::vector<InSet> outcomes;
   for (std::size_t c = placed.first; c < placed.end(); ++c) {
@@ -145,7 +146,7 @@ report::StudyFigure SetsFigure(std::span<const EnsembleSet> sets,
   return figure;
 }
 
-/// Doubles the quotes of a text in a cell of a CSV file, and puts it in quotes.
+/// A text as a cell of a CSV file: in quotes, with each quote inside the text doubled.
 std::string QuotedCell(std::string_view text) {
   std::string cell = "\"";
   for (const char c : text) cell += c == '"' ? "\"\"" : std::string(1, c);

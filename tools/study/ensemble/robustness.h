@@ -12,8 +12,8 @@
 
 namespace fogline::study {
 
-/// A claim that two values are equal bounds their difference on both sides. A finding may need only
-/// one of these bounds.
+/// A claim of equality has two bounds for the difference of two values. A finding may need only one
+/// of these bounds.
 enum class Bound {
   kBoth,   // the magnitude of the difference is at most the margin
   kBelow,  // the difference is at least -margin
@@ -102,10 +102,10 @@ std::string SetsText(std::span<const int> numbers, std::size_t sets);
 /// author states, and then ExaminedPart::why. For side claims the verb is "hold".
 std::string SentenceOf(const ExaminedFinding& finding, Part part, std::size_t sets);
 
-/// The claim that a part of a finding has the verdicts that its author states. Its difference and
-/// its sign come from the least certain comparison: of all that are not undecided, the one with the
-/// largest p-value. If any outcome in the runs differs from the author's, the claim has a
-/// hindrance, which names claim, set and outcome.
+/// The claim that the verdicts on a part of a finding are those that the author states. The claim
+/// has the difference and the sign of the least certain comparison. This is the comparison with the
+/// largest p-value of all that are not undecided. If any outcome in the runs differs from the
+/// author's, the claim has a hindrance. The hindrance names claim, set and outcome.
 /// @param claims the claims of this part of the finding, in their order
 /// @param judged the outcomes of these claims
 Claim ClaimOnPart(const ExaminedFinding& finding, Part part, std::span<const ClaimInSets> claims,

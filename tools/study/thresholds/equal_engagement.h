@@ -17,8 +17,8 @@ struct CurvePoint {
   double gain;
 };
 
-/// A place on the curve between point `below` and the next point. `share` is the share of the way
-/// from point `below` to the place.
+/// A place on the curve between point `below` and the next point. `share` is 0 at point `below` and
+/// rises to 1 on the way to the next point.
 struct CurvePlace {
   std::size_t below = 0;
   double share = 0;
@@ -26,7 +26,7 @@ struct CurvePlace {
 };
 
 /// The place with this RHE on the curve. The curve is straight between its points. If several
-/// places have this RHE, the result is the place with the largest gain. This occurs: all thresholds
+/// places have this RHE, the result is the place with the largest gain. For example, all thresholds
 /// that are never reached in clear air have the same RHE. nullopt if the RHE is beyond the curve.
 /// @param curve at least one point, in order of threshold
 std::optional<CurvePlace> BestAt(std::span<const CurvePoint> curve, double rhe_pct);
@@ -41,10 +41,10 @@ struct RuleValues {
 struct AtEqualEngagement {
   std::optional<CurvePlace> place;  // nullopt if the rule's RHE is beyond the curve
   /// Gain of the rule minus gain of the place. The interval comes from a bootstrap over the
-  /// situations. Each resample computes curve, place and rule from its own situations. So the
-  /// interval takes into account that equal situations have equal noise, and that the RHE of rule
-  /// and curve are estimates. If the rule's RHE is beyond the curve of a resample, the end of the
-  /// curve is used.
+  /// situations. Curve, place and rule are computed again from the situations of each resample. So
+  /// the interval takes into account that equal situations have equal noise, and that the RHEs of
+  /// rule and curve are estimates. If the rule's RHE is beyond the curve of a resample, the end of
+  /// the curve is used.
   Estimate difference;
   /// Possible error of the curve at the place (InterpolationErrorAt()), in units of gain.
   double interpolation_error = 0;
@@ -60,10 +60,10 @@ std::vector<AtEqualEngagement> AgainstFixed(std::span<const RuleValues> fixed,
 
 /// Possible error of the interpolation at a place of the curve. The place is on a stretch between
 /// two points. Each of these points has a distance from the straight line between its own
-/// neighbours. Let d be the larger of the two distances, and s the place's share of the way. If the
-/// curve bends once within the stretch, or steadily, the error is at most 4 s (1 - s) d. At a point
-/// of the curve the error is 0. If neither point has such a distance, d is unknown, and the
-/// difference in gain between the points is used for d.
+/// neighbours. Let d be the larger of the two distances, and s the place's `share`. If the curve
+/// bends once within the stretch, or steadily, the error is at most 4 s (1 - s) d. At a point of
+/// the curve the error is 0. If neither point has such a distance, the difference in gain between
+/// the points is used for d.
 double InterpolationErrorAt(std::span<const CurvePoint> curve, const CurvePlace& place);
 
 }  // namespace fogline::study

@@ -28,16 +28,16 @@ struct Range {
   double Log(double u) const { return least * std::pow(most / least, u); }
 };
 
-// The mix is our choice. Each range contains the value of paper.json. There the leader's amplitude
-// is 0.
+// The mix is our choice. Each range contains the value of paper.json. The leader of paper.json
+// keeps its speed, so its amplitude is 0.
 constexpr double kClearShare = 0.25;
 constexpr Range kVisibility_m{40, 300};
-constexpr Range kBias_m{0.03, 0.5};  // of fog model bias; paper.json has 0.216
+constexpr Range kBias_m{0.03, 0.5};  // of the fog model `bias`; paper.json has 0.216
 constexpr Range kMounting_m{0.7, 1.0};
 constexpr Range kRadarStd_m{0.01, 0.1};
 constexpr Range kLidarStd_m{0.01, 0.03};
 // Half of the humans judge correctly and stay aware. The readiness of the others falls to a value
-// in this range while the automation drives.
+// in the range kMonitoring while the automation drives.
 constexpr double kErringShare = 0.5;
 constexpr Range kMonitoring{0.1, 1.0};
 constexpr Range kLeadAmplitude_mps{0, 1.5};

@@ -43,7 +43,7 @@ struct MixedRuns {
 enum class MixedHuman {
   kDrawn,     // half of the humans judge correctly and stay aware; fog limits everyone's sight
   kPerfect,   // the paper's human
-  kFallible,  // has a sight limited by fog, misjudges distances and loses awareness
+  kFallible,  // sees only as far as fog allows, misjudges distances and loses awareness
 };
 /// The noise of the radar in the situations.
 enum class MixedRadar {

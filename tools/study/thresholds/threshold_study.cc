@@ -1,5 +1,5 @@
-// Study `threshold`: compares adaptive thresholds, which depend on the situation, and fixed
-// thresholds with the same redundant engagement, in a mix of situations.
+// Study `threshold`: compares adaptive thresholds with fixed thresholds of the same redundant
+// engagement, in a mix of situations. An adaptive threshold depends on the situation.
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -48,8 +48,8 @@ struct TopRow {
 /// The rows of all tables: roles and channels of each run, waiting roles, other channels, senders.
 std::vector<TopRow> TopRows(const TopView& view, const TableOrders& orders);
 
-/// All details of the role, channel or sender of a row; the first line is the title. Empty if it no
-/// longer exists in the view.
+/// All details of the role, channel or sender of a row; the first line is the title. Empty if the
+/// view has no such row.
 std::vector<Line> DetailsOf(const std::string& key, const TopView& view);
 
 }  // namespace fogline::watch

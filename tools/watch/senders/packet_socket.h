@@ -24,7 +24,7 @@ struct Packet {
   // Packets that the kernel dropped before this one, because they found no room in the socket's
   // buffer (SO_RXQ_OVFL).
   std::uint32_t dropped = 0;
-  std::int64_t unix_us = 0;  // when it came, in us since 1970
+  std::int64_t unix_us = 0;  // time of arrival, in us since 1970
 };
 
 /// Receives packets, and sends nothing. For use in one thread.

@@ -42,7 +42,7 @@ void SenderSequence::Take(const runtime::LcmPacket& packet, TimePoint now) {
   const std::int64_t age = AgeOf(packet.number);
   if (age < -kMaxJump || age >= kWindow) return Doubt(packet, now);
   if (age >= 0 && IsKnown(age) && now - progressed_ >= kBeginsAgain) return Doubt(packet, now);
-  if (doubtful_) {  // the next packet was not its successor
+  if (doubtful_) {  // this packet is not the successor of the doubtful packet
     ++counts_.stray;
     doubtful_.reset();
   }

@@ -1,6 +1,6 @@
-// Counts the messages of a sender that arrived and that were lost, by LCM's own numbers. This works
-// for any LCM program, because each LCM instance numbers its messages. The caller passes packets
-// and times as arguments.
+// Counts the messages of a sender that arrived, and those that were lost, by LCM's own numbers.
+// This works for any LCM program, because each LCM instance numbers its messages. The caller passes
+// packets and times as arguments.
 #pragma once
 
 #include <bitset>

@@ -25,7 +25,8 @@ constexpr unsigned char kClientServiceCall = 2;
 // The level of a status.
 constexpr int kError = 2;
 
-/// The requests that need a capability of the protocol which this server does not have.
+/// Requests of the protocol, and the capability that each of them needs. This server has none of
+/// these capabilities.
 constexpr std::array kNotOffered = std::to_array<std::pair<std::string_view, std::string_view>>({
     {"advertise", "clientPublish"},
     {"unadvertise", "clientPublish"},
@@ -60,7 +61,7 @@ Frame AdvertiseFrame(Json channels) {
   return TextFrame({{"op", "advertise"}, {"channels", std::move(channels)}});
 }
 
-/// An id, which the protocol writes in 32 bits.
+/// An id of 32 bits, which is the size in the protocol; nullopt if the value is no such number.
 std::optional<std::uint32_t> IdIn(const Json& value) {
   if (!value.is_number_unsigned()) return std::nullopt;
   const auto id = value.get<std::uint64_t>();

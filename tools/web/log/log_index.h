@@ -69,8 +69,8 @@ class LogIndex {
   runtime::Bytes At(const Place& place) const {
     return reader_.content().subspan(place.offset, place.size);
   }
-  /// Leaves out the signature of a message. @return size 0 if the message does not belong to the
-  /// run, or is too large
+  /// Removes the signature from `data` if the run is signed. @return the place of `data`; size 0 if
+  /// the message does not belong to the run, or is too large
   Place PlaceOf(runtime::Bytes& data) const;
   void FindEvents();
 

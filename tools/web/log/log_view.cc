@@ -86,7 +86,7 @@ class LoggedField {
         continue;
       }
       auto point = Of(message);
-      // If a role is started again, its time goes back. The points of a series are in order.
+      // If a role is started again, its time goes back. The times of a series must not go back.
       if (!points.empty()) point->time_s = std::max(point->time_s, points.back().time_s);
       points.push_back(*point);
     }

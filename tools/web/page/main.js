@@ -1,4 +1,4 @@
-// The window: connects the server, the reader's clock, and the parts of the page.
+// The page for viewers: connects the server, the reader's clock, and the parts of the page.
 
 import {fragmentOf, readFragment, takeToken} from "./data/address.js";
 import {Budget} from "./draw/budget.js";
@@ -54,7 +54,8 @@ class Page {
   }
 
   get isLive() { return this.hello?.mode === "live"; }
-  get waits() { return this.isLive && this.store.lastStep < 0; }  // for a run
+  /** Whether the page waits for a run. */
+  get waits() { return this.isLive && this.store.lastStep < 0; }
   get run() { return this.store?.run ?? {step_s: this.store?.step_s ?? 0.1, run_id: ""}; }
   get step() {
     const step = this.clock.step(this.run.step_s);
@@ -78,7 +79,8 @@ class Page {
     });
     sizes.observe(byId("main"));
     addEventListener("hashchange", ({newURL}) => {
-      // keepAddress() may have changed the address since this event: the event's address counts.
+      // keepAddress() may have changed the address since this event. So this function uses the
+      // address in the event.
       const {hash} = new URL(newURL);
       const {step, run, token} = readFragment(hash);
       if (token) this.takeNewToken(hash);
@@ -87,13 +89,13 @@ class Page {
     byId("parts").addEventListener("click", (event) => {
       const link = event.target.closest("a");
       if (!link) return;
-      event.preventDefault();  // the fragment of the address is the shown step
+      event.preventDefault();  // keeps the shown step in the fragment of the address
       this.showPart(link.getAttribute("href").slice(1));
     });
   }
 
   /**
-   * Connects with a new token: the reader has pasted the address of a server that was started
+   * Connects with a new token. The reader has pasted the address of a server that was started
    * again.
    */
   takeNewToken(hash) {
@@ -137,7 +139,7 @@ class Page {
   }
 
   addEvent(event) {
-    const again = event.step < (this.events.at(-1)?.step ?? 0);  // the same log is played once more
+    const again = event.step < (this.events.at(-1)?.step ?? 0);  // the same log is played again
     this.events = [...(again ? [] : this.events), event].slice(-MOST_EVENTS);
   }
 
@@ -161,9 +163,9 @@ class Page {
   }
 
   /**
-   * Asks for the history. Until the history is complete, received messages only wait. The answer
-   * gives the number of messages in the history. Waiting messages that came before the history are
-   * not used.
+   * Asks for the history. Until the history is complete, the page only stores received messages.
+   * The answer gives the number of messages in the history. Stored messages that came before the
+   * history are not used.
    */
   askForHistory() {
     this.early = [];
@@ -181,7 +183,10 @@ class Page {
     if (link && link.step !== null) this.goToLinked(link);
   }
 
-  /** Goes to a step of a link. A live page may not have it: it keeps one run, and not for ever. */
+  /**
+   * Goes to a step of a link. A live page may not have this step: it keeps only one run, and only
+   * the last part of a long run.
+   */
   goToLinked({step, run}) {
     const {firstStep, lastStep, runId} = this.store;
     if (!this.isLive) this.goTo(step);
@@ -201,10 +206,12 @@ class Page {
     const isNew = run.run_id !== this.store.run?.run_id;
     this.store.setRun(run);
     say(byId("title"), run.title || "A run without a title");
-    setAttribute(byId("title"), "title", run.title);  // a narrow window cuts the text off
+    // A narrow window does not show the whole text.
+    setAttribute(byId("title"), "title", run.title);
     document.title = `${run.title || "Run"} – Fogline`;
     this.length_m = run.scenario?.world?.vehicle_length_m ?? 4.5;
-    if (this.isLive) this.events = [];  // all events come again, in the words for this scenario
+    // The server sends all events again, with the texts for this scenario.
+    if (this.isLive) this.events = [];
     if (!isNew) return;
     this.isOver = false;
     this.frame = null;
@@ -309,14 +316,15 @@ class Page {
     if (this.store.generation !== this.generation) this.build();
     const played = this.clock.state === "playing";
     this.clock.advance(passed_s, this.store.firstTime, this.store.lastTime);
-    if (this.isLive && played && this.clock.state === "paused") this.clock.follow();  // caught up
+    // The reader's time has reached the run.
+    if (this.isLive && played && this.clock.state === "paused") this.clock.follow();
     if (!this.isLive && this.waitsForFirst(now)) return;
     this.draw();
   }
 
   /**
-   * Whether the data of the first picture of a log are still on their way. A picture costs much
-   * time in a browser without a graphics processor, so the page draws none without data.
+   * Whether the page still waits for the data of the first picture of a log. In a browser without a
+   * graphics processor a picture takes much time, so the page draws no picture without data.
    */
   waitsForFirst(now) {
     if (this.hasFirst) return false;
@@ -331,8 +339,8 @@ class Page {
   }
 
   /**
-   * Simulated time since the shown step, in s. The page moves the cars on for this time, at their
-   * last speeds.
+   * Simulated time since the shown step, in s. The page draws the cars as if they had driven on for
+   * this time at their last speeds.
    */
   aheadOf(step) {
     const [{state}, {step_s, pace}] = [this.clock, this.run];

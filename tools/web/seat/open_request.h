@@ -14,8 +14,8 @@ class OpenRequest {
  public:
   struct Request {
     std::int64_t since_us = 0;  // utime of the first command of the request
-    // Whether the request began then. If not, it may have begun earlier, because commands before
-    // this one have not been heard, or emergency braking has hidden the state.
+    // Whether the request began at since_us. If not, it may have begun earlier: earlier commands
+    // are missing, or emergency braking has hidden the state.
     bool begin_known = false;
   };
 
@@ -42,8 +42,8 @@ class OpenRequest {
   const std::optional<Request>& request() const { return request_; }
 
  private:
-  /// Longest time without a known state before a request whose begin counts as known. Our choice: a
-  /// fifth of a second, because the countdown shows whole seconds.
+  /// The begin of a request also counts as known if the last known state is older by at most this
+  /// time. Our choice: a fifth of a second, because the countdown shows whole seconds.
   static constexpr std::int64_t kMostGap_us = 200'000;
 
   static bool Asks(std::int8_t mode) {
@@ -59,7 +59,8 @@ class OpenRequest {
 
   std::optional<std::int64_t> run_id_;
   std::int64_t step_ = -1;
-  // The newest step and time at which the state was known; at first those of the start.
+  // The newest step and time at which the state was known. Before the first command they are those
+  // of the start of a run.
   std::int64_t state_step_ = -1;
   std::int64_t state_us_ = 0;
   std::optional<Request> request_;

@@ -1,7 +1,7 @@
 // The frames about a run for the page /drive: only data that the page shows to the person who
-// drives. A participant of an experiment can read everything that the browser receives. So of the
-// condition of the trial the frames have only what the person sees anyway, such as the time of the
-// countdown.
+// drives. A participant of an experiment can read everything that the browser receives. So the
+// frames contain only those facts about the condition of the trial that the person sees anyway,
+// such as the time of the countdown.
 #pragma once
 
 #include <cstddef>

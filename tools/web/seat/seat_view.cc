@@ -17,7 +17,7 @@
 namespace fogline::web {
 namespace {
 
-// Delay before the network is opened again after it could not be reached.
+// Delay between two attempts to open a network that cannot be reached.
 constexpr Duration kOpenAgain = milliseconds(1000);
 
 }  // namespace

@@ -68,7 +68,7 @@ class SeatView final : public View {
   std::map<std::uint64_t, Driver> drivers_;
   OpenRequest request_;
   std::int64_t told_run_ = 0;        // RunTracker::runs() at the last report to the drivers
-  bool told_lost_ = false;           // whether the client with the seat knows that it is lost
+  bool told_lost_ = false;           // whether the client with the seat knows that the seat is lost
   std::string url_;                  // URL of the bus
   std::optional<runtime::Bus> bus_;  // nullopt: the network cannot be reached
   TimePoint open_at_{};

@@ -1,12 +1,13 @@
 // The rules of access to a run. The class has no sockets.
 //
 // A browser shows pages of many sites. Each page can send requests to a server on this machine. Two
-// rules keep such a page from reading a run. The Host header must name the address on which the
-// server listens. If a foreign name was pointed at this machine (DNS rebinding), the header
-// contains the foreign name. The Origin header, which a browser sends with a WebSocket, must be
-// that of our own page. If the server listens for other machines, a WebSocket also needs a token,
-// which only the printed address contains. Viewers have one token, and the person who drives has
-// another one.
+// rules keep such a page from reading a run. The first rule: the Host header must name the address
+// on which the server listens. A foreign site can make its own name point to this machine (DNS
+// rebinding), but then the header contains the foreign name. The second rule: the Origin header of
+// a WebSocket must name our own page, or an origin that the user has allowed. Every browser sends
+// this header; other programs may omit it. If the server listens for other machines, a WebSocket
+// also needs a token. Only the printed address contains this token. Viewers have one token, and the
+// person who drives has another one.
 #pragma once
 
 #include <cstdint>

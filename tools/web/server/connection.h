@@ -15,7 +15,8 @@
 namespace fogline::web {
 
 /// A connection: first an HTTP request, then perhaps a WebSocket. The object exists until its last
-/// operation has ended. The server removes it from its list as soon as the connection has left.
+/// operation has ended. The server removes the connection from its list earlier: as soon as the
+/// connection is closed.
 class Connection : public Client {
  public:
   /// Serves the client while the server's context runs.

@@ -30,8 +30,8 @@ struct HttpAnswer {
   Verdict verdict = Verdict::kAllowed;
 };
 
-/// The headers of every answer. With them the page may load only files of this server, and no other
-/// page may show it in a frame.
+/// The headers of every answer. With these headers our page may load only files of this server, and
+/// no other page may show our page in a frame.
 std::vector<std::pair<std::string_view, std::string_view>> SafetyHeaders();
 
 /// The answer to a request that does not open a WebSocket, or that may not open one. Only GET is
@@ -46,7 +46,8 @@ HttpAnswer Refusal(unsigned status, std::string text);
 std::string_view PathOf(std::string_view target);
 
 /// Whether a path may belong to the participant's page or to one of its files. Returns false only
-/// for the paths of the page for viewers and of the WebSocket. The two pages share all other files.
+/// for the paths of the page for viewers and of the WebSocket. Returns true for every other
+/// path, because the two pages share files.
 bool MayBeOfDrivePage(std::string_view path);
 
 }  // namespace fogline::web

@@ -96,7 +96,8 @@ struct ServerOptions {
   std::string driver_token;  // see Access::Rules
 };
 
-/// Numbers since the start of the server.
+/// Numbers of clients and frames: `viewers` and `drivers` at present, the others since the start of
+/// the server.
 struct ServerCounts {
   std::int64_t viewers = 0;  // WebSockets that are open, including those that drive
   std::int64_t drivers = 0;  // WebSockets that drive, or ask for the seat
@@ -159,7 +160,7 @@ class Server {
   View& view_;
   const ServerLimits limits_;
   LineBudget lines_{"fogline-web"};
-  LineBudget frame_lines_{"fogline-web"};  // a flood of wrong frames hides no other line
+  LineBudget frame_lines_{"fogline-web"};  // a separate limit: wrong frames hide no other lines
   Acceptor acceptor_;
   Access access_;
   std::map<std::uint64_t, std::shared_ptr<Connection>> connections_;

@@ -14,8 +14,9 @@ namespace fogline::web {
 ///
 /// Integers beyond 2^53, such as a run's id, become decimal strings, because JavaScript would round
 /// them. Numbers that are infinite or NaN become null. A boolean is true if its byte is not 0.
-/// Arrays become lists of lists. An array without elements becomes []. In a string that is not
-/// valid UTF-8, U+FFFD replaces the wrong bytes, so the result can always be printed.
+/// An array becomes a list; an array with several dimensions becomes a list of lists. An array
+/// without elements becomes []. In a string that is not valid UTF-8, U+FFFD replaces the wrong
+/// bytes, so the result can always be printed.
 ///
 /// @param message with its fingerprint and without a signature (message_signer.h)
 /// @return nullopt if the bytes are not exactly one message of this type

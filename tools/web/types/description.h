@@ -22,8 +22,7 @@ nlohmann::ordered_json ChannelsJson();
 
 /// The JSON schema for the result of DecodeJson() for a type. Each field has only one type, because
 /// Foxglove's and Lichtblick's readers refuse schemas with several types for a field. So the schema
-/// does not contain that an integer beyond 2^53 is a string, or that an infinite number or NaN is
-/// null.
+/// does not say that an integer beyond 2^53 is a string, or that an infinite number or NaN is null.
 nlohmann::ordered_json SchemaJson(const LcmTypes& types, const LcmStruct& type);
 
 }  // namespace fogline::web

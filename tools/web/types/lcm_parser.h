@@ -1,7 +1,7 @@
 // Reads LCM's type language in the same way as lcm-gen (LCM, lcmgen.c). The parser refuses two
 // things that lcm-gen accepts. It refuses enums, because no generated class for C++ has them. It
-// refuses structs without members, because an array of such structs could have any length in a
-// message without bytes.
+// refuses structs without members, because an array of such structs takes no bytes in a message, so
+// the size of the message would not limit the length of the array.
 #pragma once
 
 #include <string_view>

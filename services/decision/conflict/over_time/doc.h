@@ -21,7 +21,7 @@ class Doc final : public ConflictMeasure {
 
   /// First half of a Step(): adds the step to the window.
   void Observe(const Evidence& evidence);
-  /// The conflict z of the window, in m. Second half of a Step(), which computes the DoC from z.
+  /// The conflict z of the window, in m. The second half of a Step() computes the DoC from z.
   double conflict_m() const { return window_.Conflict(reading_); }
 
  private:

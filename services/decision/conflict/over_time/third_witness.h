@@ -1,6 +1,6 @@
 // Measures that find the sensor that is wrong. The values of radar and LiDAR alone cannot show
-// this, so a third value, the witness, is needed. The witness is the filter's prediction of the
-// range from all earlier steps.
+// which sensor is wrong, so a third value, the witness, is needed. The witness is the filter's
+// prediction of the range from all earlier steps.
 //
 // Without a fault, the radar's range differs from the LiDAR's range by the known offset offset_m.
 // All measures here first subtract this offset from the radar's range. Without a prediction there

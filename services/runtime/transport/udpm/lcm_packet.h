@@ -1,8 +1,9 @@
 // The head of a UDP packet of LCM (LCM, udpm_util.h). A short message is one packet: the word
-// "LC02", the number of the message, the channel with a 0, the data. A long message consists of
-// several fragments. A fragment has the word "LC03", the number of the message, the size of the
-// message's data, the offset of this part, the number of this fragment and the count of fragments.
-// In the first fragment, the channel with a 0 follows. All numbers are big endian.
+// "LC02", the number of the message, the channel's name with a final 0, and the data. A long
+// message consists of several fragments. A fragment has the word "LC03", the number of the message,
+// the size of the message's data, the offset of this part, the number of this fragment and the
+// count of fragments. In the first fragment, the channel's name with a final 0 follows. All numbers
+// are big endian.
 #pragma once
 
 #include <cstddef>

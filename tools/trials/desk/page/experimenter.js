@@ -15,7 +15,7 @@ let last = {};
 let stopCount = () => {};
 let counted = "";  // the state whose words the page shows
 let pending = null;  // the marker that was sent last, until it is in the list: {text, after_ms}
-let refusal = "";    // stays until the next message, and until the next run
+let refusal = "";    // shown until the page sends its next message, or the next run begins
 
 const send = connect(show, showProblem);
 
@@ -40,7 +40,7 @@ function takePending({lines}) {
   pending = null;
 }
 
-/** Keeps what the session has refused. A marker of an earlier run does not come into the next run. */
+/** Keeps the reason of a refusal. A marker of an earlier run does not come into the next run. */
 function keepRefusal({refused, stage}) {
   if (refused) refusal = `${pending ? `The marker “${pending.text}” was not saved` : "This had no effect"}: ${refused}.`;
   if (stage !== "driving" || last.stage === "driving") return;
@@ -72,7 +72,7 @@ function show(state) {
     : "This button does what “Begin” does on the participant’s page: the run begins at once.";
   byId("marker").hidden = state.stage !== "driving";
   const view = byId("view");
-  // Before and after a run nobody answers at the address of its view.
+  // Before and after a run, no server answers at the address of the view.
   byId("view-line").hidden = state.view === "" || !["seating", "driving"].includes(state.stage);
   if (state.view !== "") {
     view.href = state.view;

@@ -110,7 +110,7 @@ function goToSeat(address) {
   location.replace(seat);
 }
 
-/** What a page without buttons and questions says. */
+/** The text above buttons and questions; "" before a run, where showWait() writes the text. */
 function wordsOf({stage, drives}) {
   if (stage === "finished") return "Thank you. Please tell the experimenter that you are done.";
   if (stage === "asking") return "Please answer about the run that has just ended.";

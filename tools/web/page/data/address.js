@@ -17,7 +17,7 @@ export function fragmentOf(step, token, run = "") {
   return `#${parts.join("")}step=${step}`;
 }
 
-/** The other parts of a fragment, with their "#"; "" without other parts. */
+/** All parts of a fragment except the token, with a "#" before them; "" if there are none. */
 export function fragmentWithoutToken(fragment) {
   const parts = new URLSearchParams(fragment.replace(/^#/, ""));
   parts.delete("token");

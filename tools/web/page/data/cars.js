@@ -1,7 +1,7 @@
 // Computes the cars on the road at a moment, from the messages of a step. It draws nothing.
 
-// The brake lamps of a car without a pedal may shine from 0.7 m/s2 on, and must shine from 1.3 m/s2
-// on (UN R13-H, 5.2.22.4).
+// If a car brakes without its brake pedal, its brake lamps may shine from 0.7 m/s2 of deceleration
+// on, and must shine from 1.3 m/s2 on (UN R13-H, 5.2.22.4).
 export const BRAKE_LAMPS_FROM_MPS2 = 0.7;
 const STANDSTILL_MPS = 0.1;  // slower than a person walks; our choice
 const CONTRAST_AT_VISIBILITY = 0.05;  // the definition of the meteorological optical range
@@ -15,8 +15,8 @@ const brakes = (acceleration_mps2) => acceleration_mps2 <= -BRAKE_LAMPS_FROM_MPS
 
 /**
  * All cars, the foremost first: [{name, kind, front_m, speed_mps, brakes}]. front_m is the place of
- * the front bumper relative to the host's front bumper. `ahead_s` is the time since the step: the
- * cars have moved on at their speeds. This movement lets no car pass another car.
+ * the front bumper relative to the host's front bumper. `ahead_s` is the time since the step, for
+ * which the cars drive on at their speeds. This time is so short that no car passes another car.
  */
 export function carsOf(truth, ahead_s = 0) {
   const place = (position_m, speed_mps) =>
@@ -46,7 +46,7 @@ export function sightings({RADAR, LIDAR, TRACK}) {
   };
 }
 
-/** Whether the host stands. Below this speed a time gap says nothing. */
+/** Whether the host stands (STANDSTILL_MPS). A time gap then has no meaning. */
 export const stands = (truth) => Boolean(truth) && truth.host_speed_mps <= STANDSTILL_MPS;
 
 /** Time in s that the host needs for the gap at its speed; null at a standstill. */

@@ -5,9 +5,9 @@ import {DecodeError, fieldsOf, fingerprintOf, makeDecoder} from "./lcm.js";
 
 const FOGLINE_HEADER = "header_t";
 const CONTROL = new Set(["RUN", "STATUS", "RESEND", "DRIVER_INPUT", "TRIAL"]);  // not in every step
-const OF_EACH_ROLE = "STATUS";  // the messages of each role are a series of their own
-// Places of run_id, step and utime, and the end of header_t, in a message that begins with
-// header_t.
+const OF_EACH_ROLE = "STATUS";  // the messages of each role are a separate series
+// Offsets in bytes of run_id, step and utime, and of the end of header_t, in a message that begins
+// with header_t.
 const AT = {run_id: 8, step: 16, utime: 24, end: 32};
 
 export class Catalogue {
@@ -82,7 +82,7 @@ export function headerOf(bytes) {
 
 /**
  * The fields that fit the text that the reader typed, the best first. Each word must occur in the
- * field's name, comment or unit. A word in the name weighs more than a word in the comment.
+ * field's name, comment or unit. A word in the name counts more than one in the comment or unit.
  */
 export function searchFields(fields, typed, most) {
   const words = typed.toLowerCase().split(/\s+/).filter(Boolean);

@@ -1,10 +1,11 @@
 // The reader's time: follows the live run, plays, or is paused. It does not use the document.
 
-export const EARLY = 1e-6;  // in steps: 0.3 s is step 3 of 0.1 s, although 0.3 / 0.1 < 3
+// Tolerance in steps: with steps of 0.1 s, 0.3 s is step 3, but 0.3 / 0.1 < 3.
+export const EARLY = 1e-6;
 
 /**
- * A description of a run in which `step_s` is the time between the headers of two steps: whole
- * microseconds. The scenario may have another number, such as 1/30 s.
+ * The description of a run, with `step_s` as the time between the headers of two successive steps.
+ * This time is a whole number of microseconds. The scenario may have another time, such as 1/30 s.
  */
 export const withTimeOfHeaders = (run) => ({...run, step_s: timeOfStep(1, run.step_s)});
 
@@ -25,7 +26,10 @@ export class Clock {
     return Math.floor(this.time / step_s + EARLY);
   }
 
-  /** Advances the reader's time by `seconds`. It stays between `first` and `last`. */
+  /**
+   * Advances the reader's time, after `seconds` of real time. The reader's time stays between
+   * `first` and `last`.
+   */
   advance(seconds, first, last) {
     if (this.state === "live") this.time = last;
     if (this.state === "playing") {
@@ -52,7 +56,10 @@ export class Clock {
     this.state = "playing";
   }
 
-  /** Pauses the time, or plays if it is at rest. @param isOver whether a live run has ended */
+  /**
+   * Pauses, or plays if the time is paused or follows a live run that has ended. @param isOver
+   * whether a live run has ended
+   */
   toggle(first, last, isOver) {
     if (this.state === "paused" || (this.state === "live" && isOver)) this.play(first, last);
     else this.pause();

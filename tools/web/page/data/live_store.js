@@ -18,14 +18,14 @@ class Track {
     this.channel = channel;
     this.steps = [];
     this.times = [];
-    this.messages = [];  // bytes, or decoded messages
+    this.messages = [];  // bytes of each message
     this.bytes = 0;
   }
 
   get lastStep() { return this.steps.at(-1) ?? -Infinity; }
   get lastTime() { return this.times.at(-1) ?? -Infinity; }
 
-  /** Adds a copy of the bytes: a part of a frame would keep the whole frame in memory. */
+  /** Adds a copy of the bytes, because a part of a frame would keep the whole frame in memory. */
   add({step, time_s}, bytes) {
     this.steps.push(step);
     this.times.push(time_s);
@@ -71,7 +71,7 @@ export class LiveStore {
     this.runId = id;
   }
 
-  /** The step of the scenario; before the scenario is known, the step of the messages. */
+  /** Length of a step in s, from the scenario; before the scenario is known, from the messages. */
   get step_s() { return this.run?.step_s ?? this.seenStep_s ?? 0.1; }
   timeOf(step) { return timeOfStep(step, this.step_s); }
   get firstTime() { return this.timeOf(this.firstStep); }
@@ -96,7 +96,10 @@ export class LiveStore {
     this.keepControl(`${channel.name}/${status.role}`, channel, header, bytes);
   }
 
-  /** Keeps a message that does not belong to one step. Its time is at least that of the last one. */
+  /**
+   * Keeps a message that does not belong to one step. Its step and time count as at least those of
+   * the message before.
+   */
   keepControl(source, channel, {step, time_s}, bytes) {
     const track = this.track(source, channel);
     const header = {step: Math.max(step, track.lastStep), time_s: Math.max(time_s, track.lastTime)};
@@ -106,7 +109,10 @@ export class LiveStore {
     this.countOne();
   }
 
-  /** Forgets the older half of a channel. The time of its messages may stand still, as after a run. */
+  /**
+   * Forgets the older half of the messages of a channel. Their times may be equal, as after the end
+   * of a run, so the times cannot select the messages.
+   */
   halve(source, track) {
     track.forgetFirst(Math.ceil(track.messages.length / 2));
     for (const {channel, series} of this.wanted.values()) {
@@ -140,8 +146,8 @@ export class LiveStore {
   }
 
   /**
-   * Whether a log of the same run is played once more: an old TRUTH then comes after a pause. A
-   * repair also brings old messages, but without a pause.
+   * Whether a log of the same run is played again. An old TRUTH then comes after a pause. A repair
+   * also brings old messages, but without a pause.
    */
   beginsAgain({name}, {step}, arrived_ms) {
     return name === "TRUTH" && step < this.lastStep && arrived_ms - this.arrived_ms > AWAY_MS;
@@ -168,8 +174,8 @@ export class LiveStore {
   }
 
   /**
-   * The newest message of each channel at a step: {NAME: message}; null before the first step. It
-   * has no channels without a message in every step.
+   * The messages at a step: {NAME: message}; null before the first step. They are the newest up to
+   * this step, one of each channel that has a message in every step.
    */
   frame(step) {
     if (this.lastStep < 0) return null;

@@ -32,9 +32,9 @@ const MODES = [
 ];
 
 /**
- * The description {name, side, words, asks, urgent, stops, hides} of a mode. In a collision warning the
- * same side drives as before. `stops`: the mode is one of the stages of a minimal risk manoeuvre.
- * `hides`: the mode says nothing of a request or a manoeuvre.
+ * The description {name, side, words, asks, urgent, stops, hides} of a mode. In a collision warning
+ * the same side drives as before. `stops`: the mode is one of the stages of a minimal risk
+ * manoeuvre. `hides`: the mode does not say whether there is a request or a manoeuvre.
  */
 export function modeOf(mode, lambda_human = 0) {
   const known = MODES[mode];
@@ -45,8 +45,8 @@ export function modeOf(mode, lambda_human = 0) {
 }
 
 /**
- * Spans of equal value up to `end`: [{from, to, value}], from ascending times and their values. `to`
- * is the begin of the next span. For the last span it is `end`.
+ * Spans of equal value up to `end`: [{from, to, value}], from ascending times and their values.
+ * `to` is the begin of the next span, or `end` for the last span.
  */
 export function spansOf(times, values, end) {
   const spans = [];
@@ -100,7 +100,7 @@ export function drivingSince(modes, lambdas, time) {
 /**
  * The request that is open at a time: {since_s, left_s, share}; null if no request is open. `times`
  * and `modes` come from HOST_COMMAND up to this time. lead_s comes from the scenario. A request
- * begins with the first of the successive modes that ask. Emergency braking does not end it.
+ * begins with the first of the successive modes that ask. A mode with `hides` does not end it.
  */
 export function requestAt(times, modes, time, lead_s) {
   let begin = -1;
@@ -115,7 +115,7 @@ export function requestAt(times, modes, time, lead_s) {
 }
 
 /**
- * Spans in which a request is open, as spansOf() gives them. Emergency braking does not end a
+ * Spans in which a request is open, as spansOf() gives them. A mode with `hides` does not end a
  * request. @param modes series of HOST_COMMAND.mode
  */
 export function requestSpans(modes, from, to, end) {
@@ -129,9 +129,9 @@ export function requestSpans(modes, from, to, end) {
 }
 
 /**
- * The manoeuvre of a time: {first, before}, the descriptions of its first mode and of the mode before
- * it, behind emergency braking; null without a manoeuvre. `before` is null if it is not known. `times`
- * and `modes` as in requestAt().
+ * The manoeuvre at a time: {first, before}; null if there is no manoeuvre. `first` describes its
+ * first mode. `before` describes the last mode before it without `hides`; null if this mode is not
+ * known. `times` and `modes` as in requestAt().
  */
 export function manoeuvreAt(times, modes, time) {
   let place = upTo(times, time);

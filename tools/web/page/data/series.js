@@ -5,7 +5,7 @@ import {upTo} from "./modes.js";
 let versions = 0;  // of all series
 
 /**
- * Columns of values, with NaN where the series `valid` is 0, because a sensor has no value there.
+ * Columns of values, with NaN where the series `valid` is 0. There the sensor has no value.
  */
 export function whereValid({times, values}, valid) {
   return {times, values: values.map((value, i) => valid.at(times[i]) ? value : NaN)};

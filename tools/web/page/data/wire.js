@@ -2,7 +2,7 @@
 // message.
 
 const PROTOCOL = "fogline.view.v1";
-const RETRY_MS = {first: 1000, then: 2000};  // delay after the connection was lost
+const RETRY_MS = {first: 1000, then: 2000};  // delay before a new attempt to connect
 export const GOING_AWAY = 1001;  // code with which the server closes when its program ends
 
 const KIND = {messages: 1, steps: 2, series: 3};

@@ -1,12 +1,13 @@
 // Limits how much the page draws, so that slow machines also show at least 30 frames a second. It
 // measures the time between frames, because this time contains the work of the graphics processor.
-// The page may also report that something else is late. A level that was too slow before is tried
-// again after a longer time.
+// The page may also report that something else is late. After a level was too slow, the page waits
+// longer before it tries this level again.
 
 const SLOW_MS = 30;         // mean time between frames
 const FAST_MS = 20;
 const LOOK_EVERY_MS = 500;
-const CALM_LOOKS = 10;      // fast looks before the page draws more; doubled after each relapse
+// Number of fast looks before the page draws more. Doubled each time that more is too slow.
+const CALM_LOOKS = 10;
 const MOST_PATIENCE = 320;
 const HIDDEN_MS = 1000;     // a longer time between frames means that the page was hidden
 

@@ -25,7 +25,8 @@ const valueTicks = (chart, ticks, axis, space, increment) =>
 const timeTicks = (chart, ticks, axis, space, increment) =>
   ticks.map((tick) => timeTick(tick, increment, decimalsOf(increment)));
 
-// Distances of the ticks of a time axis, in s: below a minute decimal, then whole minutes and hours.
+// Distances of the ticks of a time axis, in s: below 10 s 1, 2 or 5 times a power of ten; then 10,
+// 20 and 30 s, whole minutes, and whole hours.
 const TIME_INCREMENTS = [
   ...[-4, -3, -2, -1, 0].flatMap((power) => [1, 2, 5].map((digit) => Number(`${digit}e${power}`))),
   10, 20, 30, ...[1, 2, 5, 10, 20, 30].map((minutes) => 60 * minutes),
@@ -151,7 +152,7 @@ export function joined(columns) {
   return uPlot.join(columns.map(({times, values}) => [times, withGaps(values)]));
 }
 
-/** Smallest and largest number of columns within [from, to]. */
+/** Smallest and largest value of columns within [from, to]. */
 export function extremes(columns, from, to) {
   let [low, high] = [Infinity, -Infinity];
   for (const {times, values} of columns) {

@@ -2,7 +2,7 @@
 // after the person has pressed something on the page.
 
 // Tones in Hz and times in s. Our choice: a person hears two alternating tones even in noise, and
-// even with ears that hear one of them badly. The urgent request is faster and higher.
+// even if the person hears one of the tones badly. The urgent request is faster and higher.
 const REQUEST = {tones: [660, 880], tone_s: 0.14, every_s: 0.9, gain: 0.25};
 const URGENT = {tones: [880, 1175], tone_s: 0.1, every_s: 0.35, gain: 0.35};
 const CHANGE = {tones: [523], tone_s: 0.15, gain: 0.15};
@@ -38,7 +38,8 @@ export class Alarm {
   }
 
   /**
-   * Plays the sound for a change of the side that drives. The person also tests the volume with it.
+   * Plays the sound for a change of the side that drives. The person can test the volume with this
+   * sound, too.
    */
   change() {
     if (this.isAllowed) this.play(CHANGE);

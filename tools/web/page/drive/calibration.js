@@ -3,14 +3,14 @@
 //
 // A calibration: {throttle: PEDAL, brake: PEDAL, take_over: BUTTON, give_back: BUTTON}. A PEDAL is
 // {axis or button, released, pressed, dead}: the raw values of the released and of the fully
-// pressed pedal, and the share of its way that counts as no input. `pressed` may be below
+// pressed pedal, and the dead zone as a share of the pedal's travel. `pressed` may be below
 // `released`. A BUTTON is the number of a button, or null.
 
 const KEPT_UNDER = "fogline.drive.calibration.";
-const MOST_DEAD = 0.3;      // a larger dead zone would leave too little of the pedal's way
+const MOST_DEAD = 0.3;      // a larger dead zone would leave too little of the pedal's travel
 const DEFAULT_DEAD = 0.03;  // our choice: the rest position of consumer pedals moves by 1 to 2 %
-// A pedal has a way of 2 (an axis) or 1 (a button). Less than this is noise, or another axis that
-// moves a little at the same time.
+// Smallest change of a raw value that counts as a pressed pedal. A pedal has a travel of 2 on an
+// axis, and of 1 on a button. A smaller change is noise, or another axis that also moves.
 const LEAST_WAY = 0.4;
 
 /**
@@ -33,7 +33,7 @@ export function rawOf(pad, {axis, button}) {
   return Number.isFinite(value) ? value : null;
 }
 
-/** Position of a pedal in [0, 1]; null if the device has no such axis. */
+/** Position of a pedal in [0, 1]; null if the device has no such axis or button. */
 export function pedalValue(pad, pedal) {
   const raw = rawOf(pad, pedal);
   if (raw === null) return null;
@@ -44,7 +44,7 @@ export function pedalValue(pad, pedal) {
 
 export const isDown = (pad, button) => button !== null && pad.buttons[button]?.pressed === true;
 
-/** The pedal with exchanged values of released and pressed. */
+/** The pedal with `released` and `pressed` exchanged. */
 export const inverted = (pedal) => ({...pedal, released: pedal.pressed, pressed: pedal.released});
 
 /** The pedal with another dead zone, limited to [0, MOST_DEAD]. */
@@ -62,15 +62,15 @@ function isPedal(pedal) {
 
 const isButton = (button) => button === null || (Number.isInteger(button) && button >= 0);
 
-/** Whether a calibration has valid pedals and buttons, so that a device can drive with it. */
+/** Whether a calibration has valid pedals and buttons, so that a person can drive with it. */
 export function isComplete(calibration) {
   return isPedal(calibration?.throttle) && isPedal(calibration?.brake) &&
     isButton(calibration.take_over) && isButton(calibration.give_back);
 }
 
 /**
- * The stored calibration of a device, if it is complete; otherwise the calibration of its mapping;
- * null if the device has neither. The person must then calibrate the device first.
+ * The stored calibration of a device, if it is complete; otherwise STANDARD, if the device has the
+ * "standard" mapping; otherwise null. With null the person must first calibrate the device.
  */
 export function calibrationOf(storage, {id, mapping}) {
   try {

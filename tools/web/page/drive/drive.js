@@ -21,8 +21,9 @@ import {Answer, countdown, LEAVING, PROGRAM_ENDED, told, whyAwayInWords} from ".
 // A person waits for the next frame after each input. So this page already draws less if it misses
 // one of three frames of 60 Hz, or if inputs are late.
 const SLOW_MS = 22;
-const WITH_FOCUS_MS = 500;  // a press within this time after the focus has given the window the keyboard
-const GONE_MS = 5000;  // after this time without the server, the page goes back
+// A press within this time after the focus is the press that has given the window the keyboard.
+const WITH_FOCUS_MS = 500;
+const GONE_MS = 5000;  // after this time without the server, the page calls goBack()
 
 class Drive {
   constructor() {
@@ -39,7 +40,8 @@ class Drive {
     this.view = null;
     this.instance = "";
     this.state = "";         // of the seat: yours, taken, lost; "": unknown
-    this.backAt_ms = -Infinity;  // when “Go on” was shown, and the window got the keyboard
+    // Last time at which the window got the keyboard while “Go on” was shown.
+    this.backAt_ms = -Infinity;
     this.isForFocus = false;     // whether the present press has given the window the keyboard
     this.hasLeft = false;    // whether the person had begun, and has left the seat
     this.refused = false;    // whether this page has asked for the seat, but another page has it
@@ -69,7 +71,7 @@ class Drive {
     document.addEventListener("visibilitychange", () => this.set("visible", !document.hidden));
     addEventListener("pagehide", () => this.set("visible", false));
     for (const name of ["gamepadconnected", "gamepaddisconnected"]) addEventListener(name, () => this.pump());
-    // A press with the focus was meant for “Go on”, which was in this place.
+    // If a press comes with the focus, the person meant “Go on”, which was in this place.
     byId("begin").addEventListener("pointerdown", ({timeStamp}) => {
       this.isForFocus = timeStamp - this.backAt_ms < WITH_FOCUS_MS;
     });
@@ -82,7 +84,8 @@ class Drive {
       this.alarm.allow();
       this.alarm.context?.resume().then(() => this.alarm.change());
     });
-    addEventListener("hashchange", () => {  // another program's address in the same tab
+    // The person opens another program's address in this tab.
+    addEventListener("hashchange", () => {
       if (!location.hash) return;
       this.back = backOf(location.hash, location.hostname);
       this.wire.again(socketUrl(location, takeDriverToken()));
@@ -98,7 +101,7 @@ class Drive {
     this.person.set("visible", !document.hidden);
   }
 
-  /** Lets a finger on a button of the page hold a key. */
+  /** Makes a finger on a button of the page act like a held key. */
   touch(button, key) {
     const hold = (down) => ({timeStamp, pointerId}) => {
       if (down) button.setPointerCapture(pointerId);
@@ -107,7 +110,8 @@ class Drive {
     };
     button.addEventListener("pointerdown", hold(true));
     for (const name of ["pointerup", "pointercancel"]) button.addEventListener(name, hold(false));
-    button.addEventListener("contextmenu", (event) => event.preventDefault());  // for a long press
+    // A long press would open the menu.
+    button.addEventListener("contextmenu", (event) => event.preventDefault());
   }
 
   begin() {
@@ -122,7 +126,7 @@ class Drive {
 
   /**
    * Sets a condition of driving, such as "focused". Sends the new input and sets the buttons at
-   * once: a Tab or a click may come before the next frame.
+   * once, because a Tab or a click may come before the next frame.
    */
   set(name, value) {
     this.person.set(name, value);
@@ -175,7 +179,7 @@ class Drive {
     this.soon = setTimeout(() => this.pump(), LEAST_GAP_MS);
   }
 
-  // ---- messages of the server ---------------------------------------------------------------------
+  // ---- messages of the server -------------------------------------------------------------------
 
   showConnection(state) {
     this.connection = state;
@@ -226,7 +230,7 @@ class Drive {
     this.refused = state === "taken" && this.state === "taken";
     if (this.refused) this.person.set("begun", false);
     this.state = state;
-    // The server has not heard the page for a time, although the page has perhaps not paused.
+    // The server has got no input for some time, even if the page itself has noticed no pause.
     if (state === "lost") this.person.leavePedals();
     // A lost seat still belongs to this page: the page's next frame takes the seat again.
     this.set("seated", state === "yours" || state === "lost");
@@ -248,7 +252,7 @@ class Drive {
     }
   }
 
-  // ---- drawing --------------------------------------------------------------------------------------
+  // ---- drawing ----------------------------------------------------------------------------------
 
   loop(now) {
     requestAnimationFrame((next) => this.loop(next));
@@ -259,7 +263,10 @@ class Drive {
     this.drawLatency();
   }
 
-  /** What the newest messages say of who drives; they also come while no frame is drawn. */
+  /**
+   * Updates `told`, the description of who drives, from the newest messages, and returns it.
+   * Messages also come while no frame is drawn.
+   */
   tell() {
     const {frame = {}} = this.newest ?? {};
     this.told = told(frame.HOST_COMMAND, frame.TRUTH, this.connection);
@@ -280,7 +287,10 @@ class Drive {
     setAttribute(document.body, "data-step", String(this.newest?.step ?? ""));
   }
 
-  /** A sound for a change of the side that drives. A lost connection and the end are no change. */
+  /**
+   * Plays a sound if the side that drives has changed. A lost connection and the end of the run are
+   * no change.
+   */
   soundChange(side) {
     if (this.connection !== "open" || side === "unknown") return;
     if (this.side !== undefined && this.side !== side) this.alarm.change();
@@ -297,7 +307,7 @@ class Drive {
     byId("setup-request").hidden = !asks;
     setAttribute(request, "data-urgent", String(urgent));
     if (!left) return;
-    // A person without the keyboard must first come back.
+    // If another window has the keyboard, the person must first press “Go on”.
     say(byId("request-words"), byId("go-on").hidden ? words : "First “Go on”");
     const left_s = withUnit(decimal(Math.ceil(left.left_s), 0), "s");
     const leftWords = left.atMost ? `at most ${left_s}` : left_s;
@@ -320,7 +330,8 @@ class Drive {
     const answer = leaves ? LEAVING : why === "" ? this.answer.words(state, now) : "";
     say(byId("away"), words);
     byId("away").hidden = words === "" || answer !== "";
-    byId("meanwhile").hidden = !state.asks || words !== "" || answer !== "";  // there is room for one of them
+    // The page has room for only one of these texts.
+    byId("meanwhile").hidden = !state.asks || words !== "" || answer !== "";
     say(byId("answer"), answer);
     byId("answer").hidden = answer === "";
     const leave = leaves ? "Press again to leave" : "Leave the seat";

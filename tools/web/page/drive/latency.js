@@ -4,19 +4,20 @@
 // A measurement begins at the time of an input. For a key this is the time of its event
 // (Event.timeStamp). For a gamepad it is the time at which the browser got the state
 // (Gamepad.timestamp). The page sends the input to the seat. The seat publishes it as DRIVER_INPUT,
-// and answers with the number of this message. A DRIVER_COMMAND then comes that was made from this
-// input or from a newer one. The measurement ends when the page has drawn the next frame
-// (requestAnimationFrame). So it contains the ways through page, seat and network, the wait of the
-// driver role for its next step, and the drawing. It does not contain the times of keyboard and
-// screen.
+// and answers with the number of this message. Then a DRIVER_COMMAND comes, which the driver role
+// has made from this input or from a newer one. The measurement ends when the page has drawn the
+// next frame (requestAnimationFrame). So it contains the time in page, seat and network, the wait
+// of the driver role for its next step, and the drawing. It does not contain the times of keyboard
+// and screen.
 
 export const WARN_ABOVE_MS = 100;
 export const LATE_ABOVE_MS = 40;  // the page then draws less; goal for the 95th percentile: 50 ms
 const LATE_OF = 10;               // one of this many measurements may be late
-const FORGET_AFTER_MS = 2000;  // time without a step of the run that uses the input
+// After this time, a new measurement may replace a measurement that has not ended.
+const FORGET_AFTER_MS = 2000;
 const KEPT = 512;              // number of measurements for the percentiles
 const WARN_OF = 10;            // number of the newest measurements for the warning
-const WARN_FOR_MS = 10000;     // time after a measurement in which the page warns of it
+const WARN_FOR_MS = 10000;     // the page warns of a long measurement for this time
 
 export class Latency {
   constructor() {
@@ -58,7 +59,8 @@ export class Latency {
   }
 
   /**
-   * The value below which a share of the stored measurements lies (nearest rank); null without any.
+   * The value below which a share of the stored measurements lies (nearest rank); null without a
+   * measurement.
    */
   percentile(share) {
     if (this.values.length === 0) return null;
@@ -101,6 +103,6 @@ export class Latency {
     return value;
   }
 
-  /** Drops the current measurement, because a lost connection may have lost its input. */
+  /** Drops the current measurement, because its input may be lost with the connection. */
   forget() { this.probe = null; }
 }

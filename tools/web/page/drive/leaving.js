@@ -1,4 +1,4 @@
-// Asks a person who drives, or who is asked to, for a second press before the seat is empty: one press
+// Asks for a second press of “Leave the seat” while the run needs the person. Otherwise one press
 // by mistake would end the drive.
 
 const WITHIN_MS = 4000;  // the time for the second press
@@ -8,7 +8,10 @@ export class Leaving {
     this.until_ms = -Infinity;
   }
 
-  /** @param isMissed whether the run needs the person now. @return whether this press leaves the seat */
+  /**
+   * @param isMissed whether the run needs the person now
+   * @return whether this press leaves the seat
+   */
   press(isMissed, now_ms) {
     const leaves = !isMissed || this.asks(now_ms);
     this.until_ms = leaves ? -Infinity : now_ms + WITHIN_MS;

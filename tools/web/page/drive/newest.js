@@ -5,9 +5,9 @@ import {headerOf} from "../data/catalogue.js";
 const NEEDED = new Set(["TRUTH", "HOST_COMMAND", "DRIVER_COMMAND"]);
 
 /**
- * The page to open when the server has ended; "": the page stays open. The fragment names it by
- * "back=URL". The URL must be a page of this machine or of the machine of this page. Any other URL
- * is ignored, because an address can be forged.
+ * The page to open when the server has ended; "": no other page is opened. The fragment has it as
+ * "back=URL". The URL must be an http page of this machine, or of the machine of the server. Any
+ * other URL is ignored, because an address can be forged.
  */
 export function backOf(fragment, hostname) {
   const back = new URLSearchParams(fragment.replace(/^#/, "")).get("back") ?? "";

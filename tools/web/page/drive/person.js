@@ -16,8 +16,8 @@ const NOISE = 0.01;
 // After this time without a look at the devices, the server counts the page as silent
 // (Seat::kSilent), so the person was away.
 const SILENT_MS = 300;
-// A pedal below this share of its way counts as released when a person comes back. Our choice: more
-// than the 1 to 2 % by which the rest position of consumer pedals moves, and a person hardly feels it.
+// When a person comes back, a pedal below this share of its travel counts as released. Our choice:
+// the rest position of consumer pedals moves by 1 to 2 %, which is less. A person hardly feels 5 %.
 const RELEASED = 0.05;
 const PEDALS = ["throttle", "brake"];
 
@@ -99,7 +99,8 @@ export class Person {
    * the key
    */
   key(key, down, now_ms) {
-    if (this.whyAway() !== "") return false;  // all keys are up when the person comes back
+    // All keys count as released when the person comes back.
+    if (this.whyAway() !== "") return false;
     const pedal = PEDAL_KEYS[key];
     const button = BUTTON_KEYS[key.toLowerCase()];
     if (pedal) {
@@ -157,8 +158,9 @@ export class Person {
   }
 
   /**
-   * Position of a pedal in [0, 1]; null if the device has no such axis. An axis that has not moved
-   * yet counts as released: a browser may report 0 for it, which is the middle of its way.
+   * Position of a pedal in [0, 1]; null if the device has no such axis or button. An axis that has
+   * not moved yet counts as released. A browser may report 0 for such an axis, but 0 is the middle
+   * of its range.
    */
   position(pedal) {
     const value = pedalValue(this.pad, pedal);

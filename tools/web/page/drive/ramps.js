@@ -1,22 +1,22 @@
-// Arrow keys as pedals. A key is down or up, so each pedal follows its key by a ramp. The ramp
-// begins with a step: the way of FIRST_S. So a key moves its pedal at once, and the page can send
-// the change at once. This file does not use the document.
+// Arrow keys as pedals. A key is only down or up, so each pedal follows its key by a ramp. The ramp
+// begins with a jump: the movement of FIRST_S seconds. So a key moves its pedal at once, and the
+// page can send the change at once. This file does not use the document.
 
 // Rates before the page knows the scenario: the defaults of /person/key_press_ps and
 // key_release_ps.
 const RATES = {press_ps: 1.5, release_ps: 4};
 
-// Our choice: a person does not feel that a pedal is 3 % ahead. This is a step of
-// scenario/drive.json.
+// Our choice: a person does not feel that a pedal is 3 % ahead (RATES.press_ps x FIRST_S). FIRST_S
+// equals step_s of scenario/drive.json.
 export const FIRST_S = 0.02;
 
-// Limit for the time between two looks in which a held key moves its pedal. If the time is longer,
-// the page has paused. The limit is more than ten times LOOK_EVERY_MS (sender.js).
+// Between two looks, a held key moves its pedal for at most this time. A longer time means that the
+// page has paused. The limit is more than ten times LOOK_EVERY_MS (sender.js).
 const MOST_PASSED_S = 0.1;
 
 /**
- * The rates of a scenario: shares of a pedal's way per second while its key is down, and while it
- * is up.
+ * The rates of a scenario: shares of a pedal's travel per second while its key is down, and while
+ * its key is up.
  */
 export function ratesOf(scenario) {
   const {key_press_ps: press_ps, key_release_ps: release_ps} = scenario?.person ?? {};
@@ -51,8 +51,8 @@ export class Ramps {
   }
 
   /**
-   * Moves the pedals on to this time. The brake has priority: while its key is down, the throttle
-   * goes back, because a driver has one foot for both pedals.
+   * Moves the pedals up to this time. The brake has priority: while the key of the brake is down,
+   * the throttle goes back, because a driver has one foot for both pedals.
    * @return {throttle, brake} in [0, 1]
    */
   advance(now_ms) {

@@ -9,7 +9,8 @@ const RETRY_MS = 1000;  // delay after the connection was lost
 
 /**
  * Takes the driver's token out of the address, where other people could read it, and stores it for
- * this tab. The view has a different token. The other parts of the address stay, for a reload.
+ * this tab. The view has a different token. A reload needs the other parts of the address, so they
+ * stay.
  */
 export function takeDriverToken() {
   const {token} = readFragment(location.hash);
@@ -58,7 +59,7 @@ export class SeatWire {
     };
   }
 
-  /** Connects to another address. The new address may differ only in its token. */
+  /** Connects again, to the old address or to one with a new token. */
   again(url) {
     this.url = url;
     const {socket} = this;

@@ -4,7 +4,7 @@
 export const KEEP_ALIVE_MS = 50;  // longest time between frames; see Seat::kSilent
 export const LEAST_GAP_MS = 4;    // at most 250 frames a second
 // Interval at which the page reads the devices, and checks whether a frame is due. A browser does
-// not report that a pedal has moved, so half of this time is part of the latency.
+// not report that a pedal has moved, so on average half of this time is part of the latency.
 export const LOOK_EVERY_MS = 8;
 const MOST_NAME_BYTES = 64;
 const MOST_AXES = 16;

@@ -41,7 +41,7 @@ export class Setup {
     }
   }
 
-  /** The names of the pedals that the device needs before the person can drive with it. */
+  /** The pedals that the person must still calibrate before driving with the device. */
   get lacks() {
     if (this.person.device.kind === "keyboard") return [];
     return PEDALS.filter((name) => this.edited[name] === null);
@@ -73,7 +73,7 @@ export class Setup {
       ...[...ids].map((one) => make("option", {value: one},
         there.some((pad) => pad.id === one) ? one : `${one} (unplugged)`)));
     this.list.value = id;
-    // Before the person has begun, the page chooses the device that the person used before, or else
+    // Before the person has begun, the page chooses the device that the person used last, or else
     // the first device. It chooses none if the person's last choice was the keyboard.
     if (!this.person.begun && id === "" && there.length > 0) {
       const before = this.remembered();

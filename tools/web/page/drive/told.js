@@ -44,10 +44,9 @@ const noSide = (words) => ({
 
 /**
  * The description {side, words, asks, urgent, answered, isFinal, mayEnd, hasAuthority} of a
- * HOST_COMMAND.
- * Without a HOST_COMMAND the drive has not begun. `isFinal`: the stop lasts until the end of the run.
- * `mayEnd`: a person can end the stop by taking over. `hasAuthority`: the human has the authority,
- * also while the car brakes in an emergency.
+ * HOST_COMMAND. Without a HOST_COMMAND the drive has not begun. `isFinal`: the stop lasts until the
+ * end of the run. `mayEnd`: a person can end the stop by taking over. `hasAuthority`: the human has
+ * the authority, also while the car brakes in an emergency.
  * @param truth the newest TRUTH, which says whether the run has ended
  * @param connection state of the wire (seat_wire.js)
  */
@@ -78,8 +77,8 @@ export function countdown(request, time_s, lead_s) {
   return {left_s, share: lead_s > 0 ? left_s / lead_s : 0, atMost: !begin_known};
 }
 
-// An answer of the run to a button comes in a few steps. Afterwards the words stay so long that a
-// person can read them.
+// Times after a press at which the words appear and disappear. The run answers a button within a
+// few steps, so the words appear only if no answer has come. A person has time to read them.
 const ANSWER_MS = {after: 1000, until: 6000};
 
 /** The text for a button that may have no effect; undefined for any other button. */
@@ -115,10 +114,10 @@ export class Answer {
   }
 }
 
-/** The words after the first of the two presses of “Leave the seat” that leaving.js asks for. */
+/** The words after the first press of “Leave the seat”, if leaving.js asks for a second one. */
 export const LEAVING = "If you leave now, no person drives. The car may stop for the rest of the run.";
 
-/** The words below the end of a drive whose program has ended. */
+/** The words in the second line when the program has ended. */
 export const PROGRAM_ENDED = "If you take part in a study, please tell the experimenter.";
 
 const WHY_AWAY = {
@@ -138,8 +137,7 @@ const LEFT_FOR_GOOD = "You have left the seat. Nobody drives any more in this ru
 const STILL = "You can still take over while the car moves.";
 
 /**
- * The text for a reason of Person.whyAway(); "" if the person is present and need not be told
- * anything.
+ * The text for a reason of Person.whyAway(); "" if the person is present and needs no text.
  * @param hasLeft whether the person had begun before; side, isFinal, mayEnd: see told()
  */
 export function whyAwayInWords(why, {hasLeft = false, side = "unknown", isFinal = false, mayEnd = false} = {}) {

@@ -4,8 +4,8 @@ import {make, setAttribute} from "../draw/dom.js";
 
 export class Combobox {
   /**
-   * @param suggest(typed) returns options [{key, parts: [nodes]}]; onChoose(key) is called for a
-   * choice
+   * @param suggest(typed) returns options [{key, parts: [nodes], chosen}]; onChoose(key) is called
+   * when the reader chooses an option
    */
   constructor(input, list, {suggest, onChoose}) {
     Object.assign(this, {input, list, suggest, onChoose});

@@ -15,9 +15,10 @@ const FIRST_FIELDS = ["TRUTH.host_gap_m", "RADAR.range_m", "LIDAR.range_m", "TRU
 const MOST_FIELDS = 8;         // number of colours
 const MOST_SUGGESTIONS = 40;
 const MINUTE_S = 60;
-const REST = {most_ms: 1000, factor: 5};  // pause between drawings; factor: of a drawing's time
+// Pause between drawings: `factor` times the time of the last drawing, but at most `most_ms`.
+const REST = {most_ms: 1000, factor: 5};
 const LEAST_SPAN = 1e-3;  // of a value axis, as a share of the values
-const NEAR_S = 10;  // a longer part of a channel may have more values than a curve
+const NEAR_S = 10;  // before and after a time; a longer part may come with only the extremes
 const KEEP = "fogline.fields";
 const valueId = (index) => `value-of-field-${index}`;
 const NAMES = {"HOST_COMMAND.mode": (mode) => modeOf(mode).name};  // of values, by field
@@ -38,7 +39,7 @@ function keepFields(fields) {
   } catch { /* the browser stores nothing */ }
 }
 
-/** A piece of a curve, as a key for the reader. */
+/** A short piece of a curve, for the legend. */
 function lineKey(colour, dash) {
   const draw = (kind, attributes) => {
     const element = document.createElementNS("http://www.w3.org/2000/svg", kind);
@@ -52,7 +53,10 @@ function lineKey(colour, dash) {
 }
 
 export class Curves {
-  /** @param onPick(time), onFull(words): called if the reader chooses one field too many */
+  /**
+   * @param onPick(time) is called for a click on a chart; onFull(words) is called if the reader
+   * chooses more than MOST_FIELDS fields
+   */
   constructor({onPick, onFull}) {
     this.onPick = onPick;
     this.onFull = onFull;
@@ -90,7 +94,7 @@ export class Curves {
     });
   }
 
-  /** Begins with another store, or with new channels. */
+  /** Begins with another store, new channels, or other colours. */
   build(store, catalogue, theme) {
     this.store = store;
     this.theme = theme;
@@ -206,8 +210,8 @@ export class Curves {
   }
 
   /**
-   * The changes of `valid` of a field, which says whether a sensor has a value; null for a field
-   * that always has one.
+   * The changes of the channel's field `valid`, which says whether the sensor has a value; null for
+   * a field that always has a value.
    */
   validOf({channel, path}) {
     const depends = path !== "valid" && !path.startsWith("header.") && this.fieldNamed(`${channel}.valid`);
@@ -263,7 +267,7 @@ export class Curves {
     chart.setScale("x", {min: from, max: to});
   }
 
-  /** The value of a field at a time: the last one up to it. NaN until it has come. */
+  /** The last value of a field at or before a time; NaN until the data have come. */
   valueAt({channel, path, isStepwise}, time) {
     const series = this.seriesOf({channel, path}, ...this.range(this.moment.time));
     if (series.whole) return series.at(time);
@@ -277,8 +281,8 @@ export class Curves {
   }
 
   /**
-   * Shows the values at the cursor, or without a cursor the values of the shown moment, with all
-   * significant digits.
+   * Shows the values at the cursor, or without a cursor the values of the shown moment, with about
+   * four digits.
    */
   sayValues({frame, time, run}) {
     const hover = this.hover;

@@ -10,9 +10,9 @@ import {
 
 import {carsOf, extinction} from "../data/cars.js";
 
-// Replaces three's own fog, which has another law, and uses the depth instead of the distance.
+// Replaces three's own fog. That fog has another law, and uses the depth instead of the distance.
 // `fogNear` contains sigma in 1/m. Each pixel computes its own distance, because the ground has few
-// vertices. Light adds up linearly, so the colours are made linear for the mixture.
+// vertices. Light adds up linearly, so the colours are made linear before they are mixed.
 const chunk = (lines) => `#ifdef USE_FOG\n${lines}\n#endif`;
 ShaderChunk.fog_pars_vertex = chunk("varying vec3 vFogPlace;");
 ShaderChunk.fog_vertex = chunk("vFogPlace = mvPosition.xyz;");
@@ -115,8 +115,8 @@ export class DriverView {
 
   /**
    * Draws everything once, and clears the picture. A browser compiles a shader when it first draws
-   * with the shader, and does nothing else meanwhile. Without this call, the person's pedals would
-   * have no effect for this time when the car ahead first brakes.
+   * with the shader, and does nothing else meanwhile. Without this call, this would happen when the
+   * car ahead first brakes, and the person's pedals would have no effect for this time.
    */
   warmUp() {
     this.lead.position.z = -20;  // in sight

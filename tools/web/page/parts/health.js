@@ -12,7 +12,7 @@ function refusals(refused) {
   return texts.join(", ") || "0";
 }
 
-/** The fallback of a role with the channel that caused it, and the inputs that are not OK. */
+/** The fallback of a role with the channel that caused it, and the stale and lost inputs. */
 function fallbackOf(status) {
   if (!status) return "";
   const bad = (status.input ?? []).filter((_, i) => status.input_state[i] >= 2)
@@ -130,8 +130,8 @@ export class Health {
   }
 
   /**
-   * Shows whether the log of a recorded run is complete. A log has no roles, senders and channels
-   * here.
+   * Shows whether the log of a recorded run is complete. For a log, the page shows no roles,
+   * senders and channels.
    */
   drawLog(log, run) {
     for (const part of Object.keys(this.parts)) this.fill(part, []);

@@ -4,7 +4,7 @@ import {byId, make} from "../draw/dom.js";
 
 const TEN = 10;
 
-/** The keys in the order of the overlay: [{keys, words, does(act, event)}]. */
+/** The keys in the order of the overlay: [{keys, shown, words, does(act, event)}]. */
 const KEYS = [
   {keys: [" "], shown: "Space", words: "play or pause", does: (act) => act.toggle()},
   {keys: ["ArrowLeft"], shown: "←", words: "one step back (with Shift: ten)",

@@ -6,20 +6,22 @@ import {decimal, seconds, withUnit} from "../draw/format.js";
 import {stands} from "../data/cars.js";
 import {drivingSince, manoeuvreAt, modeOf, requestAt, SIDES} from "../data/modes.js";
 
-const ANNOUNCE_AFTER_MS = 400;  // otherwise a quick move through time would read out each change
+// Without this delay, a screen reader would read each change while the reader moves through time.
+const ANNOUNCE_AFTER_MS = 400;
 
 const LASTS = {
   automation: "The automation has driven for", human: "The human has driven for",
   risk: "The manoeuvre has lasted", unknown: "This has lasted"};
 
-// Reasons for modes whose reason is not the Degree of Conflict. The page says this reason first.
+// Reasons for modes that have another reason than the Degree of Conflict. The page shows this
+// reason first.
 const REASONS = {
   COLLISION_WARNING: "The car ahead is too near. ",
   EMERGENCY_BRAKING: "A collision is near.",
 };
 const NO_DRIVER = "Neither the automation nor the human goes on driving. ";
 
-/** Why a manoeuvre has begun, as services/decision/take_over/take_over_table.h has it. */
+/** Why a manoeuvre has begun, by the rules of services/decision/take_over/take_over_table.h. */
 function causeOf(manoeuvre) {
   const {first, before} = manoeuvre ?? {};
   if (before?.side === "human") return "The human no longer drives.";
@@ -31,7 +33,7 @@ function causeOf(manoeuvre) {
 /**
  * The reason why the side of this HOST_COMMAND drives, as text. The conflict is no reason for a
  * manoeuvre or for emergency braking.
- * @param hasPerson whether a person drives in this run, who can leave the seat
+ * @param hasPerson whether the driver in this run is a person, who can leave the seat
  * @param manoeuvre as manoeuvreAt() gives it
  */
 export function reason({mode, lambda_human, doc, threshold}, hasPerson = false, manoeuvre = null) {
@@ -50,8 +52,9 @@ const STANDS = "Minimal risk manoeuvre: the car stands";
 const ENDED = "The run has ended";
 
 /**
- * How a run begins that this page then shows: {words, command}.
- * @param isKnown whether the page knows the run. hello {url, follows, waits_for_person} of the server
+ * What the page waits for, or how the reader can start a run: {words, command}.
+ * @param isKnown whether the page knows the run
+ * @param hello {url, follows, waits_for_person} of the server
  */
 function hint(isKnown, {url, follows, waits_for_person}) {
   if (waits_for_person) return {words: "The drive begins when the participant presses “Begin” at the seat."};
@@ -60,7 +63,7 @@ function hint(isKnown, {url, follows, waits_for_person}) {
   return {words: "Start one, such as: ", command: `fogline run scenario/dense_fog.json --pace 1${network}`};
 }
 
-/** Shows words and a command, in which no line breaks within an option. */
+/** Shows words and a command. No option of the command is divided between two lines. */
 function showHint(place, {words, command = ""}) {
   if (place.textContent === words + command) return;
   const parts = command.split(/(--\S+)/).map((part, i) => (i % 2 ? make("span", {class: "option"}, part) : part));
@@ -119,7 +122,7 @@ export class Now {
     this.bar.textContent = `${decimal(request.left_s, 1)} s left`;
   }
 
-  /** Tells readers who do not see the page when the driver changes. */
+  /** Announces a change of the driver to readers who cannot see the page. */
   announce(words) {
     if (words === this.wanted) return;
     this.wanted = words;

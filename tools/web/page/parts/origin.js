@@ -13,7 +13,10 @@ function originInWords({connection, isLive, waits, isOver, log, clock}) {
   return waits ? "Connected" : OF_LIVE[clock.state];
 }
 
-/** Shows the origin of the data. @param page {connection, isLive, waits, isOver, hello, log, clock} */
+/**
+ * Shows the origin of the data.
+ * @param page {connection, isLive, waits, isOver, hello, log, clock}
+ */
 export function sayOrigin(page) {
   const {connection, isLive, waits, isOver, hello, clock} = page;
   const isBehind = connection === "ended" || (isLive && (isOver || clock.state !== "live"));

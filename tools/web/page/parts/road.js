@@ -10,7 +10,8 @@ const LANE_M = 3.6;
 const DASH = {length_m: 6, period_m: 18};  // the line between the lanes
 const MARGIN_M = 10;                       // shown before the first and behind the last car
 const LEAST_SPAN_M = 60;
-const SLACK = 1.25;      // the scale stays while the cars fill 1/SLACK^2 to all of the width
+// The scale stays while the cars need at least 1/SLACK^2 of the width, and fit into it.
+const SLACK = 1.25;
 const SCALE_BARS_M = [1, 2, 5, 10, 20, 50, 100, 200, 500];
 const SIGHTS_HEIGHT = 52;  // height for the marks of the sensors, in pixels
 const GAPS_HEIGHT = 58;   // height for the gaps, and for the scale bar below them
@@ -47,8 +48,8 @@ export class Road {
   }
 
   /**
-   * Chooses the part of the road that is shown. It changes only if cars leave it or fill too little
-   * of it.
+   * Chooses the part of the road that is shown. The part changes only if cars leave it, or fill too
+   * little of it.
    */
   chooseWindow(cars, length_m) {
     const to_m = Math.max(cars[0].front_m, 0) + MARGIN_M;
@@ -170,7 +171,10 @@ function drawBrakeLamps(pen, {left, width}, lane, theme) {
   }
 }
 
-/** Covers the road: reduces contrast as much as the fog between the road and the host's driver. */
+/**
+ * Draws haze over the road. At each place the haze takes 92 % of the contrast that is lost by the
+ * fog between this place and the host's driver.
+ */
 function drawHaze({pen, width, top, bottom, theme, x, scale}, truth) {
   const sigma = extinction(truth.fog_visibility_m);
   const eye = x(-2);

@@ -8,8 +8,8 @@ import {Road, roadInWords} from "./road.js";
 
 const WORDS_EVERY_MS = 1000;
 const AFTER_PICTURE_MS = 100;
-const MOST_FOG_M = 1000;  // of the visibility in fog, by the definition of meteorology
-const LONG_S = 60;  // the digits of a longer time gap say nothing
+const MOST_FOG_M = 1000;  // largest visibility in fog, by the definition of meteorology
+const LONG_S = 60;  // a longer time gap is shown as “over 60 s”
 
 export class Scene {
   constructor() {
@@ -21,9 +21,10 @@ export class Scene {
   }
 
   /**
-   * Loads the driver's view, if this has not begun. A browser without a graphics processor prepares
-   * the view for more than a second, in which it does nothing else. So the page calls this method
-   * when it has drawn all other parts, and the view waits until their picture is on the screen.
+   * Loads the driver's view, if the loading has not begun. A browser without a graphics processor
+   * needs more than a second to prepare the view, and does nothing else meanwhile. So the page
+   * calls this method only when it has drawn all other parts. The method waits until the other
+   * parts are visible on the screen.
    */
   loadView() {
     if (this.isLoading) return;

@@ -1,4 +1,4 @@
-// The bar at the bottom: live, pause, play, step, jump to events, scrub, speed, link.
+// The bar at the bottom: live, pause, play, step, jump to events, slider, speed, link.
 
 import {byId, fitCanvas, hatch, make, say, setAttribute} from "../draw/dom.js";
 import {clockTime, count, decimal, seconds, timeDecimals} from "../draw/format.js";
@@ -143,7 +143,7 @@ export class Timebar {
   }
 }
 
-/** Scrolls a box that scrolls, and nothing else, until it shows an item. */
+/** Scrolls only this box, so that an item in it is visible. */
 function keepInSight(box, item) {
   if (!item) return;
   const isAbove = item.offsetTop < box.scrollTop;
@@ -151,7 +151,7 @@ function keepInSight(box, item) {
   if (isAbove || isBelow) box.scrollTop = item.offsetTop - (box.clientHeight - item.offsetHeight) / 2;
 }
 
-/** The last step of the run; of a live run the last one that it will have. */
+/** The last step of the run, also if a live run has not reached it yet. */
 const lastStepOf = (store, run) => Math.max(store.lastStep, (run.steps ?? 0) - 1);
 const endOf = (store, run) => store.timeOf(lastStepOf(store, run));
 
@@ -160,7 +160,7 @@ function placeWords(step, time, end) {
   return end < LONG_S ? `step ${step}` : `step ${step}, ${clockTime(time)}`;
 }
 
-/** The step of the next (+1) or previous (-1) event, seen from a step; null if there is none. */
+/** The next (+1) or previous (-1) event, seen from a step; null if there is none. */
 export function eventFrom(events, step, direction) {
   const found = direction > 0 ? events.find((event) => event.step > step)
                               : events.findLast((event) => event.step < step);

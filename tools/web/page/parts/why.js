@@ -11,7 +11,8 @@ import {Series, whereValid} from "../data/series.js";
 import {withAlpha} from "../draw/theme.js";
 
 export const WINDOW_S = 20;
-const BAND = {height: 12, gap: 5};  // space above the conflict for the side that drives, in pixels
+// The band for the side that drives, above the curves of the conflict, in pixels.
+const BAND = {height: 12, gap: 5};
 const LEAST_ERROR_SPAN_M = 0.5;
 const MANY_M = 100;
 
@@ -36,8 +37,8 @@ export function drawBand(chart, spans, theme, top, height) {
 }
 
 /**
- * Value minus truth of a source; NaN where the source has no value. Both series have every value
- * of the shown time, because the extremes of two series are not of the same steps.
+ * The values of a source minus the truth; NaN where the source has no value. Both series must have
+ * every value of the shown time, because the extremes of two series come from different steps.
  */
 function errorColumns({times, values}, valid, truth) {
   const seen = whereValid({times, values}, valid);
@@ -50,7 +51,7 @@ function upToTime({times, values}, time) {
   return {times: times.subarray(0, n), values: values.subarray(0, n)};
 }
 
-/** An error in m, as text. The decimals of a large error say nothing. */
+/** An error in m, as text. A large error has no decimals, because they have no meaning. */
 function errorInWords(error_m) {
   if (Number.isNaN(error_m)) return "no value";
   return withUnit(decimal(error_m, Math.abs(error_m) < MANY_M ? 2 : 0), "m");
@@ -140,7 +141,7 @@ export class Why {
     return sideSpans(this.modes, this.lambdas, this.range[0], this.shownEnd, this.shownEnd);
   }
 
-  /** Every value of a field in the shown time. The series is empty until they have come. */
+  /** Every value of a field in the shown time. The series is empty until the values have come. */
   shown(channel, path) {
     const series = this.store.detail(channel, path, ...this.range, MOST_POINTS);
     return series.whole ? series : NOTHING;
@@ -151,7 +152,7 @@ export class Why {
     return Math.min(this.moment.time, this.store.lastTime);
   }
 
-  /** First and last time of the charts. In the first 20 s the moment is before the last time. */
+  /** First and last time of the charts. In the first 20 s the charts end after the moment. */
   get range() {
     const end = Math.max(this.moment.time, this.store.firstTime + WINDOW_S);
     return [end - WINDOW_S, end];
