@@ -21,9 +21,10 @@ void Complain(std::string_view line) noexcept;
 /// reported, because a progress bar is drawn again soon.
 void Draw(std::string_view text) noexcept;
 
-/// Makes sure that descriptors 0 to 2 are open. Call this function first in a program. If a program
-/// is started without stderr (2>&-), its log could otherwise become descriptor 2. Messages would
-/// then be written into the log. If stdout or stderr was missing, a write to this descriptor fails.
+/// Makes sure that descriptors 0 to 2 are open. Call this function first in a program. Without the
+/// call, the log of a program that was started without stderr (2>&-) could become descriptor 2.
+/// Messages would then be written into the log. The call prevents this: if stdout or stderr was
+/// missing, every later write to this descriptor fails.
 void TakeStandardDescriptors();
 
 }  // namespace fogline

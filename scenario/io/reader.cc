@@ -46,7 +46,8 @@ std::string TextOfNumber(const JsonValue& value) {
   return NumberText(*ToNumber(value));
 }
 
-// A likely reason for a wrong type, or nothing.
+// A hint for a value of the wrong type. If the value is a text that would be a number or a boolean
+// without its quotes, the hint asks whether the quotes are a mistake. Otherwise the hint is "".
 std::string_view QuotesHint(const JsonValue& value) {
   const auto* text = value.As<std::string>();
   if (text == nullptr) return "";

@@ -134,7 +134,9 @@ Json::json_pointer PlaceOf(std::string_view pointer) {
   return Json::json_pointer(place);
 }
 
-// Adds the condition under which a section is required to the schema of the enclosing object.
+// Adds a rule to the schema of `object`, which contains the section. The rule says: if the field
+// need.choice has the value need.value, the section is required, and at least one of its fields
+// need.fields must have contents.
 void AddNeed(Json& object, std::string_view section, const NeedSpec& need) {
   Json any_of = Json::array();
   for (const std::string_view field : need.fields) {

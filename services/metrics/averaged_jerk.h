@@ -17,7 +17,9 @@ namespace fogline::metrics {
 /// the step. (The change divided by the length of the step grows as the step shrinks.)
 class AveragedJerk {
  public:
-  /// Adds the acceleration that was applied from the previous sample to this sample. Times ascend.
+  /// Adds a sample. The times of the samples ascend.
+  /// @param acceleration_mps2 the acceleration that was applied between the time of the previous
+  ///     sample and `time_s`
   /// @return |jerk| in m/s3, averaged over the second that ends now; nullopt before the
   ///     accelerations of a whole second are known
   std::optional<double> Add(double time_s, double acceleration_mps2);

@@ -50,7 +50,8 @@ void ShowExitCodes(CLI::App& command, const ExitMeanings& meanings) {
 }
 
 std::string HelpText(const CLI::App& app, const CLI::App& of) {
-  // of.help() would print the name of the chosen verb, even if `of` is another verb.
+  // The formatter is called directly, because CLI11's help() prints something else: app.help()
+  // prints the help of the verb that the user has called, and of.help() omits the program's name.
   const std::string name = &of == &app ? app.get_name() : app.get_name() + " " + of.get_name();
   return app.get_formatter()->make_help(&of, name, CLI::AppFormatMode::Normal);
 }

@@ -11,8 +11,8 @@ namespace fogline::exports {
 
 /// Files that WriteCsv() writes into a folder: CHANNEL.csv for each channel, and scenario.json.
 std::vector<std::filesystem::path> CsvFiles(const std::filesystem::path& folder);
-/// Further files, which WriteCsv() writes only if the log has their contents: the file of the wall
-/// clock of the steps.
+/// The files that WriteCsv() writes into a folder only for some logs. There is one such file: the
+/// wall clock of the steps. WriteCsv() writes it if the log contains the wall clock.
 std::vector<std::filesystem::path> CsvFilesOfSomeLogs(const std::filesystem::path& folder);
 
 /// Whether WriteCsv() could have written the file, judged by its beginning.

@@ -69,8 +69,9 @@ class TakeOverLog {
   /// Removes the entries so far, for a caller that needs only the requests of a long run.
   void DropEntries() { entries_.clear(); }
   const std::vector<TakeOverRequest>& requests() const { return requests_; }
-  /// Whether a request may have been open before the first command: this command is not of step 0,
-  /// and the first mode that emergency braking does not hide is neither AUTOMATION nor HUMAN.
+  /// Whether a request may have been open before the first command. The result is true if the first
+  /// command is of a step after step 0, and if the first mode that emergency braking does not hide
+  /// is a mode other than AUTOMATION and HUMAN.
   bool BeganInRequest() const { return began_in_request_; }
   /// The mode of the last command without emergency braking; AUTOMATION before the first command.
   /// EMERGENCY_BRAKING if the log begins late, and all commands so far have this mode.

@@ -22,9 +22,9 @@ namespace fogline::models {
 ///                a = a_free + a_max (1 - z^2)               z >= 1
 ///                a = a_free                                 z < 1
 ///
-/// ACC-IDM, which does not brake hard for a car that cuts in at a short gap but drives away.
-/// ACC-IDM uses the constant-acceleration heuristic a_CAH, with a~ = min(a_lead, a_max) and v_l the
-/// speed of the car ahead:
+/// ACC-IDM. If another car cuts in at a short gap, but is faster and so increases the gap, ACC-IDM
+/// does not brake hard. ACC-IDM uses the constant-acceleration heuristic a_CAH, with
+/// a~ = min(a_lead, a_max) and v_l the speed of the car ahead:
 ///
 ///     a_CAH = v^2 a~ / (v_l^2 - 2 s a~)                     v_l (v - v_l) <= -2 s a~
 ///     a_CAH = a~ - max(v - v_l, 0)^2 / (2 s)                else

@@ -77,7 +77,9 @@ class Streams {
 /// the file.
 class Gnuplot {
  public:
-  /// @param script, words standard input and standard error
+  /// Starts gnuplot.
+  /// @param script the file from which gnuplot reads its standard input
+  /// @param words the file into which gnuplot writes its standard error
   Gnuplot(std::FILE* script, std::FILE* words) {
     std::array<int, 2> ends{};
     if (pipe2(ends.data(), O_CLOEXEC) != 0) Fail("gnuplot", std::strerror(errno));

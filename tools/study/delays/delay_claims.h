@@ -28,8 +28,9 @@ std::span<const DelayStatement> DelayStatements();
 /// noise.
 std::string SaysOf(const DelayStatement& statement, std::string_view noise);
 
-/// The claims of all DelayStatements() that do not hold by definition. The runs have bias fog, the
-/// usual noise, and `overrides` of paper.json. Thresholds and means come from RunDelays().
+/// The claims of DelayStatements(), without the claims that follow from the formulas
+/// (`is_by_definition`). The runs have bias fog, the usual noise, and `overrides` of paper.json.
+/// Thresholds and means come from RunDelays().
 /// @throws InputError, StudyStopped
 std::vector<Claim> RunDelayClaims(const StudyContext& context,
                                   const std::vector<std::string>& overrides);

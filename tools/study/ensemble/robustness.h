@@ -102,10 +102,12 @@ std::string SetsText(std::span<const int> numbers, std::size_t sets);
 /// author states, and then ExaminedPart::why. For side claims the verb is "hold".
 std::string SentenceOf(const ExaminedFinding& finding, Part part, std::size_t sets);
 
-/// The claim that the verdicts on a part of a finding are those that the author states. The claim
-/// has the difference and the sign of the least certain comparison. This is the comparison with the
-/// largest p-value of all that are not undecided. If any outcome in the runs differs from the
-/// author's, the claim has a hindrance. The hindrance names claim, set and outcome.
+/// Makes a claim about one part of a finding. The claim says: the verdicts that the runs give on
+/// this part are the verdicts that the author states. The claim has the difference and the sign of
+/// the least certain comparison. Comparisons with the outcome kUndecided are left out; of the
+/// others, the comparison with the largest p-value is the least certain one. If any outcome in the
+/// runs differs from the author's, the claim has a hindrance. The hindrance names claim, set and
+/// outcome.
 /// @param claims the claims of this part of the finding, in their order
 /// @param judged the outcomes of these claims
 Claim ClaimOnPart(const ExaminedFinding& finding, Part part, std::span<const ClaimInSets> claims,

@@ -70,7 +70,8 @@ void LogIndex::Take(const log::Event& event) {
     is_signed_ = runtime::LooksSigned(event.data) &&
                  runtime::Decode(runtime::WithoutSignature(event.data), ignored);
   }
-  // The recorder writes channels in the order of the table, so the search begins at the next one.
+  // The recorder writes the channels of a step in the order of the table. The next message is
+  // probably of the channel after the last found channel, so the search begins at this channel.
   for (std::size_t i = 0; i < log::kStepChannels; ++i) {
     const std::size_t row = (guess_ + i) % log::kStepChannels;
     if (log::kStepNames[row] != event.channel) continue;
