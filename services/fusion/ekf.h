@@ -2,6 +2,9 @@
 // time. line_of_sight.h has the model of a sensor; fusion.h decides which measurements are used.
 #pragma once
 
+#include <array>
+#include <cstddef>
+
 #include <Eigen/Core>
 
 namespace fogline::fusion {
@@ -45,21 +48,44 @@ class Ekf {
   void Correct(const Jacobian& jacobian, double innovation, double noise_variance);
 
   const State& state() const { return state_; }
-  const Covariance& covariance() const { return covariance_; }
+  const Covariance& covariance() const { return steps_[step_].updates[now_].covariance; }
 
  private:
+  /// What a prediction or a correction makes of the covariance. The gain is that of a correction,
+  /// and depends on the covariance, too.
+  struct Update {
+    Jacobian jacobian = Jacobian::Zero();
+    double noise_variance = 0;
+    State gain = State::Zero();  // K
+    Covariance covariance = Covariance::Zero();
+  };
+  /// The updates of one step: the prediction, and one for each value.
+  struct StepUpdates {
+    bool predicted = false;  // whether the first update is a prediction ...
+    Covariance from;         // ... from this covariance
+    std::size_t known = 1;   // so many updates follow one from another
+    std::array<Update, 4> updates;
+  };
+
   // Correct() for a value that depends on one state alone, with the derivative `slope`.
   template <int kState>
-  void CorrectBy(double slope, double innovation, double noise_variance);
+  static void CorrectBy(double slope, const Covariance& before, Update& update);
   // Correct() for any Jacobian.
-  void CorrectByBoth(const Jacobian& jacobian, double innovation, double noise_variance);
-  void SetCovariance(const Covariance& covariance);
+  static void CorrectByBoth(const Covariance& before, Update& update);
+  /// The kept step that begins with this covariance; null if there is none.
+  const StepUpdates* StepFrom(const Covariance& covariance) const;
+  /// The update for a value with this Jacobian and noise.
+  const Update& NextUpdate(const Jacobian& jacobian, double noise_variance);
 
   double step_s_;                  // T
   Eigen::Vector3d input_;          // effect of the host's acceleration
   Eigen::Matrix3d process_noise_;  // Q
   State state_ = State::Zero();
-  Covariance covariance_ = Covariance::Zero();
+  // No measured value changes the covariance. With the same values in each step it converges to the
+  // last bit, or to a short cycle. So the updates of the last steps are kept, and are used again.
+  std::array<StepUpdates, 8> steps_;
+  std::size_t step_ = 0;  // this step ...
+  std::size_t now_ = 0;   // ... and its latest update
 };
 
 }  // namespace fogline::fusion

@@ -18,6 +18,10 @@ namespace fogline::fusion {
 class LineOfSight {
  public:
   LineOfSight(double distance_m, double lateral_offset_m) {
+    if (lateral_offset_m == 0) {  // gives the same values without a root and divisions
+      if (std::abs(distance_m) >= kTouching_m) range_m_ = distance_m;
+      return;
+    }
     const double range = std::copysign(
         std::sqrt(distance_m * distance_m + lateral_offset_m * lateral_offset_m), distance_m);
     if (std::abs(range) < kTouching_m) return;

@@ -1,6 +1,8 @@
 #include "services/fusion/ekf.h"
 
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -173,6 +175,41 @@ TEST(EkfPropertyTest, PredictionAndCorrectionLeaveOutOnlyZeros) {
       }
     }
   }
+}
+
+// The filter uses the updates of the covariance again if it has computed them before. Values that
+// are missing, that come in another order or with another noise must not get the update of another
+// value.
+TEST(EkfPropertyTest, UsesAnUpdateAgainOnlyWhereItIsTheSame) {
+  const Random random(10, Stream::kLidar);
+  const std::array<fusion::Ekf::Jacobian, 4> jacobians{{{1, 0}, {0, 1}, {0.9, 0.3}, {0.8, 0}}};
+  fusion::Ekf ekf(0.1, 1);
+  ekf.Start({30, 1, 0.1}, Eigen::Vector3d(2, 3, 4).asDiagonal());
+  int repeated = 0;
+  for (std::int64_t k = 0; k < 20'000; ++k) {
+    const Eigen::Matrix3d before = ekf.covariance();
+    // GIVEN a filter that has computed nothing before
+    fusion::Ekf fresh(0.1, 1);
+    fresh.Start(ekf.state(), before);
+    ekf.Predict(-0.3);
+    fresh.Predict(-0.3);
+    ASSERT_EQ(ekf.covariance(), fresh.covariance());
+    // WHEN both are corrected by the three usual values, or at times by others
+    const bool is_usual = random.Uniform2(k, 0)[0] < 0.99;
+    const int values = is_usual ? 3 : static_cast<int>(random.Uniform2(k, 1)[0] * 6);
+    for (int i = 0; i < values; ++i) {
+      const auto [a, b] = random.Uniform2(k, 2 + static_cast<std::uint32_t>(i));
+      const auto& jacobian = is_usual ? jacobians[i % 2] : jacobians[static_cast<int>(a * 4)];
+      const double noise_variance = is_usual || b < 0.5 ? 0.04 : 0.01;
+      ekf.Correct(jacobian, a - b, noise_variance);
+      fresh.Correct(jacobian, a - b, noise_variance);
+      // THEN both have the same estimate, to the last bit
+      ASSERT_EQ(ekf.covariance(), fresh.covariance()) << "step " << k << ", value " << i;
+      ASSERT_EQ(ekf.state(), fresh.state()) << "step " << k << ", value " << i;
+    }
+    if (ekf.covariance() == before) ++repeated;
+  }
+  EXPECT_GT(repeated, 1000) << "the covariance never repeats, so the test shows nothing";
 }
 
 TEST(LineOfSightPropertyTest, JacobiansAreTheSlopes) {
