@@ -50,6 +50,9 @@ class Random {
   Random(std::int64_t seed, Stream stream)
       : seed_(static_cast<std::uint64_t>(seed)), stream_(static_cast<std::uint32_t>(stream)) {}
 
+  /// Whether both have the same numbers.
+  bool operator==(const Random&) const = default;
+
   /// Two independent numbers, uniform in (0, 1), of draw `index` in step `step`.
   std::array<double, 2> Uniform2(std::int64_t step, std::uint32_t index) const {
     const auto s = static_cast<std::uint64_t>(step);

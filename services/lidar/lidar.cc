@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "services/visibility.h"
 
@@ -19,6 +20,7 @@ Lidar::Lidar(const Scenario& scenario)
     : lidar_(scenario.lidar),
       fog_bias_m_(HasBias(scenario.fog.model) ? scenario.fog.bias_m : 0.0),
       random_(scenario.seed, Stream::kLidar),
+      noise_(random_, kNoiseDraw, scenario.steps),
       beam_random_(scenario.seed, Stream::kLidarBeam) {
   if (!HasVisibility(scenario.fog.model)) return;
   model_.emplace(lidar_.beam, ExtinctionOf(scenario.fog.clear_visibility_m),
@@ -28,6 +30,12 @@ Lidar::Lidar(const Scenario& scenario)
   } else {
     echoes_.reserve(static_cast<std::size_t>(lidar_.beam.beams));
   }
+}
+
+void Lidar::Restart(const Scenario& scenario) {
+  Lidar other(scenario);
+  other.noise_.Keep(std::move(noise_));
+  *this = std::move(other);
 }
 
 const lidar_t& Lidar::Step(const truth_t& truth) {
@@ -42,7 +50,7 @@ const lidar_t& Lidar::Step(const truth_t& truth) {
                                             : PlainEcho(truth, target_m);
   if (!echo) return output_;
 
-  const double noise = random_.Normal2(truth.header.step, kNoiseDraw)[0];
+  const double noise = noise_.At(truth.header.step)[0];
   output_.valid = true;
   output_.range_m = std::max(0.0, echo->range_m + lidar_.bias_m + echo->range_std_m * noise);
   output_.range_std_m = echo->range_std_m;

@@ -14,6 +14,7 @@
 #include "scenario/sections/scenario.h"
 #include "services/lidar/echo_model.h"
 #include "services/lidar/fog_modes.h"
+#include "services/normal_draws.h"
 
 namespace fogline::lidar {
 
@@ -44,6 +45,10 @@ class Lidar {
   /// @throw InputError if the shares of fog model modes add up to more than 1
   explicit Lidar(const Scenario& scenario);
 
+  /// Resets the object to the state of a new Lidar(scenario). Restart() is cheaper than a new
+  /// object if the seed is the same.
+  void Restart(const Scenario& scenario);
+
   /// The measurement in the step of `truth`. The measurement depends only on scenario and truth,
   /// not on earlier steps.
   const lidar_t& Step(const truth_t& truth);
@@ -73,6 +78,7 @@ class Lidar {
   LidarSection lidar_;
   double fog_bias_m_;  // bias at level 1, or in a biased step; 0 for fog models none and beam
   Random random_;
+  NormalDraws noise_;
   Random beam_random_;
   std::optional<EchoModel> model_;  // for the fog models beam and modes
   std::optional<FogModes> modes_;   // for fog model modes

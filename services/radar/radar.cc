@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "services/radar/attenuation.h"
 
@@ -17,11 +18,18 @@ constexpr Polarization kPolarization = Polarization::kHorizontal;
 Radar::Radar(const Scenario& scenario)
     : radar_(scenario.radar),
       random_(scenario.seed, Stream::kRadar),
+      noise_(random_, kNoiseDraw, scenario.steps),
       fog_attenuates_(HasVisibility(scenario.fog.model)),
       fog_coefficient_(FogCoefficient(radar_.frequency_ghz, radar_.temperature_c)),
       rain_dbpkm_(RainAttenuation_dbpkm(scenario.fog.rain_mmph,
                                         RainCoefficientsOf(radar_.frequency_ghz, kPolarization))),
       rainy_max_range_m_(MaxRange_m(radar_.max_range_m, rain_dbpkm_)) {}
+
+void Radar::Restart(const Scenario& scenario) {
+  Radar other(scenario);
+  other.noise_.Keep(std::move(noise_));
+  *this = std::move(other);
+}
 
 const radar_t& Radar::Step(const truth_t& truth) {
   output_ = {};
@@ -33,7 +41,7 @@ const radar_t& Radar::Step(const truth_t& truth) {
 
   const double closing_share = r > 0.0 ? x / r : 1.0;  // cosine of the angle to the lane
   const double rate_mps = closing_share * (truth.preceding_speed_mps - truth.host_speed_mps);
-  const auto [range_noise, rate_noise] = random_.Normal2(truth.header.step, kNoiseDraw);
+  const auto [range_noise, rate_noise] = noise_.At(truth.header.step);
   output_.valid = true;
   output_.range_m = std::max(0.0, r + radar_.bias_m + radar_.range_std_m * range_noise);
   output_.range_rate_mps = rate_mps + radar_.range_rate_std_mps * rate_noise;

@@ -8,6 +8,7 @@
 #include "fogline/radar_t.hpp"
 #include "fogline/truth_t.hpp"
 #include "scenario/sections/scenario.h"
+#include "services/normal_draws.h"
 
 namespace fogline::radar {
 
@@ -25,6 +26,10 @@ class Radar {
 
   explicit Radar(const Scenario& scenario);
 
+  /// Resets the object to the state of a new Radar(scenario). Restart() is cheaper than a new
+  /// object if the seed is the same.
+  void Restart(const Scenario& scenario);
+
   /// The measurement in the step of `truth`. The measurement depends only on scenario and truth,
   /// not on earlier steps.
   const radar_t& Step(const truth_t& truth);
@@ -35,6 +40,7 @@ class Radar {
 
   RadarSection radar_;
   Random random_;
+  NormalDraws noise_;
   bool fog_attenuates_;
   double fog_coefficient_;  // K_l, (dB/km) / (g/m3)
   double rain_dbpkm_;

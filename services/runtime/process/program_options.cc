@@ -53,7 +53,8 @@ std::string OptionMeant(const CLI::App& command, const std::string& mistyped) {
 }
 
 std::string WhatIsWrong(const CLI::ParseError& error) {
-  // The texts of CLI11 begin with the name of the option, but for the prefix.
+  // After the prefix, the texts of CLI11 begin with the name of the option. The name of a flag
+  // lacks its dashes.
   static const std::string kNoNumber = "Could not convert: ";
   static const std::string kNoFlag = " was given a disallowed flag override";
   static const std::string kNoValue = " required ";

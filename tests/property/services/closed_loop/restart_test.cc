@@ -31,7 +31,7 @@ void ChangeTraffic(Draw& draw, Scenario& scenario) {
 /// Changes some parameters of a scenario at random, such as those that differ between the runs of a
 /// sweep.
 void Change(Draw& draw, Scenario& scenario) {
-  scenario.seed = draw.Integer(0, 1000);
+  if (draw.Chance(0.5)) scenario.seed = draw.Integer(0, 1000);
   scenario.steps = draw.Integer(1, 300);
   scenario.fog.model = static_cast<FogModel>(draw.Integer(0, 2));
   scenario.arbitrator.policy = static_cast<Policy>(
