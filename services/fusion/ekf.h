@@ -61,9 +61,9 @@ class Ekf {
   };
   /// The updates of one step: the prediction, and one for each value.
   struct StepUpdates {
-    bool predicted = false;  // whether the first update is a prediction ...
-    Covariance from;         // ... from this covariance
-    std::size_t known = 1;   // so many updates follow one from another
+    bool predicted = false;                // whether the first update is a prediction
+    Covariance from = Covariance::Zero();  // the covariance before this prediction
+    std::size_t known = 1;  // number of updates of which each begins with the result of the last
     std::array<Update, 4> updates;
   };
 
@@ -72,7 +72,7 @@ class Ekf {
   static void CorrectBy(double slope, const Covariance& before, Update& update);
   // Correct() for any Jacobian.
   static void CorrectByBoth(const Covariance& before, Update& update);
-  /// The kept step that begins with this covariance; null if there is none.
+  /// The kept step whose prediction begins with this covariance. Null if no kept step does so.
   const StepUpdates* StepFrom(const Covariance& covariance) const;
   /// The update for a value with this Jacobian and noise.
   const Update& NextUpdate(const Jacobian& jacobian, double noise_variance);
@@ -84,8 +84,8 @@ class Ekf {
   // No measured value changes the covariance. With the same values in each step it converges to the
   // last bit, or to a short cycle. So the updates of the last steps are kept, and are used again.
   std::array<StepUpdates, 8> steps_;
-  std::size_t step_ = 0;  // this step ...
-  std::size_t now_ = 0;   // ... and its latest update
+  std::size_t step_ = 0;  // place of the present step in steps_
+  std::size_t now_ = 0;   // place of the latest update in the present step
 };
 
 }  // namespace fogline::fusion

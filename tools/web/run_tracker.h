@@ -45,7 +45,7 @@ class RunTracker {
   const std::vector<RunEvent>& events() const { return events_.events(); }
   /// Number of later events of the run, which events() does not have (RunEvents::kMost).
   std::size_t events_left_out() const { return events_.left_out(); }
-  /// The events since the last call. The list begins anew with each new run, and when a run is
+  /// The events since the last call. The list begins again with each new run, and when a run is
   /// played again. When the scenario of a run is complete, all events of this run come once more.
   std::vector<RunEvent> TakeEvents();
 
