@@ -8,6 +8,9 @@ export const SIDES = {
   unknown: {words: "It is not known who drives", short: "unknown"},
 };
 
+// Least authority with which the human counts as the driver, as in services/host_modes.h.
+const MAIN_AUTHORITY = 0.5;
+
 const MODES = [
   {name: "AUTOMATION", side: "automation", words: "The automation drives"},
   {name: "HUMAN", side: "human", words: "The human drives"},
@@ -27,20 +30,20 @@ const MODES = [
    words: "Minimal risk manoeuvre: the car stands, locked"},
   {name: "MRM_FAILED", side: "risk", stops: true,
    words: "Minimal risk manoeuvre: the brake has no effect"},
-  {name: "COLLISION_WARNING", side: null, hides: true, words: "Collision warning"},
+  {name: "COLLISION_WARNING", side: null, words: "Collision warning"},
   {name: "EMERGENCY_BRAKING", side: "risk", hides: true, words: "Emergency braking"},
 ];
 
 /**
  * The description {name, side, words, asks, urgent, stops, hides} of a mode. In a collision warning
- * the same side drives as before. `stops`: the mode is one of the stages of a minimal risk
- * manoeuvre. `hides`: the mode does not say whether there is a request or a manoeuvre.
+ * the same side drives as before, and no request is open. `stops`: the mode is one of the stages of
+ * a minimal risk manoeuvre. `hides`: the mode does not say whether there is a request.
  */
 export function modeOf(mode, lambda_human = 0) {
   const known = MODES[mode];
   if (!known) return {name: "UNKNOWN", side: "unknown", words: SIDES.unknown.words};
   if (known.side) return known;
-  const side = lambda_human > 0.5 ? "human" : "automation";
+  const side = lambda_human >= MAIN_AUTHORITY ? "human" : "automation";
   return {...known, side, words: `Collision warning. ${SIDES[side].words}`};
 }
 
@@ -130,16 +133,22 @@ export function requestSpans(modes, from, to, end) {
 
 /**
  * The manoeuvre at a time: {first, before}; null if there is no manoeuvre. `first` describes its
- * first mode. `before` describes the last mode before it without `hides`; null if this mode is not
- * known. `times` and `modes` as in requestAt().
+ * first mode. `before` describes the last mode before it that says which side drove; null if this
+ * mode is not known, or if it asks and a collision warning has followed. `times` and `modes` as in
+ * requestAt().
  */
 export function manoeuvreAt(times, modes, time) {
   let place = upTo(times, time);
   if (place < 0 || !modeOf(modes[place]).stops) return null;
   while (place > 0 && modeOf(modes[place - 1]).stops) --place;
   const first = modeOf(modes[place]);
-  do --place; while (place >= 0 && modeOf(modes[place]).hides);
-  return {first, before: place < 0 ? null : modeOf(modes[place])};
+  let warned = false;
+  for (--place; place >= 0; --place) {
+    const before = modeOf(modes[place]);
+    if (before.name === "COLLISION_WARNING") warned = true;
+    else if (!before.hides) return {first, before: warned && before.asks ? null : before};
+  }
+  return {first, before: null};
 }
 
 /** Index of the last value that is at most `x`; -1 if there is none. `values` ascend. */

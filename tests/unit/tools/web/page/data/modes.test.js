@@ -15,6 +15,8 @@ test("each mode of HOST_COMMAND has its name here", () => {
 test("a collision warning leaves the side that drives", () => {
   assert.equal(modeOf(11, 0).side, "automation");
   assert.equal(modeOf(11, 1).side, "human");
+  assert.equal(modeOf(11, 0.5).side, "human", "half of the authority is enough");
+  assert.equal(modeOf(11, 0.49).side, "automation");
 });
 
 test("spans join equal values and end where the next begins", () => {
@@ -59,6 +61,7 @@ test("a request counts down from its first step, through all modes that ask", ()
   assert.equal(requestAt([0, 1, 2, 3], [0, 3, 12, 3], 3.5, 10).left_s, 7.5, "emergency braking between");
   assert.equal(requestAt([0, 1, 2], [0, 3, 12], 2.5, 10).since_s, 1);
   assert.equal(requestAt([0, 1], [0, 12], 2, 10), null);
+  assert.equal(requestAt([0, 1, 2], [0, 3, 11], 2.5, 10), null, "a collision warning says that it has ended");
 });
 
 test("a request lasts through all modes that ask", () => {
@@ -67,6 +70,8 @@ test("a request lasts through all modes that ask", () => {
                    [{from: 1, to: 4, value: 1}, {from: 6, to: 8, value: 1}]);
   const braking = seriesOf([[0, 0], [1, 3], [2, 12], [3, 4], [4, 12], [5, 0]]);
   assert.deepEqual(requestSpans(braking, -Infinity, Infinity, 8), [{from: 1, to: 5, value: 1}]);
+  const warning = seriesOf([[0, 3], [2, 11], [3, 1]]);
+  assert.deepEqual(requestSpans(warning, -Infinity, Infinity, 8), [{from: 0, to: 2, value: 1}]);
 });
 
 test("a manoeuvre is known by its first mode and the mode before it", () => {
@@ -83,6 +88,7 @@ test("a manoeuvre is known by its first mode and the mode before it", () => {
   assert.deepEqual(names(times, [0, 3, 12, 8, 9], 4), ["MRM_EMERGENCY", "REQUEST"]);
   assert.deepEqual(names(times, [0, 1, 11, 12, 7], 4), ["MRM_COMFORT", "HUMAN"]);
   assert.deepEqual(names([1, 2], [12, 7], 2), ["MRM_COMFORT", null]);
+  assert.deepEqual(names([1, 2, 3], [3, 11, 7], 3), ["MRM_COMFORT", null], "the request had ended");
   assert.equal(names([], [], 6), null);
 });
 
