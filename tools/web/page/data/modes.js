@@ -8,8 +8,11 @@ export const SIDES = {
   unknown: {words: "It is not known who drives", short: "unknown"},
 };
 
-// Least authority with which the human counts as the driver, as in services/host_modes.h.
+// Least authority with which the human counts as the driver (services/host_modes.h).
 const MAIN_AUTHORITY = 0.5;
+
+/** Whether the human has half of the authority or more. */
+export const humanDrives = (lambda_human) => lambda_human >= MAIN_AUTHORITY;
 
 const MODES = [
   {name: "AUTOMATION", side: "automation", words: "The automation drives"},
@@ -43,7 +46,7 @@ export function modeOf(mode, lambda_human = 0) {
   const known = MODES[mode];
   if (!known) return {name: "UNKNOWN", side: "unknown", words: SIDES.unknown.words};
   if (known.side) return known;
-  const side = lambda_human >= MAIN_AUTHORITY ? "human" : "automation";
+  const side = humanDrives(lambda_human) ? "human" : "automation";
   return {...known, side, words: `Collision warning. ${SIDES[side].words}`};
 }
 
@@ -123,11 +126,15 @@ export function requestAt(times, modes, time, lead_s) {
  */
 export function requestSpans(modes, from, to, end) {
   const {times, values} = modes.within(from, to);
-  const asks = [];
-  for (const mode of values) {
+  // Emergency braking may have begun before `from`. The mode before it says whether a request is open.
+  let before = times.length > 0 ? upTo(modes.times, times[0]) : -1;
+  while (before >= 0 && modeOf(modes.values[before]).hides) --before;
+  let open = Boolean(before >= 0 && modeOf(modes.values[before]).asks);
+  const asks = values.map((mode) => {
     const {asks: isOpen = false, hides} = modeOf(mode);
-    asks.push(hides ? asks.at(-1) ?? 0 : Number(isOpen));
-  }
+    open = hides ? open : isOpen;
+    return Number(open);
+  });
   return spansOf(times, asks, end).filter(({value}) => value);
 }
 

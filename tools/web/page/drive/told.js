@@ -2,7 +2,7 @@
 // texts do not mention sensors, thresholds or conflict. This file does not use the document.
 
 import {stands} from "../data/cars.js";
-import {modeOf} from "../data/modes.js";
+import {humanDrives, modeOf} from "../data/modes.js";
 
 const TOLD = {
   AUTOMATION: "The automation drives",
@@ -61,7 +61,7 @@ export function told(command, truth = null, connection = "open") {
     : name === "MINIMAL_RISK" && stands(truth) ? TOLD.MRM_DONE
     : TOLD[name] ?? "It is not known who drives";
   return {side, words, asks, urgent, answered: waits && !asks, isFinal: FINAL.includes(name),
-          mayEnd: MAY_END.includes(name), hasAuthority: command.lambda_human > 0.5};
+          mayEnd: MAY_END.includes(name), hasAuthority: humanDrives(command.lambda_human)};
 }
 
 /**

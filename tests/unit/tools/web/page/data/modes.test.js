@@ -70,6 +70,8 @@ test("a request lasts through all modes that ask", () => {
                    [{from: 1, to: 4, value: 1}, {from: 6, to: 8, value: 1}]);
   const braking = seriesOf([[0, 0], [1, 3], [2, 12], [3, 4], [4, 12], [5, 0]]);
   assert.deepEqual(requestSpans(braking, -Infinity, Infinity, 8), [{from: 1, to: 5, value: 1}]);
+  const long = seriesOf([[0, 0], [10, 3], [12, 12], [13, 12], [15, 3], [18, 1]]);
+  assert.deepEqual(requestSpans(long, 13, 20, 20), [{from: 13, to: 18, value: 1}], "of a part of the run");
   const warning = seriesOf([[0, 3], [2, 11], [3, 1]]);
   assert.deepEqual(requestSpans(warning, -Infinity, Infinity, 8), [{from: 0, to: 2, value: 1}]);
 });
