@@ -133,6 +133,7 @@ export class Person {
     const pad = [...pads].find((one) => one?.connected && one.id === this.device.id);
     if (!pad) {
       this.forgetPad();
+      this.drop();
       return;
     }
     if (!this.pad) this.firstAxes = [...pad.axes];

@@ -201,6 +201,15 @@ test("an unplugged device leaves the pedals, and comes back when it is plugged i
   }
 });
 
+test("a button that is held while the device is unplugged counts as released", () => {
+  const person = atWheel();
+  person.key("t", true, 0);
+  person.look([], 100);
+  person.key("t", false, 200);
+  person.look([pad()], 300);
+  assert.deepEqual(person.input(5000).buttons, []);
+});
+
 test("a device without a calibration, or with too few axes, does not drive", () => {
   const person = ready();
   person.choose(deviceOf({id: ID}), null);
