@@ -67,6 +67,8 @@ export class Setup {
   fill(there) {
     const {id} = this.person.device;
     const ids = new Set([...there.map((pad) => pad.id), ...(id === "" ? [] : [id])]);
+    const has = (pads) => pads.some((pad) => pad.id === id);
+    const hasCome = has(there) && !has(this.pads ?? []);
     this.pads = there;
     this.list.replaceChildren(
       make("option", {value: ""}, KEYBOARD.name),
@@ -79,6 +81,8 @@ export class Setup {
       const before = this.remembered();
       if (before !== "") this.choose((there.find((pad) => pad.id === before) ?? there[0]).id, false);
     }
+    const isNew = Object.values(this.edited).every((one) => one === null);
+    if (hasCome && isNew) this.choose(id, false);  // reads the calibration, which needs the device
     this.show();
   }
 
