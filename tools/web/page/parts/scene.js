@@ -15,6 +15,7 @@ export class Scene {
   constructor() {
     this.road = new Road(byId("road"));
     this.view = null;
+    this.frame = null;  // the frame that was drawn last
     this.wordsAt = 0;
     this.pictures = 0;  // number of drawn pictures of the road
     this.isLoading = false;
@@ -43,7 +44,10 @@ export class Scene {
   draw(moment, {ratio, every}) {
     const {frame, ahead_s, step, side} = moment;
     byId("no-road").hidden = Boolean(frame?.TRUTH);
-    if (!frame?.TRUTH) return;
+    if (!frame?.TRUTH) {
+      if (this.frame !== null) this.forget();
+      return;
+    }
     const {clientWidth, clientHeight} = this.road.canvas;
     const view = byId("driver-view");
     const drawn = `${step} ${ahead_s} ${side} ${clientWidth} ${clientHeight} ${view.clientWidth} ` +
@@ -57,6 +61,18 @@ export class Scene {
     ++this.pictures;
     this.sayNumbers(frame);
     this.describe(moment);
+  }
+
+  /** Removes what was said about the run before. */
+  forget() {
+    this.frame = null;
+    this.drawn = "";
+    for (const id of ["speed-now", "gap-now", "sight-now"]) say(byId(id), "–");
+    for (const id of ["speed-kmh", "gap-time", "sight-fog"]) say(byId(id), "");
+    for (const id of ["speed-now", "gap-now"]) byId(id).removeAttribute("data-value");
+    setAttribute(byId("road"), "aria-label", "The road from above");
+    setAttribute(byId("driver-view"), "aria-label", "The driver’s view");
+    byId("collision").hidden = true;
   }
 
   sayNumbers({TRUTH: truth}) {
