@@ -25,8 +25,9 @@ function scaleOf(item, index) {
   const steps = Math.round((item.max - item.min) / item.step);
   const marks = [];
   for (let i = 0; i <= steps; ++i) {
-    // Rounded to the precision of the step, so that 0.1 + 0.2 is 0.3.
-    const value = String(Number((item.min + i * item.step).toPrecision(12)));
+    // Rounded to the precision of the step, so that 0.1 + 0.2 is 0.3. The last mark is exact, because a
+    // step such as 0.1428571429 divides the scale only nearly.
+    const value = String(i === steps ? item.max : Number((item.min + i * item.step).toPrecision(12)));
     marks.push(make("label", {},
       make("input", {type: "radio", name: `item-${index}`, value}), value));
   }
