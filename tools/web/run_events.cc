@@ -31,8 +31,11 @@ void RunEvents::Note(const Message& message, std::int64_t earliest, std::string_
   }
   text += log::InOneOfTheSteps(earliest, message.step);
   const double time_s = static_cast<double>(message.utime) / kMicrosPerSecond;
-  events_.push_back(
-      {.step = message.step, .time_s = time_s, .kind = kind, .text = std::move(text)});
+  events_.push_back({.number = events_.size(),
+                     .step = message.step,
+                     .time_s = time_s,
+                     .kind = kind,
+                     .text = std::move(text)});
 }
 
 void RunEvents::Add(const truth_t& truth) {

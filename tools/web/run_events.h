@@ -17,6 +17,7 @@
 namespace fogline::web {
 
 struct RunEvent {
+  std::size_t number = 0;  // place among the events of the run, from 0
   std::int64_t step = 0;
   double time_s = 0;
   std::string_view

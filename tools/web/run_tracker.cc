@@ -11,10 +11,6 @@
 namespace fogline::web {
 namespace {
 
-// If a step is this much older than the newest one, the run is being played again. In lockstep no
-// role is so far behind.
-constexpr std::int64_t kPlayedAgain = 1000;
-
 /// The section of a scenario that says whether a person drives; its defaults if the scenario is not
 /// valid.
 PersonSection PersonOf(const std::string& scenario_text) {
@@ -31,8 +27,13 @@ void RunTracker::Hear(std::size_t channel, runtime::Bytes bytes, TimePoint now) 
   if (channel >= kNumChannels || bytes.size() < runtime::kHeaderEnd) return;
   if (channel == IndexOf<run_t>()) return HearRun(bytes, now);
   if (!run_id_ || runtime::ReadInt64(bytes, runtime::kRunIdOffset) != *run_id_) return;
-  heard_ = now;
+  NoteLife(now);
   HearStep(channel, bytes);
+}
+
+void RunTracker::NoteLife(TimePoint now) {
+  if (now - heard_ > kSilent) may_begin_again_ = true;
+  heard_ = now;
 }
 
 void RunTracker::HearRun(runtime::Bytes bytes, TimePoint now) {
@@ -44,10 +45,11 @@ void RunTracker::HearRun(runtime::Bytes bytes, TimePoint now) {
     if (!free || run.phase == run_t::STOP) return;
     Begin(run);
   }
-  heard_ = now;
+  NoteLife(now);
   realtime_ = run.realtime != 0;
   events_.set_may_lack_commands(realtime_);
   stopped_ = run.phase == run_t::STOP;
+  may_begin_again_ = may_begin_again_ || stopped_;
   const bool known = parts_.Complete();
   if (!parts_.Add(run) || known || !parts_.Complete() || !parts_.HashHolds()) return;
   Show({.run_id = run.header.run_id,
@@ -92,6 +94,7 @@ void RunTracker::Begin(const run_t& run) {
   person_ = {};
   ForgetEvents();
   newest_ = -1;
+  may_begin_again_ = false;
   offered_ = false;
 }
 
@@ -99,11 +102,14 @@ void RunTracker::HearStep(std::size_t channel, runtime::Bytes bytes) {
   if (kChannels[channel].pace != Pace::kStep) return;
   const std::int64_t step = runtime::ReadInt64(bytes, runtime::kStepOffset);
   if (step < 0 || step > watch::StepSequence::kMaxStep) return;
-  if (step < newest_ - kPlayedAgain || (step == 0 && newest_ > 0)) {
+  if (step < newest_ && may_begin_again_) {
     ForgetEvents();
-    newest_ = step;
+    newest_ = -1;
   }
-  newest_ = std::max(newest_, step);
+  if (step > newest_) {
+    newest_ = step;
+    may_begin_again_ = false;
+  }
   if (channel == IndexOf<truth_t>() && runtime::Decode(bytes, truth_)) events_.Add(truth_);
   if (channel == IndexOf<driver_command_t>()) offered_ = runtime::Decode(bytes, driver_);
   if (channel == IndexOf<arbitration_t>() && runtime::Decode(bytes, command_)) {

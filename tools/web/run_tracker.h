@@ -51,6 +51,8 @@ class RunTracker {
 
  private:
   void HearRun(runtime::Bytes bytes, TimePoint now);
+  /// Notes that a message of the followed run has come.
+  void NoteLife(TimePoint now);
   void HearStep(std::size_t channel, runtime::Bytes bytes);
   void Begin(const run_t& run);
   void Show(RunFacts run);
@@ -60,6 +62,10 @@ class RunTracker {
   std::optional<std::int64_t> only_;
   TimePoint heard_{};
   bool stopped_ = false;
+  // Whether an old step means that the run is being played again. This is the case after the end of
+  // the run, and after a silence of all its processes. Otherwise an old step is a repair: a role
+  // that was started again asks for all steps from the first one on.
+  bool may_begin_again_ = false;
   bool realtime_ = false;  // whether the followed run is in real time
   runtime::ScenarioParts parts_;
   std::optional<RunFacts> shown_;

@@ -92,7 +92,7 @@ std::string LogText(const std::filesystem::path& file, const LogIndex& index) {
 }
 
 std::string EventText(const RunEvent& event) {
-  Json json{{"op", "event"}};
+  Json json{{"op", "event"}, {"number", event.number}};
   json.update(EventJson(event));
   return Printed(json);
 }

@@ -139,8 +139,9 @@ class Page {
   }
 
   addEvent(event) {
-    const again = event.step < (this.events.at(-1)?.step ?? 0);  // the same log is played again
-    this.events = [...(again ? [] : this.events), event].slice(-MOST_EVENTS);
+    const events = event.number === 0 ? [] : this.events;  // with 0 the list begins again
+    const place = events.findLastIndex(({step}) => step <= event.step) + 1;
+    this.events = events.toSpliced(place, 0, event).slice(-MOST_EVENTS);
   }
 
   begin(hello) {

@@ -141,6 +141,7 @@ TEST(RunTrackerTest, NamesAPersonInTheEventsOfARunThatAPersonDrives) {
   };
   person.AllParts(kBegin);
   EXPECT_EQ(stop(person, 5), "manoeuvre begins: inputs or person gone");
+  person.Part(0, kBegin, run_t::STOP);
   person.Truth(0, false, kBegin);  // it is played again
   EXPECT_EQ(stop(person, 5), "manoeuvre begins: inputs or person gone");
   person.Part(0, kBegin, run_t::STOP);
@@ -162,9 +163,35 @@ TEST(RunTrackerTest, BeginsAgainWhenARunIsPlayedAgain) {
   run.Truth(0, false, kBegin);
   run.Truth(40, true, kBegin);
   EXPECT_EQ(tracker.events().size(), 1U);
+  run.Part(0, kBegin, run_t::STOP);
   run.Truth(0, false, kBegin);
   EXPECT_TRUE(tracker.events().empty());
   run.Truth(40, true, kBegin);
+  EXPECT_EQ(tracker.events().size(), 1U);
+  // A log that was not played to its end is played again after a pause.
+  run.Truth(0, false, kBegin + 2 * RunTracker::kSilent);
+  EXPECT_TRUE(tracker.events().empty());
+}
+
+// A role that was started again asks for all steps from the first one on.
+TEST(RunTrackerTest, DoesNotTakeARepairForARunThatIsPlayedAgain) {
+  RunTracker tracker;
+  Speaker run(tracker, 5);
+  run.AllParts(kBegin);
+  run.Truth(0, false, kBegin);
+  run.Truth(40, true, kBegin);
+  run.Truth(2000, true, kBegin);
+  // The run stands still until the role has come, and its other processes say that they are alive.
+  TimePoint now = kBegin;
+  for (int i = 0; i < 20; ++i) {
+    now += milliseconds(200);
+    status_t status{};
+    status.header.run_id = 5;
+    run.Send(status, now);
+  }
+  run.Truth(0, false, now);
+  run.Truth(40, true, now);
+  run.Truth(2001, true, now);
   EXPECT_EQ(tracker.events().size(), 1U);
 }
 
@@ -178,6 +205,7 @@ TEST(RunTrackerTest, TellsEachEventOnceAndAllOfARunThatIsPlayedAgain) {
   EXPECT_EQ(tracker.TakeEvents().size(), 1U);
   EXPECT_EQ(tracker.TakeEvents().size(), 0U);
   // The run is played again, and its event is reported again.
+  run.Part(0, kBegin, run_t::STOP);
   run.Truth(0, false, kBegin);
   run.Truth(30, true, kBegin);
   const std::vector<RunEvent> again = tracker.TakeEvents();

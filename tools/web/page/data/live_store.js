@@ -9,7 +9,7 @@ import {Series} from "./series.js";
 const KEEP_S = 600;              // of simulated time
 const KEEP_BYTES = 96 * 2 ** 20;         // of all channels with a message in every step
 const KEEP_CONTROL_BYTES = 4 * 2 ** 20;  // of each other channel, and of each role's STATUS
-const AWAY_MS = 2000;            // the run has stopped if no step has come for this long
+const AWAY_MS = 2000;            // all processes of the run are silent if nothing has come for this long
 const TIDY_AFTER = 4096;         // messages between two removals of old messages
 
 /** Messages of one channel in the order of their steps. */
@@ -47,6 +47,7 @@ export class LiveStore {
     this.catalogue = catalogue;
     this.run = null;
     this.runId = null;
+    this.heard_ms = -Infinity;  // wall clock of the server at the newest message of the run
     this.clear();
   }
 
@@ -59,6 +60,7 @@ export class LiveStore {
     this.firstStep = 0;
     this.lastStep = -1;
     this.arrived_ms = 0;        // wall clock of the server at the newest step
+    this.wasSilent = false;     // whether all processes have been silent since the newest step
     this.taken_ms = 0;          // clock of the page at the newest step
     this.count = 0;
     this.seenStep_s = null;
@@ -84,6 +86,8 @@ export class LiveStore {
     if (!header) return;
     this.runId ??= header.run_id;  // the server has not yet named the run that it follows
     if (header.run_id !== this.runId) return;
+    if (arrived_ms - this.heard_ms > AWAY_MS) this.wasSilent = true;
+    this.heard_ms = arrived_ms;
     if (channel.name === "STATUS") this.addStatus(channel, header, bytes);
     else if (channel.isStepwise) this.keep(channel, header, arrived_ms, bytes);
     else this.keepControl(channel.name, channel, header, bytes);
@@ -130,7 +134,7 @@ export class LiveStore {
   }
 
   keep(channel, header, arrived_ms, bytes) {
-    if (this.beginsAgain(channel, header, arrived_ms)) this.clear();
+    if (this.beginsAgain(channel, header)) this.clear();
     const track = this.track(channel.name, channel);
     if (header.step <= track.lastStep) return;
     track.add(header, bytes);
@@ -138,6 +142,7 @@ export class LiveStore {
     if (header.step > this.lastStep) {
       this.lastStep = header.step;
       this.arrived_ms = arrived_ms;
+      this.wasSilent = false;
       this.taken_ms = performance.now();
     }
     if (header.step > 0) this.seenStep_s = header.time_s / header.step;
@@ -146,11 +151,11 @@ export class LiveStore {
   }
 
   /**
-   * Whether a log of the same run is played again. An old TRUTH then comes after a pause. A repair
-   * also brings old messages, but without a pause.
+   * Whether a log of the same run is played again. An old TRUTH then comes after a silence of the
+   * whole run. A repair also brings old messages, but the processes of the run send STATUS before it.
    */
-  beginsAgain({name}, {step}, arrived_ms) {
-    return name === "TRUTH" && step < this.lastStep && arrived_ms - this.arrived_ms > AWAY_MS;
+  beginsAgain({name}, {step}) {
+    return name === "TRUTH" && step < this.lastStep && this.wasSilent;
   }
 
   extend(source, channel, {time_s}, bytes) {
