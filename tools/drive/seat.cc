@@ -29,6 +29,7 @@ std::string_view TextOf(std::int8_t mode) {
     case arbitration_t::REQUEST_URGENT:
       return ">>> TAKE OVER NOW";
     case arbitration_t::RECOVERING:
+    case arbitration_t::HUMAN:
       return ">>> you drive";
     case arbitration_t::AUTOMATION:
       return ">>> the automation drives";
@@ -128,9 +129,8 @@ void Seat::Run(const std::string& url, std::int64_t run_id,
 }
 
 void Seat::Tell(std::int8_t mode) {
-  if (std::exchange(mode_, mode) == mode) return;
   const std::string_view text = TextOf(mode);
-  if (text.empty()) return;
+  if (text.empty() || std::exchange(told_, text) == text) return;
   if (mode != arbitration_t::AUTOMATION) Draw("\a");
   Notice(text);
 }

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <thread>
 
 #include "services/runtime/transport/traffic_options.h"
@@ -55,7 +56,7 @@ class Seat {
   void Tell(std::int8_t mode);
 
   std::unique_ptr<PedalSource> source_;
-  std::int8_t mode_ = 0;
+  std::string_view told_;  // the text that the person saw last
   std::atomic<bool> ends_ = false;
   std::thread thread_;
 };

@@ -23,7 +23,7 @@ using Words = std::vector<std::string>;
 
 class KeysInRealtimeTest : public testing::Test {
  protected:
-  Words Drive(int steps) const {
+  Words Drive(int steps, const Words& settings = AlwaysAsked()) const {
     Words command{Program("fogline"),
                   "drive",
                   kDriveScenario,
@@ -34,7 +34,7 @@ class KeysInRealtimeTest : public testing::Test {
                   url_,
                   "--set",
                   "/steps=" + std::to_string(steps)};
-    for (const std::string& setting : AlwaysAsked()) {
+    for (const std::string& setting : settings) {
       command.insert(command.end(), {"--set", setting});
     }
     return command;
@@ -73,6 +73,14 @@ TEST_F(KeysInRealtimeTest, DriveTheHostAndTheTerminalIsRestoredAtTheEnd) {
   EXPECT_EQ(inputs.front().device_kind, driver_input_t::KEYBOARD);
   EXPECT_THAT(Answered(), HasSubstr("acknowledgement by the person"));
   EXPECT_EQ(RunCommand({Program("fogline"), "replay", log_, "--role", "driver"}).code, 0);
+}
+
+TEST_F(KeysInRealtimeTest, APersonWhoIsNotAskedIsToldWhoDrives) {
+  InTerminal program(Drive(150, {"/person/drives=true", "/arbitrator/threshold=0",
+                                 "/arbitrator/take_over/mode=instant"}));
+  EXPECT_TRUE(program.WaitUntil([&] { return program.text().contains(">>> you drive"); }))
+      << program.text();
+  EXPECT_EQ(program.Wait(), 0) << program.text();
 }
 
 TEST_F(KeysInRealtimeTest, TheTerminalIsRestoredAfterCtrlC) {
