@@ -56,7 +56,8 @@ Examples:
   fogline experiment run scenario/experiment/lead_times.json --participant 1 --listen 192.168.1.5
   fogline experiment run scenario/experiment/thresholds.json --participant 3
   fogline experiment run scenario/experiment/thresholds.json --participant 3 --keys
-  fogline experiment run scenario/experiment/thresholds.json --participant 3 --no-page --speed 10
+  fogline experiment run scenario/experiment/thresholds.json --participant 3 --no-page --speed 10 \
+    --results rehearsal
   fogline experiment run scenario/experiment/thresholds.json --participant 3 --no-page < answers.txt)";
 
 struct RunTrialsArguments {
