@@ -27,6 +27,7 @@ void StepSequence::Add(std::int64_t step, TimePoint now) {
     return;
   }
   if (step > newest) {
+    awaited_ = -1;
     MoveTo(step);
     progressed_ = now;
     return;

@@ -85,6 +85,12 @@ TEST(StepSequenceTest, IgnoresOneForgedStepFarAhead) {
   EXPECT_EQ(sequence.counts().lost + sequence.counts().missing, 0);
 }
 
+TEST(StepSequenceTest, IgnoresTwoForgedStepsFarAheadWithAStepBetweenThem) {
+  watch::StepSequence sequence = Seen({0, 1, 5000, 2, 5001, 3});
+  EXPECT_EQ(sequence.counts().newest, 3);
+  EXPECT_EQ(sequence.counts().stray, 2);
+}
+
 TEST(StepSequenceTest, FollowsASequenceThatGoesOnFarAhead) {
   watch::StepSequence sequence = Seen({0, 1, 50'000, 50'001, 50'002});
   EXPECT_EQ(sequence.counts().newest, 50'002);
