@@ -40,6 +40,9 @@ class ConflictMeasure {
 struct Blame {
   double radar = 0;
   double lidar = 0;
+  /// Above 0 if the radar is more wrong than the LiDAR, below 0 if it is less wrong. If both blames
+  /// round to 1, a measure can still tell the two sensors apart.
+  double radar_excess = radar - lidar;
 
   friend bool operator==(const Blame&, const Blame&) = default;
 };

@@ -9,8 +9,8 @@
 
 namespace fogline::policies {
 
-/// Excludes the sensor with the larger blame if this blame is at least blame_threshold. The
-/// scenario chooses the measure of blame. If both blames are equal, no sensor is excluded. So at
+/// Excludes the sensor that is more wrong if its blame is at least blame_threshold. The scenario
+/// chooses the measure of blame. If both sensors are equally wrong, no sensor is excluded. So at
 /// least one sensor is always used.
 class Isolation {
  public:
@@ -19,9 +19,9 @@ class Isolation {
         threshold_(section.blame_threshold) {}
 
   SensorSelection Judge(const conflict::Evidence& evidence) {
-    const auto [radar, lidar] = blame_->Step(evidence);
-    return {.radar = radar < threshold_ || radar <= lidar,
-            .lidar = lidar < threshold_ || lidar <= radar};
+    const conflict::Blame blame = blame_->Step(evidence);
+    return {.radar = blame.radar < threshold_ || blame.radar_excess <= 0,
+            .lidar = blame.lidar < threshold_ || blame.radar_excess >= 0};
   }
 
  private:

@@ -75,7 +75,9 @@ Blame NisBlame::Step(const Evidence& evidence) {
   const double radar = std::abs(radar_.Step(evidence.radar, evidence.prediction, offset_m_));
   const double lidar = std::abs(lidar_.Step(evidence.lidar, evidence.prediction, 0));
   largest_square_ = std::max(radar, lidar) * std::max(radar, lidar);
-  return {std::erf(radar / std::numbers::sqrt2), std::erf(lidar / std::numbers::sqrt2)};
+  return {.radar = std::erf(radar / std::numbers::sqrt2),
+          .lidar = std::erf(lidar / std::numbers::sqrt2),
+          .radar_excess = radar - lidar};
 }
 
 void NisBlame::Reset() {

@@ -314,10 +314,13 @@ TEST(PoliciesTest, IsolateDropsNoSensorWithoutAWitnessAndNeverBoth) {
   conflict::Evidence alone = kLidarShort;
   alone.prediction = {};
   EXPECT_EQ(SelectSensors("isolate", {alone, {}}), kBoth);
-  conflict::Evidence both_off = kLidarShort;
-  both_off.radar.range_m = 80;
-  const policies::SensorSelection selection = SelectSensors("isolate", {both_off, {}});
-  EXPECT_EQ(selection, kBoth) << "both are so far off that their blame is 1";
+  ASSERT_EQ(Scenario{}.arbitrator.measure_offset_m, 0);
+  conflict::Evidence both_off{
+      .radar = {true, 60, 0.02}, .lidar = {true, 20, 0.02}, .prediction = {true, 40, 0.05}};
+  EXPECT_EQ(SelectSensors("isolate", {both_off, {}}), kBoth) << "both are equally wrong";
+  both_off.lidar.range_m = 15;
+  EXPECT_EQ(SelectSensors("isolate", {both_off, {}}), kRadarAlone)
+      << "the LiDAR is more wrong, although both blames round to 1";
 }
 
 TEST(PoliciesTest, IsolateTakesTheMeasureOfBlameThatTheScenarioNames) {
