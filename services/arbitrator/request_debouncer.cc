@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "common/whole_steps.h"
+#include "services/host_modes.h"
 
 namespace fogline::arbitrator {
 namespace {
@@ -28,6 +29,17 @@ RequestDebouncer::RequestDebouncer(const TransferSection& section, double step_s
       accept_automation_(std::log(section.sprt_beta / (1 - section.sprt_alpha))),
       dwell_steps_(StepsUntil(section.min_dwell_s, step_s)),
       steps_since_change_(dwell_steps_) {}
+
+double RequestDebouncer::Follow(double lambda_human) {
+  decided_human_ = HumanDrives(lambda_human);
+  evidence_ = 0;
+  ++steps_since_change_;
+  if (decided_human_ != wanted_human_) {
+    wanted_human_ = decided_human_;
+    steps_since_change_ = 0;
+  }
+  return lambda_human;
+}
 
 double RequestDebouncer::PutOff(const policies::EngagementRequest& request, double doc,
                                 bool recovered) {

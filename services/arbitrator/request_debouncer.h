@@ -37,14 +37,17 @@ class RequestDebouncer {
   /// decision.
   /// @param recovered whether the track has recovered; has an effect only with hand_back fusion
   double Step(const policies::EngagementRequest& request, double doc, bool recovered = true) {
-    if (request.firm) return request.lambda_human;
-    return plain_ ? request.lambda_human : PutOff(request, doc, recovered);
+    if (plain_) return request.lambda_human;
+    if (request.firm) return Follow(request.lambda_human);
+    return PutOff(request, doc, recovered);
   }
 
   /// With hysteresis sprt: L of the current test, or L of the last step if the DoC is a posterior.
   double evidence() const { return evidence_; }
 
  private:
+  /// Takes over the result of a firm request, which is a decision like any other.
+  double Follow(double lambda_human);
   double PutOff(const policies::EngagementRequest& request, double doc, bool recovered);
   bool HumanByHysteresis(const policies::EngagementRequest& request, double doc);
   double LowerThreshold(double threshold) const;

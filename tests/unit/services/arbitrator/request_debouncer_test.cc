@@ -42,6 +42,15 @@ TEST(RequestDebouncerTest, SprtWaitsForEnoughEvidenceInEitherDirection) {
   for (const double expected : {1.0, 1.0, 1.0, 0.0}) EXPECT_EQ(Step(debouncer, 0.1), expected);
 }
 
+TEST(RequestDebouncerTest, GoesOnFromAFirmRequest) {
+  arbitrator::RequestDebouncer debouncer({.min_dwell_s = 1}, 0.1);
+  EXPECT_EQ(Step(debouncer, 0.9), 1);
+  EXPECT_EQ(debouncer.Step({.lambda_human = 0, .firm = true}, 0.9), 0);
+  EXPECT_EQ(Step(debouncer, 0.1), 0) << "the human is not wanted any more";
+  for (int i = 0; i < 8; ++i) EXPECT_EQ(Step(debouncer, 0.9), 0) << "step " << i;
+  EXPECT_EQ(Step(debouncer, 0.9), 1) << "1 s after the firm request";
+}
+
 TEST(RequestDebouncerTest, SprtDecidesWithWaldsBounds) {
   arbitrator::RequestDebouncer eager(
       {.hysteresis = Hysteresis::kSprt, .sprt_alpha = 0.2, .sprt_beta = 0.01}, 0.1);
