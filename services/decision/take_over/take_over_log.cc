@@ -126,7 +126,13 @@ std::vector<TakeOverEntry> TakeOverLog::TakeEntries() {
 
 std::int8_t TakeOverLog::DecidedMode(const arbitration_t& command) const {
   if (hidden_ || !InEmergency(command.mode)) return command.mode;
-  if (last_ && asks_) return last_->mode;
+  if (last_ && asks_) {
+    if (command.mode == arbitration_t::EMERGENCY_BRAKING) return last_->mode;
+    // A collision warning replaces only AUTOMATION and HUMAN. HUMAN follows RECOVERING.
+    if (last_->mode == arbitration_t::AUTOMATION || HumanDrives(last_->mode)) {
+      return HumanDrives(last_->mode) ? arbitration_t::HUMAN : arbitration_t::AUTOMATION;
+    }
+  }
   return HumanDrives(command.lambda_human) ? arbitration_t::HUMAN : arbitration_t::AUTOMATION;
 }
 
@@ -177,7 +183,8 @@ void TakeOverLog::Change(const arbitration_t& command, std::int8_t from, bool tr
   const bool share_changes = has_share != HumanDrives(from);
   std::string_view logged = LoggedOf(from, command.mode);
   if (share_changes && !transfer) {
-    if (has_share) logged = "human takes part";
+    const bool has_all = !last_ && HumanDrives(command.lambda_human);  // from the first step on
+    if (has_share && !has_all) logged = "human takes part";
     if (command.mode == arbitration_t::AUTOMATION) logged = "human is released";
   }
   entries_.push_back({.step = command.header.step,

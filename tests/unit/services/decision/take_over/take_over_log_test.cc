@@ -58,6 +58,24 @@ TEST(TakeOverLogTest, HasTheModeThatEmergencyBrakingHides) {
   EXPECT_EQ(log.mode(), arbitration_t::HANDOVER);
 }
 
+TEST(TakeOverLogTest, EndsARequestOrARecoveryWhenACollisionWarningReplacesTheModeAfterIt) {
+  take_over::TakeOverLog log;
+  Add(log, Command(0, arbitration_t::REQUEST));
+  Add(log, Command(1, arbitration_t::COLLISION_WARNING));
+  EXPECT_EQ(log.mode(), arbitration_t::AUTOMATION);
+  Add(log, Command(2, arbitration_t::RECOVERING));
+  Add(log, Command(3, arbitration_t::COLLISION_WARNING));
+  EXPECT_EQ(log.mode(), arbitration_t::HUMAN);
+}
+
+TEST(TakeOverLogTest, TellsThatTheHumanDrivesFromTheFirstStepOn) {
+  take_over::TakeOverLog log;
+  arbitration_t first = Command(0, arbitration_t::HUMAN);
+  first.lambda_human = 1;
+  Add(log, first);
+  EXPECT_THAT(Texts(log), ElementsAre("transfer to the human"));
+}
+
 TEST(TakeOverLogTest, TellsOfAManoeuvreThatEndsInTheLock) {
   take_over::TakeOverLog log;
   Add(log, Command(0, arbitration_t::REQUEST));
