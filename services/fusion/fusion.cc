@@ -68,13 +68,24 @@ const track_t& Fusion::Step(const ego_t& ego, const radar_t& radar, const lidar_
   if (started_) {
     if (radar.valid) CorrectByRadar(radar);
     if (lidar.valid) CorrectByLidar(lidar);
-  } else if (radar.valid && selection_.radar && StartFromRadar(radar)) {
+  } else {
+    Start(radar, lidar);
+  }
+  if (started_) Report(ego.acceleration_mps2);
+  return out_;
+}
+
+void Fusion::Start(const radar_t& radar, const lidar_t& lidar) {
+  if (radar.valid && !selection_.radar) {
+    Record(kRadarRange, 0, 0, track_t::DISTRUSTED);
+    Record(kRadarRangeRate, 0, 0, track_t::DISTRUSTED);
+  }
+  if (lidar.valid && !selection_.lidar) Record(kLidarRange, 0, 0, track_t::DISTRUSTED);
+  if (radar.valid && selection_.radar && StartFromRadar(radar)) {
     if (lidar.valid) CorrectByLidar(lidar);
   } else if (lidar.valid && selection_.lidar) {
     StartFromLidar(lidar);
   }
-  if (started_) Report(ego.acceleration_mps2);
-  return out_;
 }
 
 // Starts with the state that exactly explains the radar's two values. The covariance follows from

@@ -59,6 +59,8 @@ class Fusion {
   static std::array<Gate, kNumValues> MakeGates(const FusionSection& section);
   static std::array<AdaptiveNoise, kNumValues> MakeNoises(const FusionSection& section);
 
+  /// Begins the track, if a selected sensor has a value.
+  void Start(const radar_t& radar, const lidar_t& lidar);
   /// Begin the track with this measurement; return false if the target is too far to the side.
   bool StartFromRadar(const radar_t& radar);
   bool StartFromLidar(const lidar_t& lidar);

@@ -69,7 +69,8 @@ TEST(FusionPoliciesTest, OracleIsToldTheTruthAndStartsAndGoesOnWithTheBestSensor
     const track_t& track = Step(fusion, m);
     EXPECT_EQ(track.state[0], 29.9);
     EXPECT_EQ(track.usage[2], track_t::USED);
-    EXPECT_NE(track.usage[0], track_t::USED);
+    EXPECT_EQ(track.usage[0], track_t::DISTRUSTED) << "step " << k;
+    EXPECT_EQ(track.usage[1], track_t::DISTRUSTED) << "step " << k;
   }
 }
 
