@@ -48,7 +48,7 @@ struct AebSection {
       "our choice, because UN R152, 5.2.1.3, asks for 60 km/h (16.7 m/s) at least, and 70 "
       "m/s is the fastest car of a scenario");
   FOGLINE_FIELD(double, release_closing_mps, 0.0, {0, 20, "m/s"},
-                "The braking ends when the closing speed is at most this.",
+                "Warning and braking begin only above this closing speed, and end at it.",
                 "our choice, because a car can only run into a slower car");
 
   bool operator==(const AebSection&) const = default;

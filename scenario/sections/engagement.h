@@ -70,7 +70,9 @@ struct TransferSection {
   FOGLINE_FIELD(double, sprt_beta, 0.01, {1e-6, 0.49},
                 "For hysteresis sprt: probability of missing a conflict.",
                 "our choice, because 1 % is a usual error level of tests");
-  FOGLINE_FIELD(double, min_dwell_s, 0.0, {0, 600, "s"}, "Least time between two transfers.",
+  FOGLINE_FIELD(double, min_dwell_s, 0.0, {0, 600, "s"},
+                "Least time between two changes of the side that is wanted to drive. If the driver "
+                "must be asked, a transfer comes later than the wish.",
                 "Sourav & Cheng 2024: none; 3 to 5 s avoid rapid transfers to and from the human");
   FOGLINE_FIELD(HandBack, hand_back, HandBack::kConflict,
                 "When the automation gets authority back. Without effect on the policies none, "

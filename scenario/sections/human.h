@@ -80,7 +80,7 @@ struct AwarenessParameters {
                 "Time constant with which awareness approaches A_mon.",
                 "our choice, because 30 to 120 s are plausible; no measurement is known");
   FOGLINE_FIELD(double, recovery_ps, 0.1, {0.001, 100, "1/s"},
-                "Growth of awareness while the driver drives or is asked to.",
+                "Growth of awareness while the driver drives, is asked to, or is warned.",
                 "SUMO's ToC device: 0.1");
   FOGLINE_FIELD(double, reaction_time_s, 0.8, {0, 3, "s"}, "Reaction time of an aware driver.",
                 "Treiber, Kesting & Helbing 2006 study 0.5 to 1.1; here the middle");

@@ -81,8 +81,9 @@ class Ekf {
   Eigen::Vector3d input_;          // effect of the host's acceleration
   Eigen::Matrix3d process_noise_;  // Q
   State state_ = State::Zero();
-  // No measured value changes the covariance. With the same values in each step it converges to the
-  // last bit, or to a short cycle. So the updates of the last steps are kept, and are used again.
+  // The covariance depends on the Jacobians and the noise variances, and not on the measured values
+  // themselves. If these are the same in each step, it converges to the last bit, or to a short
+  // cycle. So the updates of the last steps are kept, and are used again.
   std::array<StepUpdates, 8> steps_;
   std::size_t step_ = 0;  // place of the present step in steps_
   std::size_t now_ = 0;   // place of the latest update in the present step

@@ -62,10 +62,11 @@ inline constexpr double kOverdueFactor = 2.0;
 ///                      clip(-a_A, comfort, emergency) in the first stage, and emergency in the
 ///                      second stage.
 ///
-/// So the manoeuvre brakes at least as hard as the automation would, up to the emergency's
-/// deceleration. A driver who is not absent is late if and only if T > lead_s. Between
-/// acknowledgement and transfer the automation drives for at least one step. Only a driver who
-/// overrides, or who answers during the manoeuvre, gets authority without such a step.
+/// So the target deceleration of the manoeuvre is at least that of the automation, up to the
+/// emergency's deceleration. The limit of the jerk, and the smooth release before the car stands,
+/// can make the command smaller. A driver who is not absent is late if and only if T > lead_s.
+/// Between acknowledgement and transfer the automation drives for at least one step. Only a driver
+/// who overrides, or who answers during the manoeuvre, gets authority without such a step.
 ///
 /// If the scenario has a person who drives, no random number is drawn: T is the time of the first
 /// step after the request in which the person answers. A return to the automation has a further

@@ -22,9 +22,10 @@ enum class AebState : std::uint8_t {
 ///     deceleration  c^2 >= 2 required_mps2 s
 ///
 /// The scenario's trigger says which conditions must be met. The own speed must also be in the
-/// range of the system. A warning begins if the collision would be imminent with the gap after
-/// warning_s, s - warning_s c. The braking continues at any own speed. The braking ends if c is at
-/// most release_closing_mps, if no car ahead is seen, or if the own car stands.
+/// range of the system, and c must be above release_closing_mps. A warning begins if the collision
+/// would be imminent with the gap after warning_s, s - warning_s c. The braking continues at any
+/// own speed. The braking ends if c is at most release_closing_mps, if no car ahead is seen, or if
+/// the own car stands.
 class Aeb {
  public:
   explicit Aeb(const AebSection& section) : section_(section) {}

@@ -78,8 +78,9 @@ TEST_F(KeysInRealtimeTest, DriveTheHostAndTheTerminalIsRestoredAtTheEnd) {
 TEST_F(KeysInRealtimeTest, APersonWhoIsNotAskedIsToldWhoDrives) {
   InTerminal program(Drive(150, {"/person/drives=true", "/arbitrator/threshold=0",
                                  "/arbitrator/take_over/mode=instant"}));
-  EXPECT_TRUE(program.WaitUntil([&] { return program.text().contains(">>> you drive"); }))
-      << program.text();
+  EXPECT_TRUE(program.WaitUntil([&] {
+    return program.text().find(">>> you drive") != std::string::npos;
+  })) << program.text();
   EXPECT_EQ(program.Wait(), 0) << program.text();
 }
 
