@@ -85,7 +85,7 @@ runtime::RunCoordinatorOptions MakeCoordinatorOptions(const Scenario& scenario,
           .pace = options.pace,
           .realtime = options.realtime,
           .period = duration_cast<Duration>(step),
-          .join_limit = options.external.empty() ? kJoinLimit : Duration::zero(),
+          .join_limit = kJoinLimit,
           .prepare_limit = Supervisor::kPrepareLimit,
           .stall_limit = options.stall_limit + duration_cast<Duration>(step),
           .external = options.external,
@@ -95,10 +95,13 @@ runtime::RunCoordinatorOptions MakeCoordinatorOptions(const Scenario& scenario,
 }
 
 /// Calls options.on_logged_step if the log has a step. The recorder's STATUS names only steps that
-/// the recorder has handed to the operating system.
+/// the recorder has handed to the operating system. A recorder that has failed may name the step
+/// that it could not write.
 void TellLoggedStep(const runtime::RunCoordinator& coordinator, const ExperimentOptions& options) {
   const auto& recorder = coordinator.member(Role::kRecorder).status;
-  if (recorder && recorder->header.step >= 0) options.on_logged_step();
+  if (recorder && recorder->state != status_t::FAILED && recorder->header.step >= 0) {
+    options.on_logged_step();
+  }
 }
 
 // ---- memq --------------------------------------------------------------------------------------
