@@ -226,7 +226,9 @@ void Client::Handle() {
   if (!Parse()) return;
   const Frame frame = *next_;  // its bytes are valid until Readable() appends other bytes
   next_.reset();
-  for (const auto& [channel, handler] : handlers_) {
+  const std::size_t known = handlers_.size();  // a new handler gets only later messages
+  for (std::size_t i = 0; i < known; ++i) {
+    const auto& [channel, handler] = handlers_[i];
     if (channel == frame.name) handler(frame.payload);
   }
   if (watcher_) watcher_(frame.name, frame.payload);

@@ -56,6 +56,26 @@ TEST(RelayTest, GivesAPublisherItsOwnMessagesOnceAndInOrder) {
   EXPECT_TRUE(std::ranges::is_sorted(heard));
 }
 
+// A role subscribes to further channels when the RUN with the scenario comes.
+TEST(RelayTest, LetsAHandlerSubscribe) {
+  Relay relay;
+  runtime::Bus bus(relay.url());
+  std::vector<std::string> heard;
+  bus.Subscribe("FIRST", [&](runtime::Bytes) {
+    heard.emplace_back("FIRST");
+    if (heard.size() > 1) return;
+    for (int i = 0; i < 40; ++i) {
+      const std::string other = "OTHER" + std::to_string(i);
+      bus.Subscribe(other, [&heard, other](runtime::Bytes) { heard.push_back(other); });
+    }
+  });
+  for (const char* channel : {"FIRST", "OTHER39", "FIRST"}) {
+    bus.Publish(channel, Payload(1));
+    ASSERT_TRUE(RoundTrip(bus));
+  }
+  EXPECT_THAT(heard, testing::ElementsAre("FIRST", "OTHER39", "FIRST"));
+}
+
 TEST(RelayTest, TakesAndGivesMessagesOfStockLcm) {
   // GIVEN LCM's own client, which subscribes to everything
   Relay relay;
@@ -120,6 +140,10 @@ TEST(RelayTest, SaysWhereItListensAndWhatItHasDoneAndNamesAPortThatIsTaken) {
   EXPECT_THAT(RunCommand({Program("fogline-relay"), "--help"}).out,
               HasSubstr("2 bad usage, an address of another machine, or a port that it"));
   EXPECT_EQ(RunCommand({Program("fogline-relay"), "--listen", "nowhere"}).code, 2);
+  const Outcome unwritten =
+      RunCommand({"sh", "-c", Program("fogline-relay") + " --listen 127.0.0.1:0 > /dev/full"});
+  EXPECT_EQ(unwritten.code, 3);
+  EXPECT_THAT(unwritten.err, HasSubstr("cannot write the URL: No space left on device"));
   // RFC 5737: no machine has an address of 203.0.113.0/24.
   const Outcome foreign = RunCommand({Program("fogline-relay"), "--listen", "203.0.113.7"});
   EXPECT_EQ(foreign.code, 2);
