@@ -71,8 +71,9 @@ TimePoint RunCoordinator::Poll(TimePoint now) {
     going_since_ = now;
   }
   // A recorder that reads a long log reports its progress. So the join limit counts from the last
-  // progress.
-  if (const Duration joining = HeldAgainst(std::max(began_, progressed_), now);
+  // progress. A person starts the external roles, and the runner limits the wait for them.
+  if (phase_ == Phase::kJoining && !Awaited(now).empty()) awaited_ = now;
+  if (const Duration joining = HeldAgainst(std::max({began_, progressed_, awaited_}), now);
       phase_ == Phase::kJoining && options_.join_limit > Duration::zero() &&
       joining > (AllPrepare(now) ? options_.prepare_limit : options_.join_limit)) {
     Fail(fmt::format("not ready after {:.1f} s: {}", Seconds(joining), NotReady()));

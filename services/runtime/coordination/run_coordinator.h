@@ -34,10 +34,12 @@ struct RunCoordinatorOptions {
   // The sequence numbers of this runner's RUN messages begin above this number. An earlier runner
   // of the same run has used only smaller numbers.
   std::int64_t sequence = 0;
-  double pace = 0;                            // simulated seconds per second; 0: no limit
-  bool realtime = false;                      // whether this is a run in real time
-  Duration period{};                          // duration of a step in real time, on the wall clock
-  Duration join_limit{};                      // longest wait until all roles are ready; 0: no limit
+  double pace = 0;        // simulated seconds per second; 0: no limit
+  bool realtime = false;  // whether this is a run in real time
+  Duration period{};      // duration of a step in real time, on the wall clock
+  // Longest wait until all roles are ready; 0: no limit. It counts from the moment at which no
+  // external role is awaited.
+  Duration join_limit{};
   Duration prepare_limit{};                   // replaces join_limit while AllPrepare() is true
   Duration stall_limit = milliseconds(4000);  // longest time without a completed step of any role
   std::vector<Role> external;                 // roles that are started elsewhere
@@ -245,6 +247,7 @@ class RunCoordinator {
   std::int64_t sequence_;                     // sequence number of the last RUN
   std::int64_t progress_;
   TimePoint progressed_{};
+  TimePoint awaited_{};  // when an external role was awaited last, before the run began
   std::vector<std::uint8_t> buffer_;
 };
 

@@ -82,6 +82,24 @@ TEST_F(JoinLimitTest, EndsTheRunIfARoleIsNeverHeard) {
   EXPECT_THAT(limited_.error(), HasSubstr("not ready after 10.0 s: world (never heard), radar"));
 }
 
+TEST_F(JoinLimitTest, CountsFromTheMomentAtWhichNoExternalRoleIsAwaited) {
+  runtime::RunCoordinator with_external(script_.bus(), {.run_id = Script::kRunId,
+                                                        .scenario_text = script_.text(),
+                                                        .join_limit = milliseconds(10'000),
+                                                        .prepare_limit = milliseconds(10'000),
+                                                        .external = {Role::kDriver}});
+  PollUntil(with_external, began_ + milliseconds(30'000));
+  EXPECT_EQ(with_external.phase(), Phase::kJoining) << with_external.error();
+  role(Role::kDriver).state = status_t::READY;
+  SayStatus(Role::kDriver);
+  script_.bus().Drain();
+  PollUntil(with_external, began_ + milliseconds(39'000));
+  EXPECT_EQ(with_external.phase(), Phase::kJoining) << with_external.error();
+  PollUntil(with_external, began_ + milliseconds(42'000));
+  EXPECT_EQ(with_external.phase(), Phase::kFailed);
+  EXPECT_THAT(with_external.error(), HasSubstr("world (never heard)"));
+}
+
 TEST_F(JoinLimitTest, IsLongerForARoleThatHasWaitedAndThenPreparesInSilence) {
   AllAreReadyExcept(Role::kWorld);
   PollUntil(limited_, began_ + milliseconds(59'000));
