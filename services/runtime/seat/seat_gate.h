@@ -1,6 +1,10 @@
 // Decides which DRIVER_INPUT messages count. Only one seat at a time has the driver.
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
 #include <optional>
 
 #include "common/clock.h"
@@ -20,13 +24,14 @@ class SeatGate {
   explicit SeatGate(Duration deadman) : deadman_(deadman) {}
 
   /// Takes a decoded message of this run.
-  /// @return why the message is refused; nullptr if it is not refused. An older message of the same
-  ///     seat is not refused, and has no effect.
+  /// @return why the message is refused; nullptr if it is not refused. A message that is not newer
+  ///     than all others of its seat is not refused, and has no effect.
   RefusalCounter Take(const driver_input_t& input, TimePoint now) {
     if (const RefusalCounter wrong = WrongIn(input)) return wrong;
+    const bool is_new = IsNew(input);
     const bool same = newest_ && newest_->instance == input.instance;
     if (!same && Newest(now) != nullptr) return &status_t::second_seat;
-    if (same ? input.sequence <= newest_->sequence : !input.present) return nullptr;
+    if (!is_new || (!same && !input.present)) return nullptr;
     if (!limiter_.Take(now)) return &status_t::too_frequent;
     newest_ = input;
     heard_ = now;
@@ -41,7 +46,30 @@ class SeatGate {
   }
 
  private:
+  /// The newest message of a seat.
+  struct Heard {
+    std::int64_t instance;
+    std::int64_t sequence;
+  };
+  /// Most seats whose newest messages are remembered. Our choice: an experiment starts a few.
+  static constexpr std::size_t kMostSeats = 64;
+
+  /// Whether the message is newer than all earlier ones of its seat. Otherwise it is late, or
+  /// somebody sends it again.
+  bool IsNew(const driver_input_t& input) {
+    const auto heard = std::ranges::find(seats_, input.instance, &Heard::instance);
+    if (heard == seats_.end()) {
+      if (seats_.size() == kMostSeats) seats_.pop_front();
+      seats_.push_back({input.instance, input.sequence});
+      return true;
+    }
+    if (input.sequence <= heard->sequence) return false;
+    heard->sequence = input.sequence;
+    return true;
+  }
+
   Duration deadman_;
+  std::deque<Heard> seats_;
   RateLimiter limiter_{kMostInputsPerSecond, kMostInputsAtOnce};
   std::optional<driver_input_t> newest_;
   TimePoint heard_{};  // when newest_ came

@@ -41,6 +41,18 @@ TEST_F(SeatGateTest, HasTheNewestInputOfItsSeat) {
   EXPECT_EQ(Newest(), 5);
 }
 
+// A process without the key of the run can only repeat messages.
+TEST_F(SeatGateTest, IgnoresARepetitionOfASeatThatHadTheDriverBefore) {
+  gate_.Take(Input(1, 3), now_);
+  gate_.Take(Input(1, 4, false), now_);
+  gate_.Take(Input(2, 0), now_);
+  gate_.Take(Input(2, 1, false), now_);
+  EXPECT_EQ(gate_.Take(Input(1, 3), now_), nullptr);
+  EXPECT_EQ(Newest(), -1);
+  gate_.Take(Input(2, 2), now_);
+  EXPECT_EQ(Newest(), 2);
+}
+
 TEST_F(SeatGateTest, IsEmptyAfterASilenceAsLongAsTheDeadman) {
   gate_.Take(Input(1, 0), now_);
   now_ += kDeadman - milliseconds(1);
