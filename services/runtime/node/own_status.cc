@@ -12,7 +12,7 @@
 namespace fogline::runtime {
 namespace {
 
-// The longest error text. It must fit into a STATUS together with all other fields.
+// The longest error text. OwnStatus::EncodeMessage() makes it shorter if the other fields are long.
 constexpr std::size_t kMaxErrorBytes = 700;
 // After a failed send, the next STATUS is sent when this time has passed since the last STATUS. It
 // does not wait for the heartbeat, because the run may end before the heartbeat.
@@ -85,8 +85,16 @@ void OwnStatus::Publish() {
   }
   message_.sends_failed = bus_.failed_sends().count;
   message_.send_error = bus_.failed_sends().error;
-  Encode(message_, buffer_);
+  EncodeMessage();
   bus_.Publish(ChannelOf<status_t>().name, buffer_);
+}
+
+void OwnStatus::EncodeMessage() {
+  Encode(message_, buffer_);
+  if (buffer_.size() <= kMaxMessageBytes) return;
+  const std::size_t excess = buffer_.size() - kMaxMessageBytes;
+  message_.error.resize(message_.error.size() - std::min(excess, message_.error.size()));
+  Encode(message_, buffer_);
 }
 
 TimePoint OwnStatus::Poll(TimePoint now) {

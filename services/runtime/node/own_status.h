@@ -60,6 +60,9 @@ class OwnStatus {
   bool HastensForFailedSends();
 
  private:
+  /// Encodes the message into buffer_. Cuts its error if it would be longer than a message may be.
+  void EncodeMessage();
+
   void SetError(const std::string& error);
 
   Bus& bus_;

@@ -116,6 +116,15 @@ TEST_F(OwnStatusTest, GivesUpItsPlaceForAnotherRun) {
   EXPECT_EQ(said().back().error, "another process is the driver");
 }
 
+TEST_F(OwnStatusTest, CutsItsErrorWhereTheOtherFieldsAreLong) {
+  Join();
+  own_.message().host = std::string(600, 'h');
+  own_.Fail(std::string(700, 'e'));
+  EXPECT_TRUE(own_.left());
+  EXPECT_EQ(role_.leaves, 1);
+  EXPECT_THAT(said().back().error, testing::StartsWith("eeee"));
+}
+
 // ---- the driver --------------------------------------------------------------------------------
 
 using OwnStatusOfADriverTest = test::DriverInRun;
