@@ -27,7 +27,7 @@ bool Counted(std::int64_t number) { return number >= 0 && number <= kMaxStep; }
 }  // namespace
 
 bool IsPossible(const status_t& status) {
-  return status.header.step >= -1 && status.header.step <= kMaxStep &&
+  return status.header.step >= -1 && status.header.step <= kMaxStep && Counted(status.sequence) &&
          status.header.utime >= -kMaxTime_us && status.header.utime <= kMaxTime_us &&
          std::ranges::all_of(kCounters, [&](auto counter) { return Counted(status.*counter); }) &&
          std::ranges::all_of(
