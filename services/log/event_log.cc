@@ -55,6 +55,7 @@ bool IsEventLogOrEmpty(const std::filesystem::path& file) {
 EventLogWriter::EventLogWriter(const std::filesystem::path& file)
     : file_(file), out_(std::fopen(file.c_str(), "wb")) {
   if (out_ == nullptr) {
+    ThrowIfExhausted(errno, PathText(file));
     throw InputError(
         fmt::format("{}: error: cannot write the log: {}", PathText(file), std::strerror(errno)));
   }

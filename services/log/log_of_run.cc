@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <cstdio>
+#include <exception>
 #include <optional>
 #include <string>
 #include <system_error>
@@ -25,7 +26,7 @@ namespace {
 bool IsInVain(const std::filesystem::path& log) {
   try {
     return !HasSteps(log);
-  } catch (const InputError&) {
+  } catch (const std::exception&) {
     return false;
   }
 }
