@@ -1,6 +1,9 @@
 #include "tools/relay/relay_program.h"
 
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
+#include <stdexcept>
 
 #include <fmt/core.h>
 #include <boost/asio/signal_set.hpp>
@@ -76,7 +79,9 @@ int RunRelay(const Arguments& arguments) {
   signals.async_wait([&relay](boost::system::error_code, int) { relay->Stop(); });
   const runtime::tcpq::Endpoint here{listen.address, relay->endpoint().port()};
   fmt::print("{}\n", here.Url());
-  std::fflush(stdout);
+  if (std::fflush(stdout) != 0) {
+    throw std::runtime_error(fmt::format("cannot write the URL: {}", std::strerror(errno)));
+  }
   context.run();
   if (!arguments.quiet) Complain(fmt::format("fogline-relay: {}", relay->Summary()));
   return kDone;
