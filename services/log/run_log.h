@@ -43,7 +43,8 @@ struct RunLog {
   std::string digest;
   // Whether the log has the whole run, up to its end: the scenario is known, the log ends with the
   // last step of the run, the log was not changed after it was sealed, no event is torn, and no two
-  // messages of one step and channel differ. In lockstep, the log must also have all messages.
+  // messages of one step and channel differ. (A message after all others of its step is not
+  // compared.) In lockstep, the log must also have all messages.
   bool ended = false;
   // Whether `ended` is true and, in real time, STATUS says that no published message is missing. If
   // the log has no sound seal, STATUS must say this for all steps up to the last step that lacks a

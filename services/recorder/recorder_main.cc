@@ -15,7 +15,8 @@ constexpr const char* kHelpFooter =
     "Exit codes: 0 stopped by the runner, 2 bad usage, 3 failed, 130 interrupted.\n\n"
     "Example: `fogline run` starts it like this. A run has one recorder; use `fogline record`\n"
     "for a second log.\n"
-    "  fogline-recorder --log logs/run.lcm --lcm-url 'udpm://239.255.76.67:7700?ttl=0'";
+    "  fogline-recorder --run-id 7351 --shared-log --log logs/run.lcm \\\n"
+    "    --lcm-url 'udpm://239.255.76.67:7700?ttl=0'";
 
 }  // namespace
 
