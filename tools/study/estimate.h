@@ -38,6 +38,14 @@ Estimate EstimateOf(std::span<const double> values);
 /// @pre equal sizes
 Estimate PairedDifference(std::span<const double> a, std::span<const double> b);
 
+/// PairedDifference() of yes/no values, where a value above 0 is a "yes". With b pairs in which
+/// only `a` has a "yes", and c pairs in which only `b` has one, the mean is (b - c)/n. The interval
+/// has the bounds of Clopper & Pearson of b/n and c/n, each at 97.5 %: [low(b) - high(c), high(b) -
+/// low(c)] contains the true difference with a probability of at least 95 % (Bonferroni). It is
+/// within [-1, 1], and not empty if no pair differs.
+/// @pre equal sizes, and no value is missing
+Estimate PairedShareDifference(std::span<const double> a, std::span<const double> b);
+
 /// Verdict from an estimate of a difference.
 enum class Verdict {
   kLess,

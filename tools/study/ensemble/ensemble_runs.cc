@@ -121,7 +121,7 @@ Claim SafetyWithCollisions(const Comparison& comparison, const PlannedClaim& pla
   const Cell b = CellOf(comparison, *planned.other);
   const std::vector<double> a_less_safe = comparison.LessSafe(a, b);
   const std::vector<double> b_less_safe = comparison.LessSafe(b, a);
-  claim.difference = PairedDifference(a_less_safe, b_less_safe);
+  claim.difference = PairedShareDifference(a_less_safe, b_less_safe);
   claim.p = stats::McNemar(a_less_safe, b_less_safe);
   claim.compared += ", as the share of seeds in which it is less safe, collisions first";
   claim.hindrance.clear();

@@ -30,6 +30,21 @@ TEST(EstimateTest, OfOneValueHasNoInterval) {
   EXPECT_TRUE(std::isnan(study::EstimateOf({}).mean));
 }
 
+// The bounds of Clopper & Pearson of 0 of n at 97.5 % are 0 and 1 - 0.0125^(1/n).
+TEST(EstimateTest, OfADifferenceOfSharesStaysBetweenMinusOneAndOneAndIsNotEmpty) {
+  const std::vector<double> none(20, 0.0);
+  const study::Estimate same = study::PairedShareDifference(none, none);
+  EXPECT_EQ(same.mean, 0);
+  EXPECT_NEAR(same.high, 0.196695, 1e-6);
+  EXPECT_EQ(same.low, -same.high);
+  const study::Estimate all =
+      study::PairedShareDifference(std::array{1.0, 1.0, 1.0}, std::array{0.0, 0.0, 0.0});
+  EXPECT_EQ(all.mean, 1);
+  EXPECT_NEAR(all.low, 2 * std::cbrt(0.0125) - 1, 1e-9);
+  EXPECT_EQ(all.high, 1);
+  EXPECT_FALSE(study::PairedShareDifference(std::array{1.0}, std::array{0.0}).has_interval());
+}
+
 TEST(EstimateTest, AnInfiniteValueIsNeitherMissingNorPartOfTheMean) {
   constexpr double kInfinite = std::numeric_limits<double>::infinity();
   const study::Estimate estimate = study::EstimateOf(std::array{1.0, kInfinite, 3.0, kNoNumber});
