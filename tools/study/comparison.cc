@@ -29,6 +29,7 @@ std::vector<ComparedMetric> AllMetrics() {
   metrics::VisitPairedMetrics({}, put);
   put(kCollided, 0, "", "probability of a collision");
   metrics::VisitMetrics(metrics::RunMetrics{}, put);
+  std::erase_if(all, [](const ComparedMetric& one) { return one.name == kCollisionCode; });
   return all;
 }
 
@@ -154,6 +155,7 @@ Estimate Comparison::Mean(Cell cell, std::string_view measure) const {
 }
 
 Estimate Comparison::Difference(Cell a, Cell b, std::string_view measure) const {
+  if (measure == kCollided) return PairedShareDifference(Values(a, measure), Values(b, measure));
   return PairedDifference(Values(a, measure), Values(b, measure));
 }
 

@@ -43,8 +43,12 @@ inline constexpr std::string_view kShortfall = "mean_compromised_safety_fog_m";
 /// The measure that is 1 if a run ends in a collision, and otherwise 0.
 inline constexpr std::string_view kCollided = "collided";
 
+/// The measure of VisitMetrics() that says which cars have collided, as a code. A mean of codes has
+/// no meaning, so comparisons leave it out.
+inline constexpr std::string_view kCollisionCode = "collision";
+
 /// A measure of a run: a measure of VisitPairedMetrics(), "collided" (1 or 0), or a measure of
-/// VisitMetrics().
+/// VisitMetrics() other than kCollisionCode.
 struct ComparedMetric {
   std::string name;
   std::string unit;

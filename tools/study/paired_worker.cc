@@ -8,6 +8,7 @@
 #include "services/metrics/run_metrics.h"
 #include "services/metrics/safety_improvement.h"
 #include "tools/stats/statistics.h"
+#include "tools/study/comparison.h"
 #include "tools/sweep/engine.h"
 
 namespace fogline::study {
@@ -29,14 +30,15 @@ RunValues ValuesOf(metrics::RunMetrics measures, const metrics::PairedMetrics& p
       paired, [&](std::string_view, const std::optional<double>& value, std::string_view,
                   std::string_view) { values.push_back(value.value_or(stats::kMissing)); });
   values.push_back(measures.collision == truth_t::COLLISION_NONE ? 0.0 : 1.0);
-  metrics::VisitMetrics(
-      measures, [&]<class V>(std::string_view, const V& value, std::string_view, std::string_view) {
-        if constexpr (std::is_same_v<V, std::optional<double>>) {
-          values.push_back(value.value_or(stats::kMissing));
-        } else {
-          values.push_back(static_cast<double>(value));
-        }
-      });
+  metrics::VisitMetrics(measures, [&]<class V>(std::string_view name, const V& value,
+                                               std::string_view, std::string_view) {
+    if (name == kCollisionCode) return;
+    if constexpr (std::is_same_v<V, std::optional<double>>) {
+      values.push_back(value.value_or(stats::kMissing));
+    } else {
+      values.push_back(static_cast<double>(value));
+    }
+  });
   return values;
 }
 

@@ -8,8 +8,10 @@
 #include <map>
 #include <span>
 #include <sstream>
+#include <stdexcept>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -63,6 +65,17 @@ TEST(ComparisonTest, ComparesCollisionsByTheExactTestOfMcNemar) {
   EXPECT_EQ(row["difference"], "0.3");
   EXPECT_EQ(row["p"], "0.03125");
   EXPECT_EQ(row["p_holm"], "0.03125") << "the only test of the file";
+}
+
+TEST(ComparisonTest, GivesCollisionsAnIntervalOfSharesAndLeavesTheirCodeOut) {
+  const auto interval = [](std::int64_t crashes) {
+    auto row = RowOf(WithCrashes(crashes).Csv(0), "collided");
+    return std::pair(std::stod(row["difference_ci95_low"]), std::stod(row["difference_ci95_high"]));
+  };
+  EXPECT_LT(interval(kSeeds).first, 1);
+  EXPECT_EQ(interval(kSeeds).second, 1);
+  EXPECT_LT(interval(0).first, interval(0).second);
+  EXPECT_THROW(study::PlaceOfMetric("collision"), std::out_of_range);
 }
 
 TEST(ComparisonTest, GivesNoOtherPValueIfRunsEndEarly) {
