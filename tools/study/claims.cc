@@ -144,18 +144,21 @@ double PValueOf(const Claim& claim) {
 
 std::vector<report::StudyClaim> CheckClaims(std::span<const Claim> claims, bool few_runs) {
   std::vector<double> p;
-  for (const Claim& claim : claims) p.push_back(PValueOf(claim));
+  for (const Claim& claim : claims) {
+    if (!claim.p_holm) p.push_back(PValueOf(claim));
+  }
   const std::vector<double> adjusted = stats::Holm(p);
   std::vector<report::StudyClaim> checked;
-  for (std::size_t i = 0; i < claims.size(); ++i) {
-    const Claim& claim = claims[i];
+  std::size_t next = 0;
+  for (const Claim& claim : claims) {
+    const double p_holm = claim.p_holm ? *claim.p_holm : adjusted[next++];
     const std::string margin =
         claim.sign == Sign::kEqual ? fmt::format(" (within {:g})", claim.margin) : "";
     checked.push_back({.says = claim.says,
                        .compared = claim.compared,
                        .expected = fmt::format("{}{}", ExpectedText(claim.sign), margin),
-                       .found = FoundText(claim, adjusted[i]),
-                       .state = StateOf(claim, adjusted[i], few_runs)});
+                       .found = FoundText(claim, p_holm),
+                       .state = StateOf(claim, p_holm, few_runs)});
   }
   return checked;
 }

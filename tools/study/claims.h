@@ -61,8 +61,9 @@ std::vector<Claim> ClaimsOf(const Comparison& comparison, std::span<const Planne
 double PValueOf(const Claim& claim);
 
 /// Checks the claims of one study together. A claim holds if the difference has the claimed sign
-/// and the p-value adjusted by Holm is below 5 %. Otherwise the claim fails. If `few_runs` is true
-/// (fewer seeds than the study's default), it is open instead.
+/// and the p-value adjusted by Holm is below 5 %. A p-value that is adjusted already stays as it
+/// is. Otherwise the claim fails. If `few_runs` is true (fewer seeds than the study's default), it
+/// is open instead.
 std::vector<report::StudyClaim> CheckClaims(std::span<const Claim> claims, bool few_runs);
 
 /// "study policy: 2 of 9 claims fail:", then a line for each failed claim; "" if no claim fails.

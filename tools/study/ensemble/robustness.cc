@@ -214,6 +214,7 @@ Claim ClaimOnPart(const ExaminedFinding& finding, Part part, std::span<const Cla
       if (one.outcome == InSet::kUndecided || one.p <= p) continue;
       p = one.p;
       weakest = AsDecided(claims[c].sets[s], claims[c].quoted.bound, one.outcome);
+      weakest->p_holm = one.p_holm;
     }
   }
   const std::size_t sets = judged.empty() ? 0 : judged.front().size();

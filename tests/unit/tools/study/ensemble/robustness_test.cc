@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include <fmt/core.h>
 #include <gmock/gmock-more-matchers.h>
 #include <gtest/gtest.h>
 
@@ -211,6 +212,18 @@ TEST(RobustnessTest, ShowsTheLeastCertainComparisonOfThoseThatAreDecided) {
   EXPECT_EQ(on_finding.difference.mean, -0.5);
   EXPECT_THAT(on_finding.compared,
               HasSubstr("of those that are decided: set 2: traded against none"));
+}
+
+TEST(RobustnessTest, CountsTheNumberOfComparisonsOnce) {
+  study::ClaimInSets claim = InSets(2);
+  claim.sets[0] = claim.sets[1] = ClaimWith(-1, 0.85);  // just sure enough for two comparisons
+  const auto judged = study::JudgeInSets(std::span(&claim, 1));
+  const study::Claim heading = OnFinding(Finding(), claim);
+  EXPECT_EQ(heading.p_holm, judged[0][0].p_holm);
+  for (const report::StudyClaim& one : study::CheckClaims(std::array{heading, heading}, false)) {
+    EXPECT_EQ(one.state, report::ClaimState::kHolds);
+    EXPECT_THAT(one.found, HasSubstr(fmt::format("p = {:.3f}", judged[0][0].p_holm)));
+  }
 }
 
 TEST(RobustnessTest, AClaimThatIsOppositeInAllSetsIsShownTurnedAround) {
