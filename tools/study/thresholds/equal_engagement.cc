@@ -98,11 +98,17 @@ std::vector<AtEqualEngagement> AgainstFixed(std::span<const RuleValues> fixed,
 
 double InterpolationErrorAt(std::span<const CurvePoint> curve, const CurvePlace& place) {
   if (place.share == 0) return 0;
+  const std::size_t above = place.below + 1;
+  const double stretch = std::abs(curve[above].rhe_pct - curve[place.below].rhe_pct);
   std::optional<double> largest;
-  for (const std::size_t i : {place.below, place.below + 1}) {
-    const std::optional<double> off = OffTheOthers(curve, i);
-    if (off) largest = std::max(largest.value_or(0), *off);
-  }
+  const auto widen = [&](std::size_t point, std::size_t outer) {
+    const std::optional<double> off = OffTheOthers(curve, point);
+    if (!off) return;
+    const double beside = std::abs(curve[outer].rhe_pct - curve[point].rhe_pct);
+    largest = std::max(largest.value_or(0), *off * (beside + stretch) / (2 * beside));
+  };
+  widen(place.below, place.below - 1);
+  widen(above, above + 1);
   const double whole = std::abs(curve[place.below + 1].gain - curve[place.below].gain);
   return 4 * place.share * (1 - place.share) * largest.value_or(whole);
 }

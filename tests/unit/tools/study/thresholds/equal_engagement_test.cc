@@ -40,17 +40,26 @@ TEST(BestAtTest, HasNoPlaceBeyondTheCurve) {
 }
 
 TEST(InterpolationErrorTest, IsThatOfTheNeighboursAtThePlace) {
-  // The error at a point is the difference between its gain and the gain that its two neighbours
-  // give.
+  // A point is off by the difference between its gain and the gain that its two neighbours give.
   // RHE 40 % lies between 100 % and 20 %: three quarters of the way from -50 to 20 is 2.5. The gain
-  // of the point is 10, so the error is 7.5.
-  // RHE 20 % lies between 40 % and 0 %: half of the way from 10 to 22 is 16. The gain of the point
-  // is 20, so the error is 4.
-  EXPECT_NEAR(study::InterpolationErrorAt(kCurve, *study::BestAt(kCurve, 30)), 7.5, 1e-12);
+  // of the point is 10, so it is off by 7.5. The stretch to 20 % is 20 long, and the one to 100 %
+  // is 60 long: 7.5 (60 + 20)/(2 60) is 5. RHE 20 % lies between 40 % and 0 %: half of the way from
+  // 10 to 22 is 16. The gain of the point is 20, so it is off by 4. Both stretches are 20 long.
+  EXPECT_NEAR(study::InterpolationErrorAt(kCurve, *study::BestAt(kCurve, 30)), 5, 1e-12);
   EXPECT_NEAR(study::InterpolationErrorAt(kCurve, *study::BestAt(kCurve, 10)), 4, 1e-12);
   EXPECT_NEAR(study::InterpolationErrorAt(kCurve, *study::BestAt(kCurve, 5)), 3, 1e-12);
   EXPECT_EQ(study::InterpolationErrorAt(kCurve, *study::BestAt(kCurve, 20)), 0)
       << "a threshold that was run";
+}
+
+// The gain is the square of the RHE, and the stretch in the middle is ten times as long as the
+// others.
+TEST(InterpolationErrorTest, CoversALongStretchBetweenShortOnes) {
+  std::vector<study::CurvePoint> curve;
+  for (const double rhe : {0.0, 1.0, 11.0, 12.0})
+    curve.push_back({.rhe_pct = rhe, .gain = rhe * rhe});
+  const study::CurvePlace place = *study::BestAt(curve, 6);
+  EXPECT_GE(study::InterpolationErrorAt(curve, place), std::abs(place.gain - 36));
 }
 
 TEST(InterpolationErrorTest, LeavesADifferenceUndecidedThatIsNoLarger) {
