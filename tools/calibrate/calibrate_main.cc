@@ -12,6 +12,7 @@
 #include "common/interrupt.h"
 #include "common/process/console.h"
 #include "common/process/progress.h"
+#include "common/process/shell_word.h"
 #include "common/text.h"
 #include "scenario/io/diagnostic_list.h"
 #include "scenario/io/json.h"
@@ -252,12 +253,12 @@ int RunCalibrate(const CalibrateArguments& arguments) {
   return kDone;
 }
 
-/// The command that finds the same ensemble again. It omits options that do not change the
-/// ensemble.
+/// The command that finds the same ensemble again, with FOLDER for the folder of the new files. It
+/// omits options that do not change the ensemble.
 std::string CommandOf(const CalibrateArguments& arguments) {
-  std::string command = fmt::format("fogline calibrate {}", arguments.scenario.string());
+  std::string command = fmt::format("fogline calibrate {}", ShellWord(arguments.scenario.string()));
   const auto add = [&](std::string_view option, const auto& value) {
-    command += fmt::format(" {} {}", option, value);
+    command += fmt::format(" {} {}", option, ShellWord(fmt::format("{}", value)));
   };
   if (!arguments.target.empty()) add("--target", arguments.target.string());
   for (const std::string& one : arguments.overrides) add("--set", one);
@@ -276,7 +277,7 @@ std::string CommandOf(const CalibrateArguments& arguments) {
     add("--spread-weight", arguments.spread_weight);
   }
   for (const std::string& one : arguments.free) add("--free", one);
-  return command;
+  return command + " --out FOLDER";
 }
 
 ParameterEnsemble SearchEnsemble(const Objective& searched, const Objective& fresh,
