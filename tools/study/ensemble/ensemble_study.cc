@@ -118,7 +118,9 @@ report::StudyFigure SetsFigure(std::span<const EnsembleSet> sets,
       .title = "The first comparison of each finding in each parameter set",
       .caption =
           "Difference as a share of the largest one of all sets, with its 95 % confidence "
-          "interval. Above 0: as the finding says. There is no point if runs end in collisions.",
+          "interval. Above 0: as the finding says; a finding that two values are equal allows "
+          "small "
+          "values below 0, too. There is no point if runs end in collisions.",
       .x_label = "",
       .y_label = "Share of the largest difference"};
   for (const EnsembleSet& set : sets) figure.series.emplace_back().name = set.name;
@@ -189,8 +191,9 @@ std::string EnsembleMethod(std::int64_t seeds, std::size_t comparisons, std::siz
       "and so have the other claims below it together (side claims): they hold in a set if each of "
       "them holds, are opposite if at least one is opposite, and are undecided otherwise. A wait "
       "leaves nothing of the gain if the remaining gain is below the margin; a rule costs nothing "
-      "if its cost is below the margin. Comparisons whose differences are large use only every "
-      "{4}th seed. If runs end in collisions, the runs of each seed are compared: a run that "
+      "if its cost is below the margin. Comparisons whose differences are large use only the "
+      "first of {4} parts of the seeds. If runs end in collisions, the runs of each seed are "
+      "compared: a run that "
       "collides is less safe than one that does not, and two runs that do not collide are compared "
       "by their compromised safety (exact test of McNemar). Each claim of this study shows the "
       "least certain comparison of those that are decided. Finding 4: {5} situations for each set, "
