@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -48,6 +49,17 @@ class NetworkTest : public testing::Test {
   static nlohmann::json ResultOf(Background& run) {
     const int code = run.Wait();
     return Result({code, run.Out(), run.Err()});
+  }
+
+  /// The number of lines on stderr, without the warnings that the runner was held up. A busy
+  /// machine causes them in any run.
+  static int LinesBesideDelays(const std::string& err) {
+    int lines = 0;
+    std::istringstream in(err);
+    for (std::string line; std::getline(in, line);) {
+      lines += line.starts_with("warning: the runner was held up for ") ? 0 : 1;
+    }
+    return lines;
   }
 
   /// The digest of a run of the paper's scenario with the options `more`, in one process and
