@@ -127,6 +127,15 @@ void Supervisor::OnExit(const processes::RolePlace::Exit& exit, TimePoint now) {
   const std::string& host = child->place->name();
   const std::string how = child->killed_for.empty() ? exit.how : child->killed_for;
   child->death = fmt::format("{} {}", how, coordinator_.Where());
+  // The process before it had the same arguments. So something is missing that may come back, such
+  // as the network.
+  const auto& status = coordinator_.member(exit.role).status;
+  const bool met = status && status->pid == exit.pid;
+  if (!exit.killed && !met && child->policy.restarts() > 0) {
+    child->start_at = now + child->policy.OnFailedStart();
+    coordinator_.Hinder(exit.role, exit.lines.empty() ? exit.how : exit.lines.back());
+    return;
+  }
   const auto wait = exit.killed ? child->policy.OnDeath(coordinator_.step()) : std::nullopt;
   if (wait) {
     coordinator_.MarkDead(exit.role, exit.pid, now, child->place->host());

@@ -140,6 +140,24 @@ TEST_F(SupervisorTest, StartsNoProcessAgainThatExitsByItself) {
   EXPECT_THAT(supervisor_->restarts(), IsEmpty());
 }
 
+// The network may be down while a role is started again. Here its key is missing.
+TEST_F(SupervisorTest, TriesAgainIfAProcessThatIsStartedAgainEndsAtOnce) {
+  Begin(kManySteps, {.restarts = 1});
+  ASSERT_TRUE(PlayUntilStep(20)) << coordinator_->error();
+  setenv("FOGLINE_KEY", "/nowhere/key", 1);
+  SignalOne(PidOfRole(Role::kFusion), SIGKILL);
+  const bool has_ended = PlayUntil([&] {
+    return testing::Value(
+        said_,
+        testing::Contains(ContainsRegex("^fusion \\(pid [0-9]+\\) exited with code 2 at step ")));
+  });
+  unsetenv("FOGLINE_KEY");
+  ASSERT_TRUE(has_ended) << testing::PrintToString(said_) << coordinator_->error();
+  const std::int64_t then = coordinator_->step();
+  ASSERT_TRUE(PlayUntilStep(then + 100)) << coordinator_->error();
+  EXPECT_EQ(supervisor_->restarts().at(0).count, 1);
+}
+
 TEST_F(SupervisorTest, KillsAProcessThatHangsAndStartsItAgain) {
   // On a busy machine other processes may also be silent for 2 s, so the run allows 100 restarts.
   Begin(kManySteps, {.restarts = 100, .silence = milliseconds(2000)});
