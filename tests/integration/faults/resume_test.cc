@@ -63,7 +63,8 @@ TEST_F(ResumeTest, GoesOnWithTheRolesFromElsewhereThatHaveOutlivedTheirRunner) {
   for (const Words& sealed : {Words{}, Words{"--key", key}}) {
     std::filesystem::remove(log_);
     // GIVEN a driver that was started from another shell
-    SeenRun seen(Paper(kResumeSteps) + kPaced + Words{"--external", "driver"} + sealed, log_);
+    // The run lasts six seconds, so that even a busy machine kills its runner before the end.
+    SeenRun seen(Paper(kResumeSteps) + Words{"--pace", "5", "--external", "driver"} + sealed, log_);
     Background driver(Words{Program("fogline-driver"), "--lcm-url", seen.url()} + sealed);
     // WHEN the runner is killed, THEN the same driver continues with the next runner
     seen.KillAtStep(150);
