@@ -339,6 +339,10 @@ TEST_F(RecordTest, SaysWhatIsWrongWithItsArguments) {
   std::ofstream(log_) << "text";
   EXPECT_THAT(error({}), HasSubstr("all.lcm: error: LOG: the file exists; --force replaces it"));
   EXPECT_THAT(error({"--force"}), HasSubstr("is no event log and is not replaced"));
+  const Outcome device = RunCommand({Program("fogline"), "record", "/dev/stdout", "--for", "0.1"});
+  EXPECT_EQ(device.code, 2);
+  EXPECT_THAT(device.err,
+              HasSubstr("/dev/stdout: error: LOG: this path names a pipe, a device or"));
 }
 
 }  // namespace

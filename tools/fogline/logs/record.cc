@@ -109,6 +109,12 @@ int RunRecord(const RecordArguments& arguments) {
   const std::vector<std::filesystem::path> replaced =
       options.rotation.Any() ? record::LogFiles::InTheWay(arguments.log)
                              : std::vector{arguments.log};
+  if (!IsReplaceable(arguments.log)) {
+    throw InputError(fmt::format(
+        "{}: error: LOG: this path names a pipe, a device or an open file of this process; name a "
+        "file to write",
+        PathText(arguments.log)));
+  }
   for (const std::filesystem::path& file : replaced) {
     RefuseToReplace(file, "LOG", arguments.force, "event log", log::IsEventLogOrEmpty);
   }
