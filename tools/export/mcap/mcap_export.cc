@@ -4,7 +4,9 @@
 #include <cstddef>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <tuple>
 
@@ -160,14 +162,17 @@ class Exporter {
   }
 
   void AddFacts(const log::RunLog& run) {
-    writer_.AddAttachment("scenario.json", "application/json", run.scenario_text);
-    writer_.AddMetadata("fogline", {{"complete", run.complete ? "true" : "false"},
-                                    {"digest", log::DigestText(run)},
-                                    {"run_id", std::to_string(run.run_id)},
-                                    {"scenario_hash", run.scenario_hash},
-                                    {"seed", std::to_string(run.scenario.seed)},
-                                    {"steps", std::to_string(run.steps)},
-                                    {"title", run.scenario.title}});
+    std::map<std::string, std::string> facts{{"complete", run.complete ? "true" : "false"},
+                                             {"digest", log::DigestText(run)},
+                                             {"run_id", std::to_string(run.run_id)},
+                                             {"steps", std::to_string(run.steps)}};
+    if (run.has_scenario) {
+      writer_.AddAttachment("scenario.json", "application/json", run.scenario_text);
+      facts.insert({{"scenario_hash", run.scenario_hash},
+                    {"seed", std::to_string(run.scenario.seed)},
+                    {"title", run.scenario.title}});
+    }
+    writer_.AddMetadata("fogline", facts);
   }
 
   static constexpr std::size_t kUtimeOffset = runtime::kStepOffset + sizeof(std::int64_t);
