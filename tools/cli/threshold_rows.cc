@@ -3,12 +3,16 @@
 #include <algorithm>
 #include <map>
 #include <mutex>
+#include <string_view>
 #include <utility>
+#include <vector>
 
 #include <fmt/core.h>
 
+#include "common/atomic_file.h"
 #include "common/interrupt.h"
 #include "common/process/progress.h"
+#include "services/log/event_log.h"
 #include "services/log/log_of_run.h"
 #include "tools/cli/action.h"
 #include "tools/cli/pairing.h"
@@ -56,14 +60,35 @@ class TableRows {
   std::int64_t next_ = 0;
 };
 
-/// @param name "none", or the threshold, for the name of the log
-runner::ExperimentResult RunOne(const TableRuns& runs, const Scenario& scenario,
-                                const std::string& name) {
-  runner::ExperimentOptions options = runs.options;
-  if (!runs.logs.empty()) {
-    options.log =
-        runs.logs / fmt::format("{}-seed{}-threshold-{}.lcm", runs.name, scenario.seed, name);
+// Name of the runs without traded control.
+constexpr std::string_view kNone = "none";
+
+/// The log of a run. @param name kNone, or NameOf() the threshold
+std::filesystem::path LogOf(const TableRuns& runs, std::int64_t seed, std::string_view name) {
+  return runs.logs / fmt::format("{}-seed{}-threshold-{}.lcm", runs.name, seed, name);
+}
+
+/// Two different thresholds have different names.
+std::string NameOf(double threshold) { return fmt::format("{}", threshold); }
+
+/// @throws InputError if a log would replace a file that is no event log
+void RefuseForeignFiles(const TableRuns& runs, std::span<const double> thresholds,
+                        const sweep::SeedRange& seeds) {
+  if (runs.logs.empty()) return;
+  for (std::int64_t seed = seeds.first; seed <= seeds.last; ++seed) {
+    std::vector<std::filesystem::path> logs{LogOf(runs, seed, kNone)};
+    for (const double threshold : thresholds) logs.push_back(LogOf(runs, seed, NameOf(threshold)));
+    for (const std::filesystem::path& log : logs) {
+      RefuseToReplace(log, "--logs", /*force=*/true, "event log", log::IsEventLogOrEmpty);
+    }
   }
+}
+
+/// @param name kNone, or NameOf() the threshold
+runner::ExperimentResult RunOne(const TableRuns& runs, const Scenario& scenario,
+                                std::string_view name) {
+  runner::ExperimentOptions options = runs.options;
+  if (!runs.logs.empty()) options.log = LogOf(runs, scenario.seed, name);
   const log::LogOfRun log = options.log.empty() ? log::LogOfRun() : log::LogOfRun(options.log);
   runner::ExperimentResult result = runner::RunExperiment(scenario, options);
   if (result.verification && !result.verification->Holds()) {
@@ -91,6 +116,7 @@ std::vector<sweep::ThresholdRow> RowsInMemory(const Scenario& scenario,
 std::vector<sweep::ThresholdRow> RowsByRuns(const TableRuns& runs, const Scenario& scenario,
                                             std::span<const double> thresholds,
                                             const sweep::SeedRange& seeds) {
+  RefuseForeignFiles(runs, thresholds, seeds);
   TableRows rows(scenario, thresholds);
   const auto of_a_seed = static_cast<std::int64_t>(thresholds.size()) + 1;
   Progress progress("run", seeds.count() * of_a_seed);
@@ -102,9 +128,9 @@ std::vector<sweep::ThresholdRow> RowsByRuns(const TableRuns& runs, const Scenari
     Scenario its = scenario;
     its.seed = seeds.first + seed;
     if (row > 0) its.arbitrator.threshold = thresholds[row - 1];
-    runner::ExperimentResult result =
-        row == 0 ? RunOne(runs, WithoutTradedControl(its), "none")
-                 : RunOne(runs, its, fmt::format("{:g}", its.arbitrator.threshold));
+    runner::ExperimentResult result = row == 0
+                                          ? RunOne(runs, WithoutTradedControl(its), kNone)
+                                          : RunOne(runs, its, NameOf(its.arbitrator.threshold));
     const std::lock_guard lock(mutex);
     rows.Add(seed, row, std::move(result));
     progress.Show(++done);

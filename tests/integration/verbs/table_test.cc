@@ -4,6 +4,8 @@
 #include <nlohmann/json.hpp>
 
 #include <csignal>
+#include <filesystem>
+#include <fstream>
 #include <string>
 #include <vector>
 
@@ -198,6 +200,29 @@ TEST(TableArgumentsTest, RefuseToSetWhatTheTableVariesItself) {
             "fogline table: error: --set /seed: the seeds are those of --seeds\n");
   EXPECT_EQ(TableErrorOf({"--seeds", "1:2", "--seed", "3"}),
             "fogline table: error: --seed excludes --seeds (see fogline table --help)\n");
+}
+
+TEST(TableArgumentsTest, RefuseAThresholdThatComesTwice) {
+  EXPECT_EQ(TableErrorOf({"--thresholds", "0.5,0.2,0.50"}),
+            "fogline table: error: --thresholds 0.5,0.2,0.50: 0.5 comes twice\n");
+}
+
+TEST(TableOfRunsTest, ReplacesLogsAndNoOtherFileAndHasALogForEachThreshold) {
+  const ScratchFolder folder;
+  const auto table = [&] {
+    return RunCommand({Program("fogline"), "table", "scenario/paper.json", "--set", "/steps=20",
+                       "--thresholds", "0.5,0.5000001", "--logs", folder.File("")});
+  };
+  const std::string log = folder.File("paper-seed1-threshold-0.5.lcm");
+  std::ofstream(log) << "my notes";
+  const Outcome refused = table();
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_THAT(refused.err, HasSubstr("error: --logs: the file is no event log"));
+  EXPECT_FALSE(std::filesystem::exists(folder.File("paper-seed1-threshold-none.lcm")));
+  std::filesystem::remove(log);
+  for (int i = 0; i < 2; ++i) EXPECT_EQ(table().code, 0) << "logs are replaced";
+  EXPECT_TRUE(std::filesystem::exists(log));
+  EXPECT_TRUE(std::filesystem::exists(folder.File("paper-seed1-threshold-0.5000001.lcm")));
 }
 
 TEST(TableArgumentsTest, RefuseARoleFromElsewhereWhereItCannotJoin) {
