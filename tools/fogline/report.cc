@@ -110,8 +110,8 @@ std::string NameOf(const ArbitratorSection& arbitrator) {
   return name + fmt::format("threshold {:g}", arbitrator.threshold);
 }
 
-/// Names of the runs: policy and threshold, then the seed if the seeds differ, then the log if two
-/// names are still equal.
+/// Names of the runs: policy and threshold, then the seed if the seeds differ. If two names are
+/// still equal, the name of the log follows, and then its folder.
 std::vector<std::string> NamesOf(std::span<const runner::LoggedRun> runs) {
   const bool with_seed = !HaveOneSeed(runs);
   std::vector<std::string> names;
@@ -121,12 +121,16 @@ std::vector<std::string> NamesOf(std::span<const runner::LoggedRun> runs) {
     if (with_seed) name += fmt::format(", seed {}", run.result.seed);
     names.push_back(std::move(name));
   }
-  const std::vector<std::string> short_names = names;
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    if (std::ranges::count(short_names, short_names[i]) > 1) {
-      names[i] += fmt::format(", {}", LogNameOf(runs[i]));
+  const auto add_to_equal = [&](const auto& text_of) {
+    const std::vector<std::string> before = names;
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      if (std::ranges::count(before, before[i]) > 1) {
+        names[i] += fmt::format(", {}", text_of(runs[i]));
+      }
     }
-  }
+  };
+  add_to_equal(LogNameOf);
+  add_to_equal([](const runner::LoggedRun& run) { return PathText(run.result.log.parent_path()); });
   return names;
 }
 
@@ -230,6 +234,9 @@ report::ReportRun PageOf(runner::LoggedRun& run, const std::string& name,
 }
 
 report::ReportCurves ComputeCurves(const ReportArguments& arguments) {
+  cli::RefuseOverride(arguments.overrides, "/arbitrator/threshold",
+                      "the thresholds are those of --thresholds");
+  cli::RefuseOverride(arguments.overrides, "/seed", "the seeds are those of --seeds");
   const Scenario scenario = LoadScenario(arguments.curves, arguments.overrides);
   sweep::RequireThreshold(scenario, arguments.curves);
   runner::CheckPossible(scenario, arguments.curves);

@@ -45,6 +45,10 @@ std::string Log(const ScratchFolder& folder, const std::string& name,
   return folder.File(name);
 }
 
+std::string FolderOf(const ScratchFolder& folder) {
+  return std::filesystem::path(folder.File("log")).parent_path().string();
+}
+
 TEST(ReportVerbTest, DrawsTheValuesOfTheTable) {
   // GIVEN the page of the curves, and the table of the same thresholds and seeds
   const ScratchFolder folder;
@@ -102,6 +106,17 @@ TEST(ReportVerbTest, TellsRunsOfSeveralSeedsAndEqualOnesApart) {
   EXPECT_EQ(runs[3]["name"], "threshold 0.5, seed 2");
   EXPECT_THAT(Content(page), HasSubstr("<span class=\"origin\">a.lcm · Traded control in fog"));
   EXPECT_THAT(Content(page), HasSubstr(">Seed</th>"));
+}
+
+TEST(ReportVerbTest, TellsEquallyNamedLogsOfTwoFoldersApart) {
+  const ScratchFolder before;
+  const ScratchFolder after;
+  const std::string page = before.File("report.html");
+  const Outcome report = Report({Log(before, "x.lcm", {}), Log(after, "x.lcm", {}), "-o", page});
+  ASSERT_EQ(report.code, 0) << report.err;
+  const nlohmann::json runs = DataOf(Content(page))["runs"];
+  EXPECT_EQ(runs[0]["name"], "threshold 0.5, x.lcm, " + FolderOf(before));
+  EXPECT_EQ(runs[1]["name"], "threshold 0.5, x.lcm, " + FolderOf(after));
 }
 
 TEST(ReportVerbTest, WritesThePageOfALogThatIsCutOffMarksItThereAndExitsWith1) {
