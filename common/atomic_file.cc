@@ -149,14 +149,20 @@ AtomicFile::AtomicFile(fs::path file) : file_(std::move(file)) {
   }
   target_ = target.path;
   if (IsStream(target)) device_ = OpenStream(file_, "");
-  part_ = RandomName(device_ < 0 ? FolderOf(target_) : fs::temp_directory_path());
+  part_ = RandomName(device_ < 0 ? FolderOf(target_) : TemporaryFolder());
   fd_ = MakeNew(part_);
   if (fd_ < 0) {
     const int error = errno;
     if (device_ >= 0) close(device_);
     ThrowCannotWrite(file_, "", error);
   }
-  if (device_ < 0) return;
+  if (device_ < 0) {
+    // A file that replaces another one keeps its permissions.
+    if (fs::is_regular_file(target.status)) {
+      fchmod(fd_, static_cast<mode_t>(target.status.permissions()) & 0777);
+    }
+    return;
+  }
   unlink(part_.c_str());
   part_.clear();
 }

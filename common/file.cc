@@ -10,6 +10,7 @@
 #include <cerrno>
 #include <climits>
 #include <cstddef>
+#include <cstdlib>
 #include <optional>
 #include <stdexcept>
 #include <string_view>
@@ -18,6 +19,7 @@
 
 #include <fmt/core.h>
 
+#include "common/errors.h"
 #include "common/text.h"
 
 namespace fogline {
@@ -175,6 +177,15 @@ void ThrowIfExhausted(int error, std::string_view what) {
   if (std::ranges::find(kExhausted, error) == kExhausted.end()) return;
   throw std::runtime_error(fmt::format("{}: {}{}", what, Message(error),
                                        error == EMFILE ? "; ulimit -n 1024 allows more" : ""));
+}
+
+std::filesystem::path TemporaryFolder() {
+  std::error_code failed;
+  std::filesystem::path folder = std::filesystem::temp_directory_path(failed);
+  if (!failed) return folder;
+  const char* set = std::getenv("TMPDIR");
+  throw InputError(fmt::format("TMPDIR={}: error: no folder for temporary files: {}",
+                               set == nullptr ? "" : set, failed.message()));
 }
 
 }  // namespace fogline

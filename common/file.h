@@ -61,4 +61,7 @@ int WriteAll(int fd, std::string_view bytes, bool (*stop)() = nullptr);
 /// @throws std::runtime_error "WHAT: Too many open files; ulimit -n 1024 allows more"
 void ThrowIfExhausted(int error, std::string_view what);
 
+/// The folder for temporary files: $TMPDIR, or /tmp. @throws InputError if it is no folder
+std::filesystem::path TemporaryFolder();
+
 }  // namespace fogline

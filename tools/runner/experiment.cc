@@ -10,6 +10,7 @@
 
 #include <fmt/core.h>
 
+#include "common/file.h"
 #include "common/interrupt.h"
 #include "common/text.h"
 #include "scenario/io/loader.h"
@@ -37,7 +38,7 @@ constexpr double kMinPeriodS = 0.005;
 class TemporaryDirectory {
  public:
   TemporaryDirectory() {
-    std::string name = (std::filesystem::temp_directory_path() / "fogline-XXXXXX").string();
+    std::string name = (TemporaryFolder() / "fogline-XXXXXX").string();
     if (mkdtemp(name.data()) == nullptr) {
       throw std::runtime_error(fmt::format("cannot make a temporary directory {}", name));
     }

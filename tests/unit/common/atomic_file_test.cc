@@ -117,6 +117,14 @@ TEST_F(AtomicFileTest, HasTheRightsOfAnyNewFile) {
   EXPECT_EQ(std::filesystem::status(file_).permissions(), std::filesystem::perms(0640));
 }
 
+TEST_F(AtomicFileTest, KeepsTheRightsOfTheFileThatItReplaces) {
+  std::ofstream(file_) << "answers";
+  std::filesystem::permissions(file_, std::filesystem::perms(0600));
+  AtomicFile file(file_);
+  file.Finish();
+  EXPECT_EQ(std::filesystem::status(file_).permissions(), std::filesystem::perms(0600));
+}
+
 TEST_F(AtomicFileTest, ReplacesTheFileThatALinkLeadsToAndLeavesTheLink) {
   std::filesystem::create_directory(folder_.File("elsewhere"));
   const std::string target = folder_.File("elsewhere/target.csv");
