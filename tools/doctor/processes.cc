@@ -36,8 +36,8 @@ struct Process {
 
   /// Value of an option; "" if the option is missing.
   std::string Option(std::string_view name) const {
-    for (std::size_t i = 0; i + 1 < arguments.size(); ++i) {
-      if (arguments[i] == name) return arguments[i + 1];
+    for (std::size_t i = 0; i < arguments.size(); ++i) {
+      if (arguments[i] == name && i + 1 < arguments.size()) return arguments[i + 1];
       if (arguments[i].starts_with(std::string(name) + "=")) {
         return arguments[i].substr(name.size() + 1);
       }
