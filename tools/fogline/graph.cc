@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <fmt/core.h>
@@ -85,9 +86,9 @@ bool ReplaceTable(std::string& page, std::string_view head, const std::string& t
   return true;
 }
 
-/// Replaces the tables of roles and channels in a Markdown page.
+/// Replaces the tables of roles and channels in a Markdown page. @return the new page
 /// @throws InputError if the page has neither table
-void PutInto(const std::filesystem::path& file) {
+std::string WithTables(const std::filesystem::path& file) {
   constexpr std::size_t kMostBytes = 10 << 20;
   FileText page = ReadFile(file, kMostBytes);
   if (!page.error.empty()) {
@@ -101,9 +102,18 @@ void PutInto(const std::filesystem::path& file) {
                                  PathText(file), kHeadOfRoles.substr(0, kHeadOfRoles.size() - 1),
                                  kHeadOfChannels.substr(0, kHeadOfChannels.size() - 1)));
   }
-  AtomicFile out(file);
-  out.Write(page.text);
-  out.Finish();
+  return std::move(page.text);
+}
+
+/// Replaces the tables in all pages, or in none if one of them has no table. @throws InputError
+void PutInto(const std::vector<std::filesystem::path>& files) {
+  std::vector<std::string> pages;
+  for (const std::filesystem::path& file : files) pages.push_back(WithTables(file));
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    AtomicFile out(files[i]);
+    out.Write(pages[i]);
+    out.Finish();
+  }
 }
 
 std::string Hexadecimal(std::int64_t hash) {
@@ -160,7 +170,7 @@ void AddGraph(CLI::App& app, cli::Action& action) {
       "  fogline graph --into README.md docs/architecture.md   # after a change of the graph");
   verb->callback([&action, arguments] {
     action = [arguments] {
-      for (const std::filesystem::path& file : arguments->into) PutInto(file);
+      PutInto(arguments->into);
       if (!arguments->into.empty()) return kDone;
       if (arguments->json) {
         PrintAsJson();

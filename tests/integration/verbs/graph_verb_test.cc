@@ -79,6 +79,12 @@ TEST(GraphVerbTest, RefusesAPageWithoutATableAndKeepsIt) {
                              ": error: no table that begins with \"| role | program | does |\" or "
                              "\"| channel | type | from | to | what |\"\n");
   EXPECT_EQ(Content(page), "| role | program |\n");
+  // Of several pages none is changed.
+  const std::string good = folder.File("good.md");
+  const std::string old = "| role | program | does |\n| a | b | c |\n";
+  std::ofstream(good) << old;
+  EXPECT_EQ(RunCommand({Program("fogline"), "graph", "--into", good, page}).code, 2);
+  EXPECT_EQ(Content(good), old);
 }
 
 }  // namespace
