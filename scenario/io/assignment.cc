@@ -53,7 +53,9 @@ struct Assigner {
 void Assign(Scenario& scenario, const std::string& pointer, const Value& value) {
   const std::optional<Field> field = FieldAt(scenario, pointer);
   if (!field || !std::visit(Assigner{value}, field->value)) {
-    throw InputError(fmt::format("error: {} cannot be \"{}\"", pointer, value.text));
+    throw InputError(fmt::format(
+        "error: {} cannot be \"{}\" here: only numbers, choices and flags can be varied", pointer,
+        value.text));
   }
 }
 
@@ -61,7 +63,11 @@ void Assign(Scenario& scenario, const std::string& pointer, const Value& value) 
 
 FieldAssignment::FieldAssignment(std::string_view pointer) : pointer_(pointer) {
   const Field* field = FindField(pointer);
-  if (field == nullptr || field->As<SectionField>() != nullptr) {
+  if (field != nullptr && field->As<SectionField>() != nullptr) {
+    throw InputError(fmt::format(
+        "error: {0}: a section; `fogline check --explain {0}` lists its fields", pointer));
+  }
+  if (field == nullptr) {
     const auto suggestion = SuggestPointer(pointer);
     throw InputError(fmt::format("error: {}: no field of a scenario{}", pointer,
                                  suggestion ? fmt::format("; did you mean {}?", *suggestion) : ""));

@@ -133,6 +133,7 @@ struct CalibrateArguments {
 };
 
 CalibrationProblem MakeProblem(const CalibrateArguments& arguments) {
+  cli::RefuseOverride(arguments.overrides, "/seed", "the seeds are those of --seeds");
   CalibrationProblem problem{.file = PathText(arguments.scenario),
                              .scenario = LoadScenario(arguments.scenario, arguments.overrides),
                              .fields = ParseFreeFields(arguments.free),

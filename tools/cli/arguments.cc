@@ -44,8 +44,9 @@ bool Reserve(const std::filesystem::path& log) {
 
 }  // namespace
 
-void ScenarioArguments::RefuseOverrideOf(std::string_view pointer, std::string_view why) const {
-  for (const std::string& one : overrides_) {
+void RefuseOverride(std::span<const std::string> overrides, std::string_view pointer,
+                    std::string_view why) {
+  for (const std::string& one : overrides) {
     if (std::string_view(one).substr(0, one.find('=')) != pointer) continue;
     throw InputError(fmt::format("error: --set {}: {}", pointer, why));
   }

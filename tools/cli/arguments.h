@@ -5,6 +5,7 @@
 #include <chrono>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -28,6 +29,11 @@ namespace fogline::cli {
 inline Duration FromSeconds(double seconds) {
   return duration_cast<Duration>(std::chrono::duration<double>(seconds));
 }
+
+/// Refuses a --set of a field that the verb itself varies. `why` says what sets the field.
+/// @throws InputError
+void RefuseOverride(std::span<const std::string> overrides, std::string_view pointer,
+                    std::string_view why);
 
 /// The arguments SCENARIO, --set and --seed.
 class ScenarioArguments {
@@ -56,9 +62,10 @@ class ScenarioArguments {
     return std::ranges::find(overrides_, text) != overrides_.end();
   }
 
-  /// Refuses a --set of a field that the verb itself varies. `why` says what sets the field.
-  /// @throws InputError
-  void RefuseOverrideOf(std::string_view pointer, std::string_view why) const;
+  /// See RefuseOverride().
+  void RefuseOverrideOf(std::string_view pointer, std::string_view why) const {
+    RefuseOverride(overrides_, pointer, why);
+  }
 
  private:
   /// The text of --seed. @throws InputError if it is no seed

@@ -78,6 +78,11 @@ int Check(const CheckOptions& options) {
   if (options.lab && (options.print || options.explain || !options.overrides.empty())) {
     throw InputError("error: --lab: --print, --explain and --set are for scenarios");
   }
+  if ((options.schema || options.explain) &&
+      (!options.files.empty() || !options.overrides.empty())) {
+    throw InputError(fmt::format("error: --{}: neither a FILE nor --set has an effect on it",
+                                 options.schema ? "schema" : "explain"));
+  }
   if (options.schema) {
     fmt::print("{}", options.lab ? LabSchema() : ScenarioSchema());
     return kDone;

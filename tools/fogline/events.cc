@@ -13,6 +13,7 @@
 #include "common/process/console.h"
 #include "common/text.h"
 #include "services/decision/take_over/take_over_log.h"
+#include "services/graph.h"
 #include "services/log/run_log.h"
 #include "tools/cli/arguments.h"
 #include "tools/cli/help.h"
@@ -129,7 +130,8 @@ nlohmann::ordered_json RequestsJson(const RunEvents& events) {
     auto earlier = nlohmann::ordered_json::array();
     for (const auto& [name, step] : TimesOf(request)) {
       if (step && MayBeEarlier(events, *step)) earlier.push_back(fmt::format("{}_s", name));
-      const double time_s = static_cast<double>(step.value_or(0)) * events.run.scenario.step_s;
+      const std::int64_t step_us = std::llround(events.run.scenario.step_s * kMicrosPerSecond);
+      const double time_s = static_cast<double>(step.value_or(0) * step_us) / kMicrosPerSecond;
       row[fmt::format("{}_s", name)] = step ? nlohmann::ordered_json(time_s) : nullptr;
     }
     if (const auto* measures = MeasuresOf(events, request)) {
@@ -290,7 +292,8 @@ void AddEvents(CLI::App& app, cli::Action& action) {
       "  fogline run scenario/paper.json --set /arbitrator/take_over/mode=requested --log "
       "logs/asked.lcm\n"
       "  fogline events logs/asked.lcm\n"
-      "  fogline events logs/*.lcm --json | jq '.[].requests[] | .transferred_s - .requested_s'");
+      "  fogline events logs/*.lcm --json | jq '.[].requests[] | select(.transferred_s) |\n"
+      "    .transferred_s - .requested_s'");
   verb->callback(
       [&action, arguments] { action = [arguments] { return RunEventsVerb(*arguments); }; });
 }

@@ -93,11 +93,13 @@ struct RunArguments {
                     "End the run when no step completes for this time, in s")
         ->check(cli::NumberIn(1, 1e6))
         ->capture_default_str();
-    verb.add_option("--restarts", options.restarts,
-                    "How often each role may be started again after it was killed or hung (0: its "
-                    "death ends the run)")
-        ->check(CLI::Range(0, 1'000'000))
-        ->capture_default_str();
+    restarts =
+        verb.add_option(
+                "--restarts", options.restarts,
+                "How often each role may be started again after it was killed or hung (0: its "
+                "death ends the run)")
+            ->check(CLI::Range(0, 1'000'000))
+            ->capture_default_str();
     verb.add_flag(
         "--wall-clock", options.wall_clock,
         "In lockstep: write the wall clock of each step into the log; the digest does not "
@@ -113,6 +115,7 @@ struct RunArguments {
   cli::TransportArguments transport;
   runner::ExperimentOptions options;
   std::filesystem::path resume;
+  CLI::Option* restarts = nullptr;
   double speed = 1.0;
   double stall_s = 4.0;
   bool force = false;
@@ -141,6 +144,9 @@ void ApplyOptions(RunArguments& arguments) {
   }
   if (direct && options.wall_clock) {
     throw InputError("error: --wall-clock: a run with --transport direct has no recorder");
+  }
+  if (direct && arguments.restarts->count() > 0) {
+    throw InputError("error: --restarts: a run with --transport direct has no processes");
   }
   if (options.realtime) cli::RunInRealtime(options, arguments.speed);
   options.stall_limit = duration_cast<Duration>(std::chrono::duration<double>(arguments.stall_s));

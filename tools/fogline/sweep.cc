@@ -73,7 +73,13 @@ sweep::SweepPlan MakePlan(const SweepArguments& arguments) {
   if (arguments.scenario.empty()) throw InputError("error: SCENARIO is required");
   Scenario scenario = LoadScenario(arguments.scenario, arguments.overrides);
   std::vector<sweep::Axis> axes;
-  for (const std::string& axis : arguments.grid) axes.push_back(sweep::ParseAxis(axis));
+  for (const std::string& axis : arguments.grid) {
+    axes.push_back(sweep::ParseAxis(axis));
+    cli::RefuseOverride(arguments.overrides, axes.back().pointer, "the values are those of --grid");
+  }
+  if (!arguments.seeds.empty()) {
+    cli::RefuseOverride(arguments.overrides, "/seed", "the seeds are those of --seeds");
+  }
   const sweep::SeedRange seeds = arguments.seeds.empty()
                                      ? sweep::SeedRange{scenario.seed, scenario.seed}
                                      : cli::ReadSeeds(arguments.seeds);

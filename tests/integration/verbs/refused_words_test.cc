@@ -53,6 +53,21 @@ TEST(RefusedWordsTest, RefusesAnEmptyTextForEveryOptionAndArgumentThatNamesAFile
   EXPECT_THAT(ErrorOf({"run", "--log=", scenario}), HasSubstr("--log: the text is empty"));
 }
 
+TEST(RefusedWordsTest, RefusesWhatWouldHaveNoEffect) {
+  const std::string scenario = "scenario/paper.json";
+  EXPECT_THAT(ErrorOf({"run", scenario, "--transport", "direct", "--restarts", "3"}),
+              HasSubstr("error: --restarts: a run with --transport direct has no processes"));
+  EXPECT_THAT(ErrorOf({"check", "--explain", "/fog/bias_m", "nope.json"}),
+              HasSubstr("error: --explain: neither a FILE nor --set has an effect on it"));
+  EXPECT_THAT(ErrorOf({"sweep", scenario, "--grid", "/arbitrator/threshold=0.5", "--set",
+                       "/arbitrator/threshold=0.9"}),
+              HasSubstr("error: --set /arbitrator/threshold: the values are those of --grid"));
+  EXPECT_THAT(ErrorOf({"sweep", scenario, "--seeds", "1:2", "--set", "/seed=7"}),
+              HasSubstr("error: --set /seed: the seeds are those of --seeds"));
+  EXPECT_THAT(ErrorOf({"sweep", scenario, "--grid", "/fog=1,2"}),
+              HasSubstr("error: /fog: a section; `fogline check --explain /fog` lists its fields"));
+}
+
 TEST(RefusedWordsTest, NamesAFileThatWasTakenForAnOption) {
   EXPECT_EQ(ErrorOf({"digest", "-dash.lcm"}),
             "fogline digest: error: no option \"-dash.lcm\"; a file of this name is "
