@@ -31,9 +31,9 @@ class RestartPolicy {
     return wait_;
   }
 
-  /// Notes that a process for the role could not be started, or has ended by itself before its first
-  /// STATUS. A failed try does not count as a
-  /// restart. The tries end when the run's stall timeout ends the run.
+  /// Notes that a process for the role could not be started, or has ended by itself before its
+  /// first STATUS. A failed try does not count as a restart. The tries end when the run's stall
+  /// timeout ends the run.
   /// @return how long to wait before the next try
   Duration OnFailedStart() { return wait_ = std::min(2 * wait_, kLongest); }
 
