@@ -68,7 +68,9 @@ void Supervisor::Start(Child& child, TimePoint now) {
   child.activity.reset();
   child.killed_for.clear();
   child.deaf = false;
-  coordinator_.Launched(child.role, child.pid, now, child.place->host());
+  using Launch = runtime::RunCoordinator::Launch;
+  coordinator_.Launched(child.role, child.pid, now, child.place->host(),
+                        child.ended_at_once > 0 ? Launch::kTriedAgain : Launch::kUsual);
 }
 
 std::vector<processes::RolePlace::Exit> Supervisor::Collect() {
@@ -116,6 +118,7 @@ void Supervisor::StartAgain(Child& child, TimePoint now) {
     coordinator_.Hinder(child.role, error.what());
     return;
   }
+  if (child.ended_at_once > 1) return;  // one line for all tries
   options_.say(fmt::format("{} ({}) {}; started again as pid {} ({} of {})", NameOf(child.role),
                            PidText(*child.place, before), child.death, child.pid,
                            child.policy.restarts(), child.policy.limit()));
@@ -132,10 +135,12 @@ void Supervisor::OnExit(const processes::RolePlace::Exit& exit, TimePoint now) {
   const auto& status = coordinator_.member(exit.role).status;
   const bool met = status && status->pid == exit.pid;
   if (!exit.killed && !met && child->policy.restarts() > 0) {
+    ++child->ended_at_once;
     child->start_at = now + child->policy.OnFailedStart();
     coordinator_.Hinder(exit.role, exit.lines.empty() ? exit.how : exit.lines.back());
     return;
   }
+  child->ended_at_once = 0;
   const auto wait = exit.killed ? child->policy.OnDeath(coordinator_.step()) : std::nullopt;
   if (wait) {
     coordinator_.MarkDead(exit.role, exit.pid, now, child->place->host());

@@ -1,8 +1,9 @@
 // The supervisor of a run's processes, on this machine and on others. It starts and watches the
 // processes. It restarts a process that is killed, hangs or is deaf. A process that exits by itself
-// has printed the reason, and is not started again. In lockstep its exit ends the run. A run in
-// real time goes on without this process if RunCoordinator::GoesOnWithout() is true, the process
-// was not deaf, and restarts are allowed.
+// has printed the reason, and is not started again. (But if it was started again, and ends before
+// its first STATUS, it is started until the stall timeout ends the run.) In lockstep its exit ends
+// the run. A run in real time goes on without this process if RunCoordinator::GoesOnWithout() is
+// true, the process was not deaf, and restarts are allowed.
 #pragma once
 
 #include <functional>
@@ -71,6 +72,7 @@ class Supervisor {
     bool deaf = false;                       // whether it was killed because it was deaf
     std::string death{};                     // how the role's last process ended
     std::optional<TimePoint> start_at{};
+    int ended_at_once = 0;  // processes since the last death that ended before their first STATUS
     bool gone = false;      // whether the process has ended for good while the run continues
     bool hindered = false;  // whether the coordinator has been told why the process is not watched
   };

@@ -126,7 +126,12 @@ class RunCoordinator {
   /// @param why the reason; "" if there is none
   void Hinder(Role role, std::string why);
   /// Notes that the runner has started the role as this process, for the first time or again.
-  void Launched(Role role, std::int32_t pid, TimePoint now, const std::string& host = "");
+  /// @param launch kTriedAgain: the process before it has ended before its first STATUS. The launch
+  /// is
+  ///     then no progress of the run, and the hindrance of the role stays.
+  enum class Launch { kUsual, kTriedAgain };
+  void Launched(Role role, std::int32_t pid, TimePoint now, const std::string& host = "",
+                Launch launch = Launch::kUsual);
   /// Calls `handler` for every STATUS that is accepted. A STATUS that comes after a newer STATUS of
   /// the same process is not accepted.
   void OnEveryStatus(std::function<void(const status_t&)> handler) {

@@ -167,12 +167,14 @@ void RunCoordinator::Hinder(Role role, std::string why) {
   members_[static_cast<std::size_t>(role)].hindrance = std::move(why);
 }
 
-void RunCoordinator::Launched(Role role, std::int32_t pid, TimePoint now, const std::string& host) {
+void RunCoordinator::Launched(Role role, std::int32_t pid, TimePoint now, const std::string& host,
+                              Launch launch) {
   Member& member = members_[static_cast<std::size_t>(role)];
   std::erase(member.ended, ProcessOn(host, pid));
   member.child = ProcessOn(host, pid);
-  member.hindrance.clear();
   signs_of_life_.Since(role, now);
+  if (launch == Launch::kTriedAgain) return;
+  member.hindrance.clear();
   progressed_ = now;
 }
 

@@ -158,6 +158,17 @@ TEST_F(SupervisorTest, TriesAgainIfAProcessThatIsStartedAgainEndsAtOnce) {
   EXPECT_EQ(supervisor_->restarts().at(0).count, 1);
 }
 
+TEST_F(SupervisorTest, EndsTheRunIfEveryProcessThatIsStartedAgainEndsAtOnce) {
+  Begin(kManySteps, {.restarts = 1});
+  ASSERT_TRUE(PlayUntilStep(20)) << coordinator_->error();
+  setenv("FOGLINE_KEY", "/nowhere/key", 1);
+  SignalOne(PidOfRole(Role::kFusion), SIGKILL);
+  EXPECT_TRUE(PlayUntilPhase(Phase::kFailed));
+  unsetenv("FOGLINE_KEY");
+  EXPECT_THAT(coordinator_->error(), HasSubstr("/nowhere/key"));
+  EXPECT_THAT(said_, SizeIs(2)) << testing::PrintToString(said_);
+}
+
 TEST_F(SupervisorTest, KillsAProcessThatHangsAndStartsItAgain) {
   // On a busy machine other processes may also be silent for 2 s, so the run allows 100 restarts.
   Begin(kManySteps, {.restarts = 100, .silence = milliseconds(2000)});
