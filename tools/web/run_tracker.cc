@@ -102,7 +102,7 @@ void RunTracker::HearStep(std::size_t channel, runtime::Bytes bytes) {
   if (kChannels[channel].pace != Pace::kStep) return;
   const std::int64_t step = runtime::ReadInt64(bytes, runtime::kStepOffset);
   if (step < 0 || step > watch::StepSequence::kMaxStep) return;
-  if (step < newest_ && may_begin_again_) {
+  if (channel == IndexOf<truth_t>() && step < newest_ && may_begin_again_) {
     ForgetEvents();
     newest_ = -1;
   }

@@ -61,6 +61,17 @@ test("a live store gives each step's newest messages, and the values of a field"
   assert.equal(String(values[270]), log.table("TRUTH")[270].host_gap_m);
 });
 
+test("a live store tells a repair from a log that is played again", () => {
+  const store = filledStore();
+  const [run] = bytesOf("RUN");
+  for (let ms = 300; ms < 4000; ms += 200) store.add({channel: 4, arrived_ms: ms, bytes: run});
+  truth.slice(0, 100).forEach((bytes) => store.add({channel: 0, arrived_ms: 4000, bytes}));
+  assert.equal(store.lastStep, 299, "the other processes were alive: a repair");
+  assert.equal(store.series("TRUTH", "host_gap_m").times.length, 300);
+  truth.slice(0, 100).forEach((bytes, i) => store.add({channel: 0, arrived_ms: 7000 + i, bytes}));
+  assert.equal(store.lastStep, 99, "after a silence of the whole run: played again");
+});
+
 test("a live store keeps no more than its messages of a frame", () => {
   const frame = new Uint8Array(1e6);
   const store = new LiveStore(catalogue());

@@ -85,6 +85,7 @@ test("emergency braking does not take the authority from the human", () => {
   const {AUTOMATION, HUMAN, EMERGENCY_BRAKING} = describedTypes().arbitration_t.constants;
   const has = (mode, lambda_human) => told({mode, lambda_human}).hasAuthority;
   assert.deepEqual([has(EMERGENCY_BRAKING, 1), has(HUMAN, 1)], [true, true]);
+  assert.deepEqual([has(EMERGENCY_BRAKING, 0.5), has(EMERGENCY_BRAKING, 0.49)], [true, false], "half is enough");
   assert.deepEqual([has(EMERGENCY_BRAKING, 0), has(AUTOMATION, 0), told(null).hasAuthority], [false, false, false]);
 });
 
