@@ -31,7 +31,7 @@ class SeatGate {
     const bool is_new = IsNew(input);
     const bool same = newest_ && newest_->instance == input.instance;
     if (!same && Newest(now) != nullptr) return &status_t::second_seat;
-    if (!is_new || (!same && !input.present)) return nullptr;
+    if (!is_new || (same ? input.sequence <= newest_->sequence : !input.present)) return nullptr;
     if (!limiter_.Take(now)) return &status_t::too_frequent;
     newest_ = input;
     heard_ = now;
