@@ -1,6 +1,7 @@
 #include "tools/cli/threshold_rows.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <map>
 #include <mutex>
 #include <string_view>
@@ -9,9 +10,10 @@
 
 #include <fmt/core.h>
 
-#include "common/atomic_file.h"
+#include "common/errors.h"
 #include "common/interrupt.h"
 #include "common/process/progress.h"
+#include "common/text.h"
 #include "services/log/event_log.h"
 #include "services/log/log_of_run.h"
 #include "tools/cli/action.h"
@@ -79,7 +81,10 @@ void RefuseForeignFiles(const TableRuns& runs, std::span<const double> threshold
     std::vector<std::filesystem::path> logs{LogOf(runs, seed, kNone)};
     for (const double threshold : thresholds) logs.push_back(LogOf(runs, seed, NameOf(threshold)));
     for (const std::filesystem::path& log : logs) {
-      RefuseToReplace(log, "--logs", /*force=*/true, "event log", log::IsEventLogOrEmpty);
+      std::error_code ignored;
+      if (!std::filesystem::exists(log, ignored) || log::IsEventLogOrEmpty(log)) continue;
+      throw InputError(fmt::format(
+          "{}: error: --logs: the file is no event log and is not replaced", PathText(log)));
     }
   }
 }

@@ -130,7 +130,10 @@ std::vector<std::string> NamesOf(std::span<const runner::LoggedRun> runs) {
     }
   };
   add_to_equal(LogNameOf);
-  add_to_equal([](const runner::LoggedRun& run) { return PathText(run.result.log.parent_path()); });
+  add_to_equal([](const runner::LoggedRun& run) {
+    const std::filesystem::path folder = run.result.log.parent_path();
+    return folder.empty() ? "." : PathText(folder);
+  });
   return names;
 }
 
