@@ -79,7 +79,8 @@ TEST(CommandLineTest, ShowsTheSameHelpByTheVerbHelpAsByTheOption) {
 }
 
 TEST(CommandLineTest, GivesTheRecorderItsLogInItsExample) {
-  EXPECT_THAT(HelpOf({Program("fogline-recorder")}), HasSubstr("\n  fogline-recorder --log "));
+  EXPECT_THAT(HelpOf({Program("fogline-recorder")}),
+              HasSubstr("\n  fogline-recorder --run-id 7351 --shared-log --log "));
 }
 
 TEST(CommandLineTest, NamesAVerbThatIsNoneAndTheOneThatMayBeMeant) {

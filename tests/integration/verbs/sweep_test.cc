@@ -253,7 +253,10 @@ TEST_F(SweepTest, SaysWhatIsWrongWithItsArgumentsInOneLine) {
             "fogline sweep: error: --grid /seed: seeds are given by --seeds\n");
   EXPECT_EQ(error({"--grid", "/steps=1,2"}),
             "fogline sweep: error: --grid /steps: runs of one sweep are equally long\n");
-  EXPECT_EQ(error({"--grid", "/title=a"}), "fogline sweep: error: /title cannot be \"a\"\n");
+  EXPECT_EQ(
+      error({"--grid", "/title=a"}),
+      "fogline sweep: error: /title cannot be \"a\" here: only numbers, choices and flags can "
+      "be varied\n");
   EXPECT_EQ(error({"--seeds", "5:4"}),
             "fogline sweep: error: --seeds 5:4: neither A:B with 0 <= A <= B <= 9007199254740991 "
             "nor one seed\n");

@@ -35,7 +35,7 @@ TEST(EstimateTest, OfADifferenceOfSharesStaysBetweenMinusOneAndOneAndIsNotEmpty)
   const std::vector<double> none(20, 0.0);
   const study::Estimate same = study::PairedShareDifference(none, none);
   EXPECT_EQ(same.mean, 0);
-  EXPECT_NEAR(same.high, 0.196695, 1e-6);
+  EXPECT_NEAR(same.high, 1 - std::pow(0.0125, 1.0 / 20), 1e-9);
   EXPECT_EQ(same.low, -same.high);
   const study::Estimate all =
       study::PairedShareDifference(std::array{1.0, 1.0, 1.0}, std::array{0.0, 0.0, 0.0});

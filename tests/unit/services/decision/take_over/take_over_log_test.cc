@@ -73,7 +73,7 @@ TEST(TakeOverLogTest, TellsThatTheHumanDrivesFromTheFirstStepOn) {
   arbitration_t first = Command(0, arbitration_t::HUMAN);
   first.lambda_human = 1;
   Add(log, first);
-  EXPECT_THAT(Texts(log), ElementsAre("transfer to the human"));
+  EXPECT_THAT(Texts(log), ElementsAre("activation of the automation", "transfer to the human"));
 }
 
 TEST(TakeOverLogTest, TellsOfAManoeuvreThatEndsInTheLock) {

@@ -220,7 +220,8 @@ TEST(RobustnessTest, CountsTheNumberOfComparisonsOnce) {
   const auto judged = study::JudgeInSets(std::span(&claim, 1));
   const study::Claim heading = OnFinding(Finding(), claim);
   EXPECT_EQ(heading.p_holm, judged[0][0].p_holm);
-  for (const report::StudyClaim& one : study::CheckClaims(std::array{heading, heading}, false)) {
+  for (const report::StudyClaim& one :
+       study::CheckClaims(std::array{heading, heading, heading}, false)) {
     EXPECT_EQ(one.state, report::ClaimState::kHolds);
     EXPECT_THAT(one.found, HasSubstr(fmt::format("p = {:.3f}", judged[0][0].p_holm)));
   }
