@@ -54,8 +54,8 @@ class SeatGate {
   /// Most seats whose newest messages are remembered. Our choice: an experiment starts a few.
   static constexpr std::size_t kMostSeats = 64;
 
-  /// Whether the message is newer than all earlier ones of its seat. Otherwise it is late, or
-  /// somebody sends it again.
+  /// Whether the message is newer than all earlier ones of its seat. Otherwise it is late or a
+  /// repetition.
   bool IsNew(const driver_input_t& input) {
     const auto heard = std::ranges::find(seats_, input.instance, &Heard::instance);
     if (heard == seats_.end()) {
