@@ -105,7 +105,8 @@ double InterpolationErrorAt(std::span<const CurvePoint> curve, const CurvePlace&
     const std::optional<double> off = OffTheOthers(curve, point);
     if (!off) return;
     const double beside = std::abs(curve[outer].rhe_pct - curve[point].rhe_pct);
-    largest = std::max(largest.value_or(0), *off * (beside + stretch) / (2 * beside));
+    largest =
+        std::max(largest.value_or(0), *off * std::max(1.0, (beside + stretch) / (2 * beside)));
   };
   widen(place.below, place.below - 1);
   widen(above, above + 1);

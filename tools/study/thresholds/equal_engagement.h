@@ -61,10 +61,11 @@ std::vector<AtEqualEngagement> AgainstFixed(std::span<const RuleValues> fixed,
 /// Possible error of the interpolation at a place of the curve. The place is on a stretch between
 /// two points. Each of these points has a distance in gain from the straight line between its own
 /// neighbours. With h the length of the stretch and g the length of the other stretch at this
-/// point, d is the larger value of distance (g + h)/(2 g), and s is the place's `share`. If the
-/// curve bends once within the stretch, or steadily, and both points have a distance, the error is
-/// at most 4 s (1 - s) d. At a point of the curve the error is 0. If only one point has a distance,
-/// its value is used. If neither has one, the difference in gain between the points is used for d.
+/// point, d is the larger value of distance max(1, (g + h)/(2 g)), and s is the place's `share`. If
+/// the curve bends once within the stretch, or steadily, and both points have a distance, the error
+/// is at most 4 s (1 - s) d. At a point of the curve the error is 0. If only one point has a
+/// distance, its value is used. If neither has one, the difference in gain between the points is
+/// used for d.
 double InterpolationErrorAt(std::span<const CurvePoint> curve, const CurvePlace& place);
 
 }  // namespace fogline::study

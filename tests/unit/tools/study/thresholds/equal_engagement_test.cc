@@ -42,10 +42,11 @@ TEST(BestAtTest, HasNoPlaceBeyondTheCurve) {
 TEST(InterpolationErrorTest, IsThatOfTheNeighboursAtThePlace) {
   // A point is off by the difference between its gain and the gain that its two neighbours give.
   // RHE 40 % lies between 100 % and 20 %: three quarters of the way from -50 to 20 is 2.5. The gain
-  // of the point is 10, so it is off by 7.5. The stretch to 20 % is 20 long, and the one to 100 %
-  // is 60 long: 7.5 (60 + 20)/(2 60) is 5. RHE 20 % lies between 40 % and 0 %: half of the way from
-  // 10 to 22 is 16. The gain of the point is 20, so it is off by 4. Both stretches are 20 long.
-  EXPECT_NEAR(study::InterpolationErrorAt(kCurve, *study::BestAt(kCurve, 30)), 5, 1e-12);
+  // of the point is 10, so it is off by 7.5. The stretch to 20 % is the shorter one at this point,
+  // so it counts as it is.
+  // RHE 20 % lies between 40 % and 0 %: half of the way from 10 to 22 is 16. The gain of the point
+  // is 20, so it is off by 4.
+  EXPECT_NEAR(study::InterpolationErrorAt(kCurve, *study::BestAt(kCurve, 30)), 7.5, 1e-12);
   EXPECT_NEAR(study::InterpolationErrorAt(kCurve, *study::BestAt(kCurve, 10)), 4, 1e-12);
   EXPECT_NEAR(study::InterpolationErrorAt(kCurve, *study::BestAt(kCurve, 5)), 3, 1e-12);
   EXPECT_EQ(study::InterpolationErrorAt(kCurve, *study::BestAt(kCurve, 20)), 0)
