@@ -91,14 +91,21 @@ class Live:
 
     def __iter__(self) -> Iterator[Heard]:
         last = time.monotonic()
+        lost: FoglineError | None = None
         while True:
             while self._heard:
                 yield self._heard.popleft()
                 last = time.monotonic()  # the time that the caller needs does not count
+            if lost is not None:
+                raise lost
             if self._base is None:
                 return
             left = None if self._timeout_s is None else self._timeout_s + last - time.monotonic()
-            self._wait(left if left is None else max(0.0, left))
+            try:
+                self._wait(left if left is None else max(0.0, left))
+            except FoglineError as error:  # the messages that came before are yielded first
+                lost = error
+                continue
             # _wait() has also taken the messages that came while this process had no processor.
             if left is not None and left <= 0 and not self._heard:
                 return

@@ -192,21 +192,29 @@ class Relay:
         self._greeted = False
 
     def read(self, receiver: Receiver) -> int:
-        """As Multicast.read(). Raises FoglineError if the relay has ended."""
+        """As Multicast.read(). Raises FoglineError if the relay has ended, after all messages that
+        came before its end."""
+        end = self._receive()
+        while self._take(receiver):
+            pass
+        if end is not None:
+            raise FoglineError(f"the relay at {self._where} {end}")
+        return 0
+
+    def _receive(self) -> str | None:
+        """Stores the bytes that have come. @return why no more bytes will come; None if more may
+        come"""
         for _ in range(_MOST_AT_ONCE):
             try:
                 piece = self.socket.recv(1 << 16)
             except BlockingIOError:
                 break
             except OSError as error:
-                lost = f"the relay at {self._where} is lost: {error.strerror}"
-                raise FoglineError(lost) from None
+                return f"is lost: {error.strerror}"
             if not piece:
-                raise FoglineError(f"the relay at {self._where} has ended")
+                return "has ended"
             self._received += piece
-        while self._take(receiver):
-            pass
-        return 0
+        return None
 
     def _take(self, receiver: Receiver) -> bool:
         """If the first message is complete, calls the receiver with it. @return whether it was"""
