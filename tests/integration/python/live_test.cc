@@ -12,15 +12,19 @@ namespace {
 
 using testing::HasSubstr;
 
-// Prints the number of the received steps of TRUTH, the first step and the last step, after the
-// message of the last step.
+// Prints "joined" after the first message. After the message of the last step, it prints the number
+// of the received steps of TRUTH, the first step and the last step.
 constexpr const char* kListener = R"(
 import fogline_lab as fl
 
 steps = set()
 with fl.Live() as live:
     print("listening", flush=True)
+    joined = False
     for channel, message in live:
+        if not joined:
+            print("joined", flush=True)
+            joined = True
         if channel == "TRUTH":
             steps.add(message.header.step)
             if message.last:
@@ -30,17 +34,22 @@ with fl.Live() as live:
 
 class LiveTest : public testing::Test {
  protected:
-  /// Expects that a listener without a URL gets each step of a run with these options.
-  void ExpectHears(const std::vector<std::string>& options) {
+  /// Expects that a listener without a URL gets each step of a run with the options `of_run`. The
+  /// driver of the run gets the options `of_driver`. It starts only after the listener has joined
+  /// the network of the run, and the run does not begin without it.
+  void ExpectHears(const std::vector<std::string>& of_run,
+                   const std::vector<std::string>& of_driver = {}) {
     std::vector<std::string> listener = Python(WriteScript(folder_, kListener), {});
     listener.insert(listener.begin() + 1, "LCM_DEFAULT_URL=" + meeting_.url());
     Background live(listener);
     ASSERT_TRUE(live.WaitForOut("listening")) << live.Err();
     // The run is slow, so a busy machine loses no message that the listener has not read yet.
-    std::vector<std::string> more{"--pace", "2", "--set", "/steps=40"};
-    more.insert(more.end(), options.begin(), options.end());
-    const Outcome run = RunCommand(meeting_.Run(more));
-    ASSERT_EQ(run.code, 0) << run.err;
+    std::vector<std::string> more{"--external", "driver", "--pace", "2", "--set", "/steps=40"};
+    more.insert(more.end(), of_run.begin(), of_run.end());
+    Background run(meeting_.Run(more));
+    ASSERT_TRUE(live.WaitForOut("joined")) << live.Err() << run.Err();
+    Background driver(meeting_.Command("fogline-driver", of_driver));
+    EXPECT_EQ(run.Wait(), 0) << run.Err();
     EXPECT_EQ(live.Wait(), 0) << live.Err();
     EXPECT_THAT(live.Out(), HasSubstr("\n40 0 39 {}\n"));
   }
@@ -58,7 +67,7 @@ TEST_F(LiveTest, HearsEachStepOfARunOverARelay) { ExpectHears({"--transport", "t
 TEST_F(LiveTest, HearsEachStepOfASignedRunAtTheMeetingAddress) {
   const std::string key = folder_.File("key");
   runtime::SigningKey::Create(key);
-  ExpectHears({"--key", key});
+  ExpectHears({"--key", key}, {"--key", key});
 }
 
 TEST_F(LiveTest, EndsWhenNothingComesAnyMore) {
