@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <deque>
 #include <filesystem>
 #include <iterator>
 #include <optional>
@@ -184,23 +185,32 @@ TEST(BusTest, KeepsUdpmOnThisMachineUnlessToldOtherwise) {
   EXPECT_NE(runtime::FreshMulticastUrl(), runtime::FreshMulticastUrl());
 }
 
+/// A socket on a UDP port; -1 if the port is taken. @param shares as LCM's sockets share a port
+int SocketOn(std::uint16_t port, bool shares) {
+  const int receiver = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  const int yes = shares ? 1 : 0;
+  setsockopt(receiver, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof(yes));
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_port = htons(port);
+  if (bind(receiver, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) == 0) {
+    return receiver;
+  }
+  close(receiver);
+  return -1;
+}
+
 TEST(BusTest, DrawsAPortOnWhichNoSocketReceives) {
   // GIVEN sockets on 600 of the 12,000 ports. Like LCM's sockets, they let other sockets share the
   // port.
   std::set<std::uint16_t> taken;
   std::vector<int> sockets;
   for (int i = 0; i < 600; ++i) {
-    const int receiver = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-    ASSERT_GE(receiver, 0);
+    const auto port = static_cast<std::uint16_t>(20000 + 20 * i);
+    const int receiver = SocketOn(port, /*shares=*/true);
+    if (receiver < 0) continue;
     sockets.push_back(receiver);
-    const int yes = 1;
-    ASSERT_EQ(setsockopt(receiver, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof(yes)), 0);
-    sockaddr_in address{};
-    address.sin_family = AF_INET;
-    address.sin_port = htons(static_cast<std::uint16_t>(20000 + 20 * i));
-    if (bind(receiver, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) == 0) {
-      taken.insert(ntohs(address.sin_port));
-    }
+    taken.insert(port);
   }
   EXPECT_GT(taken.size(), 500);
   // WHEN 1,000 URLs are made, THEN none of them has one of these 600 ports
@@ -210,6 +220,26 @@ TEST(BusTest, DrawsAPortOnWhichNoSocketReceives) {
     EXPECT_FALSE(taken.contains(drawn->port)) << drawn->port;
   }
   for (const int receiver : sockets) close(receiver);
+}
+
+TEST(BusTest, ReservesThePortsOfItsLastUrls) {
+  // WHEN a process has many URLs of its own
+  std::set<std::uint16_t> ports;
+  std::deque<std::uint16_t> last;
+  for (int i = 0; i < 200; ++i) {
+    last.push_back(runtime::ParseMulticastUrl(runtime::FreshMulticastUrl())->port);
+    if (last.size() > runtime::kReservedPorts) last.pop_front();
+  }
+  // THEN the last ports differ, although no socket of a network uses them yet
+  ports.insert(last.begin(), last.end());
+  EXPECT_EQ(ports.size(), runtime::kReservedPorts);
+  for (const std::uint16_t port : ports) {
+    // AND no other process can draw them, but LCM's sockets can use them
+    EXPECT_EQ(SocketOn(port, /*shares=*/false), -1) << port;
+    const int receiver = SocketOn(port, /*shares=*/true);
+    EXPECT_GE(receiver, 0) << port;
+    close(receiver);
+  }
 }
 
 runtime::SigningKey KeyOf(std::uint8_t byte) {
