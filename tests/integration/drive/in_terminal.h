@@ -7,10 +7,12 @@
 #include <sys/wait.h>
 #include <termios.h>
 #include <unistd.h>
+#include <utmp.h>
 
 #include <algorithm>
 #include <array>
 #include <csignal>
+#include <cstdlib>
 #include <iterator>
 #include <string>
 #include <vector>
@@ -29,12 +31,18 @@ class InTerminal {
     for (const std::string& word : command) argv.push_back(const_cast<char*>(word.c_str()));
     argv.push_back(nullptr);
     const std::string folder = SourceDirectory().string();
-    pid_ = forkpty(&terminal_, nullptr, nullptr, nullptr);
+    // The attributes are read before the program can change them.
+    int of_program = -1;
+    if (openpty(&terminal_, &of_program, nullptr, nullptr, nullptr) != 0) std::abort();
+    tcgetattr(terminal_, &before_);
+    pid_ = fork();
     if (pid_ == 0) {
+      close(terminal_);
+      if (login_tty(of_program) != 0) _exit(127);
       if (chdir(folder.c_str()) == 0) execv(argv[0], argv.data());
       _exit(127);
     }
-    tcgetattr(terminal_, &before_);
+    close(of_program);
   }
   ~InTerminal() {
     if (pid_ > 0) {
