@@ -159,7 +159,7 @@ TEST_F(SshHostsTest, SayThatTheProgramsAreNotInThePath) {
 
 TEST_F(SshHostsTest, EndWithin5sOfCtrlC) {
   const SshLab lab(2);
-  ExpectCtrlCEndsEverything(lab.lab(), lab.ssh());
+  ExpectCtrlCEndsEverything(lab.lab(), lab.ssh(), std::chrono::seconds(5));
 }
 
 TEST_F(SshHostsTest, LeaveNothingBehindAfterTheRunnersDeath) {

@@ -111,11 +111,13 @@ bool Background::WaitForOut(const std::string& text, std::chrono::seconds limit)
 bool Background::WaitFor(const std::filesystem::path& file, const std::string& text,
                          std::chrono::seconds limit) {
   const auto end = SteadyClock::now() + limit;
-  while (Content(file).find(text) == std::string::npos) {
-    if (SteadyClock::now() > end || !IsAlive(pid_)) return false;
+  while (true) {
+    // A process that ends after this line may still have printed the text.
+    const bool may_print_more = SteadyClock::now() <= end && IsAlive(pid_);
+    if (Content(file).find(text) != std::string::npos) return true;
+    if (!may_print_more) return false;
     std::this_thread::sleep_for(kLookEvery);
   }
-  return true;
 }
 
 bool GrowsTo(std::uintmax_t bytes, const std::filesystem::path& file, std::chrono::seconds limit) {

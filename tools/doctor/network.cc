@@ -95,10 +95,10 @@ Duration RoundTrip(runtime::Bus& here, runtime::Bus& there, bool& back) {
   const TimePoint began = Clock::now();
   back = false;
   here.Publish("FOGLINE_PING", message);
-  while (!back && Clock::now() - began < kLimit) {
+  do {  // also once after a pause of this process that is longer than the limit
     there.Wait(milliseconds(1));
     here.Wait(milliseconds(1));
-  }
+  } while (!back && Clock::now() - began < kLimit);
   return back ? Clock::now() - began : Duration::zero();
 }
 

@@ -55,7 +55,11 @@ TEST_F(EnteredHostsTest, StartAKilledRoleThereAgain) {
   ExpectAKilledRoleIsStartedThereAgain(lab(), Enter());
 }
 
-TEST_F(EnteredHostsTest, EndWithin5sOfCtrlC) { ExpectCtrlCEndsEverything(lab(), Enter()); }
+TEST_F(EnteredHostsTest, EndSoonAfterCtrlC) {
+  // A machine that is not busy needs less than 5 s. Processes that are left behind end by
+  // themselves 15 s after the stall timeout.
+  ExpectCtrlCEndsEverything(lab(), Enter(), std::chrono::seconds(30));
+}
 
 TEST_F(EnteredHostsTest, LeaveNothingBehindAfterTheRunnersDeath) {
   ExpectNothingIsLeftOfARunnerThatWasKilled(lab(), Enter());
@@ -123,7 +127,7 @@ TEST_F(EnteredHostsTest, NameAMachineWithAnotherVersion) {
 TEST_F(EnteredHostsTest, GiveTheKeyToTheMachineWithoutACommandLineOrAFile) {
   const std::string key = folder_.File("lab.key");
   ASSERT_EQ(RunCommand({Program("fogline"), "keygen", key}).code, 0);
-  Background run(RunFrom(lab()[0], Enter(), OnLab2({"fusion"}), {"--key", key, "--pace", "20"}));
+  Background run(RunFrom(lab()[0], Enter(), OnLab2({"fusion"}), {"--key", key, "--pace", "5"}));
   ASSERT_TRUE(IsUnderWay()) << run.Err();
   const pid_t fusion = PidOf(run.Err(), "fusion");
   const std::string arguments = Content("/proc/" + std::to_string(fusion) + "/cmdline");

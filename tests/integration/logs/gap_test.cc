@@ -359,7 +359,7 @@ TEST_F(GapTest, AFileOfLcmLoggerThatBeganInTheMiddleOfARunIsUsed) {
     step = runtime::ReadInt64(truth, runtime::kStepOffset);
   });
   Background driver({Program("fogline-driver"), "--lcm-url", bus.url()});
-  Background run({Program("fogline"), "run", "scenario/paper.json", "--quiet", "--pace", "25",
+  Background run({Program("fogline"), "run", "scenario/paper.json", "--quiet", "--pace", "5",
                   "--set", "/steps=300", "--external", "driver", "--stall-timeout", "100", "--log",
                   folder_.File("own.lcm"), "--lcm-url", bus.url()});
   const TimePoint end = Clock::now() + kPatience;

@@ -53,7 +53,7 @@ class DisturbedLogTest : public LogIntegrityTest {
   /// Lets a run begin, stops its driver, and calls `disturb`, which changes the log on the disk.
   /// @return the outcome of the run
   Outcome Disturbed(const std::function<void(Background& run)>& disturb) {
-    Background run(Run({"--pace", "10", "--set", "/steps=60"}));
+    Background run(Run({"--pace", "1", "--set", "/steps=60"}));
     Background driver(Driver());
     constexpr std::uintmax_t kSomeSteps = 30'000;
     EXPECT_TRUE(GrowsTo(kSomeSteps, log_)) << run.Err();

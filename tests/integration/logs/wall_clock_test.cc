@@ -83,7 +83,7 @@ TEST_F(WallClockTest, InLockstepIsThereAfterARunWasResumed) {
   std::filesystem::remove(log_);  // so that the next run is the one whose log grows
   // GIVEN a run that was interrupted
   Background run({Program("fogline"), "run", "scenario/paper.json", "--quiet", "--force", "--log",
-                  log_, "--set", "/steps=200", "--pace", "20", "--wall-clock"});
+                  log_, "--set", "/steps=200", "--pace", "2", "--wall-clock"});
   ASSERT_TRUE(GrowsTo(60'000, log_));
   run.Signal(SIGINT);
   ASSERT_EQ(run.Wait(), 130) << run.Err();

@@ -187,7 +187,7 @@ class BurstRun {
   static constexpr double kRest_s = 2;  // seconds without bursts, at both ends of the run
   // Time for the commands that begin and end a burst on each machine, while other runs use the
   // processors.
-  static constexpr double kCommands_s = 1;
+  static constexpr double kCommands_s = 3;
 
   /// The command line of the run. The run continues after a collision, because the cars can hit
   /// each other when each car stops by itself.
@@ -224,8 +224,8 @@ class BurstRun {
     const TimePoint begin = Clock::now();
     machines_.Begin(burst);
     listener_.ListenUntil(begin + Periods(burst.length_s));
-    const TimePoint clean = Clock::now();
     machines_.End(burst);
+    const TimePoint clean = Clock::now();
     listener_.Forget();
     listener_.ListenUntil(clean + Periods(plan_.clean_s));
     return listener_.Since(clean);

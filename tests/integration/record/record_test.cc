@@ -257,10 +257,12 @@ TEST_F(RecordTest, FollowsTheRunThatIsAnnounced) {
   ASSERT_TRUE(record.WaitForErr("records "));
   // WHEN a run announces itself at this address
   Background run({"env", "LCM_DEFAULT_URL=" + meeting, Program("fogline"), "run",
-                  "scenario/paper.json", "--quiet", "--transport", "udpm", "--pace", "25", "--set",
-                  "/steps=300", "--log", folder_.File("own.lcm")});
+                  "scenario/paper.json", "--quiet", "--transport", "udpm", "--pace", "1", "--set",
+                  "/steps=10000", "--log", folder_.File("own.lcm")});
   EXPECT_TRUE(record.WaitForErr("follows run "));
-  ASSERT_EQ(run.Wait(), 0) << run.Err();
+  EXPECT_TRUE(ComesToHave("TRACK", log_));
+  run.Signal(SIGINT);
+  ASSERT_EQ(run.Wait(), 130) << run.Err();
   record.Signal(SIGINT);
   ASSERT_EQ(record.Wait(), 0);
   // THEN the log has messages of this run
@@ -275,10 +277,11 @@ TEST_F(RecordTest, GoesOnWhenTheRelayOfAFollowedRunHasEnded) {
                      "--flush-ms", "10"});
   ASSERT_TRUE(record.WaitForErr("records "));
   Background run({"env", "LCM_DEFAULT_URL=" + meeting, Program("fogline"), "run",
-                  "scenario/paper.json", "--quiet", "--transport", "tcpq", "--pace", "25", "--set",
-                  "/steps=300", "--log", folder_.File("own.lcm")});
+                  "scenario/paper.json", "--quiet", "--transport", "tcpq", "--pace", "1", "--set",
+                  "/steps=10000", "--log", folder_.File("own.lcm")});
   EXPECT_TRUE(record.WaitForErr("follows run "));
-  ASSERT_EQ(run.Wait(), 0) << run.Err();
+  run.Signal(SIGINT);
+  ASSERT_EQ(run.Wait(), 130) << run.Err();
   // The relay of the run ends with the run. The recording tries to connect for some time.
   EXPECT_TRUE(record.WaitForErr("leaves tcpq://")) << record.Err();
   runtime::Bus(meeting).Publish("AFTERWARDS", Payload(1, 4));

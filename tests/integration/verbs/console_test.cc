@@ -160,7 +160,7 @@ TEST(ConsoleTest, ARoleIsRepairedWhereStderrIsAFullDisk) {
   const std::string log = folder.File("run.lcm");
   // GIVEN a run with a stderr that accepts nothing
   Background run(Shell("exec 2>/dev/full", {Program("fogline"), "run", "scenario/paper.json",
-                                            "--set", "/steps=60", "--pace", "2", "--log", log}));
+                                            "--set", "/steps=60", "--pace", "1", "--log", log}));
   ASSERT_TRUE(GrowsTo(1, log));
   // WHEN a role is killed THEN the run starts it again, although the run cannot report the restart
   const pid_t radar = WaitForRole(run.pid(), "fogline-radar");
@@ -179,7 +179,7 @@ TEST(ConsoleTest, ARunGoesOnWhenItsTerminalIsGone) {
   // GIVEN a run that reports its progress on a terminal
   Background run(Shell("exec 2>" + std::string(ptsname(terminal)),
                        {Program("fogline"), "run", "scenario/paper.json", "--set", "/steps=60",
-                        "--pace", "2", "--log", log}));
+                        "--pace", "1", "--log", log}));
   ASSERT_TRUE(GrowsTo(1, log));
   const pid_t radar = WaitForRole(run.pid(), "fogline-radar");
   ASSERT_GT(radar, 0);
@@ -216,7 +216,7 @@ TEST(InterruptTest, SignalsThatWereIgnoredAtTheStartStayIgnoredInEveryProgram) {
   const std::string log = folder.File("run.lcm");
   // GIVEN a run that ignores SIGHUP and SIGINT, as under nohup or in the background of a script
   Background run(Shell("trap '' HUP INT", {Program("fogline"), "run", "scenario/paper.json",
-                                           "--set", "/steps=40", "--pace", "2", "--log", log}));
+                                           "--set", "/steps=40", "--pace", "1", "--log", log}));
   ASSERT_TRUE(GrowsTo(1, log));
   const pid_t radar = WaitForRole(run.pid(), "fogline-radar");
   ASSERT_GT(radar, 0);

@@ -3,9 +3,11 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <set>
 
 #include "services/runtime/transport/bus.h"
@@ -177,13 +179,18 @@ TEST_F(DoctorOnMachineTest, FindsTheMissingRouteAndItsRemedyHelps) {
 TEST_F(DoctorOnMachineTest, HearsTheRunOfAnotherMachine) {
   const ScratchFolder folder;
   const Lab lab(2);
-  Background run(lab[0].On({Program("fogline"), "run", "scenario/paper.json", "--pace", "1",
-                            "--lcm-url", kEverywhere, "--log", folder.File("run.lcm")}));
+  Background run(
+      lab[0].On({Program("fogline"), "run", "scenario/paper.json", "--pace", "1", "--set",
+                 "/steps=10000", "--lcm-url", kEverywhere, "--log", folder.File("run.lcm")}));
   ASSERT_TRUE(run.WaitForErr("processes: ")) << run.Err();
-  const Outcome doctor = Doctor(lab[1], kEverywhere);
-  EXPECT_EQ(doctor.code, 0) << doctor.out << doctor.err;
-  const json document = json::parse(doctor.out);
-  const std::string heard = Find(document["findings"], "check", "other_runs")["what"];
+  const TimePoint end = Clock::now() + kPatience;
+  Outcome doctor{};
+  std::string heard;
+  do {  // doctor listens for a second. A busy machine may give a role no processor for this time
+    doctor = Doctor(lab[1], kEverywhere);
+    ASSERT_EQ(doctor.code, 0) << doctor.out << doctor.err;
+    heard = Find(json::parse(doctor.out)["findings"], "check", "other_runs")["what"];
+  } while (std::ranges::count(heard, '@') < std::ssize(kRoles) && Clock::now() < end);
   EXPECT_THAT(heard, HasSubstr("run " + run.Err().substr(4, run.Err().find(" on ") - 4)));
   // doctor names the processes of this machine on all networks.
   EXPECT_THAT(doctor.out,
