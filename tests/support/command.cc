@@ -5,6 +5,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <csignal>
 #include <cstdlib>
 #include <fstream>
@@ -117,6 +118,18 @@ bool Background::WaitFor(const std::filesystem::path& file, const std::string& t
     if (Content(file).find(text) != std::string::npos) return true;
     if (!may_print_more) return false;
     std::this_thread::sleep_for(kLookEvery);
+  }
+}
+
+Outcome RunUntilItPrints(const std::vector<std::string>& command,
+                         const std::vector<std::string>& texts) {
+  const auto end = SteadyClock::now() + kPatience;
+  while (true) {
+    Outcome outcome = RunCommand(command);
+    const bool has_all = std::ranges::all_of(texts, [&outcome](const std::string& text) {
+      return outcome.out.find(text) != std::string::npos;
+    });
+    if (has_all || SteadyClock::now() > end) return outcome;
   }
 }
 

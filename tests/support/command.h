@@ -62,6 +62,11 @@ struct Outcome {
   std::string err;
 };
 
+/// Executes a command until its output has all these texts, because on a busy machine it may miss
+/// them. @return the last outcome; after kPatience it may lack a text
+Outcome RunUntilItPrints(const std::vector<std::string>& command,
+                         const std::vector<std::string>& texts);
+
 /// Waits until a file has `bytes` bytes. @return false after the time limit
 bool GrowsTo(std::uintmax_t bytes, const std::filesystem::path& file,
              std::chrono::seconds limit = kPatience);

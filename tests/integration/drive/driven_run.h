@@ -19,6 +19,14 @@ inline std::vector<std::string> AlwaysAsked() {
   return {"/person/drives=true", "/arbitrator/threshold=0", "/arbitrator/take_over/mode=requested"};
 }
 
+/// AlwaysAsked() for a person at a page. On a busy machine fogline-web may take this person for
+/// absent for a moment. Then the person gets authority again.
+inline std::vector<std::string> AlwaysAskedAtAPage() {
+  std::vector<std::string> changes = AlwaysAsked();
+  changes.emplace_back("/person/when_gone=until_back");
+  return changes;
+}
+
 /// The newest DRIVER_COMMAND and the newest HOST_COMMAND on a network.
 class Commands {
  public:

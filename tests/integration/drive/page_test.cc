@@ -26,7 +26,7 @@ std::vector<std::string> DriveAtPage(const std::string& log, std::vector<std::st
   more.insert(more.begin(),
               {"env", "-u", "DISPLAY", "-u", "WAYLAND_DISPLAY", Program("fogline"), "drive",
                kDriveScenario, "--json", "--log", log, "--lcm-url", runtime::FreshMulticastUrl()});
-  for (const std::string& setting : AlwaysAsked()) {
+  for (const std::string& setting : AlwaysAskedAtAPage()) {
     more.push_back("--set");
     more.push_back(setting);
   }

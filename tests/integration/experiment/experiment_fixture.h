@@ -55,14 +55,15 @@ class ExperimentFixture : public ::testing::Test {
   }
 
   /// A shell command that makes the trials of a participant from run `first` on, with the answers
-  /// of AnswersOf().
-  std::vector<std::string> Session(int participant, int first = 1) const {
+  /// of AnswersOf() and these options of `experiment run`.
+  std::vector<std::string> Session(int participant, int first = 1,
+                                   const std::string& options = "") const {
     const std::string input = folder_.File(fmt::format("answers-{}-{}.txt", participant, first));
     std::ofstream answers(input);
     for (int run = first; run <= 3; ++run) answers << AnswersOf(participant, run);
     return {"sh", "-c",
-            fmt::format("exec {} experiment run {} --results {} --participant {} --no-page < {}",
-                        Program("fogline"), file_, results_, participant, input)};
+            fmt::format("exec {} experiment run {} --results {} --participant {} --no-page {} < {}",
+                        Program("fogline"), file_, results_, participant, options, input)};
   }
 
   Outcome Experiment(const std::string& action, const std::vector<std::string>& more = {}) const {

@@ -39,7 +39,7 @@ TEST_F(ExperimentRealtimeTest, ASessionThatIsKilledInARunLosesNothing) {
   ASSERT_EQ(RunCommand(Session(1)).code, 0);
   {
     // Participant 2: the second run is killed while it is under way.
-    Background session(Session(2));
+    Background session(Session(2, 1, "--speed 1"));  // the run is not over before it is killed
     const std::string log = results_ + "/participant-02/trial-2-high.lcm";
     // The recorder writes the beginning of the trial, a TRIAL message, during the run. No program
     // adds it to this log later, because the run is killed.
@@ -114,8 +114,9 @@ void MakeTrials(PageSession& session, int participant, int kill_in) {
 
 TEST_F(ExperimentRealtimeTest, AKillOfFoglineWebInARunLosesNothingOfAnExperimentInPages) {
   for (int participant = 1; participant <= kParticipants; ++participant) {
+    // At this speed no run is over before the test has sent the marker.
     PageSession session({Program("fogline"), "experiment", "run", file_, "--results", results_,
-                         "--participant", std::to_string(participant)});
+                         "--participant", std::to_string(participant), "--speed", "4"});
     MakeTrials(session, participant, participant == 2 ? 2 : 0);
     EXPECT_EQ(session.process().Wait(), 0) << session.process().Err();
     const bool was_killed =

@@ -26,7 +26,7 @@ inline Words operator+(Words words, const Words& more) {
   return words;
 }
 
-// Steps of a run. A run over the network takes 3 ms for each step, so a test on a busy machine can
+// Steps of a run. A run over the network takes 10 ms for each step, so a test on a busy machine can
 // still kill the run in its middle.
 inline constexpr int kResumeSteps = 300;
 
@@ -88,7 +88,7 @@ class ResumeTest : public testing::Test {
   const std::string log_ = folder_.File("run.lcm");
 };
 
-inline const Words kPaced{"--pace", "33"};
+inline const Words kPaced{"--pace", "10"};
 
 /// A run over the network. The test receives the steps of the run.
 class SeenRun {

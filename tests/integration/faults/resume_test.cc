@@ -41,7 +41,7 @@ TEST_F(ResumeTest, GoesOnAfterItHasBeenKilledWhileItWentOn) {
   for (int i = 0; i < 2; ++i) {
     const auto size = std::filesystem::file_size(log_);
     Background again(Words{Program("fogline"), "run", "--resume", log_} + kPaced);
-    ASSERT_TRUE(GrowsTo(size + 100'000, log_)) << again.Err();
+    ASSERT_TRUE(GrowsTo(size + 50'000, log_)) << again.Err();
     again.Signal(SIGKILL);
     again.Wait();
   }
@@ -86,7 +86,7 @@ TEST_F(ResumeTest, IsSaidWhereARunIsInterruptedOrFails) {
     seen.run().Signal(SIGINT);
     ASSERT_EQ(seen.run().Wait(), 130);
     EXPECT_THAT(seen.run().Err(), HasSubstr("; the log so far: " + log_ + command + " --lcm-url '" +
-                                            seen.url() + "' --pace 33\n"));
+                                            seen.url() + "' --pace 10\n"));
   }
   {
     const std::string options =

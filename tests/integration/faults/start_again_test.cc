@@ -85,7 +85,7 @@ TEST_F(StartAgainTest, EndsTheRunByTheStallTimeoutAndSaysWhatWillNotStart) {
     const std::string name = "fogline-" + std::string(info.name);
     fs::create_symlink(Program(name), folder_.File("bin/" + name));
   }
-  Background run(Run(folder_.File("bin/fogline"), {"--stall-timeout", "1"}));
+  Background run(Run(folder_.File("bin/fogline"), {"--stall-timeout", "5"}));
   ASSERT_TRUE(GrowsTo(20'000, log())) << run.Err();
   fs::remove(folder_.File("bin/fogline-fusion"));
   kill(PidOf(run.Err(), "fusion"), SIGKILL);

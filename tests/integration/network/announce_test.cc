@@ -158,9 +158,10 @@ TEST(AnnounceTest, DoctorListsTheRunsAndWhatTheyWaitFor) {
   Meeting meeting;
   Background run(meeting.Run({"--transport", "udpm", "--external", "driver"}));
   const Place place = PlaceOf(run);
-  const Outcome doctor = RunCommand(meeting.Command("fogline", {"doctor"}));
-  EXPECT_THAT(doctor.out, HasSubstr("ok       run " + std::to_string(place.run_id) + " at " +
-                                    place.url + ", scenario "));
+  const std::string found =
+      "ok       run " + std::to_string(place.run_id) + " at " + place.url + ", scenario ";
+  const Outcome doctor = RunUntilItPrints(meeting.Command("fogline", {"doctor"}), {found});
+  EXPECT_THAT(doctor.out, HasSubstr(found));
   EXPECT_THAT(doctor.out, HasSubstr("; it waits for the driver\n"));
   EXPECT_THAT(doctor.out, Not(HasSubstr("FOGLINE_BEACON")));
 }

@@ -92,8 +92,8 @@ TEST_P(SeveralMachinesOutageTest, IsRepairedAndTold) {
   // WHEN a part of the network fails on the driver's machine and comes back
   lab[1].Do(GetParam().begin);
   // The run waits for the driver. No event shows this test that a message of the driver was lost.
-  // The driver sends a message every 200 ms, so at least one is lost in 300 ms.
-  std::this_thread::sleep_for(milliseconds(300));
+  // The driver sends a message every 200 ms, or later on a busy machine.
+  std::this_thread::sleep_for(milliseconds(1000));
   lab[1].Do(GetParam().end);
   // THEN the result is that of an undisturbed run
   const auto result = ResultOf(run);
@@ -201,24 +201,24 @@ TEST_F(OutageTest, AFirewallThatDropsWhatIsSentChangesNoResultAndIsTold) {
 TEST_F(OutageTest, AFirewallThatLetsNothingOutEndsTheRunWithItsReason) {
   const Machine machine("firewall");
   Background run(machine.On({Program("fogline"), "run", "scenario/paper.json", "--pace", "1",
-                             "--stall-timeout", "1", "--restarts", "0", "--log", Log()}));
+                             "--stall-timeout", "5", "--restarts", "0", "--log", Log()}));
   ASSERT_TRUE(GrowsTo(20'000, Log()));
   machine.Do(kFirewall);
   EXPECT_EQ(run.Wait(), 3);
   // The run may first notice that it cannot send messages, or that it receives no messages.
   EXPECT_THAT(run.Err(),
-              AllOf(ContainsRegex("(nothing could be sent for 1\\.[0-9] s: |messages that "
+              AllOf(ContainsRegex("(nothing could be sent for [0-9]+\\.[0-9] s: |messages that "
                                   "could not be sent: .*)\\(?Operation not permitted"),
                     HasSubstr("the log so far: " + Log())));
 }
 
-TEST_F(OutageTest, ARoleInRealTimeThatCouldSendNothingForLongGoesOn) {
+TEST_F(OutageTest, ARoleInRealtimeThatCouldSendNothingForLongGoesOn) {
   // GIVEN a run in real time with a stall timeout of one second and its driver on another machine
   const Lab lab(2);
   Background driver(lab[1].On({Program("fogline-driver"), "--lcm-url", kUrl}));
   Background run(lab[0].On({Program("fogline"), "run", "scenario/paper.json", "--json",
-                            "--realtime", "--set", "/steps=50", "--external", "driver", "--lcm-url",
-                            kUrl, "--stall-timeout", "1", "--log", Log()}));
+                            "--realtime", "--set", "/steps=100", "--external", "driver",
+                            "--lcm-url", kUrl, "--stall-timeout", "1", "--log", Log()}));
   ASSERT_TRUE(GrowsTo(20'000, Log()));
   // WHEN the driver can send nothing for longer than this timeout
   lab[1].Do(kFirewall);
@@ -300,7 +300,7 @@ TEST_F(OutageTest, LeavesStockProgramsThatHearARunAndAreHeard) {
   // lcm-logger listens when this socket exists. The kernel prints the port 7700 as 1E14.
   machine.Do("until grep -q :1E14 /proc/net/udp; do sleep 0.01; done");
   // WHEN a run takes place on loopback and the interface goes down during it
-  Background run(machine.On(PacedRun({"--lcm-url", url})));
+  Background run(machine.On(Run({"--lcm-url", url, "--pace", "5"})));
   ASSERT_TRUE(GrowsTo(100'000, Log()));
   machine.Do("ip link set eth0 down");
   LastForSteps();
@@ -323,7 +323,7 @@ TEST_F(OutageTest, LeavesStockProgramsThatHearARunAndAreHeard) {
   }
   // AND top receives the messages of lcm-logplayer, which sends over the interface of the route
   Background top(machine.On(
-      {Program("fogline"), "top", "--json", "--once", "--interval", "3", "--lcm-url", url}));
+      {Program("fogline"), "top", "--json", "--once", "--interval", "10", "--lcm-url", url}));
   machine.Do("until grep -q :1E14 /proc/net/udp; do sleep 0.01; done");
   Background player(machine.On({"lcm-logplayer", "--speed=10", "--lcm-url=" + url, stock}));
   EXPECT_EQ(top.Wait(), 0) << top.Err();

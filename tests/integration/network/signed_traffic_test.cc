@@ -39,8 +39,9 @@ class Intruder {
   void AccompanyUntilTheEnd(const Background& run, const std::set<std::int64_t>& other_runs,
                             const Answer& answer) {
     std::size_t done = 0;
-    while (IsAlive(run.pid())) {
-      bus_.Wait(milliseconds(20));
+    for (bool alive = true; alive;) {
+      alive = IsAlive(run.pid());  // the messages that have come until then are handled, too
+      if (bus_.Wait(alive ? milliseconds(20) : milliseconds(0))) bus_.Drain();
       for (; done < heard_.size(); ++done) {
         const auto [channel, message] = heard_[done];
         if (!said_.contains(message) && !other_runs.contains(RunIdOf(message))) {
@@ -193,7 +194,7 @@ TEST_F(SignedTrafficTest, UnsoundMessagesHaveNoEffectOnAnUnsignedRunEither) {
   Intruder intruder(url_);
   lcm_t* lcm = lcm_create(url_.c_str());
   ASSERT_NE(lcm, nullptr);
-  Background run(Run({"--set", "/steps=60", "--pace", "3"}));
+  Background run(Run({"--set", "/steps=60", "--pace", "1"}));
   intruder.AccompanyUntilTheEnd(run, {}, [&](const std::string& channel, const Payload& message) {
     const auto* info = std::ranges::find(kChannels, channel, &ChannelInfo::name);
     if (info->pace != Pace::kStep) return;
@@ -258,12 +259,12 @@ TEST_F(SignedTrafficTest, TellsARunnerWithoutAKeyThatTheTrafficIsSigned) {
 }
 
 TEST_F(SignedTrafficTest, TakesTheKeyFromTheEnvironment) {
+  Intruder intruder(url_);
   Background run([&] {
     std::vector<std::string> command = Run({"--set", "/steps=20"});
     command.insert(command.begin(), {"env", "FOGLINE_KEY=" + key_});
     return command;
   }());
-  Intruder intruder(url_);
   bool signed_steps = false;
   intruder.AccompanyUntilTheEnd(run, {}, [&](const std::string& channel, const Payload& message) {
     signed_steps = signed_steps || (channel == "TRUTH" && runtime::LooksSigned(message));

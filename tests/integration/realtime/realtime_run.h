@@ -34,10 +34,9 @@ class RealtimeRun {
       const auto* truth = arrival.As<truth_t>();
       if (truth == nullptr || truth->header.step <= step_) return;
       step_ = truth->header.step;
-      truth_at_ = arrival.time();
     });
     bus_.Subscribe(ChannelOf<status_t>().name, [this](runtime::Arrival& arrival) {
-      if (const auto* status = arrival.As<status_t>()) Heard(*status, arrival.time());
+      if (const auto* status = arrival.As<status_t>()) Heard(*status);
     });
   }
 
@@ -101,13 +100,15 @@ class RealtimeRun {
     }
     return command;
   }
-  void Heard(const status_t& status, TimePoint now) {
+  void Heard(const status_t& status) {
     pids_[status.role] = status.pid;
     if (missed_after_ || status.role == NameOf(Role::kRecorder)) return;
     for (std::size_t i = 0; i < status.input.size(); ++i) {
       const bool world = status.input[i] == ChannelOf<truth_t>().name ||
                          status.input[i] == ChannelOf<ego_t>().name;
-      if (world && status.input_state[i] == status_t::INPUT_LOST) missed_after_ = now - truth_at_;
+      if (world && status.input_state[i] == status_t::INPUT_LOST) {
+        missed_after_ = std::chrono::microseconds(status.input_age_us[i]);
+      }
     }
   }
 
@@ -116,7 +117,6 @@ class RealtimeRun {
   std::string log_;
   Background run_;
   std::int64_t step_ = -1;
-  TimePoint truth_at_{};
   std::optional<Duration> missed_after_;
   std::map<std::string, pid_t> pids_;
 };

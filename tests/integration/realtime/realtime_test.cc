@@ -116,12 +116,12 @@ std::set<std::int64_t> StepsIn(const std::string& log) {
 }
 
 TEST(RealtimeTest, EachRoleKeepsABacklog) {
-  RealtimeRun run("scenario/paper.json", 100);
+  RealtimeRun run("scenario/paper.json", 300);
   run.WaitForStep(60);
   // A thread of the role takes the messages out of the kernel's buffer.
   for (const RoleInfo& role : kRoles)
     EXPECT_GE(run.Threads(std::string(role.name)), 2) << role.name;
-  EXPECT_EQ(run.Finish()["steps"], 100);
+  EXPECT_EQ(run.Finish()["steps"], 300);
 }
 
 TEST(RealtimeTest, ARecorderThatIsKilledLosesNoStepThatItHasWritten) {

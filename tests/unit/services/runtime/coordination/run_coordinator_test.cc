@@ -168,11 +168,10 @@ TEST_F(RunCoordinatorTest, BlamesNoRoleForSilenceWhileItWasHeldUpItself) {
   EXPECT_EQ(coordinator_.TakeLongestPause(), Duration::zero());
   // The silence of the roles after the runner's pause counts. The time limit is 4 s. A pause of the
   // test before the first Poll() counts, too, if it is shorter than 500 ms.
-  for (TimePoint now = again; now < again + milliseconds(3400); now += milliseconds(20)) {
-    coordinator_.Poll(now);
-  }
+  TimePoint now = again;
+  for (; now < again + milliseconds(3400); now += milliseconds(20)) coordinator_.Poll(now);
   EXPECT_EQ(coordinator_.phase(), runtime::RunCoordinator::Phase::kRunning) << coordinator_.error();
-  coordinator_.Poll(again + milliseconds(4010));
+  for (; now < again + milliseconds(4020); now += milliseconds(20)) coordinator_.Poll(now);
   EXPECT_EQ(coordinator_.phase(), runtime::RunCoordinator::Phase::kFailed);
 }
 
