@@ -29,14 +29,24 @@ ProcessUse MeasureThisProcess() {
           .rss_bytes = pages * sysconf(_SC_PAGESIZE)};
 }
 
+namespace {
+
+/// @param thread 0: the calling thread
+bool RunFirst(pid_t thread, int priority) {
+  const sched_param wanted{.sched_priority = priority};
+  return sched_setscheduler(thread, SCHED_FIFO | SCHED_RESET_ON_FORK, &wanted) == 0;
+}
+
+}  // namespace
+
+bool RunThreadBeforeOthers(int priority) { return RunFirst(0, priority); }
+
 bool RunBeforeOthers(int priority) {
-  sched_param wanted{};
-  wanted.sched_priority = priority;
   bool granted = true;
   std::error_code unreadable;
   for (const auto& task : std::filesystem::directory_iterator("/proc/self/task", unreadable)) {
     const auto thread = static_cast<pid_t>(std::atoi(task.path().filename().c_str()));
-    granted = sched_setscheduler(thread, SCHED_FIFO | SCHED_RESET_ON_FORK, &wanted) == 0 && granted;
+    granted = RunFirst(thread, priority) && granted;
   }
   // Locks pages in memory, because a page that the kernel has dropped must be read from the disk.
   granted = mlockall(MCL_CURRENT | MCL_FUTURE | MCL_ONFAULT) == 0 && granted;

@@ -18,6 +18,10 @@ ProcessUse MeasureThisProcess();
 /// @return whether the kernel granted both requests, with SCHED_FIFO for all threads
 bool RunBeforeOthers(int priority);
 
+/// Asks the kernel to run the calling thread before all ordinary threads (SCHED_FIFO), but not the
+/// threads that it starts. @return whether the kernel granted this
+bool RunThreadBeforeOthers(int priority);
+
 /// After this call, a write beyond the limit for the size of files (ulimit -f) fails like a write
 /// on a full disk. The call affects this process and the processes that it starts. Without the
 /// call, the kernel kills the process (SIGXFSZ), and the process cannot report the reason.

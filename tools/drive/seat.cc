@@ -8,6 +8,7 @@
 
 #include "common/process/console.h"
 #include "common/process/poll.h"
+#include "common/process/this_process.h"
 #include "services/graph.h"
 #include "services/host_modes.h"
 #include "services/runtime/seat/seat_instance.h"
@@ -20,6 +21,9 @@ namespace {
 // Longest wait of the thread for its device or a message. In this time the pedals of keys move by
 // at most a fifth of their travel, because key_press_ps is at most 20 per second.
 constexpr Duration kTick = milliseconds(10);
+// Priority of the thread, as that of the roles in real time. On a busy machine an ordinary thread
+// may be silent for so long that the person counts as absent. The thread needs little time.
+constexpr int kPriority = 1;
 
 /// The text that the person sees for a mode of HOST_COMMAND. A mode without a text has "".
 std::string_view TextOf(std::int8_t mode) {
@@ -100,6 +104,7 @@ Seat::~Seat() {
 
 void Seat::Run(const std::string& url, std::int64_t run_id,
                const runtime::TrafficOptions& traffic) {
+  RunThreadBeforeOthers(kPriority);  // the runner reports a refusal of the kernel for the roles
   // The messages of a seat have no --faults, because a seat is not a part of the run. It signs as
   // the runner (DRIVER_INPUT in services/graph.h).
   const auto opened =

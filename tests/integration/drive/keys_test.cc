@@ -1,19 +1,25 @@
 // `fogline drive --keys` in a pseudo-terminal. The test types at the other end of the
 // pseudo-terminal.
+#include <sched.h>
+
 #include <algorithm>
 #include <csignal>
+#include <filesystem>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "common/clock.h"
+#include "common/process/this_process.h"
 #include "services/log/driver_inputs.h"
 #include "services/log/event_log.h"
 #include "services/log/run_log.h"
 #include "tests/integration/drive/driven_run.h"
 #include "tests/integration/drive/in_terminal.h"
+#include "tests/support/machine.h"
 
 namespace fogline::test {
 namespace {
@@ -53,7 +59,7 @@ class KeysInRealtimeTest : public testing::Test {
 };
 
 TEST_F(KeysInRealtimeTest, DriveTheHostAndTheTerminalIsRestoredAtTheEnd) {
-  InTerminal program(Drive(250));
+  InTerminal program(Drive(600));
   Commands commands(url_);
   ASSERT_TRUE(program.WaitUntil([&] { return program.IsRaw(); })) << program.text();
   ASSERT_GE(commands.WaitFor([&] { return commands.driver.input_instance != 0; }), 0);
@@ -82,6 +88,27 @@ TEST_F(KeysInRealtimeTest, APersonWhoIsNotAskedIsToldWhoDrives) {
     return program.text().find(">>> you drive") != std::string::npos;
   })) << program.text();
   EXPECT_EQ(program.Wait(), 0) << program.text();
+}
+
+/// The number of threads of a process that the kernel runs before all ordinary threads.
+int ThreadsBeforeOthers(pid_t process) {
+  int threads = 0;
+  for (const auto& task :
+       std::filesystem::directory_iterator("/proc/" + std::to_string(process) + "/task")) {
+    const int policy = sched_getscheduler(std::stoi(task.path().filename()));
+    threads += (policy & ~SCHED_RESET_ON_FORK) == SCHED_FIFO ? 1 : 0;
+  }
+  return threads;
+}
+
+TEST_F(KeysInRealtimeTest, TheThreadOfTheSeatRunsBeforeOtherThreads) {
+  bool granted = false;
+  std::thread([&granted] { granted = RunThreadBeforeOthers(1); }).join();
+  if (!granted) return MachineLacks("the right to real-time priority");
+  InTerminal program(Drive(4000));
+  EXPECT_TRUE(program.WaitUntil([&] { return ThreadsBeforeOthers(program.pid()) == 1; }));
+  program.Type("\x03");
+  EXPECT_EQ(program.Wait(), 130) << program.text();
 }
 
 TEST_F(KeysInRealtimeTest, TheTerminalIsRestoredAfterCtrlC) {

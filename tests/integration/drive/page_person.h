@@ -34,7 +34,7 @@ class PagePerson {
   void Drive() {
     // On a busy machine the person would otherwise be silent for longer than the deadman allows.
     // Without the right to this priority the tests need a machine that is not busy.
-    RunBeforeOthers(/*priority=*/1);
+    RunThreadBeforeOthers(/*priority=*/1);
     while (!ends_) {
       try {
         WebClient client(port_, {.target = target_, .protocol = "fogline.drive.v1"});

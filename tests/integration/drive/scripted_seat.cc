@@ -16,7 +16,6 @@
 #include <vector>
 
 #include "common/interrupt.h"
-#include "common/process/this_process.h"
 #include "services/graph.h"
 #include "services/runtime/transport/bus.h"
 #include "tools/drive/seat.h"
@@ -86,9 +85,6 @@ int main(int argc, char** argv) {
   const auto run_id = drive::WaitForRun(argv[1]);
   if (!run_id) return 0;
   const drive::Seat seat(argv[1], *run_id, {}, std::make_unique<drive::Script>(acts));
-  // On a busy machine the person of the script would otherwise be silent for longer than the
-  // deadman allows. Without the right to this priority the tests need a machine that is not busy.
-  RunBeforeOthers(/*priority=*/1);
   // The seat sends in a thread of its own. This thread waits for the signal that ends the program.
   while (!WasInterrupted()) std::this_thread::sleep_for(milliseconds(20));
   return 0;
