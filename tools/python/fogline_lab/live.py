@@ -96,10 +96,10 @@ class Live:
             while self._heard:
                 yield self._heard.popleft()
                 last = time.monotonic()  # the time that the caller needs does not count
-            if lost is not None:
-                raise lost
             if self._base is None:
                 return
+            if lost is not None:
+                raise lost
             left = None if self._timeout_s is None else self._timeout_s + last - time.monotonic()
             try:
                 self._wait(left if left is None else max(0.0, left))

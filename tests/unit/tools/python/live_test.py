@@ -44,25 +44,39 @@ class LiveTest(unittest.TestCase):
                 time.sleep(2 * timeout_s)
         self.assertEqual(heard, [("LIDAR", 1), ("LIDAR", 2), ("LIDAR", 3)])
 
-    def test_yields_what_came_before_the_end_of_the_relay(self):
+    def live_after_the_end_of_a_relay(self):
+        """A listener to a relay that has sent two messages, and has ended. @return the listener,
+        and the port of the relay"""
         with socket.create_server(("127.0.0.1", 0)) as server:
             port = server.getsockname()[1]
-            with fl.Live(f"tcpq://127.0.0.1:{port}", timeout_s=10) as live:
-                relay, _ = server.accept()
-                with relay:
-                    # The subscription: magic, version, kind, size of the pattern, pattern. The
-                    # kernel would discard the messages if the connection ended with unread bytes.
-                    relay.recv(18, socket.MSG_WAITALL)
-                    relay.sendall(struct.pack(">II", 0x287617FA, 0x0100))
-                    for range_m in (1, 2):
-                        message = fl.lidar_t(valid=True, range_m=range_m).encode()
-                        relay.sendall(struct.pack(">II", 1, 5) + b"LIDAR" +
-                                      struct.pack(">I", len(message)) + message)
-                heard = []
-                with self.assertRaisesRegex(fl.FoglineError, f"127.0.0.1:{port} has ended"):
-                    for channel, message in live:
-                        heard.append((channel, message.range_m))
+            live = fl.Live(f"tcpq://127.0.0.1:{port}", timeout_s=10)
+            relay, _ = server.accept()
+            with relay:
+                # The subscription: magic, version, kind, size of the pattern, pattern. The kernel
+                # would discard the messages if the connection ended with unread bytes.
+                relay.recv(18, socket.MSG_WAITALL)
+                relay.sendall(struct.pack(">II", 0x287617FA, 0x0100))
+                for range_m in (1, 2):
+                    message = fl.lidar_t(valid=True, range_m=range_m).encode()
+                    relay.sendall(struct.pack(">II", 1, 5) + b"LIDAR" +
+                                  struct.pack(">I", len(message)) + message)
+        return live, port
+
+    def test_yields_what_came_before_the_end_of_the_relay(self):
+        live, port = self.live_after_the_end_of_a_relay()
+        heard = []
+        with live, self.assertRaisesRegex(fl.FoglineError, f"127.0.0.1:{port} has ended"):
+            for channel, message in live:
+                heard.append((channel, message.range_m))
         self.assertEqual(heard, [("LIDAR", 1), ("LIDAR", 2)])
+
+    def test_ends_when_it_is_closed_also_after_the_end_of_the_relay(self):
+        live, _ = self.live_after_the_end_of_a_relay()
+        heard = []
+        for _, message in live:
+            heard.append(message.range_m)
+            live.close()
+        self.assertEqual(heard, [1, 2])
 
 
 if __name__ == "__main__":
