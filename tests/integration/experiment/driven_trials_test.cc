@@ -280,7 +280,9 @@ TEST_F(DrivenTrialsInRealtimeTest, ASeatThatDoesNotComeBackEndsTheSessionBeforeT
   // start.
   const std::size_t kills = CountOf("was killed by signal 9", err);
   EXPECT_GE(kills, 1U) << err;
-  EXPECT_EQ(CountOf("; it is started again", err), kills + 1) << err;
+  // If the test kills a fogline-web that has not opened the seat yet, this is the first failed
+  // start.
+  EXPECT_THAT(CountOf("; it is started again", err), ::testing::AnyOf(kills, kills + 1)) << err;
   EXPECT_FALSE(std::filesystem::exists(LogOf("trial-1-secret-a")));
 }
 

@@ -29,13 +29,14 @@ inline void ExpectHangersAreStartedAgain(const std::vector<std::string>& roles) 
   watched.WaitForStep(100);
   for (const std::string& role : roles) watched.Signal(role, SIGSTOP);
   const auto result = watched.ExpectSameResult();
-  ASSERT_EQ(result["restarts"].size(), roles.size());
   for (const std::string& role : roles) {
     EXPECT_GE(WatchedRun::RestartsOf(result, role), 1) << role;
   }
-  EXPECT_THAT(
-      result["restarts"][0]["last"].get<std::string>(),
-      testing::MatchesRegex("was silent for [2-9]\\.[0-9] s and was killed at step [0-9]+"));
+  for (const auto& restart : result["restarts"]) {
+    EXPECT_THAT(
+        restart["last"].get<std::string>(),
+        testing::MatchesRegex("was silent for [0-9]+\\.[0-9] s and was killed at step [0-9]+"));
+  }
 }
 
 /// Kills `wanted` processes at random steps, at most ten in each run. The run is not over when the

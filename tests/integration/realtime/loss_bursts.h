@@ -118,6 +118,7 @@ class BurstListener {
   }
   /// Forgets all steps so far. Since() then counts only steps that begin later.
   void Forget() {
+    bus_->Drain();  // messages that have come, and that are not handled yet
     began_.clear();
     back_.clear();
   }

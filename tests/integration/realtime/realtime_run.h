@@ -59,8 +59,9 @@ class RealtimeRun {
     const std::string folder = "/proc/" + std::to_string(pids_.at(role)) + "/task";
     return std::distance(std::filesystem::directory_iterator(folder), {});
   }
-  /// The time between the world's last TRUTH and the first STATUS that calls the world lost, on
-  /// this process's clock. The result is nullopt if the world comes back before such a STATUS.
+  /// The age of the world's last message in the first STATUS that calls the world lost, as the
+  /// sender of this STATUS measured it, without its own pauses. The result is nullopt if the world
+  /// comes back before such a STATUS.
   std::optional<Duration> WaitForTheWorldToBeMissed() {
     const std::int64_t silent_since = step_;
     const TimePoint end = Clock::now() + std::chrono::seconds(5);
