@@ -34,9 +34,9 @@ class RealtimeRulesTest : public testing::Test {
 
   void Go() {
     script_.SayRun(run_t::GO, -1, kSlowSpeed);
-    // The role takes the time of GO shortly after `run_at_`. The added 100 us are longer than this
+    // The role takes the time of GO shortly after `run_at_`. The added 5 ms are longer than this
     // delay, so at the time At(n) tick n has come.
-    go_ = run_at_ + std::chrono::microseconds(100);
+    go_ = run_at_ + milliseconds(5);
   }
   /// The time `periods` periods after GO.
   TimePoint At(double periods) const {
@@ -255,12 +255,12 @@ TEST_F(TickRuleTest, LetsTheOthersFinishTheStepInWhichTheMachineStoodStill) {
   Go();
   script_.PollUpTo(node_, At(0));
   // GIVEN a world that wakes just before tick 3, when no role has answered yet
-  script_.Poll(node_, At(2.999));
+  script_.Poll(node_, At(2.98));
   EXPECT_THAT(StepsOf(truths_), ElementsAre(0));
   // WHEN the other roles answer THEN the next step begins immediately. Tick 3 begins no step,
   // because tick 3 comes too soon after this step.
   Say<arbitration_t, follower_command_t>(0);
-  script_.PollUpTo(node_, At(2.9995));
+  script_.PollUpTo(node_, At(2.99));
   EXPECT_THAT(StepsOf(truths_), ElementsAre(0, 1));
   script_.PollUpTo(node_, At(3.5));
   EXPECT_THAT(StepsOf(truths_), ElementsAre(0, 1));
