@@ -1,5 +1,5 @@
-// The last lines of tools/demo name commands and files that exist. tools/demo uses the programs of
-// this build, and installs and builds nothing.
+// tools/demo builds what it needs, and its last lines name commands and files that exist. Here it
+// uses the programs of this build, and installs and builds nothing.
 #include <filesystem>
 #include <fstream>
 #include <regex>
@@ -19,22 +19,28 @@ namespace fogline::test {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::Not;
 
-/// A folder in which tools/demo runs. The folder's own tools/setup and tools/build do nothing.
+/// A folder in which tools/demo runs. The folder's own tools/setup does nothing, and its own
+/// tools/build only makes links to the programs of this build. Both write their calls into the file
+/// `calls`.
 class DemoFolder {
  public:
   DemoFolder() {
     const std::filesystem::path tools = folder_.path() / "tools";
     std::filesystem::create_directory(tools);
     std::filesystem::copy_file(SourceDirectory() / "tools/demo", tools / "demo");
-    for (const char* script : {"setup", "build"}) {
-      std::ofstream(tools / script) << "#!/bin/sh\n";
-      std::filesystem::permissions(tools / script, std::filesystem::perms::owner_all);
-    }
+    Write("setup", "");
+    Write("build", "mkdir -p build; ln -sfn " + ProgramDirectory().string() + " build/bin");
     std::filesystem::create_directory_symlink(SourceDirectory() / "scenario",
                                               folder_.path() / "scenario");
-    std::filesystem::create_directory(folder_.path() / "build");
-    std::filesystem::create_directory_symlink(ProgramDirectory(), folder_.path() / "build/bin");
+  }
+
+  /// Makes tools/NAME, which writes its call and then executes `commands`.
+  void Write(const std::string& name, const std::string& commands) const {
+    const std::filesystem::path script = folder_.path() / "tools" / name;
+    std::ofstream(script) << "#!/bin/sh\necho \"$0 $*\" >>calls\n" << commands << "\n";
+    std::filesystem::permissions(script, std::filesystem::perms::owner_all);
   }
 
   /// A command line for bash, as a user types it in this folder.
@@ -53,6 +59,35 @@ std::string NamedAs(const std::string& name, const std::string& said) {
   const std::regex line("(?:^|\n)" + name + ": +([^(\n]*[^( \n])");
   std::smatch found;
   return std::regex_search(said, found, line) ? found[1].str() : "";
+}
+
+constexpr const char* kBuildNotice =
+    "building the programs for the experiment: two to four minutes";
+
+TEST(DemoTest, BuildsOnlyItsPartsAndSaysAtFirstThatThisTakesLong) {
+  const DemoFolder folder;
+  const Outcome first = RunCommand(folder.Typed("tools/demo"));
+  EXPECT_EQ(first.code, 0) << first.err;
+  EXPECT_THAT(first.err, HasSubstr(kBuildNotice));
+  EXPECT_EQ(Content(folder.path() / "calls"), "tools/setup run\ntools/build fogline_demo\n");
+  const Outcome again = RunCommand(folder.Typed("tools/demo"));
+  EXPECT_EQ(again.code, 0) << again.err;
+  EXPECT_THAT(again.err, Not(HasSubstr(kBuildNotice)));
+}
+
+TEST(DemoTest, TwoAtOnceRunOneAfterTheOther) {
+  const DemoFolder folder;
+  folder.Write("setup", "until [ -e go ]; do sleep 0.05; done");
+  Background first(folder.Typed("tools/demo"));
+  ASSERT_TRUE(ComesToHave("tools/setup run\n", folder.path() / "calls"));
+  Background second(folder.Typed("tools/demo"));
+  EXPECT_TRUE(second.WaitForErr("waiting for another tools/demo in this folder ..."));
+  EXPECT_EQ(Content(folder.path() / "calls"), "tools/setup run\n");
+  std::ofstream(folder.path() / "go") << "";
+  for (Background* demo : {&first, &second}) {
+    EXPECT_EQ(demo->Wait(), 0) << demo->Err();
+    EXPECT_THAT(demo->Out(), HasSubstr("report: logs/demo/report.html"));
+  }
 }
 
 TEST(DemoTest, NamesItsFilesAndTheCommandThatShowsARunInABrowser) {
