@@ -124,8 +124,8 @@ TEST(SpyTest, SaysHowTheTypesAreMadeWhereThereAreNone) {
   std::filesystem::copy_file(Program("fogline"), parts.File("bin/fogline"));
   const Outcome spy = RunCommand(parts.Command(parts.File("bin/fogline"), {}));
   EXPECT_EQ(spy.code, 3);
-  EXPECT_THAT(spy.err, HasSubstr("apt-get install default-jdk, then cmake -S . -B build && ninja "
-                                 "-C build fogline_lcmtypes_java\n"));
+  EXPECT_THAT(spy.err, HasSubstr("apt-get install default-jdk, then cmake -S . -B build -G Ninja "
+                                 "&& ninja -C build fogline_lcmtypes_java\n"));
 }
 
 TEST(LogplayerTest, StartsLcmsOwnOnTheNetworkWithTheLog) {
@@ -139,6 +139,11 @@ TEST(LogplayerTest, StartsLcmsOwnOnTheNetworkWithTheLog) {
   EXPECT_EQ(player.out, "-Djava.net.preferIPv4Stack=true -cp " + parts.File("jars/lcm.jar") +
                             " lcm.logging.LogPlayer --lcm-url=udpm://239.255.76.67:7700?ttl=0 "
                             "--paused tests/integration/logs/kept/0.1.0.lcm\n");
+  // AND without --lcm-url it uses LCM_DEFAULT_URL
+  command.resize(command.size() - 2);
+  command.insert(command.begin() + 1, "LCM_DEFAULT_URL=udpm://239.255.76.67:7701?ttl=0");
+  EXPECT_THAT(RunCommand(command).out,
+              HasSubstr(" --lcm-url=udpm://239.255.76.67:7701?ttl=0 --paused "));
 }
 
 TEST(LogplayerTest, RefusesWhatItCannotPlay) {

@@ -65,7 +65,7 @@ fs::path TypesOf(const SpyArguments& arguments) {
   if (!types.empty()) return types;
   throw std::runtime_error(fmt::format(
       "there are no message types beside {}: apt-get install default-jdk, then cmake -S "
-      ". -B build && ninja -C build fogline_lcmtypes_java",
+      ". -B build -G Ninja && ninja -C build fogline_lcmtypes_java",
       PathText(programs)));
 }
 
