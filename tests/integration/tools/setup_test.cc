@@ -176,5 +176,29 @@ TEST_F(SetupTest, InstallsDebiansNpmOnlyIfItNeedsOneAndThereIsNone) {
                                     "driver npm ci [^\n]*\n"));
 }
 
+TEST_F(SetupTest, ShowsHowFarAptIsAndPrintsItsOutputOnlyIfItFails) {
+  // GIVEN a machine without npm, and an apt-get that writes its progress as Debian's does
+  std::filesystem::rename(File("bin/npm"), File("tmp/npm"));
+  const std::string progress =
+      "[ $1 = install ] || exit 0; echo what apt says\n"
+      "echo dlstatus:1:50.0:npm >&3; echo pmstatus:npm:50.0:npm >&3; echo other:npm:60.0:npm >&3\n";
+  Write("apt-get", progress + "cp tmp/npm bin/npm");
+  const Outcome outcome = Setup();
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_EQ(outcome.out, "");
+  EXPECT_THAT(outcome.err,
+              MatchesRegex("installing 1 of [0-9]+ packages, which takes minutes the first time: "
+                           "npm\napt-get update \\.\\.\\.\n"
+                           "installing: 25 of 100[^\n]*\ninstalling: 75 of 100[^\n]*\n"
+                           "npm ci: [^\n]*\n"));
+  // WHEN apt-get fails
+  std::filesystem::rename(File("bin/npm"), File("tmp/npm"));
+  std::filesystem::remove_all(File("node_modules"));
+  Write("apt-get", progress + "exit 100");
+  const Outcome failed = Setup();
+  EXPECT_EQ(failed.code, 3);
+  EXPECT_THAT(failed.err, EndsWith("\nwhat apt says\n"));
+}
+
 }  // namespace
 }  // namespace fogline::test

@@ -63,17 +63,20 @@ TEST(ToolsTest, RefuseAnArgumentThatTheyDoNotKnowBeforeTheyDoAnything) {
   }
 }
 
-TEST(ToolsTest, BuildSaysWhatTheCompilerSaysWhereErrorsAreLookedFor) {
-  // GIVEN a ninja that reports an error of the compiler
+TEST(ToolsTest, BuildSaysHowFarItIsAndWhatTheCompilerSaysWhereErrorsAreLookedFor) {
+  // GIVEN a ninja that begins the line of its first command as it is told, and then reports an
+  // error of the compiler
   const ScratchFolder folder;
   const std::string ninja = folder.File("ninja");
-  std::ofstream(ninja) << "#!/bin/sh\necho 'b.cc:1: error: mistake'\nexit 1\n";
+  std::ofstream(ninja) << "#!/bin/sh\n"
+                       << "echo \"$NINJA_STATUS\" | sed 's/%f/1/; s/%t/2/; s/$/a.o/'\n"
+                       << "echo 'b.cc:1: error: mistake'\nexit 1\n";
   std::filesystem::permissions(ninja, std::filesystem::perms::owner_all);
   const Outcome outcome = RunCommand(
       {"env", "PATH=" + folder.path().string() + ":" + std::getenv("PATH"), "tools/build", "all"});
   EXPECT_EQ(outcome.code, 1);
   EXPECT_EQ(outcome.out, "");
-  EXPECT_THAT(outcome.err, HasSubstr("b.cc:1: error: mistake\n"));
+  EXPECT_EQ(outcome.err, "building: 1 of 2\nb.cc:1: error: mistake\n");
 }
 
 TEST(ToolsTest, SayHowFarLongWorkIsAndPassOnWhatElseItSays) {
@@ -83,6 +86,22 @@ TEST(ToolsTest, SayHowFarLongWorkIsAndPassOnWhatElseItSays) {
   EXPECT_EQ(outcome.code, 0);
   EXPECT_EQ(outcome.out, "b.cc:1: error\n");
   EXPECT_EQ(outcome.err, "building: 1 of 40\nbuilding: 20 of 40\nbuilding: 40 of 40\n");
+}
+
+// The time left is known after two seconds.
+constexpr const char* kHalfOfIt =
+    "{ echo @1 40; sleep 2.1; echo @20 40; } | tools/progress building";
+
+TEST(ToolsTest, SayHowLongLongWorkTakesYet) {
+  const Outcome outcome = RunCommand({"bash", "-c", kHalfOfIt});
+  EXPECT_THAT(outcome.err,
+              testing::MatchesRegex("building: 1 of 40\nbuilding: 20 of 40, 0:[0-9][0-9] left\n"));
+}
+
+TEST(ToolsTest, DrawABarOnATerminal) {
+  const Outcome outcome = RunCommand({"script", "--quiet", "--command", kHalfOfIt, "/dev/null"});
+  EXPECT_THAT(outcome.out,
+              testing::ContainsRegex("building \\[={15} {15}\\] 20 of 40, 0:[0-9][0-9] left"));
 }
 
 }  // namespace
