@@ -124,6 +124,16 @@ TEST(WaitTest, OfARoleHasALimitToo) {
                             " in vain" + how + " (--wait 0 waits for ever)\n");
 }
 
+TEST(WaitTest, OfARoleAndOfSpyIsAMinuteUnlessSaidOtherwise) {
+  for (const std::vector<std::string>& command :
+       {std::vector{Program("fogline-driver")},
+        std::vector{Program("fogline"), std::string("spy")}}) {
+    std::vector<std::string> help = command;
+    help.emplace_back("--help");
+    EXPECT_THAT(RunCommand(help).out, testing::ContainsRegex("\n  --wait [^\n]*=60\n"));
+  }
+}
+
 TEST(WaitTest, OfARoleThatTheRunnerStartsIsSilent) {
   const Outcome role =
       RunCommand({Program("fogline-driver"), "--lcm-url", runtime::FreshMulticastUrl(), "--run-id",

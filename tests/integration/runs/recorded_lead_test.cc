@@ -1,4 +1,5 @@
 // A leader that was recorded on a road: the shipped scenario and its recording.
+#include <algorithm>
 #include <cstdio>
 
 #include <gtest/gtest.h>
@@ -35,6 +36,13 @@ TEST_F(RecordedLeadTest, IsThereWithoutAFileFromOutsideOfTheScenarioFolder) {
   const Outcome check =
       RunCommand({Program("fogline"), "check", elsewhere.File("scenario/recorded_lead.json")});
   EXPECT_EQ(check.code, 0) << check.err;
+  const std::string recording = Content(elsewhere.path() / "scenario/data/acc_platoon_a.csv");
+  EXPECT_TRUE(
+      recording.starts_with("Time,Speed1,Speed2,Speed3,Speed4,Speed5,IVS1,IVS2,IVS3,IVS4\r\n"));
+  EXPECT_EQ(std::ranges::count(recording, '\n'), 1 + 7000);
+  const std::string about = Content(elsewhere.path() / "scenario/data/README.md");
+  EXPECT_NE(about.find("CC0"), std::string::npos);
+  EXPECT_NE(about.find("`acc_platoon_a.csv`"), std::string::npos);
 }
 
 TEST_F(RecordedLeadTest, IsInstalledWithItsRecording) {

@@ -211,6 +211,24 @@ TEST(DocsTest, NameOnlyFilesThatAreThere) {
   }
 }
 
+TEST(DocsTest, GrantTheLicenseAndSayHowToCiteAndToContribute) {
+  const std::string license = ReadSource("LICENSE");
+  EXPECT_TRUE(license.starts_with("BSD 3-Clause License\n")) << license;
+  EXPECT_NE(license.find("the Fogline authors"), std::string::npos);
+  EXPECT_NE(license.find("3. Neither the name of the copyright holder"), std::string::npos);
+  const std::string citation = ReadSource("CITATION.cff");
+  for (const char* line :
+       {"\ntype: software\n", "\nlicense: BSD-3-Clause\n", "\nreferences:\n",
+        "Work-in-Progress: Traded Control Transfer", "\n      - family-names: Sourav\n"}) {
+    EXPECT_NE(citation.find(line), std::string::npos) << line;
+  }
+  EXPECT_NE(ReadSource("CONTRIBUTING.md").find("`tools/test`"), std::string::npos);
+}
+
+TEST(ReadmeTest, NamesFoglineSpyForLiveTraffic) {
+  EXPECT_NE(ReadSource("README.md").find("`fogline spy`"), std::string::npos);
+}
+
 TEST(ReadmeTest, ItsCommandsLeaveNoFileThatGitDoesNotKnow) {
   const Clone clone;
   clone.Must("fogline table scenario/paper.json --logs logs/demo");  // as tools/demo does
