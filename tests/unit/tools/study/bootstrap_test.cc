@@ -58,7 +58,12 @@ TEST(FromReplicatesTest, TakesThePercentiles) {
 
 TEST(FromReplicatesTest, HasNoIntervalOfOneRunOrWhereAReplicateHasNoValue) {
   EXPECT_FALSE(study::FromReplicates(1, 2, {1, 2, 3}).has_interval());
-  EXPECT_FALSE(study::FromReplicates(9, 2, {1, kNoNumber, 3}).has_interval());
+  // The percentiles themselves are not near the missing value.
+  std::vector<double> replicates(101);
+  std::iota(replicates.begin(), replicates.end(), 0.0);
+  EXPECT_TRUE(study::FromReplicates(9, 2, replicates).has_interval());
+  replicates[40] = kNoNumber;
+  EXPECT_FALSE(study::FromReplicates(9, 2, replicates).has_interval());
   EXPECT_EQ(study::VerdictOf(study::FromReplicates(1, 2, {1, 2, 3})), study::Verdict::kTooFew);
 }
 

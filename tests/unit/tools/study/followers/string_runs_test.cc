@@ -14,8 +14,8 @@ namespace {
 
 /// The outcome of a string of cars with ACCs, in fog that begins after 20 s. @param more overrides
 /// of dense_fog.json
-study::StringOutcome RunString(std::vector<std::string> more) {
-  more.insert(more.end(), {"/fog/start_s=20", "/steps=350"});
+study::StringOutcome RunString(std::vector<std::string> more, int steps = 350) {
+  more.insert(more.end(), {"/fog/start_s=20", "/steps=" + std::to_string(steps)});
   const std::array kinds{
       study::StudyCase{.name = "acc", .file = "dense_fog.json", .overrides = std::move(more)}};
   const std::array variants{study::HostVariants().front()};
@@ -37,16 +37,24 @@ TEST(StringRunsTest, AmplificationIsACarsBrakingOverThatOfTheCarAhead) {
   }
 }
 
+/// Overrides for a leader that brakes hard, without fog. @param start_s when it begins to brake
+std::vector<std::string> HardBraking(double start_s) {
+  return {"/lead/profile=emergency_brake",
+          "/lead/emergency_brake/start_s=" + std::to_string(start_s),
+          "/lead/emergency_brake/deceleration_mps2=6", "/lead/emergency_brake/final_speed_mps=12",
+          "/fog/model=none"};
+}
+
 TEST(StringRunsTest, MeasuresFromASecondBeforeTheFog) {
   // GIVEN a leader that brakes hard long before the fog, so that every car behind it brakes, too
-  const study::StringOutcome braked =
-      RunString({"/lead/profile=emergency_brake", "/lead/emergency_brake/start_s=1",
-                 "/lead/emergency_brake/deceleration_mps2=6",
-                 "/lead/emergency_brake/final_speed_mps=12", "/fog/model=none"});
+  const study::StringOutcome braked = RunString(HardBraking(1));
   // THEN the measures show none of this braking
   for (const study::CarInString& car : braked.cars) {
     for (const double braking : car.max_deceleration_mps2) EXPECT_LT(braking, 0.5);
   }
+  // BUT they show the braking of the host in the last second before the fog, when the run ends
+  const study::StringOutcome brakes = RunString(HardBraking(18), /*steps=*/200);
+  for (const double braking : brakes.cars[0].max_deceleration_mps2) EXPECT_GT(braking, 0.5);
 }
 
 TEST(StringRunsTest, ACarThatNeverClosesInHasAnInfiniteTimeToCollision) {
