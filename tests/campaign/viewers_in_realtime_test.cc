@@ -13,7 +13,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/clock.h"
-#include "services/runtime/transport/bus.h"
+#include "services/runtime/transport/udpm/fresh_url.h"
 #include "tests/integration/web/viewed.h"
 #include "tests/support/machine.h"
 

@@ -18,6 +18,7 @@
 
 #include "services/graph.h"
 #include "services/runtime/transport/bus.h"
+#include "services/runtime/transport/udpm/fresh_url.h"
 #include "tools/benchmarks/program.h"
 
 namespace fogline::benchmarks {

@@ -21,7 +21,7 @@
 #include <nlohmann/json.hpp>
 
 #include "services/graph.h"
-#include "services/runtime/transport/bus.h"
+#include "services/runtime/transport/udpm/fresh_url.h"
 #include "tools/benchmarks/bare_lcm.h"
 #include "tools/benchmarks/comparisons.h"
 #include "tools/benchmarks/program.h"

@@ -1,16 +1,11 @@
 #include "services/runtime/transport/bus.h"
 
 #include <lcm/lcm.h>
-#include <netinet/in.h>
-#include <sodium.h>
-#include <sys/socket.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
-#include <mutex>
 #include <stdexcept>
 #include <system_error>
 
@@ -25,43 +20,6 @@
 
 namespace fogline::runtime {
 namespace {
-
-/// The ports of the last calls of FreshMulticastUrl(). The kernel delivers a multicast message to
-/// every socket on the message's port, even if the socket has joined another group. So a run needs
-/// a port that no other socket uses. Its sockets are often made later and in other processes.
-class ReservedPorts {
- public:
-  /// Reserves a UDP port of this machine. @return false if another socket has the port
-  bool Add(std::uint16_t port) {
-    const int socket = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-    if (socket < 0) return true;  // the caller's own socket will report the error
-    sockaddr_in address{};
-    address.sin_family = AF_INET;
-    address.sin_port = htons(port);
-    // bind() fails with EADDRINUSE if another socket has the port. Any other error does not mean
-    // that the port is taken.
-    if (bind(socket, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) != 0 &&
-        errno == EADDRINUSE) {
-      close(socket);
-      return false;
-    }
-    // LCM's sockets set SO_REUSEADDR, so they can use the port. This socket receives no messages.
-    constexpr int kYes = 1, kNo = 0;
-    setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &kYes, sizeof(kYes));
-    setsockopt(socket, IPPROTO_IP, IP_MULTICAST_ALL, &kNo, sizeof(kNo));
-    const std::lock_guard lock(mutex_);
-    sockets_.push_back(socket);
-    if (sockets_.size() > kReservedPorts) {
-      close(sockets_.front());
-      sockets_.pop_front();
-    }
-    return true;
-  }
-
- private:
-  std::mutex mutex_;
-  std::deque<int> sockets_;
-};
 
 /// Escapes a channel name, because LCM treats channel names as regular expressions.
 std::string Escaped(std::string_view channel) {
@@ -380,21 +338,6 @@ std::string SignatureTrouble(const Bus::Unverified& unverified) {
   }
   if (unverified.no_key > 0) return "traffic on this network is signed; give --key";
   return "";
-}
-
-std::string FreshMulticastUrl() {
-  // The ports lie above LCM's own port 7667 and below 32768. Linux gives the ports from 32768 on to
-  // sockets that ask for no particular port (ip(7)). The group is LCM's own.
-  constexpr std::uint32_t kFirstPort = 20000;
-  constexpr std::uint32_t kPorts = 12000;
-  constexpr int kTries = 20;  // if all tries find a taken port, the last port is used
-  static ReservedPorts reserved;
-  std::uint32_t port = 0;
-  for (int i = 0; i < kTries; ++i) {
-    port = kFirstPort + randombytes_uniform(kPorts);
-    if (reserved.Add(static_cast<std::uint16_t>(port))) break;
-  }
-  return fmt::format("udpm://239.255.76.67:{}?ttl=0", port);
 }
 
 }  // namespace fogline::runtime

@@ -10,7 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "services/runtime/transport/bus.h"
+#include "services/graph.h"
+#include "services/runtime/transport/udpm/fresh_url.h"
 #include "tests/support/command.h"
 
 namespace fogline::test {

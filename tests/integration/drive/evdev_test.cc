@@ -13,6 +13,7 @@
 
 #include "services/log/driver_inputs.h"
 #include "services/log/run_log.h"
+#include "services/runtime/transport/udpm/fresh_url.h"
 #include "tests/integration/drive/driven_run.h"
 
 namespace fogline::test {

@@ -17,6 +17,7 @@
 #include "services/log/driver_inputs.h"
 #include "services/log/event_log.h"
 #include "services/log/run_log.h"
+#include "services/runtime/transport/udpm/fresh_url.h"
 #include "tests/integration/drive/driven_run.h"
 #include "tests/integration/drive/in_terminal.h"
 #include "tests/support/machine.h"

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "services/log/run_log.h"
-#include "services/runtime/transport/bus.h"
+#include "services/runtime/transport/udpm/fresh_url.h"
 #include "tests/integration/drive/driven_run.h"
 #include "tests/integration/drive/page_person.h"
 #include "tests/integration/web/viewed.h"

@@ -13,6 +13,7 @@
 #include "services/log/log_seal.h"
 #include "services/runtime/process/step_node.h"
 #include "services/runtime/transport/bus.h"
+#include "services/runtime/transport/udpm/fresh_url.h"
 #include "tests/integration/lcm/lcm_programs.h"
 
 namespace fogline::test {

@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include "services/runtime/transport/bus.h"
+#include "services/runtime/transport/udpm/fresh_url.h"
 #include "tests/support/command.h"
 #include "tests/support/screen.h"
 

@@ -16,6 +16,7 @@
 #include "services/log/event_log.h"
 #include "services/log/remains.h"
 #include "services/runtime/transport/bus.h"
+#include "services/runtime/transport/udpm/fresh_url.h"
 #include "services/runtime/wire/wire.h"
 #include "tests/integration/logs/gap_fixture.h"
 #include "tests/support/command.h"

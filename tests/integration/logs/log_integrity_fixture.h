@@ -16,6 +16,7 @@
 #include "services/log/event_log.h"
 #include "services/log/log_seal.h"
 #include "services/runtime/transport/bus.h"
+#include "services/runtime/transport/udpm/fresh_url.h"
 #include "tests/support/command.h"
 
 namespace fogline::test {

@@ -13,7 +13,7 @@
 #include <thread>
 #include <vector>
 
-#include "services/runtime/transport/bus.h"
+#include "services/runtime/transport/udpm/fresh_url.h"
 #include "tests/integration/logs/log_integrity_fixture.h"
 #include "tests/support/children.h"
 #include "tests/support/command.h"

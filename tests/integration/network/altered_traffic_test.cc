@@ -9,6 +9,7 @@
 
 #include "services/graph.h"
 #include "services/runtime/transport/bus.h"
+#include "services/runtime/transport/udpm/fresh_url.h"
 #include "tests/support/command.h"
 
 namespace fogline::test {

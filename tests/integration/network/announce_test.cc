@@ -16,6 +16,7 @@
 #include "services/log/log_seal.h"
 #include "services/runtime/discovery/announcements.h"
 #include "services/runtime/transport/bus.h"
+#include "services/runtime/transport/udpm/fresh_url.h"
 #include "tests/integration/network/meeting.h"
 #include "tests/support/network_test.h"
 

@@ -7,8 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "common/clock.h"
 #include "services/log/event_log.h"
-#include "services/runtime/transport/bus.h"
+#include "services/runtime/transport/udpm/fresh_url.h"
 #include "tests/integration/network/meeting.h"
 #include "tests/support/command.h"
 

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "services/log/event_log.h"
+#include "services/runtime/transport/udpm/fresh_url.h"
 #include "tests/integration/network/meeting.h"
 #include "tests/support/pages.h"
 

@@ -11,6 +11,8 @@
 #include <sstream>
 
 #include "services/runtime/transport/bus.h"
+#include "services/runtime/transport/udpm/fresh_url.h"
+#include "tests/support/command.h"
 #include "tests/support/numbered_sender.h"
 
 namespace fogline::test {

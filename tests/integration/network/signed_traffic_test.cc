@@ -12,6 +12,7 @@
 #include <thread>
 
 #include "services/runtime/transport/bus.h"
+#include "services/runtime/transport/udpm/fresh_url.h"
 #include "tests/integration/runs/paper_run.h"
 #include "tests/support/command.h"
 

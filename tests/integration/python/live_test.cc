@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "services/runtime/transport/udpm/fresh_url.h"
 #include "services/runtime/wire/message_signer.h"
 #include "tests/integration/network/meeting.h"
 #include "tests/integration/python/python.h"

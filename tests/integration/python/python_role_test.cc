@@ -10,6 +10,7 @@
 #include <deque>
 
 #include "services/log/run_log.h"
+#include "services/runtime/transport/udpm/fresh_url.h"
 #include "services/runtime/wire/message_signer.h"
 #include "tests/integration/faults/watched_run.h"
 #include "tests/integration/python/python.h"

@@ -10,6 +10,7 @@
 
 #include <gmock/gmock.h>
 
+#include "services/runtime/transport/udpm/fresh_url.h"
 #include "services/runtime/wire/message_signer.h"
 #include "tests/integration/record/recorder_process.h"
 #include "tests/support/file_size_limit.h"

@@ -9,7 +9,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "services/runtime/transport/bus.h"
+#include "services/runtime/transport/udpm/fresh_url.h"
 #include "tests/support/command.h"
 #include "tests/support/pages.h"
 

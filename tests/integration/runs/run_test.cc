@@ -7,7 +7,7 @@
 
 #include <fstream>
 
-#include "services/runtime/transport/bus.h"
+#include "services/runtime/transport/udpm/fresh_url.h"
 #include "tests/support/command.h"
 
 namespace fogline::test {

@@ -15,6 +15,7 @@
 
 #include "services/log/run_log.h"
 #include "services/runtime/transport/bus.h"
+#include "services/runtime/transport/udpm/fresh_url.h"
 #include "services/runtime/wire/scenario_parts.h"
 #include "tests/support/command.h"
 

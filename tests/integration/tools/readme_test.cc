@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "services/runtime/transport/bus.h"
+#include "services/runtime/transport/udpm/fresh_url.h"
 #include "tests/support/command.h"
 #include "tests/support/pages.h"
 

@@ -11,7 +11,7 @@
 
 #include "services/graph.h"
 #include "services/log/event_log.h"
-#include "services/runtime/transport/bus.h"
+#include "services/runtime/transport/udpm/fresh_url.h"
 #include "services/runtime/wire/wire.h"
 #include "tests/support/command.h"
 #include "tests/support/pages.h"

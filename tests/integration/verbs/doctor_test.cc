@@ -10,8 +10,10 @@
 #include <iterator>
 #include <set>
 
-#include "services/runtime/transport/bus.h"
+#include "common/clock.h"
+#include "services/graph.h"
 #include "services/runtime/transport/multicast_route.h"
+#include "services/runtime/transport/udpm/fresh_url.h"
 #include "tests/integration/verbs/find_in_json.h"
 #include "tests/support/command.h"
 #include "tests/support/machine.h"

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "services/runtime/transport/bus.h"
+#include "services/runtime/transport/udpm/fresh_url.h"
 #include "tests/support/children.h"
 #include "tests/support/command.h"
 #include "tests/support/verbs.h"

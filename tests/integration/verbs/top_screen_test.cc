@@ -20,7 +20,7 @@
 
 #include "common/clock.h"
 #include "services/graph.h"
-#include "services/runtime/transport/bus.h"
+#include "services/runtime/transport/udpm/fresh_url.h"
 #include "tests/support/command.h"
 
 namespace fogline::test {

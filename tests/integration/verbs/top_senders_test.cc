@@ -3,6 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "services/runtime/transport/udpm/fresh_url.h"
 #include "tests/integration/verbs/find_in_json.h"
 #include "tests/integration/verbs/top_process.h"
 #include "tests/support/numbered_sender.h"

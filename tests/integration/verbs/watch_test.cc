@@ -18,6 +18,7 @@
 #include <set>
 
 #include "services/runtime/transport/bus.h"
+#include "services/runtime/transport/udpm/fresh_url.h"
 #include "tests/integration/verbs/find_in_json.h"
 #include "tests/integration/verbs/top_process.h"
 #include "tests/support/command.h"

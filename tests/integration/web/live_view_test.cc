@@ -10,6 +10,7 @@
 #include "services/log/run_log.h"
 #include "services/log/step_order.h"
 #include "services/runtime/transport/bus.h"
+#include "services/runtime/transport/udpm/fresh_url.h"
 #include "tests/integration/web/viewed.h"
 
 namespace fogline::test {

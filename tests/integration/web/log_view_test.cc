@@ -11,7 +11,7 @@
 #include "services/log/event_log.h"
 #include "services/log/remains.h"
 #include "services/log/run_log.h"
-#include "services/runtime/transport/bus.h"
+#include "services/runtime/transport/udpm/fresh_url.h"
 #include "tests/integration/web/viewed.h"
 
 namespace fogline::test {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "services/runtime/transport/bus.h"
+#include "services/runtime/transport/udpm/fresh_url.h"
 #include "services/runtime/wire/driver_input.h"
 #include "services/runtime/wire/message_signer.h"
 #include "services/runtime/wire/scenario_parts.h"

@@ -6,6 +6,7 @@
 #include <optional>
 #include <set>
 
+#include "services/runtime/transport/udpm/fresh_url.h"
 #include "tests/integration/drive/page_person.h"
 #include "tests/integration/web/seat_network.h"
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "services/runtime/transport/bus.h"
+#include "services/runtime/transport/udpm/fresh_url.h"
 #include "services/runtime/wire/wire.h"
 
 namespace fogline::trials {

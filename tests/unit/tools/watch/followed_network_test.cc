@@ -13,6 +13,8 @@
 #include <cstddef>
 #include <thread>
 
+#include "services/runtime/transport/udpm/fresh_url.h"
+
 namespace fogline::watch {
 namespace {
 

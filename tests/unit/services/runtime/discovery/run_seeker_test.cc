@@ -10,6 +10,7 @@
 
 #include "common/process/this_process.h"
 #include "services/runtime/transport/bus.h"
+#include "services/runtime/transport/udpm/fresh_url.h"
 
 namespace fogline {
 namespace {

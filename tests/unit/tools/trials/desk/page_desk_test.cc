@@ -8,7 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "services/runtime/transport/bus.h"
+#include "services/runtime/transport/udpm/fresh_url.h"
 #include "tests/support/web_client.h"
 
 namespace fogline::trials {

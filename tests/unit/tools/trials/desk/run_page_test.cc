@@ -10,7 +10,7 @@
 #include <thread>
 #include <vector>
 
-#include "services/runtime/transport/bus.h"
+#include "services/runtime/transport/udpm/fresh_url.h"
 #include "tests/support/children.h"
 #include "tests/support/command.h"
 #include "tests/unit/tools/trials/desk/taken_port.h"

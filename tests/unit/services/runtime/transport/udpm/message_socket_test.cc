@@ -12,6 +12,7 @@
 
 #include "services/runtime/transport/bus.h"
 #include "services/runtime/transport/lcm_url.h"
+#include "services/runtime/transport/udpm/fresh_url.h"
 #include "services/runtime/wire/channel_filter.h"
 #include "tests/unit/services/runtime/transport/raw_datagram.h"
 
