@@ -110,4 +110,11 @@ std::vector<std::vector<CsvNumber>> ReadCsvColumns(std::string_view text,
   return numbers;
 }
 
+std::string CsvCell(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + '"';
+}
+
 }  // namespace fogline

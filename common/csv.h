@@ -1,4 +1,5 @@
-// Reads columns of numbers from a CSV file with commas, a header line, and no quotes.
+// Reads columns of numbers from a CSV file with commas, a header line, and no quotes. Writes texts
+// as cells.
 #pragma once
 
 #include <cstdint>
@@ -33,5 +34,8 @@ using CsvRefuse = std::function<void(std::uint32_t offset, std::string message)>
 std::vector<std::vector<CsvNumber>> ReadCsvColumns(std::string_view text,
                                                    const std::vector<std::size_t>& columns,
                                                    const CsvRefuse& refuse);
+
+/// A text as a cell of a CSV file: in quotes if a character requires them (RFC 4180).
+std::string CsvCell(const std::string& text);
 
 }  // namespace fogline

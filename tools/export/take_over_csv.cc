@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "common/atomic_file.h"
+#include "common/csv.h"
 
 namespace fogline::exports {
 namespace {
@@ -25,16 +26,9 @@ std::string RequestColumns() {
   return line + '\n';
 }
 
-std::string Quoted(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
-  return quoted + '"';
-}
-
 void AppendRequest(const TakeOverRun& run, std::size_t index, std::string& text) {
   const metrics::TakeOverMeasures& measures = run.take_overs[index];
-  text += fmt::format("{},{},{},{}", Quoted(run.log), run.seed, index + 1,
+  text += fmt::format("{},{},{},{}", CsvCell(run.log), run.seed, index + 1,
                       metrics::NameOf(measures.outcome));
   metrics::VisitTakeOver(
       measures, [&text](std::string_view, const std::optional<double>& value, std::string_view,
@@ -50,7 +44,7 @@ void AppendRequest(const TakeOverRun& run, std::size_t index, std::string& text)
 void AppendUnknown(const TakeOverRun& run, std::string& text) {
   const std::string columns = RequestColumns();
   const auto others = std::ranges::count(columns, ',') - std::ranges::count(kKeys, ',') + 1;
-  text += fmt::format("{},{},,unknown{}\n", Quoted(run.log), run.seed,
+  text += fmt::format("{},{},,unknown{}\n", CsvCell(run.log), run.seed,
                       std::string(static_cast<std::size_t>(others), ','));
 }
 
